@@ -1,6 +1,6 @@
 //! [`PyBatch`]: environments that step together, with their buffers as arrays. Single environments are batches of one.
 //!
-//! Spaces, infos and Gymnasium's rules are in `package/driftworld/envs/`.
+//! `package/driftworld/envs/` adds spaces, infos and Gymnasium's rules.
 
 use std::num::NonZeroU32;
 use std::str::FromStr;
@@ -27,22 +27,22 @@ use crate::views::views;
 /// Environments that step together.
 #[pyclass(name = "Batch", module = "driftworld._native", frozen)]
 pub(crate) struct PyBatch {
-    /// One thread at a time has it; another that wants it meanwhile is refused.
+    /// Used by one thread at a time; a second one gets an error.
     stepping: Mutex<Stepping>,
     supplies: Vec<Arc<Supply>>,
     known: Known,
-    /// The process that the batch was made in: its threads live nowhere else.
+    /// The process that created the batch: its threads exist only there.
     process: u32,
 }
 
-/// What objects may be, and the tasks found to have nothing else.
+/// The known classes and models, and the tasks that were checked to use no others.
 struct Known {
     catalogue: Catalogue,
     tasks: Mutex<Vec<Arc<TaskSpec>>>,
 }
 
 impl Known {
-    /// Refuses a stream of worlds with objects of classes or models that are not known.
+    /// Refuses a stream of worlds with objects of unknown classes or models.
     fn check(&self, stream: &Stream) -> Result<()> {
         let mut known = self.tasks.lock().unwrap_or_else(PoisonError::into_inner);
         let check = |variant: &Variant| -> Result<()> {
@@ -60,15 +60,15 @@ impl Known {
     }
 }
 
-/// What a step changes.
+/// The state that steps change.
 struct Stepping {
     batch: Batch,
-    /// The actions of a step; the memory is used again.
+    /// The actions of a step, in a reused buffer.
     actions: Vec<Action>,
 }
 
-/// What a step says beside the observations: rewards, terminated, truncated, success, and the numbers of the environments in
-/// which something happened.
+/// Results of a step besides observations: rewards, terminated, truncated, success, and the indices of environments with
+/// events.
 type Stepped<'py> = (
     Bound<'py, PyArray1<f64>>,
     Bound<'py, PyArray1<bool>>,
@@ -79,7 +79,7 @@ type Stepped<'py> = (
 
 #[pymethods]
 impl PyBatch {
-    /// One environment for each stream, at the start of world 0 under seed 0.
+    /// One environment per stream, at the start of world 0 under seed 0.
     #[new]
     #[pyo3(signature = (streams, overrides, autoreset, num_threads, renderer, depth, libraries, modalities, max_episode_steps=None))]
     #[expect(clippy::too_many_arguments, reason = "called from one place, by name")]
@@ -130,25 +130,25 @@ impl PyBatch {
         })
     }
 
-    /// What draws: `cpu` or `gpu`.
+    /// The renderer: `cpu` or `gpu`.
     #[getter]
     fn renderer(&self) -> Result<&'static str> {
         Ok(self.lock()?.batch.renderer().name())
     }
 
-    /// Lets an environment draw worlds under another seed, from this index on.
+    /// Makes an environment draw worlds under another seed, from this index on.
     fn seed(&self, env: usize, seed: u64, index: u64) -> Result<()> {
         self.supply(env)?.seed(seed, index);
         Ok(())
     }
 
-    /// Lets an environment go on with the world of this index.
+    /// Makes an environment continue with the world of this index.
     fn index(&self, env: usize, index: u64) -> Result<()> {
         self.supply(env)?.index(index);
         Ok(())
     }
 
-    /// Lets an environment take its worlds from another stream from its next episode on.
+    /// Makes an environment take its worlds from another stream, from its next episode on.
     fn stream(&self, env: usize, stream: &Bound<'_, PyStream>) -> Result<()> {
         self.known.check(&stream.get().0)?;
         self.supply(env)?.stream(stream.get().0.clone());
@@ -170,24 +170,24 @@ impl PyBatch {
         Ok(self.supply(env)?.place())
     }
 
-    /// Takes up the supply of an environment where another stands.
+    /// Sets the supply of an environment to the place of another.
     fn set_place(&self, env: usize, place: (u64, u64, u64)) -> Result<()> {
         self.supply(env)?.set_place(place);
         Ok(())
     }
 
-    /// Steps of the episode that an environment is in, as the limit beside the worlds counts them.
+    /// Steps of an environment's current episode, as counted for the limit in addition to the worlds' own.
     fn episode_steps(&self, env: usize) -> Result<u32> {
         let steps = self.lock()?.batch.episode_steps(env);
         of_env(steps, env, self.supplies.len())
     }
 
-    /// Counts on from so many.
+    /// Sets that number of steps.
     fn set_episode_steps(&self, env: usize, steps: u32) -> Result<()> {
         Ok(self.lock()?.batch.set_episode_steps(env, steps)?)
     }
 
-    /// Begins the next episode in all environments, or in those that `mask` says true for. After Ctrl-C some have not begun.
+    /// Begins the next episode in all environments, or in those where `mask` is true. After Ctrl-C some have not begun.
     #[pyo3(signature = (mask=None))]
     fn reset(&self, py: Python<'_>, mask: Option<PyReadonlyArray1<'_, bool>>) -> Result<()> {
         self.expect_own_process()?;
@@ -198,7 +198,7 @@ impl PyBatch {
         run_between_envs(py, count, |go_on| batch.reset_where_while(&chosen, go_on))
     }
 
-    /// One step with actions of numbers, `(num_envs, 3)` or without interaction `(num_envs, 2)`.
+    /// One step with numeric actions, `(num_envs, 3)` or without interaction `(num_envs, 2)`.
     fn step_numbers<'py>(&self, py: Python<'py>, actions: PyReadonlyArray2<'py, f64>) -> Result<Stepped<'py>> {
         let mut stepping = self.lock()?;
         let actions = actions.as_array();
@@ -213,7 +213,7 @@ impl PyBatch {
         Ok(stepping.stepped(py))
     }
 
-    /// One step with actions that are rows of the table, `(num_envs,)`.
+    /// One step with rows of the action table, `(num_envs,)`.
     fn step_rows<'py>(&self, py: Python<'py>, actions: PyReadonlyArray1<'py, i64>) -> Result<Stepped<'py>> {
         let mut stepping = self.lock()?;
         let rows = actions.as_array();
@@ -224,23 +224,23 @@ impl PyBatch {
         Ok(stepping.stepped(py))
     }
 
-    /// One step of the only environment, by numbers: reward, terminated, truncated, success, and whether anything happened.
+    /// One step of the only environment, by numbers: reward, terminated, truncated, success, and whether there were events.
     fn step_one_by_numbers(&self, py: Python<'_>, numbers: Vec<f64>) -> Result<(f64, bool, bool, bool, bool)> {
         self.step_one(py, number_action(|column| numbers.get(column).copied()))
     }
 
-    /// The same by a row of the table.
+    /// Like `step_one_by_numbers`, with a row of the action table.
     fn step_one_by_row(&self, py: Python<'_>, row: i64) -> Result<(f64, bool, bool, bool, bool)> {
         let done = self.step_one(py, row_action(row));
         done.map_err(|error| no_row(error, |_| Some(row)))
     }
 
-    /// Why the last step of an environment ended its episode, in a word; `None` if it did not.
+    /// The cause of an episode's end in an environment's last step, as a word; `None` if it did not end.
     fn ended_by(&self, env: usize) -> Result<Option<&'static str>> {
         Ok(self.lock()?.batch.ended_by(env).map(EndedBy::word))
     }
 
-    /// Repeats the last step's actions so often without coming back to Python: what the batch can do by itself.
+    /// Repeats the last step's actions this many times without returning to Python: the speed of the batch alone.
     fn repeat(&self, py: Python<'_>, steps: u64) -> Result<()> {
         self.expect_own_process()?;
         let mut stepping = self.lock()?;
@@ -255,26 +255,27 @@ impl PyBatch {
         Ok(())
     }
 
-    /// The observations' buffers as arrays that share their memory and cannot be written through, by modality:
-    /// `(num_envs, height, width, channels)`, and `state` `(num_envs, 1, 1, n)`.
+    /// The observation buffers as read-only arrays that share their memory, by modality: `(num_envs, height, width, channels)`,
+    /// and `state` `(num_envs, 1, 1, n)`.
     fn buffers(slf: Bound<'_, Self>) -> Result<Bound<'_, PyDict>> {
         let stepping = slf.get().lock()?;
         views(&slf, stepping.batch.outputs())
     }
 
-    /// The same of the last observations of episodes that ended in the last step; none unless autoreset is in the same step.
+    /// Like `buffers`, for the last observations of episodes that ended in the last step; `None` unless autoreset is in the
+    /// same step.
     fn final_buffers(slf: Bound<'_, Self>) -> Result<Option<Bound<'_, PyDict>>> {
         let stepping = slf.get().lock()?;
         let finals = stepping.batch.final_outputs();
         finals.map(|outputs| views(&slf, outputs)).transpose()
     }
 
-    /// Task, variant, seed, index and hash of the world that an environment is in.
+    /// Task, variant, seed, index and hash of an environment's world.
     fn origin(&self, env: usize) -> Result<Origin> {
         Ok(self.supply(env)?.origin())
     }
 
-    /// What happened in an environment in the last step.
+    /// Events in an environment during the last step.
     fn events<'py>(&self, py: Python<'py>, env: usize) -> Result<Bound<'py, PyTuple>> {
         let stepping = self.lock()?;
         let events = stepping.batch.events(env).unwrap_or_default();
@@ -282,7 +283,7 @@ impl PyBatch {
         Ok(PyTuple::new(py, events?)?)
     }
 
-    /// Takes down what is done from now on, or no longer, in one environment or in all.
+    /// Starts or stops recording, in one environment or in all.
     #[pyo3(signature = (records, env=None))]
     fn record(&self, records: bool, env: Option<usize>) -> Result<()> {
         let batch = &mut self.lock()?.batch;
@@ -293,19 +294,20 @@ impl PyBatch {
         Ok(())
     }
 
-    /// What was done in an environment's episode so far; before its first step in the one before. `None` unless it is taken down.
+    /// The recording of an environment's episode so far; before its first step that of the previous one. `None` unless it is
+    /// recorded.
     fn recording(&self, env: usize) -> Result<Option<PyRecording>> {
         Ok(self.lock()?.batch.recording(env).map(PyRecording::from))
     }
 
-    /// The JSON of an environment's world as it is now.
+    /// The JSON of the current state of an environment's world.
     fn state(&self, env: usize) -> Result<String> {
         let stepping = self.lock()?;
         let environment = stepping.environment(env)?;
         Ok(usually_rounded(|| environment.state().to_json()))
     }
 
-    /// What an environment's world asks for that is not as its author may think.
+    /// Warnings about settings of an environment's world that may not be as intended.
     fn warnings(&self, env: usize) -> Result<Vec<String>> {
         let stepping = self.lock()?;
         let environment = stepping.environment(env)?;
@@ -315,7 +317,7 @@ impl PyBatch {
         Ok(warnings.iter().map(ToString::to_string).chain(remarks).collect())
     }
 
-    /// A picture of an environment, `(height, width, 3)` bytes: what its agent sees, or the world from above.
+    /// An image of an environment, `(height, width, 3)` bytes: its agent's view, or the world from above.
     fn picture<'py>(
         &self,
         py: Python<'py>,
@@ -349,11 +351,11 @@ impl PyBatch {
 }
 
 impl PyBatch {
-    /// What steps and resets change, for one thread alone.
+    /// Locks the state that steps and resets change, for one thread at a time.
     fn lock(&self) -> PyResult<MutexGuard<'_, Stepping>> {
         match self.stepping.try_lock() {
             Ok(stepping) => Ok(stepping),
-            // A panic leaves no environment half stepped: each has its own part.
+            // A panic leaves no environment in the middle of a step: each has its own part.
             Err(TryLockError::Poisoned(poisoned)) => Ok(PoisonError::into_inner(poisoned)),
             Err(TryLockError::WouldBlock) => Err(PyRuntimeError::new_err(
                 "environment: found it in use by another thread, expected one thread at a time; make an environment for each \
@@ -381,12 +383,12 @@ impl PyBatch {
         ))
     }
 
-    /// One step with the actions that were set.
+    /// One step with the prepared actions.
     fn go(&self, py: Python<'_>, stepping: &mut Stepping) -> Result<()> {
         self.expect_own_process()?;
         let Stepping { batch, actions } = stepping;
         detach(py, || batch.step(actions)).map_err(|error| match error {
-            // Alone, it needs no number.
+            // With a single environment, the message needs no index.
             EnvError::BatchAction { error, .. } if actions.len() == 1 => *error,
             error => error,
         })?;
@@ -397,7 +399,7 @@ impl PyBatch {
         of_env(self.supplies.get(env).map(AsRef::as_ref), env, self.supplies.len())
     }
 
-    /// Threads do not survive a fork: stepping there would wait for ever.
+    /// Threads do not survive a fork, so a step would wait forever.
     fn expect_own_process(&self) -> Result<()> {
         let here = std::process::id();
         if here == self.process {
@@ -412,7 +414,7 @@ impl PyBatch {
 }
 
 impl Stepping {
-    /// What the last step led to.
+    /// Results of the last step.
     fn stepped<'py>(&self, py: Python<'py>) -> Stepped<'py> {
         let outputs = self.batch.outputs();
         let eventful = |env: &usize| self.batch.events(*env).is_some_and(|events| !events.is_empty());
@@ -430,12 +432,12 @@ impl Stepping {
     }
 }
 
-/// What an environment has, if there is such an environment.
+/// A value of an environment, or an error if there is no such environment.
 fn of_env<T>(found: Option<T>, env: usize, num_envs: usize) -> Result<T> {
     found.ok_or_else(|| EnvError::NoSuchEnv { found: env, num_envs }.into())
 }
 
-/// An event as a dictionary.
+/// Converts an event to a dictionary.
 fn to_py<'py>(py: Python<'py>, event: &Event) -> PyResult<Bound<'py, PyDict>> {
     let dictionary = PyDict::new(py);
     dictionary.set_item("object", event.object)?;
@@ -448,26 +450,26 @@ fn to_py<'py>(py: Python<'py>, event: &Event) -> PyResult<Bound<'py, PyDict>> {
     Ok(dictionary)
 }
 
-/// The value of an option that is one of a few words.
+/// Parses an option that is one of a few words.
 fn word<T: FromStr>(option: &str, found: &str, expected: &str) -> Result<T> {
     let unknown = |_| PyValueError::new_err(format!("{option}: found {found:?}, expected {expected}"));
     Ok(found.parse().map_err(unknown)?)
 }
 
-/// The row that stands for every number that is none: no table is as long.
+/// Stands for every invalid row number: no table is this long.
 const NO_ROW: usize = usize::MAX;
 
-/// The action of up to three numbers; those that are missing are 0.
+/// An action of up to three numbers; missing ones are 0.
 fn number_action(number: impl Fn(usize) -> Option<f64>) -> Action {
     Action::Continuous([0, 1, 2].map(|column| number(column).unwrap_or(0.0)))
 }
 
-/// The action of a row. What is no row is an error where the action counts, which the batch knows.
+/// The action for a row. The batch reports invalid rows, if the action is used.
 fn row_action(row: i64) -> Action {
     Action::Discrete(usize::try_from(row).unwrap_or(NO_ROW))
 }
 
-/// An error, as that of an action that is no row's number with the number that was found, where it is one.
+/// Replaces the row in an error about an unknown row by the number that was given.
 fn no_row(error: Error, row: impl Fn(usize) -> Option<i64>) -> Error {
     let Error::Cause(cause) = &error else {
         return error;

@@ -1,4 +1,4 @@
-//! The `driftworld` command from Python, run as a program. What it does is the library's.
+//! Runs the `driftworld` command from Python.
 
 use std::ffi::OsString;
 

@@ -1,5 +1,5 @@
-//! Options that lay something over a key in which variants differ, or that leave out the only images that show it. With such
-//! an option the variants would be one.
+//! Detects options of environments that hide a difference between variants: options that override a key in which they differ,
+//! or leave out the only images that show it. With such an option the variants would be the same.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,7 @@ use crate::errors::Result;
 use crate::supply::overrides_of;
 use crate::variant::PyVariant;
 
-/// An option: its name, the keys of a world that it stands in place of, and what a world says in them.
+/// An option: its name, the keys of a world that it overrides, and how to read them from a world.
 struct EnvOption {
     name: &'static str,
     keys: &'static [&'static str],
@@ -72,13 +72,13 @@ const OPTIONS: [EnvOption; 7] = [
     },
 ];
 
-/// What the worlds of a variant say in the keys of all options, and in which of them worlds of the one variant differ.
+/// The values of a variant's worlds for the keys of all options, and those that differ between its worlds.
 struct Said {
     name: String,
     task: String,
     values: WorldDraft,
     drawn: Vec<String>,
-    /// The same of the task's own defaults.
+    /// The values of the task's own defaults.
     usual: Option<WorldDraft>,
     variant: Option<Variant>,
 }
@@ -113,7 +113,7 @@ impl Said {
     }
 }
 
-/// A variant's template with the values of the variant in the keys of all options, and the pointers of what is drawn there.
+/// A variant's template with the variant's values for the keys of all options, and the pointers of drawn values.
 fn said(variant: &Variant, max_steps: Option<u32>) -> (WorldDraft, Vec<String>) {
     let template = variant.task().world();
     let (mut values, mut drawn) = (template.base.clone(), Vec::new());
@@ -122,7 +122,7 @@ fn said(variant: &Variant, max_steps: Option<u32>) -> (WorldDraft, Vec<String>) 
             continue;
         }
         match variant.resolve(&hole.source) {
-            // A value that cannot stand there is refused where the world is made.
+            // Invalid values are refused when worlds are made.
             Resolved::Value(value) => drop(hole.fill(&mut values, &value)),
             Resolved::Draw(_) | Resolved::Randomized(_) => drawn.push(hole.pointer.clone()),
         }
@@ -139,11 +139,12 @@ impl EnvOption {
         self.keys.iter().any(|key| pointer.starts_with(key))
     }
 
-    /// What it takes away, if anything: its key, and who says what there without it. `laid` lays all options over a world.
+    /// The difference that the option hides, if any: its key, with the variants and their values without the option. `laid`
+    /// applies all options to a world.
     fn taken(&self, all: &[Said], is_given: bool, laid: &dyn Fn(&WorldDraft) -> WorldDraft) -> Option<Json> {
         let keys: Vec<String> = self.keys.iter().map(|key| key[1..].replace('/', ".")).collect();
         let told = |said: Vec<(&str, Json)>| json!({ "option": self.name, "key": keys.join(", "), "said": said });
-        // By what worlds say with the options: who said it first, and what that one says without.
+        // By values with the options: the first variant that has them, with its value without the options.
         let mut first: BTreeMap<(String, &str), (&str, Json)> = BTreeMap::new();
         for said in all {
             if is_given && said.drawn.iter().any(|pointer| self.covers(pointer)) {
@@ -169,22 +170,22 @@ impl EnvOption {
     }
 }
 
-/// How many worlds of variants are compared before they count as one.
+/// Number of worlds of variants to compare before the variants count as the same.
 const HIDDEN_WORLDS: u64 = 3;
 
-/// The first two variants whose worlds differ in colours and light alone where no image shows colours: `laid` lays all options
-/// over a world.
+/// The first two variants whose worlds differ only in colours and light, if no image shows colours: `laid` applies all options
+/// to a world.
 fn hidden(all: &[Said], laid: &dyn Fn(&WorldDraft) -> WorldDraft) -> Option<Json> {
     let worlds = |variant: &Variant| -> Option<Vec<WorldDraft>> {
         let sampler = Sampler::new(variant, 0);
         let drawn = (0..HIDDEN_WORLDS).map(|index| Some(laid(&sampler.world(index).ok()?.into_draft())));
         drawn.collect()
     };
-    // By what is left without colours: the first variant that has it, and its worlds.
+    // By values without colours: the first variant that has them, and its worlds.
     let mut first: BTreeMap<String, (&str, &Variant, Vec<WorldDraft>)> = BTreeMap::new();
     for said in all {
         let Some(variant) = &said.variant else { continue };
-        // What cannot be drawn is refused where the worlds are made.
+        // Errors in drawing are reported when worlds are made.
         let Some(plain) = worlds(variant) else { continue };
         if plain
             .iter()
@@ -206,7 +207,7 @@ fn hidden(all: &[Said], laid: &dyn Fn(&WorldDraft) -> WorldDraft) -> Option<Json
     None
 }
 
-/// A world without what only colours show.
+/// A world without the values that only colours show.
 fn without_colors(mut world: WorldDraft) -> WorldDraft {
     let (usual, environment) = (EnvironmentParams::default(), &mut world.environment_params);
     environment.bounding_wall_color = usual.bounding_wall_color;
@@ -221,7 +222,7 @@ fn without_colors(mut world: WorldDraft) -> WorldDraft {
     world
 }
 
-/// What options take away from these, as a JSON list: for each option the first that shows it.
+/// The differences that options hide, as a JSON list: for each option the first one.
 fn taken(all: &[Said], overrides: &str, shown: Option<&str>) -> Result<String> {
     let overrides = overrides_of(overrides)?;
     let shown: Option<Vec<Modality>> = shown
@@ -251,7 +252,7 @@ fn taken(all: &[Said], overrides: &str, shown: Option<&str>) -> Result<String> {
     Ok(Json::from(found).to_string())
 }
 
-/// What options take away from variants: a JSON list. `shown` are the images that observations hold, as a JSON list.
+/// The differences between variants that options hide: a JSON list. `shown` are the modalities of observations, as a JSON list.
 #[pyfunction]
 pub(crate) fn covered(variants: Vec<Bound<'_, PyVariant>>, overrides: &str, shown: Option<&str>) -> Result<String> {
     let all: Vec<Said> = variants
@@ -261,7 +262,7 @@ pub(crate) fn covered(variants: Vec<Bound<'_, PyVariant>>, overrides: &str, show
     taken(&all, overrides, shown)
 }
 
-/// The same of all variants and worlds of a plan.
+/// Like `covered`, for all variants and worlds of a plan.
 pub(crate) fn covered_in(plan: &Plan, overrides: &str, shown: Option<&str>) -> Result<String> {
     let variants = plan.variants().into_iter();
     let worlds = plan.world_files().into_iter();

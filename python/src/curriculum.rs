@@ -1,5 +1,4 @@
-//! Scenarios and the logs that they are lived into, as Python holds them. What they mean is `spec`'s, the plan and the log
-//! `curriculum`'s; the agent and its environment are in `package/driftworld/curricula.py`.
+//! Scenarios and logs for Python; the agent and its environment are in `package/driftworld/curricula.py`.
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -25,17 +24,17 @@ use crate::recordings::PyRecording;
 use crate::rounding::detach;
 use crate::supply::{PyStream, Stream};
 
-/// A scenario with everything that it names.
+/// A scenario with everything that it refers to.
 #[pyclass(name = "Plan", module = "driftworld._native")]
 pub(crate) struct PyPlan {
     plan: Plan,
-    /// What it was made with: files that change later do not change it.
+    /// The documents that it was made from: later changes of files do not affect it.
     named: Named,
     warnings: Vec<String>,
 }
 
-/// A plan as values: the scenario's text; of each task its name there, its own and its text; of each world file its name there, its
-/// text and what has to be known about it; and what was odd.
+/// A plan as values: the scenario's text; for each task its name in the scenario, its own name and its text; for each world
+/// file its name in the scenario, its text and additional information; and the warnings.
 type Values = (
     String,
     Vec<(String, String, String)>,
@@ -49,15 +48,15 @@ fn undrawable(skip: bool) -> Undrawable {
 
 #[pymethods]
 impl PyPlan {
-    /// The plan of a scenario's text; what it names by paths is looked for as if it stood at `path`. Worlds that cannot be drawn are
-    /// an error where the first of a regime is one, unless they are left out.
+    /// The plan of a scenario's text; paths in it are resolved as if it were at `path`. A world that cannot be drawn is an
+    /// error if it is the first of a regime, unless such worlds are left out.
     #[new]
     fn new(py: Python<'_>, path: PathBuf, text: &str, stand_in: Option<bool>, skip_undrawable: bool) -> Result<Self> {
         let mut warnings = Vec::new();
         let (plan, named) = detach(py, || {
             let mut warn = |warning| warnings.push(warning);
             let file = ScenarioFile::from_text(Path::new(&path), text, &mut warn)?;
-            // The original's own scenario names a map that it does not come with, and has to run as it stands.
+            // The original's own scenario refers to a map that does not come with it, and has to run unchanged.
             let missing = Missing::may_stand_in(stand_in.unwrap_or(file.original));
             let planned = file.plan_named(missing, undrawable(skip_undrawable), &mut warn);
             planned.map_err(|error| because(&path, error))
@@ -65,7 +64,7 @@ impl PyPlan {
         Ok(Self { plan, named, warnings })
     }
 
-    /// The plan of these values.
+    /// The plan made from these values.
     #[staticmethod]
     fn from_values(py: Python<'_>, values: Values, skip_undrawable: bool) -> Result<Self> {
         let (scenario, tasks, worlds, warnings) = values;
@@ -85,7 +84,7 @@ impl PyPlan {
         Ok(Self { plan, named, warnings })
     }
 
-    /// All that it was made from: equal values are equal plans.
+    /// All values that it was made from: equal values give equal plans.
     fn values(&self) -> Values {
         let tasks = self.named.tasks.iter();
         let worlds = self.named.worlds.iter();
@@ -101,20 +100,20 @@ impl PyPlan {
         )
     }
 
-    /// The plan in another process, also where its files are not, or are others by now.
+    /// Recreates the plan in another process, even if its files are missing there or have changed.
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, (Values, bool))> {
         let plan = slf.borrow();
         let skips = plan.plan.undrawable() == Undrawable::Skipped;
         Ok((slf.get_type().getattr("from_values")?, (plan.values(), skips)))
     }
 
-    /// What was odd about it.
+    /// The warnings about it.
     #[getter]
     fn warnings(&self) -> Vec<String> {
         self.warnings.clone()
     }
 
-    /// The scenario as a dictionary, in our form.
+    /// The scenario as a dictionary, in our format.
     fn scenario<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
         Ok(to_py(py, self.plan.scenario())?)
     }
@@ -124,12 +123,12 @@ impl PyPlan {
         self.plan.scenario().to_json_pretty()
     }
 
-    /// How many experiences the whole lifetime has.
+    /// Number of experiences of the whole lifetime.
     fn __len__(&self) -> usize {
         usize::try_from(self.plan.num_experiences()).unwrap_or(usize::MAX)
     }
 
-    /// What experience `number` is, as a dictionary, without its world.
+    /// Experience `number` as a dictionary, without its world.
     fn experience_spec<'py>(&self, py: Python<'py>, number: Whole) -> Result<Bound<'py, PyAny>> {
         let spec = self.plan.experience_spec(number.0)?;
         let label = spec.label.map(
@@ -143,38 +142,38 @@ impl PyPlan {
         Ok(json_to_py(py, &dictionary)?)
     }
 
-    /// The experience that follows when the budget of the regime of experience `number` is spent.
+    /// The experience that follows when the budget of experience `number`'s regime is spent.
     fn after(&self, number: u64) -> u64 {
         self.plan.after(number)
     }
 
-    /// The numbers of the first and the last experience of each regime: all variants, and both ends of each drift.
+    /// The indices of the first and the last experience of each regime: all variants, and both ends of each drift.
     fn ends_of_regimes(&self) -> Vec<u64> {
         self.plan.ends_of_regimes().collect()
     }
 
-    /// What options of environments take away from its variants: see `covered.rs`.
+    /// The differences between its variants that options of environments hide: see `covered.rs`.
     fn covered(&self, py: Python<'_>, overrides: &str, shown: Option<&str>) -> Result<String> {
         detach(py, || covered_in(&self.plan, overrides, shown))
     }
 
-    /// The world of experience `number`; one without any limit has one of steps here.
+    /// The world of experience `number`; a world without any limit gets a step limit.
     fn world(&self, py: Python<'_>, number: Whole) -> Result<PyStream> {
         handle(detach(py, || self.plan.world(number.0))?)
     }
 
-    /// Draws so many worlds of each regime, and says how often that fails, and why: a list of dictionaries.
+    /// Draws this many worlds of each regime, and reports failures and their reasons: a list of dictionaries.
     fn try_worlds<'py>(&self, py: Python<'py>, worlds: u32) -> Result<Bound<'py, PyAny>> {
         let trials = detach(py, || self.plan.try_worlds(worlds, &mut Tried::default()));
         Ok(to_py(py, &trials)?)
     }
 
-    /// How many environments run at the same time.
+    /// Sets the number of environments that run at the same time.
     fn set_lanes(&mut self, lanes: usize) {
         self.plan.set_lanes(lanes);
     }
 
-    /// Notes what else its lifetime depends on: a log is taken up only if it is the same.
+    /// Records the run's seed: a log can be resumed only with the same one.
     fn set_run_seed(&mut self, seed: u64) {
         self.plan.set_run_seed(seed);
     }
@@ -185,7 +184,7 @@ impl PyPlan {
     }
 }
 
-/// A plan's error, with what is wrong with the document of the task where that is why.
+/// A plan's error; if a task's document is the cause, with its problems.
 fn because(scenario: &Path, error: CurriculumError) -> Error {
     if let CurriculumError::Unknown { task, .. } = &error
         && let Err(TaskError::Spec(source)) = task_from(scenario, task)
@@ -195,13 +194,13 @@ fn because(scenario: &Path, error: CurriculumError) -> Error {
     error.into()
 }
 
-/// The log that a lifetime is lived into.
+/// The log of a lifetime.
 #[pyclass(name = "Journal", module = "driftworld._native")]
 pub(crate) struct PyJournal(Option<Journal>);
 
 #[pymethods]
 impl PyJournal {
-    /// Begins a log, or takes one up.
+    /// Begins or resumes a log.
     #[new]
     fn new(
         py: Python<'_>,
@@ -225,15 +224,15 @@ impl PyJournal {
         Ok(Self(Some(journal)))
     }
 
-    /// Whether it keeps what is done: then the rollout is asked for it.
+    /// Whether it keeps recordings; then the rollout is asked for them.
     #[getter]
     fn records(&mut self) -> Result<bool> {
         Ok(self.open()?.records())
     }
 
-    /// Runs the plan from the first experience that is not in the log, and says what it came to, as a dictionary. `learned`:
-    /// how many experiences the agent has learned from. `rollout` has the methods of [`Rollout`]. `check_frozen`: whether some
-    /// evaluations of each block are run once more; its attribute `repeats_first` says whether these are the first.
+    /// Runs the plan from the first experience that is not in the log, and returns the result as a dictionary. `learned`:
+    /// number of experiences that the agent has learned from. `rollout` has the methods of [`Rollout`]. `check_frozen`: whether
+    /// to repeat some evaluations of each block; its attribute `repeats_first` says whether these are the first ones.
     fn run<'py>(
         &mut self,
         py: Python<'py>,
@@ -252,18 +251,18 @@ impl PyJournal {
         Ok(to_py(py, &summary)?)
     }
 
-    /// Takes back the block that was logged last, of an agent that was refused by it.
+    /// Removes the last logged block, after it led to the refusal of the agent.
     fn withdraw_block(&mut self) -> Result<()> {
         Ok(self.open()?.withdraw_block()?)
     }
 
-    /// How many experiences are in the log.
+    /// Number of experiences in the log.
     fn __len__(&mut self) -> Result<usize> {
         let logged = self.open()?.num_experiences();
         Ok(usize::try_from(logged).unwrap_or(usize::MAX))
     }
 
-    /// Ends the log: asks the disk to have all of it. Does nothing a second time.
+    /// Closes the log and syncs it to disk. A second call does nothing.
     fn close(&mut self) -> Result<()> {
         self.0.take().map_or(Ok(()), |journal| Ok(journal.finish()?))
     }
@@ -277,7 +276,7 @@ impl PyJournal {
     }
 }
 
-/// A world on its way to Python; one without any limit gets one of steps.
+/// A world for Python; one without any limit gets a step limit.
 fn handle(world: World) -> Result<PyStream> {
     let world = match world.step_limit() {
         Some(_) => world,
@@ -289,7 +288,7 @@ fn handle(world: World) -> Result<PyStream> {
     }))
 }
 
-/// An agent of Python's with its environment: what it does is in `package/driftworld/lifetimes.py`.
+/// A Python agent with its environment, implemented in `package/driftworld/lifetimes.py`.
 struct PythonRollout<'py> {
     rollout: Bound<'py, PyAny>,
     repeats: Repeats,
@@ -329,7 +328,7 @@ impl Rollout for PythonRollout<'_> {
     fn recording(&mut self, number: u64, experience: &Experience) -> Result<Option<Recording>> {
         let found = self.rollout.call_method1("recording", (number,))?;
         let found: Option<Bound<'_, PyRecording>> = found.extract().map_err(PyErr::from)?;
-        // What ended it is said by whoever set a limit, too.
+        // A limit that was set from outside may also have ended it.
         Ok(found.map(|recording| Recording {
             ended_by: experience.ended_by,
             ..Recording::clone(&recording.get().0)

@@ -1,4 +1,4 @@
-//! Curricula designed from names of tasks, as Python asks for them. What a design is, is the library's.
+//! Designs curricula from names of tasks.
 
 use std::path::PathBuf;
 
@@ -16,10 +16,11 @@ use crate::options::Options;
 
 const REFUSED: &str = "CurriculumError";
 
-/// Scenarios, each by its name and its text: those that were designed, and their controls.
+/// Scenarios, by name and text: the designed ones, and their controls.
 type Texts = (Vec<(String, String)>, Vec<(String, String)>);
 
-/// Designs scenarios by the options of `Curriculum.design`, or their experts where these are asked for; draws the blocks where a file is named for it.
+/// Designs scenarios by the options of `Curriculum.design`, or their experts if requested; draws the blocks if a file is given
+/// for it.
 #[pyfunction]
 pub(crate) fn design_curriculum(py: Python<'_>, tasks: Vec<String>, options: Bound<'_, PyDict>) -> Result<Texts> {
     let options = Options::new(options, REFUSED);

@@ -1,4 +1,4 @@
-//! Distances, matrices of them and orders, as Python asks for them. What is measured, and how, is `similarity`'s.
+//! Distances, matrices of distances, and orders.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -22,7 +22,7 @@ use crate::interruptible::{run_cancellable, run_detached};
 use crate::rounding::usually_rounded;
 use crate::variant::PyVariant;
 
-/// What elements weigh, by letters or names.
+/// Weights of elements, by letters or names.
 type Weighing = Option<BTreeMap<String, f64>>;
 
 /// A variant, or the name and the text of a world.
@@ -32,7 +32,7 @@ pub(crate) enum Compared<'py> {
     World(String, String),
 }
 
-/// How far apart two are: the JSON of `driftworld distance --json` as a dictionary.
+/// The distance between two variants or worlds: the JSON of `driftworld distance --json` as a dictionary.
 #[pyfunction]
 #[pyo3(signature = (a, b, weights, worlds, seed, index, by, scale, libraries))]
 #[expect(
@@ -65,13 +65,13 @@ pub(crate) fn distance<'py>(
     Ok(found)
 }
 
-/// What variants and worlds can be compared by.
+/// Names of the ways to compare variants and worlds.
 #[pyfunction]
 pub(crate) fn compared_by() -> Vec<&'static str> {
     By::names().to_vec()
 }
 
-/// By what is compared, how many worlds of each, and where their assets come from; otherwise the usual.
+/// The sampling options: way of comparing, number of worlds, and assets; with the usual defaults.
 fn sample(by: Option<&str>, worlds: Option<Whole>, most: u64, scale: &str, libraries: &[Vec<u8>]) -> Result<Sample> {
     let worlds = worlds.map(|worlds| worlds.0);
     if let Some(worlds) = worlds.filter(|worlds| !(1..=most).contains(worlds)) {
@@ -99,13 +99,13 @@ impl Compared<'_> {
     }
 }
 
-/// Every distance among some items.
+/// All distances between some items.
 #[pyclass(name = "Matrix", module = "driftworld._native", frozen)]
 pub(crate) struct PyMatrix(Arc<DistanceMatrix>);
 
 #[pymethods]
 impl PyMatrix {
-    /// Measures every pair of variants, each under its label.
+    /// Measures every pair of variants, each with its label.
     #[staticmethod]
     #[pyo3(signature = (labels, variants, weights, by, worlds, scale, libraries))]
     #[expect(
@@ -136,7 +136,7 @@ impl PyMatrix {
         Ok(Self(Arc::new(matrix)))
     }
 
-    /// A matrix of distances that are there already.
+    /// A matrix of given distances.
     #[staticmethod]
     fn from_values(labels: Vec<String>, values: PyReadonlyArray2<'_, f64>) -> Result<Self> {
         Ok(Self(Arc::new(DistanceMatrix::from_values(
@@ -174,13 +174,13 @@ impl PyMatrix {
         self.0.values().to_pyarray(py)
     }
 
-    /// Whether the triangle inequality holds, by what is known of the measure.
+    /// Whether the triangle inequality holds, according to the measure's properties.
     #[getter]
     fn is_metric(&self) -> bool {
         self.0.properties().is_metric()
     }
 
-    /// The items as points of a plane, ``(items, 2)``, and how much of the matrix the plane shows.
+    /// The items as points of a plane, ``(items, 2)``, and the share of the matrix that the plane represents.
     fn map<'py>(&self, py: Python<'py>) -> Result<(Bound<'py, PyArray2<f64>>, f64)> {
         let matrix = Arc::clone(&self.0);
         let map = run_detached(py, move || classical_map(&matrix))?;
@@ -225,19 +225,19 @@ impl PyMatrix {
     }
 }
 
-/// What to say of the ending of a file in a format that was removed.
+/// The message about a file name extension of a removed format.
 #[pyfunction]
 pub(crate) fn removed_format(ending: &str) -> Option<String> {
     removed(WordKind::Format, ending)
 }
 
-/// The names of the methods of ordering.
+/// The names of the ordering methods.
 #[pyfunction]
 pub(crate) fn order_methods() -> Vec<&'static str> {
     Method::ALL.iter().map(|method| method.name()).collect()
 }
 
-/// An element of the decision process by its letter or name.
+/// Parses an element of the decision process, given by letter or name.
 pub(crate) fn element(word: &str) -> PyResult<Element> {
     let known = |known: &Element| known.letter().eq_ignore_ascii_case(word) || known.name() == word;
     Element::ALL.into_iter().find(known).ok_or_else(|| {
@@ -251,7 +251,7 @@ fn laid(weights: Weighing) -> PyResult<Vec<(Element, f64)>> {
     weights.map(|(word, weight)| Ok((element(&word)?, weight))).collect()
 }
 
-/// Weights with these laid over them.
+/// Overrides some weights.
 fn over(laid: &[(Element, f64)], declared: Weights) -> std::result::Result<Weights, SimilarityError> {
     laid.iter()
         .try_fold(declared, |weights, (element, weight)| weights.with(*element, *weight))

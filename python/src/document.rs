@@ -1,4 +1,4 @@
-//! JSON as Python's own values and back, and documents checked. What may stand in a document is `spec`'s.
+//! Converts between JSON and Python values, and checks documents.
 
 use std::path::Path;
 
@@ -13,7 +13,7 @@ use crate::classes::catalogue;
 use crate::errors::{Error, Result, described, wrong};
 use crate::rounding::{detach, usually_rounded};
 
-/// A JSON value as Python has it.
+/// Converts a JSON value to Python.
 pub(crate) fn json_to_py<'py>(py: Python<'py>, value: &Value) -> PyResult<Bound<'py, PyAny>> {
     Ok(match value {
         Value::Null => py.None().into_bound(py),
@@ -38,20 +38,20 @@ pub(crate) fn json_to_py<'py>(py: Python<'py>, value: &Value) -> PyResult<Bound<
     })
 }
 
-/// Anything that serialises, as Python has it.
+/// Converts any serialisable value to Python.
 pub(crate) fn to_py<'py>(py: Python<'py>, value: &impl serde::Serialize) -> PyResult<Bound<'py, PyAny>> {
     let value = serde_json::to_value(value).map_err(wrong)?;
     json_to_py(py, &value)
 }
 
-/// What a text of ours says: as Python's own reader has it, but read the same however the calling thread rounds.
+/// Parses our JSON like Python's own parser, but independently of the calling thread's rounding mode.
 #[pyfunction]
 pub(crate) fn parsed<'py>(py: Python<'py>, text: &str) -> PyResult<Bound<'py, PyAny>> {
     let value: Value = usually_rounded(|| serde_json::from_str(text)).map_err(wrong)?;
     json_to_py(py, &value)
 }
 
-/// The JSON value of Python's, numbers of `NumPy` among them.
+/// Converts a Python value, including `NumPy` numbers, to JSON.
 pub(crate) fn from_python(value: &Bound<'_, PyAny>) -> PyResult<Value> {
     let py = value.py();
     let options = PyDict::new(py);
@@ -62,7 +62,7 @@ pub(crate) fn from_python(value: &Bound<'_, PyAny>) -> PyResult<Value> {
     value.map_err(|error| PyValueError::new_err(format!("found {text}: {error}")))
 }
 
-/// A whole number from 0 on, such as a seed.
+/// An integer from 0 on, such as a seed.
 #[derive(Clone, Copy)]
 pub(crate) struct Whole(pub(crate) u64);
 
@@ -70,7 +70,7 @@ impl<'py> FromPyObject<'_, 'py> for Whole {
     type Error = PyErr;
 
     fn extract(value: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
-        // What is no whole number at all is a mistake of type; -1 and 2^64 are ones of value.
+        // Values that are not integers raise a type error; -1 and 2^64 a value error.
         value.extract().map(Self).map_err(|error| {
             if error.is_instance_of::<PyOverflowError>(value.py()) {
                 PyValueError::new_err(format!("found {}, expected a whole number in 0..{}", &*value, u64::MAX))
@@ -81,13 +81,13 @@ impl<'py> FromPyObject<'_, 'py> for Whole {
     }
 }
 
-/// What a document was taken for, its problems, its warnings, and the error to raise.
+/// The document's kind, its problems, its warnings, and the error to raise.
 type Verdict<'py> = (&'static str, Bound<'py, PyList>, Vec<String>, Option<Py<PyAny>>);
 
-/// What a document was taken for, its problems and its warnings. `name` is what messages call it: a path where it has one, from
-/// whose folder a scenario's tasks are looked for.
+/// Checks a document: returns its kind, its problems and its warnings. `name` is used in messages: a path if it has one, from
+/// whose folder a scenario's tasks are resolved.
 ///
-/// `libraries` are the bytes of asset libraries, whose classes are known beside the built-in ones.
+/// `libraries` are the bytes of asset libraries, whose classes are known in addition to the built-in ones.
 #[pyfunction]
 pub(crate) fn check<'py>(
     py: Python<'py>,
@@ -138,7 +138,7 @@ pub(crate) fn check<'py>(
     Ok((kind.word(), problems, checked.warnings, error))
 }
 
-/// A problem that is a whole document's, in words.
+/// A problem of a whole document, as text.
 fn alone<'py>(py: Python<'py>, raised: &PyErr) -> PyResult<Bound<'py, PyDict>> {
     let value = raised.value(py);
     let problem = PyDict::new(py);

@@ -1,4 +1,4 @@
-//! [`PyDrift`]: the variants between two variants, as Python holds them. The way itself is `generator`'s.
+//! [`PyDrift`]: the variants between two variants.
 
 use driftworld_generator::Drift;
 use driftworld_spec::{DriftSchedule, RegimeDrift};
@@ -22,7 +22,7 @@ pub(crate) struct PyDrift {
     made: Made,
 }
 
-/// What a drift was made from: both ends, schedule (as JSON), switch and seed.
+/// The arguments of a drift: both ends, schedule (as JSON), switch and seed.
 type Made = (PyVariant, PyVariant, Option<String>, String, u64);
 
 #[pymethods]

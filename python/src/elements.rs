@@ -1,4 +1,4 @@
-//! Which elements of the decision process variants change, as Python asks for it. The experiment is the library's.
+//! Elements of the decision process that variants change.
 
 use driftworld::elements::{ElementsRequest, elements_of};
 use driftworld_spec::Modality;
@@ -13,8 +13,8 @@ use crate::task::PyTask;
 
 const REFUSED: &str = "TaskError";
 
-/// What variants of a task claim to change and what they were seen to change: the JSON of `driftworld elements --json` as a
-/// dictionary.
+/// The elements that variants of a task claim to change and those that were found to change: the JSON of
+/// `driftworld elements --json` as a dictionary.
 #[pyfunction]
 pub(crate) fn elements<'py>(
     py: Python<'py>,

@@ -1,4 +1,4 @@
-//! Rust's errors as Python's: each with the class that it is raised as. The classes themselves are in `driftworld/errors.py`.
+//! Converts Rust errors to the exceptions in `driftworld/errors.py`.
 
 use std::sync::Arc;
 
@@ -20,24 +20,24 @@ use serde_json::json;
 
 use crate::document::json_to_py;
 
-/// An error on its way to Python.
+/// An error to be raised in Python.
 #[derive(Debug)]
 pub(crate) enum Error {
-    /// One of the crates'.
+    /// An error of one of the crates.
     Cause(Cause),
-    /// A scenario names a task whose document is wrong: what the scenario's error says, and what is wrong with the document.
+    /// A scenario refers to a task with an invalid document: the scenario's error, and the document's problems.
     InScenario(CurriculumError, SpecError),
-    /// An operation that has no result, raised as this class.
+    /// An operation without a result, raised as this class.
     Refused {
         class: &'static str,
         text: String,
         cause: Option<Cause>,
     },
-    /// Already one of Python's.
+    /// Already a Python exception.
     Python(PyErr),
 }
 
-/// A failure of the library as an exception of this class.
+/// Converts a failure of the library to an exception of this class.
 pub(crate) fn refused(class: &'static str, failure: &Failure) -> Error {
     Error::Refused {
         class,
@@ -46,7 +46,7 @@ pub(crate) fn refused(class: &'static str, failure: &Failure) -> Error {
     }
 }
 
-/// What a function for Python hands back.
+/// The result of a function for Python.
 pub(crate) type Result<T> = std::result::Result<T, Error>;
 
 macro_rules! from {
@@ -75,7 +75,7 @@ impl From<PyErr> for Error {
     }
 }
 
-/// A failure by its cause, where that is one of the crates' errors; else as what is wrong with an argument.
+/// Classifies a failure by its cause if that is one of the crates' errors; otherwise it is about an argument.
 impl From<Failure> for Error {
     fn from(failure: Failure) -> Self {
         let class = match failure.cause().as_deref() {
@@ -94,7 +94,7 @@ impl From<DistancesError> for Error {
         match source {
             DistancesError::Generator(source) => source.into(),
             DistancesError::Similarity(source) => source.into(),
-            // The enum may grow; its message says all there is to say.
+            // The enum may grow; the message is complete.
             source => value_error(&source.to_string()),
         }
     }
@@ -107,12 +107,12 @@ impl From<Error> for PyErr {
 }
 
 impl Error {
-    /// The exception for this error.
+    /// Creates the exception.
     fn raise(self, py: Python<'_>) -> PyResult<PyErr> {
         let details = PyDict::new(py);
         let (class, text) = match self {
             Self::Cause(cause) => {
-                // What is wrong with the variant on the way is what is wrong.
+                // The problem is that of the variant in between.
                 if let Some(GeneratorError::Between(source)) = cause.downcast_ref() {
                     of_spec(&details, source)?;
                 }
@@ -131,27 +131,27 @@ impl Error {
             Self::Python(source) => return Ok(source),
         };
         let class = py.import("driftworld.errors")?.getattr(class)?;
-        // Python prints it as it is.
+        // Escaped, because Python prints it unchanged.
         let text = printable_lines(&text);
         Ok(PyErr::from_value(class.call((text,), Some(&details))?))
     }
 }
 
-/// A text as a `ValueError`, unprintable characters escaped.
+/// A `ValueError` with this text, unprintable characters escaped.
 fn value_error(text: &str) -> Error {
     Error::Python(PyValueError::new_err(printable_lines(text).into_owned()))
 }
 
-/// An error's text as a `ValueError`, as it stands.
+/// A `ValueError` with an error's text, unchanged.
 pub(crate) fn wrong(error: impl std::fmt::Display) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
 
-/// Adds what an error of one of the crates knows beside its text, and says as which class it is raised by itself.
+/// Adds the details that a crate's error has besides its text, and returns the default class for raising it.
 fn describe(details: &Bound<'_, PyDict>, cause: &(dyn std::error::Error + 'static)) -> PyResult<&'static str> {
     let (class, code) = if let Some(source) = cause.downcast_ref::<SpecError>() {
         of_spec(details, source)?;
-        // A name that stands for nothing, and no document that is wrong.
+        // An unknown name, rather than an invalid document.
         let is_name = matches!(source, SpecError::UnknownVariant { .. });
         (if is_name { "TaskError" } else { "SpecError" }, source.code())
     } else if let Some(source) = cause.downcast_ref::<MetricsError>() {
@@ -198,9 +198,9 @@ fn of_spec(details: &Bound<'_, PyDict>, source: &SpecError) -> PyResult<()> {
     Ok(())
 }
 
-/// A problem of a document as a dictionary.
+/// Converts a document's problem to a dictionary.
 pub(crate) fn described<'py>(py: Python<'py>, problem: &Problem) -> PyResult<Bound<'py, PyAny>> {
-    // 0 says that the place is not known.
+    // 0 means that the position is unknown.
     let known = |number: usize| (number > 0).then_some(number);
     let described = json!({
         "code": problem.code, "pointer": problem.pointer, "line": known(problem.line), "column": known(problem.column),

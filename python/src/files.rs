@@ -1,5 +1,4 @@
-//! Files as Python reads and writes them. Reading is careful as in `files`; how files appear whole or not at all is said in
-//! `atomic_files`.
+//! Reads and writes files for Python.
 
 use std::path::PathBuf;
 
@@ -12,13 +11,13 @@ use pyo3::exceptions::{PyIsADirectoryError, PyOSError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
-/// Writes a file; its folder is made where it is missing.
+/// Writes a file; creates its folder if it is missing.
 #[pyfunction]
 pub(crate) fn write_file(py: Python<'_>, path: PathBuf, content: &[u8]) -> PyResult<()> {
     Ok(detach(py, || driftworld_atomic_files::write(&path, content))?)
 }
 
-/// The bytes of a regular file: a `"document"`, a `"library"` or a `"matrix"`, each up to its limit.
+/// Reads a regular file: a `"document"`, a `"library"` or a `"matrix"`, each with its size limit.
 #[pyfunction]
 pub(crate) fn read_file<'py>(py: Python<'py>, path: PathBuf, kind: &str) -> PyResult<Bound<'py, PyBytes>> {
     let limit = match kind {
@@ -38,7 +37,7 @@ pub(crate) fn read_file<'py>(py: Python<'py>, path: PathBuf, kind: &str) -> PyRe
 fn refused(error: FileError) -> PyErr {
     let text = printable_lines(&error.to_string()).into_owned();
     match error {
-        // Python has the words for its number.
+        // Python has a message for the error number.
         FileError::Unreadable { source, .. } => match source.raw_os_error() {
             Some(number) => PyOSError::new_err((number, source.to_string())),
             None => source.into(),

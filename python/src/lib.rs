@@ -1,6 +1,6 @@
-//! The native module `driftworld._native`: what Python calls. How it is shown to users is in `package/driftworld/`.
+//! The native module `driftworld._native`, which `package/driftworld/` wraps for users.
 //!
-//! Values cross the border as JSON text, as arrays, or as handles; nothing here is an idea of its own.
+//! Values are passed as JSON text, as arrays, or as handles; this crate adds no functionality of its own.
 #![expect(clippy::needless_pass_by_value, reason = "PyO3 hands arguments over by value")]
 
 mod batch;

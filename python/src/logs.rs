@@ -1,4 +1,4 @@
-//! Logs of lifetimes, as Python writes, reads and checks them. The format is `metrics`'.
+//! Writes, reads and checks logs of lifetimes.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -20,11 +20,11 @@ use crate::errors::{Result, wrong};
 use crate::recordings::PyRecording;
 use crate::rounding::detach;
 
-/// An open log. Threads that write into it take turns.
+/// An open log. Threads take turns writing to it.
 #[pyclass(name = "LogFile", module = "driftworld._native", frozen)]
 pub(crate) struct PyLogFile(Mutex<Option<OpenLog>>);
 
-/// A log with the recordings beside its rows.
+/// A log with the recordings of its rows.
 struct OpenLog {
     writer: LogWriter,
     recordings: Recordings,
@@ -39,7 +39,7 @@ impl OpenLog {
 
 #[pymethods]
 impl PyLogFile {
-    /// Begins a log in a new or empty folder.
+    /// Creates a log in a new or empty folder.
     #[staticmethod]
     fn create(folder: PathBuf, columns: Vec<String>, info: &Bound<'_, PyAny>) -> Result<Self> {
         let info = scenario_info(from_python(info)?)?;
@@ -47,13 +47,13 @@ impl PyLogFile {
         Ok(Self(Mutex::new(Some(OpenLog::new(writer)))))
     }
 
-    /// Goes on with a log.
+    /// Resumes a log.
     #[staticmethod]
     fn resume(folder: PathBuf) -> Result<Self> {
         Ok(Self(Mutex::new(Some(OpenLog::new(LogWriter::resume(folder)?)))))
     }
 
-    /// Writes one row and flushes it, and before it what was done in its experience, if that is given. The time is now.
+    /// Writes one row and flushes it, preceded by the recording of its experience, if given. Uses the current time.
     #[pyo3(signature = (
         block_num, exp_num, block_type, block_subtype, task_name, task_params, exp_status, worker_id, metrics, recording=None
     ))]
@@ -95,13 +95,13 @@ impl PyLogFile {
             .with_task_params(TaskParams::new(params))
             .with_worker(worker_id)
         };
-        // Locked only while nothing of Python's runs, so that no thread waits that holds the interpreter's lock.
+        // Locked only while not holding the GIL, so that no thread waits for the lock while holding the GIL.
         let mut writer = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let log = writer.as_mut().ok_or_else(|| {
             PyValueError::new_err("log: found it closed, expected an open one; begin another, or resume it")
         })?;
         if let Some(recording) = recording {
-            // First: whenever the run is stopped, each row that should have a recording has it.
+            // Written first, so that at every interruption each row that should have a recording has it.
             let recording = recording.get().of_row(&record);
             log.recordings
                 .append(&record.worker_id, (record.block_num, record.block_type), &recording)?;
@@ -109,7 +109,7 @@ impl PyLogFile {
         Ok(log.writer.write(&record)?)
     }
 
-    /// Ends the log: asks the disk to have all of it. Does nothing a second time.
+    /// Closes the log and syncs it to disk. A second call does nothing.
     fn close(&self) -> Result<()> {
         let log = self.0.lock().unwrap_or_else(PoisonError::into_inner).take();
         let Some(mut log) = log else { return Ok(()) };
@@ -128,7 +128,7 @@ type ReadLog<'py> = (
     Vec<String>,
 );
 
-/// What a log holds: its name, its columns by name, its two info files, its warnings.
+/// Reads a log: its name, its columns by name, its two info files, its warnings.
 #[pyfunction]
 pub(crate) fn read_log(py: Python<'_>, folder: PathBuf, texts: bool) -> Result<ReadLog<'_>> {
     let log = detach(py, || {
@@ -152,7 +152,8 @@ pub(crate) fn read_log(py: Python<'_>, folder: PathBuf, texts: bool) -> Result<R
     ))
 }
 
-/// Every problem of a log: whether it is valid, problems as pairs of code and message, how many more, warnings, how many more, counts.
+/// Checks a log: whether it is valid, problems as pairs of code and message, number of further ones, warnings, number of
+/// further ones, counts.
 #[pyfunction]
 pub(crate) fn validate_log(py: Python<'_>, folder: PathBuf) -> Result<Bound<'_, PyAny>> {
     let found = detach(py, || driftworld_metrics::validate_log(&folder));
@@ -171,7 +172,7 @@ pub(crate) fn validate_log(py: Python<'_>, folder: PathBuf) -> Result<Bound<'_, 
     Ok(json_to_py(py, &said)?)
 }
 
-/// The time on the clock, to the microsecond, or the one that `DRIFTWORLD_CLOCK` says.
+/// The current time, to the microsecond, or the one in `DRIFTWORLD_CLOCK`.
 fn now() -> PyResult<Timestamp> {
     Ok(Clock::from_environment().map_err(wrong)?.now())
 }
@@ -197,7 +198,7 @@ fn scenario_info(said: Value) -> Result<ScenarioInfo> {
     })
 }
 
-/// The columns of a log: whole numbers and numbers as arrays, words as lists.
+/// The columns of a log: integers and floats as arrays, words as lists.
 fn columns<'py>(py: Python<'py>, rows: &Rows) -> Result<Bound<'py, PyDict>> {
     let columns = PyDict::new(py);
     columns.set_item("block_num", rows.block_nums().to_pyarray(py))?;
@@ -223,7 +224,7 @@ fn columns<'py>(py: Python<'py>, rows: &Rows) -> Result<Bound<'py, PyDict>> {
     Ok(columns)
 }
 
-/// A column of which each value stands in many rows: each is made once.
+/// Converts a column whose values are repeated in many rows: each is converted once.
 fn shared<'py, T>(
     py: Python<'py>,
     column: &SharedColumn<T>,

@@ -1,4 +1,4 @@
-//! Keyword arguments as typed values. What is wrong with one is raised under its name.
+//! Keyword arguments as typed values; errors name the argument.
 
 use std::fmt::Display;
 use std::path::PathBuf;
@@ -12,10 +12,10 @@ use serde::de::DeserializeOwned;
 use crate::document::from_python;
 use crate::errors::{Error, Result};
 
-/// Keyword arguments; one that is `None` was not given.
+/// Keyword arguments; `None` means not given.
 pub(crate) struct Options<'py> {
     given: Bound<'py, PyDict>,
-    /// The exception for a wrong one.
+    /// The exception for invalid ones.
     class: &'static str,
 }
 
@@ -28,7 +28,7 @@ impl<'py> Options<'py> {
         Ok(self.given.get_item(name)?.filter(|value| !value.is_none()))
     }
 
-    /// The exception for an option that has the wrong value.
+    /// The exception for an option with an invalid value.
     pub(crate) fn wrong(&self, name: &str, found: impl Display, expected: impl Display) -> Error {
         self.refuse(format!("{name}: found {found}, expected {expected}"))
     }
@@ -86,12 +86,12 @@ impl<'py> Options<'py> {
         self.extracted(name, expected)
     }
 
-    /// A value as JSON can say it.
+    /// A value as JSON.
     pub(crate) fn json(&self, name: &str) -> Result<Option<serde_json::Value>> {
         Ok(self.value(name)?.as_ref().map(from_python).transpose()?)
     }
 
-    /// A word that a function reads; what it says in refusal ends with what was expected.
+    /// A word parsed by a function; the error shows what the function expected.
     pub(crate) fn read<T, E: Display>(
         &self,
         name: &str,
@@ -102,7 +102,7 @@ impl<'py> Options<'py> {
         };
         read(&word).map(Some).map_err(|error| {
             let said = error.to_string();
-            // Under which name it was found is said here.
+            // The option's name is added here.
             let expected = said
                 .split_once("expected ")
                 .map_or(said.as_str(), |(_, expected)| expected);
@@ -110,7 +110,7 @@ impl<'py> Options<'py> {
         })
     }
 
-    /// One of the words of a type.
+    /// A word parsed by a type.
     pub(crate) fn word<T: FromStr>(&self, name: &str) -> Result<Option<T>>
     where
         T::Err: Display,
@@ -118,15 +118,15 @@ impl<'py> Options<'py> {
         self.read(name, str::parse)
     }
 
-    /// One of the words by which a type stands in documents.
+    /// A word as it is serialised in documents.
     pub(crate) fn named<T: DeserializeOwned>(&self, name: &str) -> Result<Option<T>> {
-        // Words stand in backticks there.
+        // Serde puts words in backticks.
         let read =
             |word: &str| serde_json::from_value::<T>(word.into()).map_err(|error| error.to_string().replace('`', ""));
         self.read(name, read)
     }
 
-    /// One of these words, each with what it stands for.
+    /// One of these words, with its value.
     pub(crate) fn choice<T: Clone>(&self, name: &str, words: &[(&str, T)]) -> Result<Option<T>> {
         let Some(word) = self.text(name)? else {
             return Ok(None);
@@ -139,7 +139,7 @@ impl<'py> Options<'py> {
     }
 }
 
-/// A text as Python shows it.
+/// Quotes a text as Python does.
 fn quoted(text: &str) -> String {
     format!("'{text}'")
 }

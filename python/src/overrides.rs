@@ -1,4 +1,4 @@
-//! [`WorldOverrides`]: what an environment's options lay over each of its worlds. Where the worlds come from is in `supply.rs`.
+//! [`WorldOverrides`]: an environment's options that override values of its worlds.
 
 use driftworld_spec::{
     ActionModel, ActionSpace, AgentParams, Modality, Resolved, SpecError, StateFeature, Value, Variant, World,
@@ -7,17 +7,17 @@ use driftworld_spec::{
 use serde::{Deserialize, Serialize};
 use serde_json::{Value as Json, json};
 
-/// Options that stand in place of what worlds say; what is `None` stays as it is.
+/// Options that override values of worlds; `None` keeps a value.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub(crate) struct WorldOverrides {
     modalities: Option<Vec<Modality>>,
-    /// Whether observations have no state vector: what that would hold does not matter then.
+    /// Whether observations have no state vector, so that its contents do not matter.
     stateless: bool,
     /// Height and width in pixels.
     size: Option<[u32; 2]>,
     actions: Option<ActionSpace>,
-    /// Whether actions that are numbers, in a world's units, are −1..1 in place of them.
+    /// Whether numeric actions in a world's units are replaced by −1..1.
     normalizes: bool,
     interact: Option<bool>,
     frame_skip: Option<u32>,
@@ -26,7 +26,7 @@ pub(crate) struct WorldOverrides {
 }
 
 impl WorldOverrides {
-    /// Lays the options over a world.
+    /// Applies the options to a world.
     pub(crate) fn apply(&self, world: &mut WorldDraft) {
         let agent = &mut world.agent_params;
         if let Some(modalities) = &self.modalities {
@@ -54,15 +54,15 @@ impl WorldOverrides {
         }
     }
 
-    /// Whether there are none.
+    /// Whether there are no options.
     pub(crate) fn is_empty(&self) -> bool {
         *self == Self::default()
     }
 
-    /// Whether a world is sound with these options, and what an environment of it looks like from outside.
+    /// Checks a world with these options, and returns the layout of an environment for it.
     ///
     /// # Errors
-    /// [`SpecError`] with every value out of its range.
+    /// [`SpecError`] with every value out of range.
     pub(crate) fn checked_layout(&self, world: World, reach: &Reach) -> Result<Json, SpecError> {
         let mut draft = world.into_draft();
         self.apply(&mut draft);
@@ -71,12 +71,12 @@ impl WorldOverrides {
     }
 }
 
-/// The greatest values that bound actions, where a variant draws them anew for each world.
+/// The largest values that bound actions, if a variant draws them for each world.
 #[derive(Default)]
 pub(crate) struct Reach {
     speed: Option<f64>,
     turn: Option<f64>,
-    /// The longest side of an arena that actions name places in.
+    /// The longest side of an arena, for actions that are places.
     side: Option<f64>,
 }
 
@@ -98,11 +98,11 @@ impl Reach {
                 }
                 _ => continue,
             };
-            // What has no bounds of its own has the key's: worlds beyond them are refused.
+            // Unbounded distributions are limited by the key's range: worlds outside are refused.
             let numbers = drawn.and_then(|drawn| drawn.support());
             let numbers = numbers.and_then(|values| values.iter().map(Value::as_number).collect::<Option<Vec<f64>>>());
             let greatest = match numbers {
-                // Noise of 0 draws nothing.
+                // Noise of 0 has a constant value.
                 Some(numbers) if numbers.windows(2).all(|pair| pair[0].total_cmp(&pair[1]).is_eq()) => continue,
                 Some(numbers) => numbers.into_iter().fold(hole.range[0], f64::max),
                 None => hole.range[1],
@@ -113,7 +113,7 @@ impl Reach {
     }
 }
 
-/// Keys of a world that say how large its arena is.
+/// Keys of a world that determine the size of its arena.
 const ARENA: [&str; 3] = [
     "/environment_params/map_size",
     "/environment_params/layout",
@@ -128,7 +128,7 @@ fn lay<T: Copy>(place: &mut T, value: Option<T>) {
     }
 }
 
-/// What the spaces of an environment are made from.
+/// The data from which an environment's spaces are made.
 fn layout(world: &World, reach: &Reach) -> Json {
     let agent = &world.agent_params;
     let [width, height] = agent.picture_size();
@@ -146,7 +146,7 @@ fn layout(world: &World, reach: &Reach) -> Json {
     })
 }
 
-/// The number of rows, or the bounds of the numbers that are looked at.
+/// The number of rows, or the bounds of the numbers that are used.
 fn action(agent: &AgentParams, [x, y]: [f64; 2], reach: &Reach) -> Json {
     if let Some(rows) = agent.num_actions() {
         return json!({ "n": rows });

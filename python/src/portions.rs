@@ -1,4 +1,4 @@
-//! Many worlds of a variant, drawn a portion at a time by several threads. Drawing one is `generator`'s.
+//! Draws many worlds of a variant, in portions on several threads.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -13,16 +13,16 @@ use crate::errors::Result;
 use crate::interruptible::run_cancellable;
 use crate::rounding::detach;
 
-/// Worlds that are drawn at once: between two such portions Ctrl-C is looked for.
+/// Worlds per portion: Ctrl-C is checked between portions.
 const PORTION: u64 = 256;
 
-/// The most worlds that may be asked for at once, and the most bytes of their texts.
+/// Most worlds per call, and most bytes of their texts.
 const MOST_WORLDS: u64 = 10_000_000;
 const MOST_BYTES: u128 = 16 << 30;
-/// From so many worlds on, the first says how large all are.
+/// From this many worlds on, the size of all is estimated from the first.
 const ESTIMATED: u64 = 10_000;
 
-/// Draws worlds a portion at a time without the interpreter's lock, and hands each over as `make` makes it.
+/// Draws worlds in portions without the GIL, and passes each on as converted by `make`.
 pub(crate) fn draw<T: Send>(
     py: Python<'_>,
     variant: &Variant,
@@ -56,7 +56,7 @@ pub(crate) fn draw<T: Send>(
                 None => all(),
             }
         };
-        // Before a portion that is quickly drawn ends, nobody has looked.
+        // A portion may finish before signals have been checked.
         py.check_signals()?;
         for made in run_cancellable(py, draw)??.into_iter().flatten() {
             take(made)?;
@@ -65,7 +65,7 @@ pub(crate) fn draw<T: Send>(
     Ok(())
 }
 
-/// Refuses what would take more memory than it is likely meant to: all worlds are held at once.
+/// Refuses requests that need more memory than probably intended: all worlds are held at once.
 fn expect_room(numbers: &Range<u64>, first_bytes: usize) -> PyResult<()> {
     let count = numbers.end - numbers.start;
     let bytes = u128::from(count) * first_bytes as u128;
@@ -79,7 +79,7 @@ fn expect_room(numbers: &Range<u64>, first_bytes: usize) -> PyResult<()> {
     )))
 }
 
-/// The numbers of `count` worlds from `start` on.
+/// The indices of `count` worlds from `start` on.
 pub(crate) fn numbers(start: u64, count: u64) -> PyResult<Range<u64>> {
     if count > MOST_WORLDS {
         return Err(PyValueError::new_err(format!(
@@ -94,10 +94,10 @@ pub(crate) fn numbers(start: u64, count: u64) -> PyResult<Range<u64>> {
     Ok(start..end)
 }
 
-/// The most threads that may be asked for.
+/// Most threads.
 const MOST_THREADS: u64 = 1024;
 
-/// Threads to draw by; none where those of all long work are meant.
+/// A pool with this many threads; `None` for the pool of all long work.
 fn pool(threads: u64) -> PyResult<Option<rayon::ThreadPool>> {
     if threads == 0 {
         return Ok(None);

@@ -1,4 +1,4 @@
-//! Recorded episodes in Python's hands: read, run once more, drawn. What a recording holds is `env`'s, what a frame shows the library's.
+//! Recorded episodes: reading, replaying and rendering.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -19,10 +19,10 @@ use crate::document::{Whole, json_to_py};
 use crate::errors::{Error, Result, wrong};
 use crate::rounding::detach;
 
-/// The most bytes of frames that are handed out at once.
+/// Most bytes of frames per call.
 const MAX_FRAME_BYTES: usize = 1 << 34;
 
-/// An episode as it was recorded.
+/// A recorded episode.
 #[pyclass(name = "RecordingHandle", module = "driftworld._native", frozen)]
 pub(crate) struct PyRecording(pub(crate) Arc<Recording>);
 
@@ -33,7 +33,7 @@ impl From<Recording> for PyRecording {
 }
 
 impl PyRecording {
-    /// The same as the episode that a row of a log is about.
+    /// The same recording, as the episode of a log's row.
     pub(crate) fn of_row(&self, row: &Record) -> Recording {
         Recording {
             origin: EpisodeOrigin {
@@ -46,7 +46,7 @@ impl PyRecording {
     }
 }
 
-/// How an episode is shown, by words.
+/// Options for rendering an episode, as words.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Shown {
@@ -81,7 +81,7 @@ fn word<T>(option: &str, read: std::result::Result<T, String>) -> PyResult<T> {
 
 #[pymethods]
 impl PyRecording {
-    /// What names the episode, and what it came to, as a dictionary.
+    /// The episode's identity and results, as a dictionary.
     fn about<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
         let (recording, origin) = (&self.0, &self.0.origin);
         let about = json!({
@@ -93,12 +93,12 @@ impl PyRecording {
         Ok(json_to_py(py, &about)?)
     }
 
-    /// The JSON of the world that it began in.
+    /// The JSON of its initial world.
     fn world(&self) -> String {
         self.0.world.to_json()
     }
 
-    /// What was done: rows of the action table int64 `(steps,)`, or numbers float64 `(steps, 3)`.
+    /// The actions: rows of the action table as int64 `(steps,)`, or numbers as float64 `(steps, 3)`.
     fn actions<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
         let rows: Option<Vec<i64>> = (self.0.actions.iter())
             .map(|action| match action {
@@ -117,7 +117,7 @@ impl PyRecording {
         Ok(numbers.reshape([self.0.actions.len(), 3])?.into_any())
     }
 
-    /// The frames, uint8 `(frames, height, width, 3)`; the episode is run once more, and must come out as it was recorded.
+    /// The frames, uint8 `(frames, height, width, 3)`; replays the episode, which must match the recording.
     fn frames<'py>(&self, py: Python<'py>, shown: Shown) -> Result<Bound<'py, PyAny>> {
         let (options, catalogue) = shown.options()?;
         let num_frames = options.num_frames(self.0.actions.len());
@@ -144,7 +144,7 @@ impl PyRecording {
         Ok(frames.reshape([num_frames, size[0], size[1], 3])?.into_any())
     }
 
-    /// Writes a film or a sheet; says how many frames, pixels and seconds it has.
+    /// Writes a film or a sheet; returns its number of frames, its size in pixels and its duration in seconds.
     fn write(&self, py: Python<'_>, path: PathBuf, shown: Shown, fps: Option<f64>) -> Result<(u32, u32, u32, f64)> {
         let (options, catalogue) = shown.options()?;
         let options = FilmOptions { fps, ..options };
@@ -158,7 +158,7 @@ impl PyRecording {
         Ok((slf.get_type().getattr("from_text")?, PyTuple::new(slf.py(), [text])?))
     }
 
-    /// A recording of the text that it is written down as.
+    /// Parses a recording.
     #[staticmethod]
     fn from_text(text: &str) -> Result<Self> {
         let mut reader = driftworld_env::RecordingReader::new(text.as_bytes())?;
@@ -168,7 +168,7 @@ impl PyRecording {
     }
 }
 
-/// The recording of an episode of a log, or of a file of recordings; it is compared with its row in the log.
+/// The recording of an episode in a log, or in a file of recordings; it is compared with its row in the log.
 #[pyfunction]
 pub(crate) fn read_recording(
     py: Python<'_>,
@@ -187,7 +187,7 @@ pub(crate) fn read_recording(
     Ok(PyRecording::from(recording))
 }
 
-/// A picture, uint8 `(height, width, 3)`, as the bytes of a PNG file.
+/// Encodes an image, uint8 `(height, width, 3)`, as PNG.
 #[pyfunction]
 pub(crate) fn png<'py>(py: Python<'py>, picture: PyReadonlyArray3<'py, u8>) -> Result<Bound<'py, PyBytes>> {
     let picture = picture.as_array();

@@ -1,4 +1,4 @@
-//! Scores of lifetimes and their page, as Python asks for them. What they are is the library's.
+//! Scores of lifetimes, and their report page.
 
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
@@ -27,7 +27,7 @@ pub(crate) struct PyScores(Scores);
 
 #[pymethods]
 impl PyScores {
-    /// Scores logs by the options of `driftworld.metrics`; what is odd comes beside.
+    /// Scores logs by the options of `driftworld.metrics`; returns warnings as well.
     #[staticmethod]
     fn of(py: Python<'_>, logs: Vec<PathBuf>, options: Bound<'_, PyDict>) -> Result<(Self, Vec<String>)> {
         let request = scoring(logs, &Options::new(options, REFUSED))?;
@@ -36,12 +36,12 @@ impl PyScores {
         Ok((Self(scores), warnings))
     }
 
-    /// All that was computed, as ``driftworld metrics --json`` says it.
+    /// All results, as in ``driftworld metrics --json``.
     fn values<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
         Ok(to_py(py, &self.0)?)
     }
 
-    /// The regimes of all lifetimes, a dictionary for each.
+    /// The regimes of all lifetimes, one dictionary each.
     fn regimes<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
         let mut rows = Vec::new();
         for lifetime in &self.0.lifetimes {
@@ -67,7 +67,7 @@ impl PyScores {
     }
 }
 
-/// The page of lifetimes, and what is odd.
+/// The report page of lifetimes, and warnings.
 #[pyfunction]
 pub(crate) fn report(py: Python<'_>, logs: Vec<PathBuf>, options: Bound<'_, PyDict>) -> Result<(String, Vec<String>)> {
     let options = Options::new(options, REFUSED);
@@ -99,10 +99,10 @@ pub(crate) fn report(py: Python<'_>, logs: Vec<PathBuf>, options: Bound<'_, PyDi
     Ok((page.html, warnings))
 }
 
-/// Does work, and keeps what is odd.
+/// Runs work and collects its warnings.
 fn warned<T>(work: impl FnOnce(&(dyn Fn(String) + Sync)) -> T) -> (T, Vec<String>) {
     let warnings = Mutex::new(Vec::new());
-    // Whoever panics with the lock has added nothing by halves.
+    // A push is atomic with respect to panics, so the list is valid.
     let done = work(&|text| warnings.lock().unwrap_or_else(PoisonError::into_inner).push(text));
     (done, warnings.into_inner().unwrap_or_else(PoisonError::into_inner))
 }
@@ -146,7 +146,7 @@ fn scoring(logs: Vec<PathBuf>, options: &Options<'_>) -> Result<ScoringRequest> 
     })
 }
 
-/// The ranges of tasks: a dictionary for each, by names that are lower-cased as in the metrics.
+/// The reward ranges of tasks: a dictionary for each, by lower-cased names as in the metrics.
 fn data_ranges(options: &Options<'_>) -> Result<Option<DataRanges>> {
     let expected = r#"a range for each task, such as {"find_red": {"min": 0, "max": 10}}"#;
     let given = options.json("data_range")?;
@@ -155,7 +155,7 @@ fn data_ranges(options: &Options<'_>) -> Result<Option<DataRanges>> {
         .transpose()
 }
 
-/// Floors and ceilings of tasks: the path of a file, or a dictionary for each, by names that are lower-cased.
+/// Floors and ceilings of tasks: the path of a file, or a dictionary for each, by lower-cased names.
 fn scales(options: &Options<'_>) -> Result<Option<Scales>> {
     let expected = r#"a file, or floor and ceiling for each task, such as {"find_red": {"floor": 0, "ceiling": 10}}"#;
     match options.json("scales")? {

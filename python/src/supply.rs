@@ -1,4 +1,4 @@
-//! [`Supply`]: where one environment's worlds come from, episode after episode. What is laid over them is in `overrides.rs`.
+//! [`Supply`]: provides one environment's worlds, episode after episode.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -14,44 +14,44 @@ use crate::overrides::{Reach, WorldOverrides};
 use crate::rounding::usually_rounded;
 use crate::variant::PyVariant;
 
-/// Worlds without end: number *i* under a seed.
+/// An endless sequence of worlds: number *i* under a seed.
 #[derive(Clone)]
 pub(crate) enum Stream {
-    /// Of these variants, one in each episode, in an order over and over.
+    /// Worlds of these variants, one per episode, in a repeating order.
     Variants { variants: Arc<[Variant]>, turns: Turns },
-    /// On the way from one variant to another, which ends with episode number `episodes` − 1.
+    /// Worlds on the way from one variant to another, which ends with episode number `episodes` − 1.
     Drift { drift: Arc<Drift>, episodes: u64 },
-    /// The same world again and again, and what it is called.
+    /// The same world again and again, with its name.
     World { world: Arc<World>, name: String },
 }
 
-/// Which variant comes in which episode. Environments that share an order take turns in it.
+/// The variant of each episode. Environments that share an order take turns in it.
 #[derive(Clone)]
 pub(crate) struct Turns {
-    /// Places of variants; at least one, each a variant's.
+    /// Indices of variants; not empty.
     order: Arc<[u32]>,
-    /// The place in the order of episode 0, and from each episode to the next.
+    /// The position in the order of episode 0, and the increment per episode.
     first: u64,
     step: u64,
 }
 
 impl Turns {
-    /// The place of the variant of an episode.
+    /// The index of an episode's variant.
     fn place(&self, episode: u64) -> usize {
-        // Orders are shorter than 2^32: neither sum nor product leaves 64 bits.
+        // Orders are shorter than 2^32, so sums and products fit into 64 bits.
         let length = self.order.len() as u64;
         let turn = (self.first % length + (episode % length) * (self.step % length)) % length;
         self.order[turn as usize] as usize
     }
 }
 
-/// A [`Stream`] in Python's hands.
+/// A [`Stream`] for Python.
 #[pyclass(name = "Stream", module = "driftworld._native", frozen)]
 pub(crate) struct PyStream(pub(crate) Stream);
 
 #[pymethods]
 impl PyStream {
-    /// The worlds of variants, one variant in each episode in turn, over and over.
+    /// The worlds of variants, one variant per episode in turn, repeatedly.
     #[staticmethod]
     fn variants(variants: Vec<Bound<'_, PyVariant>>) -> Result<Self> {
         let order = (0..).take(variants.len()).collect();
@@ -59,8 +59,8 @@ impl PyStream {
         Ok(Self(one.expect("there is one for one environment")))
     }
 
-    /// The worlds of variants in the order that their places in `order` say, dealt out like cards, over and over: one stream for each
-    /// of `num_envs` environments.
+    /// The worlds of variants in the order given by their indices in `order`, dealt out like cards, repeatedly: one stream for
+    /// each of `num_envs` environments.
     #[staticmethod]
     fn dealt(
         variants: Vec<Bound<'_, PyVariant>>,
@@ -99,19 +99,19 @@ impl PyStream {
             switch,
             ..RegimeDrift::to("")
         };
-        // Under one seed, so that every environment meets a new value in the same episode.
+        // All with the same seed, so that every environment gets a new value in the same episode.
         let drift = Arc::new(usually_rounded(|| Drift::declared(&declared, from, to, 0))?);
         Ok(Self(Stream::Drift { drift, episodes }))
     }
 
-    /// One world, in every episode from its start. `name` is what messages and infos call it.
+    /// One world, restarted in every episode. Messages and infos call it `name`.
     #[staticmethod]
     fn world(name: String, text: &str) -> Result<Self> {
         let world = Arc::new(usually_rounded(|| World::from_json(&name, text))?);
         Ok(Self(Stream::World { world, name }))
     }
 
-    /// The JSON of the one world that it hands out.
+    /// The JSON of a single-world stream.
     fn text(&self) -> Result<String> {
         match &self.0 {
             Stream::World { world, .. } => Ok(world.to_json()),
@@ -119,7 +119,7 @@ impl PyStream {
         }
     }
 
-    /// What environments of its worlds look like with these options (JSON), for each variant that it names, as JSON.
+    /// The layout of environments for its worlds with these options (JSON), one per variant, as JSON.
     fn layouts(&self, overrides: &str) -> Result<Vec<String>> {
         let overrides = overrides_of(overrides)?;
         let worlds = match &self.0 {
@@ -141,7 +141,7 @@ impl PyStream {
 }
 
 impl Stream {
-    /// The worlds of variants in an order, dealt out to so many environments.
+    /// Deals out the worlds of variants in an order to `num_envs` environments.
     fn dealt(variants: &[Bound<'_, PyVariant>], order: Arc<[u32]>, num_envs: u32) -> PyResult<Vec<Self>> {
         let wrong = |found: &str, expected: &str| {
             PyValueError::new_err(format!("variants: found {found}, expected {expected}"))
@@ -171,15 +171,15 @@ fn first_world(variant: &Variant) -> std::result::Result<(World, Reach), Generat
     Ok((driftworld_generator::sample(variant, 0, 0)?, Reach::of(variant)))
 }
 
-/// Options from the JSON that the package makes of them.
+/// Parses options from the package's JSON.
 pub(crate) fn overrides_of(text: &str) -> Result<WorldOverrides> {
     Ok(serde_json::from_str(text).map_err(|error| PyValueError::new_err(format!("options: {error}")))?)
 }
 
-/// Where a world came from: task, variant, seed, index, and the hash of the world as it was drawn, before options were laid over it.
+/// The origin of a world: task, variant, seed, index, and the hash of the world as drawn, before options were applied.
 pub(crate) type Origin = (String, String, u64, u64, String);
 
-/// Hands one environment its worlds.
+/// Provides one environment with worlds.
 pub(crate) struct Supply {
     overrides: Arc<WorldOverrides>,
     state: Mutex<State>,
@@ -187,14 +187,14 @@ pub(crate) struct Supply {
 
 struct State {
     stream: Stream,
-    /// A sampler for each variant of the stream by its place, made when it is first needed.
+    /// A sampler per variant of the stream, by its index, created on first use.
     samplers: BTreeMap<usize, Sampler>,
     seed: u64,
     /// Index of the next world.
     next: u64,
-    /// How many episodes the stream has been asked for.
+    /// Number of episodes that the stream has provided.
     turn: u64,
-    /// A world for the next episode alone.
+    /// A world for the next episode only.
     given: Option<World>,
     origin: Origin,
 }
@@ -216,11 +216,11 @@ impl Supply {
     }
 
     fn lock(&self) -> MutexGuard<'_, State> {
-        // A panic elsewhere leaves nothing half done here.
+        // A panic elsewhere leaves a valid state.
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The next world, with the options laid over it. After an error the same world is asked for again.
+    /// The next world, with the options applied. After an error, the same world is requested again.
     pub(crate) fn world(&self) -> std::result::Result<World, String> {
         let mut state = self.lock();
         let (world, origin) = state.draw().map_err(|error| error.to_string())?;
@@ -228,8 +228,8 @@ impl Supply {
             state.next = state.next.saturating_add(1);
             state.turn = state.turn.saturating_add(1);
         }
-        // Without a seed, random numbers depend on where things are in the world as it was drawn, as they do everywhere:
-        // options laid over it change none.
+        // Without a seed, random numbers depend on the places of objects in the world as drawn; options that are applied must
+        // not change them.
         let is_seedless = world.seed.is_none() && world.progress.is_none();
         let hash = (is_seedless && !self.overrides.is_empty()).then(|| world.hash_of_places());
         state.origin = origin;
@@ -250,12 +250,12 @@ impl Supply {
         world.map_err(|error| error.to_string())
     }
 
-    /// Where the last world came from.
+    /// The origin of the last world.
     pub(crate) fn origin(&self) -> Origin {
         self.lock().origin.clone()
     }
 
-    /// Draws under another seed from now on, from this index on.
+    /// Draws under another seed from now on, starting at this index.
     pub(crate) fn seed(&self, seed: u64, index: u64) {
         let mut state = self.lock();
         if state.seed != seed {
@@ -264,7 +264,7 @@ impl Supply {
         (state.seed, state.next, state.turn) = (seed, index, 0);
     }
 
-    /// Goes on with the world of this index.
+    /// Continues with the world of this index.
     pub(crate) fn index(&self, index: u64) {
         self.lock().next = index;
     }
@@ -276,18 +276,18 @@ impl Supply {
         (state.stream, state.turn) = (stream, 0);
     }
 
-    /// Hands out this world once.
+    /// Provides this world once.
     pub(crate) fn give(&self, world: World) {
         self.lock().given = Some(world);
     }
 
-    /// Seed, next index and turn: what a copy has to be told.
+    /// Seed, next index and turn, for a copy.
     pub(crate) fn place(&self) -> (u64, u64, u64) {
         let state = self.lock();
         (state.seed, state.next, state.turn)
     }
 
-    /// Goes on where another supply stands.
+    /// Continues at another supply's place.
     pub(crate) fn set_place(&self, (seed, next, turn): (u64, u64, u64)) {
         self.seed(seed, next);
         self.lock().turn = turn;

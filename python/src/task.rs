@@ -1,4 +1,4 @@
-//! Task specs as Python holds them; their variants are in `variant.rs`. What they say is `spec`'s.
+//! Task specs as Python objects.
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Arc;
@@ -161,7 +161,7 @@ pub(crate) fn task_groups() -> Vec<(&'static str, Vec<&'static str>)> {
     tasks::groups().map(|(group, tasks)| (group, names(tasks))).collect()
 }
 
-/// A name, or a path of any of Python's kinds.
+/// A name, or any kind of Python path.
 fn name_of(name_or_path: &Bound<'_, PyAny>) -> PyResult<String> {
     let path = name_or_path
         .py()
@@ -171,7 +171,7 @@ fn name_of(name_or_path: &Bound<'_, PyAny>) -> PyResult<String> {
         .map_err(|_| PyTypeError::new_err(format!("found {name_or_path}, expected a name or a path as text")))
 }
 
-/// A hash of a text, for Python's.
+/// A hash of a text, for Python's `hash`.
 pub(crate) fn hash_of(text: &str) -> u64 {
     let mut hasher = DefaultHasher::new();
     text.hash(&mut hasher);

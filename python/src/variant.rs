@@ -1,4 +1,4 @@
-//! Variants as Python holds them. Their tasks are in `task.rs`, many of their worlds at once in `portions.rs`.
+//! Variants as Python objects.
 
 use std::sync::Arc;
 
@@ -111,7 +111,7 @@ impl PyVariant {
         let found = run_detached(py, move || {
             let measured = VariantMeasure::new(from.task(), Weights::of_task(from.task()));
             let measure = |other: &Variant| {
-                // Distributions of numbers beyond all bounds have no finite distance: farther than any that is asked for.
+                // Unbounded distributions have no finite distance: they are farther away than any that is requested.
                 let Ok(distance) = measured.between(&from, other) else {
                     return f64::INFINITY;
                 };
@@ -204,7 +204,7 @@ impl PyVariant {
 }
 
 impl PyVariant {
-    /// A list of worlds, each as `make` makes it of the world and `hand_over` for Python.
+    /// A list of worlds, each converted by `make` and then by `hand_over` for Python.
     fn many<'py, T: Send>(
         &self,
         py: Python<'py>,
@@ -220,7 +220,7 @@ impl PyVariant {
     }
 }
 
-/// A variant in another process.
+/// Recreates a variant in another process.
 #[pyfunction]
 pub(crate) fn variant_again(task: &Bound<'_, PyTask>, name: &str, values: &str) -> Result<PyVariant> {
     let task = &task.get().0;
@@ -230,7 +230,7 @@ pub(crate) fn variant_again(task: &Bound<'_, PyTask>, name: &str, values: &str) 
     {
         return Ok(PyVariant(declared));
     }
-    // Values that are as in the variant begun with are left as they are: they may be ones that nothing can be set to.
+    // Values that equal the base variant's are not set again: they may be ones that cannot be set.
     let mut bases = usually_rounded(|| task.all_variants());
     bases.extend(task.variant(DEFAULT_VARIANT));
     let mut refused = None;
@@ -259,7 +259,7 @@ pub(crate) fn load_variants(name: &str) -> Result<Vec<PyVariant>> {
         .collect())
 }
 
-/// A value of a parameter, as a task spec writes it.
+/// Converts a value of a parameter, as written in a task spec.
 fn value_of(parameter: &str, value: &Bound<'_, PyAny>) -> PyResult<Value> {
     let expected =
         "expected a value as a task spec writes it: a finite number, a word, a truth value, a list or a dictionary";
@@ -274,7 +274,7 @@ fn value_of(parameter: &str, value: &Bound<'_, PyAny>) -> PyResult<Value> {
     serde_json::from_value(json).map_err(|_| PyValueError::new_err(wrong()))
 }
 
-/// Checks the name of a variant that is made: it stands behind the `#` of its id.
+/// Checks the name of a new variant, which follows the `#` in its id.
 fn sound_name(name: &str) -> PyResult<()> {
     if name.is_empty() || name.contains('#') {
         let message = format!("name: found {name:?}, expected a variant's name of at least one letter, without #");

@@ -1,4 +1,4 @@
-//! Arrays over the buffers of observations that a batch keeps. What writes into them is the batch alone.
+//! Read-only arrays over the observation buffers of a batch.
 #![expect(unsafe_code, reason = "arrays are views on the buffers of the batch that keeps them")]
 
 use driftworld_env::Outputs;
@@ -12,7 +12,7 @@ use pyo3::types::PyDict;
 use crate::batch::PyBatch;
 use crate::errors::Result;
 
-/// Arrays over the buffers of observations that a batch keeps; what writes into them is the batch alone.
+/// Read-only arrays over the observation buffers of a batch; only the batch writes to them.
 pub(crate) fn views<'py>(batch: &Bound<'py, PyBatch>, outputs: &Outputs) -> Result<Bound<'py, PyDict>> {
     let images = &outputs.images;
     let num_envs = outputs.rewards.len();
@@ -46,10 +46,10 @@ fn view<'py, T: Element>(
 ) -> Result<Bound<'py, PyArray4<T>>> {
     let array: ArrayView<'_, T, Ix4> = ArrayView::from_shape(shape, buffer)
         .map_err(|error| PyRuntimeError::new_err(format!("a buffer is not as its layout says: {error}")))?;
-    // SAFETY: the buffer belongs to the batch, which the array keeps alive as its base, and is made once: a batch writes into its
-    // buffers and never replaces them.
+    // SAFETY: the buffer belongs to the batch, which the array keeps alive as its base, and is created once: a batch writes
+    // into its buffers and never replaces them.
     let view = unsafe { PyArray4::borrow_from_array(&array, batch.clone().into_any()) };
-    // For good: NumPy makes no array writable whose base is neither an array nor a buffer.
+    // Permanently: NumPy makes no array writable whose base is neither an array nor a buffer.
     Ok(view
         .readwrite()
         .make_nonwriteable()
