@@ -283,7 +283,7 @@ fn start_inside_a_wall_gives_a_warning() {
 }
 
 #[test]
-fn huge_waypoints_are_walked_towards() {
+fn huge_waypoints_are_accepted() {
     let mut world = WorldDraft::default();
     world.agent_params.action_model = ActionModel::ByWaypoint;
     let mut environment = start(world);

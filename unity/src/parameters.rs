@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn only_known_parameters_change_the_world() {
+    fn every_known_parameter_changes_the_world() {
         for key in KNOWN {
             let mut parameters = Parameters::default();
             let value = if key == "max_steps" { 7.0 } else { 3.0 };

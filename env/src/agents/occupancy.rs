@@ -19,7 +19,7 @@ fn clearance(corridor: f32, body: f32) -> f32 {
 /// Distance in metres that the agent's centre keeps from zones that cost.
 const ZONE_CLEARANCE: f32 = 0.35;
 
-/// Largest side of a cell in metres where zones end the episode as a failure, so that narrow gaps between them are found.
+/// Largest side of a cell in metres where zones end the episode as a failure, so that narrow fords are found.
 const SIDE_BESIDE_FAILURE: f32 = 0.25;
 
 /// Counts how often each cell is taken: once by walls, and once by each avoided object. Updates only what changed since the

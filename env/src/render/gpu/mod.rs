@@ -57,7 +57,7 @@ struct Job {
 }
 
 impl GpuRenderer {
-    /// A renderer on the first adapter that renders a small test image correctly.
+    /// A renderer on the first adapter that renders a small test image.
     ///
     /// # Errors
     /// [`EnvError::NoGpu`] with the adapters that were tried, and why each failed.
