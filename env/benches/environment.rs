@@ -30,7 +30,7 @@ fn pictures(c: &mut Criterion) {
     draw(c, "a natural picture of a maze", naturally(maze()));
 }
 
-/// With surfaces, shadows and clouds or a ceiling.
+/// The same world in the natural style: with surfaces, shadows, and clouds or a ceiling.
 fn naturally(world: World) -> World {
     let looks = Looks::of(Style::Natural);
     world

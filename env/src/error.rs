@@ -320,9 +320,9 @@ pub enum EnvError {
         adapter = one_line(adapter)
     )]
     GpuPicture {
-        /// Width in points: pixels times supersampling.
+        /// Width in samples: pixels times supersampling.
         width: u32,
-        /// Height in points.
+        /// Height in samples.
         height: u32,
         /// Largest size that the adapter supports.
         most: u32,

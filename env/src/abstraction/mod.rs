@@ -33,7 +33,7 @@ pub struct Abstraction {
     pub seconds: f64,
     /// Sides in metres of the area that the cells cover; by default the world's arena.
     pub area: Option<[f64; 2]>,
-    /// Where assets come from.
+    /// The catalogue of assets.
     pub catalogue: Catalogue,
 }
 

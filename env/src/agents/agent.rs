@@ -9,12 +9,12 @@ pub trait Agent {
 
     /// Called before each episode, with a seed for all random numbers that the agent draws in it.
     ///
-    /// Within one run, each evaluation of a world comes with the same seed, so that an agent that has not changed acts
-    /// the same again. Learning in that world again comes with another seed. Worlds of the same index under the same
-    /// seed come with the same number in all variants of a task.
+    /// Within a run, every evaluation of a world gets the same seed, so that an unchanged agent acts the same way again.
+    /// Learning in that world again gets another seed. Worlds of the same index and seed get the same number in all variants of
+    /// a task.
     fn begin(&mut self, _seed: u64) {}
 
-    /// Called before [`begin`](Self::begin) with the label of the coming task, where the scenario reveals it.
+    /// Called before [`begin`](Self::begin) with the label of the next task, if the scenario reveals it.
     fn set_task_label(&mut self, _label: &Label) {}
 
     /// Called after each step in which the agent may learn, never in an evaluation. An agent that learns only here is frozen

@@ -23,7 +23,7 @@ const INSISTENCE: u32 = 10;
 /// | `interact NAME [N]` | walks there and interacts until the object reacts |
 /// | `near NAME METRES [N]` | walks there until its centre is nearer than that |
 /// | `tour [N]` | does what [`OnRailsAgent`] does until nothing is worth going to |
-/// | `repeat` | begins again; only as the last line |
+/// | `repeat` | starts again; only as the last line |
 ///
 /// A walk to an absent object takes no step. Walks work in every action space; the actions of `step` and `action` are passed to
 /// the world unchanged.

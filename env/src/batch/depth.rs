@@ -34,12 +34,12 @@ fn scaled<T>(depth: &[f32], scale: f32, most: f32, lowest: impl Fn(u32) -> T, ou
     {
         if is_x86_feature_detected!("avx512bw") && is_x86_feature_detected!("avx512vl") {
             #[expect(unsafe_code, reason = "the processor was just asked for these instructions")]
-            // SAFETY: the processor has them; AVX-512BW implies F and AVX2.
+            // SAFETY: the CPU has them; AVX-512BW implies F and AVX2.
             return unsafe { scaled_avx512(depth, scale, most, lowest, out) };
         }
         if is_x86_feature_detected!("avx2") {
             #[expect(unsafe_code, reason = "the processor was just asked for these instructions")]
-            // SAFETY: the processor has them.
+            // SAFETY: the CPU has them.
             return unsafe { scaled_avx2(depth, scale, most, lowest, out) };
         }
     }

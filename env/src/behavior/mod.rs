@@ -29,7 +29,7 @@ pub struct ExpertRun {
 pub struct Expertise {
     /// Step limit of an episode, up to [`MAX_EXPERT_STEPS`]; 500 by default.
     pub steps: u32,
-    /// Where assets come from.
+    /// The catalogue of assets.
     pub catalogue: Catalogue,
 }
 

@@ -36,7 +36,7 @@ pub struct Experiment {
     pub side: u32,
     /// Seed of the random agent.
     pub seed: u64,
-    /// Where assets come from.
+    /// The catalogue of assets.
     pub catalogue: Catalogue,
 }
 

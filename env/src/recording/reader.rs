@@ -15,7 +15,7 @@ use crate::sim::EndedBy;
 /// Longest line that is read, in bytes.
 pub const MAX_RECORDING_LINE: u64 = 1 << 27;
 
-/// Reads the episodes of a file, one after the other.
+/// Reads the episodes of a file one after another.
 #[derive(Debug)]
 pub struct RecordingReader<R> {
     reader: R,

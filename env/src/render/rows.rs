@@ -55,7 +55,7 @@ struct RowLook {
     row: Row,
 }
 
-/// A row of one picture.
+/// A row of one image.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Row {
     /// 1 / depth; 0 for sky.

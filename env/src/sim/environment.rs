@@ -23,7 +23,7 @@ use crate::scene::Scene;
 
 /// A running world: reset, step, observe.
 ///
-/// Everything is deterministic: the same world and the same actions give the same rewards, poses and pixels.
+/// Deterministic: the same world and the same actions give the same rewards, poses and pixels.
 ///
 /// # Example
 /// ```

@@ -23,7 +23,7 @@ impl Pushed {
         })
     }
 
-    /// Brings it to rest.
+    /// Stops its motion.
     pub(super) fn stop(&mut self) {
         (self.velocity, self.spin_deg) = ([0.0; 2], 0.0);
     }

@@ -30,7 +30,7 @@ impl Looks {
     }
 }
 
-/// A surface that distances are measured from.
+/// A surface to measure distances from.
 pub(super) struct Deviation {
     surface: TriMesh,
 }

@@ -1,4 +1,4 @@
-//! Eight lanes by AVX2.
+//! Eight lanes, with AVX2.
 #![expect(
     unsafe_code,
     reason = "intrinsics of an instruction set: every call rests on the token, every pointer on a slice of checked length"

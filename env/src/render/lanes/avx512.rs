@@ -1,4 +1,4 @@
-//! Sixteen lanes by AVX-512 (F and BW).
+//! Sixteen lanes, with AVX-512 (F and BW).
 #![expect(
     unsafe_code,
     reason = "intrinsics of an instruction set: every call rests on the token, every pointer on a slice of checked length"
