@@ -2,7 +2,7 @@
 
 use crate::render::{GRAY_PER_METRE, rounded};
 
-/// The number format of a batch's depth images, by the names of `NumPy`'s dtypes.
+/// The number format of a batch's depth images, by the names of Python's array types.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, strum::EnumString)]
 pub enum DepthForm {
     /// Metres, as rendered.
