@@ -1,4 +1,4 @@
-//! How long it takes to write, read, validate and score a lifetime.
+//! Benchmarks of writing, reading, validating and scoring a lifetime.
 
 use std::hint::black_box;
 use std::path::Path;
@@ -12,7 +12,7 @@ use driftworld_metrics::{
 const NUM_ROWS: u64 = 10_000;
 const ROWS_OF_BLOCK: u64 = 500;
 
-/// Two tasks in turn, each evaluated after each block.
+/// Two alternating tasks, each evaluated after every block.
 fn write(dir: &Path) -> Result<(), MetricsError> {
     let mut writer = LogWriter::create(dir, &LoggerInfo::new(["reward"])?, &ScenarioInfo::default())?;
     for exp_num in 0..NUM_ROWS {

@@ -1,11 +1,11 @@
-//! How long statistics over repeats take. Reading and scoring the runs is measured elsewhere.
+//! Benchmarks of statistics over repeats, from given scores.
 
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use driftworld_metrics::{Aggregate, BootstrapOptions, ScoreTable, estimate, probability_of_improvement};
 
-/// Ten runs of ten tasks; scores spread as a Weyl sequence does, the same on every machine.
+/// Ten runs of ten tasks; the scores follow a Weyl sequence, the same on every machine.
 fn ten_by_ten(start: f64) -> ScoreTable {
     let scores = |run: u32| {
         let score = move |task: u32| (start + f64::from(run * 10 + task) * 0.618_033_988_749_894_9).fract();

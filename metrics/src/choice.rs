@@ -1,6 +1,4 @@
-//! One macro for enums whose values are words in files and on command lines: it gives names, a list and a parser.
-//!
-//! The enums themselves live beside what they choose.
+//! A macro for enums whose values are words in files and on command lines: it adds names, a list and a parser.
 
 /// Declares a `Copy` enum whose variants each stand for one word, with `ALL`, `name()`, `Display`, `FromStr` and serde.
 macro_rules! choice {
@@ -12,7 +10,7 @@ macro_rules! choice {
         }
 
         impl $name {
-            /// Every value, in the order in which they are documented.
+            /// Every value, in documented order.
             pub const ALL: &'static [Self] = &[$(Self::$variant),+];
 
             /// The word that stands for this value in files and on the command line.

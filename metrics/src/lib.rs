@@ -21,13 +21,10 @@
 //! # }
 //! ```
 //!
-//! The definitions are those of New et al. 2022, "Lifelong Learning Metrics"; the numbers are those of the public package
-//! l2metrics 3.1 to 1e-9. Where that package departs from what it documents, the file that follows it says so under the
-//! word QUIRK, and [`Definitions::Published`] does not follow. Repeated lifetimes are summed up by [`over_repeats`] and
-//! compared by [`compare_agents`]; a [`Metric`] of one's own is computed by a [`Scorer`].
-//!
-//! What is not here: running agents (that is the curriculum's), figures and pages (the report's), printing (the command's), and the clock:
-//! time stamps are handed in.
+//! The definitions are those of New et al. 2022, "Lifelong Learning Metrics"; the numbers match the public package l2metrics
+//! 3.1 to 1e-9. Where that package departs from its documentation, the file that reproduces it says so under the word QUIRK,
+//! and [`Definitions::Published`] does not reproduce it. Repeated lifetimes are aggregated by [`over_repeats`] and compared by
+//! [`compare_agents`]; a [`Scorer`] computes user-defined [`Metric`]s. The caller passes in time stamps.
 
 mod choice;
 mod error;
@@ -70,7 +67,7 @@ pub use results::{
 };
 pub use score::{Assessment, Metric, NULL_PERMUTATIONS, Scorer, score};
 
-/// The Rust in `docs/metrics.md` is compiled with the documentation's tests.
+/// The Rust code in `docs/metrics.md` is compiled with the doc tests.
 #[cfg(doctest)]
 #[doc = include_str!("../../docs/metrics.md")]
 struct Documentation;

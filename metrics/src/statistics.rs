@@ -1,14 +1,12 @@
-//! The four textbook statistics the metrics rest on: mean, quantile, least-squares covariance and Theil–Sen slope.
-//!
-//! Not here: smoothing, which is a preprocessing step with choices of its own.
+//! Basic statistics for the metrics: mean, quantile, least-squares covariance and Theil–Sen slope.
 
-/// Arithmetic mean; `None` when there is nothing to average.
+/// Arithmetic mean; `None` without values.
 pub(crate) fn mean(values: &[f64]) -> Option<f64> {
     (!values.is_empty()).then(|| sum(values) / values.len() as f64)
 }
 
-/// The sum in `NumPy`'s order, so that means have the reference's bits: eight sums side by side, halves of more than 128 values by
-/// themselves.
+/// The sum in `NumPy`'s order, so that means match the reference bit for bit: eight parallel sums, with halves of more than 128
+/// values summed separately.
 pub(crate) fn sum(values: &[f64]) -> f64 {
     let num = values.len();
     if num < 8 {
@@ -30,20 +28,20 @@ pub(crate) fn sum(values: &[f64]) -> f64 {
         .fold(((a + b) + (c + d)) + ((e + f) + (g + h)), |sum, value| sum + value)
 }
 
-/// The variance of what the values are a sample of; `None` of fewer than two.
+/// The sample variance; `None` for fewer than two values.
 pub(crate) fn variance(values: &[f64]) -> Option<f64> {
     let center = mean(values)?;
     let squares: f64 = values.iter().map(|value| (value - center) * (value - center)).sum();
     (values.len() > 1).then(|| squares / (values.len() - 1) as f64)
 }
 
-/// The mean of those that are no NaN, infinite where one is; `None` when there is none.
+/// The mean of the values that are not NaN, infinite if one is; `None` without any.
 pub(crate) fn mean_of_known(values: &[f64]) -> Option<f64> {
     let known: Vec<f64> = values.iter().copied().filter(|value| !value.is_nan()).collect();
     mean(&known)
 }
 
-/// Quantile with linear interpolation between the two nearest values; `q` in `0..=1`. `None` when there are no values.
+/// Quantile with linear interpolation between the two nearest values; `q` in `0..=1`. `None` without values.
 pub(crate) fn quantile(values: &[f64], q: f64) -> Option<f64> {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -52,7 +50,7 @@ pub(crate) fn quantile(values: &[f64], q: f64) -> Option<f64> {
     let below = position.floor() as usize;
     let above = (below + 1).min(last);
     let (low, high, share) = (sorted[below], sorted[above], position - below as f64);
-    // From the nearer end, as NumPy does it.
+    // From the nearer end, as in NumPy.
     Some(if share < 0.5 {
         low + (high - low) * share
     } else {
@@ -60,8 +58,8 @@ pub(crate) fn quantile(values: &[f64], q: f64) -> Option<f64> {
     })
 }
 
-/// Middle value, or the mean of the two middle ones; `None` when there are no values. Sorts in place, since the slopes
-/// of a long lifetime are many.
+/// Middle value, or the mean of the two middle ones; `None` without values. Sorts in place, because a long lifetime has many
+/// slopes.
 pub(crate) fn median(mut values: Vec<f64>) -> Option<f64> {
     values.sort_unstable_by(f64::total_cmp);
     let middle = values.len() / 2;
@@ -81,8 +79,8 @@ pub(crate) fn theil_sen_slope(y: &[f64]) -> Option<f64> {
     median(slopes)
 }
 
-/// Whether the least-squares line through the points falls by more than rounding of this much in each `y` explains. A constant or a
-/// single point does not.
+/// Whether the least-squares line through the points falls by more than an error of `slack` in each `y` explains. A constant or
+/// a single point does not fall.
 pub(crate) fn trend_falls(x: &[f64], y: &[f64], slack: f64) -> bool {
     let (Some(mean_x), Some(mean_y)) = (mean(x), mean(y)) else {
         return false;
@@ -106,7 +104,7 @@ mod tests {
     }
 
     #[test]
-    fn the_median_is_the_middle() {
+    fn median_is_the_middle() {
         let check = |values: &[f64], expected: Option<f64>| assert_eq!(median(values.to_vec()), expected);
         check(&[], None);
         check(&[5.0, 1.0, 3.0], Some(3.0));
@@ -114,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn the_theil_sen_slope_ignores_one_outlier() {
+    fn theil_sen_slope_ignores_one_outlier() {
         let check = |y: &[f64], expected: Option<f64>| assert_eq!(theil_sen_slope(y), expected);
         check(&[1.0], None);
         check(&[1.0, 4.0], Some(3.0));

@@ -1,6 +1,4 @@
-//! Logs that cannot be read, each with the exact message a user sees.
-//!
-//! Not here: records that are refused when written, see `log_round_trip`.
+//! Unreadable logs, each with the exact message that a user sees.
 
 #![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
 
@@ -49,7 +47,7 @@ fn with_cell(index: usize, text: &str) -> String {
 }
 
 #[test]
-fn a_header_without_tabs_is_one_problem_and_not_one_for_each_column() {
+fn header_without_tabs_is_one_problem() {
     let data = format!("{HEADER}{ROW}").replace('\t', ",");
     check(
         data,
@@ -60,7 +58,7 @@ fn a_header_without_tabs_is_one_problem_and_not_one_for_each_column() {
 }
 
 #[test]
-fn a_cell_that_is_wrong_is_named_with_what_should_stand_there() {
+fn bad_cell_is_named_with_the_expected_contents() {
     let cell = |index: usize, text: &str, column: &str, found: &str, expected: &str| {
         let message = format!("LOG/w/0-train/data-log.tsv:2, column {column}: found {found}, expected {expected}");
         check(with_cell(index, text), "metrics/cell", &message);
@@ -116,7 +114,7 @@ fn a_cell_that_is_wrong_is_named_with_what_should_stand_there() {
 }
 
 #[test]
-fn a_table_that_is_no_table_is_refused_with_its_place() {
+fn malformed_table_is_refused_with_its_place() {
     check(
         "",
         "metrics/empty-file",
@@ -173,7 +171,7 @@ fn a_table_that_is_no_table_is_refused_with_its_place() {
 }
 
 #[test]
-fn lines_are_counted_whatever_they_end_with_and_whatever_lies_between() {
+fn line_numbers_are_right_for_any_line_ends_and_gaps() {
     let at_line = |data: String, line: u64| {
         let message = "expected a finite number, or nothing for a missing one";
         let place = format!("LOG/w/0-train/data-log.tsv:{line}, column reward: found \"much\", {message}");
@@ -190,7 +188,7 @@ fn lines_are_counted_whatever_they_end_with_and_whatever_lies_between() {
 }
 
 #[test]
-fn the_advice_for_a_torn_last_line_works() {
+fn advice_for_a_torn_last_line_works() {
     let base = tempfile::tempdir().unwrap();
     write_log(base.path(), format!("{HEADER}{ROW}0\t1\tw\ttra"));
     LogWriter::resume(base.path()).unwrap();
@@ -198,7 +196,7 @@ fn the_advice_for_a_torn_last_line_works() {
 }
 
 #[test]
-fn a_directory_that_is_no_log_is_told_what_it_lacks() {
+fn directory_without_a_log_names_what_is_missing() {
     let base = tempfile::tempdir().unwrap();
     let check = |expected: &str| {
         let error = read_log(base.path()).unwrap_err();
@@ -226,7 +224,7 @@ fn a_directory_that_is_no_log_is_told_what_it_lacks() {
 }
 
 #[test]
-fn a_log_without_usable_rows_says_which_column_was_asked_for() {
+fn log_without_usable_rows_names_the_requested_column() {
     let base = tempfile::tempdir().unwrap();
     let run_id = base.path().file_name().unwrap().to_string_lossy().into_owned();
     let check = |data: String, column: &str, expected: &str| {
@@ -256,7 +254,7 @@ fn a_log_without_usable_rows_says_which_column_was_asked_for() {
 }
 
 #[test]
-fn an_expert_trains_one_task() {
+fn expert_must_train_exactly_one_task() {
     let base = tempfile::tempdir().unwrap();
     let run_id = base.path().file_name().unwrap().to_string_lossy().into_owned();
     let check = |data: String, expected: &str| {
@@ -275,7 +273,7 @@ fn an_expert_trains_one_task() {
 }
 
 #[test]
-fn an_expert_that_cannot_be_scored_is_named_by_its_folder() {
+fn unscorable_expert_is_named_by_its_folder() {
     let base = tempfile::tempdir().unwrap();
     let (life, expert) = (base.path().join("life"), base.path().join("experts/log"));
     write_log(&life, format!("{HEADER}{ROW}"));
@@ -289,7 +287,7 @@ fn an_expert_that_cannot_be_scored_is_named_by_its_folder() {
 }
 
 #[test]
-fn tasks_that_alternate_row_by_row_for_ever_are_stopped() {
+fn too_many_regimes_from_alternating_tasks_are_refused() {
     let base = tempfile::tempdir().unwrap();
     let mut data = HEADER.to_owned();
     for exp_num in 0..=driftworld_metrics::MAX_REGIMES {
@@ -303,7 +301,7 @@ fn tasks_that_alternate_row_by_row_for_ever_are_stopped() {
 
 #[cfg(unix)]
 #[test]
-fn what_is_no_file_is_named_and_never_waited_for() {
+fn irregular_files_are_named_without_waiting() {
     let base = tempfile::tempdir().unwrap();
     for name in ["logger_info.json", "scenario_info.json", "w/0-train/data-log.tsv"] {
         let dir = base.path().join(name.replace('/', "_"));
@@ -324,7 +322,7 @@ fn what_is_no_file_is_named_and_never_waited_for() {
 
 #[cfg(unix)]
 #[test]
-fn a_data_file_behind_a_link_is_read_before_it_is_continued() {
+fn linked_data_file_is_read_before_it_is_continued() {
     let base = tempfile::tempdir().unwrap();
     let dir = base.path().join("log");
     write_log(&dir, [HEADER, ROW].concat());
@@ -347,7 +345,7 @@ fn a_data_file_behind_a_link_is_read_before_it_is_continued() {
 }
 
 #[test]
-fn lines_that_end_otherwise_are_not_cut_off_as_torn() {
+fn foreign_line_ends_are_not_cut_off_as_torn() {
     let base = tempfile::tempdir().unwrap();
     let text = [HEADER, ROW].concat().replace('\n', "\r");
     write_log(base.path(), &text);

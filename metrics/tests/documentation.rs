@@ -1,6 +1,4 @@
-//! `docs/metrics.md` says of the metrics what the metrics say of themselves.
-//!
-//! Not here: its examples, which are compiled with the documentation's tests.
+//! `docs/metrics.md` describes the metrics exactly as the code does.
 
 #![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
 
@@ -11,7 +9,7 @@ use driftworld_metrics::{
 
 const PAGE: &str = include_str!("../../docs/metrics.md");
 
-/// The scores of a lifetime of one experience: what they are called is all that matters here.
+/// The scores of a lifetime of one experience: only their names matter here.
 fn scores() -> LifetimeMetrics {
     let base = tempfile::tempdir().unwrap();
     let dir = base.path().join("life");
@@ -28,7 +26,7 @@ fn scores() -> LifetimeMetrics {
 }
 
 #[test]
-fn the_table_of_metrics_is_that_of_the_code() {
+fn documented_metrics_table_matches_the_code() {
     let summary = scores().summary();
     let rows = summary.iter().map(|row| {
         let good = match row.good {
@@ -50,7 +48,7 @@ fn the_table_of_metrics_is_that_of_the_code() {
 }
 
 #[test]
-fn every_value_of_a_task_is_named() {
+fn every_task_value_is_documented() {
     let scores = scores();
     let columns = scores.regimes[0].values.iter().map(|(name, _)| name);
     for name in columns.chain([

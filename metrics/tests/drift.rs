@@ -1,6 +1,4 @@
-//! Lifetimes in which variants drift: what counts as learning of what, and measures that need no borders between tasks.
-//!
-//! Not here: metrics of lifetimes without drift, see `tiny_lifetime`.
+//! Lifetimes with drifting variants: which drifts count as learning of which tasks, and measures that need no task boundaries.
 
 #![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
 
@@ -39,7 +37,8 @@ fn learning(variant: &'static str, to: Option<&'static str>, rewards: &[f64]) ->
     }
 }
 
-/// Writes each stretch as a block of the task f, or of another that its variant names (`g#x`), as Driftworld does; `has_progress` says whether the log has that column.
+/// Writes each stretch as a block of the task f, or of another that its variant names (`g#x`), as Driftworld does;
+/// `has_progress` says whether the log has that column.
 fn log_of(stretches: &[Stretch], has_progress: bool) -> Log {
     let base = tempfile::tempdir().unwrap();
     let dir = base.path().join("drifting");
@@ -84,7 +83,7 @@ fn options() -> Options {
     }
 }
 
-/// An agent that forgets everything when the world drifts on: c to a, then a to b.
+/// An agent that forgets everything whenever the world drifts: c to a, then a to b.
 fn forgetting() -> Vec<Stretch> {
     let evaluate = |a: f64, b: f64, c: f64| {
         [
@@ -106,14 +105,14 @@ fn pairs(scores: &LifetimeMetrics, task: &str, name: &str) -> PairValues {
 }
 
 #[test]
-fn what_a_drift_leaves_behind_is_forgotten_and_never_transferred_forward() {
+fn drift_away_counts_as_forgetting_and_never_as_forward_transfer() {
     for has_progress in [true, false] {
         let plain = Options {
             normalization_method: NormalizationMethod::Off,
             ..options()
         };
         let scores = score(&log_of(&forgetting(), has_progress), &[], &plain).unwrap();
-        // a was learned by the first drift: from 90 to 5. c was, too: from 20 to 0.
+        // The first drift taught a: from 90 to 5. It changed c, too: from 20 to 0.
         let maintenance = |task: &str| scores.task_metrics[task].number("perf_maintenance_mrlep");
         assert_eq!(
             (maintenance("f_a"), maintenance("f_b"), maintenance("f_c")),
@@ -123,7 +122,7 @@ fn what_a_drift_leaves_behind_is_forgotten_and_never_transferred_forward() {
         let backward = pairs(&scores, "f_b", "backward_transfer_contrast");
         assert_eq!(backward.get("f_a"), Some(&vec![-85.0 / 95.0]));
         assert_eq!(backward.get("f_c"), Some(&vec![-1.0]));
-        // The loss of a stands nowhere as forward transfer, and what was its own learning is no transfer at all.
+        // The loss of a never counts as forward transfer, and its own learning is no transfer at all.
         for (task, values) in &scores.task_metrics {
             for name in ["forward_transfer_contrast", "forward_transfer_ratio"] {
                 let to: Vec<&String> = values.pairs(name).unwrap().keys().collect();
@@ -131,13 +130,13 @@ fn what_a_drift_leaves_behind_is_forgotten_and_never_transferred_forward() {
             }
         }
         assert!(scores.null_bands["perf_maintenance_mrlep"].value < 0.0);
-        // The end of a drift is on the drift's own scale: nothing is held against it.
+        // The end of a drift is on the drift's own scale: nothing is compared with it.
         assert_eq!(scores.lifetime.number("perf_maintenance_mrtlp"), None);
     }
 }
 
 #[test]
-fn a_drift_between_tasks_is_learning_of_both() {
+fn drift_between_tasks_is_learning_of_both() {
     let evaluate = |a: f64, x: f64| [evaluation("a", &[a, a]), evaluation("g#x", &[x, x])];
     let mut life = evaluate(0.0, 0.0).to_vec();
     life.push(learning("a", Some("g#x"), &[10.0, 20.0, 60.0, 90.0]));
@@ -156,7 +155,7 @@ fn a_drift_between_tasks_is_learning_of_both() {
 }
 
 #[test]
-fn of_variants_that_do_not_count_no_drift_is_seen() {
+fn drift_is_ignored_if_variants_do_not_count() {
     let agnostic = Options {
         variant_mode: VariantMode::Agnostic,
         ..options()
@@ -166,7 +165,7 @@ fn of_variants_that_do_not_count_no_drift_is_seen() {
 }
 
 #[test]
-fn a_drift_between_variants_that_are_never_evaluated_is_learning_of_itself() {
+fn drift_between_unevaluated_variants_is_learning_of_itself() {
     let life = [
         evaluation("b", &[1.0, 1.0]),
         learning("c", Some("a"), &[1.0, 2.0]),
@@ -181,7 +180,7 @@ fn a_drift_between_variants_that_are_never_evaluated_is_learning_of_itself() {
     );
 }
 
-/// A lifetime of blocks of learning, some of them drifts, with evaluations between them.
+/// Lifetimes of learning blocks, some of them drifts, with evaluations between them.
 fn lifetimes() -> impl Strategy<Value = Vec<Stretch>> {
     let variant = || prop::sample::select(vec!["a", "b", "c"]);
     let rewards = || prop::collection::vec(-50.0..100.0_f64, 1..6);
@@ -191,7 +190,7 @@ fn lifetimes() -> impl Strategy<Value = Vec<Stretch>> {
     prop::collection::vec(prop_oneof![1 => learned, 2 => evaluated], 1..14)
 }
 
-/// The evaluations of a variant as (learning experiences before, mean), none twice at one place.
+/// The evaluations of a variant as (learning experiences before, mean), with distinct positions.
 fn points_of(life: &[Stretch], variant: &str) -> Vec<(f64, f64)> {
     let (mut learned, mut found) = (0, Vec::<(f64, Vec<f64>)>::new());
     for stretch in life {
@@ -209,7 +208,7 @@ fn points_of(life: &[Stretch], variant: &str) -> Vec<(f64, f64)> {
     found.into_iter().map(|(at, means)| (at, mean(&means))).collect()
 }
 
-/// Height of a curve by looking at every pair of neighbours.
+/// Height of a curve, by checking every pair of neighbours.
 fn height(points: &[(f64, f64)], at: f64) -> f64 {
     for pair in points.windows(2) {
         if pair[0].0 <= at && at <= pair[1].0 {
@@ -249,7 +248,7 @@ fn check_curve(life: &[Stretch], variant: &'static str, curve: &EvaluationCurve,
         heights.iter().copied().fold(f64::NEG_INFINITY, f64::max),
     );
     assert_eq!(curve.points.len(), points.len());
-    // The area as the mean height of thin columns; straight lines make it exact.
+    // The area as the mean height of thin columns, which is exact for straight lines.
     let (first, last) = (points[0].0, points[points.len() - 1].0);
     let columns = ((last - first) * 4.0) as u32;
     let middles = (0..columns).map(|column| height(&points, first + (f64::from(column) + 0.5) / 4.0));
@@ -260,7 +259,7 @@ fn check_curve(life: &[Stretch], variant: &'static str, curve: &EvaluationCurve,
     };
     assert!(close(curve.area, area), "{} {area}", curve.area);
     assert!(low - 1e-9 <= curve.area && curve.area <= high + 1e-9);
-    // What was forgotten: the largest of all differences to the last.
+    // Forgetting: the largest difference to the last.
     let losses = heights.iter().map(|height| height - heights[heights.len() - 1]);
     assert!(close(curve.forgetting, losses.fold(0.0, f64::max)));
     assert!(curve.forgetting >= 0.0);
@@ -297,7 +296,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 60)))]
 
     #[test]
-    fn curves_are_what_they_are_defined_as(life in lifetimes(), expert in -20.0..120.0_f64) {
+    fn curves_match_their_definitions(life in lifetimes(), expert in -20.0..120.0_f64) {
         let scores = with_experts(&life, expert);
         for variant in ["a", "b", "c"] {
             match scores.curves.get(&format!("f_{variant}")) {
@@ -307,9 +306,9 @@ proptest! {
         }
     }
 
-    /// Other tasks change nothing: without their evaluations, or under other names, a curve says the same.
+    /// Other tasks do not matter: without their evaluations, or under other names, a curve is the same.
     #[test]
-    fn a_curve_is_its_own_tasks(life in lifetimes(), expert in -20.0..120.0_f64) {
+    fn curve_depends_on_its_own_task_alone(life in lifetimes(), expert in -20.0..120.0_f64) {
         let all = with_experts(&life, expert);
         let only: Vec<Stretch> = (life.iter())
             .filter(|stretch| stretch.block_type == Train || stretch.variant == "a")
@@ -320,9 +319,9 @@ proptest! {
         prop_assert_eq!(all.curves.get("f_a"), alone.curves.get("f_a"));
     }
 
-    /// Floor and ceiling are a change of units: parts of the way between them.
+    /// Floor and ceiling are a change of units: positions between them.
     #[test]
-    fn scaled_curves_are_curves_in_other_units(life in lifetimes(), floor in -60.0..40.0_f64, width in 10.0..200.0_f64) {
+    fn scaled_curves_are_unscaled_curves_in_other_units(life in lifetimes(), floor in -60.0..40.0_f64, width in 10.0..200.0_f64) {
         let plain = with_experts(&life, floor + width);
         let anchors = Anchors { floor, ceiling: floor + width, unlabelled: Vec::new() };
         let scaled = Options {
@@ -350,7 +349,7 @@ proptest! {
 }
 
 #[test]
-fn lag_is_the_time_to_half_of_what_is_gained() {
+fn lag_is_the_time_to_half_of_the_gain() {
     let life = [
         evaluation("a", &[10.0]),
         learning("b", None, &[0.0; 5]),
@@ -364,7 +363,7 @@ fn lag_is_the_time_to_half_of_what_is_gained() {
     let scores = with_experts(&life, 100.0);
     let lag = scores.curves["f_a"].lag.unwrap();
     assert!((lag - (10.0 + 10.0 / 3.0)).abs() < 1e-9, "{lag}");
-    // Level, or falling: there is none.
+    // Level or falling: there is no lag.
     let level = [
         evaluation("a", &[5.0]),
         learning("a", None, &[0.0; 4]),
@@ -374,7 +373,7 @@ fn lag_is_the_time_to_half_of_what_is_gained() {
 }
 
 #[test]
-fn what_is_reached_after_each_learning_shows_lost_plasticity() {
+fn evaluations_after_each_learning_show_lost_plasticity() {
     let life = [
         learning("a", None, &[0.0; 4]),
         evaluation("a", &[80.0]),

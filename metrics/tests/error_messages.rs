@@ -1,6 +1,4 @@
-//! Every error with its code and its message, as a snapshot; fails when one is missing.
-//!
-//! Not here: what leads to them, see `broken_logs` and `log_round_trip`.
+//! Every error with its code and its message, as a snapshot; fails if one is missing.
 
 use std::io;
 use std::path::PathBuf;
@@ -16,7 +14,7 @@ fn at(line: u64) -> LogLine {
     LogLine { path: path(), line }
 }
 
-/// One of each, in the order of their declaration.
+/// One of each, in declaration order.
 #[expect(clippy::too_many_lines, reason = "a flat table")]
 fn all() -> Vec<MetricsError> {
     use MetricsError as E;

@@ -1,6 +1,4 @@
-//! The table of a log against `python -m l2logger.aggregate`: `tests/oracles/l2logger_aggregate.py` made both.
-//!
-//! Not here: tables of several logs, see `log::aggregate`.
+//! Compares the table of a log with `python -m l2logger.aggregate`: `tests/oracles/l2logger_aggregate.py` made both.
 
 #![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
 
@@ -21,7 +19,7 @@ fn cells(tsv: &[u8]) -> Vec<Vec<String>> {
     rows.collect()
 }
 
-/// The same text, or numbers that differ no more than pandas' quick parser does from the nearest number: in the last bit or two.
+/// The same text, or numbers that differ at most by the error of pandas' fast parser: the last bit or two.
 fn same(found: &str, expected: &str) -> bool {
     match (found.parse::<f64>(), expected.parse::<f64>()) {
         (Ok(a), Ok(b)) => (a - b).abs() <= 4.0 * f64::EPSILON * b.abs(),
@@ -30,7 +28,7 @@ fn same(found: &str, expected: &str) -> bool {
 }
 
 #[test]
-fn a_log_of_two_workers_gives_the_table_of_l2logger() {
+fn log_of_two_workers_matches_l2logger() {
     let oracles = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/oracles");
     let dir = oracles.join("l2logger_aggregate");
     assert!(validate_log(&dir).is_valid());

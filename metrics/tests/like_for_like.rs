@@ -1,6 +1,4 @@
-//! Whether experts are like for like: budgets, worlds and agents beside the lifetime's.
-//!
-//! Not here: how performances are compared, see `tiny_lifetime`.
+//! Whether experts are like for like: budgets, worlds and agents compared with the lifetime's.
 
 #![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
 
@@ -12,8 +10,7 @@ use driftworld_metrics::{
 };
 use proptest::prelude::*;
 
-/// A block: its type, its task, the seed and first index of its worlds, its length, and whether it is before
-/// deployment.
+/// A block: its type, its task, the seed and first index of its worlds, its length, and whether it is before deployment.
 #[derive(Debug, Clone)]
 struct Block {
     kind: BlockType,
@@ -69,7 +66,7 @@ fn fit(life: &[Block], agent: Option<&str>, expert: &[Block], expert_agent: Opti
 }
 
 #[test]
-fn an_expert_with_the_lifetimes_worlds_budget_and_agent_is_like_for_like() {
+fn expert_with_equal_worlds_budget_and_agent_is_like_for_like() {
     let life = [
         learning("f_a", 1, 0, 12),
         learning("f_b", 1, 0, 12),
@@ -87,7 +84,7 @@ fn an_expert_with_the_lifetimes_worlds_budget_and_agent_is_like_for_like() {
 }
 
 #[test]
-fn what_differs_is_told() {
+fn differences_are_listed() {
     let before = Block {
         is_before: true,
         ..learning("f_b", 1, 50, 5)
@@ -106,7 +103,7 @@ fn what_differs_is_told() {
         count: 3,
         ..before
     };
-    // One block where the lifetime has two, other worlds, less time before deployment, another agent.
+    // One block instead of the lifetime's two, other worlds, less time before deployment, another agent.
     let expert = [expert_before, learning("f_a", 1, 6, 12)];
     let (found, notes) = fit(&life, Some("replay"), &expert, Some("ppo"));
     assert_eq!(
@@ -131,7 +128,7 @@ fn what_differs_is_told() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 40)))]
 
-    /// Against sets of pairs made from the blocks themselves.
+    /// Compared with sets of pairs computed directly from the blocks.
     #[test]
     fn worlds_and_budgets_are_counted(
         life in prop::collection::vec((prop::bool::ANY, prop::bool::ANY, 0_u64..3, 0_u32..20, 1_u32..15), 1..6),

@@ -1,6 +1,4 @@
-//! What is written is what is read: records with awkward words and numbers, several workers, interrupted runs.
-//!
-//! Not here: logs that cannot be read, see `broken_logs`; any record that may be written, see `properties`.
+//! Logs are read back as written: awkward texts and numbers, several workers, interrupted runs.
 
 #![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
 
@@ -35,7 +33,7 @@ fn read_records(dir: &Path) -> Vec<Record> {
 }
 
 #[test]
-fn the_bytes_are_those_of_the_format() {
+fn bytes_follow_the_format() {
     let base = tempfile::tempdir().unwrap();
     let dir = base.path().join("walk-1600000000-5");
     let scenario = ScenarioInfo {
@@ -67,7 +65,7 @@ fn the_bytes_are_those_of_the_format() {
 }
 
 #[test]
-fn a_record_can_be_read_as_soon_as_it_is_written() {
+fn record_can_be_read_as_soon_as_it_is_written() {
     let base = tempfile::tempdir().unwrap();
     let mut writer = create(base.path());
     for exp_num in 0..3 {
@@ -78,7 +76,7 @@ fn a_record_can_be_read_as_soon_as_it_is_written() {
 }
 
 #[test]
-fn a_directory_that_holds_anything_is_not_written_into() {
+fn non_empty_directory_is_not_written_into() {
     let base = tempfile::tempdir().unwrap();
     create(base.path()).write(&record(0, 0, BlockType::Train)).unwrap();
     let error = LogWriter::create(base.path(), &info(), &ScenarioInfo::default()).unwrap_err();
@@ -90,7 +88,7 @@ fn a_directory_that_holds_anything_is_not_written_into() {
             base.path().display()
         )
     );
-    // The advice is good.
+    // The advice works.
     LogWriter::resume(base.path())
         .unwrap()
         .write(&record(0, 1, BlockType::Train))
@@ -99,7 +97,7 @@ fn a_directory_that_holds_anything_is_not_written_into() {
 }
 
 #[test]
-fn an_interrupted_log_is_continued_where_it_stopped() {
+fn interrupted_log_is_continued_where_it_stopped() {
     let base = tempfile::tempdir().unwrap();
     let mut writer = create(base.path());
     writer.write(&record(2, 5, BlockType::Train)).unwrap();
@@ -132,7 +130,7 @@ fn an_interrupted_log_is_continued_where_it_stopped() {
 }
 
 #[test]
-fn rows_of_an_experience_are_in_one_block_of_a_number() {
+fn rows_of_an_experience_are_in_one_block() {
     let base = tempfile::tempdir().unwrap();
     let begun = Record {
         exp_status: ExpStatus::Incomplete,
@@ -151,7 +149,7 @@ fn rows_of_an_experience_are_in_one_block_of_a_number() {
 }
 
 #[test]
-fn a_log_torn_in_its_very_header_is_continued_from_nothing() {
+fn log_torn_within_its_header_is_started_again() {
     let base = tempfile::tempdir().unwrap();
     drop(create(base.path()));
     let block = base.path().join("worker-default/0-train");
@@ -165,7 +163,7 @@ fn a_log_torn_in_its_very_header_is_continued_from_nothing() {
 }
 
 #[test]
-fn a_log_of_format_1_0_is_read_but_not_continued() {
+fn log_of_format_1_0_is_read_but_not_continued() {
     let base = tempfile::tempdir().unwrap();
     let block = base.path().join("w/0-train");
     fs::create_dir_all(&block).unwrap();
@@ -196,7 +194,7 @@ fn a_log_of_format_1_0_is_read_but_not_continued() {
 }
 
 #[test]
-fn workers_are_read_together_in_the_order_of_experiences() {
+fn workers_are_merged_in_the_order_of_experiences() {
     let base = tempfile::tempdir().unwrap();
     let mut writer = create(base.path());
     for exp_num in 0..6 {
@@ -224,7 +222,7 @@ fn workers_are_read_together_in_the_order_of_experiences() {
 }
 
 #[test]
-fn records_that_break_a_rule_are_refused_and_nothing_is_written() {
+fn invalid_records_are_refused_and_nothing_is_written() {
     let base = tempfile::tempdir().unwrap();
     let mut writer = create(base.path());
     let mut check = |record: Record, expected: &str| {

@@ -1,6 +1,4 @@
-//! A log that is removed, renamed, replaced or cut while it is written: the writer says so, and makes nothing anew.
-//!
-//! Not here: a last row that was torn when its writer was stopped, see `torn_log`.
+//! A log that is removed, renamed, replaced or truncated while it is written: the writer reports it and recreates nothing.
 #![cfg(unix)]
 #![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
 
@@ -13,7 +11,7 @@ use proptest::prelude::*;
 
 const WORKERS: [&str; 2] = ["anna", "bert"];
 
-/// Row `number` of a log of blocks of 4 rows, by one worker or by two in turns.
+/// Row `number` of a log with 4 rows per block, by one worker or by two alternating ones.
 fn record(number: u64, workers: usize) -> Record {
     let block_type = if (number / 4).is_multiple_of(2) {
         BlockType::Train
@@ -30,14 +28,14 @@ fn create(dir: &Path) -> LogWriter {
     LogWriter::create(dir, &LoggerInfo::new(["reward"]).unwrap(), &ScenarioInfo::default()).unwrap()
 }
 
-/// The data file that row `number` is in.
+/// The data file of row `number`.
 fn file_of(dir: &Path, number: u64, workers: usize) -> PathBuf {
     let record = record(number, workers);
     let block = format!("{}-{}", record.block_num, record.block_type);
     dir.join(record.worker_id).join(block).join("data-log.tsv")
 }
 
-/// What happens to a log while it is written.
+/// Damage to a log while it is written.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Mishap {
     FolderDeleted,
@@ -68,7 +66,7 @@ const MISHAPS: [Mishap; 10] = [
 ];
 
 impl Mishap {
-    /// Lets it happen, to a folder or to a file of it.
+    /// Applies the damage to a folder or to a file of it.
     fn happen(self, dir: &Path, file: &Path) {
         let aside = dir.with_extension("aside");
         let cut = |length: u64| {
@@ -94,7 +92,7 @@ impl Mishap {
             M::FileEmptied => cut(0),
             M::FileDeleted => fs::remove_file(file).unwrap(),
             M::FileReplaced => {
-                // As long, and nothing of it the same.
+                // The same length, but entirely different contents.
                 let other = "x".repeat(fs::metadata(file).unwrap().len() as usize);
                 fs::write(file.with_extension("new"), other).unwrap();
                 fs::rename(file.with_extension("new"), file).unwrap();
@@ -116,7 +114,7 @@ impl Mishap {
     }
 }
 
-/// Everything below a path, with what files hold.
+/// Everything below a path, with file contents.
 fn listed(path: &Path) -> Vec<(PathBuf, Option<Vec<u8>>)> {
     let mut found = Vec::new();
     for entry in fs::read_dir(path).into_iter().flatten().flatten() {
@@ -137,11 +135,11 @@ fn write(mut writer: LogWriter, rows: std::ops::Range<u64>, workers: usize) -> R
 }
 
 proptest! {
-    // Each log asks the disk to have it, many times.
+    // Each log syncs to disk many times.
     #![proptest_config(ProptestConfig { cases: crate::tier::quick_or_full(24, 48), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn every_mishap_is_an_error_and_nothing_is_made_anew(
+    fn every_mishap_is_an_error_and_nothing_is_recreated(
         mishap in prop::sample::select(&MISHAPS[..]),
         workers in 1..=2_usize,
         resumed in any::<bool>(),
@@ -166,8 +164,7 @@ proptest! {
         prop_assert_eq!(error.code(), expected, "{}", error);
         let message = error.to_string();
         prop_assert!(message.starts_with(dir.to_str().unwrap()), "{}", message);
-        // Rows may have gone into files that stand as they were, but nothing into what was hit, and no folder was made
-        // in its place.
+        // Rows may have been written to intact files, but nothing to the damaged ones, and no folder was recreated.
         if mishap.is_of_the_folder() {
             prop_assert_eq!(listed(base.path()), left);
             prop_assert!(message.contains(&format!("and with it {written} row")), "{}", message);
@@ -180,7 +177,7 @@ proptest! {
     }
 
     #[test]
-    fn a_log_that_is_left_alone_or_renamed_and_put_back_is_whole(
+    fn untouched_or_restored_log_is_whole(
         workers in 1..=2_usize, rows in 1..20_u64, moment in 0..20_u64,
     ) {
         let base = tempfile::tempdir().unwrap();
@@ -204,7 +201,7 @@ proptest! {
 }
 
 #[test]
-fn what_is_lost_is_counted() {
+fn lost_rows_and_bytes_are_counted() {
     let base = tempfile::tempdir().unwrap();
     let dir = base.path().join("log");
     let mut writer = create(&dir);
@@ -223,12 +220,12 @@ fn what_is_lost_is_counted() {
 }
 
 #[test]
-fn a_file_of_the_same_bytes_in_place_of_a_finished_one_is_no_loss() {
+fn identical_copy_of_a_finished_file_is_no_loss() {
     let base = tempfile::tempdir().unwrap();
     let dir = base.path().join("log");
     let mut writer = create(&dir);
     (0..6).for_each(|number| writer.write(&record(number, 1)).unwrap());
-    // The first block is over: some file systems give its file another number now.
+    // The first block is finished: some file systems give its file another id now.
     let file = file_of(&dir, 0, 1);
     fs::copy(&file, file.with_extension("new")).unwrap();
     fs::rename(file.with_extension("new"), &file).unwrap();
@@ -236,7 +233,7 @@ fn a_file_of_the_same_bytes_in_place_of_a_finished_one_is_no_loss() {
 }
 
 #[test]
-fn an_info_file_that_is_gone_is_missed() {
+fn missing_info_file_is_detected() {
     let base = tempfile::tempdir().unwrap();
     let dir = base.path().join("log");
     let mut writer = create(&dir);
@@ -247,7 +244,7 @@ fn an_info_file_that_is_gone_is_missed() {
     assert!(error.to_string().contains("logger_info.json"), "{error}");
 }
 
-/// The folder that came in its place is another writer's, as where a run is begun again after `rm -r`.
+/// The new folder belongs to another writer, as when a run is started again after `rm -r`.
 #[test]
 fn two_writers_never_share_a_folder() {
     let base = tempfile::tempdir().unwrap();
@@ -269,10 +266,10 @@ fn two_writers_never_share_a_folder() {
     assert_eq!(read_log(&dir).unwrap().rows.len(), 6);
 }
 
-/// Folders are held from the root on.
+/// Folders are kept as absolute paths.
 #[test]
 fn a_process_that_turns_to_another_directory_writes_where_it_began() {
-    // In a process of its own, since all threads share the directory.
+    // In a separate process, because all threads share the working directory.
     if std::env::var_os("LOST_LOG_ALONE").is_none() {
         let name = "lost_log::a_process_that_turns_to_another_directory_writes_where_it_began";
         let mut alone = Command::new(std::env::current_exe().unwrap());
@@ -298,7 +295,7 @@ fn a_process_that_turns_to_another_directory_writes_where_it_began() {
 }
 
 #[test]
-fn an_info_file_that_is_cut_or_gone_ends_the_log_with_an_error() {
+fn truncated_or_missing_info_file_fails_at_the_end() {
     for name in ["logger_info.json", "scenario_info.json"] {
         for cut in [true, false] {
             let base = tempfile::tempdir().unwrap();

@@ -1,6 +1,4 @@
-//! A metric that the crate does not have, computed beside its own, and definitions that are not the reference's.
-//!
-//! Not here: the values of the crate's own metrics, see `tiny_lifetime`.
+//! User-defined metrics computed beside the crate's own, and definitions other than the reference's.
 
 #![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
 
@@ -41,7 +39,7 @@ fn plain() -> Options {
     }
 }
 
-/// The worst that a task came to in an evaluation, and by how much an evaluation is above it.
+/// The worst evaluation of a task, and the difference of each evaluation to it.
 struct WorstEvaluation;
 
 impl Metric for WorstEvaluation {
@@ -83,7 +81,7 @@ const LIFE: [Block<'static>; 5] = [
 ];
 
 #[test]
-fn a_metric_of_ones_own_stands_beside_the_others_at_every_level() {
+fn user_metric_appears_beside_the_others_at_every_level() {
     let scorer = Scorer::new().with(WorstEvaluation).unwrap();
     let metrics = scorer.score(&log_of(&LIFE), &[], &plain()).unwrap();
     assert_eq!(
@@ -129,7 +127,7 @@ impl Metric for Broken {
 }
 
 #[test]
-fn names_that_are_taken_are_refused_and_errors_come_through() {
+fn taken_names_are_refused_and_errors_are_passed_on() {
     for name in ["", "avg_eval_perf", "num_lx", "task_metrics"] {
         let error = Scorer::new().with(Broken(name)).err().unwrap().to_string();
         let expected = "a name that is not empty and that no other metric or field of the results has";
@@ -143,7 +141,7 @@ fn names_that_are_taken_are_refused_and_errors_come_through() {
     assert_eq!(error, "metric energy, log life: found no column energy, expected one");
 }
 
-/// A metric without headlines that sets one value of a name.
+/// A metric without headlines that sets one value of a given name.
 struct Sets(Level, &'static str);
 
 #[derive(Clone, Copy, Debug)]
@@ -169,7 +167,7 @@ impl Metric for Sets {
 }
 
 #[test]
-fn values_of_a_name_that_the_results_use_are_refused() {
+fn values_with_reserved_names_are_refused() {
     let log = log_of(&LIFE);
     let of = |level, name| {
         let scorer = Scorer::new().with(Sets(level, name)).unwrap();
@@ -210,9 +208,9 @@ fn values_of_a_name_that_the_results_use_are_refused() {
     ] {
         check(Level::Regime, name, "a regime");
     }
-    // Of an empty list, JSON does not tell what it would hold.
+    // An empty list in JSON does not show its element type.
     let tasks = |metrics: &LifetimeMetrics| serde_json::to_value(&metrics.task_metrics).unwrap();
-    // At another level the same name means nothing else.
+    // At another level the same name is free.
     for (level, name) in [
         (Level::Lifetime, "block_num"),
         (Level::Task, "run_id"),
@@ -230,7 +228,7 @@ fn values_of_a_name_that_the_results_use_are_refused() {
 }
 
 #[test]
-fn one_scorer_scores_many_lifetimes_at_once() {
+fn one_scorer_scores_many_lifetimes_in_parallel() {
     let scorer = Scorer::new().with(WorstEvaluation).unwrap();
     let logs = [log_of(&LIFE), log_of(&LIFE[..4])];
     let at_once = std::thread::scope(|scope| {
@@ -295,7 +293,7 @@ fn published_definitions_let_every_task_in_a_gap_transfer() {
 }
 
 #[test]
-fn files_by_published_definitions_say_so_and_are_not_rounded() {
+fn files_by_published_definitions_are_labelled_and_not_rounded() {
     let thirds: [Block<'_>; 1] = [(Test, "a_1", 0, &[1.0, 1.0, 2.0])];
     let average = |definitions| {
         let json = serde_json::to_value(by(definitions, &thirds)).unwrap();
@@ -309,7 +307,7 @@ fn files_by_published_definitions_say_so_and_are_not_rounded() {
 }
 
 #[test]
-fn noise_shifts_performances_and_is_the_same_for_the_same_seed() {
+fn noise_shifts_performances_and_depends_on_the_seed() {
     let with = |mean, std, seed| {
         let options = Options {
             noise: Some(Noise { mean, std, seed }),

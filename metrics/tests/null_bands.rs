@@ -1,7 +1,5 @@
-//! Null bands: of agents that never change the values lie inside, of agents that forget outside; and one band computed
-//! a second time, by going through all permutations.
-//!
-//! Not here: that permuting keeps every world's rows, see `score::exchange`.
+//! Null bands: values of agents that never change lie inside, those of agents that forget outside; one band is checked against
+//! all permutations.
 
 #![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
 
@@ -23,7 +21,7 @@ type Lived = (u64, BlockType, &'static str, f64, f64);
 
 const TASKS: [&str; 3] = ["find_red", "find_blue", "find_green"];
 
-/// The log is written by hand: a writer that checks and flushes each of its rows takes longer than scoring them.
+/// Writes the log by hand: a writer that checks and flushes each row takes longer than scoring.
 fn log_of(rows: &[Lived]) -> Log {
     let base = tempfile::tempdir().unwrap();
     let dir = base.path().join("life");
@@ -55,8 +53,8 @@ fn log_of(rows: &[Lived]) -> Log {
     read_log(&dir).unwrap()
 }
 
-/// Every task is evaluated before and after each is learned, in the same worlds. `reward` is given how many tasks were learned, whether
-/// this is learning, the number of the task and that of the world.
+/// Every task is evaluated before and after each is learned, in the same worlds. `reward` gets the number of learned tasks, the
+/// block type, and the numbers of the task and the world.
 fn lifetime(worlds: u32, mut reward: impl FnMut(usize, BlockType, usize, u32) -> f64) -> Vec<Lived> {
     let mut rows = Vec::new();
     for learned in 0..=TASKS.len() {
@@ -89,7 +87,7 @@ fn scored(rows: &[Lived]) -> LifetimeMetrics {
     score(&log_of(rows), &[], &options()).unwrap()
 }
 
-/// The metrics that have a band, with the direction that is good.
+/// The metrics that have a band, with the good direction.
 fn directions() -> Vec<(&'static str, Direction)> {
     let (points, ratio) = (Direction::HigherThan(0.0), Direction::HigherThan(1.0));
     vec![
@@ -102,8 +100,8 @@ fn directions() -> Vec<(&'static str, Direction)> {
     ]
 }
 
-/// A reward like that of an agent that acts at random: near the floor, and now and then a lucky touch, in some worlds
-/// more often than in others.
+/// A reward like that of a random agent: near the floor, with occasional lucky touches, in some worlds more often than in
+/// others.
 fn by_luck(rng: &mut ChaCha8Rng, world: u32) -> f64 {
     let luck = 0.1 + 0.05 * f64::from(world % 5);
     let touched = rng.random_range(0.0..1.0) < luck;
@@ -111,7 +109,7 @@ fn by_luck(rng: &mut ChaCha8Rng, world: u32) -> f64 {
     touch - 20.0 + rng.random_range(0.0..5.0)
 }
 
-/// Lifetimes of an agent that never changes, with 20 worlds or fewer in an evaluation.
+/// Lifetimes of an agent that never changes, with 20 worlds or fewer per evaluation.
 fn random_lifetimes(num: u64, shown: fn(Lived) -> Lived) -> Vec<LifetimeMetrics> {
     let lifetimes = 0..num;
     let of_seed = |seed: u64| {
@@ -135,7 +133,7 @@ fn check_calibration(lifetimes: &[LifetimeMetrics], exchanged: Exchanged) {
         }
         let said = |reading| lifetimes.iter().filter(|life| life.readings[name] == reading).count();
         let (said_good, said_bad) = (said(Reading::Good), said(Reading::Bad));
-        // What is said looks at the parts, too.
+        // The reading depends on the parts, too.
         assert!(
             said_good <= called_good && said_bad <= called_bad,
             "{name}: {said_good}, {said_bad}"
@@ -145,13 +143,13 @@ fn check_calibration(lifetimes: &[LifetimeMetrics], exchanged: Exchanged) {
             lifetimes.len()
         );
         assert!(inside * 100 >= lifetimes.len() * 93, "{counts}");
-        // 5 of 100, and two standard errors of that.
+        // 5 of 100, plus two standard errors.
         assert!(called_good * 100 <= lifetimes.len() * 8, "{counts}");
         assert!(called_bad * 100 <= lifetimes.len() * 8, "{counts}");
     }
 }
 
-/// What groups of lifetimes say together.
+/// Aggregates over groups of lifetimes.
 fn together(lifetimes: &[LifetimeMetrics], size: usize) -> Vec<Vec<RepeatedMetric>> {
     let options = BootstrapOptions {
         resamples: 40,
@@ -162,7 +160,7 @@ fn together(lifetimes: &[LifetimeMetrics], size: usize) -> Vec<Vec<RepeatedMetri
 }
 
 #[test]
-fn several_lifetimes_of_an_agent_that_never_changes_are_called_good_no_more_often() {
+fn several_lifetimes_of_an_unchanging_agent_are_rarely_called_good() {
     // 2.5 of 100 good ones are expected: six of 50, or five of 20, come in fewer than 1 of 1,000 tries.
     let (number, most) = crate::tier::quick_or_full((20, 5), (50, 6));
     let groups = together(&random_lifetimes(5 * number, |row| row), 5);
@@ -195,8 +193,8 @@ fn copies_of_a_lifetime_have_the_band_of_one() {
 }
 
 #[test]
-fn what_one_lifetime_leaves_open_several_show() {
-    // What was learned is lost bit by bit, and luck covers it.
+fn several_lifetimes_show_what_one_leaves_unclear() {
+    // Learning is lost gradually, hidden by luck.
     let lifetimes: Vec<LifetimeMetrics> = (0..12_u64)
         .map(|seed| {
             let mut rng = ChaCha8Rng::seed_from_u64(seed);
@@ -221,17 +219,17 @@ fn what_one_lifetime_leaves_open_several_show() {
 }
 
 #[test]
-fn an_agent_that_never_changes_is_called_good_in_at_most_one_of_twenty_lifetimes() {
+fn unchanging_agent_is_called_good_in_at_most_one_of_twenty_lifetimes() {
     let lifetimes = random_lifetimes(200, |row| row);
     check_calibration(&lifetimes, Exchanged::Worlds);
-    // What the bands are for: without them, most of these lifetimes show "transfer".
+    // The purpose of bands: without them, most of these lifetimes show "transfer".
     let is_above = |scores: &&LifetimeMetrics| scores.lifetime.number("forward_transfer_ratio").unwrap() > 1.0;
     let above = lifetimes.iter().filter(is_above).count();
     assert!(above > 110, "forward ratio above 1 in {above} of 200 lifetimes");
 }
 
 #[test]
-fn without_worlds_rows_are_permuted_by_their_place() {
+fn rows_without_worlds_are_permuted_by_position() {
     let lifetimes = random_lifetimes(60, |(block, block_type, task, _, reward)| {
         (block, block_type, task, f64::NAN, reward)
     });
@@ -239,7 +237,7 @@ fn without_worlds_rows_are_permuted_by_their_place() {
 }
 
 #[test]
-fn of_an_agent_whose_rewards_repeat_the_band_is_the_value() {
+fn band_of_constant_rewards_is_the_value() {
     let scores = scored(&lifetime(8, |_, _, task, world| f64::from(world * 7 % 5) + task as f64));
     for (name, good) in directions() {
         let band = scores.null_bands[name];
@@ -250,7 +248,7 @@ fn of_an_agent_whose_rewards_repeat_the_band_is_the_value() {
     assert_eq!(scores.null_bands["forward_transfer_ratio"].value, 1.0);
 }
 
-/// Learns each task, and forgets it when it learns the next.
+/// Learns each task, and forgets it when learning the next.
 fn forgetting(rng: &mut ChaCha8Rng) -> Vec<Lived> {
     lifetime(20, |learned, block_type, task, _| {
         let knows = if block_type == Train {
@@ -264,7 +262,7 @@ fn forgetting(rng: &mut ChaCha8Rng) -> Vec<Lived> {
 }
 
 #[test]
-fn an_agent_that_forgets_lies_outside() {
+fn forgetting_agent_lies_outside() {
     let scores = scored(&forgetting(&mut ChaCha8Rng::seed_from_u64(1)));
     for name in [
         "perf_maintenance_mrlep",
@@ -284,7 +282,7 @@ fn an_agent_that_forgets_lies_outside() {
 }
 
 #[test]
-fn an_agent_that_learns_all_tasks_at_once_is_called_good() {
+fn agent_that_learns_all_tasks_at_once_is_called_good() {
     let mut rng = ChaCha8Rng::seed_from_u64(2);
     let scores = scored(&lifetime(20, |learned, _, _, _| {
         20.0 * learned as f64 + rng.random_range(0.0..10.0)
@@ -298,7 +296,7 @@ fn an_agent_that_learns_all_tasks_at_once_is_called_good() {
 }
 
 #[test]
-fn each_band_holds_the_value_of_the_lifetime_and_contrast_comes_first() {
+fn each_band_holds_the_lifetimes_value_and_contrast_comes_first() {
     let rows = forgetting(&mut ChaCha8Rng::seed_from_u64(3));
     let scores = scored(&rows);
     assert_eq!(scores.null_bands.len(), directions().len());
@@ -306,7 +304,7 @@ fn each_band_holds_the_value_of_the_lifetime_and_contrast_comes_first() {
         let (found, expected) = (scores.null_bands[name].value, scores.lifetime.number(name).unwrap());
         assert!((found - expected).abs() <= 1e-12 * expected.abs().max(1.0), "{name}");
     }
-    // Ratios alone were asked for: the contrasts come before them all the same, and stand in no file.
+    // Only ratios were requested: the contrasts come before them all the same, and are in no file.
     let scores = score(&log_of(&rows), &[], &Options::default()).unwrap();
     let names: Vec<String> = scores.summary().into_iter().map(|row| row.name.into_owned()).collect();
     let place = |name: &str| names.iter().position(|found| found == name).unwrap();
@@ -322,7 +320,7 @@ fn each_band_holds_the_value_of_the_lifetime_and_contrast_comes_first() {
     for ours in ["readings", "null", "contrasts", "reached", "forward_transfer_contrast"] {
         assert_eq!(json.get(ours), None, "{ours}");
     }
-    // Learning decides these.
+    // These depend on learning, too.
     let band = |name: &str| {
         scores
             .summary()
@@ -336,7 +334,7 @@ fn each_band_holds_the_value_of_the_lifetime_and_contrast_comes_first() {
 }
 
 #[test]
-fn a_contrast_that_is_shown_has_its_pairs_and_all_of_it_can_be_read_back() {
+fn shown_contrast_has_pairs_and_round_trips() {
     for seed in 0..6 {
         let rows = forgetting(&mut ChaCha8Rng::seed_from_u64(seed));
         for (method, smooth) in [
@@ -374,7 +372,7 @@ fn a_contrast_that_is_shown_has_its_pairs_and_all_of_it_can_be_read_back() {
 }
 
 #[test]
-fn nothing_is_said_of_transfer_that_is_made_of_negative_performances() {
+fn transfer_from_negative_performances_has_no_reading() {
     let mut rng = ChaCha8Rng::seed_from_u64(5);
     let rows: Vec<Lived> = forgetting(&mut rng)
         .into_iter()
@@ -421,7 +419,7 @@ fn all_permutations_of_a_small_lifetime_give_the_band() {
         }
     }
     let band = scored(&rows).null_bands["perf_maintenance_mrlep"];
-    // From 0..10 to 1..101: ten points each. Maintenance is the last evaluation less the one right after learning.
+    // From 0..10 to 1..101: ten points each. Maintenance is the last evaluation minus the one right after learning.
     let maintenance = |orders: [[usize; 3]; 4]| {
         let mean = |evaluation: usize| {
             let earned = (0..4).map(|world| EVALUATIONS[orders[world][evaluation]][world]);
@@ -445,7 +443,7 @@ fn all_permutations_of_a_small_lifetime_give_the_band() {
     // Four standard errors of twice a share of a thousand draws.
     let error = 8.0 * (extreme * (1.0 - extreme) / 1000.0).sqrt() + 0.004;
     assert!((band.p - 2.0 * extreme).abs() < error, "{band:?} {extreme}");
-    // Each end has its 2.5 % of all permutations beyond it, and no more than 5 %.
+    // At least 2.5 % of all permutations lie beyond each end, and at most 5 %.
     for beyond in [
         share(&|drawn| drawn < band.low - 1e-9),
         share(&|drawn| drawn > band.high + 1e-9),
@@ -470,8 +468,8 @@ fn expert(task: &'static str, learning: f64, evaluation: Option<f64>) -> SteLog 
 }
 
 #[test]
-fn a_task_below_a_fifth_of_the_expert_was_never_learned() {
-    // The second task is never learned; the first is, and forgotten.
+fn task_below_a_fifth_of_the_expert_was_never_learned() {
+    // The second task is never learned; the first is, and then forgotten.
     let rows = lifetime(4, |learned, block_type, task, world| {
         match (task, block_type, learned) {
             (0, Test, 1) => 60.0 + 10.0 * f64::from(world),
@@ -507,7 +505,7 @@ fn a_task_below_a_fifth_of_the_expert_was_never_learned() {
     );
     let blue = reached["find_blue"];
     assert_eq!((blue.expert, blue.is_never_learned()), (Some(284.0), Some(true)));
-    // An expert at or below 0 is no level to take a part of.
+    // An expert at or below 0 has no level to take a share of.
     assert_eq!(
         (reached["find_green"].share, reached["find_green"].is_never_learned()),
         (None, None)

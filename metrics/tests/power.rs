@@ -1,4 +1,4 @@
-//! The power of Welch's test, against published numbers and against tests of drawn lifetimes.
+//! The power of Welch's test, compared with published numbers and with tests of random lifetimes.
 
 #![expect(clippy::disallowed_methods, reason = "compared within a tolerance")]
 
@@ -9,8 +9,8 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 
 #[test]
-fn lifetimes_are_as_many_as_simulation_said() {
-    // Standard deviations that learners had; simulated elsewhere, with an error of one or two lifetimes in a hundred.
+fn needed_lifetimes_match_simulations() {
+    // Standard deviations of actual learners; simulated independently, with an error of one or two lifetimes in a hundred.
     let check = |deviations: [f64; 2], needed: [usize; 3], at_5_and_10: [f64; 2]| {
         for (effect, expected) in [10.0, 20.0, 30.0].into_iter().zip(needed) {
             let found = lifetimes_for(deviations, effect).unwrap();
@@ -53,10 +53,10 @@ fn welch(samples: [&[f64]; 2]) -> (f64, f64) {
     ((mean_a - mean_b) / (a + b).sqrt(), freedom)
 }
 
-/// The chance beyond ±t, by adding up the density of Student's t.
+/// The chance beyond ±t, by integrating the density of Student's t.
 fn p_value(t: f64, freedom: f64) -> f64 {
     let density = |x: f64| (1.0 + x * x / freedom).powf(-f64::midpoint(freedom, 1.0));
-    // As x = tan(angle), so that the whole line is short.
+    // With x = tan(angle), so that the interval is finite.
     let area = |from: f64, to: f64| {
         let width = (to - from) / 400.0;
         (0..400)
@@ -71,7 +71,7 @@ fn p_value(t: f64, freedom: f64) -> f64 {
 }
 
 #[test]
-fn drawn_lifetimes_are_told_apart_as_often() {
+fn simulated_tests_detect_as_often_as_predicted() {
     let mut rng = ChaCha8Rng::seed_from_u64(5);
     for (nums, deviations, effect) in [
         ([3, 3], [1.0, 1.0], 2.5),
@@ -102,7 +102,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
     #[test]
-    fn power_grows_with_effect_and_lifetimes_and_knows_no_unit(
+    fn power_grows_with_effect_and_lifetimes_in_any_unit(
         nums in [2_usize..30, 2_usize..30],
         deviations in [0.1..20.0_f64, 0.1..20.0_f64],
         effect in 0.0..40.0_f64,
@@ -111,7 +111,7 @@ proptest! {
         let power = welch_power(nums, deviations, effect).unwrap();
         prop_assert!((0.0..=1.0).contains(&power));
         prop_assert!(welch_power(nums, deviations, effect + 1.0).unwrap() >= power - 1e-9);
-        // Two agents are neither first nor second, and an effect has two sides.
+        // Agents are interchangeable, and the test is two-sided.
         let swapped = welch_power([nums[1], nums[0]], [deviations[1], deviations[0]], -effect).unwrap();
         prop_assert!((swapped - power).abs() < 1e-6, "{} {}", swapped, power);
         let scaled = welch_power(nums, deviations.map(|deviation| deviation * unit), effect * unit).unwrap();
@@ -128,7 +128,7 @@ proptest! {
 }
 
 #[test]
-fn nothing_is_said_of_one_lifetime_or_without_deviation() {
+fn power_is_none_for_one_lifetime_or_without_deviation() {
     assert_eq!(welch_power([1, 5], [1.0, 1.0], 1.0), None);
     assert_eq!(welch_power([5, 5], [0.0, 0.0], 1.0), None);
     assert_eq!(lifetimes_for([1.0, 1.0], 0.0), None);

@@ -1,7 +1,4 @@
-//! What must hold of every log and of every score, whatever the lifetime was.
-//!
-//! Not here: single lifetimes with their numbers, see `tiny_lifetime` and `reference`; logs that are broken, see the
-//! package `driftworld-fuzz`.
+//! Properties of every log and of every score, for any lifetime.
 
 #![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
 
@@ -16,7 +13,7 @@ use serde_json::Value;
 
 use crate::generators::{Lived, any_log, expert, lay_out, lifetime};
 
-/// Everything that is asked for at once.
+/// All values requested.
 fn options(normalization_method: NormalizationMethod, smoothing_method: SmoothingMethod) -> Options {
     Options {
         normalization_method,
@@ -27,7 +24,7 @@ fn options(normalization_method: NormalizationMethod, smoothing_method: Smoothin
     }
 }
 
-/// The scores of a log as JSON, without what tells of the performances as they were logged.
+/// The scores of a log as JSON, without the fields about performances as logged.
 fn scores(dir: &Path, expert: Option<&Path>, options: &Options) -> Value {
     let experts: Vec<_> = expert.into_iter().map(|dir| read_ste_log(dir).unwrap()).collect();
     let mut scores = serde_json::to_value(score(&read_log(dir).unwrap(), &experts, options).unwrap()).unwrap();
@@ -54,7 +51,7 @@ fn difference(a: &Value, b: &Value, place: &str) -> Option<String> {
     }
 }
 
-/// Whether the performances of every task are one, or far enough apart that rounding does not count.
+/// Whether the performances of every task are all equal, or far enough apart that rounding does not matter.
 fn is_spread(rows: &[&[Lived]]) -> bool {
     let rows = || rows.iter().copied().flatten();
     rows().all(|row| {
@@ -68,11 +65,12 @@ fn is_spread(rows: &[&[Lived]]) -> bool {
     })
 }
 
-/// Data of so many rows are smoothed.
+/// Data with at least this number of rows are smoothed.
 const SMOOTHED: usize = 15;
 
-/// Whether the learning of a task, or of the expert, is smoothed. The first windows of smoothed data tie by mirroring (of x2 x1 | x0 x1 x2
-/// the first three and the last three have one sum), and the last bit of the sums says which of them is the first maximum.
+/// Whether the learning of a task, or of the expert, is smoothed. The first windows of smoothed data tie by mirroring (of x2 x1
+/// | x0 x1 x2 the first three and the last three have one sum), and the last bit of the sums decides which of them is the first
+/// maximum.
 fn ties(rows: &[&[Lived]]) -> bool {
     rows.iter().any(|rows| {
         let num_of = |row: &Lived| rows.iter().filter(|other| other.task == row.task).count();
@@ -80,7 +78,7 @@ fn ties(rows: &[&[Lived]]) -> bool {
     })
 }
 
-/// Leaves out what depends on which of two equal maxima comes first.
+/// Removes values that depend on which of two equal maxima comes first.
 fn without_places_of_maxima(scores: &mut Value) {
     let depends = |key: &str| {
         ["exp_to_sat", "sample_efficiency", "saturation", "cautions"]
@@ -93,7 +91,7 @@ fn without_places_of_maxima(scores: &mut Value) {
     }
 }
 
-/// Compares the scores of a lifetime with those of the same one whose performances are all changed in the same way.
+/// Compares the scores of a lifetime with those after the same change to all performances.
 fn check_invariance(
     lived: &[Lived],
     expert: &[Lived],
@@ -130,7 +128,8 @@ fn normalized() -> impl Strategy<Value = Options> {
     (by, prop::sample::select(SmoothingMethod::ALL)).prop_map(|(by, smoothing)| options(by, smoothing))
 }
 
-/// The same lifetime with performances of a few whole numbers, so that many sums tie, each moved by so many hundred-billionths.
+/// The same lifetime with performances that are small whole numbers, so that many sums tie, each shifted by `moved`
+/// hundred-billionths.
 fn tied(rows: &[Lived], moved: &[i8]) -> Vec<Lived> {
     let moves = moved.iter().cycle();
     let row = |(row, moved): (&Lived, &i8)| Lived {
@@ -140,7 +139,7 @@ fn tied(rows: &[Lived], moved: &[i8]) -> Vec<Lived> {
     rows.iter().zip(moves).map(row).collect()
 }
 
-/// A record in words that are equal where records are.
+/// A record as text; equal for equal records.
 fn shown(record: &Record) -> String {
     format!("{record:?}")
 }
@@ -149,7 +148,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 40)))]
 
     #[test]
-    fn what_is_written_is_read(records in any_log()) {
+    fn written_records_are_read_back(records in any_log()) {
         let base = tempfile::tempdir().unwrap();
         let info = LoggerInfo::new(["reward"]).unwrap();
         let mut writer = LogWriter::create(base.path(), &info, &ScenarioInfo::default()).unwrap();
@@ -158,14 +157,14 @@ proptest! {
         }
         let mut found: Vec<Record> = read_log(base.path()).unwrap().rows.iter().map(Row::to_record).collect();
         prop_assert!(found.is_sorted_by_key(|record| (record.exp_num, record.block_num)));
-        // Rows of several workers may have the same numbers; their time stamps say which was written first.
+        // Rows of several workers may have the same numbers; their time stamps show the order of writing.
         found.sort_by_key(|record| record.timestamp);
         prop_assert_eq!(found.iter().map(shown).collect::<Vec<_>>(), records.iter().map(|record| {
             let mut record = record.clone();
             record.metrics.sort_by(|a, _, b, _| (a != "reward").cmp(&(b != "reward")));
             shown(&record)
         }).collect::<Vec<_>>());
-        // A log goes on where it stopped, whatever is in it.
+        // A log continues where it stopped, whatever its contents.
         drop(writer);
         let last = records.last().unwrap();
         let next = Record { exp_num: last.exp_num + 1, ..last.clone() };
@@ -199,7 +198,7 @@ proptest! {
             let found = score(&read_log(&dir).unwrap(), &experts, &options(NormalizationMethod::Off, smoothing)).unwrap();
             (serde_json::to_value(&found).unwrap(), found.cautions.concat())
         };
-        // From whole numbers, or from others as close to them.
+        // From whole numbers, or from others very close to them.
         let (before, after) = (scored("before", if clean { &[0] } else { &[1, 0, -1] }), scored("after", &moved));
         let ((before, cautions), (after, cautions_after)) = (before, after);
         let mut tasks = before["task_metrics"].as_object().unwrap().iter();
@@ -216,7 +215,7 @@ proptest! {
     }
 
     #[test]
-    fn normalised_scores_do_not_depend_on_where_zero_lies(
+    fn normalised_scores_do_not_depend_on_the_zero_point(
         lived in lifetime(), expert in expert(), options in normalized(), shift in -1000.0..1000.0,
     ) {
         check_invariance(&lived, &expert, &options, |performance| performance + shift)?;

@@ -1,7 +1,6 @@
-//! Oracle: the example lifetime that l2metrics publishes, scored with its example experts, against its own results.
+//! Oracle: the example lifetime published with l2metrics, scored with its example experts, against its own results.
 //!
-//! The files are read where `DRIFTWORLD_REFERENCE` says, by default beside the repository; without them the tests say
-//! so and return.
+//! The files are read from `DRIFTWORLD_REFERENCE`, by default beside the repository; without them the tests say so and return.
 
 #![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
 
@@ -10,7 +9,7 @@ use std::path::PathBuf;
 use driftworld_metrics::{LifetimeMetrics, Options, SteLog, read_log, read_log_with_texts, read_ste_log, score};
 use serde_json::Value;
 
-/// The reference computes in another order of additions; its published lifetime values have ten decimals.
+/// The reference adds in another order; its published lifetime values have ten decimals.
 const TOLERANCE: f64 = 1e-9;
 
 #[expect(clippy::print_stderr, reason = "a skipped oracle must be seen")]
@@ -53,7 +52,7 @@ fn scored(dir: &std::path::Path, options: &Options) -> LifetimeMetrics {
     score(&log, &experts(dir, &runs), options).unwrap()
 }
 
-/// Compares two documents, numbers within the tolerance; returns how many numbers there were.
+/// Compares two documents, numbers within the tolerance; returns the number of numbers.
 fn compare(path: &str, found: &Value, expected: &Value) -> usize {
     match (found, expected) {
         (Value::Number(found), Value::Number(expected)) => {
@@ -96,7 +95,7 @@ fn every_published_number_is_reproduced() {
     let expected = std::fs::read(dir.join("expected/multi_task_metrics.json")).unwrap();
     let expected: Value = serde_json::from_slice(&expected).unwrap();
     let mut found = serde_json::to_value(scored(&dir, &options())).unwrap();
-    // Ours alone: the means of the log's columns before anything is scaled.
+    // Only ours has this: the means of the log's columns before scaling.
     found.as_object_mut().unwrap().shift_remove("as_logged").unwrap();
     let num_numbers = compare("", &found, &expected);
     assert!(num_numbers > 150, "only {num_numbers} numbers were compared");
@@ -139,7 +138,7 @@ fn settings_have_every_field_of_the_published_ones() {
 
 /// `oracles/l2metrics_options.py` made the numbers, with the reference itself.
 #[test]
-fn every_option_does_what_the_reference_makes_of_it() {
+fn every_option_matches_the_reference() {
     let Some(dir) = reference() else { return };
     let cases: Value = serde_json::from_str(include_str!("oracles/l2metrics_options.json")).unwrap();
     let mut num_numbers = 0;
@@ -153,7 +152,7 @@ fn every_option_does_what_the_reference_makes_of_it() {
 }
 
 #[test]
-fn the_loggers_own_example_is_read_although_it_has_a_column_of_words() {
+fn loggers_example_with_a_text_column_is_read() {
     let Some(dir) = reference() else { return };
     let log_dir = tempfile::tempdir().unwrap();
     let block = log_dir.path().join("driver.py_0/0-train");

@@ -1,6 +1,4 @@
-//! Oracle: lifetimes drawn by chance, scored by l2metrics itself; `oracles/l2metrics_lifetimes.py` drew and scored them.
-//!
-//! Not here: the published example, see `reference`.
+//! Oracle: random lifetimes, generated and scored with l2metrics by `oracles/l2metrics_lifetimes.py`.
 
 #![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
 
@@ -57,7 +55,7 @@ fn scored(case: &Value) -> LifetimeMetrics {
 }
 
 #[test]
-fn lifetimes_drawn_by_chance_have_the_references_numbers() {
+fn random_lifetimes_match_the_reference() {
     let oracle: Value = serde_json::from_str(include_str!("oracles/l2metrics_lifetimes.json")).unwrap();
     let mut num_numbers = 0;
     for case in oracle["cases"].as_array().unwrap() {

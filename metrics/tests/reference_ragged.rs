@@ -1,6 +1,4 @@
-//! Oracle: ragged lifetimes drawn by chance, scored by l2metrics itself; `oracles/l2metrics_ragged.py` drew and scored them.
-//!
-//! Not here: lifetimes as they should be, see `reference_lifetimes`.
+//! Oracle: random ragged lifetimes, generated and scored with l2metrics by `oracles/l2metrics_ragged.py`.
 
 #![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
 
@@ -16,7 +14,7 @@ use serde_json::Value;
 
 use crate::agreement::compare;
 
-/// Lists with a value to an expert: the reference takes experts in the order in which a file system lists them.
+/// Lists with one value per expert: the reference takes experts in file system order.
 const PER_EXPERT: [&str; 6] = [
     "ste_rel_perf_vals",
     "ste_saturation_vals",
@@ -51,7 +49,7 @@ fn quoted(cell: &str) -> String {
     }
 }
 
-/// Writes a log as the oracle did, not through our writer.
+/// Writes a log as the oracle does, without our writer.
 fn write(dir: &Path, oracle: &Value, segments: &Value) {
     let header: Vec<&str> = list(&oracle["header"]).iter().map(text).collect();
     let mut files: BTreeMap<String, String> = BTreeMap::new();
@@ -91,7 +89,7 @@ fn write(dir: &Path, oracle: &Value, segments: &Value) {
     }
 }
 
-/// Sorts the lists that have a value to an expert.
+/// Sorts the lists that have one value per expert.
 fn as_sets(tasks: &Value) -> Value {
     let mut tasks = tasks.clone();
     for values in tasks.as_object_mut().unwrap().values_mut() {
@@ -104,7 +102,7 @@ fn as_sets(tasks: &Value) -> Value {
     tasks
 }
 
-/// Compares everything that the reference says of one lifetime.
+/// Compares all values of one lifetime with the reference's.
 fn agree(place: &str, found: &LifetimeMetrics, expected: &Value) -> usize {
     let regimes = list(&expected["regimes"]);
     assert_eq!(found.regimes.len(), regimes.len(), "{place}: regimes");
@@ -135,7 +133,7 @@ fn agree(place: &str, found: &LifetimeMetrics, expected: &Value) -> usize {
     for (name, expected) in expected["whole"].as_object().unwrap() {
         num_numbers += compare(&format!("{place}, {name}"), &all[name], expected);
     }
-    // The reference keeps ranges of tasks that were given and that the lifetime lacks.
+    // The reference keeps given ranges of tasks that the lifetime lacks.
     num_numbers
         + compare(
             &format!("{place}, range"),
@@ -145,7 +143,7 @@ fn agree(place: &str, found: &LifetimeMetrics, expected: &Value) -> usize {
 }
 
 #[test]
-fn ragged_lifetimes_have_the_references_numbers() {
+fn ragged_lifetimes_match_the_reference() {
     let oracle = oracle();
     let cases = list(&oracle["cases"]);
     assert!(cases.len() >= 50, "{} lifetimes", cases.len());

@@ -1,6 +1,4 @@
-//! Whether intervals hold the true value as often as they say, and how often equal agents are called different: simulated studies.
-//!
-//! Not here: the numbers of other implementations, see `repeats_rliable` and `repeats_whole_runs`.
+//! Simulated studies: whether intervals have their nominal coverage, and how often equal agents are called different.
 
 #![expect(clippy::disallowed_methods, reason = "compared within a tolerance")]
 #![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
@@ -11,7 +9,7 @@ use driftworld_metrics::{
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-/// What the scores of one lifetime have in common: the correlation of its tasks.
+/// The correlation between the tasks of one lifetime.
 const COMMON: f64 = 0.8;
 
 /// Standard normal, by the method of Box and Muller.
@@ -21,7 +19,7 @@ fn normal(chance: &mut ChaCha8Rng) -> f64 {
     (-2.0 * radius.ln()).sqrt() * (std::f64::consts::TAU * turn).cos()
 }
 
-/// A study: scores of tasks whose true mean is `mean`, each lifetime with luck that its tasks share.
+/// A study: scores of tasks whose true mean is `mean`; the tasks of a lifetime share part of their luck.
 fn study(num_runs: usize, num_tasks: usize, mean: f64, chance: &mut ChaCha8Rng) -> ScoreTable {
     let runs: Vec<_> = (0..num_runs)
         .map(|run| {
@@ -42,12 +40,12 @@ fn options(resampling: Resampling, resamples: u32) -> BootstrapOptions {
     }
 }
 
-/// Five standard deviations of a share that is `share` in truth, over so many studies.
+/// Five standard deviations of a share over `num_studies` studies, if it is truly `share`.
 fn tolerance(share: f64, num_studies: u32) -> f64 {
     5.0 * (share * (1.0 - share) / f64::from(num_studies)).sqrt()
 }
 
-/// Share of studies whose intervals of mean and interquartile mean hold the true 0: the bootstrap's, then Student's.
+/// Share of studies whose intervals of mean and interquartile mean contain the true 0: the bootstrap's, then Student's.
 fn coverage(shape: (usize, usize), resampling: Resampling, num_studies: u32) -> [[f64; 2]; 2] {
     let mut chance = ChaCha8Rng::seed_from_u64(16);
     let mut held = [[0.0; 2]; 2];
@@ -64,7 +62,7 @@ fn coverage(shape: (usize, usize), resampling: Resampling, num_studies: u32) -> 
 }
 
 #[test]
-fn students_interval_of_few_lifetimes_holds_the_truth_as_often_as_it_says() {
+fn students_interval_of_few_lifetimes_has_nominal_coverage() {
     for shape in [(3, 2), (5, 4), (9, 4)] {
         let [bootstrap, [mean, iqm]] = coverage(shape, Resampling::Runs, 1_000);
         println!("{shape:?}: bootstrap {bootstrap:?}, Student {mean} {iqm}");
@@ -75,11 +73,11 @@ fn students_interval_of_few_lifetimes_holds_the_truth_as_often_as_it_says() {
 }
 
 #[test]
-fn whole_runs_of_many_lifetimes_hold_it_nearly_as_often_and_strata_do_not() {
+fn whole_run_bootstrap_nearly_covers_and_strata_bootstrap_does_not() {
     let [[mean, iqm], student] = coverage((20, 4), Resampling::Runs, 500);
     println!("20 x 4 by runs: {mean} {iqm}");
     assert_eq!(student, [0.0; 2], "there are enough lifetimes");
-    // What the percentile bootstrap of 20 normal runs gives.
+    // The coverage of the percentile bootstrap with 20 normal runs.
     for found in [mean, iqm] {
         assert!((found - 0.925).abs() < tolerance(0.925, 500), "by runs {found}");
     }
@@ -88,7 +86,7 @@ fn whole_runs_of_many_lifetimes_hold_it_nearly_as_often_and_strata_do_not() {
     assert!(strata < 0.75, "by strata {strata}");
 }
 
-/// Share of studies in which two agents are called different of which the first is better by `shift`.
+/// Share of studies in which two agents are called different if the first is better by `shift`.
 fn called_different(runs: (usize, usize), shift: f64, num_studies: u32) -> f64 {
     let mut chance = ChaCha8Rng::seed_from_u64(28);
     let mut called = 0.0;
@@ -102,7 +100,7 @@ fn called_different(runs: (usize, usize), shift: f64, num_studies: u32) -> f64 {
 
 #[test]
 fn equal_agents_are_called_different_in_one_study_of_twenty() {
-    // Of 5 against 5 every way is looked at, of 12 against 12 some are drawn. Of 3 against 3, none can be called different.
+    // For 5 against 5 all divisions are tried, for 12 against 12 some are sampled. 3 against 3 can never be called different.
     for (runs, share) in [((5, 5), 0.05), ((4, 6), 0.05), ((12, 12), 0.05), ((3, 3), 0.0)] {
         let found = called_different(runs, 0.0, 600);
         println!("{runs:?}: {found}");

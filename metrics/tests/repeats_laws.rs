@@ -1,6 +1,4 @@
 //! Laws of the statistics over repeats, for any scores.
-//!
-//! Not here: the numbers of another implementation, see `repeats_rliable`.
 
 #![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
 
@@ -68,7 +66,7 @@ fn close(found: &[f64], expected: &[f64]) -> bool {
 
 proptest! {
     #[test]
-    fn means_and_their_intervals_lie_between_the_least_and_the_greatest_score(rows in rows(), how in resampling()) {
+    fn means_and_intervals_lie_between_the_extreme_scores(rows in rows(), how in resampling()) {
         let scores: Vec<f64> = rows.iter().flatten().flatten().copied().collect();
         let least = scores.iter().copied().fold(f64::INFINITY, f64::min) - 1e-9;
         let greatest = scores.iter().copied().fold(f64::NEG_INFINITY, f64::max) + 1e-9;
@@ -79,7 +77,7 @@ proptest! {
     }
 
     #[test]
-    fn shifting_and_scaling_scores_shifts_and_scales_all_that_is_said(
+    fn shifting_and_scaling_scores_shifts_and_scales_all_results(
         rows in rows(), how in resampling(), scale in 0.1..10.0_f64, shift in -50.0..50.0_f64,
     ) {
         let map = |score: f64| scale * score + shift;
@@ -92,10 +90,10 @@ proptest! {
     }
 
     #[test]
-    fn the_order_of_runs_changes_no_value_and_under_draws_by_stratum_no_interval(
+    fn run_order_changes_no_value_and_no_stratum_interval(
         (rows, shuffled) in rows().prop_flat_map(|rows| (Just(rows.clone()), Just(rows).prop_shuffle())),
     ) {
-        // A stratum whose first score moved would come later: strata in one order need a run that has all.
+        // If a stratum's first score moved, it would come later: a fixed order of strata needs a run that has all.
         let strata = rows[0].len();
         let full = vec![Some(0.5); strata];
         let with_full = |rows: &[Vec<Option<f64>>]| table_of(std::iter::once(&full).chain(rows));
@@ -107,7 +105,7 @@ proptest! {
     }
 
     #[test]
-    fn more_confidence_is_a_wider_interval(rows in rows(), how in resampling()) {
+    fn more_confidence_widens_the_interval(rows in rows(), how in resampling()) {
         let table = table_of(&rows);
         let interval = |confidence| {
             let options = BootstrapOptions { confidence, ..options(how) };
@@ -119,7 +117,7 @@ proptest! {
     }
 
     #[test]
-    fn what_one_agent_wins_the_other_loses(a in rows(), b in rows(), how in resampling()) {
+    fn one_agents_wins_are_the_others_losses(a in rows(), b in rows(), how in resampling()) {
         let (a, b) = (table_of(&a), table_of(&b));
         let of = |a: &ScoreTable, b: &ScoreTable| probability_of_improvement(a, b, &options(how)).unwrap();
         let (ours, theirs) = (of(&a, &b), of(&b, &a));
@@ -135,7 +133,7 @@ proptest! {
     }
 
     #[test]
-    fn a_rising_map_of_scores_changes_no_probability(a in rows(), b in rows(), how in resampling()) {
+    fn rising_map_of_scores_changes_no_probability(a in rows(), b in rows(), how in resampling()) {
         let of = |a: &ScoreTable, b: &ScoreTable| probability_of_improvement(a, b, &options(how)).unwrap();
         let map = |score: f64| score.powi(3) + score;
         prop_assert_eq!(of(&table_of(&a), &table_of(&b)), of(&mapped(&a, map), &mapped(&b, map)));

@@ -1,6 +1,4 @@
-//! Statistics over repeats against rliable: `tests/oracles/repeats_rliable.py` says how its numbers were made.
-//!
-//! Not here: laws that hold for any scores, see `repeats_laws`.
+//! Compares statistics over repeats with rliable: `tests/oracles/repeats_rliable.py` describes how its numbers were made.
 
 #![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
 
@@ -60,18 +58,18 @@ fn table(scores: &[Vec<f64>]) -> ScoreTable {
     .unwrap()
 }
 
-/// How often ours draws: fewer than rliable's 50,000, for the time of a build without optimisation.
+/// Our number of resamples: fewer than rliable's 50,000, because tests run without optimisation.
 const RESAMPLES: u32 = 20_000;
 
-/// Our ends, and theirs as the mean over seeds, are where two samples of resamples leave out 2.5 %. The share that a sample of
-/// size n leaves out beyond a fixed point scatters by √(0.025 · 0.975 / n); five deviations of the difference are allowed. The
-/// comparison is by share, since few runs have few different resamples, between whose values there are wide gaps.
+/// Our ends, and theirs averaged over seeds, leave out 2.5 % of two samples of resamples. The share that a sample of size n
+/// leaves out beyond a fixed point varies by √(0.025 · 0.975 / n); five standard deviations of the difference are allowed.
+/// Compares shares, because few runs have few different resamples, with wide gaps between their values.
 fn allowed_share(theirs: u32, seeds: u32) -> f64 {
     let of_one = |resamples: u32| 0.025 * 0.975 / f64::from(resamples);
     5.0 * (of_one(RESAMPLES) + of_one(theirs * seeds)).sqrt()
 }
 
-/// Intervals that leave out as much more and as much less at either end as is allowed: narrow, wide.
+/// Intervals that leave out more and less at either end, by the allowed share: narrow, wide.
 fn options(theirs: u32, seeds: u32) -> [BootstrapOptions; 2] {
     [-2.0, 2.0].map(|sides| BootstrapOptions {
         confidence: 0.95 + sides * allowed_share(theirs, seeds),
@@ -90,7 +88,7 @@ fn check_value(name: &str, found: f64, expected: f64) {
     );
 }
 
-/// Their ends lie between our narrow interval's and our wide one's; rounding aside.
+/// Checks that their ends lie between our narrow interval's and our wide one's, up to rounding.
 #[track_caller]
 fn check_ends(name: &str, narrow: &Estimate, wide: &Estimate, expected: [f64; 2]) {
     let (narrow, wide) = (narrow.interval.unwrap(), wide.interval.unwrap());
@@ -106,7 +104,7 @@ fn check_ends(name: &str, narrow: &Estimate, wide: &Estimate, expected: [f64; 2]
 }
 
 #[test]
-fn aggregates_and_profiles_are_those_of_rliable() {
+fn aggregates_and_profiles_match_rliable() {
     let oracle = oracle();
     for case in &oracle.cases {
         let aggregates = [Aggregate::Mean, Aggregate::Median, Aggregate::Iqm];
@@ -122,7 +120,7 @@ fn aggregates_and_profiles_are_those_of_rliable() {
 }
 
 #[test]
-fn probabilities_of_improvement_are_those_of_rliable() {
+fn probabilities_of_improvement_match_rliable() {
     let oracle = oracle();
     for case in &oracle.comparisons {
         let (a, b) = (table(&case.a), table(&case.b));

@@ -1,7 +1,5 @@
-//! Probability of improvement where whole runs are drawn, against numpy: `tests/oracles/repeats_whole_runs.py` says how its numbers
-//! were made.
-//!
-//! Not here: draws within strata, see `repeats_rliable`.
+//! Compares the probability of improvement with whole-run resampling against numpy: `tests/oracles/repeats_whole_runs.py`
+//! describes how its numbers were made.
 
 #![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
 
@@ -23,7 +21,7 @@ struct Comparison {
     values: Vec<f64>,
     /// Low and high, of the strata, then of all.
     ends: Vec<[f64; 2]>,
-    /// In how many resamples a stratum had a pair.
+    /// In how many resamples each stratum had a pair.
     resamples_of_strata: Vec<u32>,
 }
 
@@ -37,10 +35,10 @@ fn table(rows: &[Vec<Option<f64>>]) -> ScoreTable {
     ScoreTable::from_runs(rows.iter().enumerate().map(|(k, row)| (k.to_string(), run(row)))).unwrap()
 }
 
-/// How often ours draws.
+/// Our number of resamples.
 const RESAMPLES: u32 = 20_000;
 
-/// Compares with an interval that leaves out `share` at either end.
+/// The comparison, with intervals that leave out `share` at either end.
 fn compared(case: &Comparison, share: f64, resampling: Resampling) -> Improvement {
     let options = BootstrapOptions {
         confidence: 1.0 - 2.0 * share,
@@ -62,10 +60,11 @@ fn oracle() -> Oracle {
     serde_json::from_str(include_str!("oracles/repeats_whole_runs.json")).unwrap()
 }
 
-/// The share that a sample of size n leaves out beyond a fixed point scatters by √(0.025 · 0.975 / n): their ends lie between those
-/// of ours that leave out five deviations more and less. Shares are compared, since there are gaps between the values.
+/// The share that a sample of size n leaves out beyond a fixed point varies by √(0.025 · 0.975 / n): their ends lie between
+/// those of ours that leave out five standard deviations more and less. Compares shares, because there are gaps between the
+/// values.
 #[test]
-fn whole_runs_give_the_intervals_that_numpy_gives() {
+fn whole_run_intervals_match_numpy() {
     let Oracle { resamples, comparisons } = oracle();
     for case in &comparisons {
         let rarest = f64::from(*case.resamples_of_strata.iter().min().unwrap()) / f64::from(resamples);
@@ -97,7 +96,7 @@ fn whole_runs_give_the_intervals_that_numpy_gives() {
 }
 
 #[test]
-fn where_runs_move_all_strata_alike_only_whole_runs_show_how_much_varies() {
+fn only_whole_runs_show_variation_shared_by_all_strata() {
     let Oracle { comparisons, .. } = oracle();
     let width = |resampling| {
         let interval = compared(&comparisons[0], 0.025, resampling)
@@ -111,7 +110,7 @@ fn where_runs_move_all_strata_alike_only_whole_runs_show_how_much_varies() {
 }
 
 #[test]
-fn two_kinds_of_draws_agree_where_there_is_one_stratum() {
+fn both_resamplings_agree_for_one_stratum() {
     let run = |k: u32| (k.to_string(), [("a", f64::from(k))]);
     let a = ScoreTable::from_runs((3..12).map(run)).unwrap();
     let b = ScoreTable::from_runs((0..8).map(run)).unwrap();

@@ -1,6 +1,4 @@
-//! Lifetimes small enough to be scored by hand; the numbers in the comments were.
-//!
-//! Not here: the published example, see `reference`.
+//! Lifetimes small enough to be scored by hand; the comments show the calculations.
 
 #![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
 
@@ -16,7 +14,7 @@ use BlockType::{Test, Train};
 /// A block of one task: its type, its task, and the performance of each experience.
 type Block<'a> = (BlockType, &'a str, &'a [f64]);
 
-/// Writes the blocks to disk and reads them back, so that every test here is one from file to result.
+/// Writes the blocks to disk and reads them back, so that every test here covers the path from file to result.
 fn log_of(blocks: &[Block<'_>]) -> Log {
     let awake: Vec<_> = blocks.iter().map(|block| (*block, Wake)).collect();
     log_with_sleep(&awake)
@@ -43,7 +41,7 @@ fn log_with_sleep(blocks: &[(Block<'_>, BlockSubtype)]) -> Log {
     read_log(&dir).unwrap()
 }
 
-/// Performances as logged: by hand, nobody normalises. No block here is long enough to be smoothed.
+/// Unnormalised performances, for scoring by hand. No block here is long enough to be smoothed.
 fn plain() -> Options {
     Options {
         normalization_method: NormalizationMethod::Off,
@@ -55,7 +53,7 @@ fn scored(blocks: &[Block<'_>], options: &Options) -> LifetimeMetrics {
     score(&log_of(blocks), &[], options).unwrap()
 }
 
-/// Two tasks in turn, each evaluated after every learning block.
+/// Two alternating tasks, each evaluated after every learning block.
 const ALTERNATING: [Block<'static>; 11] = [
     (Test, "a_1", &[2.0, 2.0]),   // regime 0
     (Test, "b_1", &[4.0]),        // 1
@@ -130,7 +128,7 @@ fn transfer_compares_evaluations_before_and_after_another_task_is_learned() {
 }
 
 #[test]
-fn recovery_and_averages_come_regime_by_regime() {
+fn recovery_and_averages_are_computed_regime_by_regime() {
     let metrics = scored(&ALTERNATING, &plain());
     let a = &metrics.task_metrics["a_1"];
     assert!(
@@ -148,7 +146,7 @@ fn recovery_and_averages_come_regime_by_regime() {
         (a.numbers("avg_train_perf_vals").unwrap(), a.number("avg_train_perf")),
         (&[5.0, 8.0][..], Some(6.5))
     );
-    // Regimes count once however long they are: 2, 10, 8, 11.
+    // Regimes have equal weight whatever their length: 2, 10, 8, 11.
     assert_eq!(a.number("avg_eval_perf"), Some(31.0 / 4.0));
     assert_eq!(
         (
@@ -174,7 +172,7 @@ fn recovery_and_averages_come_regime_by_regime() {
 }
 
 #[test]
-fn recovery_that_takes_longer_each_time_is_negative() {
+fn slowing_recovery_is_negative() {
     let blocks: [Block<'_>; 4] = [
         (Train, "a_1", &[5.0]),
         (Train, "a_1", &[5.0, 6.0]), // reaches 5 at index 0, ends at 6
@@ -188,7 +186,7 @@ fn recovery_that_takes_longer_each_time_is_negative() {
 }
 
 #[test]
-fn recovery_that_takes_as_long_each_time_is_nothing_without_a_sign() {
+fn constant_recovery_is_0_without_a_sign() {
     let again: Block<'_> = (Train, "a_1", &[5.0]);
     let metrics = scored(&[again, again, again], &plain());
     assert_eq!(
@@ -202,7 +200,7 @@ fn recovery_that_takes_as_long_each_time_is_nothing_without_a_sign() {
 }
 
 #[test]
-fn where_two_tasks_are_learned_in_one_gap_the_last_pair_gets_the_transfer() {
+fn last_pair_gets_the_transfer_of_a_shared_gap() {
     let blocks: [Block<'_>; 5] = [
         (Test, "c_1", &[2.0]),
         (Train, "b_1", &[1.0]),
@@ -226,7 +224,7 @@ fn where_two_tasks_are_learned_in_one_gap_the_last_pair_gets_the_transfer() {
 }
 
 #[test]
-fn a_ratio_over_nothing_is_no_transfer() {
+fn ratio_over_0_is_no_transfer() {
     let blocks: [Block<'_>; 3] = [(Test, "b_1", &[0.0]), (Train, "a_1", &[1.0]), (Test, "b_1", &[0.0])];
     let options = Options {
         transfer_method: TransferMethod::Both,
@@ -238,7 +236,7 @@ fn a_ratio_over_nothing_is_no_transfer() {
 }
 
 #[test]
-fn an_agent_that_sleeps_is_judged_by_its_evaluations_after_sleep() {
+fn sleeping_agent_is_judged_by_evaluations_after_sleep() {
     let blocks = [
         ((Train, "a_1", &[4.0][..]), Wake),
         ((Test, "a_1", &[4.0][..]), Wake),
@@ -257,7 +255,7 @@ fn an_agent_that_sleeps_is_judged_by_its_evaluations_after_sleep() {
 }
 
 #[test]
-fn a_constant_task_is_one_everywhere() {
+fn constant_task_is_1_everywhere() {
     let metrics = scored(
         &[(Train, "a_1", &[3.0, 3.0]), (Test, "a_1", &[3.0])],
         &Options::default(),
@@ -273,7 +271,7 @@ fn a_constant_task_is_one_everywhere() {
 }
 
 #[test]
-fn rows_without_a_number_are_dropped_before_regimes_are_formed() {
+fn rows_without_a_number_are_dropped_before_forming_regimes() {
     let blocks: [Block<'_>; 3] = [
         (Train, "a_1", &[f64::NAN, 1.0, f64::NAN, 3.0]),
         (Test, "b_1", &[f64::NAN]),
@@ -286,7 +284,7 @@ fn rows_without_a_number_are_dropped_before_regimes_are_formed() {
 }
 
 #[test]
-fn a_single_row_is_a_lifetime() {
+fn single_row_is_a_lifetime() {
     let metrics = scored(&[(Train, "a_1", &[7.0])], &Options::default());
     let regime = &metrics.regimes[0];
     assert_eq!(
@@ -302,7 +300,7 @@ fn a_single_row_is_a_lifetime() {
 }
 
 #[test]
-fn what_cannot_be_computed_is_null_and_nothing_is_nan() {
+fn uncomputable_values_are_null_and_never_nan() {
     let metrics = scored(&[(Train, "a_1", &[7.0])], &Options::default());
     let json = serde_json::to_string(&metrics).unwrap();
     assert!(!json.contains("NaN"), "{json}");
@@ -320,7 +318,7 @@ fn what_cannot_be_computed_is_null_and_nothing_is_nan() {
         .filter_map(|row| row.value.map(|_| row.name))
         .collect();
     assert_eq!(values, ["avg_train_perf"]);
-    // What was saved can be read back, but for the regimes, which have a file of their own.
+    // Saved results can be read back, except for the regimes, which have a separate file.
     let back: LifetimeMetrics = serde_json::from_str(&json).unwrap();
     assert_eq!((&back.lifetime, back.regimes.len()), (&metrics.lifetime, 0));
     let again = serde_json::to_value(&back).unwrap();
@@ -328,7 +326,7 @@ fn what_cannot_be_computed_is_null_and_nothing_is_nan() {
 }
 
 #[test]
-fn variants_are_one_task_where_they_do_not_count() {
+fn variants_are_one_task_if_they_do_not_count() {
     let blocks: [Block<'_>; 3] = [
         (Train, "Find_Red", &[1.0]),
         (Train, "find_blue", &[3.0]),
@@ -419,7 +417,7 @@ fn results_are_saved_under_the_references_names() {
 }
 
 #[test]
-fn ranges_that_are_given_replace_those_of_the_data() {
+fn given_ranges_replace_those_of_the_data() {
     let range = |min, max| DataRange { min, max };
     let score_with = |mode, ranges: &[(&str, DataRange)], clamp_outliers| {
         let data_range = Some(
@@ -444,7 +442,7 @@ fn ranges_that_are_given_replace_those_of_the_data() {
     let both = [("a_1", range(0.0, 10.0)), ("a_2", range(0.0, 10.0))];
     let maximum = |clamped| score_with(VariantMode::Aware, &both, clamped).unwrap().max;
     assert_eq!((maximum(false), maximum(true)), (121.0, 101.0));
-    // Where variants do not count, the ranges 0..=5 and 5..=20 are one: 12 of 0..=20 is 61.
+    // If variants do not count, the ranges 0..=5 and 5..=20 are one: 12 of 0..=20 is 61.
     let apart = [("a_1", range(0.0, 5.0)), ("a_2", range(5.0, 20.0))];
     assert_eq!(score_with(VariantMode::Agnostic, &apart, false).unwrap().max, 61.0);
     assert_eq!(
@@ -456,7 +454,7 @@ fn ranges_that_are_given_replace_those_of_the_data() {
 }
 
 #[test]
-fn a_run_is_scaled_as_a_whole_if_asked_to() {
+fn run_is_scaled_as_a_whole_on_request() {
     let blocks: [Block<'_>; 2] = [(Train, "a_1", &[0.0, 5.0]), (Test, "b_1", &[10.0])];
     let options = Options {
         normalization_method: NormalizationMethod::Run,

@@ -1,6 +1,4 @@
-//! A log may be torn at any byte: whatever a killed run leaves is taken up, and only the torn row is lost.
-//!
-//! Not here: logs that are wrong in other ways, see `broken_logs`.
+//! A log may be torn at any byte: every state that a killed run can leave is resumed, and only the torn row is lost.
 
 #![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
 
@@ -17,7 +15,7 @@ use crate::tier::quick_or_full;
 /// Bytes of every file by its path within the log.
 type Files = BTreeMap<PathBuf, Vec<u8>>;
 
-/// Records whose cells hold all that makes tables hard: line breaks, tabs and quotes within quotes, letters of several bytes.
+/// Records whose cells hold everything that makes tables hard: line breaks, tabs and quotes within quotes, multi-byte letters.
 fn records() -> Vec<Record> {
     let record = |index: u64, block_num: u64, exp_num: u64, worker: &str, task: &str| {
         let stamp = Timestamp::from_unix_micros(1_600_000_000_000_000 + index as i64).unwrap();
@@ -127,7 +125,7 @@ fn a_log_cut_at_any_byte_goes_on_as_if_it_never_had_been() {
 }
 
 #[test]
-fn what_is_torn_is_told_at_its_line_and_never_read_as_a_row() {
+fn torn_rows_are_located_and_never_read() {
     let records = records();
     let stages = stages(&records);
     for (done, pair) in stages.windows(2).enumerate().skip(1) {
@@ -155,7 +153,7 @@ fn what_is_torn_is_told_at_its_line_and_never_read_as_a_row() {
 }
 
 #[test]
-fn a_quote_that_swallowed_rows_is_no_torn_row_and_nothing_is_removed() {
+fn quote_that_swallowed_rows_is_no_torn_row_and_nothing_is_removed() {
     let mut records = records();
     for record in &mut records {
         record.task_name = "a_b".to_owned();
@@ -172,13 +170,13 @@ fn a_quote_that_swallowed_rows_is_no_torn_row_and_nothing_is_removed() {
     log.insert(path.to_owned(), text.replace("\\n\"\"", "n").into_bytes());
     let base = tempfile::tempdir().unwrap();
     lay_out(base.path(), &log);
-    // The quotes of the parameters close the cell again and again; what is left is no table, but all of it is left.
+    // The quotes of the parameters close the cell again and again; the rest is no table, but all of it is kept.
     LogWriter::resume(base.path()).unwrap_err();
     assert!(files(base.path()) == log);
 }
 
 #[test]
-fn info_files_cut_anywhere_are_told_and_rows_are_kept() {
+fn truncated_info_files_are_reported_and_rows_are_kept() {
     let log = stages(&records()).pop().unwrap();
     for name in ["logger_info.json", "scenario_info.json"] {
         for end in 0..log[Path::new(name)].len() - 1 {

@@ -1,6 +1,4 @@
-//! Every fault of a log at once, as `validate_log` lists them.
-//!
-//! Not here: the one fault at which reading stops, see `broken_logs`.
+//! All faults of a log at once, as listed by `validate_log`.
 
 #![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
 
@@ -20,7 +18,7 @@ fn row(block_num: u64, exp_num: u64, status: &str) -> String {
     format!("{block_num}\t{exp_num}\tw\ttrain\twake\ta_b\t{{}}\t{status}\t20200913T122640.{exp_num:06}\t1\n")
 }
 
-/// A log with these data files, of which each is given by the folder it lies in, and what was found.
+/// Validates a log with these data files, each given with its folder; returns the problems and warnings.
 fn validate(files: &[(&str, String)], version: &str) -> (Vec<String>, Vec<String>, Validation) {
     let base = tempfile::tempdir().unwrap();
     let dir = base.path();
@@ -34,7 +32,7 @@ fn validate(files: &[(&str, String)], version: &str) -> (Vec<String>, Vec<String
     }
     let found = validate_log(dir);
     let plain = |text: String| text.replace(&dir.display().to_string(), "LOG").replace('\\', "/");
-    // Reading refuses, or warns of, what validating lists, in the same words.
+    // Reading refuses, or warns of, the faults that validation lists, with the same text.
     let said = |problem: &MetricsError| problem.to_string();
     match read_log(dir) {
         Ok(log) => {
@@ -68,7 +66,7 @@ fn validate(files: &[(&str, String)], version: &str) -> (Vec<String>, Vec<String
     (problems.collect(), warnings.collect(), found)
 }
 
-/// Checks problems and warnings of a log of one file.
+/// Checks the problems and warnings of a log of one file.
 fn check(text: String, problems: &[&str], warnings: &[&str]) {
     let (found_problems, found_warnings, _) = validate(&[("w/0-train", text)], "1.1");
     assert_eq!(found_problems, problems);
@@ -76,7 +74,7 @@ fn check(text: String, problems: &[&str], warnings: &[&str]) {
 }
 
 #[test]
-fn what_the_writer_writes_is_valid() {
+fn written_logs_are_valid() {
     let base = tempfile::tempdir().unwrap();
     let info = LoggerInfo::new(["reward"]).unwrap();
     let mut writer = LogWriter::create(base.path(), &info, &ScenarioInfo::default()).unwrap();
@@ -107,7 +105,7 @@ fn what_the_writer_writes_is_valid() {
 }
 
 #[test]
-fn every_fault_of_every_row_is_listed_and_the_other_rows_are_read() {
+fn every_fault_is_listed_and_other_rows_are_read() {
     let text = [
         HEADER,
         &row(0, 0, "complete")
@@ -135,7 +133,7 @@ fn every_fault_of_every_row_is_listed_and_the_other_rows_are_read() {
 }
 
 #[test]
-fn every_column_that_is_missing_is_named() {
+fn every_missing_column_is_named() {
     let header = HEADER.replace("exp_num\t", "").replace("\treward", "\tscore");
     let named = |column: &str| {
         format!(
@@ -146,9 +144,9 @@ fn every_column_that_is_missing_is_named() {
     check(header.clone(), &[&named("exp_num"), &named("reward")], &[]);
 }
 
-/// Whatever stands in the first line: what is said of it is short, and it is said once.
+/// Whatever the first line holds, the message is short and appears once.
 #[test]
-fn a_row_in_place_of_the_header_is_told_in_few_words() {
+fn row_instead_of_the_header_is_reported_briefly() {
     for width in [2, 10, 900] {
         for cell in ["7".to_owned(), "{\"a\": [1, 2]}".repeat(500), "ä".repeat(7000)] {
             let row = vec![cell; width].join("\t") + "\n";
@@ -175,7 +173,7 @@ fn a_row_in_place_of_the_header_is_told_in_few_words() {
 }
 
 #[test]
-fn numbers_that_fall_are_faults_and_time_that_does_is_odd() {
+fn falling_numbers_are_faults_and_falling_time_is_a_warning() {
     let early = row(0, 3, "complete").replace("20200913", "20200912");
     let earlier = row(0, 4, "complete").replace("20200913", "20200911");
     check(
@@ -201,7 +199,7 @@ fn numbers_that_fall_are_faults_and_time_that_does_is_odd() {
 }
 
 #[test]
-fn an_experience_has_one_complete_row_and_it_is_the_last() {
+fn experience_has_one_complete_row_and_it_is_the_last() {
     check(
         [
             HEADER,
@@ -232,7 +230,7 @@ fn an_experience_has_one_complete_row_and_it_is_the_last() {
 }
 
 #[test]
-fn files_have_the_same_columns_and_those_of_their_version() {
+fn files_share_the_columns_of_their_version() {
     let other = HEADER.replace("\treward", "\treward\tsteps") + &row(1, 1, "complete").replace("\t1\n", "\t1\t2\n");
     let first = [HEADER, &row(0, 0, "complete")].concat();
     let (problems, warnings, _) = validate(&[("w/0-train", first), ("w/1-train", other)], "1.0");
@@ -260,7 +258,7 @@ fn files_have_the_same_columns_and_those_of_their_version() {
 }
 
 #[test]
-fn odd_names_and_metrics_without_numbers_are_told() {
+fn unconventional_names_and_metrics_without_numbers_are_warned_about() {
     check(
         [
             HEADER,
@@ -285,7 +283,7 @@ fn problems_beyond_the_limit_are_counted() {
 }
 
 #[test]
-fn a_directory_that_is_no_log_has_one_problem() {
+fn directory_without_a_log_has_one_problem() {
     let check = |dir: &Path, code: &str| {
         let codes: Vec<&str> = validate_log(dir)
             .problems
@@ -306,7 +304,7 @@ fn a_directory_that_is_no_log_has_one_problem() {
 }
 
 #[test]
-fn a_quote_that_is_never_closed_is_told_from_a_torn_row() {
+fn unclosed_quote_is_no_torn_row() {
     let open = row(0, 0, "complete").replace("a_b", "\"a_b");
     check(
         [HEADER, &open, &row(0, 1, "complete"), &row(0, 2, "complete")].concat(),
@@ -330,7 +328,7 @@ fn a_quote_that_is_never_closed_is_told_from_a_torn_row() {
 }
 
 #[test]
-fn columns_that_nobody_declared_may_be_empty() {
+fn undeclared_columns_may_be_empty() {
     let header = HEADER.replace("reward\n", "reward\tnote\n");
     check(
         [header, row(0, 0, "complete").replace("\t1\n", "\t1\t\n")].concat(),
@@ -340,7 +338,7 @@ fn columns_that_nobody_declared_may_be_empty() {
 }
 
 #[test]
-fn rows_in_the_folder_of_another_worker_or_block_are_odd() {
+fn rows_in_another_workers_or_blocks_folder_are_warned_about() {
     let text = |rows: &[String]| [HEADER, &rows.concat()].concat();
     let other_worker = row(1, 3, "complete").replace("\tw\t", "\tv\t");
     let files = [
@@ -360,7 +358,7 @@ fn rows_in_the_folder_of_another_worker_or_block_are_odd() {
 }
 
 #[test]
-fn numbers_without_a_row_are_warned_about_once() {
+fn gaps_in_numbers_are_warned_about_once() {
     let all: Vec<String> = (3..20).map(|exp_num| row(0, exp_num, "complete")).collect();
     check([HEADER, &all.concat()].concat(), &[], &[]);
     let kept: Vec<&str> = (0..17)

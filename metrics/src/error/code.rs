@@ -1,9 +1,9 @@
-//! What programs ask of an error: its stable code, and the line that it is about. What it says is in `mod.rs`.
+//! The stable code of an error for programs, and the line of the file that it is about.
 
 use super::MetricsError;
 
 impl MetricsError {
-    /// The line of the file that is meant, from 1; `None` where the error is of no line.
+    /// The line of the file, from 1; `None` if the error is about no line.
     pub fn line(&self) -> Option<u64> {
         match self {
             Self::Json { line, .. } => Some(*line as u64),

@@ -1,7 +1,6 @@
-//! The one error type of this crate: what can be wrong with a log, a record or the options.
-//! Over 400 lines, for it is one enum: a message and its fields for each mistake.
+//! The error type of this crate: everything that can be wrong with a log, a record or the options.
 //!
-//! Not here: warnings about logs that can still be read, see `LogWarning`.
+//! Over 400 lines, because it is one enum: a message and its fields for each mistake.
 
 mod code;
 
@@ -16,7 +15,7 @@ use driftworld_text::{ShownPath, counted, one_line};
 pub struct LogLine {
     /// The file.
     pub path: PathBuf,
-    /// From 1; 0 where it is not known.
+    /// From 1; 0 if unknown.
     pub line: u64,
 }
 
@@ -28,23 +27,23 @@ impl fmt::Display for LogLine {
 
 /// Everything that can stop a log from being written or read, or metrics from being computed.
 ///
-/// Every message reads: where, what was found, what was expected, and what to do where that is not plain.
+/// Every message says where, what was found, what was expected, and what to do unless that is obvious.
 #[derive(Debug, thiserror::Error, strum::IntoStaticStr, strum::VariantNames)]
 #[strum(prefix = "metrics/", serialize_all = "kebab-case")]
 #[non_exhaustive]
 pub enum MetricsError {
-    /// The file system refused.
+    /// The file system failed.
     #[error("{}: cannot {doing}: {source}", path.shown(), source = one_line(source))]
     Io {
-        /// File or directory it happened at.
+        /// File or directory concerned.
         path: PathBuf,
-        /// What was being done, as in "cannot …".
+        /// The operation, as in "cannot …".
         doing: &'static str,
-        /// What the operating system said.
+        /// The operating system's error.
         source: io::Error,
     },
 
-    /// A new log was to be created where files are already.
+    /// A new log was to be created in a directory that is not empty.
     #[error(
         "{}: found a directory that is not empty, expected a new or an empty one; choose another name, or continue \
          its log with LogWriter::resume",
@@ -52,7 +51,7 @@ pub enum MetricsError {
     )]
     LogExists(PathBuf),
 
-    /// Another writer is at work on the log.
+    /// Another writer is using the log.
     #[error(
         "{}: found a log that another run is writing, expected one not in use; wait for that run, or choose another \
          name",
@@ -60,7 +59,7 @@ pub enum MetricsError {
     )]
     InUse(PathBuf),
 
-    /// The directory of a log went away while it was written.
+    /// The directory of a log disappeared while it was written.
     #[error(
         "{}: found {found}, expected the directory of this log: it was removed, renamed or replaced during the run, \
          and with it {} in {bytes} bytes; put it back and continue the log, or start a new \
@@ -77,7 +76,7 @@ pub enum MetricsError {
         bytes: u64,
     },
 
-    /// A data file of a log was cut, removed or replaced while the log was written.
+    /// A data file of a log was truncated, removed or replaced while the log was written.
     #[error(
         "{}: found {found}, expected the {} in {bytes} bytes that were written: it was truncated, removed or replaced \
          during the run; put it back and continue the log, or start a new one; a log that lacks only its last rows \
@@ -87,15 +86,15 @@ pub enum MetricsError {
     FileLost {
         /// The data file.
         path: PathBuf,
-        /// "no file", "another file", "a directory", or the rows and bytes that are there.
+        /// "no file", "another file", "a directory", or the rows and bytes found.
         found: String,
         /// Rows that were written.
         rows: u64,
-        /// Bytes that were written, the header's among them.
+        /// Bytes that were written, including the header.
         bytes: u64,
     },
 
-    /// An info file of a log was written over while the log was written.
+    /// An info file of a log was overwritten while the log was written.
     #[error(
         "{}: found {found} bytes, expected the {expected} bytes that this log was started with; put the file back: \
          without it, the rows cannot be read",
@@ -104,19 +103,19 @@ pub enum MetricsError {
     InfoFileChanged {
         /// The info file.
         path: PathBuf,
-        /// Bytes that are there.
+        /// Bytes found.
         found: u64,
         /// Bytes that were written.
         expected: u64,
     },
 
-    /// There is no such log directory.
+    /// The log directory does not exist.
     #[error(
         "{}: found {found}, expected the directory of a log, which holds logger_info.json",
         path.shown()
     )]
     NotADirectory {
-        /// The path that was given.
+        /// The given path.
         path: PathBuf,
         /// "nothing" or "a file".
         found: &'static str,
@@ -130,16 +129,16 @@ pub enum MetricsError {
     )]
     NoDataFiles(PathBuf),
 
-    /// A side file of the log is not there.
+    /// A side file of the log is missing.
     #[error("{}: found no such file, expected {expected}", path.shown())]
     MissingFile {
         /// The file.
         path: PathBuf,
-        /// What it should hold.
+        /// Its expected contents.
         expected: &'static str,
     },
 
-    /// A file of the log is something else.
+    /// A path of the log is not a regular file.
     #[error(
         "{}: found {found}, expected a file; put the file in its place, or remove it",
         path.shown()
@@ -160,7 +159,7 @@ pub enum MetricsError {
         line: usize,
         /// Column, from 1.
         column: usize,
-        /// What is wrong.
+        /// The fault.
         wrong: String,
     },
 
@@ -180,11 +179,11 @@ pub enum MetricsError {
     TooLarge {
         /// The file or directory.
         path: PathBuf,
-        /// What was counted.
+        /// The thing counted.
         what: &'static str,
-        /// How many there are.
+        /// The number found.
         found: u64,
-        /// How many there may be.
+        /// The largest allowed.
         limit: u64,
     },
 
@@ -195,7 +194,7 @@ pub enum MetricsError {
     )]
     EmptyFile(PathBuf),
 
-    /// A data file begins with a row in place of its header.
+    /// A data file starts with a row instead of its header.
     #[error(
         "{}:1: found {found:?}, which has none of the standard columns, expected a header line that begins with \
          block_num",
@@ -208,7 +207,7 @@ pub enum MetricsError {
         found: String,
     },
 
-    /// A data file's header is one cell, as where something else than tabs stands between columns.
+    /// A data file's header is a single cell: its columns are not separated by tabs.
     #[error("{}:1: found the header {found} without a tab, expected a tab between \
          columns", path.shown(), found = one_line(found))]
     NoTabs {
@@ -223,13 +222,13 @@ pub enum MetricsError {
     MissingColumn {
         /// The data file.
         path: PathBuf,
-        /// The column that is not there.
+        /// The missing column.
         column: String,
-        /// Those that are, comma separated.
+        /// The columns found, comma separated.
         found: String,
     },
 
-    /// A data file names a column twice.
+    /// A data file has two columns of one name.
     #[error("{}:1: found the column {column} twice, expected every column \
          once", path.shown(), column = one_line(column))]
     RepeatedColumn {
@@ -239,7 +238,7 @@ pub enum MetricsError {
         column: String,
     },
 
-    /// A log that is to be continued has a data file with other columns than its next record would be written under.
+    /// A data file of a log that is to be resumed has other columns than the next record.
     #[error(
         "{}:1: found the columns {found}, expected {expected} to continue this log; \
          only logs of format 1.1 written by one writer can be continued; start a new one", path.shown(),
@@ -251,7 +250,7 @@ pub enum MetricsError {
         path: PathBuf,
         /// Its columns, comma separated.
         found: String,
-        /// What they should be, comma separated.
+        /// The expected columns, comma separated.
         expected: String,
     },
 
@@ -266,7 +265,7 @@ pub enum MetricsError {
         expected: usize,
     },
 
-    /// A cell does not hold what its column asks for.
+    /// A cell does not fit its column.
     #[error("{at}, column {column}: found {found}, expected \
          {expected}", column = one_line(column), found = one_line(found), expected = one_line(expected))]
     Cell {
@@ -274,9 +273,9 @@ pub enum MetricsError {
         at: LogLine,
         /// Name of the column.
         column: String,
-        /// What stands there, cut after 60 characters.
+        /// The cell's text, cut after 60 characters.
         found: String,
-        /// What should.
+        /// The expected contents.
         expected: String,
     },
 
@@ -288,13 +287,13 @@ pub enum MetricsError {
     )]
     TornLastLine(LogLine),
 
-    /// Lines of a data file end with a carriage return alone.
+    /// Lines of a data file end with a carriage return only.
     #[error(
         "{0}: found lines that end in a lone carriage return, expected LF or CRLF; save the file with such line ends"
     )]
     CarriageReturns(LogLine),
 
-    /// A quote was opened in a data file and never closed, so that it swallows the rows after it.
+    /// A quote in a data file is never closed, so it swallows the rows after it.
     #[error(
         "{0}: found a quote that opens a cell and is never closed, expected another at the end of the cell; the \
          rows after it were read as part of the cell"
@@ -328,9 +327,9 @@ pub enum MetricsError {
         at: LogLine,
         /// `block_num` or `exp_num`.
         column: &'static str,
-        /// The number there.
+        /// The number found.
         found: u64,
-        /// The number above.
+        /// The number in the row above.
         expected: u64,
     },
 
@@ -351,7 +350,7 @@ pub enum MetricsError {
         first: PathBuf,
     },
 
-    /// An experience has no complete row, though its worker went on to the next.
+    /// An experience has no complete row, although its worker continued with the next.
     #[error(
         "{at}: found experience {exp_num} of {worker} without a complete row, expected exactly one: \
          it is not scored",
@@ -366,7 +365,7 @@ pub enum MetricsError {
         worker: String,
     },
 
-    /// An experience goes on after its complete row.
+    /// An experience continues after its complete row.
     #[error(
         "{at}: found another row of experience {exp_num} of {worker} after its complete one, expected the \
          complete row to be the last: give the next experience a new number",
@@ -381,7 +380,7 @@ pub enum MetricsError {
         worker: String,
     },
 
-    /// A record that was to be written breaks a rule of the format.
+    /// A record to be written breaks a rule of the format.
     #[error("record of experience {exp_num}, {field}: found {found}, expected \
          {expected}", field = one_line(field), found = one_line(found), expected = one_line(expected))]
     Record {
@@ -402,18 +401,18 @@ pub enum MetricsError {
     )]
     Timestamp(String),
 
-    /// A word is not one of those that are understood.
+    /// An unknown word.
     #[error("{what}: found {found:?}, expected one of {expected}", expected = one_line(expected))]
     UnknownWord {
-        /// What the word chooses.
+        /// The kind of thing that the word chooses.
         what: &'static str,
         /// The word.
         found: String,
-        /// The words understood, comma separated.
+        /// The accepted words, comma separated.
         expected: String,
     },
 
-    /// A log has a column under a name that the table of several logs gives to one of its own.
+    /// A log has a column whose name is reserved in the table of several logs.
     #[error(
         "log {run_id}: found a column {column} of its own, expected another name: a table of logs has a column of \
          that name; \
@@ -428,7 +427,7 @@ pub enum MetricsError {
         column: String,
     },
 
-    /// The performance column is not in the log.
+    /// The log has no such performance column.
     #[error("log {run_id}: found no metrics column {column:?}, expected one of \
          {available}", run_id = one_line(run_id), available = one_line(available))]
     UnknownColumn {
@@ -436,11 +435,11 @@ pub enum MetricsError {
         run_id: String,
         /// The column asked for.
         column: String,
-        /// Those the log declares, comma separated.
+        /// The log's declared columns, comma separated.
         available: String,
     },
 
-    /// After incomplete rows and rows without a number are dropped, none is left.
+    /// No row remains after dropping incomplete rows and rows without a number.
     #[error("log {run_id}: found no complete row with a number in column {column:?}, expected at least \
          one", run_id = one_line(run_id))]
     NoUsableRows {
@@ -461,20 +460,20 @@ pub enum MetricsError {
         found: String,
     },
 
-    /// A data folder for single-task experts is not there, or is something else.
+    /// A data folder for single-task experts is missing, or is not a folder of experts.
     #[error(
         "{}: found {found}, expected a folder of single-task experts as TASK/RUN/logger_info.json; \
          store an expert's log there first",
         path.shown()
     )]
     NoSteData {
-        /// The path that was given.
+        /// The given path.
         path: PathBuf,
         /// "nothing", "a file" or "a log".
         found: &'static str,
     },
 
-    /// A data folder holds experts in a form that is never read.
+    /// A data folder holds experts in a format that is never read.
     #[error(
         "{}: found a pickle of l2metrics, expected folders of logs: reading a pickle can run code; store the original \
          logs instead, and remove the pickle from this folder",
@@ -482,7 +481,7 @@ pub enum MetricsError {
     )]
     StePickle(PathBuf),
 
-    /// More regimes than a lifetime may have.
+    /// Too many regimes in one lifetime.
     #[error("log {run_id}: found more than {limit} regimes, expected at most that; do tasks alternate row by \
          row?", run_id = one_line(run_id))]
     TooManyRegimes {
@@ -492,7 +491,7 @@ pub enum MetricsError {
         limit: usize,
     },
 
-    /// Performances so large that sums of them would overflow.
+    /// Performances too large: sums of them would overflow.
     #[error(
         "log {run_id}, task {task}: found a performance of {found:e} {after}, expected less than 1e100 in magnitude",
         run_id = one_line(run_id),
@@ -509,42 +508,42 @@ pub enum MetricsError {
         after: &'static str,
     },
 
-    /// A metric of a user's own could not be computed.
+    /// A user-defined metric failed.
     #[error("metric {metric}, log {run_id}: {source}", metric = one_line(metric), run_id = one_line(run_id), source = one_line(source))]
     Metric {
         /// Name of the metric.
         metric: String,
         /// Name of the log.
         run_id: String,
-        /// What it said.
+        /// Its error.
         source: Box<dyn std::error::Error + Send + Sync>,
     },
 
-    /// Scores of repeated runs, or what is asked of them, make no sense.
+    /// Scores of repeated runs, or a request about them, are invalid.
     #[error("scores, {place}: found {found}, expected {expected}", place = one_line(place), found = one_line(found), expected = one_line(expected))]
     Scores {
-        /// Where: a run, a stratum of a run, the table as a whole.
+        /// The place: a run, a stratum of a run, or the table as a whole.
         place: String,
-        /// What was found there.
+        /// The value found.
         found: String,
-        /// What is allowed.
+        /// The allowed values.
         expected: String,
     },
 
-    /// An option has a value that cannot be used.
+    /// An option has an invalid value.
     #[error("option {option}: found {found}, expected {expected}", found = one_line(found), expected = one_line(expected))]
     BadOption {
         /// The option.
         option: &'static str,
         /// Its value.
         found: String,
-        /// What is allowed.
+        /// The allowed values.
         expected: String,
     },
 }
 
 impl MetricsError {
-    /// Wraps what the operating system said with the place and the deed.
+    /// Adds the path and the operation to an operating system's error.
     pub(crate) fn io(path: impl Into<PathBuf>, doing: &'static str) -> impl FnOnce(io::Error) -> Self {
         let path = path.into();
         move |source| Self::Io { path, doing, source }

@@ -1,6 +1,4 @@
-//! What an agent learned a task from: how many experiences, before deployment too, and in which worlds.
-//!
-//! Not here: how a lifetime's and its expert's are compared, see `results::expert_fit`.
+//! The training budget of a task: the number of experiences, including those before deployment, and their worlds.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,19 +8,19 @@ use super::{Lifetime, Regime};
 use crate::log::{ExpStatus, Log};
 use crate::{BlockType, Options};
 
-/// What a task was learned from.
+/// The training budget of a task.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Budget {
     /// Learning experiences that count.
     pub(crate) learned: usize,
     /// Learning experiences before deployment.
     pub(crate) before: usize,
-    /// The worlds of the learning that counts, by seed and index; `None` where the log does not say one of them.
+    /// The worlds of the learning that counts, by seed and index; `None` if any is not logged.
     pub(crate) worlds: Option<BTreeSet<(String, u64)>>,
 }
 
 impl Budget {
-    /// Of some rows of a log.
+    /// The budget of some rows of a log.
     fn of(log: &Log, deployed: &[usize], before: usize) -> Self {
         let params = log.rows.task_params();
         let index = log.rows.metric(INDEX);
@@ -37,7 +35,7 @@ impl Budget {
         }
     }
 
-    /// Of all that an expert learned.
+    /// The budget of everything that an expert learned.
     pub(crate) fn of_expert(log: &Log) -> Self {
         let learned = complete_learning(log);
         let (deployed, before): (Vec<usize>, Vec<usize>) =
@@ -52,8 +50,8 @@ fn complete_learning(log: &Log) -> impl Iterator<Item = usize> {
         .filter(|row| rows.exp_statuses()[*row] == ExpStatus::Complete && rows.block_types()[*row] == BlockType::Train)
 }
 
-/// What each task of a lifetime, which was prepared from this log under these options, was learned from; rows of a drift count for
-/// the nearer end.
+/// The training budget of each task of a lifetime; `lifetime` must have been prepared from this log with these options. Rows of
+/// a drift count for the nearer end.
 pub(crate) fn budgets(log: &Log, lifetime: &Lifetime, options: &Options) -> BTreeMap<String, Budget> {
     let mut learned: BTreeMap<&str, (Vec<usize>, usize)> = BTreeMap::new();
     let regimes = lifetime.regimes().iter();
@@ -74,7 +72,7 @@ pub(crate) fn budgets(log: &Log, lifetime: &Lifetime, options: &Options) -> BTre
     learned.into_iter().map(budget).collect()
 }
 
-/// The task that is learned in a row of a regime: in a drift the nearer one.
+/// The task that is learned in a row of a regime: in a drift the nearer end.
 pub(crate) fn present(regime: &Regime, row: usize) -> &str {
     regime
         .drift

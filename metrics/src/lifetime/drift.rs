@@ -1,6 +1,4 @@
-//! Drifts: regimes in which the variant changes bit by bit, and the tasks that they pass.
-//!
-//! Not here: what is made of it, see `score::transfer` and `score::performance_maintenance`.
+//! Drifts: regimes in which the variant changes gradually, and the tasks that they pass.
 
 use indexmap::IndexSet;
 
@@ -8,35 +6,35 @@ use super::Regime;
 use crate::log::{Rows, TaskParams};
 use crate::{BlockType, Options};
 
-/// Parameters of a task with the variants that a drift begins and ends with.
+/// Task parameters with the variants at the start and end of a drift.
 const ENDS: [&str; 2] = ["variant", "to"];
 
-/// Column with how far a drift has come, 0..=1.
+/// Column with the progress of a drift, 0..=1.
 const PROGRESS: &str = "progress";
 
-/// The ends of a drift, and which of them each row is nearer to.
+/// The two ends of a drift, and the nearer one for each row.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Drift {
-    /// The task that it begins with, under the name that it is scored by.
+    /// Its first task, under the name used for scoring.
     pub from: String,
-    /// The task that it leads to, under the name that it is scored by.
+    /// Its last task, under the name used for scoring.
     pub to: String,
-    /// For each row whether the second end is nearer: the column `progress` is at least 0.5, or without such a column
-    /// the row lies in the second half of the regime.
+    /// For each row whether the second end is nearer: the column `progress` is at least 0.5, or, without such a column, the row
+    /// is in the second half of the regime.
     pub is_nearer_to: Vec<bool>,
 }
 
 impl Drift {
-    /// Of a stretch of rows of one task. A drift says its ends in the parameters `variant` and `to`, and is called
-    /// `TASK_VARIANTtoOTHER` for them, or `TASK_VARIANTtoTASKOTHER` between tasks; anything else is none. Nor is one whose ends
-    /// are scored as one task.
+    /// Detects a drift in a stretch of rows of one task. A drift gives its ends in the parameters `variant` and `to`, and its
+    /// task is called `TASK_VARIANTtoOTHER`, or `TASK_VARIANTtoTASKOTHER` between tasks. `None` for anything else, and if both
+    /// ends are scored as one task.
     pub(super) fn of(rows: &Rows, stretch: &[usize], params: &TaskParams, options: &Options) -> Option<Self> {
         let first = *stretch.first()?;
         let name = rows.task_names().of(first).to_lowercase();
         let (head, tail) = name.split_once('_')?;
         let [from, to] = ENDS.map(|key| params.get(key).and_then(|word| word.as_str()));
         let (from, to) = (from?, to?);
-        // An end of another task is said as `task#variant`.
+        // An end of another task is written as `task#variant`.
         let logged = |end: &str| match end.split_once('#') {
             Some((task, variant)) => format!("{}_{}", logged_word(task), logged_word(variant)),
             None => format!("{head}_{}", logged_word(end)),
@@ -63,7 +61,7 @@ impl Drift {
         if self.is_nearer_to[row] { &self.to } else { &self.from }
     }
 
-    /// Whether it comes near its first end, near its second, and is nearer to the second when it ends.
+    /// Whether it comes near its first end, near its second, and ends nearer to the second.
     fn passes(&self) -> [bool; 3] {
         [
             self.is_nearer_to.contains(&false),
@@ -73,7 +71,7 @@ impl Drift {
     }
 }
 
-/// The letters and digits of the name of a task or variant, lower-case, as logs have them; `x` where there are none.
+/// The letters and digits of a task's or variant's name, in lower case, as in logs; `x` if there are none.
 pub fn logged_word(name: &str) -> String {
     let plain: String = name.chars().filter(char::is_ascii_alphanumeric).collect();
     if plain.is_empty() {
@@ -83,9 +81,9 @@ pub fn logged_word(name: &str) -> String {
     }
 }
 
-/// Says of each regime of learning which tasks it counts as learning of: its own; a drift, those of its ends that it
-/// comes near to and that the lifetime has otherwise. Where it goes from one that was learned before to another, it is
-/// learning of the other alone: what becomes of the first is what learning the other does to it.
+/// Sets the tasks that each learning regime counts for: its own; for a drift, those of its ends that it comes near to and that
+/// the lifetime has otherwise. A drift from an already learned task to another counts only as learning of the other: its effect
+/// on the first is what learning the other does.
 pub(super) fn set_learned(regimes: &mut [Regime], tasks: &[String]) {
     let tasks: IndexSet<&str> = tasks.iter().map(String::as_str).collect();
     let mut known: IndexSet<String> = IndexSet::new();

@@ -1,6 +1,4 @@
-//! A lifetime as the metrics see it: its tasks, its regimes in order, and the single-task experts it is compared with.
-//!
-//! Not here: reading files (`log`), changing the numbers (`preprocess`), and judging them (`score`).
+//! A lifetime prepared for the metrics: its tasks, its regimes in order, and its single-task experts.
 
 mod budget;
 mod drift;
@@ -56,7 +54,7 @@ impl Lifetime {
         self.regimes.iter().filter(move |regime| regime.task_name == task)
     }
 
-    /// The regimes in which a task is evaluated or learned, in order; also drifts that count as learning of it.
+    /// The regimes in which a task is evaluated or learned, in order, including drifts that count as learning of it.
     pub(crate) fn regimes_about(&self, task: &str) -> impl Iterator<Item = &Regime> {
         self.regimes.iter().filter(move |regime| match regime.block_type {
             BlockType::Test => regime.task_name == task,
@@ -69,12 +67,12 @@ impl Lifetime {
         self.experts.get(task).map_or(&[], Vec::as_slice)
     }
 
-    /// The learning of a task's single-task expert after preprocessing, a list per run, in the order of the runs given.
+    /// The preprocessed learning curves of a task's single-task expert, one per run, in the order of the runs given.
     pub fn expert_curves(&self, task: &str) -> impl Iterator<Item = Vec<f64>> {
         self.experts_of(task).iter().map(SteRun::training_performance)
     }
 
-    /// Range per task that was scaled to 1..=101; `None` where nothing was normalised.
+    /// The range per task that was scaled to 1..=101; `None` without normalisation.
     pub fn normalization_data_range(&self) -> Option<&IndexMap<String, DataRange>> {
         self.normalization_data_range.as_ref()
     }
@@ -84,13 +82,13 @@ impl Lifetime {
         self.runtime_secs
     }
 
-    /// Whether a regime counts for maintenance, transfer and average performance: all do, but where the lifetime has
-    /// sleep blocks the wake evaluations are left out, since the agent is judged by what it keeps after sleeping.
+    /// Whether a regime counts for maintenance, transfer and average performance. In lifetimes with sleep blocks the wake
+    /// evaluations do not, because the agent is judged by what it keeps after sleeping.
     pub(crate) fn is_assessed(&self, regime: &Regime) -> bool {
         !(self.sleeps && regime.block_type == BlockType::Test && regime.block_subtype == BlockSubtype::Wake)
     }
 
-    /// Performances and exp numbers of the task's wake learning regimes, end to end.
+    /// Experience numbers and performances of the task's wake learning regimes, concatenated.
     pub(crate) fn training_of(&self, task: &str) -> (Vec<u64>, Vec<f64>) {
         let trained = || self.regimes_of(task).filter(|regime| regime.is_wake_training());
         (
@@ -101,12 +99,12 @@ impl Lifetime {
         )
     }
 
-    /// The lifetime's own regimes.
+    /// The lifetime's own regimes, without the experts'.
     pub(crate) fn own_regimes_mut(&mut self) -> &mut [Regime] {
         &mut self.regimes
     }
 
-    /// All regimes that hold performances: the lifetime's, then the experts'.
+    /// All regimes with performances: the lifetime's, then the experts'.
     pub(crate) fn all_regimes_mut(&mut self) -> impl Iterator<Item = &mut Regime> {
         let experts = self.experts.values_mut().flatten().flat_map(|run| &mut run.regimes);
         self.regimes.iter_mut().chain(experts)

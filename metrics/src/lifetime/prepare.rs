@@ -1,6 +1,4 @@
-//! From a log to a lifetime: its rows as regimes, preprocessed.
-//!
-//! Not here: each step of preprocessing, see `preprocess`.
+//! Prepares a lifetime from a log: forms regimes from its rows and preprocesses them.
 
 use indexmap::IndexSet;
 
@@ -12,9 +10,9 @@ use crate::preprocess;
 use crate::{BlockSubtype, MetricsError, Options};
 
 impl Lifetime {
-    /// Takes the complete rows that have a number in the performance column, forms regimes, and preprocesses them:
-    /// smoothing, clamping, normalisation, in that order. [`experts_serving`](crate::experts_serving) says which experts a
-    /// task is compared with; others are left aside. Several logs of one task are several runs of its expert.
+    /// Takes the complete rows that have a number in the performance column, forms regimes, and preprocesses them: smoothing,
+    /// clamping, normalisation, in that order. [`experts_serving`](crate::experts_serving) decides which experts a task is
+    /// compared with; others are ignored. Several logs of one task are several runs of its expert.
     ///
     /// # Errors
     /// [`MetricsError::UnknownColumn`], [`MetricsError::NoUsableRows`], [`MetricsError::TooManyRegimes`],

@@ -1,6 +1,4 @@
-//! Regimes: the stretches of a lifetime in which one task is trained or evaluated without a break.
-//!
-//! Not here: what is computed of a regime, see `score`.
+//! Regimes: the uninterrupted stretches of a lifetime in which one task is trained or evaluated.
 
 use std::collections::BTreeMap;
 
@@ -11,16 +9,16 @@ use super::usable::Usable;
 use crate::log::TaskParams;
 use crate::{BlockSubtype, BlockType, Definitions, MetricsError, Options};
 
-/// Most regimes a lifetime may have; the Theil–Sen slope looks at every pair of a task's.
+/// Most regimes in a lifetime; the Theil–Sen slope compares every pair of a task's.
 pub const MAX_REGIMES: usize = 10_000;
 
 /// A maximal run of rows with the same block number, block type, subtype and task.
 ///
-/// QUIRK: task parameters do not split regimes. A block that changes only a task's parameters is one regime, and
-/// stands in tables with the parameters of its first row. Under the published definitions they do split.
+/// QUIRK: task parameters do not split regimes. A block that changes only a task's parameters is one regime, and is listed in
+/// tables with the parameters of its first row. Under the published definitions they do split.
 ///
-/// Rows whose parameters say `"mix": "shuffled"` are of a block in which tasks are learned among each other: the rows of one task
-/// are one regime there, which the reference counts as many.
+/// Rows with the parameter `"mix": "shuffled"` belong to a block in which tasks are interleaved: the rows of one task form one
+/// regime there, while the reference counts many.
 #[derive(Debug, Clone, PartialEq)]
 #[expect(
     clippy::struct_field_names,
@@ -35,21 +33,21 @@ pub struct Regime {
     pub block_type: BlockType,
     /// Awake or asleep.
     pub block_subtype: BlockSubtype,
-    /// The task, lower-case; without its variant where variants do not count.
+    /// The task, lower-case; without its variant if variants do not count.
     pub task_name: String,
     /// Parameters of its first row.
     pub task_params: TaskParams,
-    /// Its ends, where the variant changes bit by bit.
+    /// Its ends, if the variant changes gradually.
     pub drift: Option<Drift>,
-    /// The tasks that it counts as learning of, for maintenance and transfer: its own, or in a drift those that it
-    /// passes. Empty for an evaluation.
+    /// The tasks that it counts as learning of, for maintenance and transfer: its own, or in a drift those that it passes.
+    /// Empty for an evaluation.
     pub learns: Vec<String>,
     /// Its rows in the log that it was formed from; those of a shuffled block need not ascend.
     pub(crate) rows: Vec<usize>,
     /// Experience number of each row, ascending.
     pub exp_nums: Vec<u64>,
-    /// Steps of the environment up to the end of each row, over all rows of the lifetime that count; `None` where the log has no
-    /// column `episode_step_count`, or one that is not a number of 0 or more in each of them.
+    /// Environment steps up to the end of each row, over all rows of the lifetime that count; `None` unless the log has a
+    /// column `episode_step_count` with a number of 0 or more in each of them.
     pub steps: Option<Vec<f64>>,
     /// Performance of each row as logged.
     pub raw: Vec<f64>,
@@ -63,17 +61,17 @@ impl Regime {
         self.performance.len()
     }
 
-    /// Whether there are no rows; never so for a regime of a [`Lifetime`](crate::Lifetime).
+    /// Whether there are no rows; never true for a regime of a [`Lifetime`](crate::Lifetime).
     pub fn is_empty(&self) -> bool {
         self.performance.is_empty()
     }
 
-    /// Whether the agent learned, awake.
+    /// Whether it is wake training.
     pub fn is_wake_training(&self) -> bool {
         self.block_type == BlockType::Train && self.block_subtype == BlockSubtype::Wake
     }
 
-    /// Drops the rows that have no number.
+    /// Drops the rows without a number.
     pub(super) fn keep_numbers(&mut self) {
         fn keep<T>(list: &mut Vec<T>, has: &[bool]) {
             let mut has = has.iter();
@@ -92,7 +90,7 @@ impl Regime {
         }
     }
 
-    /// One performance per experience: where an experience has several rows, their mean.
+    /// One performance per experience: the mean of its rows.
     pub(crate) fn per_experience(&self) -> Vec<f64> {
         mean_per_experience(&self.exp_nums, &self.performance)
     }
@@ -112,10 +110,10 @@ pub(crate) fn mean_per_experience(exp_nums: &[u64], performance: &[f64]) -> Vec<
     sums.into_values().map(|(sum, count)| sum / count).collect()
 }
 
-/// Cuts rows, which are in order of experience, into regimes.
+/// Splits rows, sorted by experience, into regimes.
 pub(crate) fn form(run_id: &str, usable: &Usable<'_>, options: &Options) -> Result<Vec<Regime>, MetricsError> {
     let rows = usable.rows;
-    // The names under which tasks are scored, and which of them each logged name has.
+    // The names under which tasks are scored, and the one for each logged name.
     let mut names = IndexSet::new();
     let number = |name: &String| names.insert_full(options.variant_mode.scored_name(name)).0;
     let scored: Vec<usize> = rows.task_names().values().iter().map(number).collect();
@@ -167,8 +165,8 @@ pub(crate) fn form(run_id: &str, usable: &Usable<'_>, options: &Options) -> Resu
     Ok(regimes)
 }
 
-/// Steps of the environment up to the end of each row that counts, in the order of the rows; a shuffled block has them in
-/// another order than its regimes.
+/// Environment steps up to the end of each row that counts, in the order of the rows; a shuffled block has them in another
+/// order than its regimes.
 fn cumulated_steps(usable: &Usable<'_>) -> Option<Vec<f64>> {
     let steps = usable.rows.metric("episode_step_count")?;
     let mut places: Vec<usize> = (0..usable.indices.len()).collect();
@@ -231,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn a_regime_ends_where_block_type_or_task_change_but_not_where_parameters_do() {
+    fn regimes_end_at_block_type_and_task_but_not_parameter_changes() {
         let params = serde_json::Map::from_iter([("a".to_owned(), 1.into())]);
         let records = [
             record(0, BlockType::Train, "A_x"),
@@ -264,7 +262,7 @@ mod tests {
     }
 
     #[test]
-    fn steps_are_summed_up_over_the_rows_that_count() {
+    fn steps_accumulate_over_the_rows_that_count() {
         let check = |steps: &[f64], expected: Option<[f64; 2]>| {
             let record = |(block, steps): (u64, &f64)| {
                 record(block, BlockType::Train, "a_x").with_metric("episode_step_count", *steps)

@@ -1,6 +1,4 @@
-//! Single-task experts: agents that were trained on one task alone, the yardstick of a lifetime.
-//!
-//! Not here: the comparison, see `score::ste_relative_performance` and `score::sample_efficiency`.
+//! Single-task experts: agents trained on one task alone, the reference for a lifetime.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -14,7 +12,7 @@ use crate::log::{Log, read_log};
 use crate::results::agent_of;
 use crate::{BlockType, MetricsError, Options, VariantMode};
 
-/// The log of a single-task expert: exactly one task is trained in it, but for what comes before deployment. A clone shares the log.
+/// The log of a single-task expert: it trains exactly one task, apart from training before deployment. Clones share the log.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SteLog {
     log: Arc<Log>,
@@ -24,10 +22,10 @@ pub struct SteLog {
 }
 
 impl SteLog {
-    /// Takes a log as an expert's.
+    /// Wraps a log as an expert's.
     ///
     /// # Errors
-    /// [`MetricsError::NotSingleTask`] when it does not train exactly one task.
+    /// [`MetricsError::NotSingleTask`] unless it trains exactly one task.
     pub fn new(log: Log) -> Result<Self, MetricsError> {
         let tasks = log.rows.task_names();
         let params = log.rows.task_params();
@@ -54,7 +52,7 @@ impl SteLog {
         Err(MetricsError::NotSingleTask { run_id, found })
     }
 
-    /// What messages call the log: experts' logs often have one name, and lie in folders that tell them apart.
+    /// The log's name in messages: experts' logs often share a name, and are distinguished by their folders.
     fn place(&self) -> String {
         (self.dir.as_ref()).map_or_else(|| self.log.run_id.clone(), |dir| dir.display().to_string())
     }
@@ -70,10 +68,10 @@ impl SteLog {
     }
 }
 
-/// Reads the log of a single-task expert, which `ste_rel_perf` and `sample_efficiency` compare with.
+/// Reads the log of a single-task expert, for `ste_rel_perf` and `sample_efficiency`.
 ///
 /// # Errors
-/// Those of [`read_log`], and [`MetricsError::NotSingleTask`] when it does not train exactly one task.
+/// Those of [`read_log`], and [`MetricsError::NotSingleTask`] unless it trains exactly one task.
 pub fn read_ste_log(dir: impl AsRef<Path>) -> Result<SteLog, MetricsError> {
     let dir = dir.as_ref();
     let expert = SteLog::new(read_log(dir)?)?;
@@ -83,14 +81,14 @@ pub fn read_ste_log(dir: impl AsRef<Path>) -> Result<SteLog, MetricsError> {
     })
 }
 
-/// One run of an expert, as regimes of its own.
+/// One run of an expert, with its own regimes.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct SteRun {
-    /// What messages call its log.
+    /// The log's name in messages.
     pub(crate) name: String,
-    /// Who learned, as the log says.
+    /// The agent, as logged.
     pub(crate) agent: Option<String>,
-    /// What it learned from.
+    /// Its training budget.
     pub(crate) budget: Budget,
     pub(crate) regimes: Vec<Regime>,
 }
@@ -111,14 +109,14 @@ impl SteRun {
     }
 }
 
-/// Which experts a task is compared with: positions in `trained`, the tasks that the experts trained, with their variants.
+/// The experts that a task is compared with: positions in `trained`, the tasks that the experts trained, with their variants.
 ///
-/// Those of the task's own name; where there is none, those of its variants: `ferry_red` and `ferry_blue` serve `ferry`. So it is for a
-/// task that was logged without a variant, and for one that lost it because variants do not count. A variant is served by its own
-/// experts alone. Names are compared in lower case.
+/// Experts of the task's own name; if there are none, those of its variants: `ferry_red` and `ferry_blue` serve `ferry`. This
+/// applies to a task that was logged without a variant, and to one that lost it because variants do not count. A variant is
+/// served only by its own experts. Names are compared in lower case.
 ///
-/// QUIRK: the reference finds files of variants by the beginning of their names, so that an expert of `ferryman_red` serves `ferry`,
-/// too, where one of `ferry`'s variants does; that is not followed.
+/// QUIRK: the reference finds files of variants by the prefix of their names, so an expert of `ferryman_red` serves `ferry`,
+/// too, if one of `ferry`'s variants does; that is not reproduced.
 ///
 /// ```
 /// use driftworld_metrics::experts_serving;
@@ -145,7 +143,7 @@ pub fn experts_serving(task: &str, trained: &[&str]) -> Vec<usize> {
     }
 }
 
-/// Runs per task of the lifetime, in the order in which they were given.
+/// Expert runs per task of the lifetime, in the given order.
 pub(super) fn gather(
     experts: &[SteLog],
     tasks: &[String],
@@ -171,10 +169,10 @@ pub(super) fn gather(
     Ok(runs)
 }
 
-/// An expert's regimes under the name of the task that it serves.
+/// Forms an expert's regimes under the name of the task that it serves.
 ///
-/// They are formed with variants, and, as the reference does when it stores an expert, before rows without a number are dropped:
-/// such rows part what is smoothed by itself.
+/// They are formed with variants, and, as the reference does when it stores an expert, before rows without a number are
+/// dropped: such rows separate stretches that are smoothed independently.
 fn run_of(expert: &SteLog, task: &str, options: &Options) -> Result<SteRun, MetricsError> {
     let rows = complete_rows(&expert.log, &expert.place(), &options.perf_measure)?;
     let with_variants = Options {

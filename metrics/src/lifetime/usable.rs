@@ -1,29 +1,28 @@
-//! The rows of a log that count for its score.
-//!
-//! Not here: what is made of them, see `regime`.
+//! Selects the rows of a log that count for its score.
 
 use indexmap::IndexSet;
 
 use crate::MetricsError;
 use crate::log::{ExpStatus, Log, Rows, TaskParams};
 
-/// Parameter of a task by which a row says which part of the life it belongs to, and the part that is not scored.
+/// Task parameter with a row's phase of life, and the phase that is not scored.
 const PHASE: (&str, &str) = ("phase", "pre_deployment");
 
-/// Parameter of a task by which a row says that its block is shuffled.
+/// Task parameter and value that mark a shuffled block.
 const MIX: (&str, &str) = ("mix", "shuffled");
 
-/// The rows of a log that count, and the column of their performance.
+/// The rows of a log that count, and their performance column.
 pub(crate) struct Usable<'a> {
     pub(crate) rows: &'a Rows,
-    /// Which rows count, in order; those of a shuffled block task by task.
+    /// Indices of the rows that count, in order; those of a shuffled block task by task.
     pub(crate) indices: Vec<usize>,
     /// Performance of every row of the log.
     pub(crate) performance: &'a [f64],
 }
 
-/// The rows that count: complete, with a number in the performance column, and not of the time before deployment, which prepares
-/// a lifetime and is no part of it. Rows of that time have the task parameter `phase`, `pre_deployment`. Messages call the log `name`.
+/// The rows that count: complete, with a number in the performance column, and not from before deployment, which prepares a
+/// lifetime and is not part of it. Rows from before deployment have the task parameter `phase` with the value `pre_deployment`.
+/// Messages call the log `name`.
 pub(crate) fn usable_rows<'a>(log: &'a Log, name: &str, column: &str) -> Result<Usable<'a>, MetricsError> {
     let mut usable = complete_rows(log, name, column)?;
     let performance = usable.performance;
@@ -31,12 +30,12 @@ pub(crate) fn usable_rows<'a>(log: &'a Log, name: &str, column: &str) -> Result<
     Ok(usable)
 }
 
-/// Whether rows with these parameters are part of the lifetime, and not of the time before deployment.
+/// Whether rows with these parameters belong to the lifetime, and not to the time before deployment.
 pub(super) fn is_deployed(params: &TaskParams) -> bool {
     params.get(PHASE.0).is_none_or(|phase| phase != PHASE.1)
 }
 
-/// The same with complete rows that have no number; at least one has a number.
+/// Like [`usable_rows`], but keeps complete rows without a number; at least one row has a number.
 pub(crate) fn complete_rows<'a>(log: &'a Log, name: &str, column: &str) -> Result<Usable<'a>, MetricsError> {
     let declared = log.logger_info.metrics_columns();
     let performance = (declared.iter().any(|name| name == column))
@@ -65,8 +64,7 @@ pub(crate) fn complete_rows<'a>(log: &'a Log, name: &str, column: &str) -> Resul
     })
 }
 
-/// Rows in an order in which, of each block that is shuffled, those of one task stand together, in the order of the tasks' first
-/// rows.
+/// Reorders rows so that those of one task are adjacent within each shuffled block, in the order of the tasks' first rows.
 pub(super) fn unshuffled(rows: &Rows, indices: Vec<usize>) -> Vec<usize> {
     let (params, names) = (rows.task_params(), rows.task_names());
     let is_shuffled = |params: &TaskParams| params.get(MIX.0).is_some_and(|mix| mix == MIX.1);

@@ -1,6 +1,4 @@
-//! In which world each row of a lifetime took place, as far as its log says so.
-//!
-//! Not here: what rows of one world are good for, see `score::exchange`.
+//! The world of each row of a lifetime, if its log identifies it.
 
 use std::collections::HashMap;
 
@@ -9,28 +7,28 @@ use indexmap::IndexSet;
 use super::{Lifetime, Regime};
 use crate::{Log, TaskParams};
 
-/// Column with the number of a row's world among those of its variant and seed.
+/// Column with the index of a row's world for its variant and seed.
 pub(super) const INDEX: &str = "world_index";
 
-/// Parameter of a task with the seed of its worlds.
+/// Task parameter with the seed of its worlds.
 const SEED: &str = "seed";
 
 /// The world of a row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) struct World {
-    /// Number of the task's name as it was logged, with its variant: two variants have two worlds of one number.
+    /// Id of the task's logged name, with its variant: equal numbers in two variants are different worlds.
     pub(crate) task: u32,
-    /// Number of seed and index, the same for all tasks.
+    /// Id of seed and index, the same for all tasks.
     pub(crate) number: u32,
 }
 
-/// The seed of the worlds of rows with these parameters, as it is written; empty without one.
+/// The seed of the worlds of rows with these parameters, as text; empty without one.
 pub(super) fn seed_of(params: &TaskParams) -> String {
     params.get(SEED).map(ToString::to_string).unwrap_or_default()
 }
 
-/// The world of each row of each regime, in their order; `None` where the log does not say. `log` is the one that the lifetime was
-/// prepared from.
+/// The world of each row of each regime, in order; `None` if not logged. `log` must be the one that the lifetime was prepared
+/// from.
 pub(crate) fn worlds(log: &Log, lifetime: &Lifetime) -> Vec<Vec<Option<World>>> {
     let rows = &log.rows;
     let params = rows.task_params();
@@ -45,7 +43,7 @@ pub(crate) fn worlds(log: &Log, lifetime: &Lifetime) -> Vec<Vec<Option<World>>> 
         if !index.is_finite() {
             return None;
         }
-        // Rows are bounded far below what a u32 counts.
+        // The number of rows is far below the range of a u32.
         let next = numbers.len() as u32;
         let seed = seeds[params.ids()[row] as usize];
         Some(World {

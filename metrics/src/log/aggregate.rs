@@ -1,4 +1,4 @@
-//! The rows of one log or several as one table of text, the form in which other programs take them.
+//! Exports the rows of one or several logs as one text table for other programs.
 
 use std::borrow::Cow;
 use std::collections::BTreeSet;
@@ -13,20 +13,20 @@ use super::table::{MAX_CELLS, MAX_RECORDS};
 use super::{Log, spaced_json};
 use crate::MetricsError;
 
-/// Columns of the table that no log has.
+/// Columns that the table adds.
 const ADDED: [&str; 2] = ["run_id", "regime_num"];
 
-/// Which rows of a log come into a table.
+/// The rows of a log that a table includes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum KeptRows {
-    /// Those that close an experience, as l2logger keeps them.
+    /// Those that close an experience, as in l2logger.
     #[default]
     Complete,
-    /// All of them.
+    /// All rows.
     All,
 }
 
-/// What stands between the cells of a line.
+/// The separator between the cells of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Delimiter {
     /// TSV.
@@ -35,13 +35,13 @@ pub enum Delimiter {
     Comma,
 }
 
-/// Rows of logs as one table, log after log, each in the order in which it is scored.
+/// Rows of logs as one table, log after log, each in scoring order.
 ///
-/// Corresponds to `python -m l2logger.aggregate`: `block_num`, `regime_num`, `exp_num`, the other standard columns, then the log's
-/// own in alphabetical order; task names in lower case; `regime_num` counts stretches of one block, subtype and task from 0. Unlike
-/// there, `block_subtype` of a log of format 1.0 stands in its place and not last, task parameters are written alike (one space
-/// behind `:` and `,`, `{}` for none), whole numbers of metrics have a `.0`, and several logs make one table, with the log's name in
-/// the first column, `run_id`.
+/// Corresponds to `python -m l2logger.aggregate`: `block_num`, `regime_num`, `exp_num`, the other standard columns, then the
+/// log's own in alphabetical order; task names in lower case; `regime_num` counts stretches of one block, subtype and task from
+/// 0. Unlike l2logger, it puts the `block_subtype` of a log of format 1.0 in its usual place and not last, writes task
+/// parameters uniformly (one space after `:` and `,`, `{}` for none), writes whole numbers of metrics with `.0`, and combines
+/// several logs in one table, with the log's name in the first column, `run_id`.
 ///
 /// At most [`MAX_RECORDS`] rows and [`MAX_CELLS`] cells of logs' own columns, over all logs.
 #[derive(Debug, Clone, Default)]
@@ -61,12 +61,12 @@ impl LogTable {
         }
     }
 
-    /// Adds the rows of a log. Read it with [`read_log_with_texts`](crate::read_log_with_texts) to have its columns of words, too.
-    /// A column that is missing in some logs has empty cells there.
+    /// Adds the rows of a log. Read it with [`read_log_with_texts`](crate::read_log_with_texts) to include its text columns. A
+    /// column that is missing in some logs has empty cells there.
     ///
     /// # Errors
-    /// [`MetricsError::TableColumn`] where the log has a column `run_id` or `regime_num` of its own, [`MetricsError::TooLarge`]
-    /// where the table would pass its limits. The table is as before then.
+    /// [`MetricsError::TableColumn`] if the log has a column `run_id` or `regime_num` of its own, [`MetricsError::TooLarge`] if
+    /// the table would exceed its limits. The table is then unchanged.
     pub fn add(&mut self, log: Log) -> Result<(), MetricsError> {
         let num_rows = rows(&log, self.kept).count();
         self.check(&log, num_rows)?;
@@ -86,8 +86,8 @@ impl LogTable {
         self.num_rows == 0
     }
 
-    /// Writes the table as text with a header line; lines end with `\n`, cells are quoted where they must be, and texts
-    /// are guarded against being taken for formulas unless they are wanted as they are.
+    /// Writes the table as text with a header line; lines end with `\n`, cells are quoted if necessary, and texts that look like
+    /// formulas are escaped unless raw cells are requested.
     ///
     /// # Errors
     /// Those of the writer.
@@ -179,12 +179,12 @@ fn rows(log: &Log, kept: KeptRows) -> impl Iterator<Item = Row<'_>> {
     log.rows.iter().filter(is_kept)
 }
 
-/// The columns that a log names, beside the standard ones.
+/// The columns of a log other than the standard ones.
 fn own_columns(log: &Log) -> impl Iterator<Item = &str> {
     log.rows.metric_names().chain(log.rows.text_names())
 }
 
-/// A cell of such a column: a number as the shortest text that reads back as the same, nothing where there is none.
+/// A cell of such a column: a number as the shortest text that reads back exactly, or empty without one.
 fn own_cell(row: Row, name: &str) -> String {
     match row.metric(name) {
         Some(number) if number.is_nan() => String::new(),
@@ -200,7 +200,7 @@ mod tests {
 
     const HEADER: &str = "block_num\texp_num\tworker_id\tblock_type\ttask_name\ttask_params\texp_status\ttimestamp";
 
-    /// Reads a log of format 1.0 with these columns behind the standard ones.
+    /// Reads a log of format 1.0 with these columns after the standard ones.
     fn log(name: &str, columns: &str, rows: &[&str]) -> Log {
         let base = tempfile::tempdir().unwrap();
         let dir = base.path().join(name);
@@ -235,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn a_table_has_the_columns_and_rows_of_l2logger() {
+    fn table_matches_l2logger_columns_and_rows() {
         let mut table = LogTable::new(KeptRows::Complete);
         table.add(rows()).unwrap();
         let expected = "block_num\tregime_num\texp_num\tworker_id\tblock_type\tblock_subtype\ttask_name\ttask_params\texp_status\ttimestamp\t\
@@ -247,7 +247,7 @@ mod tests {
     }
 
     #[test]
-    fn all_rows_are_kept_where_they_are_wanted() {
+    fn all_rows_are_kept_on_request() {
         let mut table = LogTable::new(KeptRows::All);
         table.add(rows()).unwrap();
         assert_eq!(table.len(), 4);
@@ -260,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    fn several_logs_say_which_row_is_whose_and_fill_up_what_others_lack() {
+    fn several_logs_are_labelled_and_missing_columns_filled() {
         let other = log(
             "two",
             "reward\tdebug\tsteps",
@@ -288,7 +288,7 @@ mod tests {
     }
 
     #[test]
-    fn a_column_may_hold_numbers_in_one_log_and_words_in_another() {
+    fn column_may_hold_numbers_in_one_log_and_words_in_another() {
         let row = "0\t0\tw\ttrain\ta_x\t{}\tcomplete\t20200101T000000.0\t1";
         let mut table = LogTable::new(KeptRows::Complete);
         for cell in ["2", "two"] {
@@ -302,7 +302,7 @@ mod tests {
     }
 
     #[test]
-    fn a_column_that_the_table_adds_itself_is_refused() {
+    fn reserved_column_is_refused() {
         let row = "0\t0\tw\ttrain\ta_x\t{}\tcomplete\t20200101T000000.0\t1\t1";
         let mut table = LogTable::new(KeptRows::Complete);
         let error = table.add(log("run", "reward\tregime_num", &[row])).unwrap_err();
@@ -311,7 +311,7 @@ mod tests {
     }
 
     #[test]
-    fn no_log_is_a_table_without_rows() {
+    fn empty_table_has_only_a_header() {
         assert_eq!(text(&LogTable::default(), Delimiter::Comma).lines().count(), 1);
         let info = LoggerInfo::new(["reward"]).unwrap();
         let base = tempfile::tempdir().unwrap();

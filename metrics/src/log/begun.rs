@@ -1,6 +1,4 @@
-//! How far a log directory has come: whether its making was interrupted, and what the log that is there was about.
-//!
-//! Not here: taking it up, see `resume`; its rows, see `reader`.
+//! Checks the state of a log directory: free, interrupted while being created, or holding a log.
 
 use std::fs;
 use std::path::Path;
@@ -13,14 +11,13 @@ use super::warning::LogWarning;
 use super::{data_files, json_file};
 use crate::MetricsError;
 
-/// The log in `dir` as its two info files have it; `None` where no log was begun.
+/// Reads the two info files of the log in `dir`; `None` if no log was started.
 ///
-/// That is so where there is no such directory, where it is empty, and where it holds no more than what is left of a log
-/// whose making was interrupted before its first row: [`LogWriter::create`](crate::LogWriter::create) takes such a
-/// directory.
+/// That is so if there is no such directory, if it is empty, or if it holds only the leftovers of a log that was interrupted
+/// before its first row: [`LogWriter::create`](crate::LogWriter::create) accepts such a directory.
 ///
 /// # Errors
-/// [`MetricsError::MissingFile`] and [`MetricsError::Json`] where there are rows and an info file is gone or torn,
+/// [`MetricsError::MissingFile`] and [`MetricsError::Json`] if there are rows but an info file is missing or torn,
 /// [`MetricsError::LoggerInfo`], [`MetricsError::NotADirectory`] for a file, [`MetricsError::Io`].
 pub fn begun_log(dir: impl AsRef<Path>) -> Result<Option<(LoggerInfo, ScenarioInfo)>, MetricsError> {
     let dir = dir.as_ref();
@@ -40,9 +37,9 @@ pub fn begun_log(dir: impl AsRef<Path>) -> Result<Option<(LoggerInfo, ScenarioIn
     Ok(Some((logger_info, scenario_info)))
 }
 
-/// Whether a directory is empty, or holds nothing but what an interrupted making of a log leaves.
+/// Whether a directory is empty, or holds only the leftovers of an interrupted creation.
 ///
-/// The info files are written before anything else, `logger_info.json` last: where both are whole, a log was begun.
+/// The info files are written before anything else, `logger_info.json` last: if both are whole, a log was started.
 pub(super) fn is_free(dir: &Path) -> Result<bool, MetricsError> {
     let list = |error| MetricsError::io(dir, "list this directory")(error);
     let names = [scenario_info::FILE_NAME, logger_info::FILE_NAME];
@@ -62,12 +59,12 @@ pub(super) fn is_free(dir: &Path) -> Result<bool, MetricsError> {
     Ok(whole < names.len())
 }
 
-/// What older versions called an info file until it was whole.
+/// Temporary name of an incomplete info file in older versions.
 fn older_name(info: &str) -> String {
     format!(".{info}.tmp")
 }
 
-/// Removes the temporary files that an interrupted making of a log leaves.
+/// Removes the temporary files of an interrupted creation.
 pub(super) fn remove_leftovers(dir: &Path) -> Result<(), MetricsError> {
     driftworld_atomic_files::remove_leftovers(dir);
     for info in [scenario_info::FILE_NAME, logger_info::FILE_NAME] {
@@ -87,7 +84,7 @@ mod tests {
     use super::*;
     use crate::LogWriter;
 
-    /// A log directory that was made as far as these files.
+    /// A log directory whose creation stopped after these files.
     fn made(files: &[(&str, &str)]) -> tempfile::TempDir {
         let dir = tempfile::tempdir().unwrap();
         for (name, text) in files {
@@ -97,7 +94,7 @@ mod tests {
     }
 
     #[test]
-    fn a_log_whose_making_was_interrupted_is_made_anew() {
+    fn interrupted_creation_is_started_again() {
         let scenario = ("scenario_info.json", "{}");
         let check = |files: &[(&str, &str)]| {
             let dir = made(files);
@@ -119,7 +116,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn of_two_that_begin_at_the_same_moment_one_is_kept_away_before_it_writes() {
+    fn second_of_two_simultaneous_writers_is_refused_before_writing() {
         let (dir, info) = (tempfile::tempdir().unwrap(), LoggerInfo::new(["reward"]).unwrap());
         let create = || LogWriter::create(dir.path(), &info, &ScenarioInfo::default());
         let held = fs::File::open(dir.path()).unwrap();
@@ -136,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_left_of_a_log_is_never_written_over() {
+    fn files_that_are_no_log_leftovers_are_never_overwritten() {
         let check = |files: &[(&str, &str)], code: &str| {
             let dir = made(files);
             assert_eq!(begun_log(dir.path()).unwrap_err().code(), code);

@@ -1,6 +1,4 @@
-//! [`BlockFile`]: a data file that rows are added to. It notices when the file is cut, removed or replaced meanwhile.
-//!
-//! Not here: what a row says, see `writer`; the directory it lies in, see `log_folder`.
+//! [`BlockFile`]: appends rows to a data file, and detects if it is truncated, removed or replaced meanwhile.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{ErrorKind, Read, Write};
@@ -10,20 +8,20 @@ use super::identity::Identity;
 use super::log_folder::LogFolder;
 use crate::MetricsError;
 
-/// What a data file holds, as far as its writer knows.
+/// The expected state of a data file, as known to its writer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Written {
     pub(super) rows: u64,
-    /// Bytes of whole lines, the header's among them.
+    /// Bytes of whole lines, including the header.
     pub(super) bytes: u64,
-    /// `None` before it was opened.
+    /// `None` before it was first opened.
     identity: Option<Identity>,
-    /// `None` where it could not be read.
+    /// `None` if it could not be read.
     digest: Option<Digest>,
 }
 
 impl Written {
-    /// A file that an earlier writer left, with so many rows in so many bytes.
+    /// A file of an earlier writer, with this number of rows and bytes.
     pub(super) fn found(path: &Path, rows: u64, bytes: u64) -> Result<Self, MetricsError> {
         let found = fs::metadata(path).map_err(MetricsError::io(path, "look at this file"))?;
         Ok(Self {
@@ -41,14 +39,14 @@ impl Written {
         digest: Some(Digest::NEW),
     };
 
-    /// Refuses when the file at this path is not there, is another, or has not the length that it was given.
+    /// Fails if the file at this path is missing, is another, or differs in length.
     ///
-    /// Some file systems number their files anew when nobody has them open: under another number it is the same file if
-    /// its bytes are the same.
+    /// Some file systems change file ids while nobody has the file open: under another id, it is the same file if its bytes are
+    /// the same.
     pub(super) fn check(&self, folder: &LogFolder, inside: &Path) -> Result<(), MetricsError> {
         let path = folder.place(inside);
         let found = match fs::metadata(&path) {
-            // What a link may lead to, such as a pipe, keeps nothing.
+            // The target of a link, such as a pipe, may keep nothing.
             Ok(found) if !found.is_file() && !found.is_dir() => return Ok(()),
             Ok(found) if found.is_dir() => "a directory".to_owned(),
             Ok(found) if found.len() != self.bytes => counted(&path, found.len()),
@@ -76,7 +74,7 @@ impl Written {
     }
 }
 
-/// How many rows and bytes a file holds.
+/// Describes the rows and bytes of a file.
 fn counted(path: &Path, bytes: u64) -> String {
     let rows = csv::ReaderBuilder::new()
         .delimiter(b'\t')
@@ -89,7 +87,7 @@ fn counted(path: &Path, bytes: u64) -> String {
     }
 }
 
-/// A data file that is open, and what is in it.
+/// An open data file, with its expected state.
 #[derive(Debug)]
 pub(super) struct BlockFile {
     /// Its path inside the log's directory.
@@ -100,7 +98,7 @@ pub(super) struct BlockFile {
 }
 
 impl BlockFile {
-    /// Opens a data file for appending, with its header where it is new. `before` is what this log's writers put there
+    /// Opens a data file for appending, and writes its header if it is new. `before` is what this log's writers have put there
     /// already.
     pub(super) fn open(
         folder: &LogFolder,
@@ -135,8 +133,8 @@ impl BlockFile {
         Ok(opened)
     }
 
-    /// Whether the file that was opened is still what its path leads to, and as long as it was left: one question to
-    /// the system, which answers for the log's directory, too. [`Written::check`] says what is wrong.
+    /// Whether the opened file is still the one at its path, and of the expected length: one system call, which also covers the
+    /// log's directory. [`Written::check`] finds the fault.
     pub(super) fn is_as_it_was_left(&self) -> bool {
         fs::metadata(&self.place).is_ok_and(|found| {
             found.is_file() && found.len() == self.written.bytes && self.written.identity == Some(Identity::of(&found))
@@ -150,9 +148,9 @@ impl BlockFile {
         Ok(())
     }
 
-    /// Asks the disk to have what was written.
+    /// Syncs the file to disk.
     pub(super) fn sync(&self, folder: &LogFolder) -> Result<(), MetricsError> {
-        // What is no file, such as a pipe that a link leads to, has nothing to keep.
+        // A file that is not regular, such as a linked pipe, has nothing to sync.
         match self.file.sync_all() {
             Err(error) if error.kind() != ErrorKind::InvalidInput => Err(MetricsError::io(
                 folder.shown_inside(&self.inside),
@@ -162,10 +160,10 @@ impl BlockFile {
         }
     }
 
-    /// Adds one line in one call. If only a part of it could be written, that part is taken back.
+    /// Appends one line in one call. Removes a partial write again.
     fn append(&mut self, folder: &LogFolder, line: &[u8]) -> Result<(), MetricsError> {
         if let Err(source) = self.file.write_all(line) {
-            // Where even this fails the torn line stays, and the reader names it.
+            // If even this fails, the torn line stays, and the reader reports it.
             let _ = self.file.set_len(self.written.bytes);
             let shown = folder.shown_inside(&self.inside);
             return Err(MetricsError::io(shown, "append a line to this file")(source));
@@ -178,7 +176,7 @@ impl BlockFile {
     }
 }
 
-/// The CRC-32 of bytes: whether they are the same as others, unless somebody meant to deceive.
+/// A CRC-32, to compare bytes without protection against deliberate forgery.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Digest(u32);
 
@@ -191,9 +189,9 @@ impl Digest {
         self.0 = hasher.finalize();
     }
 
-    /// That of a file; `None` if it cannot be read.
+    /// The digest of a file; `None` if it cannot be read.
     fn of(path: &Path) -> Option<Self> {
-        // What was just written, not by driftworld-files: it is ours.
+        // Just written by us, not by driftworld-files: it is our own file.
         let (mut file, mut piece, mut digest) = (File::open(path).ok()?, vec![0; 1 << 16], Self::NEW);
         loop {
             match file.read(&mut piece).ok()? {
@@ -209,7 +207,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_digest_does_not_depend_on_the_pieces_that_it_is_taken_of() {
+    fn digest_does_not_depend_on_the_split() {
         let digest = |pieces: &[&str]| {
             let mut digest = Digest::NEW;
             for piece in pieces {
@@ -217,7 +215,7 @@ mod tests {
             }
             digest
         };
-        // The check value of the catalogue of CRCs.
+        // The check value in the CRC catalogue.
         assert_eq!(digest(&["123456789"]), Digest(0xcbf4_3926));
         assert_eq!(digest(&["", "1234", "", "56789"]), Digest(0xcbf4_3926));
         assert_ne!(digest(&["123456788"]), Digest(0xcbf4_3926));

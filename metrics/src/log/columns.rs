@@ -1,10 +1,8 @@
-//! Which columns a data file has, and in which order.
-//!
-//! Not here: what may stand in a cell, see `cell`.
+//! The columns of a data file, and their order.
 
 use crate::Record;
 
-/// The columns every log of format 1.1 has, in order; the metrics follow alphabetically.
+/// The columns of every log of format 1.1, in order; the metrics follow alphabetically.
 pub(super) const STANDARD: [&str; 9] = [
     "block_num",
     "exp_num",
@@ -20,14 +18,14 @@ pub(super) const STANDARD: [&str; 9] = [
 /// The one standard column that logs of format 1.0 lack.
 pub(super) const SINCE_1_1: &str = "block_subtype";
 
-/// Names of a record's metrics and columns of words, alphabetical by code point.
+/// Names of a record's metrics and text columns, sorted by code point.
 pub(super) fn metric_columns(record: &Record) -> Vec<String> {
     let mut names: Vec<String> = record.metrics.keys().chain(record.texts.keys()).cloned().collect();
     names.sort();
     names
 }
 
-/// The whole header of a log whose metrics are these.
+/// The whole header of a log with these metrics.
 pub(super) fn header(metrics: &[String]) -> Vec<String> {
     STANDARD
         .iter()
@@ -36,15 +34,15 @@ pub(super) fn header(metrics: &[String]) -> Vec<String> {
         .collect()
 }
 
-/// One line of a data file, cells quoted where they must be, with its line end.
+/// One line of a data file, with quotes where necessary, and its line end.
 ///
-/// The crate `csv` quotes a bare carriage return only where lines end with one, so the line is written that way and
-/// its end replaced: a `\n` alone, as l2logger writes.
+/// The crate `csv` quotes a bare carriage return only if lines end with one, so the line is written that way and its end
+/// replaced by a single `\n`, as in l2logger.
 pub(crate) fn line(cells: impl IntoIterator<Item = impl AsRef<[u8]>>) -> Vec<u8> {
     delimited(b'\t', cells)
 }
 
-/// One line as [`line`] has it, with another character between cells.
+/// Like [`line`], with another separator.
 pub(super) fn delimited(delimiter: u8, cells: impl IntoIterator<Item = impl AsRef<[u8]>>) -> Vec<u8> {
     let mut writer = csv::WriterBuilder::new()
         .delimiter(delimiter)
@@ -64,7 +62,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn cells_are_quoted_only_where_they_must_be() {
+    fn cells_are_quoted_only_if_necessary() {
         let check = |cells: &[&str], expected: &str| {
             assert_eq!(String::from_utf8(line(cells)).unwrap(), expected);
         };
@@ -77,7 +75,7 @@ mod tests {
     }
 
     #[test]
-    fn metrics_follow_the_standard_columns_in_alphabetical_order() {
+    fn metrics_follow_the_standard_columns_alphabetically() {
         let stamp = "20200101T000000.0".parse().unwrap();
         let record = Record::new(0, 0, crate::BlockType::Train, "a_b", stamp);
         let record = record

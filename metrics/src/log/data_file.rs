@@ -1,6 +1,4 @@
-//! Reads one `data-log.tsv`: its rows, and what is wrong with them.
-//!
-//! Not here: its header, see `header`; how the files of a log go together, see `reader`.
+//! Reads one `data-log.tsv`: its rows and their faults.
 
 use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom};
@@ -22,12 +20,12 @@ pub const MAX_FILE_BYTES: u64 = 1 << 30;
 /// Largest cell, in bytes.
 pub const MAX_CELL_BYTES: usize = 1 << 20;
 
-/// Bytes asked of the system at a time.
+/// Bytes per read.
 const PIECE: usize = 1 << 16;
 
-/// Adds every row to the table in the order of the file; returns the header.
+/// Adds every row to the table in file order; returns the header.
 ///
-/// Faults of rows go to `faults`; those after which the file makes no sense are the error.
+/// Faults of rows go to `faults`; faults that make the file unreadable are the error.
 pub(super) fn read<'a>(
     path: &'a Path,
     metrics_columns: &[String],
@@ -54,7 +52,7 @@ pub(super) fn read<'a>(
         return Err(fault);
     }
     let header = Header::new(path, &row, metrics_columns, table, faults)?;
-    // Where lines end with two characters, the second of them still lies ahead of the reader.
+    // If lines end with two characters, the reader has not yet consumed the second.
     let line_ends = (rows.position().line() - line_breaks(&row) - 1).min(1);
     loop {
         match next_row(&mut rows, &mut row, path) {
@@ -66,7 +64,7 @@ pub(super) fn read<'a>(
             }
             Err(error) => return Err(error),
         }
-        // Blank lines before a row are skipped, so that its line is known from its end.
+        // Blank lines before a row are skipped, so its line is computed from its end.
         let line = rows.position().line() - line_breaks(&row) - line_ends;
         let start = row.position().map_or(0, csv::Position::byte);
         if is_last(&rows)
@@ -105,12 +103,12 @@ fn row_error(path: &Path, error: csv::Error) -> MetricsError {
     }
 }
 
-/// An open data file, and how far it is to be read.
+/// An open data file, with the length to read.
 struct Source {
     file: File,
     /// Bytes up to the end of the last whole row.
     whole: u64,
-    /// What is wrong with what follows.
+    /// The fault of the remainder.
     torn: Option<MetricsError>,
 }
 
@@ -131,14 +129,14 @@ impl Source {
         Ok(Self { file, whole, torn })
     }
 
-    /// The fault of the last row, which begins at this byte, if it ends within quotes: torn, or a quote was never closed.
+    /// The fault of the last row, which starts at this byte, if it ends within quotes: torn, or a quote was never closed.
     fn open_quote(&self, path: &Path, start: u64, line: u64) -> Result<Option<MetricsError>, MetricsError> {
         let failed = || MetricsError::io(path, "read this file");
         let mut file = &self.file;
         file.seek(SeekFrom::Start(start)).map_err(failed())?;
         let piece = BufReader::with_capacity(PIECE, file.take(self.whole - start));
         let found = whole_rows::measure(piece).map_err(failed())?;
-        // What comes before the open row are blank lines.
+        // Only blank lines precede the open row.
         let found_here = WholeRows { lines: 0, ..found };
         Ok((found.bytes < self.whole - start).then(|| found_here.fault(path, line)))
     }

@@ -1,6 +1,4 @@
 //! Finds the data files of a log directory.
-//!
-//! Not here: reading them.
 
 use std::collections::BTreeSet;
 use std::fs::{self, FileType};
@@ -9,21 +7,21 @@ use std::path::{Path, PathBuf};
 use super::regular_file;
 use crate::MetricsError;
 
-/// Most entries (files and directories together) that a log directory may hold.
+/// Most entries (files and directories together) in a log directory.
 pub const MAX_LOG_FILES: usize = 200_000;
 
-/// How deep directories are searched; the format needs two levels.
+/// Maximum depth of the search; the format needs two levels.
 const MAX_DEPTH: usize = 8;
 
 /// Name of every data file.
 pub(super) const FILE_NAME: &str = "data-log.tsv";
 
-/// How deep links to directories are followed: those of workers and of blocks. What lies deeper behind a link is left aside, so that
-/// links that lead in a circle come to an end.
+/// Maximum depth of links to directories: those of workers and of blocks. Anything deeper behind a link is skipped, so that
+/// circular links end.
 const MAX_LINK_DEPTH: usize = 2;
 
-/// All data files under a log directory, in the order of their paths with numbers compared as numbers. A file to which several
-/// paths lead by links is there once.
+/// All data files under a log directory, sorted by path with numbers compared as numbers. A file reached by several paths
+/// through links is listed once.
 pub(super) fn find(dir: &Path) -> Result<Vec<PathBuf>, MetricsError> {
     if !dir.is_dir() {
         let found = if dir.exists() { "a file" } else { "nothing" };
@@ -60,20 +58,20 @@ pub(super) fn find(dir: &Path) -> Result<Vec<PathBuf>, MetricsError> {
 
 struct Search {
     to_search: Vec<Folder>,
-    /// Each with whether a link leads to it.
+    /// Each with whether it was reached by a link.
     files: Vec<(PathBuf, bool)>,
 }
 
 struct Folder {
     path: PathBuf,
-    /// How many directories it lies below the log's.
+    /// Depth below the log's directory.
     depth: usize,
-    /// Whether a link leads to it.
+    /// Whether it was reached by a link.
     is_linked: bool,
 }
 
 impl Search {
-    /// Takes what lies in a folder: a data file, or a folder that is searched later.
+    /// Handles an entry of a folder: a data file, or a folder to search later.
     fn take(&mut self, folder: &Folder, path: PathBuf, kind: FileType) -> Result<(), MetricsError> {
         let is_linked = folder.is_linked || kind.is_symlink();
         let depth = folder.depth + 1;
@@ -82,7 +80,7 @@ impl Search {
             self.files.push((path, is_linked));
         } else if is_linked && depth <= MAX_LINK_DEPTH {
             match fs::metadata(&path) {
-                // Nothing but its data file is of interest, and it may be large.
+                // Only its data file matters, and the folder may be large.
                 Ok(found) if found.is_dir() && depth == MAX_LINK_DEPTH => {
                     let file = path.join(FILE_NAME);
                     regular_file::check(&file)?;
@@ -91,7 +89,7 @@ impl Search {
                     }
                 }
                 Ok(found) if found.is_dir() => self.to_search.push(Folder { path, depth, is_linked }),
-                // With an ending it led to a file of some other kind.
+                // A name with an extension linked to a file of some other kind.
                 Err(_) if path.extension().is_none() && !is_hidden(&path) => {
                     return Err(regular_file::lost_link(&path));
                 }
@@ -109,7 +107,7 @@ fn is_hidden(path: &Path) -> bool {
         .is_some_and(|name| name.to_string_lossy().starts_with('.'))
 }
 
-/// Leaves out paths of files that others lead to, those with a link first.
+/// Removes paths to files that another path reaches, those with a link first.
 fn each_once(mut files: Vec<(PathBuf, bool)>) -> Vec<PathBuf> {
     if files.iter().any(|(_, is_linked)| *is_linked) {
         let place = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
@@ -127,7 +125,7 @@ fn each_once(mut files: Vec<(PathBuf, bool)>) -> Vec<PathBuf> {
     files.into_iter().map(|(path, _)| path).collect()
 }
 
-/// Puts `2-train` before `10-test`: each part of the path by its leading number first, then by its text.
+/// Sorts `2-train` before `10-test`: each part of the path by its leading number first, then by its text.
 pub(super) fn path_key(path: &Path) -> Vec<(u64, String)> {
     let part_key = |part: &std::ffi::OsStr| {
         let text = part.to_string_lossy().into_owned();
@@ -142,7 +140,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn blocks_come_in_the_order_of_their_numbers() {
+    fn blocks_are_sorted_by_number() {
         let dir = tempfile::tempdir().unwrap();
         for block in ["w/10-test", "w/2-train", "v/11-test", "w/2-train/deeper"] {
             fs::create_dir_all(dir.path().join(block)).unwrap();
@@ -162,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn a_path_that_is_no_directory_is_named() {
+    fn path_that_is_no_directory_is_named() {
         let dir = tempfile::tempdir().unwrap();
         let check = |path: &Path, found: &str| {
             let expected = "the directory of a log, which holds logger_info.json";
@@ -177,7 +175,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn links_to_files_and_folders_are_followed_and_circles_end() {
+    fn links_are_followed_and_circles_end() {
         use std::os::unix::fs::symlink;
         let base = tempfile::tempdir().unwrap();
         let dir = base.path().join("log");
@@ -205,7 +203,7 @@ mod tests {
         fs::remove_dir_all(dir.join("w/1-train")).unwrap();
         symlink("../elsewhere/v", dir.join("v")).unwrap();
         assert_eq!(found().unwrap(), ["v/0-test", "v/1-test", "w/0-test"]);
-        // What leads to files that are there already, round in circles, or to no folder.
+        // Links to files already found, circular ones, and one to no folder.
         symlink(".", dir.join("circle")).unwrap();
         symlink("..", dir.join("w/circle")).unwrap();
         symlink("v", dir.join("again")).unwrap();

@@ -1,22 +1,20 @@
-//! What happens when something is wrong with a log: reading stops at the first fault, validating goes on and lists them.
-//!
-//! Not here: what is wrong, see `data_file` and `validation`.
+//! Policy for faults of a log: reading stops at the first, validation lists them.
 
 use crate::MetricsError;
 
-/// Most faults of a log that are listed one by one.
+/// Most faults of a log that are listed.
 pub const MAX_LISTED: usize = 100;
 
-/// Takes faults as they are found.
+/// Collects faults as they are found.
 #[derive(Debug)]
 pub(super) enum Faults {
-    /// The first fault is the answer.
+    /// Stops at the first fault.
     Stop,
-    /// Faults are listed, and those beyond the limit counted.
+    /// Lists faults, and counts those beyond the limit.
     List(Listed<MetricsError>),
 }
 
-/// Things found, the first [`MAX_LISTED`] of them; the others are counted.
+/// The first [`MAX_LISTED`] things found; the others are only counted.
 #[derive(Debug, Clone)]
 pub(super) struct Listed<T> {
     pub(super) first: Vec<T>,
@@ -43,7 +41,7 @@ impl<T> Listed<T> {
 }
 
 impl Faults {
-    /// Takes a fault; gives it back as the error that ends the reading where the first fault does.
+    /// Adds a fault; returns it as an error if reading stops at the first.
     pub(super) fn add(&mut self, fault: MetricsError) -> Result<(), MetricsError> {
         match self {
             Self::Stop => Err(fault),
@@ -54,7 +52,7 @@ impl Faults {
         }
     }
 
-    /// The value, or nothing where there is a fault instead, which is taken.
+    /// The value, or `None` after adding the fault.
     pub(super) fn sift<T>(&mut self, found: Result<T, MetricsError>) -> Result<Option<T>, MetricsError> {
         match found {
             Ok(value) => Ok(Some(value)),

@@ -1,19 +1,17 @@
-//! Names of tasks and runs as names of folders, on every file system, and back.
-//!
-//! Not here: what lies in the folders, see `ste_store`.
+//! Encodes names of tasks and runs as folder names for every file system, and decodes them.
 
 use std::fmt::Write;
 use std::path::Path;
 
 use crate::MetricsError;
 
-/// Longest name of a folder, in bytes: what file systems take is 255, and a number may follow.
+/// Longest folder name, in bytes: file systems allow 255, and a number may be appended.
 const MAX_BYTES: usize = 200;
 
-/// A name with all but ASCII letters, digits, `_`, `-` and `.` written as `%` and two digits; so is a `.` at its beginning, which
-/// would hide the folder or lead out of it, and at its end, which some file systems drop.
+/// Writes everything except ASCII letters, digits, `_`, `-` and `.` as `%` and two digits; also a leading `.`, which would hide
+/// the folder or lead out of it, and a trailing one, which some file systems drop.
 ///
-/// `place`: named where the name is refused, because it would be too long.
+/// `place`: named in the error if the name would be too long.
 pub(super) fn encoded(place: &Path, name: &str) -> Result<String, MetricsError> {
     let mut encoded = String::with_capacity(name.len());
     let last = name.len().saturating_sub(1);
@@ -27,7 +25,7 @@ pub(super) fn encoded(place: &Path, name: &str) -> Result<String, MetricsError> 
         }
     }
     if encoded.is_empty() {
-        // No name is encoded so, and nothing comes back from it.
+        // No name has this encoding, and it decodes to the empty name.
         encoded.push('%');
     }
     if encoded.len() > MAX_BYTES {
@@ -41,7 +39,7 @@ pub(super) fn encoded(place: &Path, name: &str) -> Result<String, MetricsError> 
     Ok(encoded)
 }
 
-/// The name that a folder stands for. What was not encoded by us is taken as it is.
+/// The name that a folder stands for. Names that we did not encode are taken as they are.
 pub(super) fn decoded(folder: &Path) -> String {
     let encoded = folder.file_name().unwrap_or_default().to_string_lossy();
     if encoded == "%" {
@@ -72,7 +70,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn harmless_names_stay_as_they_are() {
+    fn harmless_names_are_kept() {
         let check = |name: &str, expected: &str| assert_eq!(encoded(Path::new(""), name).unwrap(), expected);
         check("find_red", "find_red");
         check("run-2.b", "run-2.b");
@@ -85,7 +83,7 @@ mod tests {
     }
 
     #[test]
-    fn folders_of_others_keep_their_name() {
+    fn foreign_folder_names_are_kept() {
         let check = |folder: &str| assert_eq!(decoded(Path::new(folder)), folder);
         check("50%");
         check("%zz");
@@ -94,7 +92,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn every_name_comes_back(name in ".{0,40}") {
+        fn every_name_round_trips(name in ".{0,40}") {
             if let Ok(folder) = encoded(Path::new(""), &name) {
                 prop_assert_eq!(decoded(&Path::new("data").join(folder)), name);
             }

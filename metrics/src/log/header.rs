@@ -1,6 +1,4 @@
-//! The header of a data file: where its columns are, and by that what each cell of a row must be.
-//!
-//! Not here: reading the rows off the disk, see `data_file`.
+//! Parses the header of a data file, and checks the cells of each row by their columns.
 
 use std::path::Path;
 
@@ -15,16 +13,16 @@ use super::rows::Cells;
 use super::table::{MAX_COLUMNS, Table};
 use crate::{LogLine, MetricsError};
 
-/// Where the columns of one file are.
+/// The positions of the columns of one file.
 pub(super) struct Header<'a> {
     path: &'a Path,
     pub(super) names: Vec<String>,
     standard: [usize; STANDARD.len()],
-    /// Column of `block_subtype`, which logs of format 1.0 lack.
+    /// Position of `block_subtype`, which logs of format 1.0 lack.
     subtype: Option<usize>,
-    /// Columns that must hold numbers.
+    /// Positions of the columns that must hold numbers.
     metrics: Vec<usize>,
-    /// Columns nobody declared, each with its number in the table.
+    /// Undeclared columns, each with its number in the table.
     others: Vec<(usize, usize)>,
 }
 
@@ -74,7 +72,7 @@ impl<'a> Header<'a> {
             }
             return Err(last);
         }
-        // Every column that is needed is there.
+        // Every required column exists.
         let metrics: Vec<usize> = metrics_columns.iter().filter_map(|column| place(column)).collect();
         let is_other = |index: &usize| !metrics.contains(index) && !STANDARD.contains(&names[*index].as_str());
         let others: Vec<usize> = (0..names.len()).filter(is_other).collect();
@@ -89,7 +87,7 @@ impl<'a> Header<'a> {
         })
     }
 
-    /// Adds a row to the table, unless there is a fault in it.
+    /// Adds a row to the table, unless it has a fault.
     pub(super) fn add(
         &self,
         row: &StringRecord,
@@ -125,7 +123,7 @@ impl<'a> Header<'a> {
         }
     }
 
-    /// A cell of a row that has as many of them as the header.
+    /// A cell of a row that is as long as the header.
     fn cell<'r>(&'r self, row: &'r StringRecord, line: u64, index: usize) -> Cell<'r> {
         Cell {
             path: self.path,
@@ -135,7 +133,7 @@ impl<'a> Header<'a> {
         }
     }
 
-    /// The cells of the standard columns; nothing where one of them is wrong.
+    /// The cells of the standard columns; `None` if one of them is invalid.
     fn standard_cells<'r>(
         &self,
         cell: impl Fn(usize) -> Cell<'r>,

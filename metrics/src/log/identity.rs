@@ -1,11 +1,8 @@
-//! Whether what lies at a path is still the file or the directory that was opened there.
-//!
-//! Not here: what follows if it is not, see `log_folder` and `block_file`.
+//! Identifies files and directories, to detect if one was replaced at its path.
 
 use std::fs::Metadata;
 
-/// Which file or directory it is, whatever its name: its device and its number there. Equal for all where the system
-/// has no such numbers.
+/// The device and file id of a file or directory, whatever its name. Equal for all on systems without such numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Identity(u64, u64);
 
@@ -30,7 +27,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_file_is_itself_under_every_name_and_no_copy_of_it() {
+    fn identity_survives_other_names_but_not_copies() {
         let base = tempfile::tempdir().unwrap();
         let at = |name: &str| base.path().join(name);
         let of = |name: &str| Identity::of(&fs::metadata(at(name)).unwrap());

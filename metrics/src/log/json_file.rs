@@ -1,6 +1,4 @@
-//! The JSON files beside the rows: read with places in their errors, written whole or not at all.
-//!
-//! Not here: what stands in them, see `logger_info` and `scenario_info`.
+//! The JSON files beside the rows: errors carry the place, and writes are atomic.
 
 use std::path::Path;
 
@@ -16,11 +14,10 @@ use crate::MetricsError;
 /// Largest side file that is read, in bytes.
 pub const MAX_JSON_BYTES: u64 = 16 << 20;
 
-/// Most values in a side file: numbers, texts, lists, objects and the like. Each takes a hundred bytes or more when
-/// read.
+/// Most values in a side file: numbers, texts, lists, objects and the like. Each takes at least a hundred bytes in memory.
 pub const MAX_JSON_VALUES: u64 = 1_000_000;
 
-/// Reads a file that holds one JSON object, as documents are read.
+/// Reads a file that holds one JSON object.
 ///
 /// # Errors
 /// [`MetricsError::MissingFile`], [`MetricsError::NotAFile`], [`MetricsError::TooLarge`] over 16 MiB and over a million
@@ -54,7 +51,7 @@ pub(super) fn read_object(path: &Path, expected: &'static str) -> Result<Map<Str
     }
 }
 
-/// What is wrong with a text that was not read, in the words that documents have for it.
+/// The fault of an unreadable text, in the same words as for documents.
 pub(super) fn fault(text: &str, error: &serde_json::Error, stop: Option<Stop>) -> String {
     match (stop, twice(text)) {
         (Some(Stop::LongKey), _) => {
@@ -67,7 +64,7 @@ pub(super) fn fault(text: &str, error: &serde_json::Error, stop: Option<Stop>) -
     }
 }
 
-/// The first key that stands twice in one object, with its place.
+/// The first repeated key of an object, with its place.
 fn twice(text: &str) -> Option<((usize, usize), String)> {
     let pointer = repeated(text, 1).pop()?;
     let wanted = [Wanted {
@@ -78,7 +75,7 @@ fn twice(text: &str) -> Option<((usize, usize), String)> {
     Some((place, last_key(&pointer)))
 }
 
-/// Writes a value as indented JSON, first under a temporary name beside the target, so that a reader never sees half.
+/// Writes a value as indented JSON, first under a temporary name beside the target, so that no reader sees a partial file.
 ///
 /// # Errors
 /// [`MetricsError::Io`].
@@ -86,7 +83,7 @@ pub(crate) fn write_json(path: &Path, value: &impl Serialize) -> Result<(), Metr
     write_info(path, value, true)
 }
 
-/// As [`write_json`]; without `syncs` straight into the file, for a log that is thrown away.
+/// Like [`write_json`]; without `syncs` straight into the file, for a log that is thrown away.
 pub(super) fn write_info(path: &Path, value: &impl Serialize, syncs: bool) -> Result<(), MetricsError> {
     let mut bytes = serde_json::to_vec_pretty(value).map_err(|error| MetricsError::Io {
         path: path.to_owned(),
@@ -101,7 +98,7 @@ pub(super) fn write_info(path: &Path, value: &impl Serialize, syncs: bool) -> Re
     }
 }
 
-/// Writes bytes under a temporary name beside the target and renames. The file keeps its mode if there was one.
+/// Writes bytes under a temporary name beside the target and renames. An existing file keeps its mode.
 pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), MetricsError> {
     driftworld_atomic_files::write(path, bytes).map_err(MetricsError::io(path, "write this file"))
 }
@@ -113,7 +110,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_written_object_is_read_back_and_no_temporary_file_stays() {
+    fn written_object_reads_back_and_leaves_no_temporary_file() {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("info.json");
         write_json(&path, &serde_json::json!({"b": 1, "a": [0.1]})).unwrap();
@@ -125,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn more_values_than_any_log_has_are_not_taken_into_memory() {
+    fn too_many_values_are_refused_before_use() {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("info.json");
         fs::write(&path, format!("{{\"a\": [{}0]}}", "0,".repeat(1_200_000))).unwrap();
@@ -137,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn broken_json_is_placed_as_in_documents() {
+    fn broken_json_is_located_as_in_documents() {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("info.json");
         let check = |bytes: &[u8], expected: &str| {

@@ -1,7 +1,5 @@
-//! [`LogFolder`]: the directory of a log while it is written. It is locked against a second writer, and asked whether
-//! it still is what lies at its path.
-//!
-//! Not here: the files in it, see `block_file`.
+//! [`LogFolder`]: the directory of a log being written. Locks it against a second writer, and checks that it is still the one
+//! at its path.
 
 use std::fs::{self, File, TryLockError};
 use std::io::ErrorKind;
@@ -12,23 +10,23 @@ use super::identity::Identity;
 use super::{logger_info, scenario_info};
 use crate::MetricsError;
 
-/// A directory that is held open, so that its lock ends when the writer does, however it ends.
+/// An open directory handle, so that the lock ends with the writer, however it ends.
 #[derive(Debug)]
 pub(super) struct LogFolder {
-    /// As the user gave it, for messages.
+    /// The path as the user gave it, for messages.
     shown: PathBuf,
-    /// The same from the root: the process may turn to another directory.
+    /// The absolute path: the process may change its working directory.
     place: PathBuf,
-    /// Held, not used: the system lets go of its lock when it is closed. `None` where directories cannot be opened.
+    /// Never read: the system releases the lock when it is closed. `None` if directories cannot be opened.
     _held: Option<File>,
-    /// Of the directory that is held.
+    /// Identity of the open directory.
     identity: Option<Identity>,
-    /// The info files that it holds, with their lengths in bytes.
+    /// Its info files, with their lengths in bytes.
     info: Vec<(&'static str, u64)>,
 }
 
 impl LogFolder {
-    /// Opens and locks a directory that is there.
+    /// Opens and locks an existing directory.
     pub(super) fn lock(dir: &Path) -> Result<Self, MetricsError> {
         let place = std::path::absolute(dir).map_err(MetricsError::io(dir, "find this directory"))?;
         let held = lock(dir, File::try_lock)?;
@@ -43,7 +41,7 @@ impl LogFolder {
         })
     }
 
-    /// Notes which info files there are: those must be there at the end, too.
+    /// Records the existing info files, which must still exist at the end.
     pub(super) fn note_info_files(&mut self) {
         let names = [logger_info::FILE_NAME, scenario_info::FILE_NAME];
         self.info = names
@@ -52,22 +50,22 @@ impl LogFolder {
             .collect();
     }
 
-    /// As the user gave it.
+    /// The path as the user gave it.
     pub(super) fn shown(&self) -> &Path {
         &self.shown
     }
 
-    /// Where to find something inside.
+    /// Absolute path of something inside.
     pub(super) fn place(&self, inside: &Path) -> PathBuf {
         self.place.join(inside)
     }
 
-    /// What messages call something inside.
+    /// Path of something inside, for messages.
     pub(super) fn shown_inside(&self, inside: &Path) -> PathBuf {
         self.shown.join(inside)
     }
 
-    /// Refuses when the directory that is held is not the one at the path; `written` is what would be lost with it.
+    /// Fails if the open directory is not the one at the path; `written` is what would be lost with it.
     pub(super) fn check<'a>(&self, written: impl Iterator<Item = &'a Written>) -> Result<(), MetricsError> {
         let found = match fs::metadata(&self.place) {
             Ok(found) if !found.is_dir() => "a file",
@@ -85,7 +83,7 @@ impl LogFolder {
         })
     }
 
-    /// Refuses when an info file is gone that was there at the beginning, or has another length.
+    /// Fails if a recorded info file is missing or has another length.
     pub(super) fn check_info_files(&self) -> Result<(), MetricsError> {
         for (name, length) in &self.info {
             let (path, expected) = (self.shown.join(name), *length);
@@ -100,13 +98,13 @@ impl LogFolder {
         Ok(())
     }
 
-    /// The length of a file of it in bytes; `None` where there is no file.
+    /// The length of a file in it, in bytes; `None` without such a file.
     fn length_of(&self, name: &str) -> Option<u64> {
         let found = fs::metadata(self.place.join(name)).ok()?;
         found.is_file().then_some(found.len())
     }
 
-    /// Makes directories inside, one in the other, where they are missing; never the log's directory itself.
+    /// Creates missing nested directories inside, but never the log's directory itself.
     pub(super) fn make(&self, inside: &Path) -> Result<(), MetricsError> {
         let mut path = self.place.clone();
         for part in inside {
@@ -123,22 +121,22 @@ impl LogFolder {
     }
 }
 
-/// Keeps a second writer away from a directory, as long as the file that comes back is open. Where the system has no
-/// such locks, there is none.
+/// Locks a directory against a second writer while the returned file is open. On systems without such locks, there is no
+/// protection.
 ///
-/// It is the directory that is locked: it is there before any file of the log, and no file is put in its place. Only
-/// where locks are advice: elsewhere they would keep readers away, too.
+/// Locks the directory because it exists before any file of the log, and no file replaces it. Only where locks are advisory:
+/// elsewhere they would block readers, too.
 ///
-/// `try_lock`: [`File::try_lock`], or [`File::try_lock_shared`], which keeps writers away, but not others that only read.
+/// `try_lock`: [`File::try_lock`], or [`File::try_lock_shared`], which excludes writers but allows other readers.
 pub(super) fn lock(dir: &Path, try_lock: fn(&File) -> Result<(), TryLockError>) -> Result<Option<File>, MetricsError> {
     if !cfg!(unix) {
         return Ok(None);
     }
-    // A folder to be locked, not by driftworld-files: that opens regular files only.
+    // A folder to lock, not by driftworld-files: that opens regular files only.
     let file = File::open(dir).map_err(MetricsError::io(dir, "open this directory"))?;
     match try_lock(&file) {
         Err(TryLockError::WouldBlock) => Err(MetricsError::InUse(dir.to_owned())),
-        // Held all the same, to be known again.
+        // Kept open all the same, for its identity.
         Ok(()) | Err(TryLockError::Error(_)) => Ok(Some(file)),
     }
 }

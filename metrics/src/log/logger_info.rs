@@ -1,6 +1,4 @@
-//! `logger_info.json`: which columns of a log are metrics, and in which version of the format it is written.
-//!
-//! Not here: what the run was about, see `scenario_info`.
+//! `logger_info.json`: the metrics columns of a log, and the version of its format.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -14,14 +12,14 @@ use super::json_file;
 use super::table::MAX_COLUMNS;
 use crate::MetricsError;
 
-/// Version of the log format that is written. 1.0 is read too.
+/// The version of the log format that is written. 1.0 can be read, too.
 pub const LOG_FORMAT_VERSION: &str = "1.1";
 
 pub(super) const FILE_NAME: &str = "logger_info.json";
 const EXPECTED_FILE: &str = "a JSON object with the list metrics_columns";
 const EXPECTED_COLUMNS: &str = "a list of at least one name, each once and none a standard column";
 
-/// Which columns of a log are metrics.
+/// The metrics columns of a log.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct LoggerInfo {
     metrics_columns: Vec<String>,
@@ -32,7 +30,7 @@ impl LoggerInfo {
     /// Info for a new log with these metrics columns.
     ///
     /// # Errors
-    /// [`MetricsError::LoggerInfo`] for an empty list, an empty name, a name twice, or the name of a standard column.
+    /// [`MetricsError::LoggerInfo`] for an empty list, an empty name, a repeated name, or the name of a standard column.
     pub fn new(metrics_columns: impl IntoIterator<Item = impl Into<String>>) -> Result<Self, MetricsError> {
         let metrics_columns: Vec<String> = metrics_columns.into_iter().map(Into::into).collect();
         check_columns(&metrics_columns)?;
@@ -52,7 +50,7 @@ impl LoggerInfo {
         &self.log_format_version
     }
 
-    /// Reads the file of a log directory. A file that does not say its version is of 1.0, which did not ask for it.
+    /// Reads the file from a log directory. A file without a version is of 1.0, which did not require it.
     pub(super) fn read(dir: &Path) -> Result<Self, MetricsError> {
         let object = json_file::read_object(&dir.join(FILE_NAME), EXPECTED_FILE)?;
         let columns = object.get("metrics_columns").ok_or_else(|| wrong_columns("nothing"))?;
@@ -101,7 +99,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_log_without_usable_metrics_columns_is_refused() {
+    fn log_without_usable_metrics_columns_is_refused() {
         let check = |columns: &[&str], found: &str| {
             let message = LoggerInfo::new(columns.iter().copied()).unwrap_err().to_string();
             assert_eq!(
@@ -116,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn versions_beyond_ours_are_refused_and_silence_means_the_first() {
+    fn newer_versions_are_refused_and_missing_version_means_1_0() {
         let dir = tempfile::tempdir().unwrap();
         let read = |text: &str| {
             std::fs::write(dir.path().join(FILE_NAME), text).unwrap();

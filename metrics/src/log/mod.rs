@@ -1,6 +1,4 @@
-//! Experience logs on disk, format 1.1 of l2logger: what a record is, how it is written, how it is read.
-//!
-//! Not here: what the numbers mean; that is `lifetime` and `score`.
+//! Experience logs on disk in l2logger's format 1.1: records, writing and reading.
 
 mod aggregate;
 mod begun;

@@ -1,6 +1,4 @@
-//! A whole log: its two info files and the rows of all its workers, in order.
-//!
-//! Not here: how one data file is read, see `data_file`; the rules of a log, see `validation`.
+//! Reads a whole log: its two info files and the rows of all its workers, in order.
 
 use std::path::Path;
 
@@ -13,37 +11,36 @@ use super::validation::Check;
 use super::warning::LogWarning;
 use crate::MetricsError;
 
-/// A log as it was read.
+/// A log that was read.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Log {
     /// Name of the log's directory.
     pub run_id: String,
-    /// Which columns are metrics.
+    /// The metrics columns.
     pub logger_info: LoggerInfo,
-    /// What the run was about.
+    /// The description of the run.
     pub scenario_info: ScenarioInfo,
     /// All rows of all workers, by experience number, then block number, then the order of files and lines.
     pub rows: Rows,
-    /// What was odd about it.
+    /// Irregularities found while reading.
     pub warnings: Vec<LogWarning>,
 }
 
-/// Reads the log in a directory: format 1.0 or 1.1, written by us or by l2logger, by one worker or by several. Faults are those of
-/// [`validate_log`](crate::validate_log), which lists them all; those that scores do not depend on are warnings here.
+/// Reads the log in a directory: format 1.0 or 1.1, written by us or by l2logger, by one worker or by several. Faults are those
+/// of [`validate_log`](crate::validate_log), which lists them all; those that do not affect scores are warnings here.
 ///
-/// Columns of words that `logger_info.json` does not declare are left out; see [`read_log_with_texts`]. Data files may be links, and so
-/// may the directories of workers and blocks.
+/// Text columns that `logger_info.json` does not declare are left out; see [`read_log_with_texts`]. Data files may be links,
+/// and so may the directories of workers and blocks.
 ///
 /// # Errors
-/// One of [`MetricsError`]'s reading variants, each naming file, line and column where there are such. Never panics,
-/// whatever the files hold; at most [`MAX_RECORDS`](crate::MAX_RECORDS) rows of [`MAX_COLUMNS`](crate::MAX_COLUMNS)
-/// columns, [`MAX_LOG_FILES`](crate::MAX_LOG_FILES) files and [`MAX_FILE_BYTES`](crate::MAX_FILE_BYTES) per file are read.
+/// One of [`MetricsError`]'s reading variants, with file, line and column if known. Never panics, whatever the files hold;
+/// reads at most [`MAX_RECORDS`](crate::MAX_RECORDS) rows of [`MAX_COLUMNS`](crate::MAX_COLUMNS) columns,
+/// [`MAX_LOG_FILES`](crate::MAX_LOG_FILES) files and [`MAX_FILE_BYTES`](crate::MAX_FILE_BYTES) per file.
 pub fn read_log(dir: impl AsRef<Path>) -> Result<Log, MetricsError> {
     read(dir.as_ref(), Texts::Leave)
 }
 
-/// The same with all columns, so that nothing of a log is lost: those of words that nobody declared are in
-/// [`Rows::text`], too.
+/// Like [`read_log`], but lossless: undeclared text columns are read, too, into [`Rows::text`].
 ///
 /// # Errors
 /// Those of [`read_log`].
@@ -63,7 +60,7 @@ fn read(dir: &Path, texts: Texts) -> Result<Log, MetricsError> {
     })
 }
 
-/// The directory's own name; where the path ends in `..` or is `.`, the name it stands for if there is one.
+/// The directory's own name; if the path ends in `..` or is `.`, the name that it resolves to, if there is one.
 fn run_id(dir: &Path) -> String {
     let name = dir.file_name().map(ToOwned::to_owned);
     let name = name.or_else(|| dir.canonicalize().ok()?.file_name().map(ToOwned::to_owned));

@@ -1,6 +1,4 @@
-//! One row of a log: what happened in one experience.
-//!
-//! Not here: the rules between records (order, one completion each); the writer keeps those.
+//! One row of a log: the result of one experience.
 
 use std::sync::Arc;
 
@@ -10,7 +8,7 @@ use serde_json::{Map, Value};
 use super::timestamp::Timestamp;
 use crate::choice::choice;
 
-/// Worker that records name when there is only one.
+/// Worker id of records if there is only one worker.
 pub const DEFAULT_WORKER: &str = "worker-default";
 
 /// Parameters of a task, a JSON object. Shared, because all experiences of a block usually have the same.
@@ -27,11 +25,11 @@ choice! {
 }
 
 choice! {
-    /// Whether the agent consolidates what it learned, without new experience.
+    /// Whether the agent is awake, or consolidates what it learned without new experience.
     BlockSubtype, "block subtype" {
-        /// Awake: the usual case, and what logs of format 1.0 mean.
+        /// Awake: the default, and the only value in logs of format 1.0.
         Wake = "wake",
-        /// Asleep. Where a log has sleep blocks, its wake evaluations are left out of most metrics.
+        /// Asleep. In logs with sleep blocks, wake evaluations are left out of most metrics.
         Sleep = "sleep",
     }
 }
@@ -39,7 +37,7 @@ choice! {
 choice! {
     /// Whether a row closes its experience.
     ExpStatus, "experience status" {
-        /// The experience is over; exactly one row of each experience says so, and only that row is scored.
+        /// The experience is finished; exactly one row of each experience says so, and only that row is scored.
         Complete = "complete",
         /// An intermediate row.
         Incomplete = "incomplete",
@@ -49,11 +47,11 @@ choice! {
 /// One row of a log.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Record {
-    /// Number of the block, from 0; never falls within a log.
+    /// Number of the block, from 0; never decreases within a log.
     pub block_num: u64,
-    /// Number of the experience (episode) within the whole lifetime, from 0; never falls within a log.
+    /// Number of the experience (episode) within the whole lifetime, from 0; never decreases within a log.
     pub exp_num: u64,
-    /// Who gathered the experience: letters, digits, `_`, `-` and `.`; default [`DEFAULT_WORKER`].
+    /// The worker that gathered the experience: letters, digits, `_`, `-` and `.`; default [`DEFAULT_WORKER`].
     pub worker_id: String,
     /// Learning or evaluation.
     pub block_type: BlockType,
@@ -65,12 +63,12 @@ pub struct Record {
     pub task_params: TaskParams,
     /// Complete (default) or incomplete.
     pub exp_status: ExpStatus,
-    /// When the experience ended.
+    /// End of the experience.
     pub timestamp: Timestamp,
     /// The numbers: at least every metrics column of the log, the same names in every record. NaN means "no value".
     pub metrics: IndexMap<String, f64>,
-    /// Words in columns of their own, beside the numbers: the same names in every record, none that a number has. They are not declared
-    /// among the metrics columns.
+    /// Text columns beside the numbers: the same names in every record, distinct from the numbers' names. They are not declared
+    /// as metrics columns.
     pub texts: IndexMap<String, String>,
 }
 
@@ -98,28 +96,28 @@ impl Record {
         }
     }
 
-    /// The same record with one more number, or another value for it.
+    /// This record with one more number, or another value for it.
     #[must_use]
     pub fn with_metric(mut self, name: impl Into<String>, value: f64) -> Self {
         self.metrics.insert(name.into(), value);
         self
     }
 
-    /// The same record with one more column of words, or another word in it.
+    /// This record with one more text column, or another text in it.
     #[must_use]
     pub fn with_text(mut self, name: impl Into<String>, text: impl Into<String>) -> Self {
         self.texts.insert(name.into(), text.into());
         self
     }
 
-    /// The same record with these task parameters.
+    /// This record with these task parameters.
     #[must_use]
     pub fn with_task_params(mut self, task_params: impl Into<TaskParams>) -> Self {
         self.task_params = task_params.into();
         self
     }
 
-    /// The same record by this worker.
+    /// This record by this worker.
     #[must_use]
     pub fn with_worker(mut self, worker_id: impl Into<String>) -> Self {
         self.worker_id = worker_id.into();
@@ -127,13 +125,13 @@ impl Record {
     }
 }
 
-/// Whether a worker's name may be one: it becomes the name of a directory.
+/// Whether a worker id is valid: it becomes the name of a directory.
 pub(super) fn is_worker_id(text: &str) -> bool {
     let allowed = |byte: u8| byte.is_ascii_alphanumeric() || matches!(byte, b'_' | b'-' | b'.');
     !text.is_empty() && text.bytes().all(allowed) && text.bytes().any(|byte| byte != b'.')
 }
 
-/// Whether a task's name keeps to `task_variant`, letters and digits on both sides.
+/// Whether a task's name follows `task_variant`, with letters and digits on both sides.
 pub(super) fn is_conventional_task_name(text: &str) -> bool {
     let word = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_alphanumeric());
     text.split_once('_')
@@ -145,7 +143,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn worker_names_are_harmless_directory_names() {
+    fn worker_ids_are_safe_directory_names() {
         let check = |text: &str, expected: bool| assert_eq!(is_worker_id(text), expected, "{text:?}");
         check("worker-default", true);
         check("driver.py_0", true);

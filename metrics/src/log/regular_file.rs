@@ -1,7 +1,5 @@
-//! What is to be read must be a regular file: a pipe would be waited for without an end, a device may never end. How
-//! files are opened is `driftworld-files`'; here its errors become those of logs.
-//!
-//! Not here: reading what is in them.
+//! Opens regular files only: reading a pipe could wait for ever, and a device may never end. Turns the errors of
+//! `driftworld-files` into those of logs.
 
 use std::path::Path;
 
@@ -9,7 +7,7 @@ use driftworld_files::{FileError, Opened};
 
 use crate::MetricsError;
 
-/// Refuses what is there, but is no regular file; links are followed. Where there is nothing, opening it says so.
+/// Fails if the path exists but is not a regular file; links are followed. A missing file is reported when it is opened.
 pub(super) fn check(path: &Path) -> Result<(), MetricsError> {
     match driftworld_files::check(path) {
         Err(error @ FileError::NotAFile { .. }) => Err(as_metrics_error(error)),
@@ -22,7 +20,7 @@ pub(super) fn open(path: &Path, limit: u64) -> Result<Opened, MetricsError> {
     driftworld_files::open(path, limit).map_err(as_metrics_error)
 }
 
-/// The text of a file of at most `limit`; `None` where there is nothing.
+/// The text of a file of at most `limit` bytes; `None` if there is no file.
 pub(super) fn text(path: &Path, limit: u64) -> Result<Option<String>, MetricsError> {
     match driftworld_files::text(path, limit) {
         Ok(text) => Ok(Some(text)),
@@ -36,7 +34,7 @@ fn as_metrics_error(error: FileError) -> MetricsError {
         FileError::Unreadable { path, source } => MetricsError::io(&path, "read this file")(source),
         FileError::NotAFile { path, found } => MetricsError::NotAFile {
             path,
-            // The word that all messages about logs have for it.
+            // All messages about logs say "directory".
             found: if found == "a folder" { "a directory" } else { found },
         },
         FileError::NotText { path, at, line } => MetricsError::Json {
@@ -54,7 +52,7 @@ fn as_metrics_error(error: FileError) -> MetricsError {
     }
 }
 
-/// The error for a link that leads nowhere.
+/// The error for a broken link.
 pub(super) fn lost_link(path: &Path) -> MetricsError {
     MetricsError::NotAFile {
         path: path.to_owned(),
@@ -67,7 +65,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_no_file_is_named() {
+    fn irregular_file_is_named() {
         let base = tempfile::tempdir().unwrap();
         let found = |path: &Path| match check(path) {
             Err(MetricsError::NotAFile { found, .. }) => Some(found),

@@ -1,4 +1,4 @@
-//! Reopens a log whose run was interrupted. Writing is in `writer`; where the run goes on, `curriculum`'s journal says.
+//! Reopens a log whose run was interrupted.
 
 use std::collections::BTreeMap;
 use std::fs::{self, OpenOptions};
@@ -18,17 +18,17 @@ use super::{begun, columns, data_file, data_files};
 use crate::MetricsError;
 
 impl LogWriter {
-    /// Continues the log in `dir`, which was written in format 1.1. A last line that was torn when the run stopped is
-    /// removed. Records that follow must have the metrics of those before, and numbers that are not smaller.
+    /// Continues the log in `dir`, which must be of format 1.1. Removes a last line that was torn when the run stopped. New
+    /// records must have the metrics of earlier ones, and numbers that do not decrease.
     ///
-    /// The log may have no record yet; its `logger_info.json` must be there.
+    /// The log may have no record yet; its `logger_info.json` must exist.
     ///
     /// # Errors
-    /// Those of [`read_log`](crate::read_log), [`MetricsError::InUse`] while another writer has it, and [`MetricsError::OtherColumns`] for a data file of format 1.0 or
-    /// one with columns of its own.
+    /// Those of [`read_log`](crate::read_log), [`MetricsError::InUse`] while another writer has it, and
+    /// [`MetricsError::OtherColumns`] for a data file of format 1.0 or one with columns of its own.
     pub fn resume(dir: impl AsRef<Path>) -> Result<Self, MetricsError> {
         let dir = dir.as_ref();
-        // What may not be a directory is reported first.
+        // Reports a path that is no directory first.
         data_files::find(dir)?;
         let folder = LogFolder::lock(dir)?;
         let files = data_files::find(dir)?;
@@ -60,7 +60,7 @@ impl LogWriter {
     }
 }
 
-/// The rows of the largest experience number, of which there are few, by block number.
+/// The rows of the largest experience number, which are few, by block number.
 fn latest(rows: &Rows) -> Vec<usize> {
     let last = rows.exp_nums().iter().max();
     let mut latest: Vec<usize> = (0..rows.len())
@@ -81,7 +81,7 @@ fn metrics_of(header: &[String]) -> Vec<String> {
     metrics
 }
 
-/// Refuses a file whose header is not the one that the log's next record would be written under.
+/// Fails if a file's header differs from that of the log's next record.
 fn check_header(path: &Path, header: &[String], metrics: &[String]) -> Result<(), MetricsError> {
     let expected = columns::header(metrics);
     if header == expected {
@@ -94,11 +94,10 @@ fn check_header(path: &Path, header: &[String], metrics: &[String]) -> Result<()
     })
 }
 
-/// Cuts a file after its last whole row. Returns how many bytes are left; a file without a row, not even a header, is
-/// removed.
+/// Truncates a file after its last whole row. Returns the remaining bytes; a file without a row, not even a header, is removed.
 ///
-/// What is cut off is a part of one row: where a quote was left open and swallowed other rows, or lines end otherwise than ours,
-/// nothing is touched.
+/// Only part of a single row is removed: if an open quote swallowed other rows, or line ends differ from ours, the file is left
+/// unchanged.
 fn remove_torn_row(path: &Path) -> Result<u64, MetricsError> {
     let failed = || MetricsError::io(path, "remove a torn last line of this file");
     let file = OpenOptions::new().read(true).write(true).open(path).map_err(failed())?;

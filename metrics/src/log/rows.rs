@@ -1,6 +1,4 @@
-//! The rows of a log, one column per field, and a view of each row.
-//!
-//! Not here: where the rows come from, see `data_file`; a row that stands for itself, see `record`.
+//! The rows of a log, stored by column, with a view of each row.
 
 use indexmap::IndexMap;
 
@@ -10,8 +8,8 @@ use super::timestamp::Timestamp;
 
 /// The rows of a log, of all its workers, by column. Every column has a value for each row.
 ///
-/// Two tables are equal when they have the same columns and their rows are equal one by one; a missing number (NaN) equals
-/// another.
+/// Two tables are equal if they have the same columns and equal rows in the same order; missing numbers (NaN) are equal to each
+/// other.
 ///
 /// ```
 /// # use driftworld_metrics::{BlockType, LogWriter, LoggerInfo, Record, ScenarioInfo, Timestamp, read_log};
@@ -43,12 +41,12 @@ pub struct Rows {
     pub(super) texts: IndexMap<String, SharedColumn<String>>,
 }
 
-/// The cells of a row that every log has and that are small.
+/// The small cells that every row has.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cells {
     pub(super) block_num: u64,
     pub(super) exp_num: u64,
-    /// Numbers of worker, task and parameters in their columns.
+    /// Ids of worker, task and parameters in their columns.
     pub(super) shared: [u32; 3],
     pub(super) block_type: BlockType,
     pub(super) block_subtype: BlockSubtype,
@@ -62,12 +60,12 @@ impl Rows {
         self.exp_nums.len()
     }
 
-    /// Whether there are no rows: a log of which only headers were written.
+    /// Whether there are no rows: only headers were written.
     pub fn is_empty(&self) -> bool {
         self.exp_nums.is_empty()
     }
 
-    /// A row, counted from 0; `None` beyond the last.
+    /// A row by index, from 0; `None` beyond the last.
     pub fn get(&self, index: usize) -> Option<Row<'_>> {
         (index < self.len()).then_some(Row { rows: self, index })
     }
@@ -102,7 +100,7 @@ impl Rows {
         &self.block_subtypes
     }
 
-    /// Task of each row, as it was logged.
+    /// Task of each row, as logged.
     pub fn task_names(&self) -> &SharedColumn<String> {
         &self.task_names
     }
@@ -122,29 +120,28 @@ impl Rows {
         &self.timestamps
     }
 
-    /// The columns of numbers: those that `logger_info.json` declares, in its order, then those that nobody declared and in
-    /// which nothing but numbers stands, in the order in which they were met.
+    /// The numeric columns: those declared in `logger_info.json`, in its order, then undeclared ones that hold only numbers, in
+    /// the order of their first occurrence.
     pub fn metric_names(&self) -> impl ExactSizeIterator<Item = &str> {
         self.metrics.keys().map(String::as_str)
     }
 
-    /// A column of numbers, NaN where there is none; `None` where the log has no such column.
+    /// A numeric column, NaN for missing values; `None` without such a column.
     pub fn metric(&self, name: &str) -> Option<&[f64]> {
         self.metrics.get(name).map(Vec::as_slice)
     }
 
-    /// The columns of words that nobody declared; none unless they were asked for, see
-    /// [`read_log_with_texts`](crate::read_log_with_texts).
+    /// The undeclared text columns; none unless requested, see [`read_log_with_texts`](crate::read_log_with_texts).
     pub fn text_names(&self) -> impl ExactSizeIterator<Item = &str> {
         self.texts.keys().map(String::as_str)
     }
 
-    /// A column of words; `None` where there is no such column.
+    /// A text column; `None` without such a column.
     pub fn text(&self, name: &str) -> Option<&SharedColumn<String>> {
         self.texts.get(name)
     }
 
-    /// A table of records that all have the same metrics, for tests of what is made from rows.
+    /// A table of records that all have the same metrics, for tests.
     #[cfg(test)]
     pub(crate) fn from_records(records: &[Record]) -> Self {
         let mut rows = Self::default();
@@ -181,14 +178,13 @@ impl Rows {
         self.timestamps.push(cells.timestamp);
     }
 
-    /// Sorts by experience number, then block number, and leaves what is equal in its order. Returns where each row was before;
-    /// `None` where nothing moved.
+    /// Sorts by experience number, then block number, stably. Returns the old index of each row; `None` if nothing moved.
     pub(super) fn sort(&mut self) -> Option<Vec<u32>> {
         let key = |row: usize| (self.exp_nums[row], self.block_nums[row]);
         if (1..self.len()).all(|row| key(row - 1) <= key(row)) {
             return None;
         }
-        // Rows are bounded far below what a u32 counts.
+        // The number of rows is far below the range of a u32.
         let mut order: Vec<u32> = (0..self.len() as u32).collect();
         order.sort_by_key(|&row| key(row as usize));
         reorder(&mut self.block_nums, &order);
@@ -219,7 +215,7 @@ impl PartialEq for Rows {
     }
 }
 
-/// One row of a log, seen where it stands.
+/// A view of one row of a log.
 #[derive(Clone, Copy)]
 pub struct Row<'a> {
     rows: &'a Rows,
@@ -242,7 +238,7 @@ impl<'a> Row<'a> {
         self.rows.exp_nums[self.index]
     }
 
-    /// Who gathered the experience.
+    /// The worker that gathered the experience.
     pub fn worker_id(self) -> &'a str {
         self.rows.workers.of(self.index)
     }
@@ -257,7 +253,7 @@ impl<'a> Row<'a> {
         self.rows.block_subtypes[self.index]
     }
 
-    /// Name of the task, as it was logged.
+    /// Name of the task, as logged.
     pub fn task_name(self) -> &'a str {
         self.rows.task_names.of(self.index)
     }
@@ -272,34 +268,34 @@ impl<'a> Row<'a> {
         self.rows.exp_statuses[self.index]
     }
 
-    /// When the experience ended.
+    /// End of the experience.
     pub fn timestamp(self) -> Timestamp {
         self.rows.timestamps[self.index]
     }
 
-    /// A number of the row, NaN where it is missing; `None` where the log has no such column.
+    /// A number of the row, NaN if missing; `None` without such a column.
     pub fn metric(self, name: &str) -> Option<f64> {
         Some(self.rows.metrics.get(name)?[self.index])
     }
 
-    /// All numbers of the row with the names of their columns.
+    /// All numbers of the row with their column names.
     pub fn metrics(self) -> impl ExactSizeIterator<Item = (&'a str, f64)> {
         let columns = self.rows.metrics.iter();
         columns.map(move |(name, numbers)| (name.as_str(), numbers[self.index]))
     }
 
-    /// A word of the row, empty where it is missing; `None` where there is no such column.
+    /// A text of the row, empty if missing; `None` without such a column.
     pub fn text(self, name: &str) -> Option<&'a str> {
         Some(self.rows.texts.get(name)?.of(self.index))
     }
 
-    /// All words of the row with the names of their columns.
+    /// All texts of the row with their column names.
     pub fn texts(self) -> impl ExactSizeIterator<Item = (&'a str, &'a str)> {
         let columns = self.rows.texts.iter();
         columns.map(move |(name, texts)| (name.as_str(), texts.of(self.index).as_str()))
     }
 
-    /// The row as a record of its own, ready to be written to another log. Columns of words stay behind: records have none.
+    /// The row as a separate record, ready to be written to another log. Text columns are not copied.
     pub fn to_record(self) -> Record {
         let metrics = self.metrics().map(|(name, number)| (name.to_owned(), number));
         Record {

@@ -1,6 +1,4 @@
-//! `scenario_info.json`: how hard a run was, what kind it was, and whatever else its author noted.
-//!
-//! Not here: the columns, see `logger_info`.
+//! `scenario_info.json`: the complexity, difficulty and type of a scenario, and its author's other notes.
 
 use std::path::Path;
 use std::str::FromStr;
@@ -57,25 +55,25 @@ choice! {
     }
 }
 
-/// What a run was about. Every field is optional; the evaluation carries the first three into its results.
+/// The description of a run. Every field is optional; the evaluation copies the first three into its results.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct ScenarioInfo {
-    /// How complex the scenario is.
+    /// Complexity of the scenario.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub complexity: Option<Complexity>,
-    /// How hard its tasks are.
+    /// Difficulty of its tasks.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub difficulty: Option<Difficulty>,
-    /// How it orders them.
+    /// Order of its tasks.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub scenario_type: Option<ScenarioType>,
-    /// Everything else, as its author wrote it: author, version, the scenario itself, …
+    /// All other fields, as written by the author: author, version, the scenario itself, …
     #[serde(flatten)]
     pub extra: Map<String, Value>,
 }
 
 impl ScenarioInfo {
-    /// Reads the file of a log directory. What cannot be used becomes a warning: the rows do not depend on it.
+    /// Reads the file from a log directory. Unusable content becomes a warning: the rows do not depend on it.
     pub(super) fn read(dir: &Path, warnings: &mut Vec<LogWarning>) -> Result<Self, MetricsError> {
         let mut extra = match json_file::read_object(&dir.join(FILE_NAME), "a JSON object") {
             Ok(object) => object,
@@ -95,7 +93,7 @@ impl ScenarioInfo {
 }
 
 impl ScenarioInfo {
-    /// Warns of each of the three words that is not there.
+    /// Warns of each of the three fields that is missing.
     pub(super) fn warn_of_missing(&self, warnings: &mut Vec<LogWarning>) {
         let mut warn = |field: &'static str, is_missing: bool, expected: fn() -> String| {
             let reported = |warning: &LogWarning| matches!(warning, LogWarning::ScenarioInfo { field: other, .. } if *other == field);
@@ -107,7 +105,7 @@ impl ScenarioInfo {
                 });
             }
         };
-        // A scenario of ours may say them; one that does not was left so by its author.
+        // Our own scenarios may give them; their author left out those that are missing.
         let ours = self
             .extra
             .get("scenario")
@@ -118,7 +116,7 @@ impl ScenarioInfo {
     }
 }
 
-/// Takes a field out of the object. A value that is none of the words is warned about and left out.
+/// Takes a field out of the object. Warns about and drops a value that is not an accepted word.
 fn take_word<T: FromStr>(
     field: &'static str,
     object: &mut Map<String, Value>,
@@ -142,7 +140,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn strange_words_warn_and_the_rest_is_kept() {
+    fn unknown_words_warn_and_the_rest_is_kept() {
         let dir = tempfile::tempdir().unwrap();
         let text = r#"{"author": "me", "complexity": "1-LOW", "difficulty": "mild", "scenario_type": 3}"#;
         std::fs::write(dir.path().join(FILE_NAME), text).unwrap();

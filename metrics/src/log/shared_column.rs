@@ -1,16 +1,14 @@
-//! A column of few different values over many rows: each value is kept once, and a row has its number.
-//!
-//! Not here: which columns there are, see `rows`.
+//! A column with few different values over many rows: each value is stored once, and rows refer to it by id.
 
 use std::collections::HashMap;
 
-/// So many different texts are remembered; a log has few, and one that does not is read all the same.
+/// Most different texts remembered; a log has few, but one with more can still be read.
 const REMEMBERED: usize = 65_536;
 
-/// A column that keeps each of its values once.
+/// A column that stores each of its values once.
 ///
-/// A value may stand in [`values`](Self::values) twice where a log has very many different ones, so that two rows with the
-/// same number are equal and two rows with different ones usually are not.
+/// [`values`](Self::values) may contain a value twice if a log has very many different ones, so rows with the same id are
+/// equal, and rows with different ids usually are not.
 #[derive(Debug, Clone, Default)]
 pub struct SharedColumn<T> {
     values: Vec<T>,
@@ -33,7 +31,7 @@ impl<T> SharedColumn<T> {
         &self.values[self.ids[row] as usize]
     }
 
-    /// Adds a value, whether it is there or not.
+    /// Adds a value, even if it exists already.
     #[cfg(test)]
     pub(super) fn add(&mut self, value: T) {
         self.values.push(value);
@@ -48,12 +46,12 @@ impl<T> SharedColumn<T> {
     }
 }
 
-/// Puts a column into another order: row `n` becomes what row `order[n]` was.
+/// Reorders a column: row `n` becomes the former row `order[n]`.
 pub(super) fn reorder<T: Copy>(column: &mut Vec<T>, order: &[u32]) {
     *column = order.iter().map(|&row| column[row as usize]).collect();
 }
 
-/// Finds the number of a text that was there before, fastest where it is the text of the row before.
+/// Finds the id of a text seen before; fastest if it repeats the previous row's.
 #[derive(Debug, Default)]
 pub(super) struct Seen {
     ids: HashMap<String, u32>,
@@ -61,7 +59,7 @@ pub(super) struct Seen {
 }
 
 impl Seen {
-    /// The number of the value that a text stands for; `make` makes the value of a text that is new.
+    /// The id of a text's value; `make` creates the value of a new text.
     pub(super) fn id<T, E>(
         &mut self,
         column: &mut SharedColumn<T>,
@@ -77,7 +75,7 @@ impl Seen {
             id
         } else {
             let value = make(text)?;
-            // Rows are bounded far below what a u32 counts, and each adds one value at most.
+            // The number of rows is far below the range of a u32, and each adds at most one value.
             let id = column.values.len() as u32;
             column.values.push(value);
             if self.ids.len() == REMEMBERED {
@@ -99,7 +97,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn equal_texts_share_one_value_and_rows_keep_theirs_in_any_order() {
+    fn equal_texts_share_a_value_and_survive_reordering() {
         let (mut column, mut seen) = (SharedColumn::default(), Seen::default());
         for text in ["a", "a", "b", "a"] {
             let id = seen.id(&mut column, text, |text| Ok::<_, ()>(text.to_owned())).unwrap();

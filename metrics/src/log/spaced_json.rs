@@ -1,6 +1,4 @@
 //! JSON on one line with a space after `:` and `,`, as l2logger's `json.dumps` writes task parameters.
-//!
-//! Not here: pretty JSON for side files.
 
 use std::io::{self, Write};
 
@@ -23,7 +21,7 @@ impl serde_json::ser::Formatter for Spaced {
     }
 }
 
-/// The object as text, keys in their own order.
+/// The object as text, with its keys in their own order.
 pub(crate) fn spaced_json(object: &Map<String, Value>) -> String {
     let mut text = Vec::new();
     let mut serializer = serde_json::Serializer::with_formatter(&mut text, Spaced);
@@ -38,7 +36,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn spaces_stand_where_python_puts_them() {
+    fn spaces_are_where_python_puts_them() {
         let check = |text: &str| {
             let object: Map<String, Value> = serde_json::from_str(text).unwrap();
             assert_eq!(spaced_json(&object), text);

@@ -1,5 +1,4 @@
-//! The data folder of single-task experts on disk: copying a log into it, naming, listing and removing runs. What is stored and
-//! found is in `ste_store.rs`.
+//! The data folder of single-task experts on disk: copies logs into it, and names, lists and removes runs.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,14 +8,14 @@ use driftworld_atomic_files::ScratchFolder;
 use super::{data_files, logger_info, scenario_info};
 use crate::MetricsError;
 
-/// What folders are called while they are filled or taken away. What a killed process leaves begins so, and is never read.
+/// Prefix of folders that are being filled or removed. Killed processes leave such folders behind; they are never read.
 pub(super) const TEMPORARY: &str = ".storing-";
 
-/// Whatever lies in a log's directory is read as a part of it.
+/// Refuses a data folder inside a log's directory: everything there is read as part of the log.
 pub(super) fn check_outside(data_folder: &Path, log_dir: &Path) -> Result<(), MetricsError> {
     let place = std::path::absolute(data_folder).map_err(MetricsError::io(data_folder, "find this directory"))?;
     let log = (log_dir.canonicalize()).map_err(MetricsError::io(log_dir, "find this directory"))?;
-    // The folder may not be there yet, but what it will lie in is.
+    // The folder may not exist yet, but one of its ancestors does.
     let there = place.ancestors().find_map(|ancestor| ancestor.canonicalize().ok());
     if there.is_some_and(|there| there.starts_with(&log)) {
         return Err(MetricsError::bad_option(
@@ -28,7 +27,7 @@ pub(super) fn check_outside(data_folder: &Path, log_dir: &Path) -> Result<(), Me
     Ok(())
 }
 
-/// Copies what makes up a log.
+/// Copies the files of a log.
 pub(super) fn copy(log_dir: &Path, data_files: &[PathBuf], to: &Path) -> Result<(), MetricsError> {
     let info = [logger_info::FILE_NAME, scenario_info::FILE_NAME].map(|name| log_dir.join(name));
     for file in info.iter().filter(|file| file.exists()).chain(data_files) {
@@ -36,8 +35,8 @@ pub(super) fn copy(log_dir: &Path, data_files: &[PathBuf], to: &Path) -> Result<
         let target = to.join(inside);
         let parent = target.parent().unwrap_or(to);
         fs::create_dir_all(parent).map_err(MetricsError::io(parent, "make this directory"))?;
-        // Not the system's copy: that takes the mode along, whatever the umask says.
-        // What was just found, not by driftworld-files: it is a file of the log.
+        // Not the system's copy, which would keep the mode and ignore the umask. Files just found, not by driftworld-files:
+        // they are the log's own.
         let copied = fs::File::open(file).and_then(|mut from| {
             let mut to = fs::File::create(&target)?;
             std::io::copy(&mut from, &mut to)?;
@@ -48,7 +47,7 @@ pub(super) fn copy(log_dir: &Path, data_files: &[PathBuf], to: &Path) -> Result<
     Ok(())
 }
 
-/// Puts a finished run under its name, or with the first number behind it that is free.
+/// Renames a finished run to its name, or appends the first free number.
 pub(super) fn give_name(new: &Path, task_dir: &Path, run: &str) -> Result<PathBuf, MetricsError> {
     let names = std::iter::once(run.to_owned()).chain((2..).map(|number: u32| format!("{run}-{number}")));
     for dir in names.map(|name| task_dir.join(name)) {
@@ -57,7 +56,7 @@ pub(super) fn give_name(new: &Path, task_dir: &Path, run: &str) -> Result<PathBu
         }
         match fs::rename(new, &dir) {
             Ok(()) => return Ok(dir),
-            // Someone else took the name meanwhile.
+            // Another process took the name meanwhile.
             Err(_) if fs::symlink_metadata(&dir).is_ok() => {}
             Err(error) => return Err(MetricsError::io(&dir, "put the log here")(error)),
         }
@@ -65,9 +64,9 @@ pub(super) fn give_name(new: &Path, task_dir: &Path, run: &str) -> Result<PathBu
     unreachable!("there are more numbers than directories")
 }
 
-/// Moves a run where it is no longer found, to be removed with the temporary directory.
+/// Moves a run out of sight, to be removed with the temporary directory.
 pub(super) fn take_away(run: &Path, temporary: &ScratchFolder) -> Result<(), MetricsError> {
-    // As in the data folder: no two of them have one name.
+    // As in the data folder: no two have the same name.
     let names = [run.parent().and_then(Path::file_name), run.file_name()];
     let grave: PathBuf = std::iter::once(temporary.path())
         .chain([Path::new("old")])
@@ -86,7 +85,7 @@ pub(super) fn runs_of(task_dir: &Path) -> Result<Vec<PathBuf>, MetricsError> {
     Ok(directories(task_dir)?.into_iter().filter(|dir| is_run(dir)).collect())
 }
 
-/// The directories in a directory, in the order of their names; links and hidden ones are left out.
+/// The directories in a directory, sorted by name, without links and hidden ones.
 pub(super) fn directories(dir: &Path) -> Result<Vec<PathBuf>, MetricsError> {
     let list = |error| MetricsError::io(dir, "list this directory")(error);
     let mut found = Vec::new();
@@ -101,7 +100,7 @@ pub(super) fn directories(dir: &Path) -> Result<Vec<PathBuf>, MetricsError> {
     Ok(found)
 }
 
-/// A link in a task's place would lead out of the data folder.
+/// Refuses a link in a task's place, which would lead out of the data folder.
 pub(super) fn own_directory(dir: &Path) -> Result<(), MetricsError> {
     let kind = fs::symlink_metadata(dir).map_err(MetricsError::io(dir, "look at this directory"))?;
     if kind.is_dir() {

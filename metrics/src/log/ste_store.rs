@@ -1,6 +1,4 @@
-//! Logs of single-task experts kept in a data folder, `DATA/TASK/RUN/`: each a copy of the log as it is.
-//!
-//! Not here: reading them, see `read_ste_log`; what they are compared with, see `score`.
+//! Stores logs of single-task experts in a data folder, `DATA/TASK/RUN/`: each an exact copy of the log.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -16,21 +14,21 @@ use crate::choice::choice;
 use crate::lifetime::read_ste_log;
 
 choice! {
-    /// What becomes of the runs of the same task that are stored already.
+    /// How to treat stored runs of the same task.
     SteStoreMode, "STE store mode" {
-        /// They are removed: the task's expert is this run.
+        /// Removes them: this run becomes the task's expert.
         Overwrite = "w",
-        /// They stay: the task's expert is the mean over all runs.
+        /// Keeps them: the task's expert is the mean over all runs.
         Append = "a",
     }
 }
 
-/// A log that was stored.
+/// A stored log.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct StoredRun {
     /// The trained task, lower-case.
     pub task_name: String,
-    /// Where its log is now. A name that was taken has a number behind it, as `run-2`.
+    /// The new folder of its log. A number is appended to a name that was taken, as in `run-2`.
     pub dir: PathBuf,
 }
 
@@ -43,15 +41,15 @@ pub struct StoredTask {
     pub runs: Vec<PathBuf>,
 }
 
-/// Copies an expert's log into a data folder, which is made if need be. The run appears there whole or not at all, and other runs
-/// are removed only once it has.
+/// Copies an expert's log into a data folder, which is created if necessary. The run appears there whole or not at all, and
+/// other runs are removed only afterwards.
 ///
-/// Characters of names that not every file system takes are written as `%` and two digits; no name leads out of the folder.
+/// Characters of names that not every file system accepts are written as `%` and two digits; no name leads out of the folder.
 ///
 /// # Errors
-/// Those of [`read_ste_log`]; [`MetricsError::InUse`] while a writer of ours is at work on the log;
-/// [`MetricsError::TooLarge`] for a task whose name makes no folder's name; [`MetricsError::BadOption`] for a data folder inside
-/// the log, which would become a part of it; [`MetricsError::Io`].
+/// Those of [`read_ste_log`]; [`MetricsError::InUse`] while one of our writers is using the log; [`MetricsError::TooLarge`] for
+/// a task whose name is too long for a folder name; [`MetricsError::BadOption`] for a data folder inside the log, which would
+/// become part of it; [`MetricsError::Io`].
 ///
 /// # Example
 /// ```
@@ -108,11 +106,11 @@ pub fn store_ste(
     Ok(StoredRun { task_name, dir })
 }
 
-/// The tasks whose experts are stored in a data folder, by name, each with its runs.
+/// The tasks whose experts are stored in a data folder, sorted by name, each with its runs.
 ///
 /// # Errors
-/// [`MetricsError::NoSteData`] where there is no such folder, or it is a log; [`MetricsError::StePickle`] where it holds experts
-/// as l2metrics stores them; [`MetricsError::Io`].
+/// [`MetricsError::NoSteData`] if there is no such folder, or it is a log; [`MetricsError::StePickle`] if it holds experts in
+/// l2metrics' format; [`MetricsError::Io`].
 pub fn find_ste(data_folder: impl AsRef<Path>) -> Result<Vec<StoredTask>, MetricsError> {
     let data_folder = data_folder.as_ref();
     let not_there = |found| MetricsError::NoSteData {
@@ -142,7 +140,7 @@ mod tests {
     use super::*;
     use crate::{BlockType, LogWriter, LoggerInfo, Record, ScenarioInfo, Timestamp, read_log};
 
-    /// An expert's log with one row, and whose reward tells runs apart.
+    /// An expert's log with one row, whose reward identifies the run.
     fn expert(base: &Path, name: &str, task: &str, reward: f64) -> PathBuf {
         let dir = base.join(name);
         let info = LoggerInfo::new(["reward"]).unwrap();
@@ -154,7 +152,7 @@ mod tests {
         dir
     }
 
-    /// Tasks and names of runs.
+    /// The stored tasks with the names of their runs.
     fn stored(data: &Path) -> Vec<(String, Vec<String>)> {
         let name = |run: &PathBuf| run.file_name().unwrap().to_str().unwrap().to_owned();
         let tasks = find_ste(data).unwrap();
@@ -176,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn runs_are_appended_or_take_the_place_of_others() {
+    fn runs_are_appended_or_replace_others() {
         let base = tempfile::tempdir().unwrap();
         let (data, store) = (base.path().join("deep/data"), SteStoreMode::Append);
         let first = expert(base.path(), "run", "Find_Red", 1.0);
@@ -220,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn folders_that_hold_no_experts_are_told_apart() {
+    fn folders_without_experts_are_distinguished() {
         let base = tempfile::tempdir().unwrap();
         let log = expert(base.path(), "log", "a_1", 1.0);
         let check = |path: &Path, found: &str| {
@@ -241,7 +239,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_experts_log_or_still_being_written_is_not_stored() {
+    fn invalid_or_unfinished_logs_are_not_stored() {
         let base = tempfile::tempdir().unwrap();
         let data = base.path().join("data");
         let error = store_ste(&data, base.path().join("absent"), SteStoreMode::Append).unwrap_err();
@@ -263,7 +261,7 @@ mod tests {
     }
 
     #[test]
-    fn a_log_is_not_stored_into_itself() {
+    fn log_is_not_stored_into_itself() {
         let base = tempfile::tempdir().unwrap();
         let log = expert(base.path(), "log", "a_1", 1.0);
         for data in [log.clone(), log.join("data/deep")] {
@@ -276,7 +274,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn a_link_in_a_tasks_place_is_refused() {
+    fn link_in_a_tasks_place_is_refused() {
         let base = tempfile::tempdir().unwrap();
         let (data, elsewhere) = (base.path().join("data"), base.path().join("elsewhere"));
         fs::create_dir_all(&data).unwrap();
@@ -291,7 +289,7 @@ mod tests {
     }
 
     #[test]
-    fn one_log_can_be_stored_by_several_at_once() {
+    fn one_log_can_be_stored_concurrently() {
         let base = tempfile::tempdir().unwrap();
         let (log, data) = (expert(base.path(), "run", "a_1", 1.0), base.path().join("data"));
         std::thread::scope(|scope| {
@@ -300,7 +298,7 @@ mod tests {
             }
         });
         assert_eq!(find_ste(&data).unwrap()[0].runs.len(), 8);
-        // Who reads a log does not keep others from reading, but writers.
+        // A reader of a log excludes writers, but not other readers.
         let _reader = log_folder::lock(&log, fs::File::try_lock_shared).unwrap();
         store_ste(&data, &log, SteStoreMode::Append).unwrap();
         #[cfg(unix)]

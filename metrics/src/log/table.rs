@@ -1,6 +1,4 @@
-//! Rows as they come in, file by file: the columns grow together, and one that a file lacks is filled up.
-//!
-//! Not here: the columns when they are complete, see `rows`.
+//! Collects rows file by file: all columns grow together, and columns that a file lacks are padded.
 
 use std::convert::Infallible;
 use std::ops::Range;
@@ -12,23 +10,23 @@ use super::rows::{Cells, Rows};
 use super::shared_column::{Seen, SharedColumn};
 use crate::{LogLine, MetricsError};
 
-/// Most records that one log may hold.
+/// Most records in one log.
 pub const MAX_RECORDS: usize = 10_000_000;
 
-/// Most columns that the data files of one log may have.
+/// Most columns in the data files of one log.
 pub const MAX_COLUMNS: usize = 1_000;
 
-/// Most cells of metrics and of columns that nobody declared, all rows together.
+/// Most cells of metrics and undeclared columns, over all rows.
 pub const MAX_CELLS: u64 = 500_000_000;
 
-/// Whether columns of words that nobody declared are kept.
+/// Whether undeclared text columns are kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Texts {
     Leave,
     Keep,
 }
 
-/// A log's rows as they are read.
+/// A log's rows while being read.
 #[derive(Debug)]
 pub(super) struct Table<'a> {
     /// The log's directory, for messages.
@@ -37,7 +35,7 @@ pub(super) struct Table<'a> {
     pub(super) rows: Rows,
     /// Line of each row in its file.
     lines: Vec<u32>,
-    /// The files in their order, each with its first row.
+    /// The files in order, each with its first row.
     files: Vec<(&'a Path, usize)>,
     pub(super) workers: Seen,
     pub(super) task_names: Seen,
@@ -47,11 +45,11 @@ pub(super) struct Table<'a> {
     spare: Vec<f64>,
 }
 
-/// A column that nobody declared.
+/// An undeclared column.
 #[derive(Debug, Default)]
 struct Other {
     numbers: Vec<f64>,
-    /// Whether a word stood in it already.
+    /// Whether any cell held a word.
     has_words: bool,
     texts: SharedColumn<String>,
     seen: Seen,
@@ -79,12 +77,12 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// Counts a file, in their order; its rows follow.
+    /// Starts the next file; its rows follow.
     pub(super) fn begin_file(&mut self, path: &'a Path) {
         self.files.push((path, self.rows.len()));
     }
 
-    /// Numbers of the columns with these names that nobody declared, for the rows that follow.
+    /// Ids of the undeclared columns with these names, for the rows that follow.
     pub(super) fn begin_columns<'n>(
         &mut self,
         names: impl Iterator<Item = &'n str>,
@@ -102,12 +100,12 @@ impl<'a> Table<'a> {
         Ok(numbers)
     }
 
-    /// Room for the metrics of a row, which [`push`](Self::push) gives back.
+    /// A buffer for the metrics of a row, which [`push`](Self::push) returns.
     pub(super) fn spare_numbers(&mut self) -> Vec<f64> {
         std::mem::take(&mut self.spare)
     }
 
-    /// Adds a row: the declared metrics in their order, and the cells of other columns with the columns' numbers.
+    /// Adds a row: the declared metrics in order, and the cells of other columns with the columns' ids.
     pub(super) fn push<'c>(
         &mut self,
         line: u64,
@@ -117,7 +115,7 @@ impl<'a> Table<'a> {
     ) -> Result<(), MetricsError> {
         self.check_limit("rows or more", self.rows.len() as u64 + 1, MAX_RECORDS as u64)?;
         self.count_cells((metrics.len() + others.len()) as u64)?;
-        // A file has fewer bytes than a u32 counts, and so fewer lines.
+        // A file has fewer bytes, and so fewer lines, than the range of a u32.
         self.lines.push(line as u32);
         self.rows.push(cells);
         for (column, number) in self.rows.metrics.values_mut().zip(metrics.drain(..)) {
@@ -130,7 +128,7 @@ impl<'a> Table<'a> {
         Ok(())
     }
 
-    /// File and line of a row, counted from 0 in the order of files and lines.
+    /// File and line of a row, by index in the order of files and lines.
     pub(super) fn place(&self, row: usize) -> LogLine {
         let file = self.files.partition_point(|(_, start)| *start <= row).saturating_sub(1);
         LogLine {
@@ -139,7 +137,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// Each file with its rows, counted from 0.
+    /// Each file with its range of row indices.
     pub(super) fn files(&self) -> impl Iterator<Item = (&'a Path, Range<usize>)> {
         let starts = self.files.iter().map(|(_, start)| *start);
         let ends = starts.skip(1).chain([self.rows.len()]);
@@ -149,8 +147,7 @@ impl<'a> Table<'a> {
             .map(|((path, start), end)| (*path, *start..end))
     }
 
-    /// The columns that nobody declared find their place behind the others: those of numbers, and those of words where they
-    /// are kept.
+    /// Appends the undeclared columns to the others: numeric ones, and text columns if they are kept.
     pub(super) fn complete(&mut self) -> Result<(), MetricsError> {
         let num_rows = self.rows.len();
         for (name, mut other) in std::mem::take(&mut self.others) {
@@ -165,7 +162,7 @@ impl<'a> Table<'a> {
         Ok(())
     }
 
-    /// Whether one of the limits for the log as a whole is reached.
+    /// Whether the log has reached one of its overall limits.
     pub(super) fn is_full(&self) -> bool {
         self.rows.len() == MAX_RECORDS || self.others.len() > MAX_COLUMNS || self.num_cells > MAX_CELLS
     }
@@ -184,7 +181,7 @@ impl<'a> Table<'a> {
 }
 
 impl Other {
-    /// Cells that padding to so many rows would add.
+    /// Cells that padding to `num_rows` rows would add.
     fn missing(&self, num_rows: usize, texts: Texts) -> u64 {
         let here = match texts {
             _ if !self.has_words => self.numbers.len(),

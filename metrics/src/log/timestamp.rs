@@ -1,6 +1,4 @@
-//! Time stamps as they stand in logs: `20200913T122640.000000`.
-//!
-//! Not here: the clock. A caller that has one passes microseconds in.
+//! Time stamps in the log's format: `20200913T122640.000000`. The caller passes in the time.
 
 use std::fmt;
 use std::str::FromStr;
@@ -12,10 +10,10 @@ use crate::MetricsError;
 
 const EPOCH: DateTime = datetime(1970, 1, 1, 0, 0, 0, 0);
 
-/// A checked time stamp, year 1 to 9999, to the microsecond, without a time zone. Earlier ones compare as less.
+/// A valid time stamp, year 1 to 9999, to the microsecond, without a time zone. Earlier ones compare as less.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Timestamp {
-    /// Microseconds since the first of January 1970, of whatever zone the writer's clock showed.
+    /// Microseconds since 1 January 1970, in the time zone of the writer's clock.
     micros: i64,
 }
 
@@ -79,13 +77,13 @@ fn parse(text: &str) -> Option<Timestamp> {
     Some(Timestamp { micros })
 }
 
-/// The day and time that is so many microseconds from the epoch; `None` outside the years 1 to 9999.
+/// The date and time at this number of microseconds since the epoch; `None` outside the years 1 to 9999.
 fn moment(micros: i64) -> Option<DateTime> {
     let moment = EPOCH.checked_add(SignedDuration::from_micros(micros)).ok();
     moment.filter(|moment| moment.year() >= 1)
 }
 
-/// The number that a few digits stand for; `None` where there is anything else.
+/// Parses digits; `None` for anything else.
 fn number(digits: &[u8]) -> Option<i64> {
     digits.iter().try_fold(0, |number, digit| {
         digit.is_ascii_digit().then(|| number * 10 + i64::from(digit - b'0'))
@@ -99,7 +97,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_days_and_times_that_exist_are_stamps() {
+    fn only_existing_dates_and_times_are_accepted() {
         let check = |text: &str, expected: Option<&str>| {
             assert_eq!(
                 text.parse::<Timestamp>().ok().map(|stamp| stamp.to_string()).as_deref(),
@@ -138,13 +136,13 @@ mod tests {
 
     proptest! {
         #[test]
-        fn every_microsecond_survives_writing_and_reading(micros in -60_000_000_000_000_000_i64..250_000_000_000_000_000) {
+        fn every_microsecond_round_trips(micros in -60_000_000_000_000_000_i64..250_000_000_000_000_000) {
             let stamp = Timestamp::from_unix_micros(micros).unwrap();
             prop_assert_eq!(stamp.to_string().parse::<Timestamp>().unwrap(), stamp);
         }
 
         #[test]
-        fn days_that_exist_are_those_that_come_back(year in 1_i64..10_000, month in 0_i64..14, day in 0_i64..33) {
+        fn only_existing_dates_round_trip(year in 1_i64..10_000, month in 0_i64..14, day in 0_i64..33) {
             let is_leap = year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
             let last = match month {
                 2 => 28 + i64::from(is_leap),

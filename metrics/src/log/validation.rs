@@ -1,4 +1,4 @@
-//! Reads a log and checks the rules that its writer should have kept: the first fault ends the reading, or all are listed.
+//! Reads a log and checks the rules of the format: stops at the first fault, or lists them all.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -14,30 +14,30 @@ use super::warning::LogWarning;
 use super::{columns, data_file, data_files};
 use crate::MetricsError;
 
-/// What [`validate_log`] found.
+/// The result of [`validate_log`].
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct Validation {
-    /// What is wrong, file by file, the first [`MAX_LISTED`](crate::MAX_LISTED) of it.
+    /// The faults, file by file, up to [`MAX_LISTED`](crate::MAX_LISTED).
     pub problems: Vec<MetricsError>,
-    /// How many more problems there are.
+    /// Number of further problems.
     pub more_problems: u64,
-    /// What is odd, the first [`MAX_LISTED`](crate::MAX_LISTED) of it.
+    /// The warnings, up to [`MAX_LISTED`](crate::MAX_LISTED).
     pub warnings: Vec<LogWarning>,
-    /// How many more odd things there are.
+    /// Number of further warnings.
     pub more_warnings: u64,
-    /// How much was looked at.
+    /// What was checked.
     pub counts: LogCounts,
 }
 
 impl Validation {
-    /// Whether nothing is wrong; odd things do not count.
+    /// Whether there are no problems; warnings do not count.
     pub fn is_valid(&self) -> bool {
         self.problems.is_empty()
     }
 }
 
-/// How much there is of a log; of rows that can be read.
+/// Counts over a log's readable rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub struct LogCounts {
@@ -57,10 +57,11 @@ pub struct LogCounts {
     pub tasks: usize,
 }
 
-/// Checks a log by the rules of [`read_log`](crate::read_log), and lists every fault: numbers never fall
-/// within a file; every file has the same columns, those of the version the log says it has; each experience has exactly one
-/// complete row, its last. What is no rule but usual is warned about: task names of two words, the words of
-/// `scenario_info.json`, time stamps that do not run backwards, folders named after the worker and the block of their rows, a last experience that was finished, metrics that hold numbers.
+/// Checks a log by the rules of [`read_log`](crate::read_log), and lists every fault: numbers never fall within a file; every
+/// file has the same columns, those of the log's version; each experience has exactly one complete row, its last. Warns about
+/// departures from convention: task names that are not two words, unknown words in `scenario_info.json`, time stamps that run
+/// backwards, folders not named after the worker and the block of their rows, an unfinished last experience, and metrics
+/// without numbers.
 pub fn validate_log(dir: impl AsRef<Path>) -> Validation {
     let dir = dir.as_ref();
     let mut check = Check::new(Faults::List(Listed::default()));
@@ -88,7 +89,7 @@ pub(super) struct Check {
     counts: LogCounts,
 }
 
-/// What a log holds: its two files of information, and its rows in order.
+/// The contents of a log: its two info files, and its rows in order.
 pub(super) type Read = (LoggerInfo, ScenarioInfo, Rows);
 
 impl Check {
@@ -100,7 +101,7 @@ impl Check {
         }
     }
 
-    /// The error is the first fault where reading stops there, else a problem after which nothing more can be said.
+    /// The error is the first fault if reading stops there, else a problem that ends the check.
     pub(super) fn all(&mut self, dir: &Path, texts: Texts) -> Result<Read, MetricsError> {
         let files = data_files::find(dir)?;
         self.counts.files = files.len();
@@ -120,7 +121,7 @@ impl Check {
         Ok((logger_info, scenario_info, table.rows))
     }
 
-    /// A rule was broken that scores do not depend on: who reads the log is warned of it in the same words.
+    /// A broken rule that does not affect scores: a reader gets a warning with the same text.
     fn breach(&mut self, fault: MetricsError) -> Result<(), MetricsError> {
         match self.faults {
             Faults::List(_) => self.faults.add(fault),
@@ -145,7 +146,7 @@ impl Check {
         Ok(info.unwrap_or_default())
     }
 
-    /// Reads every file as far as it can be read.
+    /// Reads every file as far as possible.
     fn read<'d>(
         &mut self,
         table: &mut Table<'d>,
@@ -156,7 +157,7 @@ impl Check {
         for path in files {
             match data_file::read(path, logger_info.metrics_columns(), table, &mut self.faults) {
                 Ok(header) => headers.push((path, header)),
-                // The log as a whole is too large: there is no use in going on.
+                // The log as a whole is too large: going on is pointless.
                 Err(error @ MetricsError::TooLarge { .. }) if table.is_full() => return Err(error),
                 Err(error) => self.faults.add(error)?,
             }
@@ -193,7 +194,7 @@ impl Check {
         Ok(())
     }
 
-    /// Numbers never fall within a file; time stamps that do are warned about, once a file.
+    /// Numbers never fall within a file; falling time stamps cause a warning per file.
     fn order_in_files(&mut self, table: &Table<'_>) -> Result<(), MetricsError> {
         let rows = &table.rows;
         for (_, mut range) in table.files() {
@@ -224,7 +225,7 @@ impl Check {
         Ok(())
     }
 
-    /// Rows lie where their writer puts them, in a folder for each worker and block; those that do not are warned about, once a file.
+    /// Rows are in a folder for their worker and block; others cause a warning per file.
     fn folders(&mut self, dir: &Path, table: &Table<'_>) {
         let rows = &table.rows;
         for (path, mut range) in table.files() {
@@ -243,7 +244,7 @@ impl Check {
             let is_there = |row: usize| folder == Some(Path::new(&expected(row)));
             let mut last = None;
             let stray = range.find(|&row| {
-                // Paths are compared once for many rows.
+                // Compares paths once for many rows.
                 last.replace(place(row)) != Some(place(row)) && !is_there(row)
             });
             if let Some(row) = stray {
@@ -255,7 +256,7 @@ impl Check {
         }
     }
 
-    /// Exactly one complete row for each experience of a worker, the last; its very last experience may be unfinished.
+    /// Exactly one complete row for each experience of a worker, the last; its final experience may be unfinished.
     fn completions(&mut self, table: &Table<'_>) -> Result<(), MetricsError> {
         let rows = &table.rows;
         self.missing(table);
@@ -294,7 +295,7 @@ impl Check {
         Ok(())
     }
 
-    /// Numbers of experiences go up one by one, over all workers; a log that lacks some is warned about once.
+    /// Experience numbers increase by one, over all workers; gaps cause one warning per log.
     fn missing(&mut self, table: &Table<'_>) {
         let numbers = table.rows.exp_nums();
         let mut rows: Vec<u32> = (0..numbers.len() as u32).collect();
@@ -316,7 +317,7 @@ impl Check {
         }
     }
 
-    /// A declared metric that never has a number is good for nothing; who reads a log looks at the one that is scored.
+    /// A declared metric without any number cannot be scored; a reader checks only the metric that is scored.
     fn metrics(&mut self, table: &Table<'_>, declared: &[String]) {
         if matches!(self.faults, Faults::Stop) {
             return;
@@ -336,12 +337,12 @@ impl Check {
         self.counts.complete_rows = rows.exp_statuses().iter().filter(complete).count();
         self.counts.blocks = rows.block_nums().iter().collect::<BTreeSet<_>>().len();
         self.counts.workers = rows.workers().values().iter().collect::<BTreeSet<_>>().len();
-        // As they are scored: in lower case.
+        // In lower case, as for scoring.
         let tasks = rows.task_names().values().iter().map(|name| name.to_lowercase());
         self.counts.tasks = tasks.collect::<BTreeSet<_>>().len();
     }
 
-    /// Sorts the rows by experience; block numbers must not fall then.
+    /// Sorts the rows by experience; block numbers must then not fall.
     fn sort(&mut self, table: &mut Table<'_>) -> Result<(), MetricsError> {
         let order = table.rows.sort();
         let blocks = table.rows.block_nums();
@@ -356,7 +357,7 @@ impl Check {
         Ok(())
     }
 
-    /// Warns of each odd name once, in the order of the rows.
+    /// Warns once of each unconventional name, in the order of the rows.
     fn task_names(&mut self, rows: &Rows) {
         let names = rows.task_names();
         let mut odd: Vec<bool> = (names.values().iter())

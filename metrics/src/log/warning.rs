@@ -1,6 +1,4 @@
-//! What is odd about a log, but does not keep it from being read.
-//!
-//! Not here: what does, see `MetricsError`.
+//! Irregularities of a log that can still be read.
 
 use std::path::PathBuf;
 
@@ -10,28 +8,28 @@ use super::cell::shown;
 use super::timestamp::Timestamp;
 use crate::LogLine;
 
-/// Something about a log that is not as it should be, but does not keep it from being read.
+/// An irregularity of a log that can still be read.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LogWarning {
-    /// A rule of the format was broken that scores do not depend on; the words are those of the
-    /// [`MetricsError`](crate::MetricsError) that validating lists.
+    /// A broken rule of the format that does not affect scores; the text is that of the [`MetricsError`](crate::MetricsError)
+    /// that validation lists.
     #[error("{0}; scored as it is")]
     Breach(String),
     /// There is no `scenario_info.json`.
     #[error("scenario_info.json: found no such file; read without it")]
     NoScenarioInfo,
-    /// A field of `scenario_info.json` is none of the words it may be; it was left out.
+    /// A field of `scenario_info.json` is not an accepted word; it was dropped.
     #[error("scenario_info.json, {field}: found {found}, expected one of {expected}; left out", found = one_line(found))]
     ScenarioInfo {
         /// The field.
         field: &'static str,
         /// Its value, as JSON.
         found: String,
-        /// The words it may be.
+        /// The accepted words.
         expected: String,
     },
-    /// The version that `logger_info.json` names and the columns do not go together; the columns count.
+    /// The version in `logger_info.json` contradicts the columns; the columns count.
     #[error("{}:1: found {} block_subtype, expected {} in a log of format {}; {}", path.shown(), if *has_subtype { "the column" } else { "no column" }, if *has_subtype { "none" } else { "one" }, one_line(version), if *has_subtype { "it counts" } else { "read as wake" })]
     Version {
         /// The first data file.
@@ -48,10 +46,10 @@ pub enum LogWarning {
         at: LogLine,
         /// The time stamp.
         found: Timestamp,
-        /// The one above.
+        /// The time stamp above.
         before: Timestamp,
     },
-    /// A row lies in the folder of another worker or block; it is read as it says.
+    /// A row is in the folder of another worker or block; its own fields count.
     #[error("{at}: found a row of another folder, expected it in {}; kept", one_line(expected))]
     OtherFolder {
         /// File and line; the first such line of the file.
@@ -59,7 +57,7 @@ pub enum LogWarning {
         /// The folder it should lie in, as `WORKER/BLOCKNUM-BLOCKTYPE`.
         expected: String,
     },
-    /// A worker's last experience has no complete row: the run was stopped, or goes on.
+    /// A worker's last experience has no complete row: the run was stopped, or is still running.
     #[error(
         "{at}: found experience {exp_num} without a complete row, the last of its worker; ignored until it has one"
     )]
@@ -69,16 +67,16 @@ pub enum LogWarning {
         /// Number of the experience.
         exp_num: u64,
     },
-    /// Experiences whose numbers no row has: rows may have been lost.
+    /// Missing experience numbers: rows may have been lost.
     #[error("{at}: found experience {after} after {before}, expected {}; numbers without a row: {missing}", before + 1)]
     Missing {
-        /// File and line of the row behind the first gap.
+        /// File and line of the row after the first gap.
         at: LogLine,
         /// The number before the first gap.
         before: u64,
-        /// The number behind it.
+        /// The number after it.
         after: u64,
-        /// How many numbers all gaps leave out.
+        /// How many numbers are missing in total.
         missing: u64,
     },
     /// A metrics column without a single number.
@@ -90,7 +88,7 @@ pub enum LogWarning {
         /// The column.
         column: String,
     },
-    /// A task's name is not `task_variant`; it is used as it is.
+    /// A task's name is not `task_variant`; it is used as is.
     #[error(
         "task_name: found {}, expected TASK_VARIANT, with letters and digits on both sides; used as is",
         shown(found)

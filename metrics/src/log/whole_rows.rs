@@ -1,34 +1,32 @@
-//! Where the whole rows of a data file end, when its writer may have been stopped at any byte.
+//! Finds the end of the whole rows in a data file whose writer may have been stopped at any byte.
 //!
-//! A line break in quotes belongs to its cell, so that a file may end with one and still be torn. Quotes are read as the crate
-//! `csv` reads them: they open a cell only at its very beginning.
-//!
-//! Not here: what the rows hold, see `data_file`.
+//! A line break in quotes belongs to its cell, so a file may end with one and still be torn. Quotes are interpreted as by the
+//! crate `csv`: they open a cell only at its very beginning.
 
 use std::io::{self, BufRead};
 use std::path::Path;
 
 use crate::{LogLine, MetricsError};
 
-/// Tabs of a line that looks like a row: the fewest that a row of any version has.
+/// Fewest tabs in a line that looks like a row: those of a row of any version.
 const TABS_OF_A_ROW: usize = 8;
 
-/// The part of a file that consists of whole rows.
+/// The whole rows at the start of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct WholeRows {
-    /// Bytes up to and with the end of the last whole row.
+    /// Bytes up to and including the last whole row.
     pub(super) bytes: u64,
-    /// Lines in them.
+    /// Number of lines in them.
     pub(super) lines: u64,
-    /// Whether what follows holds lines that look like rows: then it is no torn row, but one in which a quote was opened and
-    /// never closed, so that it swallowed the rows after it.
+    /// Whether lines that look like rows follow: then it is no torn row, but a quote that was never closed and swallowed the
+    /// rows after it.
     pub(super) swallowed: bool,
-    /// Whether what follows holds lines that end with a carriage return alone, which is no torn row either.
+    /// Whether lines that end with a carriage return alone follow, which is no torn row either.
     pub(super) returns: bool,
 }
 
 impl WholeRows {
-    /// What is wrong with what follows; the piece that was looked at begins at this line of its file.
+    /// The fault of the remainder; the piece that was read starts at this line of its file.
     pub(super) fn fault(self, path: &Path, first_line: u64) -> MetricsError {
         let (path, line) = (path.to_owned(), first_line + self.lines);
         let wrong = match self {
@@ -72,9 +70,9 @@ struct Scan {
     place: Place,
     bytes: u64,
     lines: u64,
-    /// Tabs since the line began.
+    /// Tabs since the start of the line.
     tabs: usize,
-    /// Whether a line of this row ended within quotes already.
+    /// Whether a line of this row has ended within quotes.
     broken: bool,
     /// Whether the last byte was a carriage return outside quotes.
     returned: bool,
@@ -132,31 +130,31 @@ mod tests {
         check("a\t\"b\n\"\nc", 7, 2);
         check("a\t\"b\"\"\n\"\n", 9, 2);
         check("a\t\"b\"\"\n\"", 0, 0);
-        // A quote within a cell is a letter like others.
+        // A quote within a cell is an ordinary character.
         check("a\tb\"\nc", 5, 1);
         check("a\r\n\"b\r\n", 3, 1);
     }
 
     #[test]
-    fn a_quote_that_swallows_rows_is_told_from_a_torn_row() {
+    fn quote_that_swallows_rows_is_no_torn_row() {
         let row = "0\t1\t2\t3\t4\t5\t6\t7\t8\n";
         let check = |text: &str, swallowed: bool| {
             assert_eq!(measure(text.as_bytes()).unwrap().swallowed, swallowed, "{text:?}");
         };
         check(&format!("{row}0\t\"1\n{row}"), true);
         check(&format!("{row}0\t\"1\n{row}\"\n"), false);
-        // The line in which the quote stands does not count, nor does one without an end.
+        // Neither the line with the quote nor one without an end counts.
         check("0\t1\t2\t3\t4\t5\t6\t7\t\"8\n0\t1", false);
     }
 
     #[test]
-    fn carriage_returns_as_line_ends_are_told_from_a_torn_row() {
+    fn carriage_return_line_ends_are_no_torn_row() {
         let check = |text: &str, returns: bool| {
             assert_eq!(measure(text.as_bytes()).unwrap().returns, returns, "{text:?}");
         };
         check("a\tb\r0\t1\r", true);
         check("a\tb\r\n0\t1\r2\t3", true);
-        // The line feed was cut off, or will be read with the rest.
+        // The line feed was cut off, or will be read next.
         check("a\tb\r", false);
         check("a\tb\r\n0\t1\r\n", false);
         check("a\t\"b\r0\"", false);

@@ -1,6 +1,4 @@
-//! Writes a log, format 1.1: one directory, two info files, one data file per worker and block, one line per record.
-//!
-//! Not here: taking up a log that was interrupted, see `resume`.
+//! Writes a log in format 1.1: one directory, two info files, one data file per worker and block, one line per record.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -15,13 +13,13 @@ use crate::log::BlockType;
 
 /// Writes records to a log directory, each flushed to the operating system as soon as it is written.
 ///
-/// The rules of the format are kept record by record: block and experience numbers never decrease, every record has the
-/// same metrics, a worker completes an experience once, and in blocks of one number a worker's rows of it have one type. Opens one file at a time, and asks the disk to have it when it
-/// turns to the next: a machine that loses its power loses rows of the last block at most. Two writers on one directory
-/// would spoil it, so that the second is refused where the system can tell.
+/// The rules of the format are checked for every record: block and experience numbers never decrease, every record has the same
+/// metrics, a worker completes an experience once, and a worker's rows with one block number have one block type. Opens one
+/// file at a time, and syncs it to disk when it switches to the next: a power failure loses at most rows of the last block. A
+/// second writer on the directory is refused where the system can detect it.
 ///
-/// Before each record, and at the end, it looks whether the directory and the files are still those that it wrote, and
-/// as long: what was removed, renamed, replaced or cut meanwhile is an error, and never made anew.
+/// Before each record, and at the end, it checks that the directory and the files are still those that it wrote, with the same
+/// lengths: if one was removed, renamed, replaced or truncated meanwhile, it fails and never recreates anything.
 #[derive(Debug)]
 pub struct LogWriter {
     folder: LogFolder,
@@ -30,28 +28,28 @@ pub struct LogWriter {
     file: Option<BlockFile>,
     /// The files that are not open, by their paths inside the directory.
     files: BTreeMap<PathBuf, Written>,
-    /// Whether the disk is asked to have what was written.
+    /// Whether files are synced to disk.
     syncs: bool,
 }
 
-/// What later records are checked against.
+/// State that later records are checked against.
 #[derive(Debug, Default)]
 pub(super) struct Progress {
-    /// Metrics of every record, alphabetical; known once there is a record.
+    /// Metrics of every record, sorted; known after the first record.
     pub(super) columns: Option<Vec<String>>,
     last_block_num: u64,
     last_exp_num: u64,
     /// Workers that completed the last experience.
     completed_by: BTreeSet<String>,
-    /// In which block each worker has rows of the last experience.
+    /// The block in which each worker has rows of the last experience.
     begun_in: BTreeMap<String, (u64, BlockType)>,
 }
 
 impl LogWriter {
-    /// Begins a log in `dir`, conventionally `BASE/SCENARIO-TIMESTAMP`; makes the directory if need be.
+    /// Starts a log in `dir`, conventionally `BASE/SCENARIO-TIMESTAMP`; creates the directory if necessary.
     ///
     /// # Errors
-    /// [`MetricsError::LogExists`] when the directory holds anything but what is left of a log whose making was interrupted,
+    /// [`MetricsError::LogExists`] if the directory holds anything but the leftovers of an interrupted creation,
     /// [`MetricsError::InUse`], [`MetricsError::Io`].
     pub fn create(
         dir: impl AsRef<Path>,
@@ -61,10 +59,10 @@ impl LogWriter {
         Self::begin(dir.as_ref(), logger_info, scenario_info, true)
     }
 
-    /// As [`LogWriter::create`] for a log that is read at once and thrown away: the disk is never asked to have it.
+    /// Like [`LogWriter::create`], without syncing to disk: for a log that is read at once and thrown away.
     ///
     /// # Errors
-    /// As there.
+    /// As [`LogWriter::create`].
     pub fn create_unsynced(
         dir: impl AsRef<Path>,
         logger_info: &LoggerInfo,
@@ -80,7 +78,7 @@ impl LogWriter {
         syncs: bool,
     ) -> Result<Self, MetricsError> {
         fs::create_dir_all(dir).map_err(MetricsError::io(dir, "make this directory"))?;
-        // Before anything is looked at or written: two that begin at the same moment would both find the directory free.
+        // Before anything is read or written: otherwise two simultaneous writers would both find the directory free.
         let folder = LogFolder::lock(dir)?;
         if !begun::is_free(dir)? {
             return Err(MetricsError::LogExists(dir.to_owned()));
@@ -92,7 +90,7 @@ impl LogWriter {
         Ok(Self { syncs, ..writer })
     }
 
-    /// Goes on in a directory that holds these data files.
+    /// Continues in a directory that holds these data files.
     pub(super) fn with_progress(
         mut folder: LogFolder,
         logger_info: &LoggerInfo,
@@ -115,7 +113,7 @@ impl LogWriter {
         self.folder.shown()
     }
 
-    /// The columns beside the standard ones, of metrics and of words, in their order; `None` before the first record.
+    /// The columns beside the standard ones, of metrics and of texts, in order; `None` before the first record.
     pub fn columns(&self) -> Option<&[String]> {
         self.progress.columns.as_deref()
     }
@@ -123,10 +121,10 @@ impl LogWriter {
     /// Writes one record as one line and flushes it.
     ///
     /// # Errors
-    /// [`MetricsError::Record`] when it breaks a rule of the format: then nothing is written, and the log goes on as if
-    /// it had not been given. [`MetricsError::Io`] when the disk refuses: a line begun is taken back if possible.
-    /// [`MetricsError::FolderLost`] and [`MetricsError::FileLost`] when what was written so far is no longer there:
-    /// then nothing is written.
+    /// [`MetricsError::Record`] if it breaks a rule of the format: then nothing is written, and the log continues as if it had
+    /// not been passed. [`MetricsError::Io`] if the disk fails: a partial line is removed if possible.
+    /// [`MetricsError::FolderLost`] and [`MetricsError::FileLost`] if what was written so far is no longer there: then nothing
+    /// is written.
     pub fn write(&mut self, record: &Record) -> Result<(), MetricsError> {
         check_cells(record)?;
         self.check_metrics(record)?;
@@ -138,7 +136,7 @@ impl LogWriter {
             .unwrap_or_else(|| columns::metric_columns(record));
         let line = columns::line(cells(record, &columns));
         self.turn_to(record, &columns)?;
-        // The one that was just turned to.
+        // The file just switched to.
         if let Some(file) = &mut self.file {
             file.add_row(&self.folder, &line)?;
         }
@@ -146,26 +144,25 @@ impl LogWriter {
         Ok(())
     }
 
-    /// Takes back the block that was written last, as if it had never begun: its folder goes, with all that is in it.
+    /// Removes the last written block with its whole folder, as if it had never started.
     ///
     /// # Errors
-    /// [`MetricsError::Io`]; [`MetricsError::FolderLost`] when the log is no longer there.
+    /// [`MetricsError::Io`]; [`MetricsError::FolderLost`] if the log is no longer there.
     pub fn withdraw_block(&mut self) -> Result<(), MetricsError> {
         self.check_folder()?;
         let Some(open) = self.file.take() else { return Ok(()) };
         let rows = self.dir().join(&open.inside);
         let folder = rows.parent().unwrap_or(&rows);
-        // The rows first: a log without them goes on with this block, whatever else is left of it.
+        // The rows first: without them the log continues with this block, whatever else remains of it.
         let removed = fs::remove_file(&rows).and_then(|()| fs::remove_dir_all(folder));
         removed.map_err(MetricsError::io(folder, "take back the block"))
     }
 
-    /// Ends the log: nothing is pending, since every record was flushed; this asks the disk to have it, too, and looks
-    /// whether all of it is there.
+    /// Ends the log: every record was flushed already; this syncs it to disk and checks that all of it is there.
     ///
     /// # Errors
-    /// [`MetricsError::Io`]; [`MetricsError::FolderLost`], [`MetricsError::FileLost`] and [`MetricsError::MissingFile`]
-    /// when not all that was written is there.
+    /// [`MetricsError::Io`]; [`MetricsError::FolderLost`], [`MetricsError::FileLost`] and [`MetricsError::MissingFile`] if
+    /// anything that was written is missing.
     pub fn finish(mut self) -> Result<(), MetricsError> {
         self.check_folder()?;
         self.put_away()?;
@@ -175,8 +172,8 @@ impl LogWriter {
             .try_for_each(|(inside, written)| written.check(&self.folder, inside))
     }
 
-    /// Opens or makes the file of a record's worker and block if it is not the one that is open, and looks whether all
-    /// is as it was left.
+    /// Opens or creates the file of a record's worker and block unless it is open already, and checks that everything is
+    /// unchanged.
     fn turn_to(&mut self, record: &Record, columns: &[String]) -> Result<(), MetricsError> {
         let inside = data_path(&record.worker_id, record.block_num, record.block_type);
         let is_open = |open: &&BlockFile| open.inside == inside;
@@ -189,18 +186,18 @@ impl LogWriter {
             return open.written.check(&self.folder, &inside);
         }
         self.put_away()?;
-        // Once more: the disk may have taken its time, and nothing may be made in a directory that came in between.
+        // Checked again: the disk may have been slow, and nothing may be created in a directory that replaced ours.
         self.check_folder()?;
         let before = self.files.get(&inside).copied();
         let header = columns::line(columns::header(columns));
         let opened = BlockFile::open(&self.folder, inside.clone(), before, &header)?;
         self.files.remove(&inside);
         self.file = Some(opened);
-        // Once more: what was made meanwhile was made in another directory if this one went away in between.
+        // Checked again: if the directory was replaced meanwhile, the new files are in another one.
         self.check_folder()
     }
 
-    /// Closes the file that is open, once the disk has it.
+    /// Closes the open file after syncing it to disk.
     fn put_away(&mut self) -> Result<(), MetricsError> {
         let Some(open) = &self.file else { return Ok(()) };
         if self.syncs {
@@ -241,7 +238,7 @@ impl LogWriter {
 }
 
 impl Progress {
-    /// The rules between a record and those before it.
+    /// The rules between a record and earlier ones.
     fn check(&self, record: &Record) -> Result<(), MetricsError> {
         let order = |field: &str, found: u64, last: u64| {
             if found < last {
@@ -261,7 +258,7 @@ impl Progress {
             .begun_in
             .get(&record.worker_id)
             .filter(|_| record.exp_num == self.last_exp_num);
-        // Else nothing would say which of the two folders comes first.
+        // Otherwise the order of the two folders would be ambiguous.
         if let Some((block_num, block_type)) = begun
             && *block_num == record.block_num
             && *block_type != record.block_type
@@ -273,7 +270,7 @@ impl Progress {
         Ok(())
     }
 
-    /// Takes a record that was written into account.
+    /// Updates the state with a written record.
     pub(super) fn advance(&mut self, record: &Record, columns: Vec<String>) {
         if record.exp_num != self.last_exp_num {
             self.completed_by.clear();
@@ -297,7 +294,7 @@ fn data_path(worker_id: &str, block_num: u64, block_type: BlockType) -> PathBuf 
         .join(data_files::FILE_NAME)
 }
 
-/// The rules a record must keep whatever came before it.
+/// The rules for a record by itself.
 fn check_cells(record: &Record) -> Result<(), MetricsError> {
     if !is_worker_id(&record.worker_id) {
         let expected = "letters, digits, _, - and ., not only dots".to_owned();
@@ -339,7 +336,7 @@ fn cells(record: &Record, columns: &[String]) -> Vec<String> {
         record.exp_status.to_string(),
         record.timestamp.to_string(),
     ];
-    // The columns were compared with the record's, so each of them has a number or a word.
+    // The columns were compared with the record's, so each of them has a number or a text.
     let cell = |name: &String| match record.texts.get(name) {
         Some(text) => text.clone(),
         None => number(record.metrics[name.as_str()]),

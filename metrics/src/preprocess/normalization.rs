@@ -1,6 +1,4 @@
-//! Normalisation: performances are stretched to 1..=101, so that tasks with different rewards can be compared.
-//!
-//! Not here: clamping, which comes before.
+//! Normalisation: performances are scaled to 1..=101, so that tasks with different rewards can be compared.
 
 use indexmap::IndexMap;
 
@@ -8,16 +6,16 @@ use super::given_range;
 use crate::lifetime::Lifetime;
 use crate::{DataRange, MetricsError, NormalizationMethod, Options};
 
-/// Width of the range that performances are stretched to.
+/// Width of the target range.
 const SCALE: f64 = 100.0;
 
 /// Its lower end: not 0, so that ratios of performances always exist.
 const OFFSET: f64 = 1.0;
 
-/// Stretches every performance, and returns the range per task that it was stretched from.
+/// Scales every performance, and returns the original range per task.
 ///
 /// A task (under `task`) or run (under `run`) whose performances are all equal becomes 1 everywhere; so does one whose
-/// performances differ by no more than what smoothing rounds, which the reference stretches to 1..=101.
+/// performances differ only by the rounding of smoothing, which the reference scales to 1..=101.
 pub(crate) fn normalize(
     lifetime: &mut Lifetime,
     options: &Options,
@@ -39,7 +37,7 @@ pub(crate) fn normalize(
             NormalizationMethod::Run => Some(whole),
             _ => ranges.get(&regime.task_name).copied(),
         };
-        // An expert's evaluation of a task that the lifetime lacks has no range; nothing looks at it.
+        // An expert's evaluation of a task that the lifetime lacks has no range; nothing reads it.
         if let Some(range) = range {
             stretch(&mut regime.performance, range);
         }
@@ -53,7 +51,8 @@ fn hull(values: impl Iterator<Item = f64>) -> DataRange {
     })
 }
 
-/// Part of the largest performance below which differences are rounding: a mean of a hundred equal numbers is off by less.
+/// Share of the largest performance below which differences are rounding errors: a mean of a hundred equal numbers has a
+/// smaller error.
 const ROUNDING: f64 = 1e-12;
 
 fn stretch(values: &mut [f64], range: DataRange) {
@@ -73,7 +72,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ranges_become_one_to_a_hundred_and_one() {
+    fn ranges_are_scaled_to_1_to_101() {
         let check = |mut values: Vec<f64>, range: DataRange, expected: &[f64]| {
             stretch(&mut values, range);
             assert_eq!(values, expected);
@@ -85,7 +84,7 @@ mod tests {
         );
         check(vec![5.0, 5.0], DataRange { min: 5.0, max: 5.0 }, &[1.0, 1.0]);
         check(vec![20.0], DataRange { min: 0.0, max: 10.0 }, &[201.0]);
-        // A mean of equal numbers may be off in its last bit.
+        // The last bit of a mean of equal numbers may be wrong.
         let next = f64::from_bits(0.1_f64.to_bits() + 1);
         check(vec![0.1, next], DataRange { min: 0.1, max: next }, &[1.0, 1.0]);
     }

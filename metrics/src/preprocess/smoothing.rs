@@ -1,6 +1,4 @@
-//! Smoothing with a moving window whose ends are mirrored.
-//!
-//! Not here: which regimes metrics look at.
+//! Smoothing with a moving window, with mirrored ends.
 
 use std::f64::consts::PI;
 
@@ -8,10 +6,10 @@ use crate::lifetime::Lifetime;
 use crate::statistics::sum;
 use crate::{BlockType, Options, SmoothingMethod};
 
-/// Longest window that is chosen where none is given.
+/// Longest default window.
 const LONGEST_DEFAULT: usize = 100;
 
-/// Smooths learning regimes, evaluation regimes if asked for, and every regime of the experts.
+/// Smooths learning regimes, evaluation regimes if requested, and every regime of the experts.
 pub(crate) fn smooth(lifetime: &mut Lifetime, options: &Options) {
     if options.smoothing_method == SmoothingMethod::Off {
         return;
@@ -25,11 +23,11 @@ pub(crate) fn smooth(lifetime: &mut Lifetime, options: &Options) {
     }
 }
 
-/// The values under a moving window; as many as were given.
+/// The values smoothed by a moving window; the length is kept.
 ///
-/// `window_length`: in values; `None`, or one longer than the data, stands for a fifth of the data but at most 100.
-/// Windows shorter than 3 leave the data as they are. At both ends the data are mirrored without repeating the last
-/// value. QUIRK: an even window reaches one value further back than ahead, an odd one two.
+/// `window_length`: in values; `None`, or one longer than the data, means a fifth of the data but at most 100. Windows shorter
+/// than 3 leave the data unchanged. Both ends are mirrored without repeating the last value. QUIRK: an even window reaches one
+/// value further back than ahead, an odd one two.
 pub(crate) fn smoothed(values: &[f64], window_length: Option<usize>, method: SmoothingMethod) -> Vec<f64> {
     let num = values.len();
     let fifth = (num as f64 * 0.2) as usize;
@@ -41,25 +39,25 @@ pub(crate) fn smoothed(values: &[f64], window_length: Option<usize>, method: Smo
     if length < 3 || total <= 0.0 {
         return values.to_vec();
     }
-    // Shares of one before anything is added, as the reference does it: windows that tie in exact arithmetic, as on a plateau of
-    // clamped data, then have its bits and its first maximum. It adds windows of more than 11 in an order of its processor's.
+    // Normalises the weights before adding, as the reference does: windows that tie in exact arithmetic, as on a plateau of
+    // clamped data, then have its bits and its first maximum. It adds windows of more than 11 in a processor-dependent order.
     let shares: Vec<f64> = weights.iter().map(|weight| weight / total).collect();
     let mirrored: Vec<f64> = (values[1..length].iter().rev())
         .chain(values)
         .chain(values[num - length..num - 1].iter().rev())
         .copied()
         .collect();
-    // Of the num + length - 1 places the window fits in, the num from here on are kept.
+    // Of the num + length - 1 places where the window fits, num are kept, starting here.
     let start = (length / 2).saturating_sub(1);
     moving_sums(&mirrored[start..start + num + length - 1], &shares)
 }
 
-/// Windows that are summed side by side: as many as there are sums in flight at once, so that none waits for another.
+/// Windows summed in parallel: enough independent sums to hide the latency of additions.
 const SIDE_BY_SIDE: usize = 16;
 
-/// The weighted sum of each window, from the first place it fits in to the last.
+/// The weighted sum of each window, from the first place where it fits to the last.
 ///
-/// Each is added up from its first value to its last, as if it were the only one: no bit depends on its neighbours.
+/// Each is added from its first value to its last on its own: no bit depends on its neighbours.
 fn moving_sums(values: &[f64], weights: &[f64]) -> Vec<f64> {
     let num = values.len() + 1 - weights.len();
     let mut sums = Vec::with_capacity(num + SIDE_BY_SIDE);
@@ -82,7 +80,7 @@ fn moving_sums(values: &[f64], weights: &[f64]) -> Vec<f64> {
     sums
 }
 
-/// Weights of a symmetric window, not normalised, reckoned from its middle as `NumPy` does.
+/// Unnormalised weights of a symmetric window, computed from its middle as in `NumPy`.
 fn window(method: SmoothingMethod, length: usize) -> Vec<f64> {
     let last = length.saturating_sub(1).max(1) as f64;
     let weight = |index: usize| {
@@ -108,7 +106,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_window_of_three_averages_a_value_with_the_two_before_it() {
+    fn window_of_three_averages_a_value_with_the_two_before_it() {
         // Mirrored: 9 4 | 1 4 9 16 | 9 4; kept are the first four windows of three: (9+4+1)/3, (4+1+4)/3, …
         let found = smoothed(&[1.0, 4.0, 9.0, 16.0], Some(3), SmoothingMethod::Flat);
         let expected = [14.0 / 3.0, 3.0, 14.0 / 3.0, 29.0 / 3.0];
@@ -119,14 +117,14 @@ mod tests {
     }
 
     #[test]
-    fn a_window_of_four_averages_two_before_the_value_itself_and_one_after() {
+    fn window_of_four_averages_two_values_before_and_one_after() {
         // Mirrored: 16 9 4 | 1 4 9 16 25 | 16 9 4; the first window starts one later: 9 4 1 4.
         let found = smoothed(&[1.0, 4.0, 9.0, 16.0, 25.0], Some(4), SmoothingMethod::Flat);
         assert_eq!(found, [4.5, 4.5, 7.5, 13.5, 16.5]);
     }
 
     #[test]
-    fn short_data_stay_as_they_are() {
+    fn short_data_are_unchanged() {
         let check = |values: &[f64], length: Option<usize>| {
             assert_eq!(smoothed(values, length, SmoothingMethod::Flat), values);
         };
@@ -140,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn window_shapes_are_those_of_the_textbook() {
+    fn window_shapes_match_the_textbook() {
         let check = |method: SmoothingMethod, expected: [f64; 5]| {
             let found = window(method, 5);
             assert!(
@@ -157,7 +155,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn sums_side_by_side_have_the_bits_of_sums_one_by_one(
+        fn parallel_sums_are_bit_identical_to_sequential_ones(
             values in proptest::collection::vec(-100.0..100.0, 7..100),
             weights in proptest::collection::vec(0.0..1.0, 3..7),
         ) {

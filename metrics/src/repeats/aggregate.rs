@@ -1,27 +1,25 @@
-//! One number for all runs and strata: mean, median, interquartile mean.
-//!
-//! Not here: how sure that number is, see `estimate`.
+//! Aggregates over all runs and strata: mean, median, interquartile mean.
 
 use super::resample::Resample;
 use crate::statistics::{mean, median};
 
-/// How the scores of all runs and strata become one number. Same numbers as rliable 1.2, see `tests/oracles/`.
+/// How the scores of all runs and strata are aggregated. Same numbers as rliable 1.2, see `tests/oracles/`.
 ///
-/// Mean and median weigh strata alike. The interquartile mean weighs scores alike, so that where runs lack scores, the strata that
-/// have more of them count for more.
+/// Mean and median weight strata equally. The interquartile mean weights scores equally, so if runs lack scores, strata with
+/// more scores count for more.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Aggregate {
-    /// Mean of the strata's means. One outlier moves it as far as it likes.
+    /// Mean of the strata's means. Sensitive to outliers.
     Mean,
-    /// Median of the strata's means. Nearly half of the strata may be 0 without it noticing.
+    /// Median of the strata's means. Ignores the other strata: nearly half of them may be 0.
     Median,
-    /// Mean of the middle half of all scores (interquartile mean): ⌊n/4⌋ are left out at either end. Recommended: it shrugs off
-    /// outliers and still looks at every stratum.
+    /// Mean of the middle half of all scores (interquartile mean): ⌊n/4⌋ are left out at either end. Recommended: robust to
+    /// outliers, but still uses every stratum.
     Iqm,
 }
 
 impl Aggregate {
-    /// Its value for what was drawn.
+    /// The aggregate of a resample.
     pub(super) fn of(self, resample: &Resample) -> f64 {
         let value = match self {
             Self::Mean => mean(&resample.stratum_means().collect::<Vec<_>>()),
@@ -62,7 +60,7 @@ mod tests {
     }
 
     #[test]
-    fn the_interquartile_mean_leaves_out_whole_scores_at_either_end() {
+    fn interquartile_mean_drops_whole_scores_at_either_end() {
         check(&[7.0], Aggregate::Iqm, 7.0);
         check(&[1.0, 2.0, 9.0], Aggregate::Iqm, 4.0);
         check(&[1.0, 2.0, 4.0, 900.0], Aggregate::Iqm, 3.0);
@@ -71,7 +69,7 @@ mod tests {
     }
 
     #[test]
-    fn strata_weigh_alike_in_mean_and_median() {
+    fn strata_have_equal_weight_in_mean_and_median() {
         let runs = [
             ("1", vec![("a", 1.0), ("b", 10.0), ("c", 0.0)]),
             ("2", vec![("a", 3.0)]),

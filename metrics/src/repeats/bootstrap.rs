@@ -1,6 +1,4 @@
-//! The bootstrap: how often and from what tables are drawn again, and which interval the values of the draws give.
-//!
-//! Not here: one draw, see `resample`.
+//! Bootstrap options: number and method of resampling, and the intervals that result.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
@@ -11,37 +9,39 @@ use crate::MetricsError;
 use crate::choice::choice;
 use crate::statistics::quantile;
 
-/// Most resamples that an interval may be made of.
+/// Most resamples per interval.
 pub const MAX_RESAMPLES: u32 = 1_000_000;
 
-/// Most scores that are drawn for an interval, over all resamples: about a minute's work.
+/// Most scores drawn per interval, over all resamples: about a minute's work.
 pub const MAX_SCORES_DRAWN: u64 = 10_000_000_000;
 
 choice! {
-    /// What is drawn again.
+    /// The unit of resampling.
     Resampling, "resampling" {
-        /// Whole runs with all their scores (default). Keeps what the scores of one lifetime have in common; the same as `Strata` where
-        /// there is one stratum only. Where runs lack scores, a stratum of which nothing was drawn is left out of that draw.
+        /// Whole runs with all their scores (default). Keeps the correlation between the scores of one lifetime; the same as
+        /// `Strata` if there is only one stratum. If runs lack scores, a stratum without any drawn score is left out of that
+        /// resample.
         Runs = "runs",
-        /// Within each stratum as many scores as it has, each stratum by itself. As rliable does; takes the scores of one run in
-        /// different strata as independent, and is much too narrow where they are not.
+        /// Within each stratum as many scores as it has, independently. As in rliable; treats the scores of one run in
+        /// different strata as independent, and is much too narrow if they are not.
         Strata = "strata",
     }
 }
 
-/// How intervals are made.
+/// Options of bootstrap intervals.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct BootstrapOptions {
-    /// Share of repetitions of the whole experiment whose interval is to hold the true value; between 0 and 1, default 0.95.
+    /// Share of repetitions of the whole experiment whose interval should contain the true value; between 0 and 1, default
+    /// 0.95.
     pub confidence: f64,
-    /// How many times the scores are drawn again, at most [`MAX_RESAMPLES`]; default 2,000. Then chance moves the share that an
-    /// interval leaves out at an end, 2.5 %, by 0.35 % (one standard deviation), less than what a handful of runs leave open
-    /// anyway. Take 50,000, as rliable does, for a figure to publish.
+    /// Number of resamples, at most [`MAX_RESAMPLES`]; default 2,000. With the default, the 2.5 % left out at each end vary by
+    /// 0.35 % (one standard deviation), less than the uncertainty from a handful of runs. Use 50,000, as rliable does, for a
+    /// figure to publish.
     pub resamples: u32,
-    /// What is drawn again; default whole runs.
+    /// The unit of resampling; default whole runs.
     pub resampling: Resampling,
-    /// What the draws come from; default 0. The same seed gives the same interval on every machine.
+    /// Seed of the resamples; default 0. The same seed gives the same interval on every machine.
     pub seed: u64,
 }
 
@@ -57,7 +57,7 @@ impl Default for BootstrapOptions {
 }
 
 impl BootstrapOptions {
-    /// Checks that the options make sense for tables of so many scores.
+    /// Checks the options for tables with this number of scores.
     pub(super) fn check(&self, num_scores: usize) -> Result<(), MetricsError> {
         let wrong = |option: &'static str, found: String, expected: String| {
             Err(MetricsError::bad_option(option, found, expected))
@@ -67,7 +67,7 @@ impl BootstrapOptions {
             return wrong("confidence", self.confidence.to_string(), expected.to_owned());
         }
         let (resamples, confidence) = (self.resamples, self.confidence);
-        // At least one resample lies outside at either end, or the ends would say nothing.
+        // At least one resample must lie outside at either end; otherwise the ends would be meaningless.
         let least = (2.0 / (1.0 - confidence)).round().max(1.0);
         if f64::from(resamples) < least {
             let expected = format!("at least {least} for a confidence of {confidence}");
@@ -81,12 +81,12 @@ impl BootstrapOptions {
         Ok(())
     }
 
-    /// The stream that the draws come from: `ChaCha` with 8 rounds, which is the same on every machine.
+    /// The random stream of the resamples: `ChaCha` with 8 rounds, the same on every machine.
     pub(super) fn rng(&self) -> ChaCha8Rng {
         ChaCha8Rng::seed_from_u64(self.seed)
     }
 
-    /// What lies between the percentiles that leave out the same share at either end.
+    /// The interval between the percentiles that leave out equal shares at both ends.
     pub(super) fn interval(&self, values: &mut [f64]) -> Interval {
         values.sort_unstable_by(f64::total_cmp);
         let left_out = (1.0 - self.confidence) / 2.0;
@@ -103,7 +103,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_interval_leaves_out_the_same_share_at_either_end() {
+    fn intervals_leave_out_equal_shares_at_both_ends() {
         let options = BootstrapOptions {
             confidence: 0.9,
             ..BootstrapOptions::default()
@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn options_that_mean_nothing_are_refused() {
+    fn meaningless_options_are_refused() {
         let check = |confidence: f64, resamples: u32, num_scores: usize, expected: &str| {
             let options = BootstrapOptions {
                 confidence,
@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn options_survive_json() {
+    fn options_round_trip_through_json() {
         let options = BootstrapOptions {
             resampling: Resampling::Runs,
             seed: 7,

@@ -1,6 +1,4 @@
-//! The runs of two agents set against each other, stratum by stratum: the pairs that each wins, and how that varies with the draw.
-//!
-//! Not here: what a caller gets to see of it, see `improvement`.
+//! Compares the runs of two agents pairwise in each stratum, and resamples the comparison.
 
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -9,15 +7,15 @@ use super::jackknife::{FEW_RUNS, t_interval};
 use super::resample::draw_whole_runs;
 use super::{BootstrapOptions, Interval, Resampling, ScoreTable};
 
-/// Two agents, A and B, in every stratum that both have.
+/// Two agents, A and B, in every shared stratum.
 pub(super) struct Contests {
     strata: Vec<Contest>,
-    /// How often each run of an agent was drawn, for draws of whole runs.
+    /// How often each run of an agent was drawn, if whole runs are resampled.
     drawn: [Vec<u32>; 2],
 }
 
 impl Contests {
-    /// As the tables are; of the strata that are named.
+    /// From two tables, for these strata.
     pub(super) fn new(a: &ScoreTable, b: &ScoreTable, strata: &[&str]) -> Self {
         Self {
             strata: strata.iter().map(|name| Contest::new(a, b, name)).collect(),
@@ -25,14 +23,15 @@ impl Contests {
         }
     }
 
-    /// How probably A wins in each stratum, and last in the mean of those with pairs. Before anything is drawn every stratum has pairs.
+    /// The probability that A wins in each stratum, and last the mean over strata with pairs. Before resampling, every stratum
+    /// has pairs.
     pub(super) fn probabilities(&self) -> Vec<Option<f64>> {
         let mut values = Vec::new();
         self.put_probabilities(&mut values);
         values
     }
 
-    /// The same in place of what the list held.
+    /// Like [`Self::probabilities`], but overwrites a list.
     fn put_probabilities(&self, values: &mut Vec<Option<f64>>) {
         values.clear();
         values.extend(self.strata.iter().map(Contest::probability));
@@ -41,13 +40,13 @@ impl Contests {
         values.push((num > 0).then(|| sum / num as f64));
     }
 
-    /// Intervals of the strata, and last that of their mean. A stratum has none where drawing again gives nothing new, or where no
-    /// draw had a pair of it.
+    /// Intervals of the strata, and last that of their mean. `None` for a stratum that resampling cannot vary, or that had no
+    /// pair in any resample.
     pub(super) fn intervals(&mut self, options: &BootstrapOptions) -> Vec<Option<Interval>> {
         let resamples = options.resamples as usize;
         let mut drawn = vec![Vec::with_capacity(resamples); self.strata.len() + 1];
         let (mut values, mut rng) = (Vec::new(), options.rng());
-        // At worst six draws in ten leave no stratum: each agent draws a given run with a chance of 1 - 1/e or more.
+        // At worst six resamples in ten have no stratum: each agent draws a given run with a chance of at least 1 - 1/e.
         while drawn[self.strata.len()].len() < resamples {
             self.draw(options.resampling, &mut rng);
             self.put_probabilities(&mut values);
@@ -63,8 +62,8 @@ impl Contests {
             .collect()
     }
 
-    /// Student's intervals of the strata, and last that of their mean, where an agent has few runs; within 0..=1. A stratum has none
-    /// where an agent has one run in it.
+    /// Student's intervals of the strata, and last that of their mean, if an agent has few runs; within 0..=1. `None` for a
+    /// stratum in which an agent has one run.
     pub(super) fn t_intervals(&mut self, confidence: f64) -> Option<Vec<Option<Interval>>> {
         if self.drawn.iter().all(|runs| runs.len() >= FEW_RUNS) {
             return None;
@@ -78,7 +77,7 @@ impl Contests {
                 self.drawn[agent][run] = 0;
                 self.take_runs();
                 for (place, value) in self.probabilities().into_iter().enumerate() {
-                    // A run that has no score in a stratum says nothing of it.
+                    // A run without a score in a stratum does not count there.
                     let scored = (self.strata.get(place)).is_none_or(|contest| contest.0[agent].has(run));
                     left_out[place][agent].extend(value.filter(|_| scored));
                 }
@@ -128,11 +127,11 @@ struct Contest([Side; 2]);
 
 /// One agent's runs.
 struct Side {
-    /// Each run that has a score: its rank among the different scores of both agents, and its position in the table.
+    /// Each run with a score: its rank among the different scores of both agents, and its position in the table.
     runs: Vec<(u32, u32)>,
-    /// How many runs stand at each rank.
+    /// Number of runs at each rank.
     counts: Vec<u32>,
-    /// How many that are in all.
+    /// The sum of the counts.
     num_drawn: u64,
 }
 
@@ -149,7 +148,7 @@ impl Contest {
         self.0.iter().any(|side| side.runs.len() > 1)
     }
 
-    /// Share of pairs that A wins, ties counted half; `None` where there is no pair.
+    /// Share of pairs that A wins, ties counted half; `None` without pairs.
     fn probability(&self) -> Option<f64> {
         let [a, b] = &self.0;
         let (mut halves, mut below) = (0, 0);
@@ -179,7 +178,7 @@ impl Side {
         self.runs.iter().any(|(_, scored)| *scored as usize == run)
     }
 
-    /// As many runs as there are, with replacement.
+    /// Draws as many runs as there are, with replacement.
     fn draw(&mut self, rng: &mut ChaCha8Rng) {
         self.counts.fill(0);
         let num_runs = self.runs.len() as u32;
@@ -189,7 +188,7 @@ impl Side {
         }
     }
 
-    /// The runs that were drawn for all strata, as far as they have a score in this one.
+    /// Uses the runs drawn for all strata, if they have a score in this one.
     fn take(&mut self, drawn: &[u32]) {
         self.counts.fill(0);
         self.num_drawn = 0;
@@ -208,8 +207,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn whole_runs_are_drawn_for_all_strata_at_once() {
-        // Of A, run 1 always wins in both strata and run 2 always loses.
+    fn whole_runs_are_drawn_for_all_strata_together() {
+        // Run 1 of A always wins in both strata, run 2 always loses.
         let a = ScoreTable::from_runs([("1", [("x", 9.0), ("y", 9.0)]), ("2", [("x", 0.0), ("y", 0.0)])]).unwrap();
         let b = ScoreTable::from_runs([("1", [("x", 5.0), ("y", 6.0)]), ("2", [("x", 6.0), ("y", 5.0)])]).unwrap();
         let (mut contests, mut rng) = (Contests::new(&a, &b, &["x", "y"]), ChaCha8Rng::seed_from_u64(0));
@@ -227,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stratum_that_no_drawn_run_scored_has_no_pairs() {
+    fn stratum_without_drawn_scores_has_no_pairs() {
         let a = ScoreTable::from_runs([("1", vec![("x", 2.0)]), ("2", vec![("y", 2.0)])]).unwrap();
         let b = ScoreTable::from_runs([("1", [("x", 1.0), ("y", 3.0)])]).unwrap();
         let mut contests = Contests::new(&a, &b, &["x", "y"]);
@@ -236,7 +235,7 @@ mod tests {
         }
         let found: Vec<Option<f64>> = contests.strata.iter().map(Contest::probability).collect();
         assert_eq!(found, [Some(1.0), None]);
-        // The mean of a draw is that of the strata it has: 1 (run 1 only), 0 (run 2 only) or 0.5 (both).
+        // The mean of a resample is over the strata it has: 1 (run 1 only), 0 (run 2 only) or 0.5 (both).
         let options = BootstrapOptions {
             resampling: Resampling::Runs,
             ..BootstrapOptions::default()

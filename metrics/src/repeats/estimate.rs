@@ -1,6 +1,4 @@
-//! An aggregate with the interval in which it lies.
-//!
-//! Not here: the aggregates themselves, see `aggregate`; comparing two agents, see `improvement`.
+//! Estimates: aggregates with their confidence intervals.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,35 +7,36 @@ use super::resample::Resample;
 use super::{Aggregate, BootstrapOptions, ScoreTable};
 use crate::MetricsError;
 
-/// A number and how sure it is.
+/// A number with its uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
-    /// Its value for the scores as they are.
+    /// Its value for the original scores.
     pub value: f64,
-    /// Where it lies; `None` where drawing again can give nothing new, because there is one run only. See
-    /// [`ScoreTable::caution`] for what to tell a reader.
+    /// Its bootstrap interval; `None` if resampling cannot vary it, because there is only one run. See [`ScoreTable::caution`]
+    /// for warnings to readers.
     pub interval: Option<Interval>,
-    /// Where it lies by Student's t over runs, for two to nine runs, of which the bootstrap says too little: it takes what varies from
-    /// run to run as normal. `None` for more runs, and for one. For a mean of runs that all have the same strata it is the textbook's
-    /// interval; for others, the jackknife gives the standard error.
+    /// Its interval by Student's t over runs, for two to nine runs, for which the bootstrap is too narrow; assumes normal
+    /// variation between runs. `None` for more runs, and for one. For a mean of runs that all have the same strata it is the
+    /// textbook interval; otherwise the jackknife gives the standard error.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub t_interval: Option<Interval>,
 }
 
 impl Estimate {
-    /// The interval to judge by: Student's where there are few runs, else the bootstrap's.
+    /// The recommended interval: Student's for few runs, else the bootstrap's.
     pub fn best_interval(&self) -> Option<Interval> {
         self.t_interval.or(self.interval)
     }
 }
 
-/// Aggregates of a table with their percentile bootstrap intervals, all from the same draws, and below [`FEW_RUNS`] runs Student's.
+/// Aggregates of a table with their percentile bootstrap intervals, all from the same resamples, and below [`FEW_RUNS`] runs
+/// Student's.
 ///
-/// Time `O(resamples · scores)`; rough measure: 50,000 resamples of 10 runs of 10 strata take a tenth of a second.
+/// Time `O(resamples · scores)`: 50,000 resamples of 10 runs of 10 strata take about a tenth of a second.
 ///
 /// # Errors
-/// [`MetricsError::BadOption`] for a confidence that is not between 0 and 1, too few resamples to show the ends at this
-/// confidence, or more than [`MAX_RESAMPLES`](super::MAX_RESAMPLES) or than [`MAX_SCORES_DRAWN`](super::MAX_SCORES_DRAWN) allows.
+/// [`MetricsError::BadOption`] for a confidence that is not between 0 and 1, too few resamples for this confidence, or more
+/// than [`MAX_RESAMPLES`](super::MAX_RESAMPLES) or [`MAX_SCORES_DRAWN`](super::MAX_SCORES_DRAWN) allows.
 ///
 /// # Example
 /// See [`ScoreTable`].
@@ -82,9 +81,9 @@ pub fn estimate<const N: usize>(
     Ok(estimates)
 }
 
-/// From low to high. With the default options the bootstrap's holds the value that infinitely many runs would show in about 92 of 100
-/// repetitions with 20 runs, in 87 with 9, in 82 with 5, in 76 with 3: few runs cannot show how much they vary. Student's does in 95, as
-/// far as runs are normal. `metrics/tests/repeats_coverage.rs` simulates both.
+/// A confidence interval. With the default options the bootstrap's contains the value for infinitely many runs in about 92 of
+/// 100 repetitions with 20 runs, in 87 with 9, in 82 with 5, in 76 with 3: few runs underestimate their own variation.
+/// Student's does in 95, if runs are normal. `metrics/tests/repeats_coverage.rs` simulates both.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Interval {
     /// Lower end, in the unit of the value.
@@ -134,9 +133,9 @@ mod tests {
         }
     }
 
-    /// The numbers of this seed on every machine: when they move, the change is value-breaking.
+    /// The exact numbers of this seed on every machine: if they change, the change breaks results.
     #[test]
-    fn intervals_hold_still() {
+    fn intervals_are_reproducible() {
         let check = |resampling: Resampling, expected: (f64, f64)| {
             let options = BootstrapOptions {
                 resampling,
@@ -157,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn two_kinds_of_draws_agree_where_there_is_one_stratum() {
+    fn both_resamplings_agree_for_one_stratum() {
         let table = ScoreTable::from_runs((0..9_u32).map(|run| (run.to_string(), [("a", f64::from(run))]))).unwrap();
         let interval = |resampling| {
             let options = BootstrapOptions {

@@ -1,7 +1,4 @@
-//! Two agents compared: how probably a run of one scores higher than a run of the other.
-//!
-//! Not here: how pairs of runs are counted and drawn again, see `contest`; differences of aggregates: two agents' intervals stand
-//! beside each other for that, see `estimate`.
+//! Compares two agents: the probability that a run of one scores higher than a run of the other.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,28 +8,28 @@ use super::score_table::wrong;
 use super::{BootstrapOptions, Estimate, ScoreTable};
 use crate::MetricsError;
 
-/// How probably agent A beats agent B.
+/// The probability that agent A beats agent B.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Improvement {
-    /// Mean of the strata's probabilities: 0.5 where neither is better, 1 where every run of A beats every run of B.
+    /// Mean of the strata's probabilities: 0.5 if neither is better, 1 if every run of A beats every run of B.
     pub probability: Estimate,
-    /// How often two equal agents differ as much: the share of ways to share out all runs among the two, whole runs, in which the mean
-    /// probability is as far from 0.5. Whoever calls agents different where it is at most 0.05 does so for 5 % of equal ones at most,
-    /// whatever the scores of a run have in common. `None` for one run of each.
+    /// P-value of a permutation test: the share of ways to divide all runs between the two agents, as whole runs, in which the
+    /// mean probability is as far from 0.5. Calling agents different at 0.05 or less is wrong for at most 5 % of equal ones,
+    /// whatever the correlation within runs. `None` for one run of each.
     #[serde(default)]
     pub p_value: Option<f64>,
-    /// The least that it can be with so many runs: 0.1 for three of each.
+    /// The smallest possible p-value with this number of runs: 0.1 for three of each.
     #[serde(default)]
     pub least_p_value: Option<f64>,
-    /// The strata that both agents have, in A's order.
+    /// The shared strata, in A's order.
     pub strata: Vec<StratumImprovement>,
-    /// Strata that only A has; left out.
+    /// Strata that only A has; ignored.
     pub only_a: Vec<String>,
-    /// Strata that only B has; left out.
+    /// Strata that only B has; ignored.
     pub only_b: Vec<String>,
 }
 
-/// How probably A beats B in one stratum.
+/// The probability that A beats B in one stratum.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct StratumImprovement {
     /// Name of the stratum.
@@ -41,20 +38,20 @@ pub struct StratumImprovement {
     pub probability: Estimate,
 }
 
-/// How probably a run of agent A scores higher than a run of agent B, per stratum and in the mean over strata, with percentile
-/// bootstrap intervals for which the runs of the two agents are drawn independently.
+/// The probability that a run of agent A scores higher than a run of agent B, per stratum and averaged over strata, with
+/// percentile bootstrap intervals that resample the two agents independently.
 ///
-/// Corresponds to `probability_of_improvement` of rliable 1.2: the Mann–Whitney statistic over the number of pairs. It says how
-/// often A is better and not by how much. Higher scores must be better.
+/// Corresponds to `probability_of_improvement` of rliable 1.2: the Mann–Whitney statistic over the number of pairs. It measures
+/// how often A is better and not by how much. Higher scores must be better.
 ///
-/// Pairs of runs are formed stratum by stratum. What is drawn again for the intervals, [`BootstrapOptions::resampling`] says: the
-/// scores within each stratum, or the whole runs of each agent, the same ones in every stratum. Where runs lack scores, of whole
-/// runs there may be none with a score of some stratum: such a stratum is left out of the mean of that draw, and its own interval
-/// is made of the other draws; a draw that leaves no stratum is made again. What [`ScoreTable::caution`] says of either table is
-/// true of the intervals. Time `O(resamples · scores)`.
+/// Runs are paired within each stratum. [`BootstrapOptions::resampling`] chooses what is resampled: the scores within each
+/// stratum, or the whole runs of each agent, the same in every stratum. If runs lack scores, resampled whole runs may have no
+/// score in some stratum: such a stratum is left out of the mean of that resample, and its own interval uses the other
+/// resamples; a resample without any stratum is drawn again. [`ScoreTable::caution`] of either table applies to the intervals.
+/// Time `O(resamples · scores)`.
 ///
 /// # Errors
-/// [`MetricsError::Scores`] where the tables have no stratum in common; [`MetricsError::BadOption`] as
+/// [`MetricsError::Scores`] if the tables have no stratum in common; [`MetricsError::BadOption`] as
 /// [`estimate`](super::estimate()).
 ///
 /// # Example
@@ -134,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn pairs_are_won_lost_or_even() {
+    fn pairs_are_won_lost_or_tied() {
         let check = |a: &[f64], b: &[f64], expected: f64| {
             let (a, b) = (table(&[("t", a)]), table(&[("t", b)]));
             let found = probability_of_improvement(&a, &b, &BootstrapOptions::default()).unwrap();
@@ -165,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn strangers_cannot_be_compared() {
+    fn agents_without_shared_strata_are_refused() {
         let (a, b) = (table(&[("x", &[1.0])]), table(&[("y", &[1.0])]));
         let error = probability_of_improvement(&a, &b, &BootstrapOptions::default()).unwrap_err();
         assert_eq!(
@@ -176,15 +173,15 @@ mod tests {
     }
 
     #[test]
-    fn one_run_each_has_no_interval() {
+    fn single_runs_have_no_interval() {
         let (a, b) = (table(&[("x", &[1.0])]), table(&[("x", &[1.0])]));
         let found = probability_of_improvement(&a, &b, &BootstrapOptions::default()).unwrap();
         assert_eq!((found.probability.value, found.probability.interval), (0.5, None));
     }
 
-    /// The numbers of this seed on every machine: when they move, the change is value-breaking.
+    /// The exact numbers of this seed on every machine: if they change, the change breaks results.
     #[test]
-    fn intervals_hold_still() {
+    fn intervals_are_reproducible() {
         let a = table(&[
             ("x", &[1.0, 4.0, 2.0, 7.0, 3.0]),
             ("y", &[5.0, 2.0, 6.0]),

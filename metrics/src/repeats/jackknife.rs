@@ -1,18 +1,16 @@
-//! Intervals by Student's t for few runs: how a number changes when one run after the other is left out.
-//!
-//! Not here: intervals of many draws, see `bootstrap`.
+//! Intervals by Student's t for few runs, with standard errors from the jackknife.
 
 use super::Interval;
 use super::student::student_reach;
 
-/// From this number of runs on, intervals are made by the bootstrap alone.
+/// With at least this number of runs, only the bootstrap makes intervals.
 pub const FEW_RUNS: usize = 10;
 
-/// The jackknife's estimate of the variance, and its degrees of freedom, from the values that a number takes when each run of one
-/// agent is left out in turn. For a mean of runs that is the variance of the mean.
+/// The jackknife's estimate of the variance, and its degrees of freedom, from the values with each run of one agent left out in
+/// turn. For a mean of runs it is the variance of the mean.
 fn variance(left_out: &[f64]) -> (f64, f64) {
     let num = left_out.len() as f64;
-    // In ascending order, so that the order of runs is nothing.
+    // Sorted, so that the order of runs does not matter.
     let mut values = left_out.to_vec();
     values.sort_by(f64::total_cmp);
     let mean = values.iter().sum::<f64>() / num;
@@ -20,9 +18,8 @@ fn variance(left_out: &[f64]) -> (f64, f64) {
     ((num - 1.0) / num * squares, num - 1.0)
 }
 
-/// The interval around a value whose runs are one agent's, or two agents' runs independent of each other; `None` where an agent has
-/// one run only, so that nothing is known of how it varies. `left_out`: for each agent, the values that it takes when each of the
-/// agent's runs is left out in turn.
+/// The interval around a value of one agent's runs, or of two agents' independent runs; `None` if an agent has only one run,
+/// whose variation is unknown. `left_out`: for each agent, the values with each of its runs left out in turn.
 ///
 /// The degrees of freedom of two agents are those of Welch and Satterthwaite.
 pub(super) fn t_interval(value: f64, left_out: &[Vec<f64>], confidence: f64) -> Option<Interval> {
@@ -35,7 +32,7 @@ pub(super) fn t_interval(value: f64, left_out: &[Vec<f64>], confidence: f64) -> 
         .iter()
         .map(|(variance, freedom)| variance * variance / freedom)
         .sum();
-    // Where nothing varies, any freedom gives a reach of 0.
+    // Without variation, any number of degrees of freedom gives a width of 0.
     let freedom = if shares > 0.0 {
         variance * variance / shares
     } else {
@@ -53,7 +50,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn of_a_mean_it_is_the_textbooks_interval() {
+    fn interval_of_a_mean_is_the_textbook_one() {
         // scipy.stats.t.interval(0.95, 4, loc=3, scale=scipy.stats.sem([1, 2, 3, 4, 5])).
         let runs = [1.0, 2.0, 3.0, 4.0, 5.0];
         let left_out = runs.iter().map(|run| (15.0 - run) / 4.0).collect();
@@ -63,7 +60,7 @@ mod tests {
     }
 
     #[test]
-    fn one_run_says_nothing_and_equal_runs_leave_nothing_open() {
+    fn one_run_gives_none_and_equal_runs_give_width_0() {
         assert_eq!(t_interval(1.0, &[vec![1.0]], 0.95), None);
         let still = t_interval(1.0, &[vec![1.0; 3], vec![1.0; 2]], 0.95).unwrap();
         assert_eq!((still.low, still.high), (1.0, 1.0));

@@ -1,9 +1,7 @@
-//! Statistics over repeats: what many lifetimes of one agent say together, how sure that is, and whether another agent is better.
+//! Statistics over repeats: aggregates over many lifetimes of one agent, their uncertainty, and comparisons of two agents.
 //!
-//! They follow Agarwal et al. 2021, "Deep Reinforcement Learning at the Edge of the Statistical Precipice", and give the numbers
-//! of its package rliable 1.2.
-//!
-//! Not here: where the scores come from. A [`ScoreTable`] takes any number per run and task.
+//! The methods follow Agarwal et al. 2021, "Deep Reinforcement Learning at the Edge of the Statistical Precipice", and match
+//! the numbers of its package rliable 1.2. A [`ScoreTable`] takes any number per run and task.
 
 mod aggregate;
 mod bootstrap;

@@ -1,6 +1,4 @@
-//! Whether two agents differ at all: how often runs that are shared out anew among two equal agents differ as much.
-//!
-//! Not here: by how much an agent is better, see `improvement`.
+//! Permutation test: whether two agents differ at all.
 
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -8,18 +6,18 @@ use rand_chacha::rand_core::SeedableRng;
 
 use super::{BootstrapOptions, ScoreTable};
 
-/// Up to so many ways to share out the runs are all looked at.
+/// Up to this number, all divisions of the runs are tried.
 const ALL_WAYS: u64 = 20_000;
 
-/// Part of a probability by which sums in another order may differ.
+/// Share of a probability by which sums in another order may differ.
 const ROUNDING: f64 = 1e-12;
 
-/// What sharing out the runs anew shows.
+/// The result of the test.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Shared {
-    /// Share of ways that differ as much as what was found, that one included.
+    /// Share of divisions that differ at least as much as the observed one, which is included.
     pub(super) p_value: f64,
-    /// The least that it can be with so many runs.
+    /// The smallest possible p-value with this number of runs.
     pub(super) least: f64,
 }
 
@@ -27,15 +25,15 @@ pub(super) struct Shared {
 struct Pool {
     num_of_a: usize,
     num_runs: usize,
-    /// Per stratum, the rank of each run's score among the different scores, A's runs first; none where it lacks one.
+    /// Per stratum, the rank of each run's score among the different scores, A's runs first; `None` for a missing score.
     ranks: Vec<Vec<Option<u32>>>,
 }
 
-/// Shares out the runs of both agents anew, whole runs with all their scores, and counts how often A's part of the won pairs is as far
-/// from one half as it is. Were the agents equal, every way would be as likely, whatever runs have in common across strata: then the
-/// result is at most p with a chance of at most p.
+/// Divides the runs of both agents in other ways, as whole runs with all their scores, and counts how often A's share of the
+/// won pairs is at least as far from one half as observed. If the agents were equal, every division would be equally likely,
+/// whatever the correlation across strata: then the result is at most p with a chance of at most p.
 ///
-/// `None` for one run of each agent, which can be shared out in one way only.
+/// `None` for one run of each agent, which cannot be divided in another way.
 pub(super) fn shared_out(
     a: &ScoreTable,
     b: &ScoreTable,
@@ -50,7 +48,7 @@ pub(super) fn shared_out(
     let found = pool.difference(&of_a);
     let is_as_much = |difference: f64| difference >= found - ROUNDING;
     let ways = ways(pool.num_runs as u64, pool.num_of_a as u64);
-    // Turned round, a way differs as much; with as many runs each, that is a way of its own.
+    // Swapping the agents gives the same difference; if both have the same number of runs, that is another division.
     let twins = if 2 * pool.num_of_a == pool.num_runs { 2.0 } else { 1.0 };
     let (as_much, all) = if let Some(ways) = ways {
         let mut as_much = 0;
@@ -63,7 +61,7 @@ pub(super) fn shared_out(
         }
     } else {
         let mut rng = ChaCha8Rng::seed_from_u64(options.seed);
-        // Not the draws of the intervals.
+        // A different stream from the intervals' resamples.
         rng.set_stream(1);
         let mut as_much = 1;
         for _ in 0..options.resamples {
@@ -79,7 +77,7 @@ pub(super) fn shared_out(
     })
 }
 
-/// In how many ways `of_a` of `num_runs` runs can be chosen; `None` for more than are looked at.
+/// The number of ways to choose `of_a` of `num_runs` runs; `None` if there are too many to try.
 fn ways(num_runs: u64, of_a: u64) -> Option<u64> {
     let mut ways = 1_u64;
     for k in 1..=of_a.min(num_runs - of_a) {
@@ -91,7 +89,7 @@ fn ways(num_runs: u64, of_a: u64) -> Option<u64> {
     Some(ways)
 }
 
-/// The next way in ascending order, from all of A's runs last to all first; false after the last.
+/// The next division in ascending order, from all of A's runs last to all first; false after the last.
 fn next_way(of_a: &mut [bool]) -> bool {
     let Some(place) = (1..of_a.len()).rev().find(|&place| !of_a[place - 1] && of_a[place]) else {
         return false;
@@ -133,7 +131,7 @@ impl Pool {
         }
     }
 
-    /// How far the mean over strata of the share of pairs that A wins is from one half; 0 where there is no pair.
+    /// Distance of A's share of won pairs, averaged over strata, from one half; 0 without pairs.
     fn difference(&self, of_a: &[bool]) -> f64 {
         let (mut sum, mut num_strata) = (0.0, 0);
         let mut counts = vec![(0_u64, 0_u64); self.num_runs];
@@ -189,8 +187,8 @@ mod tests {
     }
 
     #[test]
-    fn all_ways_are_counted_where_they_are_few() {
-        // Of 20 ways to choose three of six, the one found and its reverse differ as much.
+    fn few_divisions_are_all_counted() {
+        // Of 20 ways to choose three of six, the observed one and its reverse differ as much.
         check(&[&[4.0], &[5.0], &[6.0]], &[&[1.0], &[2.0], &[3.0]], 0.1, 0.1);
         check(&[&[4.0], &[5.0], &[6.0]], &[&[4.0], &[5.0], &[6.0]], 1.0, 0.1);
         // scipy.stats.mannwhitneyu([1, 2, 7, 9], [3, 4, 5, 6, 8], method="exact").pvalue.
@@ -203,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn many_ways_are_drawn() {
+    fn many_divisions_are_sampled() {
         let runs: Vec<[f64; 1]> = (0..24).map(|run| [f64::from(run)]).collect();
         let runs: Vec<&[f64]> = runs.iter().map(|run| &run[..]).collect();
         let found = shared_out(
@@ -217,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn every_way_comes_once() {
+    fn every_division_occurs_once() {
         let mut way = [false, false, true, true];
         let mut seen = vec![way];
         while next_way(&mut way) {

@@ -1,31 +1,29 @@
-//! Power: how probably Welch's test tells two agents apart, how many lifetimes that takes, and which effect some can
-//! show.
-//!
-//! Not here: the test of agents that were run, see `improvement`.
+//! Statistical power of Welch's test: the chance to detect a difference between agents, the number of lifetimes needed, and the
+//! smallest effect that can be shown.
 
 use super::student::student_reach;
 
-/// The chance of calling equal agents different, in a test of two sides.
+/// The significance level of a two-sided test: the chance to call equal agents different.
 pub const POWER_LEVEL: f64 = 0.05;
 
-/// The power that is asked for where nobody says.
+/// The default power.
 pub const POWER_WANTED: f64 = 0.8;
 
-/// More lifetimes than these for each agent are not looked for.
+/// Largest number of lifetimes per agent that the search considers.
 pub const MAX_POWER_LIFETIMES: usize = 100_000;
 
-/// Points of each variance; the integrand is smooth, and its ends vanish.
+/// Integration points per variance; the integrand is smooth, and vanishes at its ends.
 const NUM_POINTS: usize = 48;
 
-/// Points between which quantiles of Student's t are taken as straight in one over the degrees of freedom.
+/// Points between which quantiles of Student's t are interpolated, linearly in one over the degrees of freedom.
 const NUM_QUANTILES: usize = 64;
 
-/// The chance, 0..=1, that Welch's t test of two sides at 5 % calls two agents different, whose lifetimes are
-/// independent and normally distributed with these standard deviations and with means that differ by `effect`.
-/// `lifetimes` are those of each agent. `None` for fewer than two lifetimes of one, or without any deviation.
+/// The chance, 0..=1, that a two-sided Welch's t test at 5 % calls two agents different, if their lifetimes are independent and
+/// normally distributed with these standard deviations and with means that differ by `effect`. `lifetimes` are those of each
+/// agent. `None` for fewer than two lifetimes of one, or without any deviation.
 ///
-/// The difference of means is normal and independent of the two sample variances; given these, the chance is a normal
-/// distribution's, and it is integrated over their chi-squared distributions.
+/// The difference of means is normal and independent of the two sample variances; given these, the chance follows from a normal
+/// distribution, and is integrated over their chi-squared distributions.
 pub fn welch_power(lifetimes: [usize; 2], deviations: [f64; 2], effect: f64) -> Option<f64> {
     let variances = deviations.map(|deviation| deviation * deviation);
     if lifetimes.iter().any(|num| *num < 2) || variances.iter().all(|variance| *variance == 0.0) {
@@ -49,8 +47,8 @@ pub fn welch_power(lifetimes: [usize; 2], deviations: [f64; 2], effect: f64) -> 
     Some(power.clamp(0.0, 1.0))
 }
 
-/// The fewest lifetimes of each agent with which the power is 80 %; `None` if that takes more than
-/// [`MAX_POWER_LIFETIMES`], or cannot be said.
+/// The fewest lifetimes per agent for a power of 80 %; `None` if that takes more than [`MAX_POWER_LIFETIMES`], or the power is
+/// undefined.
 pub fn lifetimes_for(deviations: [f64; 2], effect: f64) -> Option<usize> {
     let enough = |num: usize| Some(welch_power([num; 2], deviations, effect)? >= POWER_WANTED);
     let mut high = 2;
@@ -72,7 +70,7 @@ pub fn lifetimes_for(deviations: [f64; 2], effect: f64) -> Option<usize> {
     Some(high)
 }
 
-/// The smallest difference of means that so many lifetimes of each agent show with a power of 80 %; `None` as in
+/// The smallest difference of means that this number of lifetimes of each agent shows with a power of 80 %; `None` as in
 /// [`welch_power`].
 pub fn smallest_effect(lifetimes: [usize; 2], deviations: [f64; 2]) -> Option<f64> {
     let scale = libm::hypot(deviations[0], deviations[1]);
@@ -91,15 +89,14 @@ pub fn smallest_effect(lifetimes: [usize; 2], deviations: [f64; 2]) -> Option<f6
     Some(high)
 }
 
-/// The chance that a standard normal number is below.
+/// The standard normal cumulative distribution function.
 fn normal(value: f64) -> f64 {
     0.5 * libm::erfc(-value / std::f64::consts::SQRT_2)
 }
 
-/// Values of a chi-squared variable over its degrees of freedom, with weights that add up to 1: evenly in its
-/// logarithm.
+/// Values of a chi-squared variable over its degrees of freedom, evenly spaced in its logarithm, with weights that add up to 1.
 fn chi_squared(freedom: f64) -> Vec<(f64, f64)> {
-    // The logarithm of the density of ln(x / freedom), but for a constant: 0 at its highest.
+    // The logarithm of the density of ln(x / freedom), up to a constant: 0 at its maximum.
     let log_density = |u: f64| freedom / 2.0 * (u - (libm::exp(u) - 1.0));
     let end = |direction: f64| {
         let step = direction * 0.05 / freedom.sqrt();
@@ -118,7 +115,7 @@ fn chi_squared(freedom: f64) -> Vec<(f64, f64)> {
 
 /// Quantiles of Student's t for all degrees of freedom that Welch's test can have.
 struct Quantiles {
-    /// One over the most degrees, and the step from one to the next.
+    /// One over the largest degrees of freedom, and the step to the next.
     first: f64,
     step: f64,
     values: Vec<f64>,

@@ -1,26 +1,24 @@
-//! A table drawn again from itself: how often each of its scores was drawn.
+//! A resample of a table: how often each of its scores was drawn.
 //!
-//! Counting instead of copying keeps scores in ascending order without sorting, and sums in one order.
-//!
-//! Not here: how many such draws an interval needs, see `bootstrap`.
+//! Counting instead of copying keeps scores sorted without sorting again, and sums in a fixed order.
 
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
 use super::{Resampling, ScoreTable};
 
-/// A table and how often each score counts; once each to begin with.
+/// A table with a count per score; initially 1 each.
 pub(super) struct Resample {
-    /// Every score, ascending.
+    /// Every score, sorted.
     pub(super) scores: Vec<f64>,
     /// How often each was drawn.
     pub(super) counts: Vec<u32>,
-    /// Per stratum, ascending by score.
+    /// Per stratum, sorted by score.
     strata: Vec<Vec<Slot>>,
     num_runs: usize,
 }
 
-/// Where a score of a stratum stands.
+/// A score of a stratum.
 #[derive(Clone, Copy)]
 struct Slot {
     /// Position in `scores`.
@@ -35,7 +33,7 @@ impl Resample {
         for (stratum, sorted) in table.sorted().enumerate() {
             all.extend(sorted.iter().map(|(score, run)| (*score, stratum, *run)));
         }
-        // A stable sort: equal scores keep the order of strata, and within one the order of runs.
+        // The sort is stable: equal scores keep the order of strata, and within one the order of runs.
         all.sort_by(|(a, ..), (b, ..)| a.total_cmp(b));
         let mut strata: Vec<Vec<Slot>> = table.sorted().map(|sorted| Vec::with_capacity(sorted.len())).collect();
         for (position, (_, stratum, run)) in (0..).zip(&all) {
@@ -49,7 +47,7 @@ impl Resample {
         }
     }
 
-    /// Leaves one run out and counts each other once; false where no score is left.
+    /// Leaves out one run and counts each other once; false if no score is left.
     pub(super) fn leave_out(&mut self, run: usize) -> bool {
         for slot in self.strata.iter().flatten() {
             self.counts[slot.position as usize] = u32::from(slot.run as usize != run);
@@ -57,7 +55,7 @@ impl Resample {
         self.counts.iter().any(|count| *count > 0)
     }
 
-    /// Draws anew.
+    /// Draws a new resample.
     pub(super) fn draw(&mut self, resampling: Resampling, rng: &mut ChaCha8Rng) {
         match resampling {
             Resampling::Strata => self.draw_strata(rng),
@@ -65,7 +63,7 @@ impl Resample {
         }
     }
 
-    /// From each stratum as many scores as it has, with replacement.
+    /// Draws from each stratum as many scores as it has, with replacement.
     fn draw_strata(&mut self, rng: &mut ChaCha8Rng) {
         self.counts.fill(0);
         for slots in &self.strata {
@@ -77,8 +75,8 @@ impl Resample {
         }
     }
 
-    /// As many whole runs as there are, with replacement. Where runs lack scores, none at all may have been drawn: such draws
-    /// are made again, which ends, since some run has a score.
+    /// Draws as many whole runs as there are, with replacement. If runs lack scores, the resample may be empty: it is then
+    /// drawn again, which terminates because some run has a score.
     fn draw_runs(&mut self, rng: &mut ChaCha8Rng) {
         let mut runs = vec![0; self.num_runs];
         loop {
@@ -92,12 +90,12 @@ impl Resample {
         }
     }
 
-    /// How many scores were drawn.
+    /// Number of scores drawn.
     pub(super) fn num_drawn(&self) -> u64 {
         self.counts.iter().map(|count| u64::from(*count)).sum()
     }
 
-    /// The mean of each stratum of which something was drawn.
+    /// The mean of each stratum with at least one drawn score.
     pub(super) fn stratum_means(&self) -> impl Iterator<Item = f64> {
         self.strata.iter().filter_map(|slots| {
             let (mut sum, mut num_drawn) = (0.0, 0);
@@ -111,7 +109,7 @@ impl Resample {
     }
 }
 
-/// Draws as many runs as there are, with replacement: how often each was drawn.
+/// Draws as many runs as there are, with replacement, and counts each.
 pub(super) fn draw_whole_runs(counts: &mut [u32], rng: &mut ChaCha8Rng) {
     counts.fill(0);
     for _ in 0..counts.len() {
@@ -135,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn undrawn_a_resample_is_the_table() {
+    fn initial_resample_is_the_table() {
         let resample = Resample::new(&table());
         assert_eq!(resample.scores, [1.0, 2.0, 2.0, 5.0, 9.0]);
         assert_eq!(resample.num_drawn(), 5);
@@ -155,7 +153,7 @@ mod tests {
                 .zip(&resample.counts)
                 .for_each(|(sum, count)| *sum += count);
         }
-        // Each score is drawn once per resample in the mean; five standard deviations are 230.
+        // Each score is drawn once per resample on average; five standard deviations are 230.
         assert!(drawn.iter().all(|sum| sum.abs_diff(3_000) < 230), "{drawn:?}");
     }
 

@@ -1,6 +1,4 @@
-//! Scores of many runs in strata: one number per run and task, as the statistics over repeats take them.
-//!
-//! Not here: what is computed of them, see `aggregate` and `improvement`.
+//! Scores of many runs in strata: one number per run and task, the input of the statistics over repeats.
 
 use indexmap::{IndexMap, IndexSet};
 
@@ -17,14 +15,14 @@ pub const MAX_STRATA: usize = 10_000;
 /// Most scores in a table, over all runs and strata.
 pub const MAX_SCORES: usize = 1_000_000;
 
-/// How many names a caution spells out; the rest is counted.
+/// Most names listed in a caution; the others are counted.
 const NAMES_SHOWN: usize = 5;
 
-/// Scores of repeated runs. A *stratum* is what is scored in every run, a task or a pair of tasks; a *run* is one lifetime of
-/// the agent. A run may lack the score of a stratum.
+/// Scores of repeated runs. A *stratum* is scored in every run: a task or a pair of tasks; a *run* is one lifetime of the
+/// agent. A run may lack the score of a stratum.
 ///
-/// Between its limits, [`MAX_RUNS`] runs, [`MAX_STRATA`] strata and [`MAX_SCORES`] scores in all, each stratum holds at least
-/// one score, and each score is a number below 1e100 in magnitude.
+/// Within the limits of [`MAX_RUNS`] runs, [`MAX_STRATA`] strata and [`MAX_SCORES`] scores in total, each stratum has at least
+/// one score, and each score is below 1e100 in magnitude.
 ///
 /// ```
 /// use driftworld_metrics::{Aggregate, BootstrapOptions, ScoreTable, estimate};
@@ -45,16 +43,16 @@ const NAMES_SHOWN: usize = 5;
 #[derive(Debug, Clone, PartialEq)]
 pub struct ScoreTable {
     runs: IndexSet<String>,
-    /// Per stratum, each score with the position of its run, ascending by score.
+    /// Per stratum, each score with the position of its run, sorted by score.
     strata: IndexMap<String, Vec<(f64, u32)>>,
 }
 
 impl ScoreTable {
-    /// Takes the scores of each run by stratum. Runs and strata keep the order in which they first appear.
+    /// Builds a table from the scores of each run by stratum. Runs and strata keep the order in which they first appear.
     ///
     /// # Errors
-    /// [`MetricsError::Scores`] where there is no run or no score, where a run or one of its strata comes twice, where a score
-    /// is not finite or too large, and where there are more of anything than the limits allow.
+    /// [`MetricsError::Scores`] if there is no run or no score, if a run or one of its strata is repeated, if a score is not
+    /// finite or too large, and if a limit is exceeded.
     pub fn from_runs<R, S, N>(runs: impl IntoIterator<Item = (R, S)>) -> Result<Self, MetricsError>
     where
         R: Into<String>,
@@ -97,12 +95,12 @@ impl ScoreTable {
                 "a number below 1e100 in magnitude",
             ));
         }
-        // Runs come one after the other, so a score of this run can only be the last.
+        // Runs are added one after the other, so a score of this run can only be the last.
         let twice = self.strata.get(&stratum).and_then(|scores| scores.last());
         if twice.is_some_and(|(_, last)| *last == run_index) {
             return Err(wrong(place(), "two scores", "one"));
         }
-        // Zeros of either sign are one number, lest their order depend on the order of runs.
+        // Zeros of either sign become one number, so that their order does not depend on the order of runs.
         self.strata.entry(stratum).or_default().push((score + 0.0, run_index));
         within(self.strata.len(), "strata", MAX_STRATA)
     }
@@ -122,18 +120,18 @@ impl ScoreTable {
         self.strata.keys().map(String::as_str)
     }
 
-    /// The scores of a stratum, ascending; `None` where there is no such stratum.
+    /// The scores of a stratum, sorted; `None` without such a stratum.
     pub fn scores(&self, stratum: &str) -> Option<impl Iterator<Item = f64>> {
         Some(self.strata.get(stratum)?.iter().map(|(score, _)| *score))
     }
 
-    /// The scores of a stratum with the positions of their runs, ascending by score; empty where there is no such stratum.
+    /// The scores of a stratum with the positions of their runs, sorted by score; empty without such a stratum.
     pub(super) fn scored_runs(&self, stratum: &str) -> &[(f64, u32)] {
         self.strata.get(stratum).map_or(&[], Vec::as_slice)
     }
 
-    /// What a reader of an interval must be warned of: that there is none, or that it does not show how much some strata vary,
-    /// because only one run scored them.
+    /// A warning for readers of an interval: that there is none, or that it misses the variation of some strata, because only
+    /// one run scored them.
     pub fn caution(&self, resampling: Resampling) -> Option<String> {
         if !self.varies(resampling) {
             let what = match resampling {
@@ -152,7 +150,7 @@ impl ScoreTable {
         ))
     }
 
-    /// Whether drawing again can give another table at all.
+    /// Whether resampling can give another table at all.
     pub(super) fn varies(&self, resampling: Resampling) -> bool {
         match resampling {
             Resampling::Strata => self.strata.values().any(|scores| scores.len() > 1),
@@ -160,7 +158,7 @@ impl ScoreTable {
         }
     }
 
-    /// Per stratum, each score with the position of its run, ascending by score.
+    /// Per stratum, each score with the position of its run, sorted by score.
     pub(super) fn sorted(&self) -> impl Iterator<Item = &[(f64, u32)]> {
         self.strata.values().map(Vec::as_slice)
     }
@@ -193,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn scores_stand_under_their_stratum_ascending() {
+    fn scores_are_sorted_within_their_stratum() {
         let runs: Runs = &[
             ("1", &[("b", 3.0), ("a", 1.0)]),
             ("2", &[("a", -1.0)]),
@@ -207,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn tables_that_mean_nothing_are_refused() {
+    fn invalid_tables_are_refused() {
         let check = |runs: Runs, expected: &str| assert_eq!(table(runs).unwrap_err().to_string(), expected);
         check(
             &[],
@@ -233,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn more_than_the_limits_are_refused() {
+    fn tables_beyond_the_limits_are_refused() {
         let check = |found: MetricsError, expected: &str| assert_eq!(found.to_string(), expected);
         let runs = (0..=MAX_RUNS).map(|run| (run.to_string(), [("a", 1.0)]));
         check(
@@ -248,7 +246,7 @@ mod tests {
     }
 
     #[test]
-    fn too_few_runs_are_told() {
+    fn too_few_runs_cause_a_caution() {
         let check = |runs: Runs, resampling: Resampling, expected: Option<&str>| {
             assert_eq!(table(runs).unwrap().caution(resampling).as_deref(), expected);
         };

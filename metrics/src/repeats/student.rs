@@ -1,9 +1,7 @@
-//! Student's t: how many standard errors an interval of few runs reaches.
-//!
-//! Not here: the standard errors, see `jackknife`.
+//! Student's t: the half-width of an interval of few runs, in standard errors.
 
-/// Where Student's t with so many degrees of freedom, above 0 and not necessarily whole, lies with this chance between minus and plus
-/// the result: how many standard errors an interval of few values reaches. `confidence`: between 0 and 1.
+/// The number of standard errors within which Student's t lies with this confidence, on both sides. `confidence`: between 0 and
+/// 1. `freedom`: degrees of freedom, above 0 and not necessarily whole.
 #[must_use]
 pub fn student_reach(confidence: f64, freedom: f64) -> f64 {
     let outside = |t: f64| incomplete_beta(freedom / (freedom + t * t), freedom / 2.0);
@@ -12,7 +10,7 @@ pub fn student_reach(confidence: f64, freedom: f64) -> f64 {
     while outside(high) > wanted && high < 1e150 {
         (low, high) = (high, high * 2.0);
     }
-    // Halved until there is no number between the two.
+    // Bisects until there is no number between the two.
     loop {
         let middle = f64::midpoint(low, high);
         if middle <= low || middle >= high {
@@ -70,7 +68,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn it_reaches_as_far_as_the_tables_say() {
+    fn reach_matches_the_tables() {
         // scipy.stats.t.ppf((1 + confidence) / 2, freedom).
         let check = |confidence: f64, freedom: f64, expected: f64| {
             let found = student_reach(confidence, freedom);

@@ -1,6 +1,4 @@
-//! What a lifetime came to in the numbers of its log, before anything was done to them.
-//!
-//! Not here: the metrics, which scale performances, see `score`.
+//! Means of a lifetime's columns as logged, before preprocessing.
 
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
@@ -18,10 +16,10 @@ pub struct AsLogged {
     pub evaluation: Option<f64>,
 }
 
-/// Columns that tell how good an agent is without anything being scaled.
+/// Columns that show how good an agent is without scaling.
 const TELLING: [&str; 2] = ["reward", "success"];
 
-/// The column that is scored, then those that tell most, each once and where the log has it.
+/// The scored column, then `reward` and `success`, each once and if the log has it.
 pub(crate) fn as_logged(log: &Log, options: &Options) -> Result<IndexMap<String, AsLogged>, MetricsError> {
     let mut found = IndexMap::new();
     for column in std::iter::once(options.perf_measure.as_str()).chain(TELLING) {

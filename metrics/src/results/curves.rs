@@ -1,6 +1,4 @@
-//! Measures that need no borders between tasks: of each task's evaluation curve alone.
-//!
-//! Not here: what a task came to beside its expert, see `reached`.
+//! Measures of each task's evaluation curve alone, independent of boundaries between tasks.
 
 use std::collections::HashMap;
 
@@ -17,40 +15,40 @@ use crate::statistics::mean;
 pub struct CurvePoint {
     /// Learning experiences (rows) of any task before it.
     pub learned: usize,
-    /// Mean of the evaluation; of several without learning between them, the mean of their means.
+    /// Mean of the evaluation; the mean of means for several evaluations without learning between them.
     pub mean: f64,
     /// Standard error of the mean over worlds; `None` for one world.
     pub standard_error: Option<f64>,
 }
 
-/// What a task's evaluation curve says. Performance is in the log's unit; where the task has a floor and a ceiling, it
-/// is the part of the way from floor to ceiling, usually 0..=1.
+/// Measures of a task's evaluation curve. Performance is in the log's unit; if the task has a floor and a ceiling, it is the
+/// position between floor and ceiling, usually 0..=1.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct EvaluationCurve {
-    /// Whether performance is the part of the way from floor to ceiling.
+    /// Whether performance is the position between floor and ceiling.
     pub is_scaled: bool,
-    /// The curve: straight between its points, by learning experiences; at least one.
+    /// The points of the curve, by learning experiences; linear between them; at least one.
     pub points: Vec<CurvePoint>,
-    /// Area under the curve, over its width: the mean performance while anything was learned, between the lowest and
-    /// the highest point. Of one point its mean.
+    /// Area under the curve divided by its width: the mean performance over the learning experiences that it spans. For a
+    /// single point, its mean.
     pub area: f64,
-    /// The highest point less the last: 0 or above, and 0 for a curve that never falls.
+    /// The highest point minus the last: at least 0, and 0 for a curve that never falls.
     pub forgetting: f64,
-    /// Standard error of `forgetting`, its two points taken as independent; `None` where they are one, or an error is
-    /// not known.
+    /// Standard error of `forgetting`, with its two points taken as independent; `None` if they are the same, or an error is
+    /// unknown.
     pub forgetting_error: Option<f64>,
-    /// Learning experiences from where the task is first learned, or else from the first point, until the curve is
-    /// half-way from its height there to the highest point after; 0 or above. `None` where it never rises.
+    /// Learning experiences from the start of the task's first learning, or else from the first point, until the curve is
+    /// half-way from its height there to the highest later point; at least 0. `None` if it never rises.
     pub lag: Option<f64>,
-    /// The expert's level less the curve, in the mean over the learning experiences in which the task was present: its
-    /// own, and those of a drift to which it was nearer. Outside its points the curve goes on level. `None` without an
-    /// expert, or if the task was never present.
+    /// The expert's level minus the curve, averaged over the learning experiences in which the task was present: its own, and
+    /// those of a drift to which it was nearer. Beyond its points the curve is constant. `None` without an expert, or if the
+    /// task was never present.
     pub regret: Option<f64>,
     /// Learning experiences in which the task was present.
     pub num_present: usize,
 }
 
-/// The curve of each task that is evaluated, in the lifetime's order; `reached` is of the same lifetime.
+/// The curve of each evaluated task, in the lifetime's order; `reached` must be of the same lifetime.
 pub(crate) fn curves(lifetime: &Lifetime, reached: &IndexMap<String, Reached>) -> IndexMap<String, EvaluationCurve> {
     let courses = courses(lifetime);
     let of_task = |(task, reached): (&String, &Reached)| {
@@ -61,13 +59,13 @@ pub(crate) fn curves(lifetime: &Lifetime, reached: &IndexMap<String, Reached>) -
     reached.iter().filter_map(of_task).collect()
 }
 
-/// When a task is evaluated and learned, by the number of learning experiences before.
+/// The evaluations and the learning of a task, by the number of learning experiences before.
 #[derive(Default)]
 struct Course {
     evaluated: Vec<usize>,
     /// The learning experiences in which it is present.
     present: Vec<usize>,
-    /// Where its first learning begins.
+    /// Start of its first learning.
     begins: Option<usize>,
 }
 
@@ -95,11 +93,11 @@ fn courses(lifetime: &Lifetime) -> HashMap<&str, Course> {
     found
 }
 
-/// Points in ascending order, at least one, none above another.
+/// Points in ascending order, at least one, with distinct positions.
 struct Curve(Vec<CurvePoint>);
 
 impl Curve {
-    /// Of evaluations after so many learning experiences each.
+    /// From evaluations after these numbers of learning experiences.
     fn new(learned: &[usize], reached: &Reached) -> Option<Self> {
         let scaled = |value: f64| reached.score(value).unwrap_or(value);
         let of_error = |error: f64| scaled(error) - scaled(0.0);
@@ -138,7 +136,7 @@ impl Curve {
         }
     }
 
-    /// Its height, straight between points, level outside.
+    /// Its height: linear between points, constant beyond.
     fn at(&self, learned: f64) -> f64 {
         let after = self.0.partition_point(|point| point.learned as f64 <= learned);
         match (after.checked_sub(1).map(|before| self.0[before]), self.0.get(after)) {
@@ -175,7 +173,7 @@ impl Curve {
 
     fn lag(&self, begins: Option<usize>) -> Option<f64> {
         let begins = begins.unwrap_or(self.0[0].learned);
-        // What was known when learning began: the evaluation before, or else the first.
+        // The level when learning began: the evaluation before, or else the first.
         let start = self
             .0
             .iter()

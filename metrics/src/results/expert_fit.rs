@@ -1,6 +1,4 @@
-//! Whether experts are like for like: the agent, what it learned from, and in which worlds, beside the lifetime's.
-//!
-//! Not here: the comparison of performances, see `score::ste_relative_performance` and `score::sample_efficiency`.
+//! Checks whether experts are comparable with the lifetime: the agent, the training budget, and the worlds.
 
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
@@ -8,36 +6,36 @@ use serde::{Deserialize, Serialize};
 use crate::lifetime::{Budget, Lifetime, SteRun, budgets};
 use crate::{Log, Options, VariantMode};
 
-/// One number of a lifetime and of an expert.
+/// One value of a lifetime and of an expert.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct BesideExpert<T> {
-    /// Of the lifetime.
+    /// The lifetime's.
     pub lifetime: T,
-    /// Of the expert.
+    /// The expert's.
     pub expert: T,
 }
 
-/// What an expert of a task learned from, beside the lifetime.
+/// An expert's training compared with the lifetime's.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ExpertFit {
     /// The expert's log.
     pub run: String,
-    /// Who learned, as logs say in `scenario_info.json` under `agent`; `None` where one does not say.
+    /// The agents, from `agent` in `scenario_info.json`; `None` if either is not logged.
     pub agent: Option<BesideExpert<String>>,
-    /// Learning experiences of the task; in a drift those that are nearer to it.
+    /// Learning experiences of the task; in a drift those nearer to it.
     pub learned: BesideExpert<usize>,
-    /// Learning experiences before deployment, of whichever task: what comes before is the same for a lifetime and its experts.
+    /// Learning experiences before deployment, of any task: a lifetime and its experts should share them.
     pub before_deployment: BesideExpert<usize>,
-    /// Different worlds of the learning, by seed and index; `None` where one of the logs does not say them.
+    /// Different worlds of the learning, by seed and index; `None` if either log does not give them.
     pub worlds: Option<BesideExpert<usize>>,
     /// Worlds that both learned in.
     pub shared_worlds: Option<usize>,
-    /// What is not alike, each in words; empty for an expert that is like for like as far as the logs say.
+    /// Differences as text; empty for an expert that is like for like as far as the logs say.
     pub differences: Vec<String>,
 }
 
-/// Every expert that each task is compared with. Where variants do not count, an expert is of one variant and the task
-/// of all: nothing is said.
+/// Every expert that each task is compared with. If variants do not count, an expert has one variant and the task all of them,
+/// so no comparison is made.
 pub(crate) fn expert_fits(log: &Log, lifetime: &Lifetime, options: &Options) -> IndexMap<String, Vec<ExpertFit>> {
     if options.variant_mode == VariantMode::Agnostic {
         return IndexMap::new();
@@ -50,13 +48,13 @@ pub(crate) fn expert_fits(log: &Log, lifetime: &Lifetime, options: &Options) -> 
         let own = budgets.get(task).unwrap_or(&nothing);
         let runs = lifetime.experts_of(task).iter();
         let fits: Vec<ExpertFit> = runs.map(|run| fit(run, agent.as_ref(), own, before)).collect();
-        // A task that is only evaluated is not learned in the lifetime: there is nothing to compare.
+        // A task that is only evaluated is not learned in the lifetime, so there is nothing to compare.
         (!fits.is_empty() && own.learned > 0).then(|| (task.clone(), fits))
     };
     lifetime.tasks().iter().filter_map(of_task).collect()
 }
 
-/// Who learned, as a log says.
+/// The agent's name in a log.
 pub(crate) fn agent_of(log: &Log) -> Option<String> {
     Some(log.scenario_info.extra.get("agent")?.as_str()?.to_owned())
 }

@@ -1,6 +1,4 @@
-//! The files of results, under the reference's names.
-//!
-//! Not here: what stands in them, see `lifetime_metrics` and `regime_table`.
+//! Saves results in files with the reference's names.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -13,7 +11,7 @@ use super::{LifetimeMetrics, regimes_tsv};
 use crate::log::{line, write_json, write_whole};
 use crate::{MetricsError, Options};
 
-/// What `NAME_settings.json` holds: where the log was, and the options it was scored under.
+/// The contents of `NAME_settings.json`: the log's path, and the scoring options.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Settings {
     /// Directory of the log, as the user gave it.
@@ -24,9 +22,9 @@ pub struct Settings {
 }
 
 impl LifetimeMetrics {
-    /// Saves the results in a directory, made if need be: lifetime and tasks in `NAME_metrics.json`, regimes in `NAME_regime.tsv`
-    /// and the options in `NAME_settings.json`. Files of that name are replaced. Spaces in `name` become underscores. Gives the
-    /// files in this order.
+    /// Saves the results in a directory, which is created if necessary: lifetime and tasks in `NAME_metrics.json`, regimes in
+    /// `NAME_regime.tsv` and the options in `NAME_settings.json`. Existing files are replaced. Spaces in `name` become
+    /// underscores. Returns the files in this order.
     ///
     /// # Errors
     /// [`MetricsError::Io`]; [`MetricsError::BadOption`] for a name that is empty or has a `/` or `\`.
@@ -39,9 +37,9 @@ impl LifetimeMetrics {
     }
 }
 
-/// Saves the results of several lifetimes, under the names that the reference gives them when it is recursive: a row per
-/// lifetime in `NAME.tsv`, a list of what `_metrics.json` holds of one in `NAME.json`, the regimes of all in `NAME_regime.tsv`
-/// and the options in `NAME_settings.json`. Gives the files in this order.
+/// Saves the results of several lifetimes, under the names of the reference's recursive mode: a row per lifetime in `NAME.tsv`,
+/// a list of their `_metrics.json` contents in `NAME.json`, the regimes of all in `NAME_regime.tsv` and the options in
+/// `NAME_settings.json`. Returns the files in this order.
 ///
 /// # Errors
 /// As [`LifetimeMetrics::save`].
@@ -59,7 +57,7 @@ pub fn save_all(
     Ok(saving.files)
 }
 
-/// The files of one saving, all in one directory and beginning with one name.
+/// The files of one save, all in one directory and with one prefix.
 struct Saving<'a> {
     dir: &'a Path,
     name: String,
@@ -83,10 +81,10 @@ impl<'a> Saving<'a> {
     }
 }
 
-/// Fields that are no column: too long for a cell, and in the JSON beside the table.
+/// Fields without a column: too long for a cell, and in the JSON anyway.
 const LEFT_OUT: [&str; 4] = ["normalization_data_range", "as_logged", "notes", "task_metrics"];
 
-/// A row per lifetime, the log in the first column; a column for every value that some lifetime has.
+/// A row per lifetime, the log in the first column; a column for every value that any lifetime has.
 pub(super) fn lifetimes_tsv(lifetimes: &[LifetimeMetrics]) -> String {
     let rows = lifetimes
         .iter()

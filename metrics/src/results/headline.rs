@@ -1,6 +1,4 @@
-//! Headlines: the values by which a lifetime is known, what each says, and which way is good.
-//!
-//! Not here: the values themselves, see `values`.
+//! Headlines: the main values of a lifetime, with an explanation and the direction that is good.
 
 use std::borrow::Cow;
 use std::cmp::Ordering;
@@ -9,7 +7,7 @@ use serde::Serialize;
 
 use super::Reading;
 
-/// Which way a metric is good, and from where on.
+/// The direction in which a metric is good, with its neutral value.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Direction {
@@ -17,14 +15,14 @@ pub enum Direction {
     Higher,
     /// The lower the better.
     Lower,
-    /// The higher the better, and this value means no effect.
+    /// The higher the better; this value means no effect.
     HigherThan(f64),
-    /// The lower the better, and this value means no effect.
+    /// The lower the better; this value means no effect.
     LowerThan(f64),
 }
 
 impl Direction {
-    /// The value that means no effect, for a metric that has one.
+    /// The value that means no effect, if the metric has one.
     pub fn neutral(self) -> Option<f64> {
         match self {
             Self::HigherThan(neutral) | Self::LowerThan(neutral) => Some(neutral),
@@ -37,7 +35,7 @@ impl Direction {
         matches!(self, Self::Higher | Self::HigherThan(_))
     }
 
-    /// Whether a value is good or bad, by its side of no effect alone; unclear on neither.
+    /// Whether a value is good or bad, only by its side of no effect; unclear if it is on neither.
     pub fn side(self, value: f64) -> Reading {
         match self.neutral().and_then(|neutral| value.partial_cmp(&neutral)) {
             None | Some(Ordering::Equal) => Reading::Unclear,
@@ -47,14 +45,14 @@ impl Direction {
     }
 }
 
-/// A value by which a lifetime is known: one row of its table.
+/// A main value of a lifetime: one row of its table.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Headline {
     /// Name of the value, as in the JSON.
     pub name: Cow<'static, str>,
-    /// What it says, in one line.
+    /// One-line explanation.
     pub explanation: Cow<'static, str>,
-    /// Which way is good.
+    /// The good direction.
     pub good: Direction,
 }
 

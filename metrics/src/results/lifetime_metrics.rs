@@ -1,6 +1,4 @@
 //! The result of scoring one lifetime, and its JSON: field names and values of the reference's `NAME_metrics.json`.
-//!
-//! Not here: how the values are computed, see the file of each metric in `score`.
 
 use std::borrow::Cow;
 
@@ -15,21 +13,21 @@ use super::{
 };
 use crate::{DataRange, Definitions};
 
-/// Everything that scoring one lifetime gives. Serialises to the reference's `NAME_metrics.json`; regimes have a
-/// table of their own, see [`LifetimeMetrics::regime_tsv`].
+/// All results of scoring one lifetime. Serialises to the reference's `NAME_metrics.json`; regimes have a separate table, see
+/// [`LifetimeMetrics::regime_tsv`].
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct LifetimeMetrics {
-    /// The values of the whole lifetime, by name; they stand at the top level of the JSON. Which there are, the
-    /// metrics say: see [`Metric::headlines`](crate::Metric::headlines).
+    /// The values of the whole lifetime, by name; at the top level of the JSON. The metrics determine their names: see
+    /// [`Metric::headlines`](crate::Metric::headlines).
     #[serde(flatten)]
     pub lifetime: Values,
     /// Name of the log.
     pub run_id: String,
-    /// As in `scenario_info.json`; empty where it did not say.
+    /// As in `scenario_info.json`; empty if missing there.
     pub complexity: String,
-    /// As in `scenario_info.json`; empty where it did not say.
+    /// As in `scenario_info.json`; empty if missing there.
     pub difficulty: String,
-    /// As in `scenario_info.json`; empty where it did not say.
+    /// As in `scenario_info.json`; empty if missing there.
     pub scenario_type: String,
     /// The column that was scored.
     pub metrics_column: String,
@@ -43,44 +41,42 @@ pub struct LifetimeMetrics {
     pub num_ex: usize,
     /// Seconds between the first and the last time stamp.
     pub runtime: f64,
-    /// Range per task that was scaled to 1..=101; `null` where nothing was normalised.
+    /// Range per task that was scaled to 1..=101; `null` without normalisation.
     pub normalization_data_range: Option<IndexMap<String, DataRange>>,
-    /// Means of the columns as they were logged, by column: what was scored first, then `reward` and `success` where the log has them.
-    /// Of these, lifetimes can be compared whatever each was scaled by.
+    /// Means of the columns as logged, by column: the scored one first, then `reward` and `success` if the log has them. These
+    /// are comparable between lifetimes, whatever each was scaled by.
     #[serde(default)]
     pub as_logged: IndexMap<String, AsLogged>,
-    /// What a reader of the values must be told; in the JSON where there is anything.
+    /// Notes for readers of the values; in the JSON if there are any.
     #[serde(default)]
     pub notes: Vec<String>,
-    /// Of metrics that evaluations alone decide, where they would lie if the agent had never changed, by name; contrasts of
-    /// transfer are there even where only ratios were asked for. Not in the JSON, which has the reference's fields.
+    /// The null bands of metrics that depend on evaluations alone, by name: their range if the agent had never changed;
+    /// includes contrasts of transfer even if only ratios were requested. Not in the JSON, which has the reference's fields.
     #[serde(default, rename = "null")]
     pub null_bands: IndexMap<String, NullBand>,
-    /// What each null band was made of: a value of each of [`NULL_PERMUTATIONS`](crate::NULL_PERMUTATIONS) permutations,
-    /// in an order that all lifetimes share, infinite where there was none. Not in the JSON; empty where a lifetime was
-    /// read back.
+    /// The values behind each null band: one for each of [`NULL_PERMUTATIONS`](crate::NULL_PERMUTATIONS) permutations, in an
+    /// order that all lifetimes share, infinite if undefined. Not in the JSON; empty for a lifetime that was read back.
     #[serde(skip)]
     pub null_draws: IndexMap<String, Vec<f64>>,
-    /// What may be said of each metric that has a value which means no effect, by name. Not in the JSON, which has the
-    /// reference's fields; those of [`LifetimeMetrics::whole`] are rows of [`LifetimeMetrics::summary`].
+    /// The reading of each metric that has a neutral value, by name. Not in the JSON, which has the reference's fields; those
+    /// of [`LifetimeMetrics::whole`] are rows of [`LifetimeMetrics::summary`].
     #[serde(default, deserialize_with = "readings_of_rows")]
     pub readings: IndexMap<String, Reading>,
-    /// The contrasts of transfer of each task where only ratios were asked for. Not in the JSON, which has the
-    /// reference's fields.
+    /// The contrasts of transfer of each task if only ratios were requested. Not in the JSON, which has the reference's fields.
     #[serde(default)]
     pub contrasts: IndexMap<String, Values>,
-    /// What each task came to in evaluations, in the log's unit. Not in the JSON, which has the reference's fields.
+    /// The evaluation results of each task, in the log's unit. Not in the JSON, which has the reference's fields.
     #[serde(default)]
     pub reached: IndexMap<String, Reached>,
-    /// What the evaluation curve of each task says, without regard to borders between tasks. Not in the JSON, which has
-    /// the reference's fields.
+    /// Measures of each task's evaluation curve, regardless of boundaries between tasks. Not in the JSON, which has the
+    /// reference's fields.
     #[serde(default)]
     pub curves: IndexMap<String, EvaluationCurve>,
-    /// What a reader must be told of tasks that were never learned, and of experts that are not like for like. Not in
-    /// the JSON, which has the reference's fields.
+    /// Warnings about tasks that were never learned, and about experts that are not like for like. Not in the JSON, which has
+    /// the reference's fields.
     #[serde(default)]
     pub cautions: Vec<String>,
-    /// What experts learned from, beside the lifetime, by task. Not in the JSON, which has the reference's fields.
+    /// The experts' training compared with the lifetime's, by task. Not in the JSON, which has the reference's fields.
     #[serde(default, rename = "experts")]
     pub expert_fits: IndexMap<String, Vec<ExpertFit>>,
     /// The values of each task, by first learning block: headlines, then the lists behind them.
@@ -88,16 +84,16 @@ pub struct LifetimeMetrics {
     /// The values of each regime, in order; not in the JSON.
     #[serde(skip)]
     pub regimes: Vec<RegimeMetrics>,
-    /// The names of the values of a lifetime, in order; not in the JSON, and those of the built-in metrics where a
-    /// lifetime was read back.
+    /// The names of the values of a lifetime, in order; not in the JSON, and those of the built-in metrics for a lifetime that
+    /// was read back.
     #[serde(skip, default = "crate::score::built_in_headlines")]
     pub headlines: Vec<Headline>,
-    /// The definitions it was scored by; in the JSON only where they are not the reference's.
+    /// The definitions it was scored by; in the JSON only if they are not the reference's.
     #[serde(default)]
     pub definitions: Definitions,
 }
 
-/// The readings of the rows that stand in the whole JSON.
+/// The readings from the rows of the whole JSON.
 fn readings_of_rows<'de, D: Deserializer<'de>>(rows: D) -> Result<IndexMap<String, Reading>, D::Error> {
     #[derive(Deserialize)]
     struct Row {
@@ -109,14 +105,14 @@ fn readings_of_rows<'de, D: Deserializer<'de>>(rows: D) -> Result<IndexMap<Strin
 }
 
 impl Serialize for LifetimeMetrics {
-    /// QUIRK: the values of the lifetime have ten decimals, as in the reference's file; those of tasks, and all under
-    /// the published definitions, are not rounded.
+    /// QUIRK: the values of the lifetime have ten decimals, as in the reference's file; those of tasks, and all under the
+    /// published definitions, are not rounded.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let rounded = |number: f64| match self.definitions {
             Definitions::Reference => ten_decimals(number),
             Definitions::Published => number,
         };
-        // As in the reference, what was asked for and could not be computed is null.
+        // As in the reference, requested values that could not be computed are null.
         let asked = self.headlines.iter().map(|headline| (&*headline.name, None));
         let mut lifetime: IndexMap<&str, Option<Value>> = asked.collect();
         for (name, value) in self.lifetime.iter() {
@@ -155,40 +151,40 @@ impl Serialize for LifetimeMetrics {
     }
 }
 
-/// One line of the table of a lifetime.
+/// One row of the table of a lifetime.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SummaryRow {
     /// Name of the metric, as in the JSON.
     pub name: Cow<'static, str>,
-    /// Its value; `None` where it was not asked for or could not be computed.
+    /// Its value; `None` if it was not requested or could not be computed.
     pub value: Option<f64>,
-    /// What it says, in one line.
+    /// One-line explanation.
     pub explanation: Cow<'static, str>,
-    /// Which way is good.
+    /// The good direction.
     pub good: Direction,
-    /// Where the value would lie if the agent had never changed; `None` for a metric that learning decides, too.
+    /// Its null band: the range if the agent had never changed; `None` for a metric that also depends on learning.
     pub null_band: Option<NullBand>,
-    /// What may be said of the value; `None` for a metric without a value that means no effect.
+    /// The reading of the value; `None` for a metric without a neutral value.
     pub reading: Option<Reading>,
-    /// The reading in the metric's own words, as every table has it.
+    /// The reading in the metric's own words, as in every table.
     pub word: Option<&'static str>,
 }
 
-/// The value of a metric for a task, or for a pair of tasks: one of those that the lifetime's value is made of.
+/// The value of a metric for a task, or for a pair of tasks: one of those behind the lifetime's value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Part<'a> {
-    /// The task; of a pair, the one that was learned.
+    /// The task; in a pair, the one that was learned.
     pub task: &'a str,
-    /// Of a pair the task that was evaluated before and after.
+    /// In a pair, the task that was evaluated before and after.
     pub other: Option<&'a str>,
-    /// The value; of a pair that met several times, the first.
+    /// The value; for a pair that occurs several times, the first.
     pub value: f64,
 }
 
 impl LifetimeMetrics {
-    /// The lifetime's values as a table, one row for each headline of the metrics it was scored with, also those
-    /// without a value. Where transfer was asked for as a ratio only, the contrasts come first: a mean of ratios is above 1 even
-    /// if nothing is transferred.
+    /// The lifetime's values as a table, one row for each headline of the metrics it was scored with, including those without a
+    /// value. If transfer was requested only as a ratio, the contrasts come first: a mean of ratios is above 1 even if nothing
+    /// is transferred.
     pub fn summary(&self) -> Vec<SummaryRow> {
         let row = |headline: Headline| {
             let value = self.number(&headline.name);
@@ -207,25 +203,25 @@ impl LifetimeMetrics {
         self.shown_headlines().into_iter().map(row).collect()
     }
 
-    /// The lifetime's value of a metric, also of a contrast of transfer that was not asked for.
+    /// The lifetime's value of a metric, or of a contrast of transfer that was not requested.
     pub(super) fn number(&self, name: &str) -> Option<f64> {
         let asked = self.lifetime.number(name);
         asked.or_else(|| Some(self.null_bands.get(name)?.value))
     }
 
-    /// The values of tasks, or of pairs of tasks, that the lifetime's value of a metric is made of, also of a contrast of
-    /// transfer that was not asked for.
+    /// The values of tasks, or of pairs of tasks, behind the lifetime's value of a metric, or of a contrast of transfer that
+    /// was not requested.
     pub fn parts(&self, name: &str) -> Vec<Part<'_>> {
         parts(&self.task_metrics, &self.contrasts, name)
     }
 
     /// The values of a metric from a learned task to each other, in order of the later evaluation, also of a contrast of
-    /// transfer that was not asked for.
+    /// transfer that was not requested.
     pub fn pairs(&self, task: &str, name: &str) -> Option<&PairValues> {
         pairs(&self.task_metrics, &self.contrasts, task, name)
     }
 
-    /// The headlines with those that nobody asked for and that are shown all the same.
+    /// The headlines, including those that are shown although not requested.
     pub(super) fn shown_headlines(&self) -> Vec<Headline> {
         let is_there = |name: &str| self.headlines.iter().any(|headline| headline.name == name);
         let has_band = |name: &str| self.null_bands.contains_key(name);
@@ -252,7 +248,7 @@ fn pairs<'a>(
     of(tasks).or_else(|| of(contrasts))
 }
 
-/// As [`LifetimeMetrics::parts`], of the values of tasks and the contrasts that were not asked for.
+/// As [`LifetimeMetrics::parts`], from the values of tasks and the contrasts that were not requested.
 pub(crate) fn parts<'a>(
     tasks: &'a IndexMap<String, Values>,
     contrasts: &'a IndexMap<String, Values>,
@@ -274,10 +270,10 @@ pub(crate) fn parts<'a>(
     found
 }
 
-/// A lifetime as JSON: the fields of [`LifetimeMetrics`], then `readings`, the row of each metric that has a value in the
-/// table of the lifetime, `null`, the null band of each metric that has one, `contrasts`, those of transfer between tasks
-/// where only ratios were asked for, `reached`, what each task came to, `curves`, what each evaluation curve
-/// says, and with experts `experts`, whether they are like for like.
+/// A lifetime as JSON: the fields of [`LifetimeMetrics`], then `readings`, the row of each metric that has a value in the table
+/// of the lifetime; `null`, the null bands; `contrasts`, those of transfer between tasks if only ratios were requested;
+/// `reached`, the evaluation results of each task; `curves`, the measures of each evaluation curve; and with experts `experts`,
+/// whether they are like for like.
 #[derive(Debug, Clone, Serialize)]
 pub struct WholeLifetime<'a> {
     #[serde(flatten)]
@@ -295,8 +291,8 @@ pub struct WholeLifetime<'a> {
 }
 
 impl LifetimeMetrics {
-    /// This lifetime to be serialised with its readings and null bands, what its tasks reached and their curves, which the saved
-    /// file leaves out.
+    /// Serialises this lifetime with its readings and null bands, the tasks' evaluation results and their curves, which the
+    /// saved file leaves out.
     pub fn whole(&self) -> WholeLifetime<'_> {
         WholeLifetime {
             metrics: self,

@@ -1,6 +1,4 @@
-//! Results: the values, the files they are saved in, and the table a newcomer reads.
-//!
-//! Not here: computing them (`score`), and printing or drawing them (the command's).
+//! Results: the values, the files they are saved in, and the summary table.
 
 mod as_logged;
 mod curves;

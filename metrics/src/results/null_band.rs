@@ -1,6 +1,4 @@
-//! A null band: where a value would lie if the agent had never changed, and what may be said of it.
-//!
-//! Not here: how values are permuted, see `score::null_bands`.
+//! Null bands: the range of a value if the agent had never changed, and the reading that follows.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,19 +6,19 @@ use super::reading::LARGEST_P;
 use super::{Direction, LifetimeMetrics, Reading};
 use crate::statistics::{mean, quantile};
 
-/// How evaluations were permuted.
+/// The unit of permutation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Exchanged {
-    /// The rows of each world among each other.
+    /// The rows of each world.
     Worlds,
-    /// By their place in the evaluation: the log does not say in which worlds they took place, or no world comes twice.
+    /// Rows by position in the evaluation: the log does not give their worlds, or no world is repeated.
     Positions,
-    /// By world where a world comes twice, else by place.
+    /// By world if a world is repeated, else by position.
     WorldsAndPositions,
 }
 
-/// A value of a lifetime beside those of the same log with its evaluations permuted.
+/// A value of a lifetime compared with those of the same log with permuted evaluations.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct NullBand {
     /// The value of the lifetime.
@@ -29,22 +27,21 @@ pub struct NullBand {
     pub low: f64,
     /// Upper end of the central 95 % of permuted values.
     pub high: f64,
-    /// Twice the smaller share of values, the lifetime's own included, that lie as far below or as far above; at most 1.
+    /// Twice the smaller share of values, including the lifetime's own, at least as far below or above; at most 1.
     pub p: f64,
-    /// How evaluations were permuted.
+    /// The unit of permutation.
     pub exchanged: Exchanged,
-    /// Standard error of the value, from those of its evaluations over worlds, taken as independent: an agent in other
-    /// worlds would earn something else. `None` where one of them is not known, or there are more than 2,000
-    /// evaluations.
+    /// Standard error of the value, from those of its evaluations over worlds, taken as independent: an agent would earn
+    /// something else in other worlds. `None` if one of them is unknown, or there are more than 2,000 evaluations.
     #[serde(default)]
     pub standard_error: Option<f64>,
 }
 
-/// Part of a value by which sums in another order may differ.
+/// Share of a value by which sums in another order may differ.
 const ROUNDING: f64 = 1e-9;
 
 impl NullBand {
-    /// Of the lifetime's value, and the permuted ones; `None` without any.
+    /// From the lifetime's value, and the permuted ones; `None` without any.
     pub(crate) fn new(value: f64, permuted: &[f64], exchanged: Exchanged) -> Option<Self> {
         let (low, high) = (quantile(permuted, 0.025)?, quantile(permuted, 0.975)?);
         let slack = ROUNDING * value.abs().max(1.0);
@@ -64,11 +61,11 @@ impl NullBand {
         })
     }
 
-    /// Of the mean over several lifetimes of a metric's value, beside the means of the same permutations of each.
-    /// Lifetimes whose bands are not known, such as those that were read back, do not count; `None` without any.
+    /// The band of a metric's mean over several lifetimes, from the means of the same permutations of each. Lifetimes without
+    /// bands, such as those that were read back, do not count; `None` without any.
     ///
-    /// Evaluations are exchanged in the same way in all lifetimes, so the band holds even where these share their worlds
-    /// or their luck. It has no standard error: how lifetimes vary is what their intervals say.
+    /// Evaluations are permuted in the same way in all lifetimes, so the band is valid even if these share their worlds or
+    /// their luck. It has no standard error: the variation between lifetimes is in their intervals.
     pub fn over_lifetimes(name: &str, lifetimes: &[LifetimeMetrics]) -> Option<Self> {
         let with_both = lifetimes.iter().filter_map(|lifetime| {
             let draws = lifetime.null_draws.get(name).filter(|draws| !draws.is_empty())?;
@@ -91,20 +88,19 @@ impl NullBand {
         Self::new(mean(&values)?, &permuted, exchanged)
     }
 
-    /// Whether the value lies outside the band, by more than rounding.
+    /// Whether the value lies outside the band by more than rounding.
     pub fn is_outside(&self) -> bool {
         let slack = ROUNDING * self.value.abs().max(1.0);
         self.value < self.low - slack || self.value > self.high + slack
     }
 
-    /// Whether the value is within two of its standard errors of no effect; `None` where one of these is not known.
+    /// Whether the value is within two of its standard errors of no effect; `None` if one of these is unknown.
     pub fn is_within_two_errors(&self, good: Direction) -> Option<bool> {
         Some((self.value - good.neutral()?).abs() < 2.0 * self.standard_error?)
     }
 
-    /// What may be said of the value by the band alone, for the direction that is good: good or bad where the value lies
-    /// outside the band, `p` is at most 0.05, and it is on that side of no effect by two of its standard errors, if
-    /// these are known.
+    /// The reading by the band alone, for this good direction: good or bad if the value lies outside the band, `p` is at most
+    /// 0.05, and it is on that side of no effect by two of its standard errors, if these are known.
     pub fn reading(&self, good: Direction) -> Reading {
         let is_noise = !self.is_outside() || self.p > LARGEST_P || self.is_within_two_errors(good) == Some(true);
         if is_noise {
@@ -129,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn a_band_is_the_central_95_percent() {
+    fn band_is_the_central_95_percent() {
         let found = band(0.0);
         assert!(
             (found.low + 0.95).abs() < 1e-12 && (found.high - 0.95).abs() < 1e-12,
@@ -141,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn good_is_said_only_outside_the_band_and_beyond_no_effect() {
+    fn good_requires_values_outside_the_band_and_beyond_no_effect() {
         let check = |value: f64, good: Direction, expected: Reading| {
             assert_eq!(band(value).reading(good), expected, "{value} {good:?}");
         };
@@ -150,7 +146,7 @@ mod tests {
         check(-0.96, Direction::HigherThan(0.0), Reading::Bad);
         check(0.96, Direction::LowerThan(0.0), Reading::Bad);
         check(-0.96, Direction::LowerThan(0.0), Reading::Good);
-        // Above the band, but still a loss: neither.
+        // Above the band, but still a loss: unclear.
         check(0.96, Direction::HigherThan(1.0), Reading::Unclear);
         check(-0.96, Direction::HigherThan(-2.0), Reading::Unclear);
         check(0.96, Direction::Higher, Reading::Good);

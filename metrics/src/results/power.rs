@@ -1,6 +1,4 @@
-//! The power of comparing two agents by each metric, from how much their lifetimes vary.
-//!
-//! Not here: how power is computed, see `crate::repeats`.
+//! Statistical power of comparing two agents by each metric, from the variation of their lifetimes.
 
 use serde::Serialize;
 
@@ -9,30 +7,30 @@ use super::{Headline, LifetimeMetrics};
 use crate::repeats::{lifetimes_for, smallest_effect, welch_power};
 use crate::statistics::variance;
 
-/// What lifetimes can show of one metric, by Welch's t test of two sides at 5 %.
+/// What a number of lifetimes can show of one metric, by a two-sided Welch's t test at 5 %.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MetricPower {
-    /// Which metric.
+    /// The metric.
     #[serde(flatten)]
     pub headline: Headline,
-    /// Standard deviation of the metric between the lifetimes of each agent, in its own unit; of one agent alone, twice
-    /// its own.
+    /// Standard deviation of the metric between the lifetimes of each agent, in its own unit; with a single agent, its own
+    /// twice.
     pub deviations: [f64; 2],
     /// Lifetimes of each agent that have a value.
     pub lifetimes: [usize; 2],
-    /// The difference of means that is asked about, in the metric's unit.
+    /// The difference of means in question, in the metric's unit.
     pub effect: f64,
-    /// The chance that the lifetimes at hand show that difference, 0..=1; `None` where no lifetime differs from
-    /// another: then no test can be made, and the next two are `None`, too.
+    /// The chance that the given lifetimes show that difference, 0..=1; `None` if the lifetimes do not vary: then no test is
+    /// possible, and the next two are `None`, too.
     pub power: Option<f64>,
-    /// How many lifetimes of each agent show it with a chance of 80 %; `None` for more than 100,000.
+    /// Lifetimes per agent that show it with a chance of 80 %; `None` for more than 100,000.
     pub lifetimes_needed: Option<usize>,
-    /// The smallest difference that the lifetimes at hand show with a chance of 80 %.
+    /// The smallest difference that the given lifetimes show with a chance of 80 %.
     pub smallest_effect: Option<f64>,
 }
 
-/// Of every metric of which at least two lifetimes of each agent have values. Without another agent,
-/// `others` empty, it is taken to be one whose lifetimes vary as much and are as many.
+/// The power for every metric with values in at least two lifetimes of each agent. If `others` is empty, the other agent is
+/// assumed to have equal variation and equally many lifetimes.
 pub fn metric_power(lifetimes: &[LifetimeMetrics], others: &[LifetimeMetrics], effect: f64) -> Vec<MetricPower> {
     let others = if others.is_empty() { lifetimes } else { others };
     let of_headline = |headline: Headline| {

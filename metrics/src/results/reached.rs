@@ -1,6 +1,4 @@
-//! What each task came to in evaluations, in the log's own unit, beside the level of its expert: whether it was learned at all.
-//!
-//! Not here: the metrics, which scale performances and do not say it, see `score`.
+//! The evaluation results of each task in the log's own unit, compared with the expert's level: whether it was learned at all.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +10,7 @@ use crate::preprocess::{anchors, given_range};
 use crate::statistics::{mean, variance};
 use crate::{Anchors, BlockType, Log, NormalizationMethod, Options, Unlabelled};
 
-/// Part of its expert's level below which a task was never learned.
+/// Share of the expert's level below which a task counts as never learned.
 pub const LEARNED_SHARE: f64 = 0.2;
 
 /// One evaluation of one task.
@@ -20,52 +18,50 @@ pub const LEARNED_SHARE: f64 = 0.2;
 pub struct EvaluationCell {
     /// Number of the block, as logged.
     pub block: u64,
-    /// Mean of the rows as they were logged.
+    /// Mean of the rows as logged.
     pub mean: f64,
-    /// Standard error of the mean over worlds, or over rows where the log does not say their worlds; `None` for one
-    /// world.
+    /// Standard error of the mean over worlds, or over rows if the log does not give their worlds; `None` for one world.
     pub standard_error: Option<f64>,
     /// Number of worlds, or of rows.
     pub num_worlds: usize,
-    /// The mean as the part of the way from the task's floor to its ceiling; `None` where these are not known.
+    /// The mean as the position between the task's floor and ceiling; `None` if these are unknown.
     #[serde(default)]
     pub score: Option<f64>,
 }
 
-/// What a task came to.
+/// The evaluation results of a task.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Reached {
     /// Every evaluation, in order.
     pub evaluations: Vec<EvaluationCell>,
-    /// Position in `evaluations` of the highest mean after the task was learned for the first time; `None` where there is no such
-    /// evaluation.
+    /// Position in `evaluations` of the highest mean after the task was first learned; `None` without such an evaluation.
     pub best: Option<usize>,
-    /// The expert's level, the mean over its runs: of its last evaluation of the task, or else of the last tenth of its
-    /// learning; without an expert the task's ceiling. `None` where neither is known.
+    /// The expert's level, averaged over its runs: its last evaluation of the task, or else the last tenth of its learning;
+    /// without an expert the task's ceiling. `None` if neither is known.
     pub expert: Option<f64>,
-    /// The best evaluation's part of the expert's level: both from the task's floor, or else the lower end of the given
-    /// range, or else 0. `None` where one is missing, or the expert is not above that end.
+    /// The best evaluation as a share of the expert's level: both measured from the task's floor, or else the lower end of the
+    /// given range, or else 0. `None` if one is missing, or the expert is not above that end.
     pub share: Option<f64>,
-    /// The same of the first evaluation after each learning of the task, in order: what it could still learn. Empty
-    /// where there are no such parts.
+    /// The same for the first evaluation after each learning of the task, in order: how well it could still be learned. Empty
+    /// if there are no such shares.
     #[serde(default)]
     pub shares: Vec<f64>,
-    /// What an agent earns that knows nothing of the task, if that is known.
+    /// Reward of an agent that knows nothing of the task, if known.
     #[serde(default)]
     pub floor: Option<f64>,
-    /// What an agent earns that knows the task, if that is known, and above the floor.
+    /// Reward of an agent that knows the task, if known and above the floor.
     #[serde(default)]
     pub ceiling: Option<f64>,
-    /// What the best known agents earn that cannot tell the task from others of the lifetime that look alike, if that is
-    /// known: of the largest set of such tasks that the lifetime has all of.
+    /// Rewards of the best known agents that cannot distinguish the task from others of the lifetime that look alike, if known:
+    /// for the largest set of such tasks that are all in the lifetime.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unlabelled: Option<Unlabelled>,
-    /// What the task's performances were scaled by for the metrics.
+    /// The scaling of the task's performances for the metrics.
     #[serde(default)]
     pub scaled_by: ScaledBy,
 }
 
-/// What performances of a task are scaled by.
+/// The scaling of a task's performances.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ScaledBy {
@@ -91,7 +87,7 @@ impl Reached {
         self.evaluations.get(self.best?)
     }
 
-    /// A performance in the log's unit as the part of the way from floor to ceiling; `None` where these are not known.
+    /// The position of a performance in the log's unit between floor and ceiling; `None` if these are unknown.
     pub fn score(&self, performance: f64) -> Option<f64> {
         let (floor, ceiling) = (self.floor?, self.ceiling?);
         Some((performance - floor) / (ceiling - floor))
@@ -102,9 +98,8 @@ impl Reached {
         self.floor.is_some() && self.ceiling.is_some()
     }
 
-    /// How much of the expert's level the agent came to when it first learned the task, less what it came to when it
-    /// last did; above 0 where it lost the ability to learn. `None` for a task that was learned and evaluated fewer
-    /// than two times.
+    /// The share of the expert's level after the first learning of the task, minus that after the last; above 0 if the agent
+    /// lost the ability to learn. `None` for a task that was learned and evaluated less than twice.
     pub fn plasticity_loss(&self) -> Option<f64> {
         match self.shares.as_slice() {
             [first, .., last] => Some(first - last),
@@ -112,13 +107,13 @@ impl Reached {
         }
     }
 
-    /// Whether no evaluation after learning came to [`LEARNED_SHARE`] of the expert's level; `None` where that is not known.
+    /// Whether every evaluation after learning is below [`LEARNED_SHARE`] of the expert's level; `None` if unknown.
     pub fn is_never_learned(&self) -> Option<bool> {
         self.share.map(|share| share < LEARNED_SHARE)
     }
 }
 
-/// What each task came to, tasks in the lifetime's order; those without an evaluation have none in their list.
+/// The evaluation results of each task, in the lifetime's order; the list is empty for tasks without an evaluation.
 pub(crate) fn reached(log: &Log, lifetime: &Lifetime, options: &Options) -> IndexMap<String, Reached> {
     let worlds = worlds(log, lifetime);
     let mut found = IndexMap::new();
@@ -179,7 +174,7 @@ pub(crate) fn reached(log: &Log, lifetime: &Lifetime, options: &Options) -> Inde
     found
 }
 
-/// The largest set of tasks that look alike, of those that the lifetime has all of.
+/// The largest set of tasks that look alike and are all in the lifetime.
 fn unlabelled(anchors: &Anchors, lifetime: &Lifetime) -> Option<Unlabelled> {
     let is_met = |set: &&Unlabelled| set.among.iter().all(|task| lifetime.tasks().contains(task));
     let met = anchors.unlabelled.iter().filter(is_met);
@@ -198,7 +193,7 @@ fn cell(regime: &Regime, worlds: &[Option<World>]) -> EvaluationCell {
     }
 }
 
-/// The mean of the rows of each world; each row of which the world is not known by itself.
+/// The mean of the rows of each world; rows without a known world count individually.
 fn means_of_worlds(values: &[f64], worlds: &[Option<World>]) -> Vec<f64> {
     let mut of_world: BTreeMap<World, Vec<f64>> = BTreeMap::new();
     let mut means = Vec::new();
@@ -212,12 +207,12 @@ fn means_of_worlds(values: &[f64], worlds: &[Option<World>]) -> Vec<f64> {
     means
 }
 
-/// The standard error over worlds of a regime's mean performance, as the metrics see it; `None` for one world.
+/// The standard error over worlds of a regime's mean performance, after preprocessing; `None` for one world.
 pub(crate) fn performance_error(regime: &Regime, worlds: &[Option<World>]) -> Option<f64> {
     standard_error(&means_of_worlds(&regime.performance, worlds))
 }
 
-/// What the metrics see of a task is scaled by this.
+/// The scaling of a task's performances.
 fn scaled_by(task: &str, lifetime: &Lifetime, options: &Options) -> ScaledBy {
     match given_range(task, lifetime, options) {
         _ if options.normalization_method == NormalizationMethod::Off => ScaledBy::Nothing,
@@ -227,12 +222,12 @@ fn scaled_by(task: &str, lifetime: &Lifetime, options: &Options) -> ScaledBy {
     }
 }
 
-/// Of the mean of independent values; `None` for fewer than two.
+/// Standard error of the mean of independent values; `None` for fewer than two.
 fn standard_error(values: &[f64]) -> Option<f64> {
     Some((variance(values)? / values.len() as f64).sqrt())
 }
 
-/// The level of one run of an expert, as it was logged.
+/// The level of one run of an expert, as logged.
 fn level(run: &SteRun, task: &str) -> Option<f64> {
     let of = |block_type: BlockType| {
         let regimes = run.regimes.iter().filter(move |regime| regime.block_type == block_type);
@@ -252,7 +247,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_standard_error_is_that_of_a_mean() {
+    fn standard_error_is_that_of_a_mean() {
         assert_eq!(standard_error(&[1.0]), None);
         assert_eq!(standard_error(&[]), None);
         // Variance 4 by n - 1, four values.

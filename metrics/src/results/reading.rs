@@ -1,20 +1,18 @@
-//! What may be said of a value, in a word: the one judgement that tables, pages, JSON and Python repeat.
-//!
-//! Not here: null bands, see `null_band`; what words look like, which is the command's and the report's.
+//! The one-word reading of a value, shared by tables, pages, JSON and Python.
 
 use serde::{Deserialize, Serialize};
 
 use super::{Direction, NullBand};
 use crate::repeats::Interval;
 
-/// The largest `p` at which an effect is named.
+/// Largest `p` of a named effect.
 pub const LARGEST_P: f64 = 0.05;
 
-/// The part of all effects of tasks, or of pairs of them, that must point the way of the lifetime's value; below it, the
-/// effect is mixed.
+/// Least share of the effects of tasks, or of pairs of them, that must agree with the lifetime's value; below it, the effect is
+/// mixed.
 pub const AGREEING_PART: f64 = 0.75;
 
-/// What may be said of the value of a metric.
+/// The reading of a metric's value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Reading {
@@ -24,22 +22,22 @@ pub enum Reading {
     Bad,
     /// More than noise, but tasks or pairs of them disagree.
     Mixed,
-    /// No more than noise, or nothing at all.
+    /// Not more than noise, or no effect at all.
     Unclear,
-    /// Learning decides it, so that one lifetime has nothing to hold it against.
+    /// Depends on learning, too, so there is nothing to compare a single lifetime with.
     Untested,
-    /// There are too few lifetimes for an interval.
+    /// Too few lifetimes for an interval.
     TooFew,
-    /// Made of negative performances, where neither ratio nor contrast has a meaning.
+    /// Based on negative performances, for which neither ratio nor contrast has a meaning.
     Undefined,
 }
 
 impl Reading {
-    /// Of one lifetime's value, beside its null band and the values of tasks, or pairs of them, that it was made of.
-    /// `None` of a metric without a value that means no effect, such as a mean performance.
+    /// The reading of one lifetime's value, from its null band and the values of tasks, or pairs of them, behind it. `None` for
+    /// a metric without a neutral value, such as a mean performance.
     ///
-    /// Good and bad are said where [`NullBand::reading`] says so; mixed, where less than [`AGREEING_PART`] of what
-    /// `parts` differ from no effect is on the value's side.
+    /// Good and bad as in [`NullBand::reading`]; mixed if less than [`AGREEING_PART`] of the effects in `parts` is on the
+    /// value's side.
     ///
     /// ```
     /// use driftworld_metrics::{Direction, Reading};
@@ -69,8 +67,8 @@ impl Reading {
         })
     }
 
-    /// Of several lifetimes' values: good or bad where the interval over lifetimes lies on that side of no effect and,
-    /// for a metric that has one, the null band of their mean says the same. `None` as of one lifetime.
+    /// The reading of several lifetimes' values: good or bad if the interval over lifetimes lies on that side of no effect and,
+    /// for a metric that has one, the null band of their mean agrees. `None` as for one lifetime.
     pub fn of_lifetimes(good: Direction, band: Option<&NullBand>, interval: Option<Interval>) -> Option<Self> {
         let neutral = good.neutral()?;
         let Some(interval) = interval else {
@@ -84,7 +82,7 @@ impl Reading {
         Some(if is_denied { Self::Unclear } else { found })
     }
 
-    /// The word for it, in the words of the metric: `helps`, `forgets`, `mixed`, `no clear effect`.
+    /// The reading in the metric's own words: `helps`, `forgets`, `mixed`, `no clear effect`.
     ///
     /// ```
     /// use driftworld_metrics::Reading;
@@ -115,8 +113,8 @@ impl Reading {
     }
 }
 
-/// What a reader must be told where contrast and ratio of the same transfer read differently, given the reading of each
-/// metric: a sentence for forward transfer, one for backward transfer, each behind the name of the ratio.
+/// Notes for readers if contrast and ratio of the same transfer have different readings, given the reading of each metric: one
+/// for forward transfer, one for backward transfer, each with the name of the ratio.
 pub(crate) fn disagreements(reading: impl Fn(&str) -> Option<Reading>) -> Vec<(String, String)> {
     let of = |direction: &str| {
         let names = ["contrast", "ratio"].map(|measure| format!("{direction}_transfer_{measure}"));
@@ -163,7 +161,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn an_effect_is_named_where_it_is_more_than_noise_alone(band in any_band(), parts in proptest::collection::vec(-1.0..1.0, 0..6)) {
+        fn effect_is_named_only_beyond_noise(band in any_band(), parts in proptest::collection::vec(-1.0..1.0, 0..6)) {
             let found = Reading::of_lifetime(GOOD, Some(&band), &parts).expect("there is a value of no effect");
             if matches!(found, Reading::Good | Reading::Bad | Reading::Mixed) {
                 prop_assert!(band.is_outside() && band.p <= LARGEST_P);
@@ -174,7 +172,7 @@ mod tests {
         }
 
         #[test]
-        fn what_is_good_one_way_is_bad_the_other(band in any_band(), parts in proptest::collection::vec(-1.0..1.0, 0..6)) {
+        fn reading_depends_on_the_good_direction(band in any_band(), parts in proptest::collection::vec(-1.0..1.0, 0..6)) {
             let turned = match Reading::of_lifetime(GOOD, Some(&band), &parts) {
                 Some(Reading::Good) => Some(Reading::Bad),
                 Some(Reading::Bad) => Some(Reading::Good),
@@ -184,7 +182,7 @@ mod tests {
         }
 
         #[test]
-        fn several_lifetimes_say_what_interval_and_band_both_say(band in any_band(), ends in [-1.0..1.0, -1.0..1.0_f64]) {
+        fn several_lifetimes_need_interval_and_band_to_agree(band in any_band(), ends in [-1.0..1.0, -1.0..1.0_f64]) {
             let interval = Interval { low: ends[0].min(ends[1]), high: ends[0].max(ends[1]) };
             let alone = Reading::of_lifetimes(GOOD, None, Some(interval)).expect("there is a value of no effect");
             let found = Reading::of_lifetimes(GOOD, Some(&band), Some(interval)).expect("there is a value of no effect");
@@ -194,21 +192,21 @@ mod tests {
     }
 
     #[test]
-    fn an_effect_is_mixed_unless_three_quarters_of_the_effects_agree() {
+    fn effect_is_mixed_unless_three_quarters_of_the_effects_agree() {
         let check = |parts: &[f64], expected: Reading| {
             let found = Reading::of_lifetime(GOOD, Some(&band(-0.4, 0.002, Some(0.02))), parts);
             assert_eq!(found, Some(expected), "{parts:?}");
         };
         check(&[], Reading::Bad);
         check(&[-0.4], Reading::Bad);
-        // A task that hardly changed takes nothing away.
+        // A task that hardly changed does not count.
         check(&[-0.743, -0.688, 0.016], Reading::Bad);
         check(&[-0.9, 0.29], Reading::Bad);
         check(&[-0.9, 0.31], Reading::Mixed);
     }
 
     #[test]
-    fn one_sentence_tells_of_contrast_and_ratio_that_disagree() {
+    fn disagreement_of_contrast_and_ratio_gives_one_note() {
         let found = disagreements(|name| match name {
             "forward_transfer_contrast" => Some(Reading::Unclear),
             "forward_transfer_ratio" | "backward_transfer_ratio" => Some(Reading::Good),

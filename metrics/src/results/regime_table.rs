@@ -1,6 +1,4 @@
 //! The values of each regime, and their table: columns of the reference's `NAME_regime.tsv`.
-//!
-//! Not here: how they are computed, see `score`.
 
 use driftworld_text::cell as guarded;
 use indexmap::IndexSet;
@@ -12,7 +10,7 @@ use crate::{BlockSubtype, BlockType, Regime};
 /// Characters of the task parameters that the table shows.
 const SHOWN_PARAMS: usize = 25;
 
-/// Columns that say which regime it is.
+/// Columns that identify the regime.
 const IDENTITY: [&str; 6] = [
     "block_num",
     "block_type",
@@ -22,18 +20,18 @@ const IDENTITY: [&str; 6] = [
     PARAMS,
 ];
 
-/// The one of them that is not always there.
+/// The one of them that may be absent.
 const PARAMS: &str = "task_params";
 
-/// The column that says which lifetime it is from.
+/// The column with the lifetime's name.
 const RUN_ID: &str = "run_id";
 
-/// Whether the table has a column of that name for something other than a value.
+/// Whether the table uses this column name for something other than a value.
 pub(crate) fn is_regime_column(name: &str) -> bool {
     name == RUN_ID || IDENTITY.contains(&name)
 }
 
-/// What a regime is, and its values, in normalised units.
+/// A regime with its values, in normalised units.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RegimeMetrics {
     /// Number of the block, as logged.
@@ -48,20 +46,20 @@ pub struct RegimeMetrics {
     pub regime_num: usize,
     /// Parameters of its first row, as JSON.
     pub task_params: String,
-    /// The values that the metrics give for it, by name.
+    /// The metrics' values for it, by name.
     pub values: Values,
 }
 
 impl LifetimeMetrics {
-    /// The regimes as tab-separated text with a header: what a regime is, its values, the log it is from.
+    /// The regimes as tab-separated text with a header: the regime, its values, the log.
     ///
-    /// The column `task_params` is there only where regimes differ in them; it holds the first 25 characters.
+    /// The column `task_params` is present only if regimes differ in it; it holds the first 25 characters.
     pub fn regime_tsv(&self) -> String {
         tsv(std::slice::from_ref(self), Vec::push)
     }
 }
 
-/// The regimes of several lifetimes as one table, with the log in the first column, as the reference writes it.
+/// The regimes of several lifetimes as one table, with the log in the first column, as in the reference.
 pub fn regimes_tsv(lifetimes: &[LifetimeMetrics]) -> String {
     tsv(lifetimes, |row, run_id| row.insert(0, run_id))
 }
@@ -142,7 +140,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn parameters_are_cut_after_twenty_five_characters() {
+    fn parameters_are_cut_after_25_characters() {
         let check = |params: &str, expected: &str| assert_eq!(shortened(params), expected);
         check(r#"{"a": 1}"#, r#"{"a": 1}"#);
         check(&"é".repeat(25), &"é".repeat(25));

@@ -1,6 +1,4 @@
-//! Metrics of repeated lifetimes: what they say together and how sure that is, and whether one agent is better than another.
-//!
-//! Not here: the statistics, see `crate::repeats`.
+//! Metrics of repeated lifetimes: aggregates with their uncertainty, and comparisons of two agents.
 
 use serde::Serialize;
 
@@ -13,7 +11,7 @@ use crate::repeats::{
 /// One metric over repeated lifetimes of one agent.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RepeatedMetric {
-    /// Which metric, and which way it is good.
+    /// The metric.
     #[serde(flatten)]
     pub headline: Headline,
     /// Mean of the middle half of all values.
@@ -26,15 +24,15 @@ pub struct RepeatedMetric {
     pub num_runs: usize,
     /// Tasks that have a value; for transfer, pairs of tasks.
     pub num_strata: usize,
-    /// The mean over lifetimes of the metric's value beside its null band; `None` for a metric that learning decides,
-    /// too. It differs from `mean` where lifetimes lack some tasks.
+    /// The null band of the metric's mean over lifetimes; `None` for a metric that also depends on learning. Differs from
+    /// `mean` if lifetimes lack some tasks.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub null: Option<NullBand>,
-    /// What may be said of the metric; `None` for one without a value that means no effect.
+    /// The reading of the metric; `None` without a neutral value.
     pub reading: Option<Reading>,
-    /// The reading in the metric's own words, as every table has it.
+    /// The reading in the metric's own words, as in every table.
     pub word: Option<&'static str>,
-    /// What a reader of the intervals must be told.
+    /// A warning for readers of the intervals.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub caution: Option<String>,
 }
@@ -42,19 +40,19 @@ pub struct RepeatedMetric {
 /// One metric of two agents.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ComparedMetric {
-    /// Which metric, and which way it is good.
+    /// The metric.
     #[serde(flatten)]
     pub headline: Headline,
-    /// How probably a lifetime of the first agent is better than one of the second.
+    /// The probability that a lifetime of the first agent is better than one of the second.
     pub improvement: Improvement,
     /// The interquartile means of the first and of the second agent.
     pub values: [Estimate; 2],
 }
 
-/// Every metric for which some lifetime has a value, over all of them, in the order of the headlines.
+/// Every metric that has a value in some lifetime, over all of them, in the order of the headlines.
 ///
-/// What varies is looked at task by task: a task's values in the lifetimes are one stratum; for transfer, the first value
-/// of each pair of tasks; for a metric that has values for lifetimes only, these.
+/// Variation is analysed task by task: a task's values in the lifetimes are one stratum; for transfer, the first value of each
+/// pair of tasks; for a metric that has values for lifetimes only, these.
 ///
 /// # Errors
 /// Those of [`estimate`](crate::repeats::estimate()) and [`ScoreTable::from_runs`].
@@ -98,8 +96,8 @@ pub fn over_repeats(
     Ok(found)
 }
 
-/// How probably a lifetime of agent `a` is better than one of agent `b`, for every metric that both have values of in a task that
-/// both have. Of a metric whose lower values are better, the lower value wins.
+/// The probability that a lifetime of agent `a` is better than one of agent `b`, for every metric for which both have values in
+/// a shared task. If lower values are better, the lower value wins.
 ///
 /// # Errors
 /// Those of [`probability_of_improvement`](crate::repeats::probability_of_improvement()) and [`ScoreTable::from_runs`].
@@ -148,7 +146,7 @@ pub(super) fn headlines(lifetimes: &[LifetimeMetrics]) -> Vec<Headline> {
     headlines
 }
 
-/// The values of a metric per lifetime and stratum; `None` where no lifetime has one.
+/// The values of a metric per lifetime and stratum; `None` if no lifetime has one.
 fn table(
     lifetimes: &[LifetimeMetrics],
     headline: &Headline,
@@ -157,7 +155,7 @@ fn table(
     let runs = (1..).zip(lifetimes).map(|(number, lifetime)| {
         let values = strata(lifetime, &headline.name).into_iter();
         let values = values.map(|(stratum, value)| (stratum, view(headline, value)));
-        // Folders of logs may share their names; runs may not.
+        // Folders of logs may share a name; runs must not.
         (format!("{number}, {}", lifetime.run_id), values.collect::<Vec<_>>())
     });
     let runs: Vec<_> = runs.filter(|(_, values)| !values.is_empty()).collect();
@@ -167,7 +165,7 @@ fn table(
     ScoreTable::from_runs(runs).map(Some)
 }
 
-/// A value, turned so that higher is better.
+/// A value, negated if lower is better.
 fn higher_is_better(headline: &Headline, value: f64) -> f64 {
     if headline.good.is_higher() { value } else { -value }
 }
@@ -220,13 +218,13 @@ mod tests {
             (row.num_runs, row.num_strata, row.mean.value, row.median.value),
             (2, 2, 4.0, 4.0)
         );
-        // Of 2, 2, 4, 8 the middle half is 2 and 4.
+        // The middle half of 2, 2, 4, 8 is 2 and 4.
         assert_eq!(row.iqm.value, 3.0);
         assert_eq!(row.caution, None);
     }
 
     #[test]
-    fn pairs_of_tasks_are_the_strata_of_transfer_and_the_first_value_counts() {
+    fn pairs_of_tasks_are_the_strata_of_transfer_by_their_first_value() {
         let tasks = json!({ "a_1": { "forward_transfer_ratio": { "b_1": [3.0, 9.0], "c_1": [] } } });
         let found = over_repeats(&[lifetime("run", &tasks, &json!({}))], &BootstrapOptions::default()).unwrap();
         assert_eq!(
@@ -241,14 +239,14 @@ mod tests {
     }
 
     #[test]
-    fn a_metric_of_lifetimes_only_has_one_stratum() {
+    fn lifetime_only_metric_has_one_stratum() {
         let of = |value: f64| lifetime("run", &json!({ "a_1": {} }), &json!({ "sample_efficiency": value }));
         let found = over_repeats(&[of(0.5), of(1.5)], &BootstrapOptions::default()).unwrap();
         assert_eq!((found[0].num_strata, found[0].mean.value), (1, 1.0));
     }
 
     #[test]
-    fn the_better_agent_wins_also_where_lower_is_better() {
+    fn better_agent_wins_even_if_lower_is_better() {
         let (good, bad) = ([of_task(5.0), of_task(6.0)], [of_task(1.0), of_task(2.0)]);
         let probability = |a: &[LifetimeMetrics], b: &[LifetimeMetrics]| {
             let found = compare_agents(a, b, &BootstrapOptions::default()).unwrap();
@@ -269,7 +267,7 @@ mod tests {
     }
 
     #[test]
-    fn agents_without_a_task_in_common_are_not_compared() {
+    fn agents_without_a_shared_task_are_not_compared() {
         let other = lifetime("run", &json!({ "z_1": { "avg_eval_perf": 1.0 } }), &json!({}));
         assert_eq!(
             compare_agents(&[of_task(1.0)], &[other], &BootstrapOptions::default()).unwrap(),

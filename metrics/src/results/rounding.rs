@@ -1,6 +1,6 @@
 //! QUIRK: the reference's file has its lifetime values rounded to ten decimals. Values in memory are not rounded.
 
-/// Through decimal text, because a product with 1e10 would lose the last digits of large values.
+/// Rounds through decimal text, because a product with 1e10 would lose the last digits of large values.
 pub(super) fn ten_decimals(value: f64) -> f64 {
     format!("{value:.10}").parse().unwrap_or(value)
 }

@@ -1,6 +1,4 @@
-//! Values by name: what metrics give for a regime, a task or a whole lifetime.
-//!
-//! Not here: which names there are; each metric says its own, see `score`.
+//! Values by name: the metrics' results for a regime, a task or a whole lifetime.
 
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
@@ -8,29 +6,29 @@ use serde::{Deserialize, Serialize};
 /// Values from one trained task to each other task, in order of the later evaluation.
 pub type PairValues = IndexMap<String, Vec<f64>>;
 
-/// One value of a metric. In JSON it stands as itself: a number, a list, a list of lists, or an object of lists; of an empty
-/// list, JSON does not tell what it would hold.
+/// One value of a metric. In JSON it is plain: a number, a list, a list of lists, or an object of lists; an empty list does not
+/// show its element type.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Value {
-    /// How many.
+    /// A count.
     Count(u64),
     /// One number.
     Number(f64),
-    /// How many, several times.
+    /// A list of counts.
     Counts(Vec<u64>),
-    /// Several numbers.
+    /// A list of numbers.
     Numbers(Vec<f64>),
-    /// Several numbers in groups.
+    /// Groups of numbers.
     Runs(Vec<Vec<f64>>),
-    /// Several numbers for each of other tasks.
+    /// A list of numbers for each of other tasks.
     Pairs(PairValues),
-    /// Several numbers, of which some could not be computed: in JSON these are `null`.
+    /// A list of numbers, some of which could not be computed: these are `null` in JSON.
     Gapped(Vec<Option<f64>>),
 }
 
 impl Value {
-    /// Whether every number in it is finite. Others have no place in JSON.
+    /// Whether every number in it is finite. JSON cannot hold others.
     pub fn is_finite(&self) -> bool {
         match self {
             Self::Count(_) | Self::Counts(_) => true,
@@ -43,14 +41,13 @@ impl Value {
     }
 }
 
-/// Values by name, in the order in which they were given. A value that could not be computed has no entry; none is
-/// NaN or infinite.
+/// Values by name, in insertion order. A value that could not be computed has no entry; none is NaN or infinite.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(from = "IndexMap<String, Option<Value>>")]
 pub struct Values(IndexMap<String, Value>);
 
 impl From<IndexMap<String, Option<Value>>> for Values {
-    /// What is `null` could not be computed.
+    /// Skips `null`, which marks values that could not be computed.
     fn from(values: IndexMap<String, Option<Value>>) -> Self {
         Self(
             values
@@ -62,7 +59,7 @@ impl From<IndexMap<String, Option<Value>>> for Values {
 }
 
 impl Values {
-    /// Takes a value in. A value with a number that is not finite is left out; one of the same name is replaced.
+    /// Sets a value. A value with a number that is not finite is dropped; one of the same name is replaced.
     pub fn set(&mut self, name: impl Into<String>, value: impl Into<Value>) {
         let value = value.into();
         if value.is_finite() {
@@ -70,12 +67,12 @@ impl Values {
         }
     }
 
-    /// A value.
+    /// A value by name.
     pub fn get(&self, name: &str) -> Option<&Value> {
         self.0.get(name)
     }
 
-    /// A number, or a count as one.
+    /// A number; counts are converted.
     pub fn number(&self, name: &str) -> Option<f64> {
         match self.get(name)? {
             Value::Number(number) => Some(*number),
@@ -84,7 +81,7 @@ impl Values {
         }
     }
 
-    /// Several numbers; none for a list of counts, or for one in which a number is missing.
+    /// A list of numbers; `None` for a list of counts, or for one in which a number is missing.
     pub fn numbers(&self, name: &str) -> Option<&[f64]> {
         match self.get(name)? {
             Value::Numbers(numbers) => Some(numbers),
@@ -93,7 +90,7 @@ impl Values {
         }
     }
 
-    /// Several numbers for each of other tasks.
+    /// A list of numbers for each of other tasks.
     pub fn pairs(&self, name: &str) -> Option<&PairValues> {
         match self.get(name)? {
             Value::Pairs(pairs) => Some(pairs),
@@ -127,7 +124,7 @@ into_value! {
 }
 
 impl From<Vec<Option<f64>>> for Value {
-    /// Where all could be computed, they are plain numbers.
+    /// Without gaps, a plain list of numbers.
     fn from(numbers: Vec<Option<f64>>) -> Self {
         match numbers.iter().copied().collect() {
             Some(all) => Self::Numbers(all),
@@ -147,7 +144,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn values_stand_in_json_as_themselves_and_come_back() {
+    fn values_round_trip_as_plain_json() {
         let mut values = Values::default();
         values.set("count", 3_usize);
         values.set("number", 0.5);
@@ -166,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_finite_is_left_out() {
+    fn non_finite_values_are_dropped() {
         let mut values = Values::default();
         values.set("nan", f64::NAN);
         values.set("list", vec![1.0, f64::INFINITY]);
@@ -176,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn a_value_is_read_as_what_it_is() {
+    fn value_is_read_by_its_type() {
         let mut values = Values::default();
         values.set("count", 3_usize);
         values.set("numbers", vec![1.0]);

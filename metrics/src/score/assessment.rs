@@ -1,6 +1,4 @@
-//! A lifetime while it is judged: what there is to look at, and the values that were found so far.
-//!
-//! Not here: how any value is computed.
+//! A lifetime being scored: its inputs, and the values found so far.
 
 use indexmap::{IndexMap, IndexSet};
 
@@ -9,7 +7,7 @@ use crate::results::{Value, Values};
 use crate::statistics::{mean, median};
 use crate::{AggregationMethod, Definitions, Log, Options};
 
-/// What a [`Metric`](crate::Metric) sees and fills.
+/// The input and output of a [`Metric`](crate::Metric).
 #[derive(Debug)]
 pub struct Assessment<'a> {
     log: &'a Log,
@@ -18,13 +16,13 @@ pub struct Assessment<'a> {
     regimes: Vec<Values>,
     tasks: IndexMap<String, Values>,
     whole: Values,
-    /// Values of the lifetime that a metric said to be no number; they are not made of the tasks' either.
+    /// Lifetime values that a metric set to a non-finite number; they are not aggregated from the tasks' either.
     none: IndexSet<String>,
-    /// Whether performances that differ by rounding alone count as equal.
+    /// Whether performances that differ only by rounding count as equal.
     pub(super) resolves_ties: bool,
 }
 
-/// Part of a performance by which sums of the same numbers in another order may differ.
+/// Share of a performance by which sums of the same numbers in another order may differ.
 const ROUNDING: f64 = 1e-9;
 
 impl<'a> Assessment<'a> {
@@ -43,14 +41,14 @@ impl<'a> Assessment<'a> {
         }
     }
 
-    /// By how much performances among these may differ and count as equal: a billionth of the largest, or nothing where rounding
+    /// How much performances among these may differ and still count as equal: a billionth of the largest, or 0 if rounding
     /// decides.
     pub(super) fn slack(&self, values: &[f64]) -> f64 {
         let largest = || values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
         if self.resolves_ties { ROUNDING * largest() } else { 0.0 }
     }
 
-    /// The log as it was read, with every column.
+    /// The log as read, with every column.
     pub fn log(&self) -> &'a Log {
         self.log
     }
@@ -60,42 +58,42 @@ impl<'a> Assessment<'a> {
         self.lifetime
     }
 
-    /// The options it is scored under.
+    /// The options it is scored with.
     pub fn options(&self) -> &'a Options {
         self.options
     }
 
-    /// Values of a regime by its number; none for a number that no regime has.
+    /// Values of a regime by its number; `None` without such a regime.
     pub fn regime(&self, regime_num: usize) -> Option<&Values> {
         self.regimes.get(regime_num)
     }
 
-    /// Values of a task by its name; none for a task that the lifetime lacks.
+    /// Values of a task by its name; `None` without such a task.
     pub fn task(&self, task: &str) -> Option<&Values> {
         self.tasks.get(task)
     }
 
-    /// Terminal performance of a regime, if that metric came before.
+    /// Terminal performance of a regime, if that metric was computed before.
     pub fn term_perf(&self, regime_num: usize) -> Option<f64> {
         self.regime(regime_num)?.number("term_perf")
     }
 
-    /// Gives a regime a value; `None`, one that is not finite, and one for a regime that is not there are left out.
+    /// Sets a value of a regime; `None`, non-finite values, and values of unknown regimes are dropped.
     pub fn set_regime(&mut self, regime_num: usize, name: &str, value: Option<impl Into<Value>>) {
         if let (Some(values), Some(value)) = (self.regimes.get_mut(regime_num), value) {
             values.set(name, value);
         }
     }
 
-    /// Gives a task a value; `None`, one that is not finite, and one for a task that is not there are left out.
+    /// Sets a value of a task; `None`, non-finite values, and values of unknown tasks are dropped.
     pub fn set_task(&mut self, task: &str, name: &str, value: Option<impl Into<Value>>) {
         if let (Some(values), Some(value)) = (self.tasks.get_mut(task), value) {
             values.set(name, value);
         }
     }
 
-    /// Gives the lifetime a value; `None` and one that is not finite are left out. Where it is not finite, the lifetime has no such
-    /// value, also if tasks do.
+    /// Sets a value of the lifetime; `None` and non-finite values are dropped. A non-finite value also prevents aggregating the
+    /// tasks' values.
     pub fn set_lifetime(&mut self, name: &str, value: Option<impl Into<Value>>) {
         let Some(value) = value.map(Into::into) else { return };
         if value.is_finite() {
@@ -106,25 +104,25 @@ impl<'a> Assessment<'a> {
         }
     }
 
-    /// Gives the lifetime the mean or median of values of tasks that may be infinite, a quotient of which the divisor was 0: where
-    /// the result is no number, the lifetime has no value, as in the reference. NaN counts as none.
+    /// Sets the lifetime's value to the mean or median of tasks' values, which may be infinite, as quotients with divisor 0: if
+    /// the result is not finite, the lifetime has no value, as in the reference. NaN is skipped.
     pub(super) fn set_lifetime_of(&mut self, name: &str, of_tasks: Vec<f64>) {
         let known = of_tasks.into_iter().filter(|value| !value.is_nan()).collect();
         self.set_lifetime(name, self.aggregate(known));
     }
 
-    /// Mean or median, as the options say; `None` of no values.
+    /// Mean or median, depending on the options; `None` without values.
     pub fn aggregate(&self, values: Vec<f64>) -> Option<f64> {
         aggregate(values, self.options)
     }
 
-    /// Terminal performance of each regime, by its number; NaN where it has none.
+    /// Terminal performance of each regime, by its number; NaN if it has none.
     pub(super) fn term_perfs(&self) -> Vec<f64> {
         let numbers = self.regimes.iter().map(|values| values.number("term_perf"));
         numbers.map(|number| number.unwrap_or(f64::NAN)).collect()
     }
 
-    /// Where a headline has numbers for tasks but none for the lifetime, brings those together, missing ones skipped.
+    /// If a headline has numbers for tasks but none for the lifetime, aggregates those, skipping missing ones.
     pub(super) fn aggregate_tasks(&mut self, name: &str) {
         if self.whole.get(name).is_none() && !self.none.contains(name) {
             let numbers = self.tasks.values().filter_map(|values| values.number(name)).collect();
@@ -132,13 +130,13 @@ impl<'a> Assessment<'a> {
         }
     }
 
-    /// Values of regimes, tasks and lifetime.
+    /// The values of regimes, tasks and lifetime.
     pub(super) fn into_values(self) -> (Vec<Values>, IndexMap<String, Values>, Values) {
         (self.regimes, self.tasks, self.whole)
     }
 }
 
-/// Mean or median, as the options say; `None` of no values.
+/// Mean or median, depending on the options; `None` without values.
 pub(super) fn aggregate(values: Vec<f64>, options: &Options) -> Option<f64> {
     match options.aggregation_method {
         AggregationMethod::Mean => mean(&values),

@@ -1,14 +1,12 @@
-//! Average performance while learning and while being evaluated.
-//!
-//! Not here: how evaluations relate to learning, see `performance_maintenance` and `transfer`.
+//! Average performance during learning and during evaluation.
 
 use super::{Assessment, Metric};
 use crate::results::{Direction, Headline};
 use crate::statistics::mean;
 use crate::{BlockType, MetricsError, Options};
 
-/// `avg_perf` of every regime; `avg_train_perf` and `avg_eval_perf` of every task, the means of its regimes' means,
-/// each counting once however long it is.
+/// `avg_perf` of every regime; `avg_train_perf` and `avg_eval_perf` of every task, the means of its regimes' means, each with
+/// equal weight whatever its length.
 ///
 /// Wake evaluations of a lifetime that sleeps have none.
 pub(super) struct AveragePerformance;

@@ -1,6 +1,4 @@
-//! Which evaluations of a lifetime could be exchanged if the agent never changed, and exchanging them.
-//!
-//! Not here: what is computed of them, see `null_bands`.
+//! Permutes those evaluations of a lifetime that would be exchangeable if the agent never changed.
 
 use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
@@ -13,22 +11,22 @@ use crate::results::Exchanged;
 use crate::statistics::mean;
 use crate::{BlockType, Log};
 
-/// The evaluations of a lifetime that count, their rows end to end.
+/// The evaluations of a lifetime that count, with their rows concatenated.
 pub(super) struct Evaluations<'a> {
     regimes: Vec<(&'a Regime, Range<usize>)>,
     /// Whether every experience of an evaluation is one row.
     is_one_row_each: Vec<bool>,
     /// Performance of each row.
     performance: Vec<f64>,
-    /// Rows that are exchanged in the same way.
+    /// Rows that are permuted in the same way.
     bundles: Vec<Bundle>,
     pub(super) exchanged: Exchanged,
 }
 
-/// Lists of rows, each of one task in one world, and as long as the others: a permutation moves all alike.
+/// Lists of rows, each of one task in one world, all of equal length: a permutation moves all alike.
 type Bundle = Vec<Vec<usize>>;
 
-/// What rows are exchanged by: the scored task with the world, or with the place in the evaluation.
+/// The unit of permutation: the scored task with the world, or with the position in the evaluation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 enum Place {
     World(World),
@@ -36,7 +34,7 @@ enum Place {
 }
 
 impl<'a> Evaluations<'a> {
-    /// Of the lifetime that was prepared from this log.
+    /// From a lifetime and the log it was prepared from.
     pub(super) fn of(log: &Log, lifetime: &'a Lifetime) -> Self {
         let worlds = worlds(log, lifetime);
         let counts = |regime: &&Regime| regime.block_type == BlockType::Test && lifetime.is_assessed(regime);
@@ -66,12 +64,12 @@ impl<'a> Evaluations<'a> {
         }
     }
 
-    /// Permutes the rows of each world, or of each place, among their evaluations.
+    /// Permutes the rows of each world, or of each position, among their evaluations.
     pub(super) fn permute(&mut self, rng: &mut ChaCha8Rng) {
         for bundle in &self.bundles {
             let num = bundle.first().map_or(0, Vec::len);
             for last in (1..num).rev() {
-                // Rows are bounded far below what a u32 counts.
+                // The number of rows is far below the range of a u32.
                 let other = rng.random_range(0..=last as u32) as usize;
                 for rows in bundle {
                     self.performance.swap(rows[last], rows[other]);
@@ -94,8 +92,8 @@ impl<'a> Evaluations<'a> {
     }
 }
 
-/// The rows of each scored task by world; those of a world that the task is evaluated in once only, or of which the log
-/// does not say the world, by their place among such rows of their evaluation.
+/// The rows of each scored task by world; rows of a world in which the task is evaluated only once, or of an unknown world, by
+/// their position among such rows of their evaluation.
 fn groups<'a>(
     regimes: &[(&'a Regime, Range<usize>)],
     worlds: &[Vec<Option<World>>],
@@ -121,8 +119,8 @@ fn groups<'a>(
     groups
 }
 
-/// Groups of one world, or of one place, that lie in the same blocks go together: an agent's luck in a world may be the same for
-/// several tasks, and is not to be torn apart.
+/// Bundles groups of one world, or of one position, that lie in the same blocks: an agent's luck in a world may be the same for
+/// several tasks, so these must move together.
 fn bundles(groups: BTreeMap<(&str, Place), Vec<usize>>, regimes: &[(&Regime, Range<usize>)]) -> Vec<Bundle> {
     let mut blocks = Vec::new();
     for (regime, rows) in regimes {
@@ -193,7 +191,7 @@ mod tests {
         read_log(&dir).expect("a log")
     }
 
-    /// The performances of each task in each world, or without one, in ascending order; by the rows as they were given.
+    /// The performances of each task in each world, or without one, sorted; by the original rows.
     fn by_world(blocks: &[Block], performance: &[f64]) -> BTreeMap<(&'static str, Option<u8>), Vec<f64>> {
         let evaluations = blocks.iter().filter(|(learns, ..)| !learns);
         let rows = evaluations.flat_map(|(_, task, rows)| rows.iter().map(|(world, _)| (*task, *world)));
@@ -203,7 +201,7 @@ mod tests {
         };
         let mut found: BTreeMap<_, Vec<f64>> = BTreeMap::new();
         for ((task, world), value) in rows.zip(performance) {
-            // Rows of worlds that come in one evaluation only are exchanged with each other.
+            // Rows of worlds that occur in only one evaluation are exchanged with each other.
             let world = world.filter(|world| !once(task, Some(*world)));
             found.entry((task, world)).or_default().push(*value);
         }
@@ -217,13 +215,13 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 60)))]
 
         #[test]
-        fn permuting_keeps_what_was_earned_in_each_world(blocks in blocks(), seed in any::<u64>()) {
+        fn permuting_keeps_rewards_within_each_world(blocks in blocks(), seed in any::<u64>()) {
             let log = log_of(&blocks);
             let lifetime = Lifetime::prepare(&log, &[], &options()).expect("rows that count");
             let mut evaluations = Evaluations::of(&log, &lifetime);
             let before = evaluations.performance.clone();
             let evaluated = blocks.iter().filter(|(learns, ..)| !learns).map(|(_, _, rows)| rows.len());
-            // Blocks of one task one after the other are regimes of their own.
+            // Consecutive blocks of one task are separate regimes.
             let lengths: Vec<usize> = evaluations.regimes.iter().map(|(_, rows)| rows.len()).collect();
             prop_assert_eq!(lengths, evaluated.collect::<Vec<_>>());
             let mut rng = ChaCha8Rng::seed_from_u64(seed);
@@ -237,7 +235,7 @@ mod tests {
         }
 
         #[test]
-        fn unpermuted_evaluations_end_as_the_lifetime_does(blocks in blocks()) {
+        fn unpermuted_evaluations_give_the_lifetimes_terminal_performance(blocks in blocks()) {
             let log = log_of(&blocks);
             let lifetime = Lifetime::prepare(&log, &[], &options()).expect("rows that count");
             let scores = crate::score(&log, &[], &options()).expect("scores");

@@ -1,6 +1,4 @@
-//! Judges a lifetime: one file per metric, and what they have in common.
-//!
-//! Not here: reading and preprocessing (`log`, `lifetime`, `preprocess`), and files of results (`results`).
+//! Scores a lifetime: one file per metric, and shared parts.
 
 mod assessment;
 mod average_performance;
@@ -36,7 +34,7 @@ fn built_in() -> Vec<Box<dyn Metric>> {
     ]
 }
 
-/// The headlines of the metrics of this crate, whatever was asked for.
+/// The headlines of the metrics of this crate, whatever was requested.
 pub(crate) fn built_in_headlines() -> Vec<Headline> {
     let metrics = built_in();
     metrics
@@ -45,7 +43,7 @@ pub(crate) fn built_in_headlines() -> Vec<Headline> {
         .collect()
 }
 
-/// Options under which every value is asked for that can be.
+/// Options that request every value.
 fn all_asked() -> Options {
     Options {
         maintenance_method: MaintenanceMethod::Both,
@@ -54,13 +52,12 @@ fn all_asked() -> Options {
     }
 }
 
-/// A measure of a lifetime. The crate's own are computed through this trait, too; a [`Scorer`](crate::Scorer) takes
-/// others beside them.
+/// A measure of a lifetime. The crate's own metrics implement this trait, too; a [`Scorer`](crate::Scorer) takes further ones.
 ///
-/// A metric looks at the regimes of a preprocessed lifetime and at what metrics before it found, and sets values: for
-/// regimes (columns of the regime table), for tasks (the numbers, and the lists behind them), for the lifetime. Where
-/// it sets a headline for tasks only, the lifetime's value is their mean or median, as the options say. One scorer may
-/// score many lifetimes at once, hence `Send` and `Sync`.
+/// A metric reads the regimes of a preprocessed lifetime and the values of earlier metrics, and sets values: for regimes
+/// (columns of the regime table), for tasks (the numbers, and the lists behind them), for the lifetime. If it sets a headline
+/// for tasks only, the lifetime's value is their mean or median, depending on the options. One scorer may score many lifetimes
+/// in parallel, hence `Send` and `Sync`.
 ///
 /// ```
 /// use driftworld_metrics::{Assessment, BlockType, Direction, Headline, Metric, MetricsError, Options};
@@ -85,8 +82,7 @@ fn all_asked() -> Options {
 /// }
 /// ```
 pub trait Metric: Send + Sync {
-    /// The values by which a lifetime is known that this metric sets under these options, in order. Their names must be its
-    /// own. By default there are none.
+    /// The main values that this metric sets with these options, in order. Their names must be unique to it. None by default.
     fn headlines(&self, _options: &Options) -> Vec<Headline> {
         Vec::new()
     }
@@ -94,7 +90,7 @@ pub trait Metric: Send + Sync {
     /// Computes the metric.
     ///
     /// # Errors
-    /// Where it cannot be computed although the lifetime has what it needs; a value for which something is missing
-    /// is not an error, it is left out. [`MetricsError::Metric`] is there for errors of a user's metric.
+    /// If it cannot be computed although the lifetime has what it needs; a missing input is not an error, the value is then
+    /// left out. [`MetricsError::Metric`] is for errors of a user's metric.
     fn judge(&self, assessment: &mut Assessment<'_>) -> Result<(), MetricsError>;
 }

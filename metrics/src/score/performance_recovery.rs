@@ -5,12 +5,12 @@ use crate::results::{Direction, Headline};
 use crate::statistics::theil_sen_slope;
 use crate::{Definitions, MetricsError, Options};
 
-/// `perf_recovery` of every task, and the `recovery_times` it is made of.
+/// `perf_recovery` of every task, and the `recovery_times` behind it.
 ///
-/// Minus the Theil–Sen slope of a task's recovery times, in experiences per learning regime; positive when each
-/// recovery is faster than the last. None for fewer than two recovery times, that is, three learning regimes.
+/// Minus the Theil–Sen slope of a task's recovery times, in experiences per learning regime; positive if each recovery is
+/// faster than the last. `None` for fewer than two recovery times, that is, three learning regimes.
 ///
-/// QUIRK: where there is one recovery time in the whole lifetime, it is not listed. It is under the published definitions.
+/// QUIRK: if there is one recovery time in the whole lifetime, it is not listed. It is under the published definitions.
 pub(super) struct PerformanceRecovery;
 
 const NAME: &str = "perf_recovery";
@@ -32,7 +32,7 @@ impl Metric for PerformanceRecovery {
             times.iter_mut().for_each(Vec::clear);
         }
         for (task, times) in tasks.iter().zip(times) {
-            // A difference, since minus a slope of 0 would be -0.
+            // A difference, because minus a slope of 0 would be -0.
             let faster = theil_sen_slope(&times).map(|slope| 0.0 - slope);
             assessment.set_task(task, NAME, faster);
             assessment.set_task(task, "recovery_times", Some(times));
@@ -43,8 +43,8 @@ impl Metric for PerformanceRecovery {
 
 /// Recovery time, in experiences, of the second and every later wake learning regime of a task.
 ///
-/// The first index at which the regime reaches the terminal performance of the one before; its number of rows plus
-/// one where it never does. Where ties count as equal, a performance that is lower by rounding reaches it, too.
+/// The first index at which the regime reaches the terminal performance of the one before; its number of rows plus one if it
+/// never does. If ties count as equal, a performance that is lower only by rounding reaches it, too.
 fn times_of(assessment: &Assessment<'_>, task: &str) -> Vec<f64> {
     let trained: Vec<_> = (assessment.lifetime().regimes_of(task))
         .filter(|regime| regime.is_wake_training())

@@ -1,6 +1,4 @@
 //! Sample efficiency: how good the agent gets and how fast, both against a single-task expert.
-//!
-//! Not here: the sum of what it gathers on the way, see `ste_relative_performance`.
 
 use super::saturation::{Peak, peak};
 use super::ste_relative_performance::{expert_runs, with_gaps};
@@ -10,10 +8,10 @@ use crate::results::{Direction, Headline};
 use crate::statistics::{mean_of_known, trend_falls};
 use crate::{Definitions, MetricsError, Options, SteAveragingMethod};
 
-/// An agent that does not reach this part of the expert's saturation has not learned the task: its efficiency is 0.
+/// An agent below this share of the expert's saturation has not learned the task: its efficiency is 0.
 const LEAST_SATURATION: f64 = 0.2;
 
-/// `sample_efficiency` of every task, the mean of its `sample_efficiency_vals`, and what these are made of.
+/// `sample_efficiency` of every task, the mean of its `sample_efficiency_vals`, and the numbers behind these.
 pub(super) struct SampleEfficiency;
 
 const NAME: &str = "sample_efficiency";
@@ -56,8 +54,8 @@ impl Metric for SampleEfficiency {
     }
 }
 
-/// QUIRK: where a task was learned in experience 0 alone, the reference finds no line through its performances and leaves the metric out
-/// for all tasks of the lifetime. Not so under the published definitions.
+/// QUIRK: if a task was learned in experience 0 alone, the reference cannot fit a line to its performances and leaves the
+/// metric out for all tasks of the lifetime. Not so under the published definitions.
 fn is_given_up(assessment: &Assessment<'_>) -> bool {
     let lifetime = assessment.lifetime();
     let without_line = |task: &String| {
@@ -67,7 +65,7 @@ fn is_given_up(assessment: &Assessment<'_>) -> bool {
     assessment.options().definitions == Definitions::Reference && lifetime.tasks().iter().any(without_line)
 }
 
-/// Sample efficiency of one task and what it was made of; one entry per run of the expert.
+/// Sample efficiency of one task and the numbers behind it; one entry per run of the expert.
 #[derive(Debug, Clone, PartialEq, Default)]
 struct Efficiency {
     task_saturation: Option<f64>,
@@ -81,8 +79,8 @@ struct Efficiency {
 
 /// (task saturation / expert saturation) · (expert's experiences to it / task's experiences to it).
 ///
-/// 0 where the task's saturation is below a fifth of the expert's, or its least-squares line falls. Nothing without
-/// experts or learning, and where the task, or for one run the expert, is at its best from the start.
+/// 0 if the task's saturation is below a fifth of the expert's, or its least-squares line falls. `None` without experts or
+/// learning, and if the task, or for one run the expert, is at its best from the start.
 fn of_task(assessment: &Assessment<'_>, task: &str) -> Efficiency {
     let (lifetime, options) = (assessment.lifetime(), assessment.options());
     let (exp_nums, learning) = lifetime.training_of(task);
@@ -104,7 +102,7 @@ fn of_task(assessment: &Assessment<'_>, task: &str) -> Efficiency {
         let least = expert.value * LEAST_SATURATION - assessment.slack(&[expert.value]);
         efficiency.compare(saturated, expert, falls || saturated.value < least);
     }
-    // QUIRK: one run that cannot be compared still leaves the task's own saturation, their average does not.
+    // QUIRK: with one incomparable run, the task's own saturation is still listed; with an incomparable average, it is not.
     if options.ste_averaging_method == SteAveragingMethod::Time && efficiency.sample_efficiency_vals.is_empty() {
         return Efficiency::default();
     }
@@ -138,7 +136,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn height_and_speed_multiply_unless_nothing_was_learned() {
+    fn saturation_and_speed_multiply_unless_nothing_was_learned() {
         let check = |task: (f64, usize), expert: (f64, usize), is_unlearned: bool, expected: &[f64]| {
             let mut efficiency = Efficiency::default();
             let peak = |(value, experiences)| Peak { value, experiences };
@@ -149,7 +147,7 @@ mod tests {
         check((50.0, 20), (100.0, 10), true, &[0.0]);
         check((20.0, 5), (100.0, 10), false, &[0.4]);
         check((50.0, 20), (100.0, 0), false, &[]);
-        // Over nothing it is no number.
+        // Dividing by 0 gives no number.
         check((50.0, 20), (0.0, 10), false, &[f64::INFINITY]);
         check((50.0, 20), (0.0, 10), true, &[0.0]);
     }

@@ -1,6 +1,4 @@
-//! Saturation: the best performance that data reach, and how long they take to reach it.
-//!
-//! Not here: performance at the end, see `terminal_performance`.
+//! Saturation: the best performance reached, and the time until then.
 
 use super::{Assessment, Metric};
 use crate::preprocess::smoothed;
@@ -20,7 +18,7 @@ impl Metric for Saturation {
     }
 }
 
-/// Best performance and where it is first reached.
+/// Best performance, and where it is first reached.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Peak {
     /// Largest smoothed performance.
@@ -29,14 +27,14 @@ pub(super) struct Peak {
     pub(super) experiences: usize,
 }
 
-/// Peak of one performance per experience; of no experience at all, 0 after 0.
+/// Peak of one performance per experience; without experiences, 0 after 0.
 ///
-/// QUIRK: the data are smoothed once more with a flat window of default length, on top of the smoothing they had as
-/// a step of preprocessing, and whatever smoothing was chosen there. Not so under the published definitions.
+/// QUIRK: the data are smoothed again with a flat window of default length, on top of the preprocessing, whatever smoothing was
+/// chosen there. Not so under the published definitions.
 ///
-/// Additions run in a fixed order, so the result is the same on every machine. Where several windows would tie in
-/// exact arithmetic, rounding says which is the first maximum, and the reference's rounding may say another. Where
-/// ties count as equal, the first that comes within a billionth is taken.
+/// Additions run in a fixed order, so the result is the same on every machine. If several windows tie in exact arithmetic,
+/// rounding decides which is the first maximum, and the reference's rounding may differ. If ties count as equal, the first
+/// within a billionth is taken.
 pub(super) fn peak(per_experience: &[f64], assessment: &Assessment<'_>) -> Peak {
     let again;
     let values = match assessment.options().definitions {
@@ -49,7 +47,7 @@ pub(super) fn peak(per_experience: &[f64], assessment: &Assessment<'_>) -> Peak 
     first_maximum(values, assessment.slack(values))
 }
 
-/// The maximum, and the first place where it is reached but for this slack.
+/// The maximum, and the first index that reaches it within this slack.
 fn first_maximum(values: &[f64], slack: f64) -> Peak {
     let higher = |best: f64, value: f64| if value > best { value } else { best };
     let value = values.iter().copied().reduce(higher).unwrap_or(0.0);
@@ -65,7 +63,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_first_maximum_counts() {
+    fn first_maximum_counts() {
         let check = |values: &[f64], slack: f64, value: f64, experiences: usize| {
             assert_eq!(first_maximum(values, slack), Peak { value, experiences });
         };

@@ -1,6 +1,4 @@
-//! Scores a lifetime: computes metrics in their order, and puts their values together.
-//!
-//! Not here: the metrics.
+//! Scores a lifetime: computes metrics in order, and collects their values.
 
 use indexmap::{IndexMap, IndexSet};
 
@@ -15,10 +13,10 @@ use crate::results::{
 };
 use crate::{BlockType, Log, MetricsError, Options};
 
-/// Scores a lifetime by the metrics of this crate, compared with the single-task experts there are.
+/// Scores a lifetime by the metrics of this crate, compared with the given single-task experts.
 ///
-/// A value that cannot be computed, for want of experts, of evaluations between learning blocks, of a second learning
-/// block, is absent and never NaN.
+/// A value that cannot be computed, for lack of experts, of evaluations between learning blocks, or of a second learning block,
+/// is absent and never NaN.
 ///
 /// # Errors
 /// Those of [`Lifetime::prepare`].
@@ -26,7 +24,7 @@ pub fn score(log: &Log, experts: &[SteLog], options: &Options) -> Result<Lifetim
     Scorer::new().score(log, experts, options)
 }
 
-/// Metrics in the order in which they are computed; each sees what those before it found.
+/// Metrics in the order in which they are computed; each sees the values of earlier ones.
 ///
 /// ```
 /// # use driftworld_metrics::{Assessment, Headline, Metric, MetricsError, Options, Scorer};
@@ -44,7 +42,7 @@ pub struct Scorer {
 }
 
 impl Scorer {
-    /// With all metrics of this crate.
+    /// A scorer with all metrics of this crate.
     pub fn new() -> Self {
         let headlines = built_in_headlines().into_iter();
         Self {
@@ -53,11 +51,11 @@ impl Scorer {
         }
     }
 
-    /// With one more metric, computed after those that are there.
+    /// Adds a metric, computed after the existing ones.
     ///
     /// # Errors
-    /// [`MetricsError::BadOption`] for a headline that is empty, that another metric has, or that the file of results
-    /// uses for something else.
+    /// [`MetricsError::BadOption`] for a headline that is empty, that another metric has, or that the result file uses for
+    /// something else.
     pub fn with(mut self, metric: impl Metric + 'static) -> Result<Self, MetricsError> {
         for headline in metric.headlines(&all_asked()) {
             let name = headline.name.into_owned();
@@ -74,7 +72,7 @@ impl Scorer {
         Ok(self)
     }
 
-    /// Scores a lifetime, compared with the single-task experts there are.
+    /// Scores a lifetime, compared with the given single-task experts.
     ///
     /// # Errors
     /// Those of [`Lifetime::prepare`] and of [`Scorer::judge`].
@@ -82,11 +80,10 @@ impl Scorer {
         self.judge(log, &Lifetime::prepare(log, experts, options)?, options)
     }
 
-    /// Scores a lifetime that was prepared from `log` under `options` before, for whoever wants to look at both.
+    /// Scores a lifetime that was already prepared from `log` with `options`, for callers that use both.
     ///
     /// # Errors
-    /// Those of the metrics; [`MetricsError::BadOption`] where one set a value whose name the files of results use for
-    /// something else.
+    /// Those of the metrics; [`MetricsError::BadOption`] if one set a value whose name the result files use for something else.
     pub fn judge(&self, log: &Log, lifetime: &Lifetime, options: &Options) -> Result<LifetimeMetrics, MetricsError> {
         let mut assessment = Assessment::new(log, lifetime, options);
         let mut headlines: Vec<Headline> = Vec::new();
@@ -169,7 +166,7 @@ impl Default for Scorer {
     }
 }
 
-/// What may be said of each metric. `is_negative`: whether transfer is made of performances of which some are negative.
+/// The reading of each metric. `is_negative`: whether transfer is based on performances of which some are negative.
 fn readings(
     headlines: &[Headline],
     null_bands: &NullBands,
@@ -193,7 +190,7 @@ fn readings(
     all.into_iter().filter_map(reading).collect()
 }
 
-/// What is said of tasks that were never learned: that they are none to keep, and what maintenance is without them.
+/// The caution about tasks that were never learned: there is nothing to keep, and what maintenance is without them.
 fn never_learned(
     reached: &IndexMap<String, Reached>,
     tasks: &IndexMap<String, Values>,
@@ -222,8 +219,8 @@ fn never_learned(
     Some(parts.join("; "))
 }
 
-/// What a reader must be told of numbers that another rounding of the same performances would change, each with what it is where
-/// performances within a billionth count as equal.
+/// A caution about numbers that rounding of the performances would change, each with its value if performances within a
+/// billionth count as equal.
 fn decided_by_rounding(found: &Assessment<'_>) -> Result<Option<String>, MetricsError> {
     let mut resolved = Assessment::new(found.log(), found.lifetime(), found.options());
     resolved.resolves_ties = true;
@@ -253,7 +250,7 @@ fn decided_by_rounding(found: &Assessment<'_>) -> Result<Option<String>, Metrics
     }))
 }
 
-/// Fields of the results that no headline and no value of a lifetime may have as its name.
+/// Field names of the results that no headline and no value of a lifetime may use.
 const TAKEN: [&str; 22] = [
     "run_id",
     "complexity",
@@ -279,10 +276,10 @@ const TAKEN: [&str; 22] = [
     "task_metrics",
 ];
 
-/// Fields of a task in the results that no value of a task may have as its name.
+/// Field names of a task in the results that no value of a task may use.
 const EXTENT: [&str; 4] = ["min", "max", "num_lx", "num_ex"];
 
-/// Checks that metrics set no value whose name the results use for something else: it would stand there twice.
+/// Checks that no metric set a value whose name the results use for something else: it would occur twice.
 fn check_names(values: &Values, whose: &str, is_taken: impl Fn(&str) -> bool) -> Result<(), MetricsError> {
     match values.iter().find(|(name, _)| is_taken(name)) {
         Some((name, _)) => Err(MetricsError::bad_option(
@@ -294,7 +291,7 @@ fn check_names(values: &Values, whose: &str, is_taken: impl Fn(&str) -> bool) ->
     }
 }
 
-/// Headlines in their order, then everything else as it came.
+/// Sorts headlines first in their order, then everything else in insertion order.
 fn headlines_first(values: &Values, headlines: &[Headline]) -> Values {
     let mut ordered = Values::default();
     let is_headline = |name: &str| headlines.iter().any(|headline| headline.name == name);
@@ -305,7 +302,7 @@ fn headlines_first(values: &Values, headlines: &[Headline]) -> Values {
     ordered
 }
 
-/// Adds the range of a task's performances and the number of its rows.
+/// Adds the range of a task's performances and its numbers of rows.
 fn with_extent(mut values: Values, lifetime: &Lifetime, task: &str) -> Values {
     let (min, max) = extent(lifetime.regimes_of(task));
     let [of_min, of_max, of_learning, of_evaluation] = EXTENT;

@@ -1,7 +1,5 @@
-//! Performance relative to a single-task expert: what the agent gathers while learning, as a part of what an agent
-//! gathers that has only this task to learn.
-//!
-//! Not here: how fast either learns, see `sample_efficiency`.
+//! Performance relative to a single-task expert: the rewards gathered while learning, as a share of those of an agent that has
+//! only this task to learn.
 
 use super::{Assessment, Metric};
 use crate::lifetime::{Lifetime, SteRun};
@@ -38,14 +36,14 @@ impl Metric for SteRelativePerformance {
     }
 }
 
-/// What a reader must be told of tasks in which the lifetime or an expert gathered nothing or less: a ratio says nothing
-/// there, and of two losses the larger one looks better. The difference of the means does say something.
+/// A caution about tasks in which the lifetime or an expert gathered nothing or less: a ratio is meaningless there, and of two
+/// losses the larger one looks better. The difference of the means is meaningful.
 pub(super) fn caution(lifetime: &Lifetime) -> Option<String> {
     let mut found = Vec::new();
     for task in lifetime.tasks() {
         let (_, learning) = lifetime.training_of(task);
         let runs = lifetime.experts_of(task).iter().map(SteRun::training_performance);
-        // As in the ratio, as long as the shorter one.
+        // Over the shorter length, as in the ratio.
         let both = runs.filter_map(|run| {
             let num = run.len().min(learning.len());
             Some((mean(&learning[..num])?, mean(&run[..num])?))
@@ -67,9 +65,8 @@ pub(super) fn caution(lifetime: &Lifetime) -> Option<String> {
 
 /// One value per run of the task's expert (`metrics`), or one against their average (`time`).
 ///
-/// Sum of the first n performances of the task's learning, over that of the expert's, n being the shorter length.
-/// Empty without experts or without learning. Over a run that adds up to 0 the value is no finite number; the mean leaves out NaN, as
-/// the reference's does.
+/// Sum of the first n performances of the task's learning, over that of the expert's, n being the shorter length. Empty without
+/// experts or without learning. If a run sums to 0, the value is not finite; the mean skips NaN, as in the reference.
 fn of_task(lifetime: &Lifetime, task: &str, averaging: SteAveragingMethod) -> Vec<f64> {
     let (_, learning) = lifetime.training_of(task);
     if learning.is_empty() {
@@ -83,13 +80,13 @@ fn of_task(lifetime: &Lifetime, task: &str, averaging: SteAveragingMethod) -> Ve
     runs.into_iter().map(relative).collect()
 }
 
-/// The values, with nothing in place of those that are no finite numbers.
+/// The values, with `None` for those that are not finite.
 pub(super) fn with_gaps(values: &[f64]) -> Vec<Option<f64>> {
     let finite = |value: &f64| value.is_finite().then_some(*value);
     values.iter().map(finite).collect()
 }
 
-/// A list for each run of an expert, or for the average over time alone, as asked.
+/// A list for each run of an expert, or only for the average over time, as requested.
 pub(super) fn expert_runs(
     experts: &[SteRun],
     averaging: SteAveragingMethod,
@@ -129,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn losses_are_said_with_their_difference() {
+    fn losses_are_shown_with_their_difference() {
         let check = |own: f64, expert: f64, expected: Option<&str>| {
             let options = Options {
                 normalization_method: NormalizationMethod::Off,

@@ -1,6 +1,4 @@
-//! Terminal performance: what a regime ends with.
-//!
-//! Not here: the best it reached, see `saturation`.
+//! Terminal performance: the performance at the end of a regime.
 
 use super::{Assessment, Metric};
 use crate::statistics::mean;
@@ -24,10 +22,10 @@ impl Metric for TerminalPerformance {
     }
 }
 
-/// The mean of the end of one performance per experience, at least one, and the experiences before the middle of the end.
+/// The mean over the end of one performance per experience, at least one, and the experiences before the middle of that end.
 ///
-/// QUIRK: the end begins at the whole part of `(1 − 0.1) · n` as floating point has it. Under the published definitions
-/// it is the whole part of nine tenths. The two differ nowhere below a million experiences, which a test shows.
+/// QUIRK: the end begins at the whole part of `(1 − 0.1) · n` in floating point. Under the published definitions it is the
+/// whole part of nine tenths. The two never differ below a million experiences, as a test shows.
 fn end(per_experience: &[f64], block_type: BlockType, definitions: Definitions) -> (f64, usize) {
     let num = per_experience.len();
     let (begin, experiences) = match (block_type, definitions) {
@@ -53,7 +51,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn learning_ends_with_its_last_tenth_and_evaluation_is_all_end() {
+    fn learning_ends_with_its_last_tenth_and_evaluation_counts_whole() {
         let check = |num: u32, block_type: BlockType, value: f64, experiences: usize| {
             let values: Vec<f64> = (0..num).map(f64::from).collect();
             for &definitions in Definitions::ALL {
@@ -70,7 +68,7 @@ mod tests {
     }
 
     #[test]
-    fn floating_point_and_whole_numbers_agree_below_a_million() {
+    fn floating_point_and_integer_ends_agree_below_a_million() {
         let differ = (0..1_000_000).find(|num| reckoned_in_floating_point(*num) != reckoned_in_whole_numbers(*num));
         assert_eq!(differ, None);
     }

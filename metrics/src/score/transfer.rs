@@ -1,6 +1,4 @@
-//! Transfer: what learning one task does to another, not yet learned (forward) or learned before (backward).
-//!
-//! Not here: what becomes of a task whatever was learned in between, see `performance_maintenance`.
+//! Transfer: the effect of learning one task on another that is not yet learned (forward) or was learned before (backward).
 
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -14,13 +12,12 @@ use crate::lifetime::Lifetime;
 use crate::results::{Direction, Headline, PairValues, Values};
 use crate::{BlockType, Definitions, MetricsError, Options};
 
-/// `forward_transfer_…` and `backward_transfer_…` of every trained task, by ratio and contrast as far as they are asked
-/// for.
+/// `forward_transfer_…` and `backward_transfer_…` of every trained task, by ratio and contrast as requested.
 ///
-/// A contrast lies in -1..=1, and a ratio above 1 is an improvement, only where no performance is negative; [`caution`] says so where
-/// one is.
+/// Only without negative performances do contrasts lie in -1..=1, and ratios above 1 mean an improvement; otherwise [`caution`]
+/// warns.
 ///
-/// QUIRK: for the lifetime's value, the first value of every pair of tasks counts, however often the pair met.
+/// QUIRK: for the lifetime's value, the first value of every pair of tasks counts, however often the pair occurs.
 pub(super) struct Transfer;
 
 impl Metric for Transfer {
@@ -51,9 +48,9 @@ impl Metric for Transfer {
     }
 }
 
-/// A way to compare what a task comes to before and after another was learned.
+/// A way to compare a task's performance before and after another was learned.
 struct Measure {
-    /// Of transfer forward and backward.
+    /// Names of forward and backward transfer.
     names: [&'static str; 2],
     explanation: &'static str,
     no_effect: f64,
@@ -80,7 +77,7 @@ fn asked_for(options: &Options) -> impl Iterator<Item = Measure> + use<> {
     contrast.into_iter().chain(method.has_ratio().then_some(RATIO))
 }
 
-/// The lifetime's values as functions of terminal performances: contrasts always, ratios if they are asked for.
+/// The lifetime's values as functions of terminal performances: contrasts always, ratios if requested.
 pub(super) fn statistics<'a>(lifetime: &Lifetime, options: &'a Options) -> Vec<Statistic<'a>> {
     let pairs = gaps(lifetime, options).map(|gaps| Rc::new(by_pair(&gaps)));
     let statistic = |name, pairs: &Rc<Vec<Vec<(usize, usize)>>>, compare: Compare| {
@@ -99,7 +96,7 @@ pub(super) fn statistics<'a>(lifetime: &Lifetime, options: &'a Options) -> Vec<S
     both.flatten().collect()
 }
 
-/// What a reader of ratios and contrasts must be told, where performances they were made of are negative.
+/// A caution about ratios and contrasts that are based on negative performances.
 pub(super) fn caution(assessment: &Assessment<'_>) -> Option<String> {
     let term_perfs = assessment.term_perfs();
     let gaps = gaps(assessment.lifetime(), assessment.options());
@@ -114,12 +111,12 @@ pub(super) fn caution(assessment: &Assessment<'_>) -> Option<String> {
     })
 }
 
-/// Whether a metric is one of transfer.
+/// Whether a metric measures transfer.
 pub(super) fn is_transfer(name: &str) -> bool {
     CONTRAST.names.contains(&name) || RATIO.names.contains(&name)
 }
 
-/// The contrasts of each task where ratios alone are asked for: they are shown all the same.
+/// The contrasts of each task if only ratios are requested: they are shown all the same.
 pub(super) fn contrasts_not_asked_for(assessment: &Assessment<'_>) -> IndexMap<String, Values> {
     if assessment.options().transfer_method.has_contrast() {
         return IndexMap::new();
@@ -161,9 +158,9 @@ type Gaps<'a> = BTreeMap<(usize, usize), Gap<'a>>;
 
 /// All gaps of a lifetime, forward and backward.
 ///
-/// QUIRK: each later evaluation holds one value per direction. Where several tasks were learned since the evaluation
-/// before, all of them had a part in it, but the last pair in permutation order gets it: tasks in the order in which
-/// they first appear among the assessed regimes. Under the published definitions each of them gets it.
+/// QUIRK: each later evaluation holds one value per direction. If several tasks were learned since the evaluation before, all
+/// of them contributed, but only the last pair in permutation order gets the value: tasks in the order in which they first
+/// appear among the assessed regimes. Under the published definitions each of them gets it.
 fn gaps<'a>(lifetime: &'a Lifetime, options: &Options) -> [Gaps<'a>; 2] {
     let places = Places::of(lifetime);
     let (mut forward, mut backward) = (Gaps::new(), Gaps::new());
@@ -173,10 +170,10 @@ fn gaps<'a>(lifetime: &'a Lifetime, options: &Options) -> [Gaps<'a>; 2] {
             Definitions::Published => index,
         };
         for (&other, (learned, evaluated)) in places.tasks.iter().filter(|(other, _)| **other != trained) {
-            // A task never learned counts as learned after everything.
+            // A task that is never learned counts as learned after everything.
             let first_learned = learned.first().copied().unwrap_or(usize::MAX);
             for pair in evaluated.windows(2) {
-                // Where a drift began to learn the task in between, what changed was its own learning, and no transfer.
+                // If a drift started to learn the task in between, the change is due to its own learning, not to transfer.
                 if pair[0] < first_learned && first_learned < pair[1] && places.drifts.contains(&first_learned) {
                     continue;
                 }
@@ -199,13 +196,13 @@ fn gaps<'a>(lifetime: &'a Lifetime, options: &Options) -> [Gaps<'a>; 2] {
     [forward, backward]
 }
 
-/// Index of the first place after `limit` in ascending places.
+/// Index of the first place after `limit`, in ascending places.
 fn above(places: &[usize], limit: usize) -> usize {
     places.partition_point(|place| *place <= limit)
 }
 
-/// Regime numbers of each task's learning and evaluation, ascending; tasks in order of appearance. Drifts count as
-/// learning of the tasks that they pass.
+/// Regime numbers of each task's learning and evaluation, ascending; tasks in order of appearance. Drifts count as learning of
+/// the tasks that they pass.
 struct Places<'a> {
     tasks: IndexMap<&'a str, (Vec<usize>, Vec<usize>)>,
     /// Regime numbers of drifts.
@@ -234,15 +231,15 @@ impl<'a> Places<'a> {
     }
 }
 
-/// How performance after is held against performance before.
+/// Compares the performance before with the one after.
 type Compare = fn(f64, f64) -> Option<f64>;
 
-/// After over before; nothing where before is 0.
+/// After over before; `None` if before is 0.
 fn ratio(before: f64, after: f64) -> Option<f64> {
     Some(after / before).filter(|value| value.is_finite())
 }
 
-/// Difference over sum; nothing where the sum is 0.
+/// Difference over sum; `None` if the sum is 0.
 fn contrast(before: f64, after: f64) -> Option<f64> {
     Some((after - before) / (before + after)).filter(|value| value.is_finite())
 }

@@ -1,17 +1,17 @@
-//! Whether values agree with those of the reference. Not here: where either come from.
+//! Compares values with those of the reference.
 
 use serde_json::{Number, Value};
 
 /// The reference adds in another order; its values for lifetimes have ten decimals.
 const TOLERANCE: f64 = 1e-9;
 
-/// Compares numbers within the tolerance, lists entry by entry; returns how many numbers there were.
+/// Compares numbers within the tolerance, lists entry by entry; returns the number of numbers.
 pub(crate) fn compare(place: &str, found: &Value, expected: &Value) -> usize {
     match (found, expected) {
         (Value::Number(found), Value::Number(expected)) => {
             let number = |number: &Number| number.as_f64().expect("every number of a file is an f64");
             let (found, expected) = (number(found), number(expected));
-            // Differences of numbers around 100 lose what they have in common.
+            // Differences of numbers around 100 lose precision by cancellation.
             let near = (found - expected).abs() <= TOLERANCE * expected.abs().max(1.0);
             assert!(near, "{place}: found {found}, the reference has {expected}");
             1

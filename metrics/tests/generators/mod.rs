@@ -1,6 +1,4 @@
-//! Records and lifetimes for property tests: any record that may be written, and lifetimes that can be scored.
-//!
-//! Not here: what must hold of them, see the tests that take them.
+//! Generators for property tests: arbitrary valid records, and lifetimes that can be scored.
 
 #![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
 
@@ -12,12 +10,12 @@ use std::path::Path;
 use driftworld_metrics::{BlockSubtype, BlockType, ExpStatus, Record, Timestamp};
 use proptest::prelude::*;
 
-/// A time stamp so many microseconds after a fixed one.
+/// A time stamp this number of microseconds after a fixed one.
 pub(crate) fn stamp(micros: i64) -> Timestamp {
     Timestamp::from_unix_micros(1_600_000_000_000_000 + micros).unwrap()
 }
 
-/// Strings that tables get wrong.
+/// Strings that are hard for tables.
 fn awkward() -> impl Strategy<Value = String> {
     prop_oneof![
         "[a-z]{1,6}_[0-9]{1,3}",
@@ -28,7 +26,7 @@ fn awkward() -> impl Strategy<Value = String> {
     ]
 }
 
-/// A record with any cells but numbers and time, which [`any_log`] gives it.
+/// A record with arbitrary cells, except numbers and time, which [`any_log`] adds.
 fn any_record() -> impl Strategy<Value = Record> {
     let metric = prop_oneof![
         any::<f64>().prop_filter("finite", |value| value.is_finite()),
@@ -52,8 +50,8 @@ fn any_record() -> impl Strategy<Value = Record> {
     })
 }
 
-/// Records as they may be written one after the other: numbers stay or rise, also by much, and a worker's experience ends with its
-/// complete row. Each has a time stamp of its own.
+/// A valid sequence of records: numbers stay or rise, also by much, and a worker's experience ends with its complete row. Each
+/// has a time stamp of its own.
 pub(crate) fn any_log() -> impl Strategy<Value = Vec<Record>> {
     let step = || prop_oneof![4 => Just(0_u64), 4 => Just(1), 1 => 2_u64..1_000_000];
     let rows = prop::collection::vec((any_record(), step(), step(), any::<bool>()), 1..10);
@@ -87,7 +85,7 @@ pub(crate) fn any_log() -> impl Strategy<Value = Vec<Record>> {
     })
 }
 
-/// One row of a lifetime: what scoring depends on.
+/// One row of a lifetime, with the fields that scoring depends on.
 #[derive(Debug, Clone)]
 pub(crate) struct Lived {
     pub(crate) block_num: u64,
@@ -100,7 +98,7 @@ pub(crate) struct Lived {
 
 const TASKS: [&str; 3] = ["find_red", "find_blue", "reach_near"];
 
-/// Performances without structure, so that no two sums of them are equal by chance.
+/// Unstructured performances, so that no two sums are equal by chance.
 fn performances(num: std::ops::Range<usize>) -> impl Strategy<Value = Vec<f64>> {
     prop::collection::vec(-100.0..100.0, num)
 }
@@ -151,7 +149,7 @@ pub(crate) fn expert() -> impl Strategy<Value = Vec<Lived>> {
     })
 }
 
-/// Writes a log whose rows lie, in the order given, each in the data file of its folder; the folder's name is the worker's.
+/// Writes a log whose rows, in the given order, go to the data file of their folder; the folder's name is the worker's.
 pub(crate) fn lay_out<'a>(dir: &Path, rows: impl IntoIterator<Item = (&'a Lived, usize)>) {
     fs::create_dir_all(dir).unwrap();
     fs::write(
