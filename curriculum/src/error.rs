@@ -1,4 +1,4 @@
-//! What can go wrong while a curriculum is designed or lived.
+//! Errors raised while designing or running a curriculum.
 
 use std::path::PathBuf;
 
@@ -12,12 +12,12 @@ use driftworld_text::{ShownPath, one_line, when};
 
 use crate::design::{MAX_BLOCKS, MAX_PROBED, MAX_SEED, MAX_STEPS, Steps};
 
-/// Everything that can go wrong in this crate.
+/// An error of this crate.
 #[derive(Debug, thiserror::Error, strum::IntoStaticStr, strum::VariantNames)]
 #[strum(prefix = "curriculum/", serialize_all = "kebab-case")]
 #[non_exhaustive]
 pub enum CurriculumError {
-    /// A frozen agent did something else when an evaluation was run once more.
+    /// A frozen agent behaved differently when an evaluation was repeated.
     #[error(
         "block {block}: found {found} of experience {experience} ({variant}) when this evaluation was run once more, \
          expected the same: evaluations change the agent, or its random numbers are not drawn from the seed that each \
@@ -31,13 +31,13 @@ pub enum CurriculumError {
         variant: String,
         /// The number of the experience over the whole lifetime.
         experience: u64,
-        /// What differs: an action in a step, or the reward.
+        /// The difference: an action in a step, or the reward.
         found: String,
     },
-    /// There is nothing to make blocks of.
+    /// There are no variants.
     #[error("design: found no variants, expected at least 1")]
     NoVariants,
-    /// A number of experiences that a regime cannot have.
+    /// A number of experiences out of range.
     #[error("design: found {found} {kind} experiences per regime, expected 1 to {MAX_EXPERIENCES}")]
     BadCount {
         /// Learning or evaluation.
@@ -48,71 +48,71 @@ pub enum CurriculumError {
     /// A seed too large to derive others from.
     #[error("design: found seed {0}, expected at most {MAX_SEED}")]
     BadSeed(u64),
-    /// A number of learning blocks that a scenario cannot have.
+    /// A number of learning blocks out of range.
     #[error("design: found {0} learning blocks, expected 1 to {MAX_BLOCKS}")]
     BadBlocks(u32),
-    /// Variants or blocks that a form cannot be made of.
+    /// Variants or blocks that do not fit a form.
     #[error("the form {form}: found {variants} variants{}, expected {expected}", and_blocks(*blocks))]
     BadForm {
         /// The form.
         form: &'static str,
-        /// How many variants.
+        /// Number of variants.
         variants: usize,
-        /// How many learning blocks, where they were asked for.
+        /// Number of learning blocks, if given.
         blocks: Option<u32>,
-        /// What the form is made of.
+        /// What the form requires.
         expected: String,
     },
-    /// An evaluation after a block that there is not.
+    /// An evaluation after a learning block that does not exist.
     #[error("design: found an evaluation after learning block {found}, expected 0 to {last}; 0 is before the first")]
     NoSuchPlace {
-        /// The place.
+        /// The number of the learning block.
         found: u32,
-        /// How many learning blocks there are.
+        /// Number of learning blocks.
         last: u32,
     },
     /// A variant that is held out is learned as well.
     #[error("design: found {0} among the variants to learn and among those held out, expected one of the two")]
     HeldOut(String),
-    /// A drift has nowhere to go.
+    /// A drift without a second variant.
     #[error("design: found one variant to drift through, expected at least 2")]
     NoWay,
-    /// A drift would lead from one task to another.
+    /// A drift from one task to another.
     #[error(
         "design: found a drift from {from} to {to}, expected two variants of one task; leave the drift out, or one of \
          them"
     )]
     DriftBetweenTasks {
-        /// Where it begins.
+        /// Its first variant.
         from: String,
-        /// Where it would lead.
+        /// Its second variant.
         to: String,
     },
-    /// Variants of several tasks where element by element distances are wanted.
+    /// Variants of several tasks, but distances by element are needed.
     #[error("design: found {a} and {b}, expected variants of one task; probe and step within a task")]
     SeveralTasks {
-        /// The one.
+        /// The first task.
         a: String,
-        /// The other.
+        /// The second task.
         b: String,
     },
-    /// Two experts would have one name.
+    /// Two experts would have the same name.
     #[error(
         "experts: found {a} and {b}, which would both be named {name}, expected different names; leave one out, or \
          rename it"
     )]
     SameName {
-        /// The one.
+        /// The first variant.
         a: String,
-        /// The other.
+        /// The second variant.
         b: String,
         /// The name.
         name: String,
     },
-    /// A number of variants that a probe cannot have.
+    /// A number of variants out of range for a probe.
     #[error("probing: found {0} variants wanted, expected 2 to {MAX_PROBED}")]
     BadProbe(usize),
-    /// A search for a sequence of steps was ended before it was over.
+    /// A search for a sequence of steps reached its limit.
     #[error(
         "steps from {anchor}: found at most {found} of {} ± {} in {limit} comparisons, expected \
          {}; ask for fewer or larger steps, or a larger tolerance",
@@ -121,16 +121,16 @@ pub enum CurriculumError {
         wanted.count
     )]
     StepsGivenUp {
-        /// The variant that the sequence begins with.
+        /// The first variant of the sequence.
         anchor: String,
-        /// The most steps that were found.
+        /// The most steps found.
         found: usize,
-        /// What was wanted.
+        /// The requested steps.
         wanted: Steps,
-        /// After how many comparisons the search ends.
+        /// The limit of comparisons.
         limit: u64,
     },
-    /// Not enough variants differ in an element alone.
+    /// Too few variants differ in one element alone.
     #[error(
         "probing the {element}: found {found} variants that differ from {anchor} in it alone, expected {wanted}; ask \
          for fewer, or give the task parameters that affect it alone"
@@ -140,12 +140,12 @@ pub enum CurriculumError {
         anchor: String,
         /// The element.
         element: &'static str,
-        /// How many there are, the anchor among them.
+        /// Variants found, including the anchor.
         found: usize,
-        /// How many are wanted.
+        /// Variants requested.
         wanted: usize,
     },
-    /// Numbers that make no sequence of steps.
+    /// Invalid numbers for a sequence of steps.
     #[error(
         "steps: found {} steps of {} ± {}, expected 1 to {MAX_STEPS} steps, a distance above 0 and at most 1, and a \
          tolerance below it",
@@ -163,13 +163,13 @@ pub enum CurriculumError {
         wanted.count
     )]
     TooFewSteps {
-        /// The variant that the sequence begins with.
+        /// The first variant of the sequence.
         anchor: String,
-        /// The steps of the longest sequence that was found.
+        /// The steps of the longest sequence found.
         found: usize,
-        /// What is wanted.
+        /// The requested steps.
         wanted: Steps,
-        /// How far from the first anything is that was tried.
+        /// The largest distance from the first variant among those tried.
         farthest: f64,
     },
     /// A distance or an order cannot be computed.
@@ -193,7 +193,7 @@ pub enum CurriculumError {
         /// Their name in the log.
         name: String,
     },
-    /// A task or variant of the scenario is not to be had.
+    /// A task or variant of the scenario cannot be found.
     #[error("block {block}, regime {regime}: {task}#{variant}: \
          {reason}", task = one_line(task), variant = one_line(variant))]
     Unknown {
@@ -205,28 +205,28 @@ pub enum CurriculumError {
         task: String,
         /// The variant.
         variant: String,
-        /// What whoever was asked for it says.
+        /// The source's error message.
         reason: String,
     },
-    /// A world file of the scenario is not to be had.
+    /// A world file of the scenario cannot be found.
     #[error("block {block}, regime {regime}: {reason}")]
     WorldFile {
         /// The block, from 0.
         block: usize,
         /// The regime in it, from 0.
         regime: usize,
-        /// What whoever was asked for it says.
+        /// The source's error message.
         reason: String,
     },
-    /// A number of an experience that the scenario does not have.
+    /// An experience number beyond the scenario's end.
     #[error("found experience {found}, expected less than {total}, the experiences of the scenario")]
     NoSuchExperience {
         /// The number.
         found: u64,
-        /// How many there are.
+        /// Number of experiences.
         total: u64,
     },
-    /// A log that is to be taken up was written by another run.
+    /// A log to be resumed was written by another run.
     #[error(
         "{}: {place}: found {found}, expected {expected} as in this run; continue with what the log was started with, \
          or choose another folder",
@@ -238,14 +238,14 @@ pub enum CurriculumError {
     OtherRun {
         /// The log's folder.
         path: PathBuf,
-        /// Where in the log's `scenario_info.json`.
+        /// The place in the log's `scenario_info.json`.
         place: String,
-        /// What the log has there.
+        /// The log's value.
         found: String,
-        /// What this run has.
+        /// This run's value.
         expected: String,
     },
-    /// A row of a log that is to be taken up is not the one that the scenario has there.
+    /// A row of a log to be resumed does not match the scenario.
     #[error(
         "{}: row {row}: found {found}, expected {expected}; is a file missing or changed? choose another folder",
         path.shown(),
@@ -257,24 +257,24 @@ pub enum CurriculumError {
         path: PathBuf,
         /// The row, from 0 over all files.
         row: u64,
-        /// What it says.
+        /// The row's value.
         found: String,
-        /// What the scenario has there.
+        /// The scenario's value.
         expected: String,
     },
-    /// A variant that was named for a probe differs in something else.
+    /// A variant named for a probe differs in something else.
     #[error(
         "probing the {element}: found {a} and {b}, which differ in {differs}, expected variants that differ in the \
          {element} alone; name others, or the task to have them chosen"
     )]
     NotAlone {
-        /// The one.
+        /// The first variant.
         a: String,
-        /// The other.
+        /// The second variant.
         b: String,
         /// The element.
         element: &'static str,
-        /// What they differ in.
+        /// The elements in which they differ.
         differs: String,
     },
     /// A world of the scenario cannot be drawn.
@@ -287,14 +287,14 @@ pub enum CurriculumError {
         regime: usize,
         /// The experience, from 0 over the whole lifetime.
         experience: u64,
-        /// What it is called: `task#variant`, in a drift with both ends.
+        /// Its name: `task#variant`, in a drift with both ends.
         variant: String,
-        /// How far on its way a drift is, 0..=1; 0 where nothing drifts.
+        /// Progress of a drift, 0..=1; 0 without a drift.
         progress: f64,
-        /// Why.
+        /// The generator's error.
         source: GeneratorError,
     },
-    /// The agent did what cannot be done.
+    /// The agent took an invalid action.
     #[error("block {block}, regime {regime}, experience {experience}: {source}")]
     Episode {
         /// The block, from 0.
@@ -303,7 +303,7 @@ pub enum CurriculumError {
         regime: usize,
         /// The experience, from 0 over the whole lifetime.
         experience: u64,
-        /// What the environment says.
+        /// The environment's error.
         source: EnvError,
     },
     /// Transfer is measured by evaluations, and there are none.
@@ -312,7 +312,7 @@ pub enum CurriculumError {
          learned; design the curriculum with --evaluate every"
     )]
     NoEvaluations(usize),
-    /// Logs and distances speak of different variants.
+    /// Logs and distances have too few variants in common.
     #[error(
         "transfer: found {found} variants that are both in the logs ({logs}) and in the distance matrix ({matrix}), \
          expected at least 2; measure the distances of the variants that were run: task#variant in a matrix is \
@@ -321,7 +321,7 @@ pub enum CurriculumError {
         matrix = one_line(matrix)
     )]
     NoCommonNames {
-        /// How many are in both.
+        /// Variants in both.
         found: usize,
         /// Names in the logs.
         logs: String,
@@ -337,10 +337,10 @@ pub enum CurriculumError {
     TooFewTransfers {
         /// Pairs whose second variant was not yet learned.
         forward: usize,
-        /// Pairs whose second variant had been learned.
+        /// Pairs whose second variant was learned before.
         backward: usize,
     },
-    /// The test cannot be run as asked.
+    /// The requested test is not possible.
     #[error("transfer: {0}")]
     Relabelling(#[source] SimilarityError),
     /// A file of recordings is damaged, or of another kind.
@@ -348,7 +348,7 @@ pub enum CurriculumError {
     Recording {
         /// The file.
         path: PathBuf,
-        /// Where, and what was found.
+        /// The place, and the fault.
         source: EnvError,
     },
     /// A file of recordings cannot be opened.
@@ -359,12 +359,12 @@ pub enum CurriculumError {
     Recordings {
         /// The file or folder.
         path: PathBuf,
-        /// What was to be done.
+        /// The operation.
         doing: &'static str,
-        /// What the system says.
+        /// The operating system's error.
         source: std::io::Error,
     },
-    /// What was recorded is no longer there.
+    /// Recordings were lost.
     #[error(
         "{}: found {found}, expected the {expected} bytes that were recorded: the file was removed, replaced or cut while the run went \
          on; put it back, or go on without recordings",
@@ -373,7 +373,7 @@ pub enum CurriculumError {
     RecordingsLost {
         /// The file.
         path: PathBuf,
-        /// What is there.
+        /// The current state.
         found: String,
         /// Bytes that were written.
         expected: u64,

@@ -1,8 +1,8 @@
-//! Numbers that follow from bytes by a hash: near inputs give numbers that are not.
+//! Numbers derived from bytes by a hash: similar inputs give unrelated numbers.
 
 use sha2::{Digest, Sha256};
 
-/// The first 64 bits of the hash of these parts, one after the other.
+/// The first 64 bits of the hash of these parts, concatenated.
 pub(crate) fn number_of<P: AsRef<[u8]>>(parts: impl IntoIterator<Item = P>) -> u64 {
     let mut hash = Sha256::new();
     for part in parts {

@@ -1,4 +1,4 @@
-//! What an audit says of protocols that are sound, and of one that memory of layouts can fool.
+//! Audits of sound protocols, and of one that memory of layouts can fool.
 
 use std::sync::Arc;
 
@@ -71,7 +71,7 @@ fn designs_are_sound_in_every_form() {
 }
 
 #[test]
-fn layouts_that_variants_share_are_seen_by_memory_alone() {
+fn only_memory_notices_shared_layouts() {
     let paired = Design {
         paired_learning: true,
         ..Design::default()
@@ -80,7 +80,7 @@ fn layouts_that_variants_share_are_seen_by_memory_alone() {
 }
 
 #[test]
-fn what_is_never_evaluated_cannot_be_audited() {
+fn scenario_without_evaluations_cannot_be_audited() {
     let blind = Design {
         evaluation: driftworld_curriculum::Evaluate::After(Vec::new()),
         ..Design::default()
@@ -89,14 +89,14 @@ fn what_is_never_evaluated_cannot_be_audited() {
 }
 
 #[test]
-fn a_drift_that_forgets_shows_it() {
+fn drift_audit_shows_forgetting() {
     let drifting = Design {
         drifting: Some(Drifting::default()),
         ..Design::default()
     };
     let rows = audited(&sized(drifting));
     assert_eq!(rows[4].passed, Some(true), "{rows:#?}");
-    // Nobody learns the drift alone.
+    // No expert learns the drift alone.
     for row in &rows[2..4] {
         assert!(
             row.found.starts_with("a drift is learned under a name of its own"),

@@ -1,6 +1,4 @@
-//! The words of a log of ours: how each experience ended, and what its scenario says of itself.
-//!
-//! Not here: the numbers, see `lifetime`.
+//! Text columns and notes in our logs: how each experience ended, and the scenario's own description.
 
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
@@ -75,13 +73,13 @@ fn live(log: &Path, most: u64, resume: bool) -> Result<(), CurriculumError> {
         jobs: NonZeroUsize::MIN,
         repeated_evaluations: driftworld_curriculum::REPEATED_EVALUATIONS,
     };
-    // The agent on rails would leave alone what fails.
+    // The built-in planner would avoid the failing target.
     let mut agent = ScriptedAgent::parse("touch", "touch goal 60\nrepeat\n").expect("it is a script");
     run(&plan, &mut agent, &mut journal, &mut around)?;
     journal.finish()
 }
 
-/// The words in a column; none where there is no such column.
+/// The texts in a column; `None` without such a column.
 fn words(log: &Path, column: &str) -> Option<Vec<String>> {
     let text = std::fs::read_to_string(log.join("worker-default/0-test/data-log.tsv")).expect("the log has this file");
     let mut rows = text.lines().map(|line| line.split('\t').collect::<Vec<_>>());
@@ -90,7 +88,7 @@ fn words(log: &Path, column: &str) -> Option<Vec<String>> {
 }
 
 #[test]
-fn the_log_says_how_each_experience_ended() {
+fn log_records_how_each_experience_ended() {
     let folder = tempfile::tempdir().expect("a temporary folder can be made");
     let log = folder.path().join("log");
     live(&log, u64::MAX, false).unwrap_or_else(|error| panic!("{error}"));
@@ -109,7 +107,7 @@ fn the_log_says_how_each_experience_ended() {
 }
 
 #[test]
-fn the_log_says_what_its_scenario_says_of_itself() {
+fn log_records_the_scenarios_own_description() {
     let folder = tempfile::tempdir().expect("a temporary folder can be made");
     let log = folder.path().join("log");
     live(&log, u64::MAX, false).unwrap_or_else(|error| panic!("{error}"));
@@ -124,7 +122,7 @@ fn the_log_says_what_its_scenario_says_of_itself() {
 }
 
 #[test]
-fn a_log_from_before_there_were_endings_is_taken_up_without_them() {
+fn log_without_an_ending_column_is_resumed_without_it() {
     let folder = tempfile::tempdir().expect("a temporary folder can be made");
     let (old, whole) = (folder.path().join("old"), folder.path().join("whole"));
     live(&old, 3, false).unwrap_or_else(|error| panic!("{error}"));

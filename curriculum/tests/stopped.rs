@@ -1,4 +1,4 @@
-//! A run that is stopped ends at the next step: the experience under way leaves no row, and the log can be resumed.
+//! A run that is stopped ends at the next step: the experience in progress leaves no row, and the log can be resumed.
 
 use std::collections::BTreeMap;
 use std::num::NonZeroUsize;
@@ -38,7 +38,7 @@ fn plan() -> Plan {
     Plan::new(&scenario, &mut sources).expect("the plan is sound")
 }
 
-/// Acts by chance, and sets a flag before a step, counted over all its copies.
+/// Acts at random, and sets a flag before a step, counted over all its copies.
 #[derive(Clone)]
 struct Stopper {
     acts: RandomAgent,
@@ -72,7 +72,7 @@ impl Agent for Stopper {
     }
 }
 
-/// Lives on in a log, and stops before a step that the agent takes; `u64::MAX` for none.
+/// Continues a log, and stops before a given step of the agent; `u64::MAX` for none.
 fn live(log: &Path, jobs: usize, before: u64) -> (Summary, u64) {
     let (plan, stop) = (plan(), Arc::new(AtomicBool::new(false)));
     let mut agent = Stopper {
@@ -96,7 +96,7 @@ fn live(log: &Path, jobs: usize, before: u64) -> (Summary, u64) {
     (summary, steps)
 }
 
-/// What all files of a log hold.
+/// The contents of all files of a log.
 fn bytes(log: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut found = BTreeMap::new();
     let mut folders = vec![log.to_owned()];

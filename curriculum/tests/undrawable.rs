@@ -1,4 +1,5 @@
-//! Worlds that cannot be drawn: they stop a run or are left out of it, the same however it is lived, and are found before it.
+//! Worlds that cannot be drawn: they stop a run or are skipped, consistently for any number of jobs, and are found before the
+//! run.
 
 use std::fs;
 use std::num::NonZeroUsize;
@@ -50,7 +51,7 @@ fn plan(scenario: &Scenario, undrawable: Undrawable) -> Result<Plan, CurriculumE
     Plan::with_undrawable(scenario, &mut sources, undrawable)
 }
 
-/// Lives at most so many experiences on, by a clock that stands still.
+/// Runs at most `most` further experiences, with a stopped clock.
 fn live(plan: &Plan, folder: &Path, jobs: usize, most: u64) -> Result<Summary, CurriculumError> {
     let mut journal = Journal::resume(folder, plan, "test")?;
     let end = journal.num_experiences().saturating_add(most);
@@ -96,7 +97,7 @@ fn bytes(folder: &Path) -> Vec<(String, Vec<u8>)> {
     files
 }
 
-/// The numbers of the experiences that cannot be lived, by drawing each world by itself.
+/// The numbers of the experiences that cannot be run, from drawing each world separately.
 fn undrawable(plan: &Plan) -> Vec<u64> {
     (0..plan.num_experiences())
         .filter(|number| plan.world(*number).is_err())
@@ -104,7 +105,7 @@ fn undrawable(plan: &Plan) -> Vec<u64> {
 }
 
 #[test]
-fn a_run_leaves_out_what_cannot_be_drawn_and_its_log_is_sound() {
+fn run_skips_undrawable_worlds_and_its_log_is_sound() {
     for drifting in [false, true] {
         let scenario = scenario(drifting);
         let plan = plan(&scenario, Undrawable::Skipped).expect("nothing is refused");
@@ -138,13 +139,13 @@ fn a_run_leaves_out_what_cannot_be_drawn_and_its_log_is_sound() {
         let report = validate_log(&log);
         assert!(report.problems.is_empty(), "{:?}", report.problems);
         score(&read_log(&log).expect("it can be read"), &[], &Options::default()).expect("what was lived is scored");
-        // Taken up again it is as it was.
+        // Resuming the finished log changes nothing.
         assert_eq!(live(&plan, &log, 1, u64::MAX).expect("all is in it"), summary);
     }
 }
 
 #[test]
-fn however_it_is_lived_the_log_is_the_same() {
+fn log_is_the_same_however_it_is_run() {
     let scenario = scenario(true);
     let folder = tempfile::tempdir().expect("there is room");
     let skipping = plan(&scenario, Undrawable::Skipped).expect("nothing is refused");
@@ -154,7 +155,7 @@ fn however_it_is_lived_the_log_is_the_same() {
     while !live(&skipping, &pieces, 1, 4).expect("it is lived").finished {}
     assert!(bytes(&whole) == bytes(&jobs), "lived by three at a time");
     assert!(bytes(&whole) == bytes(&pieces), "lived in pieces");
-    // A run that refuses stops there, says where, and goes on when it may leave it out.
+    // A run that refuses stops there, says where, and continues once it may skip.
     if let Ok(refusing) = plan(&scenario, Undrawable::Refused) {
         let error = live(&refusing, &stopped, 1, u64::MAX).expect_err("some worlds cannot be drawn");
         let CurriculumError::World { experience, .. } = &error else {
@@ -169,7 +170,7 @@ fn however_it_is_lived_the_log_is_the_same() {
 }
 
 #[test]
-fn worlds_are_tried_before_they_are_lived() {
+fn worlds_are_tried_before_the_run() {
     let variant = task().variant("low").expect("it is declared");
     let trial = try_worlds(&variant, 5, 40);
     let failed: Vec<u64> = (0..40).filter(|index| sample(&variant, 5, *index).is_err()).collect();
@@ -182,7 +183,7 @@ fn worlds_are_tried_before_they_are_lived() {
 
     let plan = plan(&scenario(true), Undrawable::Skipped).expect("nothing is refused");
     let mut tried = Tried::default();
-    // Two worlds of each regime; of the drift every variant: from 4 to 6 none is allowed.
+    // Two worlds of each regime; of the drift every variant: none from 4 to 6 is allowed.
     let trials = plan.try_worlds(2, &mut tried);
     let drift = trials
         .iter()
@@ -197,7 +198,7 @@ fn worlds_are_tried_before_they_are_lived() {
         .collect();
     assert!(way.iter().all(|progress| *progress > 0.4 && *progress < 0.6), "{way:?}");
     assert!(plan.try_worlds(2, &mut tried).is_empty(), "all has been tried");
-    // As many as there are: each that cannot be lived is found, those of the second evaluation with those of the first.
+    // All worlds: each that cannot be run is found, those of the second evaluation with those of the first.
     let all = plan.try_worlds(u32::MAX, &mut Tried::default());
     let found: Vec<u64> = all
         .iter()

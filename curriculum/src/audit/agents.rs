@@ -1,5 +1,5 @@
-//! Agents of which the scores are known beforehand: each says what it earns when it meets a world. A reward is 100 times
-//! the skill, plus luck.
+//! Simulated agents with known scores: each computes its reward for a world directly. A reward is 100 times the skill, plus
+//! luck.
 
 use std::collections::BTreeMap;
 
@@ -9,19 +9,19 @@ use crate::run::Meeting;
 
 /// The skill of an agent that does not learn.
 const START: f64 = 0.2;
-/// Standard deviation of what a layout pays more or less than others, whoever meets it in whichever variant.
+/// Standard deviation between layouts, the same for every agent and variant.
 const LAYOUT_LUCK: f64 = 10.0;
-/// Standard deviation of what one episode pays more or less than others like it.
+/// Standard deviation between episodes in the same world.
 const EPISODE_LUCK: f64 = 20.0;
-/// Standard deviation of what a fixed sequence of actions pays in one layout or another.
+/// Standard deviation, between layouts, of the reward of a fixed sequence of actions.
 const SEQUENCE_LUCK: f64 = 25.0;
 
-/// What an episode pays an agent of this skill; `keys` is what its luck depends on.
+/// The reward of an episode at this skill; its luck depends on `keys`.
 fn reward(skill: f64, meeting: &Meeting, keys: &[u64]) -> f64 {
     100.0 * skill + LAYOUT_LUCK * normal("layout", &meeting.layout) + EPISODE_LUCK * normal("episode", keys)
 }
 
-/// A number that the keys decide, normally distributed over keys: the sum of 16 even ones, scaled.
+/// A number determined by the keys, approximately normally distributed over keys: the scaled sum of 16 uniform numbers.
 pub(super) fn normal(what: &str, keys: &[u64]) -> f64 {
     let mut hash = Sha256::new();
     hash.update(what.as_bytes());
@@ -35,12 +35,12 @@ pub(super) fn normal(what: &str, keys: &[u64]) -> f64 {
     (even.sum::<f64>() - 8.0) / (16.0_f64 / 12.0).sqrt()
 }
 
-/// Earns the same for ever, but for luck that is drawn afresh in every experience.
+/// Its expected reward never changes; luck is drawn for every experience.
 pub(super) fn never_learns(run: u32) -> impl FnMut(&Meeting) -> f64 {
     move |meeting| reward(START, meeting, &[run.into(), meeting.number])
 }
 
-/// Gets better in a world each time that it is evaluated there.
+/// Improves in a world each time that it is evaluated there.
 pub(super) fn learns_while_frozen() -> impl FnMut(&Meeting) -> f64 {
     let mut visits: BTreeMap<(String, [u64; 2]), u32> = BTreeMap::new();
     move |meeting| {
@@ -53,8 +53,8 @@ pub(super) fn learns_while_frozen() -> impl FnMut(&Meeting) -> f64 {
     }
 }
 
-/// Knows nothing but the number of the experience in its block, and the sequence of actions that paid best at that number. It
-/// repeats one that paid more than most, and tries another in place of one that did not.
+/// Knows only the number of the experience in its block, and the sequence of actions that paid best at that number. It repeats
+/// a sequence that paid more than most, and replaces one that did not.
 pub(super) fn by_number(run: u32, whose: u32) -> impl FnMut(&Meeting) -> f64 {
     let mut best: BTreeMap<u64, (f64, u64)> = BTreeMap::new();
     move |meeting| {
@@ -63,7 +63,7 @@ pub(super) fn by_number(run: u32, whose: u32) -> impl FnMut(&Meeting) -> f64 {
             Some((best, sequence)) if best > 100.0 * START => sequence,
             _ => u64::from(run) << 40 | u64::from(whose) << 32 | meeting.number,
         };
-        // What a sequence of actions comes to is decided by the layout, not by the variant.
+        // The layout, not the variant, determines the reward of a sequence of actions.
         let [seed, index] = meeting.layout;
         let paid = 100.0 * START + SEQUENCE_LUCK * normal("sequence", &[seed, index, sequence]);
         if meeting.learning && known.is_none_or(|(best, own)| own == sequence || paid > best) {
@@ -86,7 +86,7 @@ pub(super) fn own_expert(run: u32, whose: u32, pace: f64) -> impl FnMut(&Meeting
 
 /// Learns a variant at the expense of all others.
 pub(super) fn forgets(run: u32, pace: f64) -> impl FnMut(&Meeting) -> f64 {
-    // The part of what is missing that it learns in an experience, and of what it knows of others that it forgets.
+    // The share of the missing skill that it learns per experience, and the share of other skills that it forgets.
     let rate = (1.0 / pace).min(1.0);
     let mut skills: BTreeMap<String, f64> = BTreeMap::new();
     move |meeting| {
@@ -110,7 +110,7 @@ mod tests {
     fn luck_is_normal() {
         let drawn: Vec<f64> = (0..20_000).map(|key| normal("test", &[key])).collect();
         let moment = |power: i32| drawn.iter().map(|x| x.powi(power)).sum::<f64>() / drawn.len() as f64;
-        // Within four standard errors; the fourth moment of 16 even numbers is 3 − 6 / (5 · 16).
+        // Within four standard errors; the fourth moment of 16 uniform numbers is 3 − 6 / (5 · 16).
         assert!(moment(1).abs() < 0.03, "{}", moment(1));
         assert!((moment(2) - 1.0).abs() < 0.04, "{}", moment(2));
         assert!((moment(4) - 2.925).abs() < 0.3, "{}", moment(4));

@@ -1,7 +1,6 @@
-//! [`audit`]: what a scenario's scores say of agents of which the answer is known beforehand.
+//! [`audit`]: checks a scenario's scores with agents of known behaviour.
 //!
-//! The agents are simulated, so that no world is run: what they earn is in `agents.rs`, how their logs are written in
-//! `simulation.rs`. Experts and metrics are those of any other lifetime.
+//! The agents are simulated, so no world is run. Experts and metrics work as for any other lifetime.
 
 mod agents;
 mod simulation;
@@ -19,20 +18,20 @@ use simulation::{Simulated, simulate};
 
 use crate::{CurriculumError, Plan, experts_of};
 
-/// What is said of one agent.
+/// The result for one agent.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AuditRow {
     /// The agent.
     pub agent: &'static str,
-    /// What a protocol that can be trusted says of it.
+    /// The result of a trustworthy protocol.
     pub expected: &'static str,
-    /// What this one says.
+    /// The result of this protocol.
     pub found: String,
-    /// Whether that is as expected; `None` where the scenario cannot tell.
+    /// Whether it is as expected; `None` if the scenario cannot show it.
     pub passed: Option<bool>,
 }
 
-/// How an audit is made.
+/// Options of an audit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AuditOptions {
     /// Lifetimes of the agent that never learns; default 100, at least 1.
@@ -50,33 +49,33 @@ impl Default for AuditOptions {
     }
 }
 
-/// The share of lifetimes of an agent that never changes of which a metric may say "good".
+/// The share of lifetimes of an agent that never changes which a metric may call "good".
 const FALSE_POSITIVES: f64 = 0.05;
 
-/// How unlikely a count must be before an audit calls it wrong: several metrics are counted in each audit.
+/// The probability of a count below which an audit calls it wrong: each audit counts several metrics.
 const SURPRISE: f64 = 0.001;
 
-/// How sure an audit must be that a mean ratio is off: three standard errors where there are many lifetimes, more where few say
-/// how large these errors are.
+/// The confidence at which an audit rejects a mean ratio: three standard errors with many lifetimes, more if few lifetimes
+/// leave these errors uncertain.
 const CONFIDENCE: f64 = 0.9973;
 
-/// By how much a ratio of which the true value is 1 may be off, beside what its standard error explains.
+/// Allowed error of a ratio whose true value is 1, beyond its standard error.
 const RATIO_SLACK: f64 = 0.02;
 
-/// Lets five simulated agents run a scenario, of which the true scores are known, and says what its protocol makes of them.
+/// Runs a scenario with five simulated agents whose true scores are known, and checks what its protocol makes of them.
 ///
-/// - *never learns*: earns the same for ever but for luck. No metric may call more than 5 % of its lifetimes good.
-/// - *learns while frozen*: gets better by being evaluated. The check of [`run`](crate::run) must refuse it.
+/// - *never learns*: its expected reward never changes. No metric may call more than 5 % of its lifetimes good.
+/// - *learns while frozen*: improves by being evaluated. The check of [`run`](crate::run) must refuse it.
 /// - *remembers by number*: repeats what paid best in the experience of the same number of an earlier block. It must not be
 ///   better than its experts.
 /// - *its own expert*: learns every variant as if it were alone. Relative performance and sample efficiency must be 1.
-/// - *forgets*: what it learns takes the place of what it knew. Maintenance must be bad, and forward transfer not good.
+/// - *forgets*: new learning replaces the old. Maintenance must be bad, and forward transfer not good.
 ///
 /// Every reward is 100 times a skill in 0..=1, plus luck of the layout (standard deviation 10) and of the episode (20). `plan`
-/// finds what a scenario names; logs are written into `folder`, which must be empty, and can be removed afterwards.
+/// resolves what a scenario names; logs are written into `folder`, which must be empty, and can be removed afterwards.
 ///
 /// # Errors
-/// [`CurriculumError`] where the scenario or its experts cannot be planned, or a log cannot be written or scored.
+/// [`CurriculumError`] if the scenario or its experts cannot be planned, or a log cannot be written or scored.
 pub fn audit(
     scenario: &Scenario,
     plan: &mut dyn FnMut(&Scenario) -> Result<Plan, CurriculumError>,
@@ -110,10 +109,10 @@ pub fn audit(
     Ok(rows.map(row).into())
 }
 
-/// What the protocol says of an agent, and whether that is as expected.
+/// The result for an agent, and whether it is as expected.
 type Found = (String, Option<bool>);
 
-/// Where agents are audited.
+/// Shared context of the audit.
 struct Room<'a> {
     lifetime: &'a Plan,
     experts: &'a [Plan],
@@ -227,8 +226,8 @@ impl Room<'_> {
         Ok((found, (maintained > 0).then_some(5 * bad >= 4 * maintained && is_rare)))
     }
 
-    /// A metric that compares with experts, of each repeat in which the lifetime has it. `agent` is given the number of the
-    /// repeat, and whose log it makes: 0 for the lifetime, then the experts.
+    /// A metric that compares with experts, for each repeat in which the lifetime has it. `agent` gets the number of the
+    /// repeat, and the log's: 0 for the lifetime, then the experts.
     fn beside_experts(
         &self,
         metric: &str,
@@ -255,7 +254,7 @@ impl Room<'_> {
     }
 }
 
-/// How many experiences of a variant an agent needs to come two thirds of its way: a third of the first that is learned.
+/// The experiences of a variant in which an agent learns two thirds: a third of those of the first variant learned.
 fn pace(plan: &Plan) -> f64 {
     let is_learning = |block: &&driftworld_spec::Block| block.kind == driftworld_spec::BlockKind::Learning;
     let first = plan.scenario().blocks.iter().find(is_learning);
@@ -271,13 +270,13 @@ fn scored(log: &Log, experts: &[SteLog]) -> Result<LifetimeMetrics, CurriculumEr
     Ok(score(log, experts, &options)?)
 }
 
-/// What is said of each metric that evaluations decide.
+/// The reading of each metric that depends on evaluations alone.
 fn readings(scores: &LifetimeMetrics) -> Vec<(String, Reading)> {
     let reading = |name: &String| Some((name.clone(), *scores.readings.get(name)?));
     scores.null_bands.keys().filter_map(reading).collect()
 }
 
-/// What lifetimes say of a ratio.
+/// A ratio's values over lifetimes.
 struct Ratio {
     mean: f64,
     error: f64,
@@ -297,7 +296,7 @@ impl Ratio {
         Some(Self { mean, error, freedom })
     }
 
-    /// How far the mean may be from the true value.
+    /// Allowed distance of the mean from the true value.
     fn slack(&self) -> f64 {
         student_reach(CONFIDENCE, self.freedom) * self.error + RATIO_SLACK
     }
@@ -309,9 +308,9 @@ impl std::fmt::Display for Ratio {
     }
 }
 
-/// The probability of at least `least` hits in `tries` tries of which each hits with `probability`.
+/// The probability of at least `least` hits in `tries` tries that each hit with `probability`.
 fn tail(least: u32, tries: u32, probability: f64) -> f64 {
-    // Of no hit at first; each number of hits follows from the one before.
+    // Starts with no hit; each further count follows from the one before.
     let mut mass = (1.0 - probability).powi(tries.cast_signed());
     let mut below = 0.0;
     for hits in 0..least.min(tries + 1) {
@@ -321,7 +320,7 @@ fn tail(least: u32, tries: u32, probability: f64) -> f64 {
     1.0 - below
 }
 
-/// Removes a log that was read. One that stays is removed with the folder of all.
+/// Removes a log that was read. A failure is harmless: the whole folder is removed later.
 fn remove(folder: &Path) {
     std::fs::remove_dir_all(folder).ok();
 }
@@ -332,12 +331,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_1_is_called_off_as_rarely_as_asked_however_few_lifetimes_there_are() {
+    fn correct_ratios_are_rejected_at_the_nominal_rate_for_few_lifetimes() {
         const TRIES: u64 = 10_000;
         for lifetimes in [2, 3, 5, 20] {
-            // Lifetimes that differ so much that the slack for small differences matters little.
+            // Lifetimes vary so much that the slack for small differences hardly matters.
             let drawn = |id| (0..lifetimes).map(move |place| 1.0 + 10.0 * normal("ratio", &[lifetimes, id, place]));
-            // The reach is the same in all tries, and sought once.
+            // The allowed distance is the same in all tries, and computed once.
             let unit = Ratio {
                 mean: 1.0,
                 error: 1.0,
@@ -349,10 +348,10 @@ mod tests {
                 (ratio.mean - 1.0).abs() > reach * ratio.error + RATIO_SLACK
             };
             let off = (0..TRIES).filter(is_off).count();
-            // Four standard errors of a share of 0.0027 to either side: a bound too wide is found, too.
+            // Four standard errors of a share of 0.0027 on either side: detects too wide bounds, too.
             assert!((7..48).contains(&off), "{lifetimes} lifetimes: {off}");
         }
-        // With 20 lifetimes, what is off by twice their standard deviation is found.
+        // With 20 lifetimes, an error of twice their standard deviation is found.
         let off: Vec<f64> = (0..20).map(|place| 3.0 + normal("off", &[place])).collect();
         let ratio = Ratio::of(&off).unwrap();
         assert!((ratio.freedom - 19.0).abs() < 1e-9, "{}", ratio.freedom);
@@ -360,7 +359,7 @@ mod tests {
     }
 
     #[test]
-    fn tails_are_those_of_the_binomial() {
+    fn tails_match_the_binomial() {
         assert!((tail(0, 10, 0.3) - 1.0).abs() < 1e-12);
         assert!((tail(1, 10, 0.05) - (1.0 - 0.95_f64.powi(10))).abs() < 1e-12);
         // All 8 outcomes of three tries, one by one.

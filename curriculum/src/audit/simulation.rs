@@ -1,4 +1,4 @@
-//! Logs of simulated agents: a row for every experience of a plan, as a run would write it, without drawing a world.
+//! Writes the logs of simulated agents: a row for every experience of a plan, as in a real run, without drawing a world.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -11,10 +11,10 @@ use crate::{
     CurriculumError, Experience, Journal, Plan, Progress, REPEATED_EVALUATIONS, Repeats, Rollout, run_rollout,
 };
 
-/// An agent of which only the rewards are simulated: what it earns in its next experience.
+/// A simulated agent: returns the reward of its next experience.
 pub(super) type Simulated<'a> = dyn FnMut(&Meeting) -> f64 + 'a;
 
-/// The log of an agent's run; it stays in the folder.
+/// Runs an agent and reads its log; the files stay in the folder.
 pub(super) fn simulate(plan: &Plan, agent: &mut Simulated<'_>, folder: &Path) -> Result<Log, CurriculumError> {
     let mut journal = Journal::simulated(folder, plan)?;
     for number in 0..plan.num_experiences() {
@@ -33,7 +33,8 @@ pub(super) fn simulate(plan: &Plan, agent: &mut Simulated<'_>, folder: &Path) ->
     Ok(read_log(folder)?)
 }
 
-/// Runs an agent as any other is run, with the check that it is frozen in evaluations. Says how many these were.
+/// Runs an agent like any other, including the check that it is frozen in evaluations. Returns the number of repeated
+/// evaluations.
 pub(super) fn run(plan: &Plan, agent: &mut Simulated<'_>, folder: &Path) -> Result<u64, CurriculumError> {
     let mut journal = Journal::simulated(folder, plan)?;
     let mut simulation = Simulation {
@@ -73,7 +74,7 @@ impl Rollout for Simulation<'_> {
     }
 }
 
-/// An experience of one step that paid this.
+/// An experience of one step with this reward.
 fn of_one_step(reward: f64) -> Experience {
     Experience {
         reward,

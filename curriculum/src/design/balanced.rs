@@ -1,17 +1,17 @@
-//! Orders of variants that are balanced over lifetimes: Latin squares in which each pair of neighbours comes equally often.
+//! Orders of variants that are balanced over lifetimes: Latin squares in which each pair of neighbours occurs equally often.
 
 use driftworld_similarity::{DistanceMatrix, Method, OrderOptions, order};
 
 use crate::CurriculumError;
 
-/// The order in which a lifetime meets `count` variants.
+/// The order of `count` variants in a lifetime.
 ///
-/// Over `count` lifetimes, or twice as many where `count` is odd, each variant stands in each place equally often and follows
-/// each other one equally often (Williams 1949, *Experimental designs balanced for the estimation of residual effects of
-/// treatments*). Which rows of the square come first, and which variant is which of its symbols, follows from the seed.
+/// Over `count` lifetimes, or twice as many if `count` is odd, each variant is in each place equally often and follows each
+/// other one equally often (Williams 1949, *Experimental designs balanced for the estimation of residual effects of
+/// treatments*). The seed determines the order of the square's rows, and which variant each symbol stands for.
 pub(super) fn balanced_order(count: usize, seed: u64, lifetime: u64) -> Result<Vec<usize>, CurriculumError> {
     let rows = if count.is_multiple_of(2) { count } else { 2 * count };
-    // Each time that all rows were used they are used anew, with other symbols.
+    // After all rows were used, the square is used again with other symbols.
     let (round, row) = (lifetime / rows as u64, (lifetime % rows as u64) as usize);
     let symbols = permutation(count, seed, 2 * round)?;
     let row = permutation(rows, seed, 2 * round + 1)?[row];
@@ -21,7 +21,7 @@ pub(super) fn balanced_order(count: usize, seed: u64, lifetime: u64) -> Result<V
         .collect())
 }
 
-/// A row of the square: 0, n − 1, 1, n − 2, … shifted by the number of the row; behind these, for odd n, the same backwards.
+/// A row of the square: 0, n − 1, 1, n − 2, … shifted by the number of the row; for odd n followed by the same reversed.
 fn square_row(count: usize, row: usize) -> Vec<usize> {
     let zigzag = (0..count).map(|place| {
         if place.is_multiple_of(2) {
@@ -37,12 +37,12 @@ fn square_row(count: usize, row: usize) -> Vec<usize> {
     shifted
 }
 
-/// An order drawn at random, of its own for each number.
+/// A random order for each number.
 fn permutation(count: usize, seed: u64, number: u64) -> Result<Vec<usize>, CurriculumError> {
-    // The names are as long as each other, so that they sort as the numbers do.
+    // The names have equal length, so they sort like the numbers.
     let names = (0..count).map(|index| format!("{index:08}")).collect();
     let alike = DistanceMatrix::measure(names, |_, _| Ok::<_, CurriculumError>(0.0))?;
-    // An odd factor: numbers of one seed and of neighbouring seeds are far apart.
+    // An odd factor keeps the numbers of one seed away from those of neighbouring seeds.
     let seed = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(number);
     let options = OrderOptions {
         seed,
@@ -56,7 +56,7 @@ mod tests {
     use super::*;
     use std::collections::BTreeMap;
 
-    /// How often the most and the least frequent of `all` possible items come.
+    /// The counts of the most and the least frequent of `all` possible items.
     fn counts<T: Ord>(items: impl Iterator<Item = T>, all: usize) -> (usize, usize) {
         let mut seen: BTreeMap<T, usize> = BTreeMap::new();
         for item in items {
@@ -71,7 +71,7 @@ mod tests {
     }
 
     #[test]
-    fn each_variant_is_in_each_place_and_after_each_other_equally_often() {
+    fn variants_take_each_place_and_follow_each_other_equally_often() {
         for (count, seed) in (1..9).flat_map(|count| [0, 1, 77].map(|seed| (count, seed))) {
             let rows = if count % 2 == 0 { count } else { 2 * count };
             for round in 0..3 {
@@ -93,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn seeds_and_rounds_have_squares_of_their_own() {
+    fn seeds_and_rounds_have_different_squares() {
         let of = |seed, lifetime| balanced_order(6, seed, lifetime).unwrap();
         let square = |seed, round: u64| (0..6).map(|row| of(seed, 6 * round + row)).collect::<Vec<_>>();
         assert_eq!(square(3, 0), square(3, 0));

@@ -1,18 +1,18 @@
-//! [`Choice`]: a variant as a scenario names it, declared by its task or made of a declared one. Finding variants is not done here.
+//! [`Choice`]: a variant as named in a scenario, either declared by its task or derived from a declared one.
 
 use driftworld_spec::{Regime, Value, Variant};
 use indexmap::IndexMap;
 
-/// A variant as a scenario names it.
+/// A variant as named in a scenario.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Choice {
     /// The task: a built-in name, or the path of a task spec.
     pub task: String,
-    /// The variant of the task that it is, or that it is made of.
+    /// The declared variant that it is, or is derived from.
     pub variant: String,
-    /// Values laid over the variant's; empty for a declared variant.
+    /// Values that override the variant's; empty for a declared variant.
     pub values: IndexMap<String, Value>,
-    /// What it is called where it has values of its own.
+    /// Its name, if it has values of its own.
     pub name: Option<String>,
 }
 
@@ -27,7 +27,7 @@ impl Choice {
         }
     }
 
-    /// A variant that no task declares, by the values in which it differs from one that `task` does.
+    /// A variant that no task declares, by its differences from the declared variant `from`.
     pub fn made(task: impl Into<String>, from: &Variant, made: &Variant) -> Self {
         Self {
             values: changes(from, made),
@@ -41,12 +41,12 @@ impl Choice {
         self.name.as_deref().unwrap_or(&self.variant)
     }
 
-    /// The name by which tables know it: `find_objects#red`.
+    /// Its name in tables: `find_objects#red`.
     pub fn id(&self) -> String {
         format!("{}#{}", self.task, self.name())
     }
 
-    /// A stretch of experiences of it.
+    /// A regime of `count` experiences of it.
     pub(super) fn regime(&self, count: u32, seed: u64, first_index: u64) -> Regime {
         Regime {
             values: self.values.clone(),

@@ -1,4 +1,4 @@
-//! Learning blocks that drift from variant to variant, across their borders where there are fewer or more blocks than ways.
+//! Learning blocks that drift from variant to variant; a drift may cross the boundaries of blocks.
 
 use driftworld_spec::{DriftSchedule, DriftSwitch, Regime, RegimeDrift};
 
@@ -9,15 +9,15 @@ use crate::CurriculumError;
 /// How learning blocks drift from each variant to the next.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Drifting {
-    /// How far each way has come, as a function of its progress.
+    /// The schedule of each drift.
     pub schedule: DriftSchedule,
-    /// How values that have nothing between them change.
+    /// How values without intermediate values change.
     pub switch: DriftSwitch,
 }
 
-/// The regimes of each learning block: the ways along `path` one after the other, shared out evenly among `num_blocks`.
+/// The regimes of each learning block: the drifts along `path` one after the other, divided evenly among `num_blocks`.
 ///
-/// A way that goes on in the next block goes on there from the progress at which it stopped.
+/// A drift that is cut by a boundary continues in the next block from the same progress.
 pub(super) fn lessons(
     variants: &[Choice],
     path: &[usize],
@@ -26,10 +26,10 @@ pub(super) fn lessons(
     drifting: Drifting,
 ) -> Result<Vec<Vec<Regime>>, CurriculumError> {
     let ways = path.len().saturating_sub(1) as u64;
-    // Of all ways together: no layout comes twice, whichever variants share their worlds.
+    // Over all drifts together: no layout is repeated, whichever variants share their worlds.
     let mut taken = 0;
     let mut lessons = Vec::new();
-    // Lengths are counted in parts of which a way has as many as there are blocks, and a block as many as there are ways.
+    // Lengths are counted in units: each drift has as many as there are blocks, and each block as many as there are drifts.
     for block in 0..num_blocks {
         let (start, end) = (block * ways, (block + 1) * ways);
         let learned = |part: u64| ((part - start) * u64::from(learn) + ways / 2) / ways;
@@ -77,7 +77,7 @@ mod tests {
     use super::super::Design;
     use super::*;
 
-    /// Each regime as `variant>variant from-until ×count`, blocks parted by `|`.
+    /// Each regime as `variant>variant from-until ×count`, with `|` between blocks.
     #[track_caller]
     fn check(path: &[usize], num_blocks: u64, expected: &str) {
         let variants = ["a", "b", "c"].map(|name| Choice::new("t", name));
@@ -99,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn ways_are_shared_out_evenly_and_cross_the_borders_of_blocks() {
+    fn drifts_are_divided_evenly_across_blocks() {
         check(&[0, 1, 2], 2, "a>b 0-1 x20 | b>c 0-1 x20");
         check(&[0, 1], 2, "a>b 0-0.5 x20 | a>b 0.5-1 x20");
         check(&[0, 1, 2], 1, "a>b 0-1 x10, b>c 0-1 x10");
@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn world_numbers_go_on_from_way_to_way_also_of_variants_that_share_their_worlds() {
+    fn world_numbers_continue_between_drifts_that_share_worlds() {
         let variants = ["a", "b"].map(|name| Choice::new("t", name));
         let options = Design {
             learn: 20,

@@ -1,4 +1,4 @@
-//! Where evaluation blocks stand among learning blocks. What they hold is `mod.rs`'s.
+//! The positions of evaluation blocks among learning blocks.
 
 use std::collections::BTreeSet;
 
@@ -11,12 +11,12 @@ pub enum Evaluate {
     Every,
     /// Before the first and after the last.
     Ends,
-    /// After so many learning blocks each; 0 is before the first.
+    /// After these numbers of learning blocks; 0 is before the first.
     After(Vec<u32>),
 }
 
 impl Evaluate {
-    /// After how many of the learning blocks the agent is evaluated.
+    /// The numbers of learning blocks after which the agent is evaluated.
     pub(super) fn places(&self, num_blocks: u32) -> Result<BTreeSet<u32>, CurriculumError> {
         match self {
             Self::Every => Ok((0..=num_blocks).collect()),

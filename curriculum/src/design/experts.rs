@@ -1,4 +1,4 @@
-//! Single-task experts: for each variant of a lifetime a scenario in which it alone is learned, like for like.
+//! Single-task experts: for each variant of a lifetime a comparable scenario that learns only this variant.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -9,13 +9,13 @@ use super::streams::Streams;
 use super::{Choice, Design, before_deployment, check, design, form, scenario};
 use crate::CurriculumError;
 
-/// A scenario for each variant that the lifetime learns, in which it alone is learned: single-task experts, with which a
-/// lifelong learner is compared.
+/// A scenario for each variant that the lifetime learns, in which only this variant is learned: single-task experts to compare
+/// a lifelong learner with.
 ///
-/// `options` are those of the lifetime, whose experts are those of [`experts_of`]. The expert form has no lifetime: each variant
-/// is learned for `blocks` blocks, 1 where nobody says.
+/// `options` are those of the lifetime, whose experts are those of [`experts_of`]. The expert form has no lifetime: each
+/// variant is learned for `blocks` blocks, by default 1.
 ///
-/// They are named `NAME-VARIANT`, or `NAME-TASK-VARIANT` if there are several tasks.
+/// Their names are `NAME-VARIANT`, or `NAME-TASK-VARIANT` if there are several tasks.
 ///
 /// # Errors
 /// As [`design`](super::design); [`CurriculumError::SameName`] if two would have the same name.
@@ -40,13 +40,13 @@ pub fn experts(variants: &[Choice], options: &Design) -> Result<Vec<Scenario>, C
     named(variants.iter().map(alone).collect(), &options.name)
 }
 
-/// A scenario for each variant that a scenario learns, in which it alone is learned.
+/// A scenario for each variant that a scenario learns, in which only this variant is learned.
 ///
 /// Each expert learns its variant as long as the lifetime does, in the same worlds and in blocks of the same lengths, after the
-/// same blocks before deployment, and is evaluated in its variant where the lifetime is, in the same worlds. So a learner
-/// without interference earns in the lifetime what it earns as its own expert. A drift is left out as a drift: the experiences
-/// that are nearer to a variant than to its other end are experiences of that variant, with worlds of their numbers. Names are
-/// those of [`experts`].
+/// same blocks before deployment, and is evaluated in its variant whenever the lifetime is, in the same worlds. So a learner
+/// without interference earns in the lifetime what it earns as its own expert. Drifts are replaced: the experiences that are
+/// nearer to a variant than to the drift's other end become experiences of that variant, in worlds with the same numbers. Names
+/// are those of [`experts`].
 ///
 /// # Errors
 /// [`CurriculumError::SameName`] if two would have the same name.
@@ -84,7 +84,7 @@ pub fn experts_of(lifetime: &Scenario) -> Result<Vec<Scenario>, CurriculumError>
     named(experts.collect(), &lifetime.name)
 }
 
-/// What a lifetime has of one variant.
+/// The part of a lifetime that concerns one variant.
 fn alone(lifetime: &Scenario, wanted: &Choice) -> Scenario {
     let mut blocks: Vec<Block> = Vec::new();
     for block in &lifetime.blocks {
@@ -98,7 +98,7 @@ fn alone(lifetime: &Scenario, wanted: &Choice) -> Scenario {
             regimes: regimes.filter(|regime| choice(regime) == *wanted).collect(),
             ..block.clone()
         };
-        // Between two of its blocks the lifetime may be evaluated several times, its expert once.
+        // Between two of the expert's blocks the lifetime may be evaluated several times, its expert only once.
         let is_repeat = own.kind == BlockKind::Evaluation && blocks.last() == Some(&own);
         if !own.regimes.is_empty() && !is_repeat {
             blocks.push(own);
@@ -111,12 +111,12 @@ fn alone(lifetime: &Scenario, wanted: &Choice) -> Scenario {
     }
 }
 
-/// A regime as stretches of single variants: itself, or the two ends of its drift.
+/// Splits a regime into stretches of single variants: itself, or the two ends of its drift.
 fn parts(regime: &Regime) -> Vec<Regime> {
     let Some(drift) = &regime.drift else {
         return vec![regime.clone()];
     };
-    // By its place on the way, as logs have it and metrics count it, whatever the schedule.
+    // By its progress, as in logs and metrics, whatever the schedule.
     let is_near = |experience: u32| drift.progress(experience, regime.count) < 0.5;
     let near = (0..regime.count).filter(|experience| is_near(*experience)).count() as u32;
     let from = Regime {
@@ -136,7 +136,7 @@ fn parts(regime: &Regime) -> Vec<Regime> {
     [from, to].into_iter().filter(|part| part.count > 0).collect()
 }
 
-/// The variant of a regime that does not drift; for a world from a file that world.
+/// The variant of a regime that does not drift; for a world file the world.
 fn choice(regime: &Regime) -> Choice {
     Choice {
         values: regime.values.clone(),
@@ -165,7 +165,7 @@ fn named(experts: Vec<(Choice, Scenario)>, lifetime: &str) -> Result<Vec<Scenari
 
 fn name(choice: &Choice, scenario: &str, several_tasks: bool) -> String {
     let variant = plain(choice.name());
-    // A task may be the path of its file.
+    // A task may be given as a path.
     let task = Path::new(&choice.task).file_stem().and_then(|stem| stem.to_str());
     match task.filter(|_| several_tasks) {
         Some(task) => format!("{scenario}-{}-{variant}", plain(task)),
@@ -173,7 +173,7 @@ fn name(choice: &Choice, scenario: &str, several_tasks: bool) -> String {
     }
 }
 
-/// Text as a scenario's name may have it.
+/// Text in the characters allowed in a scenario's name.
 fn plain(text: &str) -> String {
     let allowed = |c: char| c.is_ascii_alphanumeric() || "_.-".contains(c);
     text.chars().map(|c| if allowed(c) { c } else { '-' }).collect()

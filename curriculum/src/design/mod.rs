@@ -1,4 +1,4 @@
-//! From variants in an order to learning and evaluation blocks. What the order is, is `similarity`'s; running it is in `run/`.
+//! Arranges ordered variants into learning and evaluation blocks.
 
 mod balanced;
 mod choice;
@@ -37,13 +37,13 @@ use streams::Streams;
 /// The largest seed of a design.
 pub const MAX_SEED: u64 = 1 << 52;
 
-/// Experiences of a learning block where nobody says.
+/// Default number of experiences in a learning block.
 ///
-/// PPO on 64 × 64 colour pictures (`examples/python/ppo_find_objects.py`) earned four fifths of the planner's reward in
+/// PPO on 64 × 64 colour pictures (`examples/python/ppo_find_objects.py`) reached four fifths of the planner's reward in
 /// `find_objects#blue` after 115,000 and 137,000 decisions, which are 1,900 and 2,300 episodes.
 pub const LEARN: u32 = 2500;
 
-/// How blocks are made of variants.
+/// Options for arranging variants into blocks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Design {
     /// The scenario's name.
@@ -54,31 +54,31 @@ pub struct Design {
     pub evaluate: u32,
     /// When the agent is evaluated; default every time.
     pub evaluation: Evaluate,
-    /// How learning blocks are arranged; by default the variants follow each other, and begin anew when there are more blocks.
+    /// The arrangement of learning blocks; by default the variants follow each other, and repeat if there are more blocks.
     pub form: Option<ScenarioForm>,
-    /// How many learning blocks, at most [`MAX_BLOCKS`]; by default as many as the form has of itself.
+    /// Number of learning blocks, at most [`MAX_BLOCKS`]; by default the form's own.
     pub blocks: Option<u32>,
-    /// The number of the lifetime, which decides its worlds, and the order of the permuted form; default 0.
+    /// The number of the lifetime, which determines its worlds, and the order in the permuted form; default 0.
     pub lifetime: u64,
-    /// All lifetimes are evaluated in the worlds of lifetime 0; default each in its own.
+    /// All lifetimes are evaluated in the worlds of lifetime 0; by default each in its own.
     pub fixed_evaluation: bool,
-    /// Which worlds it is evaluated in; default those for what is reported.
+    /// The split of its evaluation worlds; default test.
     pub split: Split,
-    /// Variants are learned in worlds of the same numbers, so that variants of one task share layouts; default not.
+    /// All variants are learned in worlds of the same numbers, so that variants of one task share layouts; default not.
     pub paired_learning: bool,
-    /// Variants that are evaluated and never learned; default none.
+    /// Variants that are evaluated but never learned; default none.
     pub held_out: Vec<Choice>,
     /// Learning blocks drift from each variant to the next; by default each block keeps to its variant.
     pub drifting: Option<Drifting>,
-    /// Experiences of the first variant before deployment; default 0, which is no such block.
+    /// Experiences of the first variant before deployment; default 0, which adds no such block.
     pub pre_deployment: u32,
-    /// Whether the learner is told which task it is in; default not.
+    /// Whether the learner gets a task label; default not.
     pub task_label: TaskLabel,
-    /// How complex the scenario is, for its logs; default nothing.
+    /// Complexity of the scenario, for its logs; default none.
     pub complexity: Option<ScenarioComplexity>,
-    /// How hard its tasks are, for its logs; default nothing.
+    /// Difficulty of its tasks, for its logs; default none.
     pub difficulty: Option<ScenarioDifficulty>,
-    /// What all seeds of the scenario follow from, at most [`MAX_SEED`]; default 0.
+    /// The seed from which all seeds of the scenario derive, at most [`MAX_SEED`]; default 0.
     pub seed: u64,
 }
 
@@ -106,16 +106,15 @@ impl Default for Design {
     }
 }
 
-/// Learning blocks of the variants in the order given, and evaluation blocks of all of them, seen and to come, between.
+/// Learning blocks of the variants in the given order, with evaluation blocks of all of them, learned or not yet, in between.
 ///
-/// Learning, validation and test draw from seeds of their own, so no world is in two of them, and so does each lifetime. Every
-/// evaluation of a variant draws the same worlds, so that before and after differ by the agent alone. Each variant is learned in
-/// worlds of its own, behind those that it had, so that two designs of the same variants and counts have the same worlds in any
-/// order.
+/// Learning, validation and test use different seeds, so no world is in two of them, and so does each lifetime. Every
+/// evaluation of a variant uses the same worlds, so differences between evaluations are due to the agent alone. Each variant is
+/// learned in its own worlds, each used once, so two designs of the same variants and counts have the same worlds in any order.
 ///
 /// # Errors
-/// [`CurriculumError`] without variants, for counts out of 1..=10,000,000, for a seed above [`MAX_SEED`], for a form that the
-/// variants or blocks do not fit, for an evaluation after a block that there is not, for a drift between tasks.
+/// [`CurriculumError`] without variants, for counts outside 1..=10,000,000, for a seed above [`MAX_SEED`], for a form that does
+/// not fit the variants or blocks, for an evaluation after a block that does not exist, for a drift between tasks.
 ///
 /// # Example
 /// ```
@@ -132,20 +131,20 @@ pub fn design(variants: &[Choice], options: &Design) -> Result<Scenario, Curricu
 /// A control of the design of the same variants and options: the same learning blocks in another order, after the same block
 /// before deployment, between the same evaluations.
 ///
-/// `order` says in which order the control meets the variants, by their places in `variants`. Every variant is learned as often
-/// as in the design itself: where the blocks are no whole number of rounds, those that the design has once more are learned once
-/// more here, before the first round, or after the last where one of them would else come twice in a row or the control would
-/// be the design itself. The reversed order is the design backwards. Two variants in turn, an odd number of times, have one
-/// order only.
+/// `order` is the control's order of the variants, by their places in `variants`. Every variant is learned as often as in the
+/// design itself: if the blocks are no whole number of rounds, those learned once more in the design are learned once more
+/// here, before the first round, or after the last if one of them would otherwise occur twice in a row or the control would
+/// equal the design. The reversed order is the design backwards. Two variants in turn, an odd number of times, have only one
+/// order.
 ///
 /// # Errors
-/// As [`design`]; [`CurriculumError::BadForm`] for the permuted form, which draws an order of its own, and for an `order` that
-/// is none of the variants.
+/// As [`design`]; [`CurriculumError::BadForm`] for the permuted form, which draws its own order, and for an `order` that is no
+/// permutation of the variants.
 pub fn design_control(variants: &[Choice], order: &[usize], options: &Design) -> Result<Scenario, CurriculumError> {
     arranged(variants, options, Some(order))
 }
 
-/// Most regimes of a design. A document has no room for more: each has five values or more.
+/// Most regimes in a design. A document cannot hold more: each has at least five values.
 const MAX_REGIMES: usize = 400_000;
 
 fn arranged(variants: &[Choice], options: &Design, control: Option<&[usize]>) -> Result<Scenario, CurriculumError> {
@@ -168,7 +167,7 @@ fn arranged(variants: &[Choice], options: &Design, control: Option<&[usize]>) ->
     Ok(scenario(options, before, lessons, &places, evaluation))
 }
 
-/// The block before deployment, where there is one.
+/// The block before deployment, if there is one.
 fn before_deployment(first: &Choice, options: &Design, streams: &Streams) -> Option<Block> {
     (options.pre_deployment > 0).then(|| Block {
         phase: Phase::PreDeployment,
@@ -176,7 +175,7 @@ fn before_deployment(first: &Choice, options: &Design, streams: &Streams) -> Opt
     })
 }
 
-/// Blocks in their order: what is learned, and an evaluation after so many learning blocks each.
+/// The blocks in order: learning blocks, and evaluations after the given numbers of them.
 fn scenario(
     options: &Design,
     before: Option<Block>,
@@ -242,9 +241,9 @@ fn check(variants: &[Choice], options: &Design) -> Result<(), CurriculumError> {
     Ok(())
 }
 
-/// The variants of the learning blocks in their order, and the regimes of each block.
+/// The variants of the learning blocks in order, and the regimes of each block.
 ///
-/// In a control the variants are still those of the design itself, whose first is learned before deployment.
+/// For a control, the variants are those of the design itself, whose first is learned before deployment.
 fn lessons(
     variants: &[Choice],
     options: &Design,
@@ -270,7 +269,7 @@ fn lessons(
         }
         return Ok((path, lessons));
     };
-    // The form says which variants the drift leads through; how many blocks it is shared out among is said by `blocks`.
+    // The form determines the variants along the drift; `blocks` is the number of blocks that it is divided into.
     let path = form::sequence(options.form, variants.len(), None, drawn)?;
     if path.len() < 2 {
         return Err(CurriculumError::NoWay);

@@ -1,4 +1,4 @@
-//! [`Picked`]: a variant that was chosen or made, with its distances. Which ones are picked is said by `probe.rs` and `steps.rs`.
+//! [`Picked`]: a variant that was chosen or made, with its distances.
 
 use driftworld_generator::{GeneratorError, Subject, at_distance};
 use driftworld_similarity::{Distance, DistanceMatrix, VariantMeasure, Weights};
@@ -7,20 +7,20 @@ use driftworld_spec::{Element, Variant};
 use super::Choice;
 use crate::CurriculumError;
 
-/// A distance that no variant has, and that still tells differences of 1e-9 apart.
+/// Beyond any distance between variants, and small enough to keep differences of 1e-9.
 const BEYOND: f64 = 1e6;
 
 /// A variant for a curriculum.
 #[derive(Clone, Debug)]
 pub struct Picked {
-    /// As a scenario names it.
+    /// Its name in scenarios.
     pub choice: Choice,
     /// The variant itself.
     pub variant: Variant,
 }
 
 impl Picked {
-    /// A variant that its task declares. `task` is what scenarios call the task.
+    /// A variant that its task declares. `task` is the task's name in scenarios.
     pub fn declared(task: &str, variant: Variant) -> Self {
         Self {
             choice: Choice::new(task, variant.name()),
@@ -28,7 +28,7 @@ impl Picked {
         }
     }
 
-    /// A variant made of a declared one.
+    /// A variant derived from a declared one.
     pub(super) fn made(task: &str, from: &Variant, variant: Variant) -> Self {
         Self {
             choice: Choice::made(task, from, &variant),
@@ -41,7 +41,7 @@ impl Picked {
         self.choice.name.is_some()
     }
 
-    /// How far it is from another, element by element.
+    /// The distance to another, element by element.
     ///
     /// # Errors
     /// [`CurriculumError::Similarity`] for variants of different tasks.
@@ -50,13 +50,13 @@ impl Picked {
     }
 }
 
-/// Every distance among variants of one task: in an element alone, or in all together if none is named.
+/// All distances among variants of one task: in one element, or in total if none is named.
 ///
 /// # Errors
 /// [`CurriculumError::Similarity`] for variants of different tasks, or too many of them.
 pub fn distances(picked: &[Picked], element: Option<Element>) -> Result<DistanceMatrix, CurriculumError> {
     let labels = picked.iter().map(|picked| picked.choice.id()).collect();
-    // Without variants the matrix says so before anything is measured.
+    // Without variants, the matrix reports the error before anything is measured.
     let measure = picked.first().map(|first| measure_of(&first.variant));
     DistanceMatrix::measure(labels, |a, b| match &measure {
         Some(measure) => apart(measure, &picked[a].variant, &picked[b].variant, element),
@@ -64,12 +64,12 @@ pub fn distances(picked: &[Picked], element: Option<Element>) -> Result<Distance
     })
 }
 
-/// Compares variants of the same task as this one, at the weights that the task declares: made once for many comparisons.
+/// The measure for variants of this one's task, with the task's weights, for many comparisons.
 pub(super) fn measure_of(variant: &Variant) -> VariantMeasure {
     VariantMeasure::new(variant.task(), Weights::of_task(variant.task()))
 }
 
-/// How far two variants are apart: in an element, or in all together.
+/// The distance of two variants: in one element, or in total.
 pub(super) fn apart(
     measure: &VariantMeasure,
     a: &Variant,
@@ -79,7 +79,7 @@ pub(super) fn apart(
     Ok(in_element(&measure.between(a, b)?, element))
 }
 
-/// How far the farthest variant is that the generator finds by moving a subject, in an element or in all together.
+/// The distance of the farthest variant that the generator finds by changing a subject, in one element or in total.
 pub(super) fn farthest(
     measure: &VariantMeasure,
     anchor: &Variant,
@@ -87,7 +87,7 @@ pub(super) fn farthest(
     element: Option<Element>,
 ) -> Result<f64, GeneratorError> {
     let distance = |other: &Variant| apart(measure, anchor, other, element).unwrap_or(0.0);
-    // Nothing is so far, so this finds the farthest, or the farthest of as many as can be looked at.
+    // Nothing is so far away, so this finds the farthest, or the farthest among the searched ones.
     match at_distance(anchor, subject, BEYOND, 0.0, distance) {
         Err(GeneratorError::TooFar { farthest, .. }) => Ok(farthest),
         Err(GeneratorError::NoneBetween { nearest, .. }) => Ok(nearest),
@@ -96,7 +96,7 @@ pub(super) fn farthest(
     }
 }
 
-/// A distance in an element, 0 where nothing could differ, or the whole.
+/// The distance in an element, 0 if nothing could differ, or the total.
 pub(super) fn in_element(distance: &Distance, element: Option<Element>) -> f64 {
     match element {
         Some(element) => distance.element(element).unwrap_or(0.0),
@@ -104,7 +104,7 @@ pub(super) fn in_element(distance: &Distance, element: Option<Element>) -> f64 {
     }
 }
 
-/// Whether a distance is exactly 0 in every element but one.
+/// Whether a distance is exactly 0 in every other element.
 pub(super) fn is_alone(distance: &Distance, element: Element) -> bool {
     let others = Element::ALL.into_iter().filter(|other| *other != element);
     others

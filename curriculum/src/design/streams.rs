@@ -1,31 +1,31 @@
-//! [`Streams`]: which worlds the parts of a lifetime draw. Seeds are of the lifetime and of what the worlds are for, the first
-//! index of what is learned is of the variant.
+//! [`Streams`]: seeds and world indices for the parts of a lifetime. Seeds depend on the lifetime and the purpose of the
+//! worlds, first indices of learning on the variant.
 
 use driftworld_spec::{MAX_EXPERIENCES, Regime};
 
 use super::{Choice, Design, MAX_BLOCKS};
 use crate::hash::number_of;
 
-/// What the worlds of evaluation blocks are for. The two have no world in common.
+/// The purpose of the worlds in evaluation blocks. The two splits share no world.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Split {
     /// For choosing hyperparameters and agents.
     Validation,
-    /// For what is reported.
+    /// For reported results.
     #[default]
     Test,
 }
 
-/// How far apart the worlds of two variants begin: no lifetime learns more of one.
+/// Distance between the first worlds of two variants: no lifetime learns more of one.
 const SPAN: u64 = MAX_EXPERIENCES as u64 * MAX_BLOCKS as u64;
 
-/// Seeds are at most this, which every reader of JSON keeps whole.
+/// Size of seeds in bits: every JSON reader keeps them exact.
 const SEED_BITS: u32 = 53;
 
 /// The worlds of one lifetime.
 pub(super) struct Streams<'a> {
     options: &'a Design,
-    /// Names of all variants, in their alphabetical order.
+    /// Names of all variants, sorted.
     ids: Vec<String>,
 }
 
@@ -37,7 +37,7 @@ impl<'a> Streams<'a> {
         Self { options, ids }
     }
 
-    /// `count` experiences of learning, behind the first `taken` of the variant.
+    /// `count` experiences of learning, after the first `taken` of the variant.
     pub(super) fn learning(&self, choice: &Choice, count: u32, taken: u64) -> Regime {
         let seed = spread(self.options.seed, self.options.lifetime, "learn");
         choice.regime(count, seed, self.start(choice) + taken)
@@ -63,7 +63,7 @@ impl<'a> Streams<'a> {
         choice.regime(self.options.evaluate, spread(self.options.seed, lifetime, purpose), 0)
     }
 
-    /// The first world that is learned of a variant. It is the same whatever the order of the variants.
+    /// Index of the first world in which a variant is learned. Independent of the order of the variants.
     fn start(&self, choice: &Choice) -> u64 {
         if self.options.paired_learning {
             return 0;
@@ -73,7 +73,7 @@ impl<'a> Streams<'a> {
     }
 }
 
-/// A seed for one use in one lifetime, at most 2⁵³ − 1. Seeds that are near each other give seeds that are not.
+/// A seed for one use in one lifetime, at most 2⁵³ − 1. Similar seeds give unrelated ones.
 fn spread(seed: u64, lifetime: u64, purpose: &str) -> u64 {
     let number = number_of([&seed.to_le_bytes()[..], &lifetime.to_le_bytes(), purpose.as_bytes()]);
     number >> (u64::BITS - SEED_BITS)

@@ -1,4 +1,4 @@
-//! The numbers that every experience is logged with. What the file looks like is `metrics`'.
+//! The columns that every experience is logged with.
 
 use driftworld_metrics::{BlockType, Record, TaskParams, Timestamp};
 use driftworld_spec::BlockKind;
@@ -8,27 +8,26 @@ use super::episode::Experience;
 use super::gap::Gap;
 use super::planned::Planned;
 
-/// The columns that every experience is logged with, beside those that the format asks for.
+/// The metrics columns that every experience is logged with, beside those that the format requires.
 ///
-/// - `reward`: what all its steps paid.
+/// - `reward`: the sum of its rewards.
 /// - `success`: 1 if the world's success condition ended it, else 0.
 /// - `episode_step_count`: its steps.
-/// - `time_to_completion`: the seconds of the world's time that it took, which is steps times time step times
-///   `frame_skip`.
-/// - `truncated`: 1 if a limit of steps cut it off, 0 if what happened in it ended it.
-/// - `world_index`: the number of its world among those of its variant and seed; `nan` for a world from a file.
-/// - `progress`: how far on its way a drift is, 0..=1; 0 where nothing drifts.
-/// - `distance`: how far its variant is from the variant that the agent learned last before this regime began, 0..=1: for an
-///   experience of a learning block the step that the curriculum takes, for one of an evaluation block the way that what was
-///   learned has to carry. 0 if both are the same; `nan`, the format's word for no value, before anything was learned.
+/// - `time_to_completion`: its simulated seconds: steps times time step times `frame_skip`.
+/// - `truncated`: 1 if a step limit cut it off, 0 if an event in the world ended it.
+/// - `world_index`: the index of its world for its variant and seed; `nan` for a world from a file.
+/// - `progress`: the progress of a drift, 0..=1; 0 without a drift.
+/// - `distance`: the distance of its variant from the variant that the agent learned last before this regime began, 0..=1: in a
+///   learning block the step that the curriculum takes, in an evaluation block the distance over which learning has to
+///   generalise. 0 if both are the same; `nan`, the format's word for no value, before anything was learned.
 /// - `distance_state`, `distance_action`, `distance_transition`, `distance_reward`, `distance_observation`: the same in each
-///   element of the decision process; 0 where nothing can differ in it.
+///   element of the decision process; 0 if nothing can differ in it.
 ///
 /// Variants of one task are compared by what they declare, others by their first 16 worlds under seed 0.
 ///
-/// An experience that was left out because its world cannot be drawn has a row, too, so that numbers go on without a gap: all its columns
-/// are `nan` but for `world_index` and `progress`, and its parameters say under `"skipped"` why. Programs that score a log leave rows
-/// without a value out.
+/// An experience that was skipped because its world cannot be drawn has a row, too, so that numbers have no gap: all its
+/// columns except `world_index` and `progress` are `nan`, and its parameters give the reason under `"skipped"`. Programs that
+/// score a log ignore rows without a value.
 pub const COLUMNS: [&str; 13] = [
     "reward",
     "success",
@@ -45,13 +44,14 @@ pub const COLUMNS: [&str; 13] = [
     "distance_observation",
 ];
 
-/// The column of words that says how an experience ended: `success`, `failure` or `step_limit`, as [`Experience::ending`] does, and
-/// `skipped` where it was left out. It is not among the metrics columns that the log declares, so that l2metrics passes it over. Logs from before it go on without it.
+/// The text column with how an experience ended: `success`, `failure` or `step_limit`, as in [`Experience::ending`], and
+/// `skipped` if it was left out. The log does not declare it as a metrics column, so l2metrics ignores it. Logs started before
+/// it existed continue without it.
 pub const ENDING: &str = "ending";
 
-/// The column of words that says what ended an experience, as [`EndedBy::word`](driftworld_env::EndedBy::word) does: `all_collected`,
-/// `touch`, `return`, `energy`, `zone`, `steps` or `time`; `unknown` where nobody said, and `skipped` where it was left out. As with
-/// [`ENDING`], l2metrics passes it over, and logs from before it go on without it.
+/// The text column with what ended an experience, as in [`EndedBy::word`](driftworld_env::EndedBy::word): `all_collected`,
+/// `touch`, `return`, `energy`, `zone`, `steps` or `time`; `unknown` if not reported, and `skipped` if it was left out. As with
+/// [`ENDING`], l2metrics ignores it, and logs started before it existed continue without it.
 pub const ENDED_BY: &str = "ended_by";
 
 /// The row of experience `number`.
@@ -68,10 +68,10 @@ pub(super) fn record(planned: &Planned, number: u64, experience: &Experience, ga
     row(planned, number, lived.iter().chain(gap), planned.params(), now)
 }
 
-/// The key of a row's parameters that says why its experience was left out.
+/// The parameter of a row with the reason why its experience was skipped.
 pub(super) const SKIPPED: &str = "skipped";
 
-/// The row of experience `number`, which was left out.
+/// The row of experience `number`, which was skipped.
 pub(super) fn skipped(planned: &Planned, number: u64, reason: &str, now: Timestamp) -> Record {
     let values = COLUMNS.map(|name| match name {
         "world_index" => planned.world_index(number),
@@ -96,7 +96,7 @@ fn row<'a>(
     record.with_task_params(params)
 }
 
-/// What a log says of an experience that was left out.
+/// The task parameters of an experience that was skipped.
 pub(super) fn skipped_params(planned: &Planned, reason: &str) -> TaskParams {
     let mut params = Map::clone(&planned.params());
     params.insert(SKIPPED.to_owned(), Value::from(reason));

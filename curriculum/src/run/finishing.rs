@@ -1,31 +1,31 @@
-//! Whether the agent on rails comes to the success of worlds before they are learned in.
+//! Checks whether the built-in planner reaches success in worlds before an agent learns in them.
 
 use driftworld_env::{Catalogue, Expertise};
 use driftworld_generator::Sampler;
 use driftworld_spec::{Variant, World, ZoneEnd};
 use serde::Serialize;
 
-/// Steps after which the agent on rails gives up in a world that sets no limit.
+/// Steps after which the planner gives up in a world without a step limit.
 const PATIENCE: u32 = 10_000;
 
-/// The most worlds that are told one by one.
+/// Most worlds that are listed.
 const MOST_TOLD: usize = 100;
 
-/// In how many worlds the agent on rails came to a success.
+/// In how many worlds the built-in planner reached success.
 ///
-/// It is a good planner and not a perfect one: where it fails, a success may still be possible.
+/// It is a good but not a perfect planner: if it fails, success may still be possible.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Finished {
-    /// How many of the worlds can end as a success: by a rule or by a zone.
+    /// Number of worlds that can end in success: by a rule or by a zone.
     pub worlds: u64,
-    /// In how many of those the agent on rails came to it.
+    /// Number of those in which the planner succeeded.
     pub succeeded: u64,
-    /// The numbers of the first in which it did not, 100 at most.
+    /// The indices of the first failures, at most 100.
     pub failed: Vec<u64>,
 }
 
 impl Finished {
-    /// Lets the agent on rails try a world, and counts what came of it. One without a success is not counted.
+    /// Lets the planner try a world, and counts the result. A world without a success condition is not counted.
     pub fn count(&mut self, world: &World, index: u64, catalogue: &Catalogue) {
         let mut zones = world.environment_params.zones.iter();
         if world.rules.success.is_empty() && !zones.any(|zone| zone.ends == Some(ZoneEnd::Success)) {
@@ -49,7 +49,7 @@ impl Finished {
     }
 }
 
-/// Lets the agent on rails try the first `worlds` worlds of a variant under a seed; those that cannot be drawn are left out.
+/// Lets the planner try the first `worlds` worlds of a variant under a seed; those that cannot be drawn are skipped.
 ///
 /// # Example
 /// ```

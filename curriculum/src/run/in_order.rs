@@ -1,4 +1,4 @@
-//! Work on numbered items by several threads, with results handed on in the order of the numbers. What the work is, callers say.
+//! Processes numbered items on several threads, and delivers the results in the order of the numbers.
 
 use std::collections::BTreeMap;
 use std::ops::{ControlFlow, Range};
@@ -7,14 +7,14 @@ use std::sync::mpsc;
 use std::sync::{Mutex, PoisonError};
 use std::thread;
 
-/// How far ahead of the oldest unfinished item each thread may work: bounds what waits to be handed on.
+/// How far ahead of the oldest unfinished item each thread may work: bounds the number of waiting results.
 const AHEAD: usize = 16;
 
-/// Does every item of a range, a worker to a thread, and hands the results on in order; ends early when `take` says so.
+/// Processes every item of a range, one worker per thread, and delivers the results in order; ends early if `take` says so.
 ///
-/// Items are begun in order, each by whichever worker is free. After an early end the items under way are finished and
-/// dropped. A panic of `work` goes on here, where its result would be handed on; one behind an early end is dropped, too. Where the
-/// system has no threads to give, fewer do the work, or this one alone.
+/// Items are started in order, each by a free worker. After an early end, items in progress are finished and dropped. A panic
+/// of `work` resumes here, when its result would be delivered; one after an early end is dropped, too. If the system cannot
+/// provide threads, fewer do the work, or the calling thread alone.
 pub(super) fn in_order<W: Send, T: Send, E>(
     items: Range<u64>,
     workers: Vec<W>,
@@ -22,14 +22,14 @@ pub(super) fn in_order<W: Send, T: Send, E>(
     mut take: impl FnMut(u64, T) -> Result<ControlFlow<()>, E>,
 ) -> Result<ControlFlow<()>, E> {
     let (num_workers, ahead) = (workers.len(), AHEAD * workers.len());
-    // Handed out one by one: who gets no thread is still there.
+    // Handed out one by one: if a thread cannot be started, its worker remains available.
     let workers = Mutex::new(workers);
     let hire = || workers.lock().unwrap_or_else(PoisonError::into_inner).pop();
     let (give, given) = mpsc::channel();
     let given = Mutex::new(given);
     let next = || given.lock().unwrap_or_else(PoisonError::into_inner).recv();
     thread::scope(|scope| {
-        // Dropped however this ends: then no thread goes on waiting for an item.
+        // Dropped on every exit, so that no thread keeps waiting for an item.
         let give = give;
         let (results, arrived) = mpsc::channel();
         let starts_a_thread = |_: &usize| {
@@ -37,7 +37,7 @@ pub(super) fn in_order<W: Send, T: Send, E>(
             let thread = thread::Builder::new().spawn_scoped(scope, move || {
                 let Some(mut worker) = hire() else { return };
                 while let Ok(item) = next() {
-                    // A worker that panicked makes nothing that is used: the panic comes before whatever else it does.
+                    // The results of a worker that panicked are never used: the panic is delivered before them.
                     let result = catch_unwind(AssertUnwindSafe(|| work(&mut worker, item)));
                     if results.send((item, result)).is_err() {
                         break;
@@ -73,7 +73,7 @@ pub(super) fn in_order<W: Send, T: Send, E>(
     })
 }
 
-/// Does every item in this thread.
+/// Processes every item in this thread.
 fn alone<W, T, E>(
     items: Range<u64>,
     worker: Option<W>,
@@ -95,10 +95,10 @@ fn alone<W, T, E>(
 mod tests {
     use super::*;
 
-    /// How going through the items ended.
+    /// How the processing ended.
     type End = Result<ControlFlow<()>, String>;
 
-    /// Squares 10..200; even items take longer than odd ones. Returns what was taken until `last`, and how it ended.
+    /// Squares 10..200; even items take longer than odd ones. Returns the results up to `last`, and how it ended.
     fn squares(jobs: usize, last: u64) -> (Vec<(u64, u64)>, End) {
         let mut taken = Vec::new();
         let work = |(): &mut (), item: u64| {
@@ -118,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn results_come_in_order_whatever_the_number_of_threads() {
+    fn results_come_in_order_for_any_number_of_threads() {
         let expected: Vec<(u64, u64)> = (10..200).map(|item| (item, item * item)).collect();
         for jobs in [1, 2, 7, 64] {
             assert_eq!(squares(jobs, 200), (expected.clone(), Ok(ControlFlow::Continue(()))));
@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn an_early_end_and_an_error_leave_nobody_waiting() {
+    fn early_ends_and_errors_leave_no_thread_waiting() {
         for jobs in [1, 3] {
             let (taken, end) = squares(jobs, 20);
             assert_eq!((taken.len(), end), (11, Ok(ControlFlow::Break(()))));
@@ -136,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn a_worker_that_panics_leaves_nobody_waiting() {
+    fn panicking_worker_leaves_no_thread_waiting() {
         for jobs in [1, 2, 8] {
             let (done, ended) = mpsc::channel();
             thread::spawn(move || {
@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn one_alone_does_the_same() {
+    fn single_thread_gives_the_same_results() {
         let mut taken = Vec::new();
         let work = |(): &mut (), item: u64| item * item;
         let end: End = alone(10..15, Some(()), &work, &mut |item, square| {
@@ -188,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn no_items_are_no_work() {
+    fn empty_range_does_nothing() {
         let end: Result<_, ()> = in_order(5..5, vec![(); 2], |(), item| item, |_, _| Ok(ControlFlow::Continue(())));
         assert_eq!(end, Ok(ControlFlow::Continue(())));
     }

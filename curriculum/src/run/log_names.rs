@@ -1,4 +1,4 @@
-//! Variants that a log could not tell apart: names that are one when cut to letters and digits. How they are cut is in `plan.rs`.
+//! Detects variants whose names become equal when reduced to letters and digits for the log.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -8,12 +8,12 @@ use driftworld_spec::{Regime, Scenario, TaskSpec};
 use super::plan::log_name;
 use crate::CurriculumError;
 
-/// The names that a log has so far, and what the scenario calls what they stand for.
+/// The names in a log, with the scenario's names for them.
 #[derive(Default)]
 pub(super) struct LogNames(BTreeMap<String, String>);
 
 impl LogNames {
-    /// Takes a name for what a regime is about; an error if it stands for something else already.
+    /// Claims a log name for a regime's variant; an error if another variant has it already.
     pub(super) fn claim(&mut self, regime: &Regime, name: &str) -> Result<(), CurriculumError> {
         let called = called(regime);
         match self.0.insert(name.to_owned(), called.clone()) {
@@ -27,8 +27,8 @@ impl LogNames {
     }
 }
 
-/// The first two variants of a scenario that its log could not tell apart, as an error. `task` is asked for the tasks that the scenario
-/// names; where it has none, the name in the scenario is taken for the task's own.
+/// The first two variants of a scenario with the same log name, as an error. `task` looks up the tasks that the scenario names;
+/// if it returns none, the scenario's name counts as the task's own.
 ///
 /// # Example
 /// ```
@@ -56,7 +56,7 @@ pub fn same_log_name(
         own.clone()
     };
     for regime in scenario.blocks.iter().flat_map(|block| &block.regimes) {
-        // A world from a file is filed under what the scenario calls its task.
+        // A world from a file is logged under the scenario's name for its task.
         let own = match &regime.world {
             Some(_) => regime.task.clone(),
             None => named(regime.task.as_str()),
@@ -76,7 +76,7 @@ pub fn same_log_name(
     None
 }
 
-/// What a regime's variant is called in the scenario.
+/// The scenario's name for a regime's variant.
 fn called(regime: &Regime) -> String {
     let to = match &regime.drift {
         None => String::new(),

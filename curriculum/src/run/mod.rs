@@ -1,6 +1,6 @@
-//! Living a scenario: experience after experience, each logged. Designing one is in `design/`, scoring it is `metrics`'.
+//! Runs a scenario experience by experience, and logs each.
 //!
-//! A [`Plan`] is a scenario with everything that it names, a [`Journal`] the log that it is lived into, [`run`] lives it.
+//! A [`Plan`] is a scenario with everything that it names, a [`Journal`] writes its log, [`run`] runs it.
 
 mod budget;
 mod columns;
@@ -46,43 +46,43 @@ use crate::CurriculumError;
 use episode::EpisodeContext;
 use worlds::Worlds;
 
-/// What a run is handed, since it does not look at the clock.
+/// The caller's context for a run, which does not read the clock itself.
 pub struct RunContext<'a> {
     /// The time now.
     pub now: &'a mut dyn FnMut() -> Timestamp,
-    /// Told after each experience; may end the run there. What was lived until then is in the log.
+    /// Called after each experience; may end the run there. The log keeps everything up to then.
     pub watch: &'a mut dyn FnMut(&Progress) -> ControlFlow<()>,
-    /// Set from elsewhere, ends the run at the next step: experiences under way leave no row.
+    /// Set from elsewhere, ends the run at the next step: experiences in progress leave no row.
     pub stop: &'a AtomicBool,
-    /// Where worlds take their assets from.
+    /// The source of the worlds' assets.
     pub catalogue: Catalogue,
-    /// How many experiences are lived at the same time, where they do not depend on each other. Changes no byte of the log.
+    /// How many independent experiences run in parallel. Changes no byte of the log.
     pub jobs: NonZeroUsize,
-    /// How many evaluations of each block, drawn by the scenario's seeds, are run once more at its end, to see that an agent that
-    /// learns is frozen there; [`REPEATED_EVALUATIONS`] is a good number, 0 switches the check off. Changes no byte of the log.
+    /// How many evaluations of each block, chosen by the scenario's seeds, are repeated at its end, to check that a learning
+    /// agent is frozen there; [`REPEATED_EVALUATIONS`] is a good number, 0 disables the check. Changes no byte of the log.
     pub repeated_evaluations: usize,
 }
 
-/// How many evaluation experiences of each block are run twice where nobody says.
+/// Default number of evaluations per block that are repeated.
 pub const REPEATED_EVALUATIONS: usize = 4;
 
-/// Lives a scenario from the first experience that is not in the log to its last, and logs each as soon as it is over.
+/// Runs a scenario from the first experience that is not in the log to its last, and logs each as soon as it is finished.
 ///
 /// A run that is stopped ends at the next step, and its summary says that it is not finished.
 ///
-/// An experience whose world cannot be drawn ends the run, or is left out, as the plan says ([`Undrawable`]); a log that ended there goes
-/// on with a plan that leaves it out.
+/// An experience whose world cannot be drawn ends the run, or is skipped, depending on the plan ([`Undrawable`]); a log that
+/// ended there can be resumed with a plan that skips it.
 ///
-/// The order of experiences, their worlds and the numbers that the agent begins them with depend on the scenario alone:
-/// a run that was interrupted and taken up again writes what an undisturbed one does. [`Agent::learn`] is called in learning
-/// blocks only. An agent that learns lives learning blocks one experience after the other; whoever takes up a log with such an
-/// agent hands over one that has learned what is in the log ([`relearn`]). Evaluation blocks, and all blocks of an agent that does not
-/// learn, are run by its [`Agent::frozen`] copies, several at a time; by the agent itself where it has no copies. Of an agent that
-/// learns some evaluations of each block are run once more at its end, and must have the same actions, states and rewards.
+/// The order of experiences, their worlds and the agent's initial random numbers depend on the scenario alone: a run that was
+/// interrupted and resumed writes what an undisturbed one does. [`Agent::learn`] is called in learning blocks only. A learning
+/// agent runs learning blocks one experience after the other; to resume a log with such an agent, the caller passes one that
+/// has learned what is in the log ([`relearn`]). Evaluation blocks, and all blocks of an agent that does not learn, are run by
+/// its [`Agent::frozen`] copies, several in parallel; by the agent itself if it has no copies. For a learning agent, some
+/// evaluations of each block are repeated at its end, and must have the same actions, states and rewards.
 ///
 /// # Errors
-/// [`CurriculumError`] that says at which block, regime and experience; what was lived before is in the log.
-/// [`CurriculumError::NotFrozen`] for an agent that evaluations change.
+/// [`CurriculumError`] with block, regime and experience; everything before is in the log. [`CurriculumError::NotFrozen`] for
+/// an agent that evaluations change.
 pub fn run(
     plan: &Plan,
     agent: &mut dyn Agent,
@@ -109,7 +109,7 @@ pub fn run(
         } else {
             total
         };
-        // Which experiences a budget leaves is known from those before them.
+        // Which experiences a budget allows depends on those before them.
         let still = planned.kind == BlockKind::Evaluation || !(learns || has_budgets);
         let repeats = if learns { repeats } else { Repeats::default() };
         let copies: Option<Vec<_>> = still
@@ -138,12 +138,12 @@ pub fn run(
     Ok(journal.summary().clone())
 }
 
-/// Lets an agent that learns run the learning experiences among the first `done` once more, as they were, and logs nothing: it
-/// then is what it was when the log held so many. For an agent that keeps no file of what it has learned. Does nothing for one that
-/// does not learn. `Break` if it was stopped.
+/// Lets a learning agent repeat the learning experiences among the first `done`, without logging: it then has the state it had
+/// when the log held as many. For agents that do not save what they learned. Does nothing for one that does not learn. `Break`
+/// if it was stopped.
 ///
 /// # Errors
-/// [`CurriculumError`] that says at which block, regime and experience.
+/// [`CurriculumError`] with block, regime and experience.
 pub fn relearn(
     plan: &Plan,
     agent: &mut dyn Agent,
@@ -163,7 +163,7 @@ pub fn relearn(
     rollout::relearn_range(plan, 0..done, (&mut Worlds::new(plan), &mut None), &mut one_by_one)
 }
 
-/// Experiences, and whether each is run once more: some of each block of evaluations, behind its last.
+/// The experiences, each with whether it is a repeat: some of each evaluation block, after its last.
 fn with_repeats(plan: &Plan, numbers: Range<u64>, repeats: Repeats) -> Vec<(u64, bool)> {
     let mut items = Vec::new();
     let (mut block, mut repeated) = (None, Vec::new());
@@ -179,8 +179,7 @@ fn with_repeats(plan: &Plan, numbers: Range<u64>, repeats: Repeats) -> Vec<(u64,
     items
 }
 
-/// Runs experiences that do not depend on each other at the same time, and logs them in their order, but for those that are
-/// run once more, which must come to the same.
+/// Runs independent experiences in parallel, and logs them in order; repeats are not logged but must give the same result.
 fn run_in_parallel(
     plan: &Plan,
     items: &[(u64, bool)],
@@ -222,24 +221,24 @@ fn run_in_parallel(
     })
 }
 
-/// What became of an experience.
+/// The outcome of an experience.
 enum Outcome {
-    /// It is over.
+    /// It was run to its end.
     Over(Box<FinishedExperience>),
-    /// It was left out, since its world cannot be drawn: why.
+    /// It was skipped because its world cannot be drawn, with the reason.
     LeftOut(String),
     /// The run was stopped meanwhile.
     CutOff,
 }
 
-/// Runs experiences in an environment of its own, one at a time.
+/// Runs experiences one at a time, in its own environment.
 struct Worker<'a> {
     plan: &'a Plan,
     catalogue: Catalogue,
     stop: &'a AtomicBool,
     worlds: Worlds<'a>,
     environment: Option<Environment>,
-    /// Takes down what is done, if that is wanted.
+    /// Records the actions, if requested.
     recorder: Option<Recorder>,
     /// A hash of each step of the last evaluation.
     trace: Vec<u64>,
@@ -282,7 +281,7 @@ impl<'a> Worker<'a> {
         })))
     }
 
-    /// Runs one experience in its world; nothing if it was stopped on its way.
+    /// Runs one experience in its world; `None` if it was stopped.
     fn run(&mut self, agent: &mut dyn Agent, number: u64, world: World) -> Result<Option<Experience>, CurriculumError> {
         if self.stop.load(Ordering::Relaxed) {
             return Ok(None);
@@ -310,7 +309,7 @@ impl<'a> Worker<'a> {
             learn: planned.kind == BlockKind::Learning,
             stop: self.stop,
         };
-        // Only evaluations are ever run once more.
+        // Only evaluations are ever repeated.
         let trace = (!episode.learn).then_some(&mut self.trace);
         episode::run_episode(agent, environment, self.recorder.as_mut(), trace, &episode).map_err(failed)
     }

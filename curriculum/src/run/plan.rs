@@ -1,4 +1,4 @@
-//! A scenario made ready to be lived: every variant and world found, every experience known by its number. Living it is in `mod.rs`.
+//! A scenario prepared to run: every variant and world is found, every experience is known by its number.
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -18,11 +18,11 @@ use super::shuffle::Shuffle;
 use super::undrawable::Undrawable;
 use crate::CurriculumError;
 
-/// Where the tasks and worlds of a scenario come from, since nothing here reads files. An error is its message.
+/// The source of a scenario's tasks and worlds, because this crate reads no files. An error is its message.
 pub struct Sources<'a> {
     /// The task of this name or path.
     pub task: &'a mut dyn FnMut(&str) -> Result<Arc<TaskSpec>, String>,
-    /// The world file of this path, as the scenario has it.
+    /// The world file with this path, as in the scenario.
     pub world: &'a mut dyn FnMut(&str) -> Result<FoundWorld, String>,
 }
 
@@ -31,30 +31,30 @@ pub struct Sources<'a> {
 pub struct FoundWorld {
     /// The world.
     pub world: World,
-    /// What has to be known about it, for instance that it stands in for another. Logs keep it.
+    /// A note about it, for instance that it replaces another. Logs keep it.
     pub note: Option<String>,
 }
 
-/// What logs call the seed of a run.
+/// The name of a run's seed in logs.
 const RUN_SEED: &str = "run_seed";
 
-/// A scenario with everything that living it needs.
+/// A scenario with everything needed to run it.
 pub struct Plan {
     pub(super) scenario: Scenario,
     pub(super) regimes: Vec<Planned>,
-    /// What must be the same when a log is taken up again: for each variant and world its name and hashes of what it is, and what
-    /// [`Plan::add_fingerprint`] added.
+    /// What must be unchanged when a log is resumed: for each variant and world its name and hashes of its contents, and the
+    /// additions of [`Plan::add_fingerprint`].
     pub(super) fingerprints: BTreeMap<String, Value>,
-    /// What has to be known about world files, by path.
+    /// Notes about world files, by path.
     pub(super) notes: BTreeMap<String, String>,
-    /// What becomes of experiences whose worlds cannot be drawn.
+    /// How experiences whose worlds cannot be drawn are treated.
     pub(super) undrawable: Undrawable,
     tasks: BTreeMap<String, Arc<TaskSpec>>,
-    /// How many environments run at the same time.
+    /// Number of environments that run in parallel.
     pub(super) lanes: usize,
 }
 
-/// An experience that is to be lived, for whoever lives it elsewhere than [`run`](crate::run) does.
+/// An experience to be run, for callers that do not use [`run`](crate::run).
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExperienceSpec<'a> {
     /// Its block, from 0.
@@ -63,34 +63,34 @@ pub struct ExperienceSpec<'a> {
     pub regime: usize,
     /// Whether the agent may learn from it.
     pub kind: BlockKind,
-    /// What it is called: `task#variant`, in a drift with both ends.
+    /// Its name: `task#variant`, in a drift with both ends.
     pub variant: &'a str,
-    /// The seed of its world; nothing for a world from a file.
+    /// The seed of its world; `None` for a world from a file.
     pub seed: Option<u64>,
-    /// The number of its world under the seed.
+    /// The index of its world under the seed.
     pub index: Option<u64>,
-    /// How far on its way a drift is, 0..=1; 0 where nothing drifts.
+    /// Progress of a drift, 0..=1; 0 without a drift.
     pub progress: f64,
     /// The seed of the agent's own random numbers.
     pub agent_seed: u64,
-    /// Decisions after which no more experiences of its regime begin, if it has such a budget.
+    /// Decisions after which no more experiences of its regime start, if it has such a budget.
     pub steps: Option<u32>,
-    /// The label of its task that the agent gets, where the scenario has labels.
+    /// The task label that the agent gets, if the scenario has labels.
     pub label: Option<&'a Label>,
 }
 
 impl Plan {
-    /// Finds everything that a scenario names, so that what is missing is known before anything is run.
+    /// Resolves everything that a scenario names, so that missing things are reported before anything is run.
     ///
     /// # Errors
-    /// [`CurriculumError::Unknown`], [`CurriculumError::WorldFile`], [`CurriculumError::World`] where the first world of a
-    /// variant cannot be drawn, [`CurriculumError::SameLogName`].
+    /// [`CurriculumError::Unknown`], [`CurriculumError::WorldFile`], [`CurriculumError::World`] if the first world of a variant
+    /// cannot be drawn, [`CurriculumError::SameLogName`].
     pub fn new(scenario: &Scenario, sources: &mut Sources) -> Result<Self, CurriculumError> {
         Self::with_undrawable(scenario, sources, Undrawable::Refused)
     }
 
-    /// As [`Plan::new`], and says what becomes of experiences whose worlds cannot be drawn: where they are skipped, no world that
-    /// cannot be drawn is an error.
+    /// Like [`Plan::new`], with a choice of how experiences whose worlds cannot be drawn are treated: if they are skipped, such
+    /// worlds are no error.
     ///
     /// # Errors
     /// As [`Plan::new`].
@@ -113,7 +113,7 @@ impl Plan {
             worlds: BTreeMap::new(),
         };
         let mut log_names = LogNames::default();
-        // For each variant and seed, the regimes in which it was learned.
+        // For each variant and seed, the number of regimes in which it was learned.
         let mut rounds: BTreeMap<(String, u64), u64> = BTreeMap::new();
         let (mut first, mut learned) = (0, None);
         for (b, block) in scenario.blocks.iter().enumerate() {
@@ -143,14 +143,14 @@ impl Plan {
         Ok(finder.plan)
     }
 
-    /// Notes something else that its lifetime depends on, such as the bytes of an agent's script: a log is taken up again only if
-    /// it is still the same. `what` is a name that is no variant's, so one without `#`.
+    /// Records another dependency of its lifetime, such as the bytes of an agent's script: a log can be resumed only if it is
+    /// unchanged. `what` must not be a variant's name, so it has no `#`.
     pub fn add_fingerprint(&mut self, what: &str, fingerprint: impl Into<Value>) {
         self.fingerprints.insert(what.to_owned(), fingerprint.into());
     }
 
-    /// Gives the agent other random numbers in the same worlds: a repeat of a run, not a copy. 0, the default, is the run that the
-    /// scenario has of itself.
+    /// Gives the agent other random numbers in the same worlds: a repeat of a run, not a copy. 0, the default, is the
+    /// scenario's original run.
     pub fn set_run_seed(&mut self, seed: u64) {
         for planned in &mut self.regimes {
             planned.run_seed = seed;
@@ -162,28 +162,28 @@ impl Plan {
         }
     }
 
-    /// Says how many environments run at the same time: what a budget of decisions leaves depends on it. One by default.
+    /// Sets the number of environments that run in parallel, which affects budgets of decisions. One by default.
     pub fn set_lanes(&mut self, lanes: usize) {
         self.lanes = lanes.max(1);
     }
 
-    /// Whether regimes of a block end after so many decisions.
+    /// Whether regimes of a block end after a number of decisions.
     pub(super) fn has_budgets(&self, block: usize) -> bool {
         let mut of_block = self.regimes.iter().filter(|planned| planned.block == block);
         of_block.any(|planned| planned.steps.is_some())
     }
 
-    /// What becomes of experiences whose worlds cannot be drawn.
+    /// How experiences whose worlds cannot be drawn are treated.
     pub fn undrawable(&self) -> Undrawable {
         self.undrawable
     }
 
-    /// The scenario that it was made from.
+    /// The scenario of this plan.
     pub fn scenario(&self) -> &Scenario {
         &self.scenario
     }
 
-    /// How many experiences the whole lifetime has; the most that it may have, where regimes have a budget of decisions.
+    /// Number of experiences in the whole lifetime; the maximum, if regimes have a budget of decisions.
     pub fn num_experiences(&self) -> u64 {
         self.scenario.num_experiences()
     }
@@ -198,7 +198,7 @@ impl Plan {
         Ok(drawn.map_err(|source| planned.wrong(number, source))?.0)
     }
 
-    /// The regime that an experience belongs to, if there is such an experience.
+    /// The regime of an experience, if the experience exists.
     fn planned_at(&self, number: u64) -> Result<&Planned, CurriculumError> {
         let total = self.num_experiences();
         if number >= total {
@@ -207,7 +207,7 @@ impl Plan {
         Ok(&self.regimes[self.regime_of(number)])
     }
 
-    /// What an experience is one of, by its number over the whole lifetime; its world is [`Plan::world`].
+    /// The description of an experience, by its number over the whole lifetime; its world is [`Plan::world`].
     ///
     /// # Errors
     /// [`CurriculumError::NoSuchExperience`].
@@ -228,34 +228,34 @@ impl Plan {
         })
     }
 
-    /// The experience that may follow when the budget of the regime of experience `number` is spent: behind the regime, or the next of a
-    /// block that is shuffled.
+    /// The experience that may follow once the budget of the regime of experience `number` is spent: after the regime, or the
+    /// next of a shuffled block.
     pub fn after(&self, number: u64) -> u64 {
         let planned = &self.regimes[self.regime_of(number)];
         let end = planned.first + u64::from(planned.count);
         if planned.shuffle.is_some() { number + 1 } else { end }
     }
 
-    /// The numbers of the first and the last experience of each regime: all variants, and both ends of each drift.
+    /// The numbers of the first and the last experience of each regime: these cover all variants, and both ends of each drift.
     pub fn ends_of_regimes(&self) -> impl Iterator<Item = u64> {
         let ends = |planned: &Planned| [0, u64::from(planned.count) - 1].map(|offset| planned.number(offset));
         self.regimes.iter().flat_map(ends)
     }
 
-    /// The index of the regime that an experience belongs to.
+    /// The index of an experience's regime.
     pub(super) fn regime_of(&self, number: u64) -> usize {
         // The first regime begins with experience 0.
         let at = |place: u64| self.regimes.partition_point(|planned| planned.first <= place) - 1;
         let index = at(number);
-        // All regimes of a block are shuffled alike, so any of them says where the experience is.
+        // All regimes of a block have the same shuffle, so any of them locates the experience.
         match &self.regimes[index].shuffle {
             Some(shuffle) => at(shuffle.place(number)),
             None => index,
         }
     }
 
-    /// The evaluations that are run once more at the end of the block that `from` belongs to, in ascending order: of those from
-    /// there on, the first, or some that its seeds draw.
+    /// The evaluations that are repeated at the end of the block of `from`, in ascending order: the first from there on, or
+    /// some chosen by its seeds.
     pub(super) fn repeated(&self, from: u64, repeats: Repeats) -> Vec<u64> {
         let index = self.regime_of(from);
         let planned = &self.regimes[index];
@@ -272,8 +272,8 @@ impl Plan {
             .collect()
     }
 
-    /// Every variant that it draws worlds of, both ends of drifts among them, each once with the limit of steps that its first regime
-    /// lays over its worlds.
+    /// Every variant whose worlds it draws, including both ends of drifts, each once with the step limit that its first regime
+    /// sets.
     pub fn variants(&self) -> Vec<(&Variant, Option<u32>)> {
         let mut found: BTreeMap<String, (&Variant, Option<u32>)> = BTreeMap::new();
         for planned in &self.regimes {
@@ -289,7 +289,7 @@ impl Plan {
         found.into_values().collect()
     }
 
-    /// Every world that it takes from a file, once, by what the world is called, with a limit of steps as in [`Plan::variants`].
+    /// Every world that it takes from a file, once, by the world's name, with a step limit as in [`Plan::variants`].
     pub fn world_files(&self) -> Vec<(&str, &World, Option<u32>)> {
         let mut found: BTreeMap<&str, (&str, &World, Option<u32>)> = BTreeMap::new();
         for planned in &self.regimes {
@@ -302,12 +302,12 @@ impl Plan {
         found.into_values().collect()
     }
 
-    /// Every task that it draws worlds of, by the name that the scenario calls it by.
+    /// Every task whose worlds it draws, by its name in the scenario.
     pub fn tasks(&self) -> &BTreeMap<String, Arc<TaskSpec>> {
         &self.tasks
     }
 
-    /// Where the unbroken stretch of blocks of one kind that an experience belongs to ends.
+    /// The end of the unbroken stretch of blocks of one kind that contains an experience.
     pub(super) fn end_of_kind(&self, number: u64) -> u64 {
         let here = self.regime_of(number);
         let kind = self.regimes[here].kind;
@@ -315,14 +315,14 @@ impl Plan {
         other.map_or(self.num_experiences(), |planned| planned.first)
     }
 
-    /// Takes down what a regime's worlds are made from.
+    /// Records what a regime's worlds are made from.
     fn fingerprint(&mut self, planned: &Planned) -> Result<(), CurriculumError> {
         let undrawable = self.undrawable;
         let mut take = |variant: &Variant, is_first_drawn: bool| {
             let Entry::Vacant(place) = self.fingerprints.entry(variant.id()) else {
                 return Ok(());
             };
-            // The variant says what all worlds are made from, the first world that they are still made in the same way.
+            // The variant fingerprints the input of all worlds, the first world the way they are made.
             let world = match Sampler::new(variant, planned.seed).world(planned.first_index) {
                 Ok(world) => Some(world.hash()),
                 Err(source) if is_first_drawn && undrawable == Undrawable::Refused => {
@@ -347,7 +347,7 @@ impl Plan {
         }
     }
 
-    /// Gives the variants their labels, numbered in the order in which they come, where the scenario wants any.
+    /// Numbers the variants' labels in their order of appearance, if the scenario has labels.
     fn put_labels(&mut self) {
         let wanted = self.scenario.task_label;
         if wanted == TaskLabel::None {
@@ -365,20 +365,20 @@ impl Plan {
     }
 }
 
-/// The order of a block that is shuffled.
+/// The order of a shuffled block.
 fn shuffle(number: usize, block: &Block, first: u64) -> Option<Shuffle> {
     let seed = block.regimes.first().map_or(0, |regime| regime.seed);
     (block.mix == BlockMix::Shuffled).then(|| Shuffle::new(first, block.num_experiences(), block_key(seed, number)))
 }
 
-/// A key of its own for each block of a seed.
+/// A separate key for each block of a seed.
 fn block_key(seed: u64, block: usize) -> u64 {
     seed.wrapping_add((block as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15))
 }
 
 /// Finds what a plan names, each task and world once.
 struct Finder<'a, 'b> {
-    /// As far as it was found.
+    /// The plan so far.
     plan: Plan,
     sources: &'a mut Sources<'b>,
     worlds: BTreeMap<String, Arc<World>>,
@@ -484,8 +484,8 @@ impl Finder<'_, '_> {
 
 /// The name of a variant in a log: letters and digits of the task's name, an underscore, those of the variant's.
 ///
-/// The format wants `task_variant` with letters and digits alone: `find_objects` and `red` are `findobjects_red`. A name
-/// without any is `x`.
+/// The format requires `task_variant` with letters and digits only: `find_objects` and `red` become `findobjects_red`. A name
+/// without any becomes `x`.
 pub fn log_name(task: &str, variant: &str) -> String {
     format!("{}_{}", logged_word(task), logged_word(variant))
 }
@@ -495,7 +495,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_in_logs_are_letters_and_digits() {
+    fn log_names_are_letters_and_digits() {
         let check = |task: &str, variant: &str, expected: &str| assert_eq!(log_name(task, variant), expected);
         check("find_objects", "red", "findobjects_red");
         check("Task1", "map_findobjects_0", "task1_mapfindobjects0");

@@ -1,5 +1,5 @@
-//! [`Planned`]: a regime of a plan. Its experiences by their numbers: worlds, variants on the way of a drift, seeds, labels,
-//! and what its rows say.
+//! [`Planned`]: a regime of a plan. Maps its experiences' numbers to worlds, variants along a drift, seeds, labels, and log
+//! parameters.
 
 use std::sync::Arc;
 
@@ -23,28 +23,28 @@ pub(super) struct Planned {
     /// Its name in tables: `task#variant`.
     pub(super) id: String,
     pub(super) log_name: String,
-    /// The number of its first experience over the whole lifetime; its first place, where its block is shuffled.
+    /// The number of its first experience over the whole lifetime; its first place, if its block is shuffled.
     pub(super) first: u64,
-    /// Which experience of its block is run when, where the block is shuffled.
+    /// The order of its block's experiences, if the block is shuffled.
     pub(super) shuffle: Option<Arc<Shuffle>>,
     pub(super) count: u32,
-    /// Decisions after which no more of its experiences begin.
+    /// Decisions after which no more of its experiences start.
     pub(super) steps: Option<u32>,
     pub(super) seed: u64,
     pub(super) first_index: u64,
     pub(super) max_steps: Option<u32>,
     pub(super) source: Source,
-    /// How many regimes of learning before it begin with the same variant under the same seed.
+    /// Number of earlier learning regimes that begin with the same variant under the same seed.
     pub(super) learned_before: u64,
-    /// What tells repeats of the scenario apart in the agent's random numbers.
+    /// Distinguishes repeats of the scenario in the agent's random numbers.
     pub(super) run_seed: u64,
-    /// The regime that the agent learned in last before this one.
+    /// The last regime in which the agent learned before this one.
     pub(super) learned: Option<usize>,
-    /// The label of its variant, and of the one that its drift leads to.
+    /// The labels of its variant, and of the one that its drift leads to.
     pub(super) labels: Option<[Label; 2]>,
 }
 
-/// Where its worlds come from.
+/// The source of its worlds.
 pub(super) enum Source {
     Variant(Variant),
     Drift {
@@ -60,7 +60,7 @@ pub(super) enum Source {
 }
 
 impl Planned {
-    /// The names of the variants that it begins with and ends with, which are one unless it drifts.
+    /// The names of its first and last variants, which are equal unless it drifts.
     pub(super) fn ends(&self) -> [String; 2] {
         match &self.source {
             Source::Drift { from, to, .. } => [from.id(), to.id()],
@@ -68,8 +68,7 @@ impl Planned {
         }
     }
 
-    /// The label of experience `number`: in a drift that of the nearer end, by how far the drift has come; in the middle the
-    /// one that it leads to.
+    /// The label of experience `number`: in a drift that of the nearer end by progress; at the middle the one that it leads to.
     pub(super) fn label(&self, number: u64) -> Option<&Label> {
         let [from, to] = self.labels.as_ref()?;
         Some(if self.is_near_its_beginning(number) { from } else { to })
@@ -85,7 +84,7 @@ impl Planned {
         let Source::Drift { to, drift, .. } = &self.source else {
             return true;
         };
-        // Where whole variants switch, an experience is of one of the two.
+        // If whole variants switch, an experience has one of the two.
         if drift.switch == DriftSwitch::Task
             && let Ok(Some(variant)) = self.variant_of(number)
         {
@@ -110,7 +109,7 @@ impl Planned {
         !matches!(self.source, Source::World { .. })
     }
 
-    /// What tells its drift from others between the same variants; nothing where it does not drift.
+    /// Distinguishes its drift from others between the same variants; empty without a drift.
     pub(super) fn way(&self) -> String {
         match &self.source {
             Source::Drift { drift, .. } => format!(" {drift:?}"),
@@ -124,18 +123,18 @@ impl Planned {
         place - self.first
     }
 
-    /// The number over the whole lifetime of the experience at a place in the regime.
+    /// The number, over the whole lifetime, of the experience at a place in the regime.
     pub(super) fn number(&self, offset: u64) -> u64 {
         let place = self.first + offset;
         self.shuffle.as_ref().map_or(place, |shuffle| shuffle.number(place))
     }
 
-    /// The number of an experience's world under its seed.
+    /// The index of an experience's world under its seed.
     pub(super) fn index_of(&self, number: u64) -> u64 {
         self.first_index + self.offset(number)
     }
 
-    /// The sampler of its worlds, where they are all drawn from one variant.
+    /// The sampler of its worlds, if they are all drawn from one variant.
     pub(super) fn sampler(&self) -> Option<Sampler> {
         match &self.source {
             Source::Variant(variant) => Some(Sampler::new(variant, self.seed)),
@@ -143,8 +142,8 @@ impl Planned {
         }
     }
 
-    /// The world of experience `number` of the lifetime, and the variant, where it is another in each experience. `sampler` is this
-    /// regime's own.
+    /// The world of experience `number` of the lifetime, with its variant if that changes between experiences. `sampler` is
+    /// this regime's own.
     pub(super) fn draw(
         &self,
         number: u64,
@@ -169,11 +168,11 @@ impl Planned {
         Ok((world, between))
     }
 
-    /// The number that an agent begins an experience with.
+    /// The seed of the agent's random numbers in an experience.
     ///
-    /// It is of the task, the seed and the world's number, and not of the variant: an agent that acts at random acts alike in two
-    /// variants under one seed. Every evaluation of a world has the same, so that an agent that has not changed earns the
-    /// same in it; what is learned in the same world again has another, so that a learner does not try the same again.
+    /// It depends on the task, the seed and the world's index, but not on the variant: a random agent acts alike in two
+    /// variants under one seed. Every evaluation of a world has the same, so an unchanged agent earns the same in it; learning
+    /// again in the same world has another, so that a learner does not repeat its attempts.
     pub(super) fn agent_seed(&self, number: u64) -> u64 {
         let task = self.id.rsplit_once('#').map_or(self.id.as_str(), |(task, _)| task);
         let numbers = [self.seed, self.index_of(number), self.learned_before, self.run_seed];
@@ -188,7 +187,7 @@ impl Planned {
         number_of(parts)
     }
 
-    /// The variant that an experience is of, where its regime drifts.
+    /// The variant of an experience, if its regime drifts.
     pub(super) fn variant_of(&self, number: u64) -> Result<Option<Variant>, GeneratorError> {
         let Source::Drift { way, drift, .. } = &self.source else {
             return Ok(None);
@@ -198,12 +197,12 @@ impl Planned {
             .map(Some)
     }
 
-    /// What experience `number` is an experience of, under a name that is its own; `between` is its variant in a drift.
+    /// The subject of experience `number` with a unique name; `between` is its variant in a drift.
     pub(super) fn subject<'a>(&'a self, number: u64, between: Option<&'a Variant>) -> (String, Subject<'a>) {
         match (&self.source, between) {
             (Source::World { world, .. }, _) => (self.id.clone(), Subject::World(world)),
             (Source::Variant(variant), _) => (variant.id(), Subject::Variant(variant)),
-            // On the way, chance may have made another variant of each experience.
+            // During a drift, random choices may have made another variant for each experience.
             (Source::Drift { from, to, .. }, Some(variant)) if ![from.name(), to.name()].contains(&variant.name()) => {
                 (format!("{}/{number}", variant.id()), Subject::Variant(variant))
             }
@@ -214,13 +213,13 @@ impl Planned {
         }
     }
 
-    /// The variant of its last experience that has one, where it drifts: on the way of a drift the task may forbid some.
+    /// The variant of its last experience that has one, if it drifts: the task may forbid some variants along a drift.
     pub(super) fn last(&self) -> Option<Variant> {
         let mut offsets = (0..u64::from(self.count)).rev();
         offsets.find_map(|offset| self.variant_of(self.number(offset)).transpose()?.ok())
     }
 
-    /// The number of an experience's world among those of its variant and seed; NaN for a world from a file.
+    /// The index of an experience's world for its variant and seed; NaN for a world from a file.
     pub(super) fn world_index(&self, number: u64) -> f64 {
         if self.is_drawn() {
             self.index_of(number) as f64
@@ -229,7 +228,7 @@ impl Planned {
         }
     }
 
-    /// How far on its way a drift is in an experience, 0..=1; 0 where nothing drifts.
+    /// The progress of a drift in an experience, 0..=1; 0 without a drift.
     pub(super) fn progress(&self, number: u64) -> f64 {
         match &self.source {
             Source::Drift { drift, .. } => drift.progress(self.offset(number) as u32, self.count),
@@ -237,8 +236,8 @@ impl Planned {
         }
     }
 
-    /// What a log says of the experiences of this regime beside their numbers: the same of each, since programs that read
-    /// logs take experiences with other parameters for other regimes.
+    /// The log parameters of this regime's experiences: the same for each, because programs that read logs take experiences
+    /// with other parameters for other regimes.
     pub(super) fn params(&self) -> TaskParams {
         let mut params = Map::new();
         let mut say = |key: &str, value: Value| drop(params.insert(key.to_owned(), value));
@@ -269,7 +268,7 @@ impl Planned {
     }
 }
 
-/// What the end of a drift is called beside its beginning: its name, and the task's before it where that is another.
+/// The name of a drift's second end beside its first: with the task's name in front if it differs.
 pub(super) fn end_name(task: &str, to: &Variant) -> String {
     if to.task().name() == task {
         to.name().to_owned()

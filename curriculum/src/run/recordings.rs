@@ -1,6 +1,7 @@
-//! [`Recordings`]: what was done in each episode, in a file beside the rows of its block. What a line says is `env`'s.
+//! [`Recordings`]: the actions of each episode, in a file beside the rows of its block.
 //!
-//! A recording is written before the row of its experience, so that every row of a recorded log has one, whenever the run is stopped.
+//! A recording is written before the row of its experience, so every row of a recorded log has one, whenever the run is
+//! stopped.
 
 use std::collections::BTreeMap;
 use std::fs::{self, File, OpenOptions};
@@ -12,20 +13,20 @@ use driftworld_metrics::BlockType;
 
 use crate::CurriculumError;
 
-/// The name of the files, each beside a `data-log.tsv`.
+/// Name of the files, each beside a `data-log.tsv`.
 pub const RECORDINGS_FILE: &str = "actions.jsonl";
 
 /// The largest file that is read, in bytes.
 pub const MAX_RECORDINGS_BYTES: u64 = 1 << 32;
 
-/// The most files that are open at a time, one for each worker of a block.
+/// Most files open at a time, one per worker of a block.
 const MAX_OPEN: usize = 64;
 
-/// The recordings of a log that is written.
+/// The recordings of a log being written.
 #[derive(Debug)]
 pub struct Recordings {
     folder: PathBuf,
-    /// The files of the block that is written.
+    /// The files of the current block.
     open: Vec<OpenFile>,
 }
 
@@ -37,21 +38,21 @@ struct OpenFile {
     file: File,
     length: u64,
     lines: RecordingLines,
-    /// The experience that comes next, or a later one.
+    /// The next experience, or a later one.
     next: u64,
 }
 
 impl Recordings {
-    /// Recordings of the log in this folder, which is there.
+    /// Recordings of the log in this existing folder.
     pub fn new(folder: &Path) -> Self {
         Self {
-            // The process may turn to another directory.
+            // The process may change its working directory.
             folder: std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned()),
             open: Vec::new(),
         }
     }
 
-    /// Whether a log has any: then it goes on with them.
+    /// Whether a log has recordings: it then continues to record.
     ///
     /// # Errors
     /// [`CurriculumError::Recordings`] if its folder cannot be listed.
@@ -71,10 +72,10 @@ impl Recordings {
 
     /// Writes the recording of an experience whose row comes next. `worker` and the block are those of the row.
     ///
-    /// What an earlier run left behind the row before is cut off.
+    /// Removes what an earlier run left after the previous row.
     ///
     /// # Errors
-    /// [`CurriculumError::Recordings`] if the disk refuses; [`CurriculumError::Recording`] if the file that is there is none of
+    /// [`CurriculumError::Recordings`] if the disk fails; [`CurriculumError::Recording`] if the existing file does not hold
     /// recordings.
     pub fn append(
         &mut self,
@@ -88,7 +89,7 @@ impl Recordings {
         if self.open.first().is_some_and(|open| !open.inside.ends_with(&name)) || self.open.len() == MAX_OPEN {
             self.sync()?;
         }
-        // A row that was refused left its recording: its number comes once more.
+        // A row that was refused left its recording: its number occurs again.
         self.open
             .retain(|open| open.inside != inside || open.next <= experience);
         let known = self.open.iter().position(|open| open.inside == inside);
@@ -107,7 +108,7 @@ impl Recordings {
         }
         let lines = open.lines.lines(recording);
         if let Err(error) = open.file.write_all(lines.as_bytes()) {
-            // Where even this fails, whoever goes on with the log cuts the torn line off.
+            // If even this fails, resuming the log removes the torn line.
             let _ = open.file.set_len(open.length);
             return Err(failed(&open.path, "append to this file")(error));
         }
@@ -116,7 +117,7 @@ impl Recordings {
         Ok(())
     }
 
-    /// Asks the disk to have what was written.
+    /// Syncs to disk what was written.
     ///
     /// # Errors
     /// [`CurriculumError::Recordings`].
@@ -162,9 +163,9 @@ impl Recordings {
     }
 }
 
-/// How many bytes of a file hold recordings of experiences before this one, and what goes on behind them.
+/// The number of bytes with recordings of experiences before this one, and the state to append after them.
 fn kept(path: &Path, experience: u64) -> Result<(u64, RecordingLines), CurriculumError> {
-    // To be gone on with, not by driftworld-files: it is ours, and as long as it is.
+    // A file to continue, not by driftworld-files: it is our own, of any length.
     let file = match File::open(path) {
         Ok(file) => file,
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok((0, RecordingLines::default())),
@@ -187,26 +188,26 @@ fn kept(path: &Path, experience: u64) -> Result<(u64, RecordingLines), Curriculu
                 let end = reader.mark();
                 return Ok(reader.into_lines_at(end));
             }
-            // A line without its end is the last one.
+            // An incomplete line is the last one.
             Err(_) if reader.is_torn() => return Ok(reader.into_lines_at(before)),
             Err(error) => return Err(wrong(error)),
         }
     }
 }
 
-/// A file of recordings, of which each episode is read from its own place.
+/// A file of recordings with random access to episodes.
 #[derive(Debug)]
 pub struct RecordingsFile<R = BufReader<File>> {
     path: PathBuf,
     reader: RecordingReader<R>,
     episodes: Vec<EpisodeOrigin>,
-    /// Where each episode begins.
+    /// The start of each episode.
     places: BTreeMap<u64, RecordingMark>,
     damage: Option<EnvError>,
 }
 
 impl RecordingsFile {
-    /// Opens a file, and notes which episodes there are without making them out; nothing where there is no file.
+    /// Opens a file, and indexes its episodes without decoding them; `None` without a file.
     ///
     /// # Errors
     /// [`CurriculumError::Recording`] for a file of something else; [`CurriculumError::UnreadableRecordings`] if it cannot be read.
@@ -218,10 +219,10 @@ impl RecordingsFile {
         }
     }
 
-    /// Opens the file beside the rows of a block, as [`RecordingsFile::open`].
+    /// Like [`RecordingsFile::open`], for the file beside the rows of a block.
     ///
     /// # Errors
-    /// As there.
+    /// As [`RecordingsFile::open`].
     pub fn of_block(log: &Path, worker: &str, block: (u64, BlockType)) -> Result<Option<Self>, CurriculumError> {
         let folder = log.join(worker).join(format!("{}-{}", block.0, block.1));
         Self::open(&folder.join(RECORDINGS_FILE))
@@ -249,20 +250,20 @@ impl<R: BufRead + Seek> RecordingsFile<R> {
         }
     }
 
-    /// The episodes of which the lines are sound, in their order.
+    /// The episodes with undamaged lines, in order.
     pub fn episodes(&self) -> &[EpisodeOrigin] {
         &self.episodes
     }
 
-    /// The first line that is damaged.
+    /// The first damaged line.
     pub fn damage(&self) -> Option<CurriculumError> {
         self.damage.clone().map(|source| wrong(&self.path, source))
     }
 
-    /// The recording of an episode, by its number; nothing where there is none.
+    /// The recording of an episode, by its number; `None` without one.
     ///
     /// # Errors
-    /// [`CurriculumError::Recording`] if its line, or that of its world, is damaged; a damaged line of another is passed over.
+    /// [`CurriculumError::Recording`] if its line, or that of its world, is damaged; damaged lines of others are skipped.
     pub fn recording(&mut self, experience: u64) -> Result<Option<Recording>, CurriculumError> {
         let Some(place) = self.places.get(&experience) else {
             return self.damage().map_or(Ok(None), Err);
@@ -296,7 +297,7 @@ mod tests {
     use driftworld_env::{Action, Environment, Recorder};
     use std::io::{Cursor, Read, SeekFrom};
 
-    /// Counts the bytes that are read of it.
+    /// Counts the bytes read.
     struct Counting<'a>(Cursor<Vec<u8>>, &'a std::cell::Cell<usize>);
 
     impl Read for Counting<'_> {

@@ -1,12 +1,12 @@
-//! [`Shuffle`]: the order in which the experiences of a shuffled block are run.
+//! [`Shuffle`]: the order of the experiences of a shuffled block.
 
 use crate::hash::number_of;
 
-/// Rounds of the network; four make a good permutation of a good function (Luby and Rackoff 1988).
+/// Rounds of the network; four turn a good function into a good permutation (Luby and Rackoff 1988).
 const ROUNDS: u64 = 4;
 
-/// A permutation of a range of numbers that is drawn by a key and takes no memory: a Feistel network over the least even
-/// number of bits that holds the range, walked on until it is back in the range.
+/// A keyed permutation of a range of numbers that needs no memory: a Feistel network over the least even number of bits that
+/// holds the range, iterated until the result is in the range.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Shuffle {
     first: u64,
@@ -16,7 +16,7 @@ pub(super) struct Shuffle {
 }
 
 impl Shuffle {
-    /// Of `first..first + count`.
+    /// A permutation of `first..first + count`.
     pub(super) fn new(first: u64, count: u64, key: u64) -> Self {
         let bits = u64::BITS - count.saturating_sub(1).leading_zeros();
         Self {
@@ -27,7 +27,7 @@ impl Shuffle {
         }
     }
 
-    /// The place in the list of regimes of the experience that is run at this number.
+    /// The place, in the list of regimes, of the experience that is run at this number.
     pub(super) fn place(&self, number: u64) -> u64 {
         self.walk(number, |shuffle, x| {
             (0..ROUNDS).fold(x, |x, round| shuffle.mix(x, round))
@@ -43,7 +43,7 @@ impl Shuffle {
 
     fn walk(&self, from: u64, step: impl Fn(&Self, u64) -> u64) -> u64 {
         let mut x = step(self, from - self.first);
-        // A permutation comes back to where it started, which is in the range.
+        // A permutation returns to its start, which is in the range.
         while x >= self.count {
             x = step(self, x);
         }
@@ -76,7 +76,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn every_experience_comes_once(first in 0..1_000_000_u64, count in 1..300_u64, key in any::<u64>()) {
+        fn every_experience_occurs_once(first in 0..1_000_000_u64, count in 1..300_u64, key in any::<u64>()) {
             let shuffle = Shuffle::new(first, count, key);
             let mut places: Vec<u64> = (first..first + count).map(|number| shuffle.place(number)).collect();
             for (number, place) in (first..).zip(&places) {
@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn every_order_of_three_comes_about_equally_often() {
+    fn every_order_of_three_is_about_equally_frequent() {
         let mut counts = std::collections::BTreeMap::new();
         for key in 0..6000 {
             let order: Vec<u64> = (0..3).map(|number| Shuffle::new(0, 3, key).place(number)).collect();

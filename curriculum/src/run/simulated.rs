@@ -1,10 +1,10 @@
-//! An experience as an agent sees it when only rewards are simulated.
+//! The part of an experience that a simulated agent needs to compute its reward.
 
 use driftworld_spec::BlockKind;
 
 use super::plan::Plan;
 
-/// An experience as a simulated agent meets it.
+/// An experience of a simulated agent.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Meeting {
     /// Its number over the whole lifetime.
@@ -15,12 +15,12 @@ pub(crate) struct Meeting {
     pub(crate) learning: bool,
     /// Its variant; in a drift the nearer end.
     pub(crate) variant: String,
-    /// Seed and index of its world: where these are the same, variants of one task have the same layout.
+    /// Seed and index of its world: if both are equal, variants of one task have the same layout.
     pub(crate) layout: [u64; 2],
 }
 
 impl Plan {
-    /// What an agent meets in an experience.
+    /// The data of an experience for a simulated agent.
     pub(crate) fn meeting(&self, number: u64) -> Meeting {
         let index = self.regime_of(number);
         let planned = &self.regimes[index];

@@ -1,4 +1,4 @@
-//! What a lifetime came to, regime by regime, counted while it is lived or from its log. What lifelong learning makes of it is `metrics`'.
+//! Summarises a lifetime regime by regime, during the run or from its log.
 
 use std::collections::BTreeMap;
 
@@ -6,10 +6,10 @@ use driftworld_spec::BlockKind;
 
 use super::planned::Planned;
 
-/// How far a run has come.
+/// The progress of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Progress {
-    /// Experiences that are over.
+    /// Experiences finished.
     pub done: u64,
     /// Experiences of the whole lifetime.
     pub total: u64,
@@ -19,32 +19,32 @@ pub struct Progress {
     pub kind: BlockKind,
     /// Its variant, as `task#variant`.
     pub variant: String,
-    /// What it paid; NaN for one that was left out.
+    /// Its reward; NaN for one that was skipped.
     pub reward: f64,
 }
 
-/// What a lifetime came to.
+/// The summary of a lifetime.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Summary {
-    /// Experiences that were lived.
+    /// Experiences that were run.
     pub experiences: u64,
-    /// Experiences that were left out because their worlds could not be drawn.
+    /// Experiences that were skipped because their worlds could not be drawn.
     pub skipped: u64,
-    /// The first of those, 100 at most.
+    /// The first of those, at most 100.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub left_out: Vec<LeftOut>,
-    /// Steps in all that were lived.
+    /// Total steps that were run.
     pub steps: u64,
-    /// How many of those that were lived were ended by what, by the words of the log's column
-    /// [`ENDED_BY`](super::ENDED_BY): `unknown` where the log does not say.
+    /// What ended the experiences that were run, counted by the words of the log's column [`ENDED_BY`](super::ENDED_BY):
+    /// `unknown` if the log does not say.
     pub ended_by: BTreeMap<String, u64>,
-    /// Whether the whole scenario was lived.
+    /// Whether the whole scenario was run.
     pub finished: bool,
-    /// One row for each regime that was begun.
+    /// One row for each regime that was started.
     pub regimes: Vec<RegimeSummary>,
 }
 
-/// An experience that was left out.
+/// An experience that was skipped.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct LeftOut {
     /// The experience, from 0 over the whole lifetime.
@@ -53,13 +53,13 @@ pub struct LeftOut {
     pub block: usize,
     /// The variant, as `task#variant`.
     pub variant: String,
-    /// How far on its way a drift is, 0..=1; 0 where nothing drifts.
+    /// Progress of a drift, 0..=1; 0 without a drift.
     pub progress: f64,
     /// Why its world could not be drawn.
     pub reason: String,
 }
 
-/// What a regime came to.
+/// The summary of a regime.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct RegimeSummary {
     /// The block, from 0.
@@ -71,21 +71,21 @@ pub struct RegimeSummary {
     pub kind: BlockKind,
     /// The variant, as `task#variant`.
     pub variant: String,
-    /// Experiences that were lived.
+    /// Experiences that were run.
     pub experiences: u32,
-    /// Experiences that were left out.
+    /// Experiences that were skipped.
     pub skipped: u32,
-    /// Mean of the rewards of those that were lived.
+    /// Mean of the rewards of those that were run.
     pub mean_reward: f64,
     /// Share of them that were successes.
     pub success_rate: f64,
 }
 
-/// The most experiences that a summary names as left out.
+/// Most skipped experiences that a summary lists.
 const MOST_NAMED: usize = 100;
 
 impl Summary {
-    /// Takes the next experience into account, which was ended by what the word says.
+    /// Counts the next experience; `ended_by` is the word for what ended it.
     pub(super) fn count(&mut self, planned: &Planned, reward: f64, success: f64, steps: u64, ended_by: &str) {
         self.experiences += 1;
         match self.ended_by.get_mut(ended_by) {
@@ -101,7 +101,7 @@ impl Summary {
         row.success_rate = mean(row.success_rate, success);
     }
 
-    /// Takes into account that the next experience, `number`, is left out.
+    /// Counts the next experience, `number`, as skipped.
     pub(super) fn leave_out(&mut self, planned: &Planned, number: u64, reason: &str) {
         self.skipped += 1;
         self.row(planned).skipped += 1;
@@ -117,7 +117,7 @@ impl Summary {
     }
 
     fn row(&mut self, planned: &Planned) -> &mut RegimeSummary {
-        // A block that is shuffled comes back to its regimes.
+        // A shuffled block returns to its regimes.
         let first = self.regimes.partition_point(|row| row.block < planned.block);
         let mut of_block = self.regimes[first..].iter();
         let known = of_block.rposition(|row| row.regime == planned.regime);

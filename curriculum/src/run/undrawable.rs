@@ -1,4 +1,4 @@
-//! Worlds that cannot be drawn: what a run does with them, and trying them before it. Why one cannot be drawn is the generator's to say.
+//! Worlds that cannot be drawn: how a run treats them, and trial draws before the run.
 
 use std::collections::BTreeSet;
 
@@ -10,57 +10,57 @@ use super::finishing::Finished;
 use super::plan::Plan;
 use super::planned::Planned;
 
-/// The most experiences of a drift whose variants are looked at, and the most failures that are told one by one.
+/// Most experiences of a drift whose variants are checked, and most failures that are listed.
 const MOST_ON_THE_WAY: u32 = 100_000;
 const MOST_TOLD: usize = 100;
 
-/// What becomes of an experience whose world cannot be drawn.
+/// How an experience whose world cannot be drawn is treated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Undrawable {
     /// The run stops there.
     #[default]
     Refused,
-    /// It is left out: the log has a row for it in which every number of what was lived is no value, and the reason.
+    /// It is skipped: the log has a row for it without numbers, and with the reason.
     Skipped,
 }
 
 /// A world that cannot be drawn.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Failed {
-    /// The experience, from 0 over the whole lifetime; nothing outside of a scenario.
+    /// The experience, from 0 over the whole lifetime; `None` outside a scenario.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub experience: Option<u64>,
-    /// The number of the world under its seed.
+    /// The index of the world under its seed.
     pub index: u64,
-    /// How far on its way a drift is, 0..=1; 0 where nothing drifts.
+    /// Progress of a drift, 0..=1; 0 without a drift.
     pub progress: f64,
     /// The code of the error, such as `generator/no-place`.
     pub code: &'static str,
-    /// Why.
+    /// The error message.
     pub reason: String,
 }
 
-/// What came of drawing some worlds of a variant, or of a regime of a scenario.
+/// The result of trial draws of a variant, or of a regime of a scenario.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Trial {
-    /// The block, from 0; nothing outside of a scenario.
+    /// The block, from 0; `None` outside a scenario.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub block: Option<usize>,
     /// The variant as `task#variant`, in a drift with both ends.
     pub variant: String,
     /// The seed of its worlds.
     pub seed: u64,
-    /// How many worlds were drawn, those that failed included.
+    /// Number of worlds tried, including failures.
     pub worlds: u64,
-    /// How many failed because an object or the agent found no place.
+    /// Failures because an object or the agent found no place.
     pub placement: u64,
-    /// How many failed because what the task requires did not hold.
+    /// Failures because a requirement of the task did not hold.
     pub requirement: u64,
-    /// How many failed for another reason.
+    /// Failures for another reason.
     pub other: u64,
-    /// The first that failed, 100 at most.
+    /// The first failures, at most 100.
     pub failed: Vec<Failed>,
-    /// What came of letting the agent on rails try the others, where that was asked for.
+    /// The planner's results in the others, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub expert: Option<Finished>,
 }
@@ -75,7 +75,7 @@ impl Trial {
         }
     }
 
-    /// How many worlds could not be drawn.
+    /// Number of worlds that could not be drawn.
     pub fn num_failed(&self) -> u64 {
         self.placement + self.requirement + self.other
     }
@@ -114,16 +114,16 @@ pub fn try_worlds(variant: &Variant, seed: u64, worlds: u64) -> Trial {
     trial
 }
 
-/// What was tried already: scenarios evaluate the same worlds again and again.
+/// Worlds already tried: scenarios evaluate the same worlds again and again.
 #[derive(Debug, Default)]
 pub struct Tried(BTreeSet<(String, u64, u64, u32)>);
 
 impl Plan {
-    /// Draws so many worlds of each regime, evenly over its experiences from the first to the last, and looks whether every experience
-    /// of a drift has a variant at all: of 100,000 at most, evenly again. Regimes with the same worlds are tried once; those with world
-    /// files have nothing to draw.
+    /// Draws `worlds` worlds of each regime, evenly over its experiences from the first to the last, and checks that every
+    /// experience of a drift has a variant at all: at most 100,000, evenly again. Regimes with the same worlds are tried once;
+    /// those with world files have nothing to draw.
     ///
-    /// A plan that refuses what cannot be drawn has refused the first world of each regime before this is asked: make one with
+    /// A plan that refuses undrawable worlds has already refused the first world of each regime: make one with
     /// [`Undrawable::Skipped`].
     pub fn try_worlds(&self, worlds: u32, tried: &mut Tried) -> Vec<Trial> {
         let mut trials = Vec::new();
@@ -168,7 +168,7 @@ impl Planned {
     }
 }
 
-/// So many of `0..count`, evenly from the first to the last.
+/// `wanted` numbers of `0..count`, evenly from the first to the last.
 fn evenly(count: u32, wanted: u32) -> impl Iterator<Item = u32> {
     let wanted = wanted.min(count);
     let last = u64::from(wanted.max(2) - 1);
@@ -180,7 +180,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn steps_lie_evenly_from_the_first_to_the_last() {
+    fn samples_are_even_and_include_the_first_and_last() {
         let check = |count, wanted, expected: &[u32]| {
             assert_eq!(
                 evenly(count, wanted).collect::<Vec<_>>(),

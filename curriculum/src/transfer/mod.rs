@@ -1,5 +1,4 @@
-//! [`transfer_report`]: whether similar variants transfer more, by the logs of lifetimes and a distance matrix. Transfer is
-//! measured by `metrics`, the correlation and its test by `similarity`; logs and matrices are handed in.
+//! [`transfer_report`]: whether similar variants transfer more, from the metrics of lifetimes and a distance matrix.
 
 mod names;
 mod pooling;
@@ -19,11 +18,11 @@ use pooling::pooled;
 /// How transfer is compared with distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TransferOptions {
-    /// Which measure of transfer; the lifetimes must have been scored by it. `Both` is as `Contrast`.
+    /// The measure of transfer; the lifetimes must have been scored with it. `Both` counts as `Contrast`.
     pub measure: TransferMethod,
-    /// The most relabellings that the test goes through, 1 to [`MAX_RELABELLINGS`](driftworld_similarity::MAX_RELABELLINGS).
+    /// Most relabellings in the test, 1 to [`MAX_RELABELLINGS`](driftworld_similarity::MAX_RELABELLINGS).
     pub relabellings: u64,
-    /// What relabellings are drawn from, where there are more.
+    /// Seed of the relabellings, if there are more.
     pub seed: u64,
 }
 
@@ -41,9 +40,9 @@ impl Default for TransferOptions {
 /// Whether similar variants transfer more.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TransferReport {
-    /// How many lifetimes were pooled.
+    /// Number of lifetimes pooled.
     pub lifetimes: usize,
-    /// In how many different orders they learned the matrix's variants.
+    /// Number of different orders in which they learned the matrix's variants.
     pub learning_orders: usize,
     /// The measure of transfer.
     pub measure: TransferMethod,
@@ -53,16 +52,16 @@ pub struct TransferReport {
     pub not_in_matrix: Vec<String>,
     /// To variants that were not yet learned.
     pub forward: DirectionReport,
-    /// To variants that had been learned before.
+    /// To variants that were learned before.
     pub backward: DirectionReport,
 }
 
-/// Whether similar variants transfer more, in one direction of time.
+/// Whether similar variants transfer more, forward or backward.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DirectionReport {
     /// Every pair with a transfer, by the matrix's order of the learned variant, then of the other.
     pub pairs: Vec<PairTransfer>,
-    /// The test by ranks: the one to look at.
+    /// The test by ranks: the recommended one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub spearman: Option<MantelTest>,
     /// The test by values.
@@ -73,34 +72,34 @@ pub struct DirectionReport {
     pub untested: Option<String>,
 }
 
-/// A variant that was learned, another that was evaluated before and after, and what the first did to the second.
+/// A variant that was learned, another that was evaluated before and after, and the transfer between them.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PairTransfer {
     /// The variant that was learned.
     pub from: String,
     /// The variant that was evaluated.
     pub to: String,
-    /// How far apart they are.
+    /// Their distance.
     pub distance: f64,
     /// Mean over lifetimes of the pair's first transfer in each.
     pub transfer: f64,
-    /// In how many lifetimes it was measured.
+    /// Number of lifetimes in which it was measured.
     pub lifetimes: usize,
 }
 
 /// Correlates the transfer that lifetimes measured with distances.
 ///
-/// For each pair of variants the first transfer of each lifetime counts, as in the lifetime's own mean, and the mean over
-/// lifetimes is taken; forward and backward apart. Names in logs, `task_variant`, are matched with the matrix's
-/// `task#variant` by [`log_name`](crate::log_name)'s rule. Correlations are tested by relabelling the variants, see [`mantel`].
+/// For each pair of variants the first transfer of each lifetime counts, as in the lifetime's own mean, averaged over
+/// lifetimes; forward and backward separately. Names in logs, `task_variant`, are matched with the matrix's `task#variant` by
+/// [`log_name`](crate::log_name)'s rule. Correlations are tested by relabelling the variants, see [`mantel`].
 ///
-/// What it cannot see: lifetimes that all learn in one order mix up how near a variant is with how early it comes, which
-/// `learning_orders` shows; a variant that is as good as it can be has nothing left to gain.
+/// Limits: if all lifetimes learn in one order, distance is confounded with position in that order, which `learning_orders`
+/// shows; a variant that is already at its best has nothing left to gain.
 ///
 /// # Errors
-/// [`CurriculumError::NoEvaluations`] if no lifetime evaluates, [`CurriculumError::NoCommonNames`] if logs and matrix speak of
-/// different variants, [`CurriculumError::TooFewTransfers`] if neither direction has 3 pairs,
-/// [`CurriculumError::SameLogName`], [`CurriculumError::Relabelling`] for a number of relabellings that cannot be.
+/// [`CurriculumError::NoEvaluations`] if no lifetime evaluates, [`CurriculumError::NoCommonNames`] if logs and matrix have too
+/// few common variants, [`CurriculumError::TooFewTransfers`] if neither direction has 3 pairs,
+/// [`CurriculumError::SameLogName`], [`CurriculumError::Relabelling`] for an invalid number of relabellings.
 pub fn transfer_report(
     lifetimes: &[LifetimeMetrics],
     distances: &DistanceMatrix,
@@ -171,7 +170,7 @@ fn tested(
     let test = |method| mantel(distances, &values, method, options.relabellings, options.seed);
     let (spearman, pearson, untested) = match (test(Correlation::Spearman), test(Correlation::Pearson)) {
         (Ok(spearman), Ok(pearson)) => (Some(spearman), Some(pearson), None),
-        // Wrong whatever was measured.
+        // Invalid whatever was measured.
         (Err(source), _) if source.code() == "similarity/mantel-count" => {
             return Err(CurriculumError::Relabelling(source));
         }
@@ -185,7 +184,7 @@ fn tested(
     })
 }
 
-/// In how many different orders the variants that a matrix has were learned first.
+/// Number of different orders in which a matrix's variants were first learned.
 fn learning_orders(lifetimes: &[LifetimeMetrics], names: &Names) -> usize {
     let order = |lifetime: &LifetimeMetrics| -> Vec<usize> {
         let learned = lifetime
@@ -274,7 +273,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_correlated_says_why() {
+    fn impossible_correlations_are_refused_with_reason() {
         let none = lifetime(&["t_a"], &[], 0);
         assert!(said(&[none], &["t#a", "t#b"]).contains("no evaluation"));
         let strangers = lifetime(&["t_x", "t_y"], &[], 3);

@@ -1,4 +1,4 @@
-//! One transfer for each pair of variants from many lifetimes. What is done with them is in the folder's `mod.rs`.
+//! Pools the transfer of each pair of variants over many lifetimes.
 
 use std::collections::BTreeMap;
 
@@ -7,8 +7,8 @@ use driftworld_similarity::PairValue;
 
 use super::names::Names;
 
-/// The mean over lifetimes of each pair's first transfer, and how many lifetimes had one, in the order of the matrix. `direction` is
-/// `forward` or `backward`: whether the variant that gains or loses is still to be learned.
+/// The mean over lifetimes of each pair's first transfer, and the number of lifetimes that had one, in the order of the matrix.
+/// `direction` is `forward` or `backward`: whether the variant that gains or loses is still to be learned.
 pub(super) fn pooled(
     lifetimes: &[LifetimeMetrics],
     names: &Names,

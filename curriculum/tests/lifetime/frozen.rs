@@ -1,10 +1,10 @@
-//! Agents that evaluations change, though they promise to be frozen there.
+//! Agents that change during evaluations although they promise to be frozen.
 
 use driftworld_curriculum::{Experience, REPEATED_EVALUATIONS, Repeats, Rollout, run_rollout};
 
 use super::*;
 
-/// Goes the further the more episodes it has begun, evaluations among them.
+/// Moves faster the more episodes it has begun, including evaluations.
 #[derive(Clone, Default)]
 struct Restless {
     episodes: u32,
@@ -18,7 +18,7 @@ struct Restless {
 impl Agent for Restless {
     fn act(&mut self, environment: &Environment) -> Action {
         let steps = if self.is_honest { self.learned } else { self.episodes };
-        // The farther it goes, the sooner it is where something pays.
+        // The farther it goes, the sooner it reaches a reward.
         let share = f64::from(steps % 7) / 7.0;
         Action::Continuous([
             share * environment.world().agent_params.max_linear_speed,
@@ -37,7 +37,7 @@ impl Agent for Restless {
     }
 }
 
-/// A world in which each step pays by how much nearer the goal, so far ahead, it leads, so that all that an agent does shows.
+/// A world that rewards every step by its progress towards a goal `ahead`, so that all actions affect the reward.
 pub(crate) fn hill(ahead: i32) -> World {
     let text = r#"{ "max_steps": 30,
         "objects": [{ "class": "geometric", "coordinates": [0, AHEAD], "tag": "goal" }],
@@ -57,7 +57,7 @@ pub(crate) fn shaped(world: &str) -> Scenario {
 }
 
 #[test]
-fn an_agent_that_evaluations_change_is_refused_by_one_or_several_at_a_time() {
+fn agent_that_evaluations_change_is_refused_with_one_or_several_jobs() {
     let folder = scratch();
     for (name, is_copied, jobs) in [("self", false, 1), ("copy", true, 1), ("copies", true, 3)] {
         let mut agent = Restless {
@@ -77,7 +77,7 @@ fn an_agent_that_evaluations_change_is_refused_by_one_or_several_at_a_time() {
     }
 }
 
-/// Stands still but for one step, in which it waits for another thing each time; nothing in its world pays.
+/// Stands still except for one step, in which it waits for something else each time; nothing in its world pays.
 struct Fidgety {
     episodes: u32,
     step: u32,
@@ -94,7 +94,7 @@ impl Agent for Fidgety {
 }
 
 #[test]
-fn agent_that_acts_differently_is_refused_where_nothing_pays() {
+fn changed_actions_are_detected_without_rewards() {
     let folder = scratch();
     let regime = Regime {
         world: Some("yard.json".to_owned()),
@@ -114,7 +114,7 @@ fn agent_that_acts_differently_is_refused_where_nothing_pays() {
     }
 }
 
-/// Notes which evaluations of each block are run twice, and runs nothing.
+/// Notes which evaluations of each block are repeated, and runs nothing.
 struct Noting {
     repeats: Repeats,
     blocks: Vec<Vec<u64>>,
@@ -175,7 +175,7 @@ fn repeated_evaluations_are_drawn_for_each_block() {
 }
 
 #[test]
-fn one_that_only_learning_changes_leaves_the_same_log_checked_or_not() {
+fn checking_a_sound_learner_does_not_change_its_log() {
     let folder = scratch();
     let mut logs = Vec::new();
     for (name, is_copied, jobs, repeated) in [

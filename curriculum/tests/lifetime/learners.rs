@@ -1,8 +1,8 @@
-//! Agents that learn: in which order, with which labels and random numbers, and what their copies are evaluated in.
+//! Learning agents: order, labels, random numbers, and evaluations by copies.
 
 use super::*;
 
-/// Writes down what it is told; learns, and can be copied.
+/// Records its inputs; learns, and can be copied.
 #[derive(Clone, Default)]
 struct Pupil {
     told: Arc<Mutex<Told>>,
@@ -12,7 +12,7 @@ struct Pupil {
 
 impl Agent for Pupil {
     fn act(&mut self, _: &Environment) -> Action {
-        // Goes the further the more it has learned.
+        // Moves faster the more it has learned.
         Action::Continuous([self.learned as f64 / 100.0, 0.0, 0.0])
     }
     fn begin(&mut self, seed: u64) {
@@ -31,7 +31,7 @@ impl Agent for Pupil {
 }
 
 #[test]
-fn a_learner_learns_in_order_and_is_evaluated_as_it_is_by_several_copies() {
+fn learner_learns_in_order_and_is_evaluated_by_several_copies() {
     let folder = scratch();
     let lived = |jobs: usize| {
         let (log, mut pupil) = (folder.path().join(format!("{jobs}")), Pupil::default());
@@ -48,7 +48,7 @@ fn a_learner_learns_in_order_and_is_evaluated_as_it_is_by_several_copies() {
 }
 
 #[test]
-fn a_label_is_told_only_where_the_scenario_says_so() {
+fn label_is_passed_only_if_the_scenario_says_so() {
     let folder = scratch();
     let told = |label: TaskLabel| {
         let (mut pupil, mut scenario) = (Pupil::default(), varied());
@@ -76,7 +76,7 @@ fn a_label_is_told_only_where_the_scenario_says_so() {
 }
 
 #[test]
-fn every_evaluation_of_a_variant_has_the_same_chance_and_learning_has_its_own() {
+fn evaluations_repeat_their_random_numbers_and_learning_does_not() {
     let (folder, scenario) = (scratch(), scenario(&["blue", "red"]));
     for jobs in [1, 3] {
         let log = folder.path().join(format!("{jobs}"));
@@ -108,18 +108,19 @@ fn every_evaluation_of_a_variant_has_the_same_chance_and_learning_has_its_own() 
     );
     seeds.sort_unstable();
     seeds.dedup();
-    // Two worlds of learning, three that are learned again on the way to another variant, four of evaluation.
+    // Two worlds of learning, three that are learned again in a drift to another variant, four of evaluation.
     assert_eq!(seeds.len(), 9, "{seeds:?}");
 }
 
 #[test]
-fn a_learner_that_learns_its_log_again_goes_on_as_if_it_had_never_stopped() {
+fn relearning_the_log_continues_as_if_never_stopped() {
     let folder = scratch();
-    // Straight ahead costs there, so that whatever was learned shows.
+    // Straight ahead costs there, so any learning shows.
     let scenario = super::frozen::shaped("behind.json");
     let whole = folder.path().join("whole");
     live(&scenario, &mut SarsaAgent::new(), &whole, u64::MAX).unwrap_or_else(|error| panic!("{error}"));
-    // Stopped in the learning block, then in the evaluation after it; each time by a new process, which has learned nothing.
+    // Stopped in the learning block, then in the evaluation after it; each time resumed by a new process that has learned
+    // nothing.
     let gone_on = |relearns: bool| {
         let log = folder.path().join(format!("{relearns}"));
         for (most, resume) in [(8, false), (12, true), (u64::MAX, true)] {

@@ -1,4 +1,4 @@
-//! A small scenario lived from the first experience to the last: logged, repeatable, scorable, interruptible.
+//! Runs a small scenario from the first experience to the last: logged, repeatable, scorable, interruptible.
 
 mod frozen;
 mod learners;
@@ -63,18 +63,18 @@ fn plan(scenario: &Scenario) -> Result<Plan, CurriculumError> {
     Plan::new(scenario, &mut sources)
 }
 
-/// A world in which nothing ends an episode but its limit of steps.
+/// A world in which only the step limit ends an episode.
 fn yard() -> World {
     let text = r#"{ "max_steps": 40, "objects": [{ "class": "tree", "coordinates": [3, 4] }] }"#;
     World::from_json("yard.json", text).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// How a scenario is lived: how many experiences at most, several at a time, from the start or from where the log stopped.
+/// Options of a run: the most experiences, the number of jobs, and whether it starts or resumes.
 struct Living {
     most: u64,
     jobs: usize,
     resume: bool,
-    /// How many evaluations of each block are run twice.
+    /// How many evaluations of each block are repeated.
     repeated: usize,
 }
 
@@ -86,7 +86,7 @@ const WHOLE: Living = Living {
 };
 
 impl Living {
-    /// What a run is handed: a clock that stands still, so that logs can be compared byte for byte.
+    /// A context with a stopped clock, so that logs can be compared byte for byte.
     fn context<T>(&self, act: &mut dyn FnMut(&mut RunContext) -> T) -> T {
         act(&mut RunContext {
             now: &mut || Timestamp::from_unix_micros(1_600_000_000_000_000).expect("the year is 2020"),
@@ -105,7 +105,7 @@ impl Living {
     }
 }
 
-/// Lives a scenario.
+/// Runs a scenario.
 fn live_by(
     scenario: &Scenario,
     agent: &mut dyn Agent,
@@ -153,7 +153,7 @@ fn everything(folder: &Path) -> String {
 }
 
 #[test]
-fn a_lifetime_is_logged_and_can_be_scored() {
+fn lifetime_is_logged_and_can_be_scored() {
     let (folder, scenario) = (scratch(), scenario(&["blue", "red"]));
     let log = folder.path().join("log");
     let summary = live(&scenario, &mut OnRailsAgent::new(), &log, u64::MAX).unwrap_or_else(|error| panic!("{error}"));
@@ -183,7 +183,7 @@ fn a_lifetime_is_logged_and_can_be_scored() {
 }
 
 #[test]
-fn a_lifetime_repeats_to_the_byte_and_agents_differ() {
+fn lifetime_repeats_to_the_byte_and_agents_differ() {
     let folder = scratch();
     let lived = |name: &str, agent: &mut dyn Agent| {
         let log = folder.path().join(name);
@@ -200,7 +200,7 @@ fn a_lifetime_repeats_to_the_byte_and_agents_differ() {
 }
 
 #[test]
-fn another_run_seed_is_a_repeat_in_the_same_worlds_and_the_log_says_which() {
+fn run_seed_repeats_the_same_worlds_and_is_logged() {
     let plan = |seed| {
         let mut plan = plan(&scenario(&["red", "dusk"])).unwrap_or_else(|error| panic!("{error}"));
         plan.set_run_seed(seed);
@@ -224,7 +224,7 @@ fn another_run_seed_is_a_repeat_in_the_same_worlds_and_the_log_says_which() {
 }
 
 #[test]
-fn a_joint_block_runs_every_world_once_among_the_others_and_is_one_regime_a_task() {
+fn joint_block_interleaves_every_world_once_as_one_regime_per_task() {
     let choices = ["red", "dusk"].map(|name| Choice::new("find_objects", name));
     let options = Design {
         name: "joint".to_owned(),
@@ -272,7 +272,7 @@ fn a_joint_block_runs_every_world_once_among_the_others_and_is_one_regime_a_task
 
 /// `DRIFTWORLD_UPDATE_GOLDEN=1` rewrites the file.
 #[test]
-fn the_golden_log_is_written_as_it_was() {
+fn golden_log_is_unchanged() {
     let folder = scratch();
     let log = folder.path().join("log");
     live(&scenario(&["huddle"]), &mut OnRailsAgent::new(), &log, u64::MAX).unwrap_or_else(|error| panic!("{error}"));
@@ -288,7 +288,7 @@ fn the_golden_log_is_written_as_it_was() {
 }
 
 #[test]
-fn what_cannot_be_lived_says_where() {
+fn unplayable_scenarios_are_refused_with_the_place() {
     let folder = scratch();
     let mut odd = scenario(&["blue"]);
     odd.blocks[1].regimes[0].variant = "bleu".to_owned();
@@ -305,7 +305,7 @@ fn what_cannot_be_lived_says_where() {
     assert_eq!(again.code(), "curriculum/log");
 }
 
-/// A lifetime with everything that a regime can be: before deployment, drawn, drifting, of a world file, cut short, with a budget.
+/// A lifetime with every kind of regime: before deployment, drawn, drifting, from a world file, cut short, with a budget.
 fn varied() -> Scenario {
     let drawn = |variant: &str, count| Regime {
         seed: 3,
@@ -346,7 +346,7 @@ fn rows(folder: &Path) -> Vec<Record> {
 }
 
 #[test]
-fn the_log_is_the_same_however_many_experiences_are_lived_at_a_time() {
+fn log_is_the_same_for_any_number_of_jobs() {
     let folder = scratch();
     let lived = |jobs: usize, agent: &mut dyn Agent| {
         let log = folder.path().join(format!("{jobs}"));
@@ -361,7 +361,7 @@ fn the_log_is_the_same_however_many_experiences_are_lived_at_a_time() {
 }
 
 #[test]
-fn every_row_says_how_far_its_variant_is_from_what_was_learned_last() {
+fn every_row_has_the_distance_to_the_last_learned_variant() {
     let folder = scratch();
     let log = folder.path().join("log");
     live(&varied(), &mut RandomAgent::new(0), &log, u64::MAX).unwrap_or_else(|error| panic!("{error}"));
@@ -409,7 +409,7 @@ fn every_row_says_how_far_its_variant_is_from_what_was_learned_last() {
 }
 
 #[test]
-fn a_drift_to_a_made_variant_is_logged_with_the_distances_of_its_end() {
+fn drift_to_a_made_variant_logs_the_distances_of_its_end() {
     let bright = Choice {
         values: [("light".to_owned(), Value::Number(4.0))].into_iter().collect(),
         name: Some("bright".to_owned()),
@@ -454,8 +454,8 @@ fn a_drift_to_a_made_variant_is_logged_with_the_distances_of_its_end() {
 }
 
 #[test]
-fn what_a_limit_cuts_off_is_truncated_and_the_end_of_a_block_is_no_end() {
-    /// What was told of the last step of each experience.
+fn step_limit_truncates_and_end_of_block_does_not() {
+    /// The results of the last step of each experience.
     struct Witness(Vec<Step>);
     impl Agent for Witness {
         fn act(&mut self, _: &Environment) -> Action {
@@ -497,7 +497,7 @@ fn what_a_limit_cuts_off_is_truncated_and_the_end_of_a_block_is_no_end() {
 type Told = Vec<(u64, Option<Label>)>;
 
 #[test]
-fn a_world_file_that_is_nowhere_is_known_before_anything_is_lived() {
+fn missing_world_file_is_reported_before_anything_is_run() {
     let mut scenario = varied();
     scenario.blocks[1].regimes[1].world = Some("gone.json".to_owned());
     let error = plan(&scenario).err().expect("there is no such file");

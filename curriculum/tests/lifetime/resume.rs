@@ -1,9 +1,9 @@
-//! Logs of runs that stopped: what they hold, and who may continue them.
+//! Logs of stopped runs: their contents, and which runs may continue them.
 
 use super::*;
 
 #[test]
-fn a_run_that_is_stopped_leaves_a_log_that_reads() {
+fn stopped_run_leaves_a_readable_log() {
     let folder = scratch();
     let log = folder.path().join("log");
     let summary =
@@ -13,12 +13,12 @@ fn a_run_that_is_stopped_leaves_a_log_that_reads() {
 }
 
 #[test]
-fn a_log_cut_at_any_byte_is_completed_to_what_it_would_have_been() {
+fn log_cut_at_any_byte_is_completed_identically() {
     let folder = scratch();
     let whole = folder.path().join("whole");
     let scenario = varied();
     let summary = live(&scenario, &mut RandomAgent::new(0), &whole, u64::MAX).unwrap_or_else(|error| panic!("{error}"));
-    // Files in the order in which they were written.
+    // Files in the order of writing.
     let mut files: Vec<String> = vec!["scenario_info.json".into(), "logger_info.json".into()];
     for (block, kind) in ["train", "test", "train", "test"].iter().enumerate() {
         files.push(format!("worker-default/{block}-{kind}/data-log.tsv"));
@@ -41,7 +41,7 @@ fn a_log_cut_at_any_byte_is_completed_to_what_it_would_have_been() {
                 break;
             }
             let (torn, part) = (left < bytes.len(), &bytes[..left.min(bytes.len())]);
-            // The two info files are written under another name until they are whole.
+            // The two info files have another name until they are whole.
             let name = if torn && !file.contains('/') {
                 format!(".{file}.tmp")
             } else {
@@ -64,7 +64,7 @@ fn a_log_cut_at_any_byte_is_completed_to_what_it_would_have_been() {
 }
 
 #[test]
-fn a_log_is_taken_up_only_by_the_run_that_it_was_begun_with() {
+fn log_is_resumed_only_by_the_same_run() {
     let folder = scratch();
     let log = folder.path().join("log");
     let scenario = varied();
@@ -88,7 +88,7 @@ fn a_log_is_taken_up_only_by_the_run_that_it_was_begun_with() {
         "test",
         "/scenario/blocks/3/regimes/0/count: found 2, expected 9 as in this run",
     );
-    // A row that somebody took out.
+    // A row is missing.
     let path = log.join("worker-default/0-train/data-log.tsv");
     let text = std::fs::read_to_string(&path).expect("the log has this file");
     let lines: Vec<&str> = text.lines().take(2).collect();

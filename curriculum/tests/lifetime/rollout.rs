@@ -1,4 +1,4 @@
-//! Experiences that are run elsewhere: logged as those run here, and learned again where they were not saved.
+//! Experiences that are run elsewhere: logged like those run here, and learned again if not saved.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -10,10 +10,10 @@ use driftworld_spec::{BlockKind, World};
 
 use super::{everything, live, plan, rows, scratch, varied};
 
-/// Hands out what was logged elsewhere.
+/// Returns the experiences of another log.
 struct Replay {
     records: std::vec::IntoIter<Record>,
-    /// After so many experiences the run ends.
+    /// The run ends after this number of experiences.
     most: u64,
     blocks: Vec<bool>,
 }
@@ -49,13 +49,13 @@ impl Rollout for Replay {
 }
 
 #[test]
-fn experiences_run_elsewhere_are_logged_as_those_run_here() {
+fn experiences_run_elsewhere_are_logged_identically() {
     let (folder, scenario) = (scratch(), varied());
     let (here, there) = (folder.path().join("here"), folder.path().join("there"));
     let lived = live(&scenario, &mut RandomAgent::new(0), &here, u64::MAX).unwrap_or_else(|error| panic!("{error}"));
     let plan = plan(&scenario).unwrap_or_else(|error| panic!("{error}"));
     let mut now = || Timestamp::from_unix_micros(1_600_000_000_000_000).expect("the year is 2020");
-    // Interrupted once, and gone on with.
+    // Interrupted once, and resumed.
     for (most, begin) in [
         (8, Journal::create as fn(&Path, &Plan, &str) -> _),
         (99, Journal::resume),
@@ -79,7 +79,7 @@ fn experiences_run_elsewhere_are_logged_as_those_run_here() {
     assert_eq!(everything(&there), everything(&here));
 }
 
-/// Counts what it is asked for.
+/// Counts the requested experiences.
 #[derive(Default)]
 struct Counting(Vec<u64>);
 impl Rollout for Counting {
@@ -94,7 +94,7 @@ impl Rollout for Counting {
 }
 
 #[test]
-fn an_agent_learns_again_what_it_had_not_saved() {
+fn agent_learns_again_what_it_had_not_saved() {
     let (folder, scenario) = (scratch(), varied());
     let log = folder.path().join("log");
     live(&scenario, &mut RandomAgent::new(0), &log, 9).unwrap_or_else(|error| panic!("{error}"));
