@@ -1,5 +1,4 @@
-//! [`behavior`]: what the experts of two variants earn in each other's worlds. How an expert lives in a world that is not its own is
-//! `env`'s.
+//! [`behavior`]: compares two variants by what their experts earn in each other's worlds.
 
 use driftworld_env::{Catalogue, ExpertRun, Expertise};
 use driftworld_generator::Sampler;
@@ -9,13 +8,13 @@ use rayon::prelude::*;
 use crate::Failure;
 use crate::failure::within;
 
-/// The most pairs of worlds; of pictures and dynamics, too.
+/// Most pairs of worlds, also for pictures and dynamics.
 pub const MAX_BEHAVIOR_WORLDS: u64 = 1_000;
 
 /// Points of regret that count 1.
 pub(crate) const POINTS: f64 = 100.0;
 
-/// What experts did in one pair of worlds.
+/// The runs of the experts in one pair of worlds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ExpertPair {
     /// The expert of `a` in its own world.
@@ -29,50 +28,50 @@ pub struct ExpertPair {
 }
 
 impl ExpertPair {
-    /// How much less the expert of `b` earns in the world of `a` than that world's own, in points; below 0 where it earns more.
+    /// How much less the expert of `b` earns in the world of `a` than that world's own, in points; negative if it earns more.
     pub fn regret_in_a(&self) -> f64 {
         self.a_in_a.earned - self.b_in_a.earned
     }
 
-    /// The same of the expert of `a` in the world of `b`.
+    /// How much less the expert of `a` earns in the world of `b` than that world's own, in points; negative if it earns more.
     pub fn regret_in_b(&self) -> f64 {
         self.b_in_b.earned - self.a_in_b.earned
     }
 
-    /// How much more often the own experts succeed than the others, −1 to 1.
+    /// Success rate of the own experts minus that of the others, −1 to 1.
     pub fn success_difference(&self) -> f64 {
         let count = |run: ExpertRun| f64::from(u8::from(run.success));
         (count(self.a_in_a) - count(self.b_in_a) + count(self.b_in_b) - count(self.a_in_b)) / 2.0
     }
 }
 
-/// What experts earn in each other's worlds.
+/// The rewards of experts in each other's worlds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BehaviorOutcome {
-    /// `(regret_in_a + regret_in_b) / 2` in shares of 100 points, at least 0.
+    /// `(regret_in_a + regret_in_b) / 2` as a share of 100 points, at least 0.
     pub distance: f64,
-    /// What the expert of `b` earns less in worlds of `a` than their own expert, in points, on average.
+    /// How much less the expert of `b` earns in worlds of `a` than their own expert, in points, on average.
     pub regret_in_a: f64,
-    /// What the expert of `a` earns less in worlds of `b`.
+    /// How much less the expert of `a` earns in worlds of `b`.
     pub regret_in_b: f64,
-    /// How much more often own experts succeed than the others, on average: −1 to 1.
+    /// Success rate of own experts minus that of the others, on average: −1 to 1.
     pub success_difference: f64,
     /// `(worlds,)`: pair by pair.
     pub pairs: Vec<ExpertPair>,
 }
 
-/// Lets the experts of two variants live in each other's worlds.
+/// Runs the experts of two variants in each other's worlds.
 ///
-/// `worlds` worlds of each, 1 to [`MAX_BEHAVIOR_WORLDS`], are drawn under one seed, and number `i` of one variant is paired with number `i` of the other.
-/// [`Expertise::abroad`] says what an expert knows in a world that is not its own: where everything is, and of what it pays only
-/// what it would pay at home.
+/// `worlds` worlds of each, 1 to [`MAX_BEHAVIOR_WORLDS`], are drawn under one seed, and world `i` of one variant is paired with
+/// world `i` of the other. [`Expertise::abroad`] describes the knowledge of an expert in a foreign world: where everything is,
+/// but of rewards only what it would get at home.
 ///
-/// The distance is symmetric, and 0 of a variant to itself. It may be 0 between different variants, and does not obey the triangle
-/// inequality. An expert tours what pays, nearest first: it is no optimum, and where another's tour happens to be better the regret is
-/// below 0.
+/// The distance is symmetric, and 0 from a variant to itself. It may be 0 between different variants, and violate the triangle
+/// inequality. An expert visits what pays, nearest first: that is not optimal, and if another's route happens to be better, the
+/// regret is negative.
 ///
 /// # Errors
-/// [`Failure`] where a world cannot be drawn, or `worlds` is out of its range.
+/// [`Failure`] if a world cannot be drawn, or `worlds` is out of range.
 ///
 /// # Example
 /// ```
@@ -101,7 +100,7 @@ pub fn behavior(
     Ok(outcome(pairs))
 }
 
-/// Lets the experts of two worlds live in each other's.
+/// Runs the experts of two worlds in each other's.
 fn exchange(expertise: &Expertise, a: &World, b: &World) -> Result<ExpertPair, Failure> {
     Ok(ExpertPair {
         a_in_a: expertise.at_home(a)?,
@@ -134,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn a_variant_is_nothing_apart_from_itself() {
+    fn variant_has_distance_0_from_itself() {
         let found = between("find_objects#red", "find_objects#red", 2);
         let numbers = [
             found.distance,
@@ -152,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn it_makes_no_difference_who_comes_first() {
+    fn behavior_is_symmetric() {
         let there = between("find_objects#red", "find_objects#penalty", 2);
         let back = between("find_objects#penalty", "find_objects#red", 2);
         assert!(there.distance > 0.0);
@@ -165,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn regret_is_what_the_own_expert_earns_more() {
+    fn regret_is_the_own_experts_advantage() {
         let lived = |earned, success| ExpertRun {
             earned,
             success,
@@ -183,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_of_worlds_out_of_range_are_refused() {
+    fn world_counts_out_of_range_are_refused() {
         let red = tasks::variant("find_objects#red").expect("it is built in");
         for worlds in [0, MAX_BEHAVIOR_WORLDS + 1] {
             assert!(

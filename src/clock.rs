@@ -1,40 +1,38 @@
-//! The time that logs are stamped with: the clock's, or one that stands still, so that two runs are equal to the byte.
-//!
-//! Not here: the form of a stamp, which is `metrics`'.
+//! The clock for time stamps in logs: the system's, or a stopped one, so that two runs are equal to the byte.
 
 use driftworld_metrics::Timestamp;
 
-/// The variable that stops the clock.
+/// The environment variable that stops the clock.
 pub const VARIABLE: &str = "DRIFTWORLD_CLOCK";
 
-/// Microseconds since 1970 of the first and the last moment that a stamp can show: the years 1 to 9999.
+/// Microseconds since 1970 of the first and last valid stamps: the years 1 to 9999.
 const STAMPS: std::ops::RangeInclusive<i64> = -62_135_596_800_000_000..=253_402_300_799_999_999;
 
-/// Where the time comes from.
+/// The source of the time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Clock {
     /// The system's clock.
     System,
-    /// A clock that stands still.
+    /// A stopped clock.
     Stopped(Timestamp),
 }
 
-/// The variable says something that is no time.
+/// The variable holds no valid time.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "{VARIABLE}: found {found:?}, expected a UTC time such as 2026-01-31T12:00:00Z, in the years 1 to 9999; unset it \
      to use the system clock"
 )]
 pub struct ClockError {
-    /// What it says.
+    /// The variable's value.
     pub found: String,
 }
 
 impl Clock {
-    /// The clock's own time, unless `DRIFTWORLD_CLOCK` names one that every row is stamped with.
+    /// The system's clock, or the time in `DRIFTWORLD_CLOCK`, which then stamps every row.
     ///
     /// # Errors
-    /// [`ClockError`] where that is no time.
+    /// [`ClockError`] if that is no valid time.
     pub fn from_environment() -> Result<Self, ClockError> {
         match std::env::var_os(VARIABLE) {
             None => Ok(Self::System),
@@ -50,7 +48,7 @@ impl Clock {
         })
     }
 
-    /// The time now. A clock that is outside the years that a stamp can show is taken for the nearest of them.
+    /// The time now. A system clock outside the valid years gives the nearest valid stamp.
     #[expect(clippy::missing_panics_doc, reason = "the range is that of the type")]
     pub fn now(self) -> Timestamp {
         match self {
@@ -61,7 +59,7 @@ impl Clock {
     }
 }
 
-/// Microseconds since 1970, within what a stamp can show.
+/// Microseconds since 1970, within the range of stamps.
 fn micros(now: std::time::SystemTime) -> i64 {
     let whole = |since: std::time::Duration| i64::try_from(since.as_micros()).unwrap_or(i64::MAX);
     let micros = match now.duration_since(std::time::UNIX_EPOCH) {
@@ -78,7 +76,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_stopped_clock_shows_what_it_is_told() {
+    fn stopped_clock_shows_the_given_time() {
         let check = |text: &str, expected: &str| {
             let clock = Clock::stopped(text).expect("it is a time");
             assert_eq!(clock.now().to_string(), expected);
@@ -92,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn a_clock_that_is_far_off_has_a_stamp_all_the_same() {
+    fn clock_out_of_range_gives_the_nearest_stamp() {
         let stamp = |now| Timestamp::from_unix_micros(micros(now)).map(|stamp| stamp.to_string());
         let year = Duration::from_hours(8766);
         assert!(stamp(UNIX_EPOCH - year).is_ok_and(|stamp| stamp == "19681231T180000.000000"));

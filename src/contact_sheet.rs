@@ -1,5 +1,5 @@
-//! Contact sheets: of each of several variants the agent's view and the map, from the world and the camera that show what
-//! they are about. What is said of them is in `sheet_words.rs`; how rows become a sheet is `report`'s.
+//! Contact sheets: the agent's view and the map of several variants, choosing the world and camera that best show their
+//! differences.
 
 use driftworld_env::{Agent, Environment, Renderer, Scene, StillAgent};
 use driftworld_generator::Sampler;
@@ -13,26 +13,26 @@ use crate::sheet_words::{Worlds, alike, below_all, commonest, differences, modal
 use crate::subject::{Sight, openness, sight, subjects};
 use crate::views::{TURNS, Views, agent_camera};
 
-/// Worlds of each variant that are tried.
+/// Worlds tried per variant.
 const WORLDS: u64 = 4;
 
-/// For how many seconds moving objects draw their ways.
+/// Seconds for which paths of moving objects are drawn.
 const SECONDS: f64 = 5.0;
 
-/// A variant, what is said of it, and which of its worlds may be drawn.
+/// A variant with its caption, and the range of worlds that may be drawn.
 #[derive(Clone)]
 pub(crate) struct Shown {
     pub(crate) variant: Variant,
     pub(crate) words: String,
     pub(crate) seed: u64,
-    /// The first index, and how many there are.
+    /// The first index, and the number of worlds.
     pub(crate) index: u64,
     pub(crate) count: u64,
     pub(crate) worlds: Worlds,
 }
 
 impl Shown {
-    /// A variant as its task declares it.
+    /// A variant as declared by its task.
     pub(crate) fn declared(variant: Variant, seed: u64) -> Self {
         let words = variant.task().variant_description(variant.name());
         Self {
@@ -46,42 +46,42 @@ impl Shown {
     }
 }
 
-/// How a sheet is drawn.
+/// Options of a sheet.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Look {
-    /// Which world of each variant; chosen if absent.
+    /// World index for all variants; chosen if absent.
     pub(crate) index: Option<u64>,
-    /// By how much cameras are turned, in degrees; chosen if absent.
+    /// Camera rotation in degrees; chosen if absent.
     pub(crate) turn: Option<f32>,
     /// Height of each picture in pixels.
     pub(crate) size: u32,
-    /// Variants in each line.
+    /// Variants per line.
     pub(crate) columns: usize,
 }
 
-/// The place of a world among those that are tried, and of a camera.
+/// The index of a world among the candidates, and a camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Choice {
     pub(crate) world: u64,
     pub(crate) turn: f32,
 }
 
-/// A world with what there is to see of it.
+/// A world with what is visible in it.
 struct Candidate {
     world: World,
     scene: Scene,
     subjects: Vec<usize>,
 }
 
-/// What a sheet shows of one variant.
+/// A sheet's entry for one variant.
 pub(crate) struct Cell {
     row: SheetRow,
-    /// Whether a reader finds what it is about.
+    /// Whether its subject is visible.
     #[cfg_attr(not(test), expect(dead_code, reason = "what tests count"))]
     pub(crate) is_seen: bool,
 }
 
-/// The sheet of variants. `tick` is called after each.
+/// Draws the sheet. `tick` is called after each variant.
 pub(crate) fn contact_sheet(shown: &[Shown], look: Look, tick: &dyn Fn()) -> Result<Drawing, Failure> {
     let (cells, said) = cells(shown, look, tick)?;
     let rows: Vec<SheetRow> = cells.into_iter().map(|cell| cell.row).collect();
@@ -97,7 +97,7 @@ pub(crate) fn contact_sheet(shown: &[Shown], look: Look, tick: &dyn Fn()) -> Res
     Ok(drawing)
 }
 
-/// What is shown of each variant, and what is said below all of them.
+/// The entries of the variants, and the notes below them.
 pub(crate) fn cells(shown: &[Shown], look: Look, tick: &dyn Fn()) -> Result<(Vec<Cell>, Vec<String>), Failure> {
     let mut renderer = Renderer::default();
     let worlds = shown
@@ -115,7 +115,7 @@ pub(crate) fn cells(shown: &[Shown], look: Look, tick: &dyn Fn()) -> Result<(Vec
     let usual = commonest(&places);
     let mut cells: Vec<Cell> = Vec::new();
     let mut drawn: Vec<(Choice, Drawing, Drawing)> = Vec::new();
-    // Of which variants others have the values in brackets.
+    // Variants whose values other captions show in brackets.
     let mut bases = Vec::new();
     for (number, (shown_here, candidates)) in shown.iter().zip(&worlds).enumerate() {
         let (choice, is_seen) = choices[number];
@@ -159,14 +159,14 @@ pub(crate) fn cells(shown: &[Shown], look: Look, tick: &dyn Fn()) -> Result<(Vec
     Ok((cells, said.into_iter().collect()))
 }
 
-/// In which of the kinds of pictures that its agent gets a world is shown: colours before distances before what things are.
+/// The image kind in which a world is shown, of those that its agent gets: colours before depth before segmentation.
 fn shown_modality(world: &World) -> Modality {
     let own = &world.agent_params.modalities;
     let first = modality::ALL.into_iter().find(|kind| own.contains(kind));
     first.unwrap_or(Modality::Rgb)
 }
 
-/// The worlds of a variant that are tried, drawn when they are asked for.
+/// The candidate worlds of a variant, drawn on demand.
 struct Candidates {
     all: Vec<Option<Candidate>>,
 }
@@ -194,7 +194,7 @@ impl Candidates {
         Ok(Self { all })
     }
 
-    /// The world at a place; where there are fewer, they are taken in turn.
+    /// The candidate at an index; wraps around if there are fewer.
     fn at(&self, place: u64) -> &Candidate {
         let found = self.all.get(place as usize % self.all.len());
         let found = found.and_then(Option::as_ref).or_else(|| self.all[0].as_ref());
@@ -207,8 +207,8 @@ impl Candidates {
         sight(renderer, &candidate.scene, &camera, &candidate.subjects)
     }
 
-    /// The choice of all if it shows what this variant is about; else another camera, else another world; where nothing shows it, the
-    /// most open view of the world of all.
+    /// The joint choice if it shows this variant's subject; else another camera, else another world; if none shows it, the most
+    /// open view of the joint world.
     fn own_choice(&self, renderer: &mut Renderer, joint: Choice, look: Look) -> Result<(Choice, bool), Failure> {
         if self.sight(renderer, joint)?.is_enough() {
             return Ok((joint, true));
@@ -230,7 +230,7 @@ impl Candidates {
         Ok((self.most_open(renderer, joint, look)?, false))
     }
 
-    /// The camera before which there is most room; of equals that of all, then the first.
+    /// The camera with the most free space; ties go to the joint choice, then to the first.
     fn most_open(&self, renderer: &mut Renderer, joint: Choice, look: Look) -> Result<Choice, Failure> {
         let scene = &self.at(joint.world).scene;
         let mut best = (0.0, joint);
@@ -249,8 +249,7 @@ fn turns(look: Look) -> Vec<f32> {
     look.turn.map_or_else(|| TURNS.to_vec(), |turn| vec![turn])
 }
 
-/// The world and the camera that show what most of the variants are about, and of each as many things as possible up to
-/// three; of equals the first.
+/// The world and the camera that show the subject of most variants, and up to three things for each; ties go to the first.
 fn joint_choice(renderer: &mut Renderer, worlds: &[Candidates], look: Look) -> Result<Choice, Failure> {
     let most = worlds.iter().map(|candidates| candidates.all.len()).max().unwrap_or(1) as u64;
     let mut best = (
@@ -272,7 +271,7 @@ fn joint_choice(renderer: &mut Renderer, worlds: &[Candidates], look: Look) -> R
             if (cells, things) > best.0 {
                 best = ((cells, things), choice);
             }
-            // Two things in each cell are enough.
+            // Two things per entry are enough.
             if cells as usize == worlds.len() && things >= 2 * cells {
                 return Ok(best.1);
             }
@@ -281,7 +280,7 @@ fn joint_choice(renderer: &mut Renderer, worlds: &[Candidates], look: Look) -> R
     Ok(best.1)
 }
 
-/// The ways of what moves in a world while the agent stands still.
+/// The paths of moving objects while the agent stands still.
 pub(crate) fn ways(world: &World) -> Result<Moves, Failure> {
     let mut moves = Moves::none(world);
     let moving: Vec<usize> = (world.objects.iter().enumerate())
@@ -305,7 +304,7 @@ pub(crate) fn ways(world: &World) -> Result<Moves, Failure> {
             let object = &environment.objects()[*index];
             let near =
                 |from: &[f32; 2]| (from[0] - object.position[0]).abs() + (from[1] - object.position[1]).abs() < 3.0;
-            // What was taken away comes back elsewhere: that is no way.
+            // An object that was removed and respawned elsewhere has no path in between.
             if object.present && trail.last().is_some_and(near) {
                 trail.push(object.position);
             }
@@ -342,7 +341,7 @@ mod tests {
         (cells.iter().filter(|cell| cell.is_seen).count(), cells.len())
     }
 
-    /// Each picture of the built-in tasks shows what it is about.
+    /// Each picture of the built-in tasks shows its subject.
     #[test]
     fn every_cell_of_the_built_in_tasks_shows_its_subject() {
         for name in tasks::built_in_names() {
@@ -351,7 +350,7 @@ mod tests {
         }
     }
 
-    /// In mazes and rooms walls hide what a world is about from its start, in every world that is tried: the map shows it.
+    /// In mazes and rooms, walls hide the subject from the start position in every candidate world: the map shows it.
     #[test]
     fn most_cells_of_the_example_worlds_show_their_subject() {
         let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/worlds");
@@ -380,14 +379,14 @@ mod tests {
             .map(|cell| format!("{}: {}", cell.row.title, cell.row.words))
             .collect();
         captions.extend(said);
-        // What belongs together is shown so.
+        // Shows non-breaking spaces.
         insta::assert_snapshot!(captions.join("\n").replace('\u{a0}', "~"));
     }
 
-    /// Where nothing shows what a world is about, no turn shows more room than the one that is taken; and whatever is said of a cell
-    /// below the sheet or in its caption is so of it.
+    /// If no view shows the subject, no other turn has more free space than the chosen one; and every note on an entry, below
+    /// the sheet or in its caption, is true.
     #[test]
-    fn blind_cells_have_the_most_open_view_and_say_which() {
+    fn blind_cells_have_the_most_open_view_and_are_named() {
         let task = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/worlds/maze.json");
         let shown = of_task(&tasks::task(task).expect("it is a task"), 8);
         let mut renderer = Renderer::default();
@@ -425,7 +424,7 @@ mod tests {
 
     /// A variant is shown as its agent sees it.
     #[test]
-    fn who_sees_no_colors_is_shown_none() {
+    fn colour_blind_agents_are_shown_no_colours() {
         let task = tasks::task("moving_object").expect("it is built in");
         let named = ["wandering", "depth_only", "rgb_only"];
         let shown = named.map(|name| Shown::declared(task.variant(name).expect("it is declared"), 0));
@@ -448,9 +447,9 @@ mod tests {
         }
     }
 
-    /// Whose values stand in brackets is said of each task that has some, and of no other.
+    /// The sheet explains brackets for each task that uses them, and for no other.
     #[test]
-    fn brackets_are_explained_where_there_are_some() {
+    fn brackets_are_explained_where_used() {
         let said = |names: &[&str]| {
             let shown: Vec<Shown> = (names.iter())
                 .map(|name| Shown::declared(tasks::variant(name).expect("it is declared"), 0))
@@ -475,7 +474,7 @@ mod tests {
     }
 
     #[test]
-    fn what_moves_leaves_a_way_and_what_stands_none() {
+    fn moving_objects_leave_a_path_and_static_ones_none() {
         let world = |name: &str| {
             let variant = tasks::variant(name).expect("it is built in");
             Sampler::new(&variant, 0).world(0).expect("it can be drawn")
@@ -488,7 +487,7 @@ mod tests {
                 .sum()
         };
         assert!(!moves.trails.is_empty());
-        // Six metres a second, for as long as said.
+        // Six metres per second, for the given time.
         assert!(
             moves
                 .trails

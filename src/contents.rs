@@ -1,5 +1,5 @@
-//! [`Contents`]: what a file or folder holds, as far as its keys show it, so that a command that was given another kind of document can
-//! say so. Whether the document is sound is found out by whoever reads it.
+//! [`Contents`]: recognises the kind of a file or folder by its keys, so that a command can report a document of the wrong
+//! kind.
 
 use std::path::Path;
 
@@ -7,31 +7,31 @@ use crate::log_folders::has_info;
 use crate::top_level::TopLevel;
 use driftworld_text::ShownPath;
 
-/// What a file or folder holds.
+/// The kind of a file or folder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Contents {
     /// A task spec.
     Task,
-    /// A world, in our form or the original's.
+    /// A world, in our format or the original's.
     World,
-    /// A scenario, in our form or the original's.
+    /// A scenario, in our format or the original's.
     Scenario,
     /// Layouts.
     Maps,
-    /// How lifetimes are scored: l2metrics' settings, or ours.
+    /// Scoring settings: l2metrics', or ours.
     Settings,
     /// A distance matrix.
     Matrix,
-    /// The folder of a log, or the file that says what is in one.
+    /// The folder of a log, or its info file.
     Log,
     /// A folder that is no log.
     Folder,
 }
 
 impl Contents {
-    /// What a JSON text shows itself to be; `None` for one that shows nothing, or is no JSON.
+    /// The recognised kind of a JSON text; `None` if unrecognised, or not JSON.
     pub fn of_text(text: &str) -> Option<Self> {
-        // A text that is too long is refused by whoever reads it.
+        // A text that is too long is refused by its reader.
         let keys = TopLevel::of(text)?;
         let has = |wanted: &[&str]| keys.has_any(wanted);
         if has(&["blocks"]) || keys.is_l2explorer_scenario() {
@@ -64,13 +64,13 @@ impl Contents {
         }
     }
 
-    /// What a folder is; `None` for anything else.
+    /// The kind of a folder; `None` for anything else.
     pub fn of_folder(path: &Path) -> Option<Self> {
         path.is_dir()
             .then(|| if has_info(path) { Self::Log } else { Self::Folder })
     }
 
-    /// What messages call it.
+    /// Its name in messages.
     pub fn name(self) -> &'static str {
         match self {
             Self::Task => "a task spec",
@@ -84,7 +84,7 @@ impl Contents {
         }
     }
 
-    /// What to do about it where one of `wanted` was asked for: how to make that, or else what takes this.
+    /// Advice if one of `wanted` was expected: how to make that, or what accepts this.
     fn advice(self, wanted: &[Self], path: &Path) -> String {
         let path = path.shown();
         match self {
@@ -109,7 +109,7 @@ impl Contents {
         }
     }
 
-    /// The names of several kinds, as messages list what was expected.
+    /// The names of several kinds, as listed in messages.
     pub(crate) fn either(kinds: &[Self]) -> String {
         let names: Vec<&str> = kinds.iter().map(|kind| kind.name()).collect();
         match names.split_last() {
@@ -119,7 +119,7 @@ impl Contents {
     }
 }
 
-/// What was found in place of a document of another kind. Says the file, both kinds, and what to do.
+/// The error for a document of another kind. Names the file, both kinds, and what to do.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{path}: found {found}, expected {expected}; {advice}", found = found.name())]
 pub struct OtherContents {
@@ -130,7 +130,7 @@ pub struct OtherContents {
 }
 
 impl OtherContents {
-    /// What is wrong where `found` is none of those that are wanted; `None` where it is one, or shows nothing.
+    /// The error if `found` is none of the wanted kinds; `None` if it is one, or is unrecognised.
     pub(crate) fn check(path: &Path, found: Option<Contents>, wanted: &[Contents]) -> Option<Self> {
         let found = found.filter(|found| !wanted.contains(found))?;
         Some(Self {
@@ -141,7 +141,7 @@ impl OtherContents {
         })
     }
 
-    /// What the document is.
+    /// The kind found.
     pub fn found(&self) -> Contents {
         self.found
     }
@@ -152,7 +152,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_a_text_is_shows_in_its_keys() {
+    fn kind_is_recognised_by_keys() {
         let check = |text: &str, expected: Option<Contents>| assert_eq!(Contents::of_text(text), expected, "{text}");
         check(r#"{ "name": "s", "blocks": [] }"#, Some(Contents::Scenario));
         check(r#"{ "maps": [] }"#, Some(Contents::Maps));
@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wanted_or_shows_nothing_is_let_through() {
+    fn wanted_or_unrecognised_kinds_pass() {
         let path = Path::new("a.json");
         assert_eq!(OtherContents::check(path, None, &[Contents::Task]), None);
         assert_eq!(

@@ -1,5 +1,4 @@
-//! Distances between two of variants and worlds, and every distance among variants, of one task or of several. The measures are
-//! `similarity`'s, worlds are drawn by `generator`; how worlds are compared in pairs is in `distances/pairs.rs`.
+//! Distances between two variants or worlds, and all distances among variants, of one task or of several.
 
 mod matrix;
 mod pairs;
@@ -19,48 +18,48 @@ use crate::picture_distance::PictureDistanceError;
 pub use matrix::{labelled_matrix, variant_matrix, variant_matrix_while};
 use pairs::{Means, Pairs};
 
-/// How many worlds of each variant are compared by what is quick to compare.
+/// Worlds compared per variant by fast measures.
 pub const NUM_WORLDS: u64 = 16;
 
-/// How many worlds of each variant are compared by pictures and by dynamics, which take longer.
+/// Worlds compared per variant by pictures and by dynamics, which take longer.
 pub const NUM_SLOW_WORLDS: u64 = 4;
 
-/// How many worlds of each variant are compared by placements: of few, laws of places seem farther apart than they are.
+/// Worlds compared per variant by placements: with few worlds, distributions of places seem farther apart than they are.
 pub const NUM_PLACED_WORLDS: u64 = 64;
 
-/// What keeps two from being compared.
+/// Errors raised while comparing two things.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum DistancesError {
     /// A world of a variant cannot be drawn.
     #[error(transparent)]
     Generator(#[from] GeneratorError),
-    /// Too many variants, or a weight that is none.
+    /// Too many variants, or an invalid weight.
     #[error(transparent)]
     Similarity(#[from] SimilarityError),
     /// A world cannot be run.
     #[error(transparent)]
     Env(#[from] EnvError),
-    /// Worlds cannot be compared by how they look.
+    /// Worlds cannot be compared by their looks.
     #[error(transparent)]
     Pictures(#[from] PictureDistanceError),
-    /// The numbers of the worlds to compare go beyond the largest there is.
+    /// The indices of the worlds to compare exceed the largest possible one.
     #[error("worlds: found index {index} and {worlds} worlds, expected a sum below 2^64; start at a smaller index")]
     TooFar {
-        /// The number of the first world.
+        /// The index of the first world.
         index: u64,
-        /// How many worlds.
+        /// Number of worlds.
         worlds: u64,
     },
-    /// What two are to be compared by has no meaning for them, or nobody said by what.
+    /// The measure is not applicable, or none was given.
     #[error("by: found {found}, expected {expected}")]
     By {
-        /// What was asked for, and of what.
+        /// The request.
         found: String,
-        /// What would do.
+        /// The applicable measures.
         expected: &'static str,
     },
-    /// Whoever asked for the distances no longer wants them.
+    /// The caller cancelled the calculation.
     #[error("measuring was interrupted")]
     Interrupted,
 }
@@ -72,7 +71,7 @@ const NAME_IT: &str = "what they are compared by: worlds, pictures, occupancy, p
                        behavior; \
                        parameters compare variants of one task";
 
-/// By what some variants can be compared where nobody says: what their task declares if all are of one task, else worlds.
+/// The default measure of some variants: the one that their task declares if all are of one task, else worlds.
 pub fn fitting<'a>(variants: impl IntoIterator<Item = &'a Variant>) -> By {
     let mut variants = variants.into_iter();
     let Some(first) = variants.next() else {
@@ -85,7 +84,7 @@ pub fn fitting<'a>(variants: impl IntoIterator<Item = &'a Variant>) -> By {
     }
 }
 
-/// One of two that are compared.
+/// One of two things to compare.
 #[derive(Clone, Debug)]
 pub enum Side {
     /// A world.
@@ -94,21 +93,21 @@ pub enum Side {
     Variant(Variant),
 }
 
-/// By what two are compared, and which worlds are drawn for it.
+/// The measure, and the worlds drawn for it.
 #[derive(Clone, Debug, Default)]
 pub struct Sample {
-    /// By what; by default what variants of one task declare (parameters where they say nothing), else worlds.
+    /// The measure; by default the one declared by the variants' common task (parameters if it declares none), else worlds.
     pub by: Option<By>,
-    /// How many of each, from 1; by default [`NUM_WORLDS`]; [`NUM_SLOW_WORLDS`] by pictures and dynamics, [`NUM_PLACED_WORLDS`] by placements. If absent,
-    /// variants of one task are compared by what they declare.
+    /// Worlds of each, from 1; by default [`NUM_WORLDS`]; [`NUM_SLOW_WORLDS`] by pictures and dynamics, [`NUM_PLACED_WORLDS`]
+    /// by placements. If absent, variants of one task are compared by what they declare.
     pub worlds: Option<u64>,
     /// The seed; default 0.
     pub seed: u64,
-    /// The number of the first; default 0.
+    /// The index of the first; default 0.
     pub index: u64,
-    /// In which unit; only parameters have shares.
+    /// The unit; shares exist only by parameters.
     pub scale: Scale,
-    /// Where worlds take their assets from, by pictures, dynamics and behavior; default the built-in ones.
+    /// The source of the worlds' assets, by pictures, dynamics and behavior; default the built-in ones.
     pub catalogue: Catalogue,
 }
 
@@ -119,16 +118,16 @@ pub enum Scale {
     /// 1 is one parameter moved over its whole range.
     #[default]
     Units,
-    /// 1 is the diameter of the task: all parameters moved over their whole ranges. In `0..=1`, but for drawn parameters that go
-    /// farther together than alone.
+    /// 1 is the diameter of the task: all parameters moved over their whole ranges. In `0..=1`, except for random parameters
+    /// that can go farther together than alone.
     Share,
 }
 
 impl Scale {
-    /// The one of this name.
+    /// The scale with this name.
     ///
     /// # Errors
-    /// What was found, and the names there are.
+    /// The found and the expected names.
     pub fn from_name(name: &str) -> Result<Self, String> {
         let names = Self::VARIANTS.join(" or ");
         name.parse().map_err(|_| format!("found {name:?}, expected {names}"))
@@ -136,7 +135,7 @@ impl Scale {
 }
 
 impl Sample {
-    /// All at their defaults but by what is compared.
+    /// All defaults, with this measure.
     pub fn by(by: By) -> Self {
         Self {
             by: Some(by),
@@ -144,7 +143,7 @@ impl Sample {
         }
     }
 
-    /// Refuses shares of what has no diameter.
+    /// Refuses shares of a measure without a diameter.
     fn check_scale(&self, by: By) -> Result<(), DistancesError> {
         if self.scale == Scale::Units || by == By::Parameters {
             return Ok(());
@@ -155,7 +154,7 @@ impl Sample {
         })
     }
 
-    /// How many worlds of each are compared by this.
+    /// Number of worlds compared by this measure.
     fn count(&self, by: By) -> u64 {
         let usual = match by.subject() {
             "pictures" | "dynamics" => NUM_SLOW_WORLDS,
@@ -165,7 +164,7 @@ impl Sample {
         self.worlds.unwrap_or(usual)
     }
 
-    /// Refuses more worlds than experts, tables or pictures are made of in a sensible time.
+    /// Refuses more worlds than experts, tables or pictures can handle in a reasonable time.
     fn check_count(by: By, count: u64) -> Result<(), DistancesError> {
         let is_slow = matches!(by.subject(), "behavior" | "dynamics" | "pictures");
         if !is_slow || count <= MAX_BEHAVIOR_WORLDS {
@@ -188,7 +187,7 @@ impl Sample {
         Ok(worlds.collect::<Result<_, _>>()?)
     }
 
-    /// Worlds of a variant; a world as often as there are of the other.
+    /// Worlds of a variant; a single world is repeated `count` times.
     fn of(&self, side: &Side, count: u64) -> Result<Vec<World>, DistancesError> {
         match side {
             Side::World(world) => Ok((0..count).map(|_| (**world).clone()).collect()),
@@ -197,28 +196,28 @@ impl Sample {
     }
 }
 
-/// How far apart two are, and how they were compared.
+/// The distance of two things, and how they were compared.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Compared {
-    /// How far.
+    /// The distance.
     pub distance: Distance,
-    /// By what.
+    /// The measure.
     pub by: By,
-    /// By what, from how many worlds, and what else is to be known of the number, in words.
+    /// The measure, the number of worlds, and further notes on the number, as text.
     pub description: String,
 }
 
-/// How far apart two are.
+/// The distance of two variants or worlds.
 ///
-/// Two variants of one task are compared by what their task declares, parameters where it says nothing, unless `sample` asks for
-/// something else; two worlds as they are; others by worlds drawn under one seed, the first with the first and so on.
-/// `lay_over` is laid over the weights that the task declares. `behavior` and `dynamics:bisimulation` are of the whole decision
+/// Two variants of one task are compared by the measure that their task declares, by default parameters, unless `sample`
+/// requests another; two worlds directly; anything else by worlds drawn under one seed, the first with the first and so on.
+/// `lay_over` overrides the weights that the task declares. `behavior` and `dynamics:bisimulation` compare the whole decision
 /// process: they have no elements and no weights.
 ///
 /// # Errors
-/// [`DistancesError::Generator`] for worlds that cannot be drawn, [`DistancesError::Similarity`] for what `lay_over` says,
-/// [`DistancesError::TooFar`], [`DistancesError::By`] for parameters of what has none in common, [`DistancesError::Env`] and
-/// [`DistancesError::Pictures`] for worlds that cannot be run or looked at.
+/// [`DistancesError::Generator`] for worlds that cannot be drawn, [`DistancesError::Similarity`] from `lay_over`,
+/// [`DistancesError::TooFar`], [`DistancesError::By`] for parameters of different tasks, [`DistancesError::Env`] and
+/// [`DistancesError::Pictures`] for worlds that cannot be run or rendered.
 ///
 /// # Example
 /// ```
@@ -276,7 +275,7 @@ pub fn between(
         });
     }
     sample.check_scale(by)?;
-    // Two worlds are one pair, however many are asked for.
+    // Two worlds are one pair, whatever the requested number.
     let are_worlds = matches!((a, b), (Side::World(_), Side::World(_)));
     let are_variants = matches!((a, b), (Side::Variant(_), Side::Variant(_)));
     let count = if are_worlds { 1 } else { sample.count(by) };
@@ -323,7 +322,7 @@ pub fn between(
     })
 }
 
-/// What elements weigh in the total, if not all 1.
+/// The weights of elements in the total, if not all 1.
 fn weighing(weights: &Weights) -> String {
     let other = Element::ALL.into_iter().filter(|element| weights.of(*element) != 1.0);
     let other: Vec<String> = other

@@ -1,4 +1,4 @@
-//! Documents as files and texts: what one is, seen from its keys, and all that is wrong with it. What may stand in each is `spec`'s.
+//! Documents as files and texts: recognises their kind by keys, and checks them.
 
 use std::collections::BTreeMap;
 use std::io::Read;
@@ -17,14 +17,14 @@ use crate::contents::{Contents, OtherContents};
 use crate::tasks::TaskError;
 use crate::top_level::TopLevel;
 
-/// Why a document cannot be read from its file.
+/// Errors raised while reading a document from its file.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum DocumentError {
-    /// The file cannot be read, is no regular file, is too large or is no text.
+    /// The file cannot be read, is no regular file, is too large, or is not text.
     #[error(transparent)]
     File(#[from] FileError),
-    /// Standard input cannot be read, is too long or is no text.
+    /// Standard input cannot be read, is too long, or is not text.
     #[error("standard input: {0}")]
     StandardInput(String),
     /// The document is of another kind.
@@ -35,22 +35,22 @@ pub enum DocumentError {
     Spec(#[from] SpecError),
 }
 
-/// What stands for standard input where the command was told so: what was read of it already.
+/// Standard input, if the command accepts it: the text read so far.
 #[expect(clippy::option_option, reason = "whether it may be read, and whether it was")]
 static STANDARD_INPUT: Mutex<Option<Option<Result<String, String>>>> = Mutex::new(None);
 
-/// From now on `-` and `/dev/stdin` are the text of standard input, which is read once however often it is asked for.
+/// Makes `-` and `/dev/stdin` stand for the text of standard input, which is read once and cached.
 pub(crate) fn accept_standard_input() {
     *STANDARD_INPUT.lock().unwrap_or_else(PoisonError::into_inner) = Some(None);
 }
 
-/// Whether a path stands for standard input, in the command.
+/// Whether a path means standard input, in the command.
 pub(crate) fn is_standard_input(path: &Path) -> bool {
     let is_meant = path == Path::new("-") || path == Path::new("/dev/stdin");
     is_meant && STANDARD_INPUT.lock().unwrap_or_else(PoisonError::into_inner).is_some()
 }
 
-/// What messages call a document.
+/// The name of a document in messages.
 pub(crate) fn name_of(path: &Path) -> String {
     if is_standard_input(path) {
         "standard input".to_owned()
@@ -59,13 +59,13 @@ pub(crate) fn name_of(path: &Path) -> String {
     }
 }
 
-/// The folder that a file is in; of a bare name the working folder.
+/// The folder of a file; for a bare name the working folder.
 pub(crate) fn folder_of(file: &Path) -> &Path {
     let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty());
     folder.unwrap_or(Path::new("."))
 }
 
-/// The text of standard input, however often it is asked for.
+/// The text of standard input, cached.
 fn standard_input() -> Result<String, DocumentError> {
     let mut input = STANDARD_INPUT.lock().unwrap_or_else(PoisonError::into_inner);
     let read = || {
@@ -87,11 +87,11 @@ fn standard_input() -> Result<String, DocumentError> {
     text.clone().map_err(DocumentError::StandardInput)
 }
 
-/// The text of a file of at most [`MAX_BYTES`], without the byte order mark that some editors put in front. In the command `-` is
+/// The text of a file of at most [`MAX_BYTES`], without the byte order mark that some editors add. In the command, `-` is
 /// standard input.
 ///
 /// # Errors
-/// [`DocumentError::File`], also for what is no regular file; [`DocumentError::StandardInput`].
+/// [`DocumentError::File`], also if it is no regular file; [`DocumentError::StandardInput`].
 pub fn text(path: &Path) -> Result<String, DocumentError> {
     if is_standard_input(path) {
         return standard_input();
@@ -99,10 +99,10 @@ pub fn text(path: &Path) -> Result<String, DocumentError> {
     Ok(driftworld_files::text(path, MAX_BYTES as u64)?)
 }
 
-/// The text of a file that should hold one of several kinds of documents.
+/// The text of a file that should be one of several kinds of documents.
 ///
 /// # Errors
-/// As [`text`], and [`DocumentError::OtherContents`] for a folder, and for a text that shows itself to be of another kind.
+/// As [`text`], and [`DocumentError::OtherContents`] for a folder, and for a text of a recognised other kind.
 pub fn text_of(path: &Path, wanted: &[Contents]) -> Result<String, DocumentError> {
     if let Some(other) = OtherContents::check(path, Contents::of_folder(path), wanted) {
         return Err(other.into());
@@ -114,7 +114,7 @@ pub fn text_of(path: &Path, wanted: &[Contents]) -> Result<String, DocumentError
     }
 }
 
-/// What a document is.
+/// The kind of a document.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A task spec.
@@ -125,14 +125,14 @@ pub enum Kind {
     Scenario,
     /// Layouts.
     Maps,
-    /// A world as L2Explorer wrote it.
+    /// A world in L2Explorer's format.
     L2ExplorerWorld,
-    /// A scenario as L2Explorer wrote it.
+    /// A scenario in L2Explorer's format.
     L2ExplorerScenario,
 }
 
 impl Kind {
-    /// Every kind, with the word by which programs ask for it and with what messages call it.
+    /// Every kind, with its word for programs and its name in messages.
     const WORDS: [(Self, &'static str, &'static str); 6] = [
         (Self::Task, "task", "task spec"),
         (Self::World, "world", "world"),
@@ -142,8 +142,8 @@ impl Kind {
         (Self::L2ExplorerScenario, "l2explorer-scenario", "L2Explorer scenario"),
     ];
 
-    /// What a text is, seen from its keys: `blocks` make a scenario, `scenario` one of L2Explorer's, `maps` a maps file, `name`,
-    /// `parameters` or `groups` a task spec, anything else a world.
+    /// The kind of a text, recognised by its keys: `blocks` make a scenario, `scenario` one of L2Explorer's, `maps` a maps
+    /// file, `name`, `parameters` or `groups` a task spec, anything else a world.
     pub fn of(text: &str) -> Self {
         let keys = TopLevel::of(text).unwrap_or_default();
         if keys.has("blocks") {
@@ -159,12 +159,12 @@ impl Kind {
         }
     }
 
-    /// What messages call it.
+    /// Its name in messages.
     pub fn name(self) -> &'static str {
         Self::WORDS[self as usize].2
     }
 
-    /// The word by which programs ask for it.
+    /// Its word for programs.
     pub fn word(self) -> &'static str {
         Self::WORDS[self as usize].1
     }
@@ -183,23 +183,23 @@ impl FromStr for Kind {
     }
 }
 
-/// What a document came to when it was checked.
+/// The result of checking a document.
 #[derive(Debug)]
 pub struct Checked {
-    /// What it was taken for.
+    /// The recognised kind.
     pub kind: Kind,
-    /// What is odd about it.
+    /// Warnings.
     pub warnings: Vec<String>,
-    /// What is wrong with it; nothing where it is valid.
+    /// The error; `None` if it is valid.
     pub error: Option<SpecError>,
-    /// Two variants of a scenario that is else valid and that no log could tell apart.
+    /// Two variants of an otherwise valid scenario that have the same name in logs.
     pub same_log_name: Option<CurriculumError>,
-    /// Tasks that a scenario names and that were not found or not read, in sentences; their variants were not checked.
+    /// Tasks of a scenario that were not found or not readable, as sentences; their variants were not checked.
     pub missing_tasks: Vec<String>,
 }
 
-/// Checks a document. `name` is what messages call it; `task` finds the tasks that a scenario names, whose variants are checked
-/// where it finds them; `classes` are those that objects of tasks and of our worlds may be of.
+/// Checks a document. `name` is its name in messages; `task` finds the tasks that a scenario names, whose variants are checked
+/// if found; `classes` are those allowed for objects of tasks and of our worlds.
 pub fn check(
     name: &str,
     text: &str,
@@ -246,7 +246,7 @@ pub fn check(
             match read {
                 Ok(scenario) => {
                     same_log_name = driftworld_curriculum::same_log_name(&scenario, |called| task(called).ok());
-                    // What a run would refuse, whose tasks have objects that nobody knows.
+                    // A run would refuse tasks with objects of unknown classes.
                     let mut tasks = found.iter();
                     tasks.find_map(|(called, task)| crate::tasks::check_classes(called, task, classes).err())
                 }
@@ -255,7 +255,7 @@ pub fn check(
         }
         Kind::L2ExplorerWorld => {
             let read = World::from_l2explorer(name, text);
-            // The original draws what it does not know, too.
+            // The original draws unknown classes, too.
             if let Ok((world, _)) = &read {
                 let unknown = world.unknown_classes(classes).into_iter();
                 let unknown =
@@ -275,7 +275,7 @@ pub fn check(
     }
 }
 
-/// Warns of an agent that starts inside a solid object of a valid world: bodies are known to the catalogue alone.
+/// Warns if the agent of a valid world starts inside a solid object: only the catalogue knows bodies.
 pub fn start_inside(name: &str, text: &str, catalogue: &Catalogue) -> Option<String> {
     let world = World::from_json(name, text).ok()?;
     let warnings = Environment::with_catalogue(world, catalogue.clone()).warnings();
@@ -291,7 +291,7 @@ pub fn start_inside(name: &str, text: &str, catalogue: &Catalogue) -> Option<Str
     Some(format!("{name}: {found}"))
 }
 
-/// Parameters that say that they touch nothing.
+/// Parameters that declare no effect.
 fn without_elements(document: &str, task: &TaskSpec) -> Vec<String> {
     let none = |(_, parameter): &(&String, &Parameter)| parameter.role != Role::Fixed && parameter.affects.is_empty();
     let odd = task.parameters().iter().filter(none).map(|(name, _)| {
@@ -303,7 +303,7 @@ fn without_elements(document: &str, task: &TaskSpec) -> Vec<String> {
     odd.collect()
 }
 
-/// Variants of a task that no scenario can hold together: a log would call them by one name.
+/// Variants of a task that cannot be in one scenario, because their names in logs are equal.
 fn alike_in_logs(document: &str, task: &TaskSpec) -> Vec<String> {
     let mut known: BTreeMap<String, &str> = BTreeMap::new();
     let names = task.variant_names().into_iter();
@@ -318,7 +318,7 @@ fn alike_in_logs(document: &str, task: &TaskSpec) -> Vec<String> {
     alike.collect()
 }
 
-/// What is wrong with a document; what is odd about it goes to the warnings.
+/// Returns the error of a document; passes its warnings on.
 fn take_warnings<T, W: ToString>(
     read: Result<(T, Vec<W>), SpecError>,
     warnings: &mut Vec<String>,
@@ -338,7 +338,7 @@ mod tests {
     use crate::tasks;
 
     #[test]
-    fn what_a_document_is_is_seen_from_its_keys() {
+    fn kind_is_recognised_by_keys() {
         let check = |text: &str, expected: Kind| assert_eq!(Kind::of(text), expected, "{text}");
         check(r#"{ "blocks": [] }"#, Kind::Scenario);
         check(r#"{ "maps": [] }"#, Kind::Maps);
@@ -349,7 +349,7 @@ mod tests {
     }
 
     #[test]
-    fn every_kind_is_asked_for_by_its_word() {
+    fn every_kind_is_found_by_its_word() {
         for (kind, word, _) in Kind::WORDS {
             assert_eq!((kind.word(), word.parse()), (word, Ok(kind)));
         }
@@ -358,7 +358,7 @@ mod tests {
     }
 
     #[test]
-    fn what_means_to_move_and_stands_still_is_remarked_and_what_stands_in_walls() {
+    fn immobile_movers_and_objects_in_walls_cause_remarks() {
         let text = r#"{ "environment_params": { "predefined_map": 2 }, "objects": [
             { "class": "car", "coordinates": [0, 0], "motion_model": "predator" },
             { "class": "car", "coordinates": [0, 0], "motion_model": "patrol", "speed": 1 },
@@ -383,7 +383,7 @@ mod tests {
     }
 
     #[test]
-    fn variants_of_a_scenario_are_checked_where_its_task_is_found() {
+    fn scenario_variants_are_checked_if_the_task_is_found() {
         let text = r#"{ "name": "s", "blocks": [{ "type": "learning", "regimes": [
             { "task": "find_objects", "variant": "rde", "count": 1 }, { "task": "nowhere", "variant": "x", "count": 1 }] }] }"#;
         let found = check("s.json", text, Kind::Scenario, &mut tasks::task, &Classes::default());

@@ -1,23 +1,22 @@
-//! How differently two worlds answer to what an agent does, by the Wasserstein MDP distance and by bisimulation. A world as tables is
-//! `env`'s, the distances are `similarity`'s.
+//! Compares the dynamics of two worlds, by the Wasserstein MDP distance and by bisimulation.
 
 use driftworld_env::{Abstraction, Catalogue, EnvError, WorldAbstraction};
 use driftworld_similarity::{Bisimulation, Mdp, SimilarityError};
 use driftworld_spec::World;
 
-/// How many points count 1.
+/// Points that count 1.
 const POINTS: f64 = 100.0;
 
-/// How many metres count 1.
+/// Metres that count 1.
 const METRES: f64 = 10.0;
 
-/// What the next action counts of this one in the bisimulation.
+/// Discount of the bisimulation.
 const DISCOUNT: f64 = 0.9;
 
-/// How many pairs of states the bisimulation looks at. With fewer than there are its bounds are apart.
+/// Most pairs of states that the bisimulation visits. With fewer than all, its bounds differ.
 const MAX_PAIRS: usize = 1 << 17;
 
-/// The sides of the area that both arenas lie in, around the origin.
+/// The sides of the area around the origin that contains both arenas.
 pub(crate) fn common_area(a: &World, b: &World) -> [f64; 2] {
     let sides = [a, b].map(|world| world.environment_params.arena_size());
     [0, 1].map(|axis| sides[0][axis].max(sides[1][axis]))
@@ -33,16 +32,16 @@ pub(crate) fn tables(world: &World, area: [f64; 2], catalogue: &Catalogue) -> Re
     abstraction.of(world)
 }
 
-/// How differently one action ends in two worlds that are tables over the same cells, on average: 1 is 100 points, 10 m, half a
-/// turn, or an end of the episode in one world alone. What of it is in what actions pay, and what in where they lead.
+/// The mean difference between the outcomes of one action in two worlds tabulated over the same cells: 1 is 100 points, 10 m,
+/// half a turn, or an end of the episode in only one world. Returns the share due to rewards and the share due to successors.
 ///
-/// The mean is over all actions and over the states that actions lead to from the start of either world. Where the agent stands
-/// after an action is compared by the place itself and not by its cell, so that small changes count little and not nothing.
-/// Where it has no room in one world, it stays there, unpaid. Shorter time steps with as long a hold change no straight way; a
-/// curve they change by some centimetres, for an agent turns before it goes in each time step.
+/// The mean is over all actions and over the states that actions lead to from the start of either world. The agent's place
+/// after an action is compared by position and not by cell, so that small changes count a little. Where it has no room in one
+/// world, it stays there, unpaid. Shorter time steps with proportionally longer holds change no straight path; they change a
+/// curve by some centimetres, because an agent turns before it moves in each time step.
 ///
-/// Symmetric and 0 for equal worlds. The states of the mean depend on the pair, so a detour may be shorter. What tables do not
-/// hold is not seen: looks, limits of time, what comes of taking or pushing things beyond the one action.
+/// Symmetric, and 0 for equal worlds. The averaged states depend on the pair, so the triangle inequality may fail. Ignores what
+/// tables do not contain: looks, time limits, and the consequences of taking or pushing things beyond one action.
 pub(crate) fn w1(a: &WorldAbstraction, b: &WorldAbstraction) -> Result<(f64, f64), SimilarityError> {
     let reached = a.reached().into_iter().zip(b.reached());
     let counted: Vec<bool> = reached.map(|(in_a, in_b)| in_a || in_b).collect();
@@ -51,14 +50,14 @@ pub(crate) fn w1(a: &WorldAbstraction, b: &WorldAbstraction) -> Result<(f64, f64
     })
 }
 
-/// The bisimulation distance between the starts of two worlds that are tables over the same cells, in shares of 100 points: how
-/// much what is paid can differ, however the same actions go on. By cells, and so blind to what stays within one.
+/// The bisimulation distance between the starts of two worlds tabulated over the same cells, as a share of 100 points: the
+/// largest difference in discounted rewards under equal actions. By cells, so it ignores changes within one.
 pub(crate) fn bisimulation(a: &WorldAbstraction, b: &WorldAbstraction) -> Result<Bisimulation, SimilarityError> {
     let starts = (a.start, b.start);
     driftworld_similarity::bisimulation(&process(a)?, &process(b)?, starts, DISCOUNT, MAX_PAIRS)
 }
 
-/// How far apart one state and action lead.
+/// The distance between the successors of one state and action.
 fn landed_apart(a: &WorldAbstraction, b: &WorldAbstraction, row: usize) -> f64 {
     match [a, b].map(|of| of.successors[row] as usize == of.grid.end()) {
         [true, true] => 0.0,
@@ -136,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn what_no_action_answers_to_is_zero() {
+    fn irrelevant_changes_have_distance_0() {
         assert!(is_zero(&from_base(|_| ())));
         assert!(is_zero(&from_base(|world| world.objects.reverse())));
         assert!(is_zero(&from_base(|world| {
@@ -147,21 +146,21 @@ mod tests {
     }
 
     #[test]
-    fn rewards_count_in_proportion() {
+    fn rewards_count_proportionally() {
         let by = |points: f64| from_base(|world| world.objects[0].reward += points);
         let (one, two) = (by(5.0), by(10.0));
         assert!(one.w1() > 0.0 && (two.w1() - 2.0 * one.w1()).abs() < 1e-12);
         assert!(one.bisimulation.lower > 0.0);
         assert!((two.bisimulation.lower - 2.0 * one.bisimulation.lower).abs() < 1e-9);
         let all = from_base(|world| world.rules.step_reward = -2.0);
-        // Five steps of each action everywhere; bisimulation has each in equal shares.
+        // Five steps of each action everywhere; bisimulation gives equal shares to each.
         assert_eq!(all.motion, 0.0);
         assert!((all.w1() - 0.1).abs() < 1e-12, "{all:?}");
         assert!((all.bisimulation.lower - 0.1).abs() < 1e-9, "{all:?}");
     }
 
     #[test]
-    fn motion_counts_by_how_far_it_leads_apart() {
+    fn motion_counts_by_the_distance_of_successors() {
         let wall = Wall {
             polygon: vec![[-10.0, 0.0], [6.0, 0.0], [6.0, 0.4], [-10.0, 0.4]],
             height: None,
@@ -175,14 +174,14 @@ mod tests {
     }
 
     #[test]
-    fn the_length_of_a_time_step_alone_counts_little() {
+    fn time_step_length_alone_counts_little() {
         let fine = from_base(|world| (world.agent_params.time_step, world.agent_params.frame_skip) = (0.05, 2));
         let fast = from_base(|world| world.agent_params.max_linear_speed += 1.0);
         assert!(fine.w1() < 0.01 && fine.w1() < 0.5 * fast.w1(), "{fine:?} {fast:?}");
     }
 
     #[test]
-    fn arenas_of_other_sizes_are_compared_over_both() {
+    fn arenas_of_different_sizes_are_compared_over_both() {
         assert!(from_base(|world| world.environment_params.map_size = [24.0, 20.0]).w1() > 0.0);
     }
 }

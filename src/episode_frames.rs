@@ -1,5 +1,4 @@
-//! An episode as a few frames: which steps are shown, what is said of them, and their pictures. How rows of pictures
-//! become a sheet is `report`'s.
+//! An episode as a few frames: chooses the steps, their captions, and their pictures.
 
 use driftworld_env::{
     Agent, Catalogue, Effect, EndedBy, Environment, Event, Recorder, Recording, Renderer, Replay, Step,
@@ -13,14 +12,14 @@ use crate::Failure;
 use crate::film::{FilmModality, FilmOptions, FilmView};
 use crate::modality::{number_color, to_rgb};
 
-/// What one step did, in words, and how much it matters: 0 for a step on the way.
+/// The events of one step as text, and their importance: 0 for a step on the way.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Deed {
     pub(crate) words: Vec<String>,
     weight: u8,
 }
 
-/// An agent's episode in a world, to its end, or to so many steps.
+/// Records an agent's episode in a world, to its end or a step limit.
 pub(crate) fn recorded(
     world: &World,
     catalogue: &Catalogue,
@@ -41,11 +40,10 @@ pub(crate) fn recorded(
     Ok(recorder.recording(&environment, ended_by))
 }
 
-/// A recorded episode as rows of a sheet: what the agent sees, and the map with the way since the row before, or one of them. Where
-/// something was done, it is what the agent saw when it did it, and the map after that.
+/// A recorded episode as rows of a sheet: the agent's view, and the map with the path since the row before, or one of them. At
+/// an event, the view is what the agent saw when it acted, and the map is after that.
 ///
-/// The start and the end are among the rows, and of what happened as much as `most` rows have room for; where little
-/// happened, steps on the way.
+/// The start and the end are among the rows, and as many events as fit into `most` rows; if there are few, steps in between.
 pub(crate) fn rows(
     recording: &Recording,
     catalogue: &Catalogue,
@@ -60,7 +58,7 @@ pub(crate) fn rows(
         deeds.push(deed(replay.environment().world(), &step));
         last = Some(step);
     }
-    // Once more, to the same bits, for the pictures of the steps that are shown.
+    // Repeated, bit for bit, for the pictures of the chosen steps.
     replay.restart();
     let (mut rows, mut way, mut taken) = (Vec::new(), vec![replay.environment().agent().position], 0);
     for number in chosen(&deeds, most) {
@@ -93,7 +91,7 @@ pub(crate) fn rows(
     Ok(rows)
 }
 
-/// Which steps are shown: the first, the last, those that matter most, then the middles of the longest ways between.
+/// The chosen steps: the first, the last, the most important ones, then the middles of the longest gaps.
 fn chosen(deeds: &[Deed], most: usize) -> Vec<usize> {
     let last = deeds.len() - 1;
     if last == 0 {
@@ -118,7 +116,7 @@ fn chosen(deeds: &[Deed], most: usize) -> Vec<usize> {
     shown
 }
 
-/// What a step did.
+/// The events of a step.
 pub(crate) fn deed(world: &World, step: &Step) -> Deed {
     let mut deed = Deed::default();
     for event in &step.events {
@@ -134,7 +132,7 @@ pub(crate) fn deed(world: &World, step: &Step) -> Deed {
     deed
 }
 
-/// What an event was, as "opens the door".
+/// An event as text, such as "opens the door".
 fn said(world: &World, event: &Event) -> String {
     let class = world.objects.get(event.object).map_or("object", |object| &object.class);
     let what = match event.effect {
@@ -144,7 +142,7 @@ fn said(world: &World, event: &Event) -> String {
         Some(Effect::PickedUp) => format!("picks up the {class}"),
         Some(Effect::PutDown) => format!("puts down the {class}"),
         None => {
-            // What is only a shape is better named by what it is for.
+            // A plain shape is better named by its purpose.
             let name = event.tag.as_deref().unwrap_or(class);
             let alike = |other: &&Object| match &event.tag {
                 Some(tag) => other.tag.as_deref() == Some(&**tag),
@@ -165,7 +163,7 @@ fn said(world: &World, event: &Event) -> String {
     }
 }
 
-/// A thing of which there are so many: groups are named in the plural, as "targets", or in the singular.
+/// Names one thing out of `count`: groups may be named in the plural, as "targets", or in the singular.
 fn one_of(name: &str, count: usize) -> String {
     match (count, name.ends_with('s'), name.starts_with(['a', 'e', 'i', 'o', 'u'])) {
         (0 | 1, ..) => format!("the {name}"),
@@ -184,8 +182,7 @@ fn title(step: usize, deed: &Deed) -> String {
     }
 }
 
-/// A number with its sign and one decimal, so that it keeps its width while it changes; a smaller one with the decimals
-/// that show it.
+/// A number with its sign and one decimal, so that its width stays constant; smaller ones with the decimals needed.
 pub(crate) fn number(value: f64, plus: &str) -> String {
     let size = amount(value.abs());
     let text = match value.abs() {
@@ -196,14 +193,14 @@ pub(crate) fn number(value: f64, plus: &str) -> String {
     format!("{}{text}", if value < 0.0 { "−" } else { plus })
 }
 
-/// The time, the return, what is carried, and why the episode ended, as one text in which no line is broken inside a fact.
+/// The time, the return, carried objects, and why the episode ended, as one text in which no line breaks inside a fact.
 pub(crate) fn words(environment: &Environment, end: Option<&Step>) -> String {
     let facts: Vec<String> = facts(environment, end).iter().map(|fact| whole(fact)).collect();
-    // A line is broken behind the dot.
+    // Lines may break after the dot.
     facts.join("\u{a0}· ")
 }
 
-/// The time, the return, the energy that is left, the zones that the agent is in, what is carried, and why the episode ended.
+/// The time, the return, the remaining energy, the agent's zones, carried objects, and why the episode ended.
 pub(crate) fn facts(environment: &Environment, end: Option<&Step>) -> Vec<String> {
     let mut parts = vec![
         format!("{:.1} s", environment.seconds()),
@@ -239,18 +236,18 @@ pub(crate) fn facts(environment: &Environment, end: Option<&Step>) -> Vec<String
     parts
 }
 
-/// How often a picture is drawn too large along each side, for smooth edges: where that is allowed.
+/// Factor of oversampling along each side, for smooth edges, if allowed.
 fn oversize(size: u32) -> u32 {
     if size <= 2048 { 2 } else { 1 }
 }
 
-/// A picture that was drawn too large, at its size.
+/// Scales an oversampled picture down.
 fn finished(width: u32, height: u32, rgb: Vec<u8>, size: u32) -> Picture {
     let picture = Picture { width, height, rgb };
     if oversize(size) == 2 { picture.halved() } else { picture }
 }
 
-/// What the agent sees: in colours with smooth edges, else pixel by pixel.
+/// The agent's view: in colours with smooth edges, otherwise pixel by pixel.
 pub(crate) fn seen_by(environment: &mut Environment, options: &FilmOptions) -> Result<Picture, Failure> {
     let size = options.size;
     let kind = match options.modality {
@@ -266,7 +263,7 @@ pub(crate) fn seen_by(environment: &mut Environment, options: &FilmOptions) -> R
     Ok(Picture::new(size, size, to_rgb(kind, &frame, number_color)))
 }
 
-/// The map with the agent, and a way to it.
+/// The map with the agent, and its path.
 pub(crate) fn map_of(environment: &Environment, [width, height]: [u32; 2], way: &[[f32; 2]]) -> Picture {
     let size = width.max(height);
     let agent = environment.agent();
@@ -285,7 +282,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_have_a_sign_and_the_decimals_that_show_them() {
+    fn numbers_have_a_sign_and_the_decimals_needed() {
         for (value, expected) in [
             (100.729_999_999_999_99, "+100.7"),
             (-0.3, "−0.3"),
@@ -303,7 +300,7 @@ mod tests {
     }
 
     #[test]
-    fn one_thing_of_several_is_not_called_the_thing() {
+    fn one_of_several_things_has_no_definite_article() {
         for (name, count, said) in [
             ("targets", 5, "one of the targets"),
             ("targets", 1, "the targets"),
@@ -315,9 +312,9 @@ mod tests {
         }
     }
 
-    /// Who burns in the lava of an example is in it, and says so; who has no energy to use says nothing of it.
+    /// An agent that burns in an example's lava is in it, and the caption says so; without energy limits there is no energy.
     #[test]
-    fn captions_say_where_the_agent_is_and_what_it_has_left() {
+    fn captions_show_zones_and_remaining_energy() {
         let mut draft = WorldDraft::default();
         draft.agent_params.energy = Some(Energy {
             start: 30.0,
@@ -349,10 +346,10 @@ mod tests {
     }
 
     proptest! {
-        /// The frames rise, begin at the start, end at the end, are as many as asked for where there are so many steps,
-        /// and leave out nothing that matters more than what they show.
+        /// The frames are ascending, include the start and the end, are as many as requested if there are enough steps, and
+        /// omit nothing more important than what they show.
         #[test]
-        fn the_frames_show_what_matters(weights in prop::collection::vec(0u8..4, 1..200), most in 2usize..30) {
+        fn frames_show_the_most_important_steps(weights in prop::collection::vec(0u8..4, 1..200), most in 2usize..30) {
             let deeds: Vec<Deed> = weights.iter().map(|weight| Deed { words: Vec::new(), weight: *weight }).collect();
             let shown = chosen(&deeds, most);
             prop_assert!(shown.is_sorted_by(|a, b| a < b));

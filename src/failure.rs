@@ -1,4 +1,4 @@
-//! [`Failure`]: why an operation of this library has no result. Each caller says it in its users' words.
+//! [`Failure`]: why an operation of this library failed. Each interface names arguments in its own way.
 
 use std::error::Error;
 use std::fmt;
@@ -8,22 +8,22 @@ use std::sync::Arc;
 
 use driftworld_text::ShownPath;
 
-/// The error behind a failure, for programs that ask it more than its text.
+/// The error behind a failure, for programs that need more than its text.
 pub type Cause = Arc<dyn Error + Send + Sync>;
 
-/// Receives what is odd while something is worked on, from any thread.
+/// Receives warnings during an operation, from any thread.
 pub type Warn<'a> = &'a (dyn Fn(String) + Sync);
 
-/// Stands around the name of an argument in a text. In texts of others it means nothing, unless a name stands between two.
+/// Encloses the name of an argument in a text. It has no meaning in other texts, unless it encloses an argument's name.
 const MARK: char = '\u{1}';
 
-/// The name of an argument in the text of a failure, such as `window_length`: the command writes `--window-length`,
-/// Python `window_length`.
+/// The name of an argument in the text of a failure, such as `window_length`: the command writes `--window-length`, Python
+/// `window_length`.
 pub(crate) fn argument(name: &str) -> String {
     format!("{MARK}{name}{MARK}")
 }
 
-/// Refuses a number of an argument that is out of its range.
+/// Refuses an argument's number out of range.
 pub(crate) fn within(name: &str, found: u64, range: RangeInclusive<u64>) -> Result<(), Failure> {
     if range.contains(&found) {
         return Ok(());
@@ -34,7 +34,7 @@ pub(crate) fn within(name: &str, found: u64, range: RangeInclusive<u64>) -> Resu
     )))
 }
 
-/// Why an operation has no result.
+/// Why an operation failed.
 ///
 /// # Example
 /// ```
@@ -47,27 +47,27 @@ pub(crate) fn within(name: &str, found: u64, range: RangeInclusive<u64>) -> Resu
 /// ```
 #[derive(Clone, Debug)]
 pub enum Failure {
-    /// The input, or the place for the output, is wrong. The command ends with 1.
+    /// The input, or the place for the output, is invalid. The command ends with 1.
     Input(FailureText, Option<Cause>),
     /// The arguments contradict each other. The command ends with 2.
     Usage(FailureText),
 }
 
-/// What a failure says, whatever its arguments are called.
+/// The text of a failure, independent of how arguments are named.
 #[derive(Clone, Debug)]
 pub struct FailureText(String);
 
 impl FailureText {
-    /// With arguments as options of the command: `--window-length`.
+    /// With arguments as command options: `--window-length`.
     pub fn for_command(&self) -> String {
         self.with(|name| match name {
-            // One option says the order, by aim or by method.
+            // One option gives the order, by purpose or by method.
             "method" => "--order".to_owned(),
             name => format!("--{}", name.replace('_', "-")),
         })
     }
 
-    /// With arguments as Rust and Python have them: `window_length`.
+    /// With arguments as named in Rust and Python: `window_length`.
     pub fn for_library(&self) -> String {
         self.with(str::to_owned)
     }
@@ -113,22 +113,22 @@ impl Failure {
         Self::Input(FailureText(text.into()), None)
     }
 
-    /// What is wrong with a file or a folder.
+    /// The failure of a file or a folder.
     pub(crate) fn in_file(path: &Path, what: impl fmt::Display) -> Self {
         Self::input(format!("{}: {what}", path.shown()))
     }
 
-    /// What is wrong with what an argument says.
+    /// The failure of an argument's value.
     pub(crate) fn in_argument(name: &str, what: impl fmt::Display) -> Self {
         Self::usage(format!("{}: {what}", argument(name)))
     }
 
-    /// An error in other words than its own.
+    /// An error with another text.
     pub(crate) fn because(text: impl Into<String>, error: impl Error + Send + Sync + 'static) -> Self {
         Self::Input(FailureText(text.into()), Some(Arc::new(error)))
     }
 
-    /// The same, with the folder that it is of where the words do not name it.
+    /// Adds the folder unless the text names it.
     pub(crate) fn at(self, folder: &Path) -> Self {
         let shown = folder.shown().to_string();
         match self {
@@ -139,21 +139,21 @@ impl Failure {
         }
     }
 
-    /// Several failures as one, by the cause of the first.
+    /// Combines several failures, with the cause of the first.
     pub(crate) fn of_several(failures: &[&Self]) -> Self {
         let texts: Vec<&str> = failures.iter().map(|failure| failure.text().0.as_str()).collect();
         let cause = failures.first().and_then(|failure| failure.cause());
         Self::Input(FailureText(texts.join("\n")), cause)
     }
 
-    /// What it says.
+    /// The text.
     pub fn text(&self) -> &FailureText {
         match self {
             Self::Input(text, _) | Self::Usage(text) => text,
         }
     }
 
-    /// The error behind it, where there is one.
+    /// The error behind it, if any.
     pub fn cause(&self) -> Option<Cause> {
         match self {
             Self::Input(_, cause) => cause.clone(),
@@ -168,7 +168,7 @@ impl fmt::Display for Failure {
     }
 }
 
-// Not an `Error` itself: every error becomes one, and itself would become its own.
+// Not an `Error` itself: every error converts into it, and it would then convert into itself.
 impl<E: Error + Send + Sync + 'static> From<E> for Failure {
     fn from(error: E) -> Self {
         Self::because(error.to_string(), error)
@@ -180,7 +180,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_caller_names_arguments_as_its_users_do() {
+    fn interfaces_name_arguments_in_their_own_way() {
         let failure = Failure::usage(format!(
             "{}: found 0, expected 1 or more; leave {} out",
             argument("window_length"),
@@ -208,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn texts_of_others_stay_as_they_are_beside_a_name() {
+    fn foreign_texts_beside_a_name_are_unchanged() {
         let shown = |text: String| FailureText::from(text).for_command();
         for before in texts() {
             assert_eq!(shown(before.clone()), before);

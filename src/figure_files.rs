@@ -1,4 +1,4 @@
-//! The figures of lifetimes in a folder, under the reference's names. What they show is `report`'s.
+//! Writes the figures of lifetimes into a folder, under the reference's names.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -8,7 +8,7 @@ use driftworld_report::{Figure, FigureOptions, Figures};
 
 use crate::{Failure, output_file};
 
-/// A folder of figures, and what is in it already.
+/// A folder of figures, with the names used so far.
 pub(crate) struct Files {
     folder: PathBuf,
     names: BTreeSet<String>,
@@ -26,13 +26,13 @@ impl Files {
         }
     }
 
-    /// Writes the figures of a lifetime. Lifetimes of one name are numbered from the second on.
+    /// Writes the figures of a lifetime. Lifetimes with the same name are numbered from the second on.
     pub(crate) fn write(&mut self, drawn: &Drawn) -> Result<(), Failure> {
         let numbered = |number: usize| match number {
             1 => drawn.run_id.clone(),
             number => format!("{}_{number}", drawn.run_id),
         };
-        // Of one name more than there are, one is free.
+        // Among one more name than there are, one is free.
         let mut names = (1..=self.names.len() + 1).map(numbered);
         let name = names.find(|name| !self.names.contains(name)).unwrap_or_default();
         for (ending, bytes) in &drawn.files {
@@ -44,13 +44,13 @@ impl Files {
         Ok(())
     }
 
-    /// What was written, in words.
+    /// Describes what was written.
     pub(crate) fn what(&self) -> String {
         format!("{} figures, {} kB", self.count, self.bytes.div_ceil(1000))
     }
 }
 
-/// The figures of one lifetime as the bytes of files.
+/// The figures of one lifetime as file contents.
 pub(crate) struct Drawn {
     run_id: String,
     /// The end of each name, such as `raw.png`, and the bytes.

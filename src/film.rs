@@ -1,4 +1,4 @@
-//! [`film`]: a recorded episode as pictures one after the other, and as a file. How films are written is `report`'s, how an episode is run
+//! [`film`]: a recorded episode as a sequence of pictures, and as a file.
 //! once more `env`'s; what a frame shows is decided here.
 
 use std::path::Path;
@@ -14,10 +14,10 @@ use crate::episode_frames::{deed, facts, map_of, rows, seen_by};
 use crate::map_drawing::map_size;
 use crate::{Failure, argument, output_file};
 
-/// Most pixels along a side of the agent's view, and of the map.
+/// Largest width and height of the agent's view, and of the map, in pixels.
 pub const MAX_FILM_SIZE: u32 = 2048;
 
-/// Narrower frames have no captions: they would be higher than the picture, and cut.
+/// Narrower frames have no captions, which would be cut and higher than the picture.
 const LEAST_CAPTIONED: u32 = 100;
 
 /// Rows of a sheet.
@@ -47,10 +47,10 @@ pub enum FilmModality {
     Segmentation,
 }
 
-/// What a word stands for.
+/// Parses a word.
 ///
 /// # Errors
-/// What was found, and the words there are.
+/// The found and the expected words.
 pub fn named<T: ValueEnum>(word: &str) -> Result<T, String> {
     T::from_str(word, false).map_err(|_| {
         let words = T::value_variants().iter().filter_map(ValueEnum::to_possible_value);
@@ -97,34 +97,34 @@ fn rate(text: &str) -> Result<f64, String> {
     rate.ok_or_else(|| format!("found {text:?}, expected 0.01 to 1000 frames per second"))
 }
 
-/// What a film came to.
+/// A summary of a film.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FilmSummary {
     /// Frames.
     pub frames: u32,
-    /// Pixels of a frame across, and down.
+    /// Frame width in pixels.
     pub width: u32,
-    /// See `width`.
+    /// Frame height in pixels.
     pub height: u32,
-    /// How long it lasts; 0 for a sheet.
+    /// Duration in seconds; 0 for a sheet.
     pub seconds: f64,
-    /// Pixels of the sheet across and down, if it is one.
+    /// Width and height of the sheet in pixels, if it is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sheet: Option<[u32; 2]>,
 }
 
 impl FilmOptions {
-    /// How many frames an episode of so many steps has.
+    /// Number of frames for an episode with this number of steps.
     pub fn num_frames(&self, steps: usize) -> usize {
         1 + steps.div_ceil(self.every.max(1) as usize)
     }
 
-    /// Whether there is a frame after so many steps of an episode of `last`.
+    /// Whether there is a frame after `number` steps of an episode of `last`.
     fn shows(&self, number: usize, last: usize) -> bool {
         number.is_multiple_of(self.every as usize) || number == last
     }
 
-    /// Pixels across.
+    /// Width in pixels.
     fn width(&self, environment: &Environment) -> u32 {
         let map = map_size(environment.scene(), self.size)[0];
         match self.view {
@@ -134,10 +134,10 @@ impl FilmOptions {
         }
     }
 
-    /// Refuses options that nothing can be drawn by, or of which one means nothing beside another.
+    /// Refuses impossible or meaningless combinations of options.
     ///
     /// # Errors
-    /// That says which, and what to do.
+    /// Which option, and what to do.
     pub fn check(&self) -> Result<(), Failure> {
         if !(1..=MAX_FILM_SIZE).contains(&self.size) || self.every < 1 {
             return Err(Failure::usage(format!(
@@ -158,7 +158,7 @@ impl FilmOptions {
         Ok(())
     }
 
-    /// Pictures of an episode as it is now: the agent's view, which is asked for if it is shown, and the map with the way.
+    /// Pictures of the current state of an episode: the agent's view, rendered only if shown, and the map with the path.
     pub(crate) fn pictures(
         &self,
         environment: &mut Environment,
@@ -176,11 +176,11 @@ impl FilmOptions {
     }
 }
 
-/// Runs an episode once more and hands out its frames, each with how many steps lie before it; then whether it came out as recorded is
-/// checked.
+/// Repeats an episode and passes on its frames, each with the number of steps before it; then checks that the result is as
+/// recorded.
 ///
 /// # Errors
-/// A step that cannot be made any more, or another reward or ending than was recorded; what `take` says.
+/// A step that is no longer possible, or a reward or ending that differs from the recording; errors of `take`.
 pub fn film(
     recording: &Recording,
     catalogue: &Catalogue,
@@ -212,10 +212,10 @@ pub fn film(
     Ok(replay.check()?)
 }
 
-/// What stands above the frames of a film: known before the first is drawn, for all have room for the longest.
+/// The captions above the frames of a film: computed before the first frame is drawn, because all have room for the longest.
 #[derive(Default)]
 struct Captions {
-    /// By the number of steps before the frame, rising.
+    /// By the number of steps before the frame, ascending.
     of_frames: Vec<(usize, Vec<String>)>,
     num_lines: usize,
 }
@@ -226,7 +226,7 @@ impl Captions {
         let last = recording.actions.len();
         let steps_of_a_second = (1.0 / recording.seconds_per_step()).ceil() as usize;
         let mut of_frames = vec![(0, facts(replay.environment(), None))];
-        // What happened last, and when.
+        // The last event, and its time.
         let mut said: Option<(Vec<String>, usize)> = None;
         while let Some(step) = replay.step()? {
             let number = replay.num_steps();
@@ -253,7 +253,7 @@ impl Captions {
         })
     }
 
-    /// The frame before which so many steps lie, with its caption.
+    /// The frame after this number of steps, with its caption.
     fn above(&self, frame: Picture, number: usize) -> Picture {
         match self.of_frames.binary_search_by_key(&number, |(number, _)| *number) {
             Ok(place) => frame.captioned(&self.of_frames[place].1, self.num_lines),
@@ -273,7 +273,7 @@ fn frame(environment: &mut Environment, options: &FilmOptions, way: &[[f32; 2]])
     Ok(frame)
 }
 
-/// The kind of film that a file's ending stands for; none for one picture of the frames that matter.
+/// The kind of film by the file's extension; `None` for a single picture of the important frames.
 fn ending(path: &Path) -> Result<Option<FilmKind>, Failure> {
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
     let kind = FilmKind::of_ending(ending);
@@ -294,16 +294,16 @@ fn ending(path: &Path) -> Result<Option<FilmKind>, Failure> {
     )))
 }
 
-/// Refuses a name that ends like no film and no sheet.
+/// Refuses a name without the extension of a film or a sheet.
 ///
 /// # Errors
-/// That says which endings there are.
+/// The accepted extensions.
 pub fn expect_film(path: &Path) -> Result<(), Failure> {
     ending(path).map(drop)
 }
 
-/// Writes an episode as a film (`.gif`, `.apng`), or as one picture of the frames that matter (`.png`). Without `fps`
-/// it goes by in the world's own time, but no faster than viewers show. `watch` is told the frames that are done.
+/// Writes an episode as a film (`.gif`, `.apng`), or as one picture of the important frames (`.png`). Without `fps` it plays in
+/// simulated time, but no faster than viewers show. `watch` gets the number of finished frames.
 ///
 /// # Errors
 /// As [`film`], and if the file cannot be written: then there is none.
@@ -338,7 +338,7 @@ pub fn write_film(
             (summary.width, summary.height) = (size[0], size[1]);
             writer = Some(Film::new(kind, std::io::BufWriter::new(to), size, num_frames)?);
         }
-        // The end stays a while.
+        // The last frame is shown for longer.
         let shown = if number == last { seconds.max(1.0) } else { seconds };
         if let Some(writer) = &mut writer {
             writer.add(&picture, shown)?;

@@ -1,8 +1,7 @@
-//! Driftworld: typed task specs to worlds, distances between them, curricula, and a first-person environment to live them in.
+//! Driftworld: typed task specs to worlds, distances between them, curricula, and a first-person environment to run them in.
 //!
-//! This crate re-exports the rooms of the house under one roof and adds what joins them: the built-in tasks, the names
-//! by which tasks are called, worlds as tables, distances among variants of any tasks, how different worlds look, and the
-//! `driftworld` command. Algorithms are in the rooms; nothing but the command prints.
+//! This crate re-exports the workspace's crates and adds what joins them: the built-in tasks, names for tasks, worlds as
+//! tables, distances among variants of any tasks, picture distances, and the `driftworld` command. Only the command prints.
 //!
 //! ```
 //! use driftworld::{generator, tasks};
@@ -78,7 +77,7 @@ pub(crate) use failure::{argument, within};
 pub use libraries::MAX_LIBRARY_BYTES;
 pub use matrix_file::MAX_MATRIX_BYTES;
 
-/// The Rust of the page is compiled with the documentation's tests.
+/// The Rust code of the page is compiled with the doc tests.
 #[cfg(doctest)]
 #[doc = include_str!("../docs/rust.md")]
 struct RustPage;

@@ -1,4 +1,4 @@
-//! `--agent`: the agent that runs a scenario or a world, and how its name is read. What agents do is `env`'s.
+//! `--agent`: parses the agent that runs a scenario or a world.
 
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -18,21 +18,21 @@ pub(crate) enum AgentArg {
     Random,
     /// Stands still.
     Still,
-    /// Knows the map and tours what pays.
+    /// Knows the map and visits what pays.
     Onrails,
-    /// Learns by linear Sarsa(λ) from what it sees.
+    /// Learns by linear Sarsa(λ) from its observations.
     Sarsa,
     /// Follows the script in this file.
     Scripted(PathBuf),
-    /// Acts by the network in this file.
+    /// Uses the network in this file.
     Net(PathBuf),
 }
 
 impl AgentArg {
-    /// What the help says of the argument.
+    /// Help text of the argument.
     pub(crate) const HELP: &'static str = "The agent: random, still, onrails (the planner: knows the map and visits what pays), sarsa (a small learner), scripted:FILE (a script), or net:FILE (a network that a learner in Python has exported)";
 
-    /// What logs call the agent.
+    /// The agent's name in logs.
     pub(crate) fn name(&self) -> String {
         match self {
             Self::Scripted(path) | Self::Net(path) => format!("{}:{}", self.as_ref(), path.shown()),
@@ -40,7 +40,7 @@ impl AgentArg {
         }
     }
 
-    /// The agent before its first step.
+    /// Creates the agent.
     pub(crate) fn agent(&self) -> Result<NamedAgent, Failure> {
         let (agent, fingerprint): (Box<dyn Agent>, _) = match self {
             Self::Random => (Box::new(RandomAgent::new(0)), None),
@@ -69,12 +69,13 @@ impl AgentArg {
     }
 }
 
-/// An agent that is ready to run.
+/// An agent ready to run.
 pub(crate) struct NamedAgent {
-    /// What logs call it.
+    /// Its name in logs.
     pub(crate) name: String,
     pub(crate) agent: Box<dyn Agent>,
-    /// What a log depends on, for a plan to note: the checksum of the agent's file, or how it chooses its actions while it learns.
+    /// What a log depends on, for the plan's fingerprint: the checksum of the agent's file, or how it chooses its actions while
+    /// learning.
     pub(crate) fingerprint: Option<(&'static str, String)>,
 }
 
@@ -87,7 +88,7 @@ impl FromStr for AgentArg {
             Some(("net", file)) if !file.is_empty() => Ok(Self::Net(file.into())),
             None if text == "random" => Ok(Self::Random),
             None if text == "still" => Ok(Self::Still),
-            // What tables call it.
+            // The name in tables.
             None if ["onrails", "planner", "expert"].contains(&text) => Ok(Self::Onrails),
             None if text == "sarsa" => Ok(Self::Sarsa),
             _ => {
@@ -110,7 +111,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn agents_are_called_by_name_and_a_script_by_its_file() {
+    fn agents_are_named_and_a_script_by_its_file() {
         assert_eq!("random".parse(), Ok(AgentArg::Random));
         assert_eq!("onrails".parse(), Ok(AgentArg::Onrails));
         assert_eq!("expert".parse(), Ok(AgentArg::Onrails));
@@ -122,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn a_misspelt_agent_is_told_the_agents_there_are() {
+    fn misspelt_agent_error_lists_the_agents() {
         let said = |text: &str| text.parse::<AgentArg>().expect_err("there is no such agent");
         let expected = "expected random, still, onrails, sarsa, scripted:FILE or net:FILE; did you mean";
         assert_eq!(said("onrail"), format!("found \"onrail\", {expected} \"onrails\"?"));

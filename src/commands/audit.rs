@@ -1,4 +1,4 @@
-//! `driftworld audit`: what a scenario's protocol makes of agents of which the scores are known. The agents are `curriculum`'s.
+//! `driftworld audit`: checks a scenario's protocol with agents whose scores are known.
 
 use std::path::PathBuf;
 

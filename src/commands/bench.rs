@@ -1,4 +1,4 @@
-//! `driftworld bench`: how fast this build is on this machine, one core at a time. What is measured is the library's.
+//! `driftworld bench`: measures the speed of this build on this machine, one core at a time.
 
 use std::time::Duration;
 

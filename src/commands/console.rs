@@ -1,5 +1,4 @@
-//! `driftworld console`: a running world by hand. Lines come from a terminal, a pipe or a script, and are read here; what
-//! they do is the library's `console`.
+//! `driftworld console`: controls a running world by hand, with lines from a terminal, a pipe or a script.
 
 use std::io::{BufRead, IsTerminal, Read};
 use std::path::PathBuf;
@@ -13,7 +12,7 @@ use crate::{Failure, documents};
 
 use super::output;
 
-/// The longest line that is read, in bytes: a message may hold a whole world.
+/// Longest line, in bytes: a message may hold a whole world.
 const LONGEST_LINE: u64 = 64 << 20;
 
 /// Step through a world by hand: act, observe, edit it.
@@ -62,7 +61,7 @@ impl Console {
         self.follow(&mut session, "standard input", lines_of_standard_input())
     }
 
-    /// Carries out lines that nobody edits.
+    /// Executes the lines of a pipe or script.
     fn follow(
         &self,
         session: &mut Session,
@@ -96,7 +95,7 @@ impl Console {
     }
 }
 
-/// Carries out lines from a terminal until its user leaves.
+/// Executes lines from a terminal until the user leaves.
 fn converse(session: &mut Session) -> Result<(), Failure> {
     let mut editor = Editor::new()?;
     while let Some(line) = editor.read(session.names())? {
@@ -124,7 +123,7 @@ fn say(reply: &Reply) -> Result<(), Failure> {
     }
 }
 
-/// The lines of standard input, each as soon as it is there.
+/// The lines of standard input, each as soon as it arrives.
 fn lines_of_standard_input() -> impl Iterator<Item = Result<String, Failure>> {
     let mut number = 0;
     std::iter::from_fn(move || {

@@ -1,4 +1,4 @@
-//! `driftworld convert`: worlds and scenarios of L2Explorer, and worlds of variants, in our form. All are read and written by the spec.
+//! `driftworld convert`: converts worlds and scenarios of L2Explorer, and worlds of variants, into our format.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -50,7 +50,7 @@ impl Convert {
         )
     }
 
-    /// Warns of the world files that the output names by paths that lead nowhere from its own folder.
+    /// Warns of world files whose paths in the output do not resolve from its own folder.
     fn warn_of_lost_worlds(&self, scenario: &Scenario) {
         if self.output == Path::new("-") {
             return;

@@ -1,4 +1,4 @@
-//! `driftworld distance`: how far apart two variants or two worlds are, element by element. The measures are `similarity`'s.
+//! `driftworld distance`: the distance of two variants or two worlds, element by element.
 
 use crate::distances::{By, Compared, Sample, Scale, Side, between};
 use crate::similarity::{Distance as Measured, Part};
@@ -111,14 +111,14 @@ impl Distance {
         Ok(between(&a, &b, &sample, |declared| self.weights.over(declared))?)
     }
 
-    /// The other one with its task, which may be left out behind a variant.
+    /// The second argument with its task, which may be omitted after a variant.
     fn other(&self) -> String {
         let named = tasks::with_tasks(&[self.a.clone(), self.b.clone()]);
         named.into_iter().next_back().unwrap_or_default()
     }
 }
 
-/// What a name stands for: a world file, or a variant.
+/// Resolves a name: a world file, or a variant.
 fn side(name: &str) -> Result<Side, Failure> {
     worlds::expect_world_or_task(name)?;
     if worlds::is_world_file(name) {
@@ -144,7 +144,7 @@ fn by_element(distance: &Measured) -> String {
     table(["element", "distance"], rows, &[1])
 }
 
-/// Every part that differs, those that matter most first, and a line for all that do not.
+/// Every part that differs, largest share first, and one line for all that do not.
 fn parts(distance: &Measured) -> String {
     let (mut parts, equal): (Vec<&Part>, Vec<&Part>) = distance.parts.iter().partition(|part| part.raw != 0.0);
     parts.sort_by(|a, b| b.share.total_cmp(&a.share));

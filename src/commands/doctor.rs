@@ -1,5 +1,4 @@
-//! `driftworld doctor`: what this machine can draw with, and what is missing. Each renderer is tried by `env`; the hints on what
-//! to install are here.
+//! `driftworld doctor`: which renderers work on this machine, with hints on what to install.
 
 use std::path::Path;
 
@@ -35,7 +34,7 @@ impl Doctor {
     }
 }
 
-/// What to do so that there is a graphics card to draw with; empty if there is one, or software in its place.
+/// How to get a graphics card to draw with; empty if there is one, or a software renderer in its place.
 fn missing(report: &RendererReport) -> Vec<String> {
     let Some(reason) = &report.no_adapter else {
         return Vec::new();
@@ -56,7 +55,7 @@ fn missing(report: &RendererReport) -> Vec<String> {
     missing
 }
 
-/// Where Linux keeps the Vulkan loader.
+/// Folders where Linux keeps the Vulkan loader.
 const LOADER_FOLDERS: [&str; 6] = [
     "/usr/lib/x86_64-linux-gnu",
     "/usr/lib/aarch64-linux-gnu",
@@ -66,14 +65,14 @@ const LOADER_FOLDERS: [&str; 6] = [
     "/usr/local/lib",
 ];
 
-/// Where drivers tell the loader that they are there.
+/// Folders where drivers register with the loader.
 const DRIVER_FOLDERS: [&str; 3] = [
     "/usr/share/vulkan/icd.d",
     "/etc/vulkan/icd.d",
     "/usr/local/share/vulkan/icd.d",
 ];
 
-/// What the folders say about why Vulkan has no adapter.
+/// Hints from the folders' contents about why Vulkan has no adapter.
 fn vulkan_hints(loaders: &[&Path], drivers: &[&Path]) -> Vec<String> {
     let mut hints = Vec::new();
     if !loaders.iter().any(|folder| folder.join("libvulkan.so.1").exists()) {

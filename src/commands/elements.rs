@@ -1,4 +1,4 @@
-//! `driftworld elements`: which elements of the decision process variants change, tried out, beside what the task claims.
+//! `driftworld elements`: measures which elements of the decision process variants change, beside the task's claims.
 
 use clap::Args;
 use driftworld_text::joined_or;
@@ -60,13 +60,13 @@ impl Elements {
     }
 }
 
-/// Whether what is best changes: of variants that change the reward.
+/// Whether the optimal behaviour changes, for variants that change the reward.
 fn optimum(variant: &VariantElements) -> String {
     let said = variant.optimum.map(|optimum| if optimum.turned { "yes" } else { "no" });
     said.unwrap_or("-").to_owned()
 }
 
-/// A row for each variant: declared beside measured.
+/// A row per variant: declared and measured elements.
 pub(crate) fn shown(found: &ElementsOutcome) -> String {
     let letters = |elements: &[Element]| {
         let letters: Vec<&str> = elements.iter().map(|element| element.letter()).collect();

@@ -1,4 +1,4 @@
-//! The options that say which figures of lifetimes are drawn. What they show is `report`'s.
+//! The options that choose the figures of lifetimes.
 
 use crate::Failure;
 use crate::report::{Figure, FigureOptions, ReportError, Unit};
@@ -25,7 +25,7 @@ pub(crate) struct FigureChoice {
 }
 
 impl FigureChoice {
-    /// The figures asked for, in the order of a report.
+    /// The chosen figures, in the order of a report.
     pub(crate) fn shown(&self) -> Result<Vec<Figure>, Failure> {
         let asked = self.plot_types.iter().map(|word| Figure::asked_for(word));
         let asked = asked

@@ -1,4 +1,4 @@
-//! `driftworld film`: an agent's episode in a world, filmed. What a frame shows is the library's.
+//! `driftworld film`: films an agent's episode in a world.
 
 use std::path::PathBuf;
 
@@ -15,7 +15,7 @@ use super::assets::LibraryChoice;
 use super::film_choice::{self, summary, tell};
 use super::{Failure, output};
 
-/// Steps of a film in a world that has no limit of its own: 5 minutes of 0.1 s.
+/// Steps of a film in a world without a step limit: 5 minutes of 0.1 s.
 const MOST_WITHOUT_LIMIT: u32 = 3000;
 
 /// Let an agent act in a world, and film it.

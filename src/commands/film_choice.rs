@@ -1,4 +1,4 @@
-//! Writes films and says what was filmed. The options, and what a frame shows, are in `film`.
+//! Writes films and recordings, and reports what was filmed.
 
 use std::path::Path;
 
@@ -9,7 +9,7 @@ use driftworld_text::{ShownPath, amount, counted};
 
 use super::output;
 
-/// Writes the film, with a bar on a terminal.
+/// Writes the film, with a progress bar on a terminal.
 pub(super) fn write(
     path: &Path,
     recording: &Recording,
@@ -24,14 +24,14 @@ pub(super) fn write(
     written
 }
 
-/// Writes recordings into a file, from which `replay` plays them.
+/// Writes recordings into a file that `replay` can play.
 pub(super) fn record(path: &Path, recordings: &[Recording]) -> Result<(), Failure> {
     let mut lines = RecordingLines::default();
     let episodes: String = recordings.iter().map(|recording| lines.lines(recording)).collect();
     output::write(path, (RecordingLines::header() + &episodes).as_bytes())
 }
 
-/// Says which file was written, and what it is.
+/// Reports the written file with its properties.
 pub(crate) fn tell(path: &Path, film: &FilmSummary) -> Result<(), Failure> {
     let FilmSummary {
         frames,
@@ -50,7 +50,7 @@ pub(crate) fn tell(path: &Path, film: &FilmSummary) -> Result<(), Failure> {
     ))
 }
 
-/// What an episode came to.
+/// Summary of an episode.
 pub(crate) fn summary(recording: &Recording) -> String {
     let origin = &recording.origin;
     let world = match (&origin.task, &origin.variant, origin.seed, origin.index) {

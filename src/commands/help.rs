@@ -1,4 +1,4 @@
-//! The list of commands in `driftworld --help`, in groups by what one wants to do. What each command does stands with it.
+//! Groups the commands in `driftworld --help` by purpose.
 
 use std::fmt::Write;
 
@@ -6,7 +6,7 @@ use clap::Command;
 
 use crate::style;
 
-/// The groups, in the order in which they are met, each with its commands.
+/// The groups in order, each with its commands.
 const GROUPS: [(&str, &[&str]); 7] = [
     ("Start here", &["demo", "tasks", "doctor"]),
     (
@@ -34,7 +34,7 @@ const GROUPS: [(&str, &[&str]); 7] = [
     ("Work with other tools", &["convert", "completions", "bench", "help"]),
 ];
 
-/// Blanks in front of a command's name, and between the longest name and what it does.
+/// Spaces before a command's name, and between the longest name and the descriptions.
 const GAP: usize = 2;
 
 /// The command with its subcommands listed in groups.
@@ -51,7 +51,7 @@ pub(super) fn grouped(command: Command) -> Command {
     )
 }
 
-/// The groups with their commands, and what is in none of them.
+/// The groups with their commands, and commands without a group.
 fn groups(command: &Command) -> String {
     let known: Vec<(&str, String)> = command
         .get_subcommands()

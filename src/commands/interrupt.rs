@@ -1,8 +1,8 @@
-//! Signals: what the signals of a terminal and of a job scheduler do to a command. Long work asks whether one came and
-//! ends by itself; what cannot ask, or does not come to it in time, is ended. Either way nothing half written stays, and the
-//! exit code is that of a program that the signal ended: 130 for an interrupt.
+//! Signal handling: long work polls for a signal and stops by itself; work that cannot poll, or does not stop in time, is
+//! terminated. Either way no partial files stay, and the exit code is that of a program ended by the signal: 130 for an
+//! interrupt.
 //!
-//! Only in a program of its own ([`watch`]): where the command is asked by another program, signals are that one's.
+//! Active only if the command runs as a separate program ([`watch`]): a host program handles signals itself.
 
 use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
 use std::sync::{Arc, LazyLock, Mutex, MutexGuard, OnceLock, PoisonError};
@@ -10,10 +10,10 @@ use std::sync::{Arc, LazyLock, Mutex, MutexGuard, OnceLock, PoisonError};
 use super::Failure;
 use system::follow_signals;
 
-/// Set by the first signal while somebody listens.
+/// Set by the first signal while a command listens.
 static ASKED: LazyLock<Arc<AtomicBool>> = LazyLock::new(Arc::default);
 
-/// The number of the first signal while somebody listened; an interrupt's where that cannot be known.
+/// The number of the first signal while a command listened; an interrupt's if unknown.
 static SIGNAL: AtomicU8 = AtomicU8::new(INTERRUPT);
 
 /// The number of an interrupt.
@@ -22,10 +22,10 @@ const INTERRUPT: u8 = 2;
 /// Whether a command gave up because of a signal.
 static GAVE_UP: AtomicBool = AtomicBool::new(false);
 
-/// What to say if whoever listens does not end by itself; nothing while nobody does.
+/// The message printed if a listening command does not stop by itself; `None` while no command listens.
 static PARTING: Mutex<Option<String>> = Mutex::new(None);
 
-/// Whether nobody listens.
+/// Whether no command listens.
 #[cfg(not(unix))]
 static IDLE: LazyLock<Arc<AtomicBool>> = LazyLock::new(|| Arc::new(AtomicBool::new(true)));
 
@@ -33,12 +33,12 @@ fn parting() -> MutexGuard<'static, Option<String>> {
     PARTING.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Whether a signal came, for work that then ends by itself. Dropped, it listens no more.
+/// Tells long work whether a signal came, so that it can stop. Dropping it stops listening.
 pub(crate) struct Interrupt(());
 
 impl Interrupt {
-    /// From now on the first interrupt, termination or hang-up is a question. Whoever has not ended by itself 1.5
-    /// seconds later, or when the next signal comes, is ended with these words and the exit code of the signal.
+    /// Turns the first interrupt, termination or hang-up into a cancellation request; after 1.5 seconds, or at the next signal,
+    /// the process exits with these words and the signal's exit code.
     pub(crate) fn listen(words: impl Into<String>) -> Self {
         *parting() = Some(words.into());
         #[cfg(not(unix))]
@@ -50,14 +50,14 @@ impl Interrupt {
         self.flag().load(Ordering::Relaxed)
     }
 
-    /// Why a command that was asked to stop has no result: its exit code is the signal's.
+    /// The failure of a command that was cancelled: its exit code is the signal's.
     #[expect(clippy::unused_self, reason = "only who listens was asked")]
     pub(crate) fn failure(&self, text: impl Into<String>) -> Failure {
         GAVE_UP.store(true, Ordering::SeqCst);
         Failure::input(text)
     }
 
-    /// The answer to the same question, for other threads.
+    /// The same flag, for other threads.
     #[expect(clippy::unused_self, reason = "only who listens may ask")]
     pub(crate) fn flag(&self) -> &'static AtomicBool {
         &ASKED
@@ -66,30 +66,30 @@ impl Interrupt {
 
 impl Drop for Interrupt {
     fn drop(&mut self) {
-        // After a signal the words stay until the work has ended.
+        // After a signal, the message is kept until the work has ended.
         if !self.is_asked() {
             silence();
         }
     }
 }
 
-/// The exit code of a command that gave up because of a signal, which is then forgotten; none of another.
+/// Takes the exit code of a command that gave up because of a signal; `None` otherwise.
 pub(super) fn exit_code() -> Option<u8> {
     let signal = SIGNAL.swap(INTERRUPT, Ordering::SeqCst);
     GAVE_UP.swap(false, Ordering::SeqCst).then_some(128 + signal)
 }
 
-/// From now on nobody listens.
+/// Stops listening.
 fn silence() {
     parting().take();
     #[cfg(not(unix))]
     IDLE.store(true, Ordering::SeqCst);
 }
 
-/// A command that runs as a program. Dropped, it is over, and nobody ends the process any more.
+/// Marks that a command runs as a program. Dropping it ends signal handling, and nothing exits the process any more.
 pub(super) struct Watch(());
 
-/// Looks for signals from now on.
+/// Starts signal handling.
 pub(super) fn watch() -> Result<Watch, Failure> {
     static WATCHED: OnceLock<Result<(), String>> = OnceLock::new();
     let watched = WATCHED.get_or_init(|| follow_signals().map_err(|error| error.to_string()));
@@ -106,7 +106,7 @@ impl Drop for Watch {
     }
 }
 
-/// A thread that waits for signals.
+/// Waits for signals in a thread.
 #[cfg(unix)]
 mod system {
     use std::io;
@@ -123,25 +123,24 @@ mod system {
     use super::super::output;
     use super::{ASKED, INTERRUPT, SIGNAL, parting};
 
-    /// How long work has to end by itself.
+    /// How long work has to stop by itself.
     const GRACE: Duration = Duration::from_millis(1500);
 
-    /// How long it may take to remove what is half written and to say so: a disk or a terminal may be what all waits
-    /// for.
+    /// Time limit for removing partial files and printing the message: the disk or the terminal may be blocked.
     const LAST: Duration = Duration::from_millis(300);
 
     pub(super) fn follow_signals() -> io::Result<()> {
-        // A write beyond the limit of a file's size is an error then, said and cleaned up after as a full disk is.
+        // Writing beyond the file size limit then becomes an error, reported and cleaned up like a full disk.
         signal_hook::flag::register(SIGXFSZ, Arc::new(AtomicBool::new(false)))?;
         let signals = Signals::new(signals())?;
         let thread = thread::Builder::new().name("signals".to_owned());
         thread.spawn(move || follow(signals)).map(drop)
     }
 
-    /// Hanging up is passed over where whoever started the command had it so, as `nohup` does.
+    /// A hang-up is ignored if the parent process ignored it, as with `nohup`.
     fn signals() -> Vec<i32> {
         let mut signals = vec![SIGINT, SIGTERM];
-        // A file of the system's, not by driftworld-files: nobody names it.
+        // The system's own file, not by driftworld-files: no user names it.
         let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
         let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
         let ignored = ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
@@ -155,7 +154,7 @@ mod system {
         for signal in signals.forever() {
             let words = parting().clone();
             match words {
-                // Nobody can end by itself: the process ends as if it had not looked for signals.
+                // No command listens: the process ends as if signals had their default action.
                 None => {
                     leave(None);
                     let _ = low_level::emulate_default_handler(signal);
@@ -163,12 +162,12 @@ mod system {
                 }
                 Some(words) if ASKED.load(Ordering::SeqCst) => end(&words, signal),
                 Some(_) => {
-                    // Before it is asked: whoever gives up reads the number.
+                    // Stored before cancelling: the command reads the number when it gives up.
                     SIGNAL.store(u8::try_from(signal).unwrap_or(INTERRUPT), Ordering::SeqCst);
                     ASKED.store(true, Ordering::SeqCst);
                     let waits = thread::Builder::new().spawn(move || {
                         thread::sleep(GRACE);
-                        // By then the command may be over, in a program that goes on.
+                        // By then the command may be finished, in a program that continues.
                         if let Some(words) = parting().clone() {
                             end(&words, signal);
                         }
@@ -186,7 +185,7 @@ mod system {
         low_level::exit(128 + signal)
     }
 
-    /// Removes what is half written, and says the words, as far as there is time.
+    /// Removes partial files and prints the message, as far as time allows.
     fn leave(words: Option<String>) {
         let (done, wait) = mpsc::channel();
         let leaving = thread::Builder::new().spawn(move || {
@@ -202,7 +201,7 @@ mod system {
     }
 }
 
-/// Where signals reach no thread, whoever listens is asked, and who is asked twice ends at once.
+/// Without a signal thread: the first signal cancels a listening command, the second exits at once.
 #[cfg(not(unix))]
 mod system {
     use std::io;
@@ -215,7 +214,7 @@ mod system {
 
     pub(super) fn follow_signals() -> io::Result<()> {
         for signal in [SIGINT, SIGTERM] {
-            // In this order: what ends the process looks before the first signal has been taken down.
+            // Order matters: the exit handler must check the flag before the first signal sets it.
             register_conditional_shutdown(signal, 128 + signal, Arc::clone(&ASKED))?;
             register_conditional_default(signal, Arc::clone(&IDLE))?;
             register(signal, Arc::clone(&ASKED))?;

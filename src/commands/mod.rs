@@ -1,6 +1,6 @@
-//! The `driftworld` command: its subcommands, one file each, and how they fail. What is written and shown is in `output.rs`.
+//! The `driftworld` command: its subcommands, one file each, and error reporting.
 //!
-//! [`run`] is the whole command: it prints. The rest of the library never does.
+//! [`run`] is the whole command, and prints. The rest of the library never does.
 
 mod agent;
 mod assets;
@@ -55,18 +55,17 @@ use driftworld_text::{WordKind, is_unprintable, printable, removed};
 pub(crate) use crate::Failure;
 use crate::{documents, log_folders, matrix_file, overwrite, style};
 
-/// The words of the command that runs.
+/// The arguments of the running command.
 static WORDS: Mutex<Vec<OsString>> = Mutex::new(Vec::new());
 
-/// Runs the command as a program of its own does, and prints what it has to say; `args` begins with the program's name.
+/// Runs the command like the `driftworld` program, and prints its output; `args` begins with the program's name.
 ///
-/// Returns the exit code: 0 when all went well, 1 when the input or the place for the output is wrong, 2 when the
-/// arguments are. When the reader of the output goes away, as with `| head`, the process ends; so it does within two
-/// seconds of an interrupt, a termination or a hang-up, with nothing half written left: with words where something was
-/// going on that can be gone on with or begun again, else by the signal. The exit code is 128 and the signal's number
-/// either way: 130 for an interrupt, as shells have it.
+/// Returns the exit code: 0 for success, 1 for invalid input or an invalid place for the output, 2 for invalid arguments. If
+/// the reader of the output goes away, as with `| head`, the process ends; so it does within two seconds of an interrupt, a
+/// termination or a hang-up, leaving no partial files: with a message if the work can be resumed or repeated, else by the
+/// signal. Either way the exit code is 128 plus the signal's number: 130 for an interrupt, as in shells.
 pub fn run(args: impl IntoIterator<Item = OsString>) -> u8 {
-    /// What signals do is the process's: one command at a time.
+    /// Signals belong to the process, so one command runs at a time.
     static RUNNING: Mutex<()> = Mutex::new(());
     let _one_at_a_time = RUNNING.lock().unwrap_or_else(PoisonError::into_inner);
     translate_panics();
@@ -104,7 +103,7 @@ fn command() -> clap::Command {
     help::grouped(Driftworld::command())
 }
 
-/// What `--color` says, before anything else is read: what is wrong with arguments is said in colours, too.
+/// The value of `--color`, read before everything else: argument errors are coloured, too.
 fn asked_color(args: &[OsString]) -> ColorChoice {
     let mut args = args
         .iter()
@@ -124,10 +123,10 @@ fn asked_color(args: &[OsString]) -> ColorChoice {
     asked
 }
 
-/// The options that name files to write, with the files.
+/// The options that name output files, with the files.
 type Outputs = Vec<(&'static str, PathBuf)>;
 
-/// Reads arguments. What is said of wrong ones quotes them, in one line each and without what a terminal would obey.
+/// Parses arguments. Error messages quote them on one line each, with control characters escaped.
 fn parse(args: &[OsString]) -> Result<(Command, Outputs), clap::Error> {
     let read = |args: Vec<OsString>| {
         let mut command = command().color(asked_color(&args));
@@ -153,7 +152,7 @@ fn parse(args: &[OsString]) -> Result<(Command, Outputs), clap::Error> {
     })
 }
 
-/// The files that a command is to write, by the option that names each.
+/// The output files of a command, by the option that names each.
 fn outputs(matches: &clap::ArgMatches) -> Outputs {
     let mut leaf = matches;
     while let Some((_, below)) = leaf.subcommand() {
@@ -170,7 +169,7 @@ fn outputs(matches: &clap::ArgMatches) -> Outputs {
         .collect()
 }
 
-/// The error with the arguments that it quotes shown in one line each; what our own parsers say of them quotes them so already.
+/// The error with quoted arguments on one line each; our own parsers' messages are escaped already.
 fn with_printable_words(mut said: clap::Error) -> clap::Error {
     let shown = said.context().filter_map(|(kind, value)| match value {
         ContextValue::String(text) => match printable(text) {
@@ -203,7 +202,7 @@ fn removed_word(args: &[OsString], said: &clap::Error) -> Option<clap::Error> {
     Some(root.error(said.kind(), format!("{word}: {message}")))
 }
 
-/// The subcommands that arguments name, such as `logs aggregate`.
+/// The subcommands named by arguments, such as `logs aggregate`.
 fn command_path(root: &clap::Command, args: &[OsString]) -> String {
     let (mut at, mut path) = (root, Vec::new());
     for word in args.iter().skip(1).filter_map(|arg| arg.to_str()) {
@@ -214,7 +213,7 @@ fn command_path(root: &clap::Command, args: &[OsString]) -> String {
     path.join(" ")
 }
 
-/// A variant of standard input, `-#red`, which looks like an option, as a path.
+/// Turns a variant of standard input, `-#red`, which looks like an option, into a path.
 fn variant_of_standard_input(arg: OsString) -> OsString {
     match arg.to_str().and_then(|arg| arg.strip_prefix("-#")) {
         Some(variant) => format!("/dev/stdin#{variant}").into(),
@@ -233,10 +232,10 @@ struct Driftworld {
     color: ColorChoice,
 }
 
-/// The subcommands: an enum of them, and a function that runs the one that was chosen.
+/// Defines the subcommands: an enum of them, and a function that runs the chosen one.
 macro_rules! subcommands {
     ($($module:ident::$command:ident),+ $(,)?) => {
-        // No words for each: they would take the place of the long ones that stand with the command.
+        // No doc comments here: they would replace the long ones of the commands.
         #[derive(Subcommand)]
         enum Command {
             $($command($module::$command),)+
@@ -262,7 +261,7 @@ subcommands! {
     schema::Schema, bench::Bench, completions::Completions, doctor::Doctor,
 }
 
-/// Says on standard error why the command failed; hands back the exit code.
+/// Prints on standard error why the command failed; returns the exit code.
 fn report(failure: &Failure) -> u8 {
     output::note(format!("error: {}", failure.text().for_command()));
     interrupt::exit_code().unwrap_or(match failure {
@@ -271,8 +270,8 @@ fn report(failure: &Failure) -> u8 {
     })
 }
 
-/// Ends the command without a word when the reader of its output goes away, as with `| head`, and with an error where
-/// the system has no threads to give: both reach us as panics of others.
+/// Ends the command silently if the reader of its output goes away, as with `| head`, and with an error if the system cannot
+/// start threads: other crates report both as panics.
 fn translate_panics() {
     let default = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |info| {

@@ -1,16 +1,16 @@
-//! What a build may lack, because few need it and it takes long to build: each is a feature of Cargo. This file says so to a user.
+//! Optional parts of a build, which few need and which take long to build: each is a Cargo feature.
 
 #[cfg(any(test, not(feature = "gltf")))]
 use super::Failure;
 
-/// The optional parts: the feature, and whether this build has it.
+/// The features, and whether this build has them.
 pub(crate) const FEATURES: [(&str, bool); 3] = [
     ("gltf", cfg!(feature = "gltf")),
     ("gpu", cfg!(feature = "gpu")),
     ("line-editor", cfg!(feature = "line-editor")),
 ];
 
-/// What is said where a build lacks a feature; `instead` says what can be done without it.
+/// The error if a build lacks a feature; `instead` names an alternative.
 #[cfg(any(test, not(feature = "gltf")))]
 pub(crate) fn missing(feature: &str, what: &str, instead: &str) -> Failure {
     Failure::input(format!(
@@ -23,7 +23,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_a_build_lacks_is_said_with_the_way_to_have_it() {
+    fn missing_feature_names_the_cargo_feature() {
         let said = format!("{:?}", missing("no-such", "reading glTF", ", or do without"));
         let expected = "reading glTF is not in this build: it lacks the feature `no-such`; build with `--features no-such` (or \
                         `full`), or do without";

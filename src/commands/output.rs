@@ -1,5 +1,5 @@
-//! Where results go: standard output, or files that appear whole or not at all. What they say is the commands' own;
-//! what a terminal would obey or hide in it is shown here, so that no command can forget it.
+//! Output of commands: standard output, or files that appear whole or not at all. Escapes control characters and other text
+//! that a terminal would interpret or hide.
 
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -21,31 +21,31 @@ use crate::wrap::{columns_of_stderr, columns_of_stdout, wrap_lines};
 /// Whether data for a program went to standard output: then nothing else does.
 static IS_DATA: AtomicBool = AtomicBool::new(false);
 
-/// Whether the exit code is an answer, which counts also where nobody reads the words.
+/// Whether the exit code is a result, which counts even if nobody reads the output.
 static ANSWERS_BY_CODE: AtomicBool = AtomicBool::new(false);
 
-/// From now on the command goes on to its end where the reader of its output has gone: its exit code is an answer.
+/// Makes the command run to its end even if the reader of its output has gone, because its exit code is a result.
 pub(crate) fn answers_by_code() {
     ANSWERS_BY_CODE.store(true, Ordering::Relaxed);
 }
 
-/// What was written, each with what it is, and was not reported yet.
+/// Written files with descriptions that were not reported yet.
 static WRITTEN: Mutex<Vec<(PathBuf, String)>> = Mutex::new(Vec::new());
 
 fn written() -> MutexGuard<'static, Vec<(PathBuf, String)>> {
     WRITTEN.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Remembers that a file or a folder was written; `what` says more in a few words, or nothing. At the end of the command a line
-/// `wrote FILE` says so.
+/// Records that a file or a folder was written; `what` is a short description, or empty. A line `wrote FILE` is printed at the
+/// end of the command.
 pub(crate) fn wrote(path: &Path, what: impl Into<String>) {
-    // Whoever reads standard output has seen it; a device is no file, and it may be standard output by another name.
+    // Standard output has been seen already; a device is no file, and may be another name for standard output.
     if !is_stdout(path) && !path.starts_with("/dev") {
         written().push((path.to_owned(), what.into()));
     }
 }
 
-/// Says what was written: on standard output, or on standard error where data for a program is on the other.
+/// Reports the written files: on standard output, or on standard error if standard output carries data.
 pub(crate) fn tell_what_was_written() -> Result<(), Failure> {
     let is_data = IS_DATA.swap(false, Ordering::Relaxed);
     ANSWERS_BY_CODE.store(false, Ordering::Relaxed);
@@ -61,7 +61,7 @@ pub(crate) fn tell_what_was_written() -> Result<(), Failure> {
     Ok(())
 }
 
-/// Prints what was written as JSON where that is asked for, for commands that have no other result.
+/// Prints the written files as JSON if requested, for commands without another result.
 pub(crate) fn json_of_what_was_written(is_asked_for: bool) -> Result<(), Failure> {
     if !is_asked_for {
         return Ok(());
@@ -73,12 +73,12 @@ pub(crate) fn json_of_what_was_written(is_asked_for: bool) -> Result<(), Failure
     json(&json!({ "wrote": listed }))
 }
 
-/// Prints a line, or ends quietly if the reader has gone. What is longer than the terminal is wide is broken between words.
+/// Prints a line, or ends quietly if the reader has gone. Wraps lines at the terminal's width.
 pub(crate) fn line(text: impl AsRef<str>) -> Result<(), Failure> {
     print(&format!("{}\n", wrap_lines(text.as_ref(), columns_of_stdout())))
 }
 
-/// Prints text, in which unprintable characters are shown.
+/// Prints text with unprintable characters escaped.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     if style::of_stdout() {
         return print_as_is(&style::paint(text, |text| printable_lines(text).into_owned()));
@@ -86,12 +86,12 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
     print_as_is(&printable_lines(text))
 }
 
-/// Prints a document in JSON, in which unprintable characters are escaped as JSON has it.
+/// Prints a JSON document with unprintable characters escaped as in JSON.
 pub(crate) fn print_json(json: &str) -> Result<(), Failure> {
     print_as_is(&printable_json(json))
 }
 
-/// Prints data for another program: to a terminal as [`print`], else as it is.
+/// Prints data for another program: to a terminal as [`print`], else unchanged.
 pub(crate) fn print_data(text: &str) -> Result<(), Failure> {
     carries_data();
     if std::io::stdout().is_terminal() {
@@ -100,21 +100,21 @@ pub(crate) fn print_data(text: &str) -> Result<(), Failure> {
     print_as_is(text)
 }
 
-/// From now on standard output holds data for a program.
+/// Marks standard output as carrying data for a program.
 pub(crate) fn carries_data() {
     IS_DATA.store(true, Ordering::Relaxed);
 }
 
-/// Prints text as it is: of our own making, with colours.
+/// Prints our own text unchanged, with colours.
 pub(crate) fn print_as_is(text: &str) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Ok(()) => Ok(()),
-        // What was not looked at yet may be wrong, and the exit code says so.
+        // Input not checked yet may be wrong, which the exit code must show.
         Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe && ANSWERS_BY_CODE.load(Ordering::Relaxed) => {
             Ok(())
         }
-        // As with `| head`: whoever read us has seen enough.
+        // As with `| head`: the reader has seen enough.
         Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe =>
         {
             #[expect(
@@ -144,17 +144,17 @@ pub(crate) fn note(text: impl AsRef<str>) {
     let _ = writeln!(std::io::stderr().lock(), "{text}");
 }
 
-/// Says on standard error what is odd.
+/// Prints a warning on standard error.
 pub(crate) fn warning(text: impl AsRef<str>) {
     note(format!("warning: {}", text.as_ref()));
 }
 
-/// Whether a path stands for standard output: `-`, or a name that the system has for it.
+/// Whether a path means standard output: `-`, or one of the system's names for it.
 pub(crate) fn is_stdout(path: &Path) -> bool {
     path == Path::new("-") || driftworld_atomic_files::is_own_stdout(path)
 }
 
-/// A document in JSON to a file, or to standard output for `-`.
+/// Writes a JSON document to a file, or prints it for `-`.
 pub(crate) fn write_or_print(path: &Path, json: &str) -> Result<(), Failure> {
     if is_stdout(path) {
         carries_data();
@@ -166,14 +166,14 @@ pub(crate) fn write_or_print(path: &Path, json: &str) -> Result<(), Failure> {
     }
 }
 
-/// Writes a picture as PNG or SVG, and says so with its size.
+/// Writes a picture as PNG or SVG, and reports it with its size.
 pub(crate) fn write_picture_and_tell(path: &Path, picture: &Drawing) -> Result<(), Failure> {
     write_picture(path, picture)?;
     wrote(path, format!("{} × {} pixels", picture.width, picture.height));
     Ok(())
 }
 
-/// A bar on a terminal, nothing elsewhere.
+/// A progress bar on a terminal, invisible elsewhere.
 pub(crate) fn progress(steps: u64, what: &'static str) -> ProgressBar {
     if !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();

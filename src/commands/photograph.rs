@@ -1,5 +1,4 @@
-//! `driftworld photograph`: every object of a world from around and above, as PNG files with a manifest. Where the camera
-//! stands and what is in the picture is decided in `env`.
+//! `driftworld photograph`: pictures of every object of a world from around and above, as PNG files with a manifest.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -17,7 +16,7 @@ use crate::modality::{self, metres_per_level, target};
 use crate::numbers::documented;
 use crate::worlds::WorldRequest;
 
-/// The longest part of a file name that comes from the document.
+/// Longest part of a file name that comes from the document.
 const LONGEST_NAME: usize = 40;
 
 /// Photograph every object of a world from all sides.
@@ -47,7 +46,7 @@ pub(crate) struct Photograph {
     json: bool,
 }
 
-/// What all pictures of a folder have in common, and the list of them.
+/// Common properties of the pictures in a folder, and their list.
 #[derive(Serialize)]
 struct Manifest<'a> {
     world: String,
@@ -57,9 +56,9 @@ struct Manifest<'a> {
     zoom: f64,
     yaw_subdivisions: u32,
     vertical_subdivisions: u32,
-    /// sRGB bytes by which segmentation images show a reward category.
+    /// The sRGB bytes of each reward category in segmentation images.
     categories: BTreeMap<&'static str, [u8; 3]>,
-    /// Numbers of class images.
+    /// Class ids in class images.
     classes: BTreeMap<&'a str, u16>,
     photographs: Vec<Entry<'a>>,
 }
@@ -77,9 +76,9 @@ struct Entry<'a> {
     tag: Option<&'a str>,
     yaw_deg: f32,
     elevation_deg: f32,
-    /// From the camera to the object's middle in metres.
+    /// From the camera to the object's centre in metres.
     distance: f32,
-    /// Of depth images: 65535 levels and more are the background.
+    /// For depth images: level 65535 and above is the background.
     #[serde(skip_serializing_if = "Option::is_none")]
     metres_per_level: Option<f32>,
 }
@@ -185,7 +184,7 @@ fn manifest<'a>(world: &'a World, photographs: Vec<Entry<'a>>) -> Manifest<'a> {
     }
 }
 
-/// The numbers of the classes that stand in the world.
+/// The ids of the classes in the world.
 fn classes(world: &World) -> BTreeMap<&str, u16> {
     let catalogue = Catalogue::default();
     let classes = world.objects.iter().map(|object| object.class.as_str());
@@ -206,7 +205,7 @@ fn file_name(view: &View, object: &Object, kind: Modality, objects: usize) -> St
     )
 }
 
-/// Whole degrees, or degrees and hundredths: no two views are nearer than that.
+/// Whole degrees, or degrees and hundredths: views are never closer.
 fn degrees(angle: f32, digits: usize) -> String {
     if angle.fract() == 0.0 {
         return format!("{angle:0digits$}");
@@ -214,7 +213,7 @@ fn degrees(angle: f32, digits: usize) -> String {
     format!("{angle:0width$.2}", width = digits + 3)
 }
 
-/// A text of a document as a part of a file name: other than letters, digits and `-` become `-`.
+/// A text of a document as part of a file name: anything but letters, digits and `-` becomes `-`.
 fn safe(text: &str) -> String {
     let plain = |letter: char| {
         if letter.is_ascii_alphanumeric() {
@@ -236,7 +235,7 @@ mod tests {
     use crate::spec::{ImageParams, WorldDraft};
 
     #[test]
-    fn names_of_a_document_cannot_lead_out_of_the_folder() {
+    fn document_names_cannot_leave_the_folder() {
         let check = |class: &str, expected: &str| {
             let view = View {
                 object: 7,
@@ -257,7 +256,7 @@ mod tests {
     }
 
     #[test]
-    fn no_two_views_have_one_name() {
+    fn view_names_are_unique() {
         let world = WorldDraft {
             image_params: Some(ImageParams {
                 zoom: 1.0,

@@ -1,4 +1,4 @@
-//! `driftworld render`: pictures of a world. What a pixel is, is decided in `env`; which pictures make a sheet, here.
+//! `driftworld render`: pictures of a world, and sheets of several.
 
 use std::path::PathBuf;
 
@@ -59,7 +59,7 @@ pub(crate) struct Render {
     json: bool,
 }
 
-/// The most pixels of all views of `--view episode` together; memory holds some fifteen bytes for each.
+/// Most pixels of all views of `--view episode` together; each takes some fifteen bytes of memory.
 const MAX_EPISODE_PIXELS: u64 = 67_108_864;
 
 /// Which picture of a world.
@@ -117,7 +117,7 @@ impl Render {
         })
     }
 
-    /// What the agent sees in both styles: small as learners see it, large with smooth edges.
+    /// The agent's view in both styles: at the learner's resolution, and large with smooth edges.
     fn looks(&self, world: &World, catalogue: &Catalogue) -> Result<Drawing, Failure> {
         let row = |style: Style, title: &str| -> Result<SheetRow, Failure> {
             let world = world.clone().edit(|draft| {
@@ -212,7 +212,7 @@ impl Render {
 /// The most warnings that are printed.
 const MOST_WARNINGS: usize = 10;
 
-/// Says what the world asks for that is not as its author may think.
+/// Warns of requests in the world that may surprise its author.
 fn warn(world: &World, catalogue: &Catalogue) {
     let warnings = Environment::with_catalogue(world.clone(), catalogue.clone()).warnings();
     for warning in warnings.iter().take(MOST_WARNINGS) {

@@ -1,4 +1,4 @@
-//! `driftworld replay`: recorded episodes run once more, compared with their log, and filmed. Where they are found is `recordings`'.
+//! `driftworld replay`: repeats recorded episodes, compares them with their log, and films them.
 
 use std::path::PathBuf;
 

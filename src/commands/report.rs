@@ -1,4 +1,4 @@
-//! `driftworld report`: lifetimes on one page, and their figures as files. Pages are the library's.
+//! `driftworld report`: writes lifetimes on one page, with their figures as files.
 
 use std::path::PathBuf;
 use std::sync::PoisonError;
@@ -110,7 +110,7 @@ impl Report {
     }
 }
 
-/// The command as a shell takes it.
+/// The command line, quoted for a shell.
 fn command_line() -> String {
     let plain = |word: &str| {
         word.bytes()
@@ -129,7 +129,7 @@ fn command_line() -> String {
     let given = super::WORDS.lock().unwrap_or_else(PoisonError::into_inner).clone();
     let mut given = given.into_iter().skip(1);
     while let Some(next) = given.next() {
-        // Where the page and the figures went says nothing of how it was made.
+        // The places of the page and the figures do not affect the contents.
         if ["-o", "--output", "--plots"].iter().any(|option| next == *option) {
             given.next();
         } else {

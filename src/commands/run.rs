@@ -1,4 +1,4 @@
-//! `driftworld run`: a scenario lived by an agent into a log. Living it is `curriculum`'s; the clock and the files are here.
+//! `driftworld run`: runs an agent through a scenario and writes the log.
 
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
@@ -22,7 +22,7 @@ use super::interrupt::Interrupt;
 use super::{Failure, output};
 use crate::table::table;
 
-/// The most experiences that run at the same time.
+/// Most experiences that run in parallel.
 const MAX_JOBS: usize = 256;
 
 /// Run an agent through a curriculum, and log every experience.
@@ -97,7 +97,7 @@ fn jobs(text: &str) -> Result<NonZeroUsize, String> {
 }
 
 impl Run {
-    /// Refuses the name of a task in place of a scenario's file; a task's file shows itself when it is read.
+    /// Refuses the name of a task instead of a scenario file; a task file is recognised when it is read.
     fn refuse_task(&self) -> Result<(), Failure> {
         let called = self.scenario.to_str().unwrap_or_default();
         let is_task = !self.scenario.exists() && tasks::variants(called).is_ok();
@@ -113,7 +113,7 @@ impl Run {
     pub(crate) fn run(self) -> Result<(), Failure> {
         self.refuse_task()?;
         let file = ScenarioFile::read(&self.scenario, &mut output::warning)?;
-        // The original's own scenario names a map that it does not come with, and has to run as it stands.
+        // The original's own scenario names a map that it does not include, and must run unchanged.
         let may = self.stand_in || (file.original && !self.no_stand_in);
         let missing = Missing::may_stand_in(may);
         let undrawable = if self.skip_undrawable {
@@ -176,7 +176,7 @@ impl Run {
     }
 }
 
-/// How many experiences were ended by what, the most frequent first; nothing where none was run.
+/// Counts of what ended experiences, the most frequent first; `None` if none was run.
 fn endings(summary: &Summary) -> Option<String> {
     let mut counts: Vec<(&str, u64)> = summary
         .ended_by
@@ -188,7 +188,7 @@ fn endings(summary: &Summary) -> Option<String> {
     (!listed.is_empty()).then(|| format!("ended by: {}", listed.join(", ")))
 }
 
-/// What was left out, and why; nothing where all was run.
+/// The skipped experiences and why; `None` if all were run.
 fn skipped(summary: &Summary) -> Option<String> {
     const SHOWN: usize = 10;
     if summary.skipped == 0 {
@@ -222,7 +222,7 @@ pub(crate) fn processors() -> NonZeroUsize {
     jobs.min(NonZeroUsize::new(MAX_JOBS).unwrap_or(NonZeroUsize::MIN))
 }
 
-/// What to do about a world that cannot be drawn once there is a log.
+/// What to do about an undrawable world once there is a log.
 const UNDRAWABLE: &str = "this one cannot be run: to skip such experiences, repeat the command with --resume and \
      --skip-undrawable; or fix the task and start a new log";
 
@@ -231,19 +231,19 @@ pub(crate) struct LifetimeRun<'a> {
     pub(crate) plan: &'a Plan,
     pub(crate) agent: NamedAgent,
     pub(crate) logs: &'a Path,
-    /// Whether the log goes on where it stopped, if there is one; else its folder is empty.
+    /// Whether to resume the log, if there is one; otherwise its folder is empty.
     pub(crate) resumes: bool,
     pub(crate) jobs: NonZeroUsize,
     pub(crate) catalogue: Catalogue,
-    /// Whether what is done is kept.
+    /// Whether actions are recorded.
     pub(crate) records: bool,
 }
 
 impl LifetimeRun<'_> {
-    /// Runs it, with a bar on a terminal. Whatever stops it, the log holds whole experiences, and the message says how
-    /// to go on.
+    /// Runs it, with a progress bar on a terminal. Whatever stops it, the log holds whole experiences, and the message says how
+    /// to continue.
     pub(crate) fn run(mut self) -> Result<Summary, Failure> {
-        // Before there is a log, so that whoever sees one may ask for its end.
+        // Before the log exists, so that a process that sees the log may already stop this one.
         let interrupt = Interrupt::listen(format!(
             "interrupted in the middle of a step\n{}: all experiences in it are complete; continue with the same \
              command and --resume",
@@ -268,7 +268,7 @@ impl LifetimeRun<'_> {
             watch: &mut |progress: &Progress| {
                 bar.set_position(progress.done);
                 bar.set_message(printable(&progress.variant).into_owned());
-                // The last one needs no stopping.
+                // Nothing is left to stop after the last one.
                 if interrupt.is_asked() && progress.done < progress.total {
                     ControlFlow::Break(())
                 } else {
@@ -282,7 +282,7 @@ impl LifetimeRun<'_> {
         };
         let agent = self.agent.agent.as_mut();
         let done = journal.num_experiences();
-        // What is complete needs no agent.
+        // A complete log needs no agent.
         let to_relearn = if done < self.plan.num_experiences() { done } else { 0 };
         let ran = relearn(self.plan, agent, to_relearn, &mut context).and_then(|flow| match flow {
             ControlFlow::Continue(()) => run(self.plan, agent, &mut journal, &mut context),
@@ -301,7 +301,7 @@ impl LifetimeRun<'_> {
                 .map(|()| summary)
                 .map_err(|error| self.stopped(&error.to_string(), done)),
             Ok(_) => Err(interrupt.failure(self.stopping("interrupted", done))),
-            // The same command would stop there again, and again.
+            // The same command would stop there again.
             Err(error @ CurriculumError::World { .. }) => Err(Failure::input(format!(
                 "{error}\n{}: holds {done} of {} experiences, all complete; {}",
                 self.logs.shown(),
@@ -323,12 +323,12 @@ impl LifetimeRun<'_> {
         })
     }
 
-    /// Why it stopped, what there is, and how to go on.
+    /// The failure with the reason, the state, and how to continue.
     fn stopped(&self, why: &str, done: u64) -> Failure {
         Failure::input(self.stopping(why, done))
     }
 
-    /// The same in words.
+    /// The message with the reason, the state, and how to continue.
     fn stopping(&self, why: &str, done: u64) -> String {
         format!(
             "{why}\n{}: holds {done} of {} experiences, all complete; continue with the same command and --resume",
@@ -338,7 +338,7 @@ impl LifetimeRun<'_> {
     }
 }
 
-/// Whether what was logged is no longer there: then there is nothing whole to go on with.
+/// Whether the log was lost: then there is nothing whole to continue.
 fn is_loss(error: &CurriculumError) -> bool {
     matches!(
         error,
@@ -351,10 +351,10 @@ fn is_loss(error: &CurriculumError) -> bool {
     )
 }
 
-/// What each regime came to.
+/// The results of each regime.
 pub(crate) fn regimes(summary: &Summary) -> String {
     let rows = summary.regimes.iter().map(|regime| {
-        // Where all was left out, there is nothing to tell.
+        // If all experiences were skipped, there are no results.
         let shown = |number: f64, show: fn(f64) -> String| {
             if regime.experiences == 0 {
                 "-".to_owned()

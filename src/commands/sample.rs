@@ -1,4 +1,4 @@
-//! `driftworld sample`: worlds of a variant, one or many, any shard of them. Drawing is the generator's.
+//! `driftworld sample`: draws worlds of a variant, one or many, or a shard of them.
 
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -17,10 +17,10 @@ use crate::{Failure, worlds};
 
 use super::{output, overwrite};
 
-/// The most worlds that are drawn at once while streaming.
+/// Most worlds drawn at once while streaming.
 const CHUNK: u64 = 1024;
 
-/// About the most objects that are held at once while streaming: worlds of many objects are drawn in smaller chunks.
+/// Approximate limit of objects in memory while streaming: worlds with many objects are drawn in smaller chunks.
 const OBJECTS: u64 = 100_000;
 
 /// Draw worlds from a variant of a task.
@@ -97,7 +97,7 @@ enum SequenceName {
     Lhs,
 }
 
-/// One of several equal parts of a range, counted from 1.
+/// One of several equal parts of a range, numbered from 1.
 #[derive(Clone, Copy)]
 struct Shard {
     part: u64,
@@ -119,14 +119,14 @@ impl std::str::FromStr for Shard {
 }
 
 impl Shard {
-    /// Its part of `first..first + count`; the first parts are longer by one where it does not come out even.
+    /// Its part of `first..first + count`; the first parts are longer by one if it does not divide evenly.
     fn of(self, first: u64, count: u64) -> std::ops::Range<u64> {
         let start = |part: u64| first + (u128::from(count) * u128::from(part) / u128::from(self.parts)) as u64;
         start(self.part - 1)..start(self.part)
     }
 }
 
-/// Draws the world of a number.
+/// Draws the world with an index.
 type Draw = Box<dyn Fn(u64) -> Result<World, GeneratorError> + Sync>;
 
 impl Sample {
@@ -164,7 +164,7 @@ impl Sample {
         self.files(&draw, range)
     }
 
-    /// What worlds are drawn from.
+    /// The function that draws the worlds.
     fn source(&self, variant: &Variant, count: u64) -> Result<Draw, Failure> {
         let sequence = match self.sequence {
             SequenceName::Independent => Sequence::Independent,
@@ -189,7 +189,7 @@ impl Sample {
             let sampler = sampler(variant);
             return Ok(Box::new(move |index| sampler.world(index)));
         };
-        // The other variant is of the same task where it is named without one.
+        // The other variant is of the same task if named without one.
         let (_, own) = tasks::split(name);
         let to = match own {
             Some(_) => tasks::variant(name)?,
@@ -251,15 +251,15 @@ impl Sample {
 
 const REMOVED: &str = "incomplete output was removed";
 
-/// Hands over the worlds with their numbers, in order; draws a chunk at a time on all cores. `left` says what an
-/// interrupt leaves behind.
+/// Passes on the worlds with their indices, in order; draws a chunk at a time on all cores. `left` describes what an interrupt
+/// leaves behind.
 fn each(
     draw: &Draw,
     range: std::ops::Range<u64>,
     left: &str,
     mut take: impl FnMut(u64, World) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
-    // Whoever is asked to stop gives up what is half written, and removes it.
+    // On cancellation, the partial output is removed.
     let interrupt = Interrupt::listen(format!("interrupted; {left}"));
     let bar = output::progress(range.end - range.start, "sampling");
     let mut first = range.start;

@@ -1,4 +1,4 @@
-//! `driftworld scales`: floors and ceilings of variants, measured. How is the library's.
+//! `driftworld scales`: measures floors and ceilings of variants.
 
 use std::path::PathBuf;
 
@@ -56,7 +56,7 @@ impl Scales {
     }
 }
 
-/// A row per variant of each set that looks alike; nothing where nobody asked for one.
+/// A row per variant of each set that looks alike; `None` unless requested.
 fn unlabelled(found: &ScalesFile) -> Option<String> {
     let mut rows = Vec::new();
     for set in &found.unlabelled {

@@ -1,4 +1,4 @@
-//! `driftworld schema`: the JSON Schemas of the documents and the reference of the keys of a world, as the code has them.
+//! `driftworld schema`: prints the JSON Schemas of the documents and the reference of a world's keys, generated from the code.
 
 use std::path::PathBuf;
 

@@ -1,5 +1,4 @@
-//! The options by which lifetimes are scored, under l2metrics' names: for `metrics` and `report` alike. What they do is
-//! the library's.
+//! The scoring options, under l2metrics' names, shared by `metrics` and `report`.
 
 use std::path::{Path, PathBuf};
 
@@ -45,7 +44,7 @@ pub(crate) struct Scoring {
 }
 
 impl Scoring {
-    /// The same for the library.
+    /// Converts them to the library's settings.
     pub(crate) fn settings(&self) -> Result<ScoringSettings, Failure> {
         let noise = self.noise.as_deref().and_then(|noise| match noise {
             [mean, std] => Some(Noise {
@@ -53,7 +52,7 @@ impl Scoring {
                 std: *std,
                 seed: self.noise_seed,
             }),
-            // The parser takes two.
+            // The parser accepts exactly two.
             _ => None,
         });
         Ok(ScoringSettings {
@@ -68,7 +67,7 @@ impl Scoring {
         })
     }
 
-    /// Where experts are kept.
+    /// The folder of stored experts.
     pub(crate) fn ste_data(&self) -> Option<&Path> {
         self.choice.expert_store.as_deref()
     }

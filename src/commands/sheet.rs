@@ -1,4 +1,4 @@
-//! `driftworld sheet`: one picture of many variants, or of a curriculum. Pictures of one world are `render`'s.
+//! `driftworld sheet`: one picture of many variants, or of a curriculum.
 
 use std::path::{Path, PathBuf};
 
@@ -14,7 +14,7 @@ use crate::documents;
 use crate::scenarios::is_original;
 use crate::sheet_words::Worlds;
 
-/// The most variants that one picture shows.
+/// Most variants in one picture.
 const MOST_VARIANTS: usize = 60;
 
 /// Draw a world of each of several variants in one picture.
@@ -93,7 +93,7 @@ impl Sheet {
     }
 }
 
-/// What a regime shows: the values that make a variant that no task declares are its words.
+/// A regime's caption: a variant that no task declares is described by its values.
 fn of_regime<'a>(
     variant: Variant,
     values: impl IntoIterator<Item = (&'a String, &'a Value)>,
@@ -118,7 +118,7 @@ fn of_regime<'a>(
     }
 }
 
-/// The variants that a scenario learns, each as often as it comes; of a drift both ends.
+/// The variants that a scenario learns, including repeats; for a drift both ends.
 fn learned(file: &Path) -> Result<Vec<Shown>, Failure> {
     let text = documents::text_of(file, &[Contents::Scenario])?;
     if is_original(&text) {

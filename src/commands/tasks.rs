@@ -1,4 +1,4 @@
-//! `driftworld tasks`: which tasks are built in, and what varies in one.
+//! `driftworld tasks`: lists the built-in tasks, and what varies in one.
 
 use std::sync::Arc;
 
@@ -50,7 +50,7 @@ impl Tasks {
     }
 }
 
-/// The most variants of a task that the list of tasks names.
+/// Most variants per task in the list of tasks.
 const LISTED: usize = 6;
 
 fn list(as_json: bool) -> Result<(), Failure> {
@@ -139,7 +139,7 @@ fn show(task: &Arc<TaskSpec>, own: Option<&str>, as_json: bool) -> Result<(), Fa
     ))
 }
 
-/// What a parameter is where no variant says: its default, its fixed value, or how it is drawn.
+/// A parameter's usual value: its default, its fixed value, or its distribution.
 fn usual(variant: Option<&Variant>, name: &str, parameter: &Parameter) -> String {
     let value = parameter.default.as_ref().or(parameter.value.as_ref());
     let drawn = variant.and_then(|variant| variant.distribution(name));
@@ -161,7 +161,7 @@ fn differing(variant: &Variant) -> String {
     differing.collect::<Vec<_>>().join(", ")
 }
 
-/// A value as captions have it; no line is broken beside a number, but behind commas of what is no place.
+/// A value as in captions; lines break neither beside a number, nor after the commas of a place.
 fn in_few_words(value: &Value, parameter: &Parameter) -> String {
     let typed = parameter.typed(value);
     let value = typed.as_ref().unwrap_or(value);
@@ -189,10 +189,10 @@ fn role(role: Role) -> &'static str {
     }
 }
 
-/// The most choices that are listed.
+/// Most choices listed.
 const MOST_CHOICES: usize = 8;
 
-/// What a parameter may be, in a few words.
+/// Short description of a parameter's domain.
 fn in_words(domain: &Domain, parameter: &Parameter) -> String {
     let unit = parameter
         .unit
@@ -208,7 +208,7 @@ fn in_words(domain: &Domain, parameter: &Parameter) -> String {
         }
         Domain::Choices(choices) => {
             let words: Vec<String> = choices.iter().map(|choice| in_few_words(choice, parameter)).collect();
-            // What has commas itself is parted by more than one.
+            // Words that contain commas need another separator.
             let between = if words.iter().any(|words| words.contains(',')) {
                 "; "
             } else {

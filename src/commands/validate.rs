@@ -1,4 +1,4 @@
-//! `driftworld validate`: every problem of a document with its place.
+//! `driftworld validate`: lists every problem of a document with its place.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -70,28 +70,28 @@ pub(crate) struct Validate {
     json: bool,
 }
 
-/// The kinds that are checked. Any other recognised kind is refused.
+/// The kinds that are checked. Other recognised kinds are refused.
 const DOCUMENTS: [Contents; 4] = [Contents::Task, Contents::World, Contents::Scenario, Contents::Maps];
 
-/// The most worlds of a variant that the agent on rails tries.
+/// Most worlds per variant that the planner tries.
 const MOST_TRIED: u64 = 100;
 
-/// What was found in one file.
+/// The result for one file.
 struct Verdict {
     path: PathBuf,
-    /// What the document came to, or why there is none.
+    /// The checked document, or why there is none.
     found: Result<Found, Failure>,
 }
 
-/// What a document that could be read came to.
+/// The result for a document that could be read.
 struct Found {
     checked: Checked,
-    /// What else is wrong with a scenario, with its code.
+    /// Another problem of a scenario, with its code.
     failure: Option<(&'static str, String)>,
     trials: Vec<Trial>,
-    /// What is odd about the worlds of a task, in sentences.
+    /// Remarks on the worlds of a task, as sentences.
     remarks: Vec<String>,
-    /// What variants of the task, or of a scenario's tasks, were seen to change, where that was asked for.
+    /// The measured effects of variants of the task, or of a scenario's tasks, if requested.
     elements: Vec<ElementsOutcome>,
 }
 
@@ -113,10 +113,10 @@ impl Validate {
         Err(Failure::input(format!("{wrong} of {} {files} refused", verdicts.len())))
     }
 
-    /// The verdicts on a file, or on the files of a folder; also on what cannot be read, so that no file goes without.
+    /// The verdicts on a file, or on the files of a folder, including unreadable ones.
     fn judge(&self, path: &Path, classes: &Classes) -> Vec<Verdict> {
         let files = match Contents::of_folder(path) {
-            // What lies in a log is no document of ours, and `logs validate` judges it.
+            // Files inside a log are no documents of ours; `logs validate` checks them.
             Some(Contents::Log) => Ok(vec![path.to_owned()]),
             _ => worlds::json_files(path),
         };
@@ -181,7 +181,7 @@ impl Validate {
         })
     }
 
-    /// Tries what the variants of a valid task change, or those of each task that a scenario names.
+    /// Measures what the variants of a valid task change, or those of each task in a scenario.
     fn try_elements(&self, path: &Path, name: &str, text: &str, kind: Kind) -> Result<Vec<ElementsOutcome>, Failure> {
         let tasks = match kind {
             Kind::Task => vec![TaskSpec::from_json(name, text)?],
@@ -191,7 +191,7 @@ impl Validate {
                 let plan = file.plan(Missing::Refused, Undrawable::Skipped, warn)?;
                 plan.tasks().values().map(Arc::clone).collect()
             }
-            // The tasks of the original's scenarios, and worlds, claim nothing.
+            // The tasks of the original's scenarios, and worlds, make no claims.
             Kind::L2ExplorerScenario | Kind::World | Kind::Maps | Kind::L2ExplorerWorld => Vec::new(),
         };
         let tried = tasks.iter().map(|task| {
@@ -199,7 +199,7 @@ impl Validate {
                 seed: self.seed,
                 steps: self.steps,
                 libraries: self.libraries.paths().to_vec(),
-                // The name of a file may hold a `#`; all variants are meant.
+                // A file name may contain `#`; all variants are meant.
                 ..ElementsRequest::of(task.name())
             };
             elements_of(task, &request)
@@ -207,7 +207,7 @@ impl Validate {
         tried.collect()
     }
 
-    /// Draws some worlds of what a valid document describes; else why that cannot begin, with the error's code.
+    /// Draws some worlds of a valid document; otherwise returns why that is impossible, with the error's code.
     fn try_worlds(
         &self,
         path: &Path,
@@ -256,12 +256,12 @@ impl Found {
         self.checked.error.is_none() && self.failure.is_none() && is_drawn && self.is_sound()
     }
 
-    /// Whether what was tried contradicts nothing.
+    /// Whether no experiment contradicts the document.
     fn is_sound(&self) -> bool {
         self.elements.iter().all(ElementsOutcome::is_sound)
     }
 
-    /// What worlds and experiments warn of, in sentences.
+    /// Warnings from worlds and experiments, as sentences.
     fn cautions(&self) -> Vec<String> {
         let idle = self.elements.iter().flat_map(ElementsOutcome::warnings);
         let all = self.remarks.iter().cloned().chain(idle);

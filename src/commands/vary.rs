@@ -1,4 +1,4 @@
-//! `driftworld vary`: a variant at a wanted distance from another. The search is the generator's, the distance `similarity`'s.
+//! `driftworld vary`: finds a variant at a given distance from another.
 
 use std::path::PathBuf;
 
@@ -73,7 +73,7 @@ impl Vary {
         };
         let measured = VariantMeasure::new(from.task(), Weights::of_task(from.task()));
         let measure = |other: &Variant| {
-            // Distributions of numbers beyond all bounds have no finite distance: farther than any that can be asked for.
+            // Distributions of unboundedly large numbers have no finite distance: farther than any requested.
             let Ok(distance) = measured.between(&from, other) else {
                 return f64::INFINITY;
             };
@@ -129,7 +129,7 @@ impl Vary {
     }
 }
 
-/// The document of a variant's task with that variant at its end. What it declares makes the same variant again.
+/// The document of a variant's task with that variant appended. Its declaration makes the same variant again.
 fn with_variant(found: &Variant, name: &str, declared: &Map<String, Value>) -> Result<String, Failure> {
     let mut document: Value = serde_json::from_str(&found.task().to_json())?;
     document["variants"][name] = Value::Object(declared.clone());

@@ -1,4 +1,4 @@
-//! `--weight reward=2`: what the elements of the decision process weigh in a distance. Distances are `similarity`'s.
+//! `--weight reward=2`: weights of the decision process's elements in a distance.
 
 use crate::similarity::{MAX_WEIGHT, SimilarityError, Weights};
 use crate::spec::Element;
@@ -15,7 +15,7 @@ pub(crate) struct WeightArgs {
 }
 
 impl WeightArgs {
-    /// Weights with these laid over them.
+    /// Overrides weights with these.
     pub(crate) fn over(&self, mut weights: Weights) -> Result<Weights, SimilarityError> {
         for (element, weight) in &self.weight {
             weights = weights.with(*element, *weight)?;

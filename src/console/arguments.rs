@@ -1,4 +1,4 @@
-//! The arguments of a line of the console: words, numbers, actions, pictures, objects. Which commands there are is in `line.rs`.
+//! Parses the arguments of a console line: words, numbers, actions, pictures, objects.
 
 use crate::env::{Action, Category};
 use crate::modality;
@@ -14,10 +14,10 @@ pub(super) enum Picture {
     Map,
 }
 
-/// The most steps of one command.
+/// Most steps per command.
 const MOST_STEPS: u32 = 100_000;
 
-/// A line cut at its blanks; what stands in quotes is one word.
+/// Splits a line at spaces; quoted text is one word.
 pub(super) fn words(text: &str) -> Result<Vec<String>, String> {
     let mut words = Vec::new();
     let (mut word, mut quote) = (None::<String>, None);
@@ -63,7 +63,7 @@ fn not_one_of(what: &str, word: &str, names: &[&str]) -> String {
     format!("found {what} {word:?}, expected one of {}{near}", names.join(", "))
 }
 
-/// An action and how often it is taken.
+/// An action and its number of repeats.
 pub(super) fn step(words: &[&str]) -> Result<(Action, u32), String> {
     let (count, numbers) = match words {
         [] => (1, words),
@@ -82,7 +82,7 @@ pub(super) fn step(words: &[&str]) -> Result<(Action, u32), String> {
     Ok((action, count))
 }
 
-/// The same with options.
+/// An action and its number of repeats, with options.
 pub(super) fn action(words: &[&str]) -> Result<(Action, u32), String> {
     let (count, words) = match words {
         ["-c", steps, rest @ ..] | [rest @ .., "-c", steps] => (count(steps)?, rest),
@@ -115,7 +115,7 @@ fn picture(word: &str) -> Result<Picture, String> {
         .ok_or_else(|| not_one_of("modality", word, &modality::NAMES))
 }
 
-/// A picture and how wide it is shown.
+/// A picture and its width on the screen.
 pub(super) fn show(words: &[&str]) -> Result<(Picture, Option<u32>), String> {
     let is_number = |word: &str| word.starts_with(|letter: char| letter.is_ascii_digit());
     let (kind, width) = match words {
@@ -126,7 +126,7 @@ pub(super) fn show(words: &[&str]) -> Result<(Picture, Option<u32>), String> {
     Ok((picture, width.map(columns).transpose()?))
 }
 
-/// A picture and its width and height.
+/// A picture with its width and height.
 pub(super) fn screenshot(words: &[&str]) -> Result<(Picture, Option<[u32; 2]>), String> {
     let (mut kind, mut size) = (Picture::Seen(Modality::Rgb), None);
     for word in words {
@@ -159,7 +159,7 @@ pub(super) fn object(class: &str, coordinates: [f64; 2], keys: &[&str]) -> Resul
     Ok(Value::Object(object).to_string())
 }
 
-/// A value as it is typed: JSON, a list with commas, or a plain word.
+/// A typed value: JSON, a list with commas, or a plain word.
 fn value(key: &str, text: &str) -> Value {
     let one = |text: &str| serde_json::from_str(text).unwrap_or_else(|_| json!(text));
     match one(text) {
@@ -186,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn an_object_is_spawned_by_words() {
+    fn object_is_spawned_from_words() {
         let words = words(
             "color=1,0,0 reward=1 reward_stimulus=AgentCollide model=2 tag='red things' \
              solid=false",

@@ -1,4 +1,4 @@
-//! Editing lines on a terminal: history and completion. Which commands there are is in `line.rs`.
+//! Line editing on a terminal: history and completion.
 
 use crate::env::Category;
 use rustyline::completion::Completer;
@@ -25,7 +25,7 @@ impl Editor {
         Ok(Self(editor))
     }
 
-    /// The next line that is neither empty nor a comment; none when the user leaves. Ctrl-C drops the line.
+    /// The next line that is neither empty nor a comment; `None` if the user leaves. Ctrl-C discards the line.
     pub(crate) fn read(&mut self, names: Names) -> Result<Option<String>, Failure> {
         self.0.set_helper(Some(Completions(names)));
         loop {
@@ -40,11 +40,11 @@ impl Editor {
     }
 }
 
-/// What Tab completes.
+/// Tab completion.
 struct Completions(Names);
 
 impl Completions {
-    /// The words that may stand behind those that are there already.
+    /// The words that may follow the given ones.
     fn after(&self, before: &[&str]) -> Vec<String> {
         let owned = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect();
         let modalities = || modality::NAMES.map(str::to_owned);
@@ -87,7 +87,7 @@ impl Completer for Completions {
         let before: Vec<&str> = line[..start].split_whitespace().collect();
         let mut words = self.after(&before);
         words.retain(|word| word.starts_with(&line[start..]));
-        // What is complete is followed by the next word; a key, by its value.
+        // After a complete word a space follows; after a key, its value.
         if let [only] = &mut words[..]
             && !only.ends_with('=')
         {
@@ -112,7 +112,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn words_are_completed_by_what_stands_before_them() {
+    fn completions_depend_on_the_words_before() {
         let check = |line: &str, expected: &[&str]| {
             let words = Completions(Names {
                 objects: vec!["oak".to_owned()],

@@ -1,8 +1,8 @@
-//! The commands of the console, and what is said of them: help, and which arguments were expected.
+//! The commands of the console, with help texts and expected arguments.
 
 use crate::spec::did_you_mean;
 
-/// Every command: its name, its arguments, what it does.
+/// Every command: its name, its arguments, its description.
 pub(super) const COMMANDS: [(&str, &str, &str); 19] = [
     ("help", "[COMMAND]", "list the commands, or explain one"),
     ("info", "", "summarise the world and its episode"),
@@ -57,7 +57,7 @@ pub(super) const COMMANDS: [(&str, &str, &str); 19] = [
     ("exit", "", "the same"),
 ];
 
-/// What the commands do, or one of them.
+/// Help on all commands, or on one of them.
 pub(super) fn help(command: Option<&str>) -> Result<String, String> {
     let line = |(name, usage, what): &(&str, &str, &str)| format!("{:<48} {what}", format!("{name} {usage}"));
     let Some(command) = command else {
@@ -67,7 +67,7 @@ pub(super) fn help(command: Option<&str>) -> Result<String, String> {
     found.map(line).ok_or_else(|| misused(command))
 }
 
-/// What to say about a command that is not known, or was called with other arguments than it takes.
+/// The error for an unknown command, or for wrong arguments.
 pub(super) fn misused(name: &str) -> String {
     let known = COMMANDS.map(|(name, _, _)| name);
     if let Some((name, usage, _)) = COMMANDS.iter().find(|(known, _, _)| *known == name) {

@@ -1,5 +1,4 @@
-//! Pictures of a running world: shown in the terminal, or kept in files. How letters and colours are chosen is in
-//! `screen.rs` and `map.rs`.
+//! Pictures of a running world: shown in the terminal, or saved as files.
 
 use crate::env::{Frame, Image, top_down};
 use driftworld_text::ShownPath;
@@ -13,14 +12,14 @@ use crate::modality::{self, target, to_rgb};
 use crate::report::picture;
 use crate::spec::Modality;
 
-/// How many metres a level of a depth image stands for.
+/// Metres per level of a depth image.
 const METRES_PER_LEVEL: f32 = 0.01;
 
 impl Session<'_> {
-    /// What the agent sees, with colours smooth as the world asks for.
+    /// The agent's view, with smooth edges if the world asks for them.
     fn seen(&mut self, kind: Modality, [width, height]: [u32; 2]) -> Result<Frame, String> {
         let wanted = self.environment.world().agent_params.supersampling;
-        // A picture with too many points for its smoothness is drawn less smooth.
+        // Reduces the smoothing if the picture would have too many samples.
         let samples = (1..=wanted).rev().find(|samples| width.max(height) * samples <= 8192);
         let mut frame = Frame::new(width, height);
         let mut target = target(&mut frame, &[kind], samples.unwrap_or(1));
@@ -36,7 +35,7 @@ impl Session<'_> {
     fn bird_view(&self, width: u32, height: u32) -> Image {
         let agent = self.environment.agent();
         let agent = Some((agent.position, agent.heading_deg));
-        // In even light: a map of a dark world can be read.
+        // In even light, so that the map of a dark world is readable.
         let scene = self.environment.scene().clone().in_neutral_light();
         top_down(&scene, width, height, agent)
     }
@@ -71,7 +70,7 @@ impl Session<'_> {
         }
         let bytes = match picture {
             Picture::Seen(kind) => modality::to_png(kind, &self.seen(kind, size)?, METRES_PER_LEVEL).map_err(plain)?,
-            // A square one with scale, north, triggers and signs.
+            // Square maps have a scale, north, triggers and signs.
             Picture::Map if width == height => {
                 let agent = self.environment.agent();
                 let moves = Moves {

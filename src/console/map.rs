@@ -1,13 +1,13 @@
-//! The map in letters: walls `#`, zones by what they do, objects by the first letter of their class, the agent an
-//! arrow. The map in colours is drawn by `env`.
+//! The map as text: walls are `#`, zones have signs by their effect, objects the first letter of their class, the agent is an
+//! arrow.
 
 use crate::env::Environment;
 use crate::spec::Zone;
 
-/// The sign of an open door: a closed one has a letter, as all objects have.
+/// The sign of an open door; a closed one has a letter like other objects.
 const OPEN_DOOR: (char, &str) = ('\'', "an open door");
 
-/// The sign of a zone on the map, and what it says.
+/// The sign of a zone on the map, with its meaning.
 fn sign(zone: &Zone) -> (char, &'static str) {
     if zone.is_costly() {
         ('!', "costs or fails")
@@ -24,8 +24,8 @@ fn sign(zone: &Zone) -> (char, &'static str) {
     }
 }
 
-/// The world from above, north on top: capital letters are objects that pay. Below it the signs of zones and open doors
-/// that stand on it, if there are any.
+/// The world from above, north at the top: capital letters are objects that pay. Below it, a legend of the zones and open doors
+/// on the map, if any.
 pub(super) fn letters(environment: &Environment, columns: u32) -> String {
     let scene = environment.scene();
     let [width, depth] = scene.arena_size();
@@ -36,7 +36,7 @@ pub(super) fn letters(environment: &Environment, columns: u32) -> String {
     let cell = |[x, y]: [f32; 2]| {
         let column = (x / span[0] + 0.5) * columns as f32;
         let line = (0.5 - y / span[1]) * lines as f32;
-        // What stands on the edge, or outside, is put into the nearest cell.
+        // Objects on or beyond the edge go to the nearest cell.
         let at = |value: f32, count: usize| (value.max(0.0) as usize).min(count - 1);
         (at(line, lines), at(column, columns))
     };
@@ -47,7 +47,7 @@ pub(super) fn letters(environment: &Environment, columns: u32) -> String {
             -share(line, lines) * f64::from(span[1]),
         ]
     };
-    // The cells whose middle lies in an area, which is asked only within its bounds.
+    // Fills the cells whose centre lies in an area, testing only within its bounds.
     let mut fill = |area: &Zone, letter: char| {
         let Some([low, high]) = area.bounds() else { return };
         let [low, high] = [low, high].map(|corner| cell(corner.map(|metres| metres as f32)));
@@ -99,7 +99,7 @@ pub(super) fn letters(environment: &Environment, columns: u32) -> String {
                 .filter(char::is_ascii_graphic)
                 .unwrap_or('?');
             let pays = object.is_target() && state.reward > 0.0;
-            // An open door is where it was, not where its leaf is now.
+            // An open door is drawn at its closed position, not at its leaf.
             let (line, column) = cell(if state.open { state.position } else { item.position });
             grid[line][column] = if state.open {
                 signs.push(OPEN_DOOR);
@@ -138,7 +138,7 @@ mod tests {
     use crate::spec::{Door, Layout, Object, Stimulus, WorldDraft, ZoneEnd};
 
     #[test]
-    fn what_pays_is_a_capital_and_the_agent_looks_its_way() {
+    fn paying_objects_are_capitals_and_the_agent_shows_its_heading() {
         let mut coin = Object::new("barrel", [2.8, 2.8]);
         coin.reward = 1.0;
         coin.reward_stimulus = vec![Stimulus::AgentCollide];

@@ -1,5 +1,4 @@
-//! Messages of L2Explorer's channels in the console: which texts hold messages, and how answers are shown. What they do is
-//! decided in `env`.
+//! Messages of L2Explorer's channels in the console: parses them from text, and shows the answers.
 
 use std::path::Path;
 
@@ -12,11 +11,11 @@ use super::session::{Session, plain};
 use crate::documents;
 use crate::spec::Modality;
 
-/// The longest message that is shown whole, in characters.
+/// Longest message shown in full, in characters.
 const LONGEST: usize = 600;
 
 impl Session<'_> {
-    /// Sends the messages of a text, or of the file that it names.
+    /// Sends the messages in a text, or in the file that it names.
     pub(super) fn send(&mut self, text: &str) -> Result<String, String> {
         let inline = text.starts_with(['{', '[']);
         let read = if inline {
@@ -43,13 +42,13 @@ impl Session<'_> {
         }
         match refused {
             None => Ok(lines.join("\n")),
-            // The answers that were no errors are said all the same.
+            // Successful answers are shown all the same.
             Some(text) => Err(format!("{text}\n{}", lines.join("\n"))),
         }
     }
 }
 
-/// Why a message was refused, if this says so.
+/// The reason for a refusal, if the answer is one.
 fn refusal(answer: &Outgoing) -> Option<String> {
     let texts = answer
         .payload
@@ -62,7 +61,8 @@ fn refusal(answer: &Outgoing) -> Option<String> {
 
 /// The messages of a text: one message, one with its channel (`{"channel", "message"}`), or a list of these under `tests`.
 ///
-/// A message without a channel goes where its action can be asked. What is no message is handed on as it is, to be refused.
+/// A message without a channel goes to the one that knows its action. Text that is no message is passed on unchanged, to be
+/// refused.
 fn messages(text: &str) -> Vec<(Channel, String)> {
     let Ok(mut json) = serde_json::from_str::<Value>(text) else {
         return vec![(Channel::Reset, text.to_owned())];
@@ -81,7 +81,7 @@ fn message(mut json: Value) -> (Channel, String) {
     };
     let action = json.get("action").and_then(Value::as_str).unwrap_or_default();
     let action = action.trim().to_lowercase();
-    // A misspelt action goes where it was meant to go, so that the answer can say how it is spelt.
+    // A misspelt action goes to the intended channel, whose answer then shows the spelling.
     let meant = || nearest(&action, Channel::ALL.iter().flat_map(|channel| channel.actions()));
     let channel = named
         .or_else(|| Channel::for_action(&action))
@@ -89,7 +89,7 @@ fn message(mut json: Value) -> (Channel, String) {
     (channel.unwrap_or(Channel::Reset), json.to_string())
 }
 
-/// A message to the client as a line: remarks as text, all else as JSON behind its channel.
+/// A message to the client as a line: remarks as text, others as JSON after their channel.
 pub(super) fn shown(message: &Outgoing) -> String {
     if let ("debug_message", Some(payload)) = (message.action, &message.payload) {
         let field = |key: &str| payload[key].as_str().unwrap_or_default();

@@ -1,5 +1,4 @@
-//! The console: a running world by hand, line by line. Which commands there are is in `line.rs`, what a line does in `session.rs`; where
-//! lines come from, the command's.
+//! The console: controls a running world line by line.
 
 mod arguments;
 #[cfg(feature = "line-editor")]

@@ -1,4 +1,4 @@
-//! Where the console may write: inside one folder, whatever a name says. Writing itself is in `output_file.rs`.
+//! Restricts the console's output to one folder, whatever the name.
 
 use std::path::{Component, Path, PathBuf};
 
@@ -7,7 +7,7 @@ use driftworld_text::ShownPath;
 use super::session::said;
 use crate::output_file;
 
-/// A folder for files that are named by commands and messages.
+/// A folder for files named by commands and messages.
 pub(super) struct Folder(PathBuf);
 
 impl Folder {
@@ -15,14 +15,14 @@ impl Folder {
         Self(path.to_owned())
     }
 
-    /// Writes a file inside the folder, and hands back its path. The ending is added where it is missing.
+    /// Writes a file inside the folder, and returns its path. Adds a missing extension.
     pub(super) fn write(&self, name: &str, ending: &str, bytes: &[u8]) -> Result<PathBuf, String> {
         let path = self.inside(name, ending)?;
         output_file::write(&path, bytes).map_err(said)?;
         Ok(path)
     }
 
-    /// The path of a name, if it is inside and does not lead out by links.
+    /// The path of a name, if it is inside and no link leads out.
     fn inside(&self, name: &str, ending: &str) -> Result<PathBuf, String> {
         let refuse = |found: &str| {
             Err(format!(

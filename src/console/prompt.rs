@@ -1,4 +1,4 @@
-//! Lines from a terminal as they come, without history or completion. With them it is `editor.rs`, for the feature `line-editor`.
+//! Reads lines from a terminal without history or completion, in builds without the feature `line-editor`.
 
 use std::io::{self, BufRead, Write};
 
@@ -14,7 +14,7 @@ impl Editor {
         Ok(Self(()))
     }
 
-    /// The next line that is neither empty nor a comment; none when the user leaves.
+    /// The next line that is neither empty nor a comment; `None` if the user leaves.
     #[expect(clippy::unused_self, reason = "as where there is the feature")]
     pub(crate) fn read(&mut self, _: Names) -> Result<Option<String>, Failure> {
         let failed = |error: io::Error| Failure::input(format!("terminal: {error}"));

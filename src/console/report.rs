@@ -1,4 +1,4 @@
-//! What the console tells of a world in words and tables, and of itself. Pictures are in `look.rs`.
+//! Descriptions of a world as text and tables, for the console.
 
 use std::fmt::Write;
 
@@ -93,13 +93,13 @@ impl Session<'_> {
     }
 }
 
-/// A number with at most two decimals, and without those that say nothing.
+/// A number with at most two decimals, without trailing zeros.
 pub(super) fn short(number: f32) -> String {
     let text = format!("{number:.2}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
     if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
-/// What divides the arena, and how many zones there are, if any.
+/// What divides the arena, and the number of zones, if any.
 fn ground(environment: &EnvironmentParams) -> String {
     let kind = environment.layout.as_ref().map(|layout| match layout {
         Layout { maze: Some(_), .. } => "layout maze".to_owned(),

@@ -1,4 +1,4 @@
-//! Pictures in a terminal: coloured half blocks where colours can be had, else letters. The map by letters is in `map.rs`.
+//! Pictures in a terminal: coloured half blocks if colours are available, else letters.
 
 use std::fmt::Write;
 use std::io::IsTerminal;
@@ -7,13 +7,13 @@ use crate::env::{CATEGORY_BUILDING, CATEGORY_MAP, CATEGORY_NEGATIVE, CATEGORY_NE
 
 use crate::spec::Modality;
 
-/// Width where nobody knows the terminal's.
+/// Width if the terminal's is unknown.
 const USUAL_COLUMNS: u32 = 80;
 
 /// From dark to bright.
 const SHADES: &[u8] = b" .:-=+*#%@";
 
-/// What the terminal can show.
+/// The terminal's capabilities.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Screen {
     pub(super) colors: bool,
@@ -22,14 +22,14 @@ pub(crate) struct Screen {
 }
 
 impl Screen {
-    /// Letters of one colour, 80 in a line: for whatever is no terminal.
+    /// Monochrome letters, 80 per line: for anything but a terminal.
     pub(super) const PLAIN: Self = Self {
         colors: false,
         columns: USUAL_COLUMNS,
         rows: u32::MAX,
     };
 
-    /// What standard output leads to. Colours are left out for `NO_COLOR` and for `TERM=dumb`.
+    /// The capabilities of standard output. No colours with `NO_COLOR` or `TERM=dumb`.
     pub(crate) fn of_this_terminal() -> Self {
         if !std::io::stdout().is_terminal() {
             return Self::PLAIN;
@@ -47,11 +47,12 @@ impl Screen {
         }
     }
 
-    /// Width and height, in pixels, of a picture of this aspect (width over height): a column is one pixel wide, a line two high.
+    /// Width and height, in pixels, of a picture of this aspect (width over height): a column is one pixel wide, a line two
+    /// high.
     pub(super) fn size(&self, aspect: f32, wanted: Option<u32>) -> [u32; 2] {
         let most = match wanted {
             Some(columns) => columns as f32,
-            // One line stays for the prompt.
+            // One line is reserved for the prompt.
             None => (self.columns as f32).min(self.rows.saturating_sub(1) as f32 * 2.0 * aspect),
         };
         let columns = most.clamp(1.0, 4096.0);
@@ -60,7 +61,7 @@ impl Screen {
     }
 }
 
-/// The picture in colours: in each letter the upper half is one pixel and the lower half another.
+/// The picture in colours: the upper half of each letter is one pixel, the lower half another.
 pub(super) fn half_blocks(width: u32, rgb: &[u8]) -> String {
     let mut text = String::new();
     let row_length = 3 * width as usize;
@@ -80,12 +81,12 @@ pub(super) fn half_blocks(width: u32, rgb: &[u8]) -> String {
     text
 }
 
-/// A colour for a number: neighbours differ much, 0 is black.
+/// A colour for a number: neighbours differ strongly, 0 is black.
 pub(super) fn color_of(id: u32) -> [u8; 3] {
     if id == 0 {
         return [0; 3];
     }
-    // Turned by the golden angle from number to number.
+    // Rotates the hue by the golden angle per number.
     let hue = (id as f32 * 0.618_034).fract() * 6.0;
     [5.0, 3.0, 1.0].map(|shift| {
         let k = (shift + hue) % 6.0;
@@ -93,8 +94,8 @@ pub(super) fn color_of(id: u32) -> [u8; 3] {
     })
 }
 
-/// A frame in letters. Colours and depth are shades; categories are ` .B+o-` for sky, map, building and what pays, is worth
-/// nothing, costs; classes and instances are their numbers' last digit.
+/// A frame as letters. Colours and depth are shades; categories are ` .B+o-` for sky, map, building, positive, zero and
+/// negative reward; classes and instances are the last digit of their ids.
 pub(super) fn letters(frame: &Frame, kind: Modality) -> String {
     let width = frame.width as usize;
     let letter = |at: usize| match kind {
@@ -146,7 +147,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn two_pixels_share_a_letter_and_a_colour_is_said_once() {
+    fn two_pixels_share_a_letter_and_colour_codes_are_not_repeated() {
         let text = half_blocks(2, &[1, 2, 3, 1, 2, 3, 4, 5, 6, 4, 5, 6]);
         assert_eq!(text, "\x1b[38;2;1;2;3;48;2;4;5;6m▀▀\x1b[0m\n");
     }
@@ -163,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn a_picture_fits_into_the_terminal() {
+    fn picture_fits_the_terminal() {
         let screen = Screen {
             colors: true,
             columns: 100,
@@ -176,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn neighbouring_numbers_have_colours_far_apart() {
+    fn neighbouring_numbers_have_distant_colours() {
         for id in 1..50 {
             let (a, b) = (color_of(id), color_of(id + 1));
             let apart: i32 = a.iter().zip(b).map(|(a, b)| (i32::from(*a) - i32::from(b)).abs()).sum();

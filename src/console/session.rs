@@ -1,5 +1,4 @@
-//! Runs the console's commands on a world. `line.rs` lists them, `arguments.rs` reads their arguments, `report.rs` describes the
-//! world, `look.rs` shows it, and `messages.rs` sends it messages.
+//! Executes the console's commands on a world.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -17,18 +16,18 @@ use crate::Failure;
 use crate::Warn;
 use crate::worlds::WorldRequest;
 
-/// The most moments that are remembered.
+/// Most snapshots kept.
 const MOST_SNAPSHOTS: usize = 100;
 
-/// The most lines that one command says.
+/// Most lines of output per command.
 pub(super) const MOST_LINES: usize = 500;
 
-/// A running world with all that the console remembers.
+/// A running world with the console's state.
 pub(crate) struct Session<'a> {
     choice: WorldRequest,
-    /// Told what is odd of a world that is read.
+    /// Receives warnings about worlds being read.
     warn: Warn<'a>,
-    /// The world that `reset` goes back to.
+    /// The world that `reset` restores.
     pub(super) start: World,
     pub(super) environment: Environment,
     pub(super) channels: Channels,
@@ -38,17 +37,17 @@ pub(crate) struct Session<'a> {
     pub(super) screen: Screen,
 }
 
-/// What comes of a line.
+/// The result of a line.
 pub(crate) enum Reply {
     Said(String),
-    /// What it says, as a document.
+    /// A JSON document.
     Json(String),
-    /// A picture in letters, or in colours of our own.
+    /// A picture as letters, or with our own colour codes.
     Picture(String),
     Quit,
 }
 
-/// A refusal in one sentence.
+/// A failure as one sentence.
 #[expect(clippy::needless_pass_by_value, reason = "it is what `map_err` hands over")]
 pub(super) fn said(failure: Failure) -> String {
     failure.text().for_command()
@@ -73,7 +72,7 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// What stands above the first prompt.
+    /// The text above the first prompt.
     pub(crate) fn greeting(&self) -> String {
         let hash = self.start.hash();
         let objects = self.start.objects.len();
@@ -93,7 +92,7 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Does what a line says. On error nothing is changed, but by the messages of a file before the one refused.
+    /// Executes a line. An error changes nothing, except for messages of a file before the refused one.
     pub(crate) fn execute(&mut self, line: &str) -> Result<Reply, String> {
         let line = line.trim();
         let (name, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
@@ -149,7 +148,7 @@ impl<'a> Session<'a> {
         Ok(Reply::Said(text))
     }
 
-    /// Simulated time since the start, as a date: a script says the same each time.
+    /// Simulated time since the start, formatted as a date, so that scripts give the same output each time.
     pub(super) fn time(&self) -> String {
         let agent = &self.environment.world().agent_params;
         let seconds = f64::from(self.environment.num_steps()) * agent.time_step * f64::from(agent.frame_skip);
@@ -158,7 +157,7 @@ impl<'a> Session<'a> {
             .to_string()
     }
 
-    /// A remark, as a line of its own, if its category is on.
+    /// A remark as a separate line, if its category is on.
     fn remark(&mut self, category: Category, text: String) -> String {
         let time = self.time();
         let remark = self.channels.remark(category, Level::Log, text, &time);
@@ -192,7 +191,7 @@ impl<'a> Session<'a> {
         Ok(lines.join("\n"))
     }
 
-    /// Adds lines on what happened in a step while there is room for more; hands back how many there was none for.
+    /// Adds lines about the events of a step while there is room; returns how many did not fit.
     fn tell(&mut self, step: &Step, lines: &mut Vec<String>) -> usize {
         let number = self.environment.num_steps();
         let world = self.environment.world();
@@ -287,7 +286,7 @@ impl<'a> Session<'a> {
     }
 }
 
-/// Names that the world gives at this moment.
+/// Names in the current world.
 #[derive(Default)]
 #[cfg_attr(
     not(feature = "line-editor"),
@@ -304,7 +303,7 @@ mod tests {
     use crate::spec::WorldDraft;
 
     #[test]
-    fn a_line_that_is_not_understood_says_what_was_expected() {
+    fn error_for_an_unknown_line_says_what_was_expected() {
         let choice = WorldRequest {
             world: String::new(),
             seed: 0,

@@ -1,4 +1,4 @@
-//! The variants of a curriculum and their order: all that are named, those of a probe, or a sequence of steps.
+//! Chooses the variants of a curriculum and their order: all that are named, those of a probe, or a sequence of steps.
 
 use driftworld_curriculum::{Choice, Design, Picked, Steps, arrange, distances, probe, probe_named, steps};
 use driftworld_similarity::{DistanceMatrix, Method};
@@ -9,29 +9,29 @@ use crate::distances::{Sample, fitting, labelled_matrix};
 use crate::ordering::{bare, position_of};
 use crate::{Failure, argument, libraries, tasks};
 
-/// How far off a step may be where nobody says.
+/// Default tolerance of a step.
 pub const DEFAULT_TOLERANCE: f64 = 0.001;
 
-/// How many steps there are where nobody says.
+/// Default number of steps.
 pub const DEFAULT_STEPS: u32 = 4;
 
-/// Variants and the order in which they are met.
+/// Variants with their learning order.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct Chosen {
     /// The variants.
     pub variants: Vec<Choice>,
-    /// Every distance among them.
+    /// All distances among them.
     pub matrix: DistanceMatrix,
-    /// What it was measured by.
+    /// The measure.
     pub by: By,
-    /// Their positions in the order in which they are met.
+    /// Their indices in learning order.
     pub order: Vec<usize>,
-    /// What shows of the variants what was asked for; `None` where they were only named.
+    /// The evidence that the variants are as requested; `None` if they were only named.
     pub evidence: Option<Evidence>,
 }
 
-/// What shows of chosen variants that they are as was asked for.
+/// The evidence that chosen variants are as requested.
 #[derive(Debug)]
 pub enum Evidence {
     /// Variants that differ from the first in one element only.
@@ -41,11 +41,11 @@ pub enum Evidence {
         /// The element.
         element: Element,
     },
-    /// Variants of which each is a step from the one before.
+    /// Variants that are each a step from the one before.
     Steps {
         /// The variants, and what each is.
         picked: Vec<Picked>,
-        /// The steps that were wanted.
+        /// The requested steps.
         wanted: Steps,
     },
 }
@@ -93,7 +93,7 @@ impl DesignRequest {
                 probe(&task, &pool, &anchor, element, self.variants)?
             };
             let matrix = distances(&picked, Some(element))?;
-            // A method or an end that was asked for, or the order of a hypothesis: by default the outward one.
+            // A requested method or end, or the order of a hypothesis: by default the outward one.
             let order = if self.ordering.method.is_some() || self.ordering.end.is_some() {
                 self.ordering.order(&matrix, self.design.seed)?.1.indices
             } else {
@@ -145,7 +145,7 @@ impl DesignRequest {
         })
     }
 
-    /// The variants that are learned: all that are named but those held out.
+    /// The variants to learn: all that are named except held-out ones.
     fn learned(&self) -> Result<Vec<(String, Variant)>, Failure> {
         let mut named = tasks::variants_of(&self.tasks)?;
         let held_out = self.held_out()?;
@@ -164,7 +164,7 @@ impl DesignRequest {
         Ok(named)
     }
 
-    /// The design, with the variants that are held out.
+    /// The design, with the held-out variants.
     pub(super) fn laid_out(&self) -> Result<Design, Failure> {
         let held_out = self.held_out()?;
         let choice = |(task, variant): &(String, Variant)| Choice::new(task, variant.name());
@@ -181,17 +181,17 @@ impl DesignRequest {
         named.iter().all(|name| tasks::split(name).1.is_some())
     }
 
-    /// The variants that may come first where nobody says which: those of the first argument, if there are others.
+    /// The default candidates for the first variant: those of the first argument, if there are others.
     fn firsts(&self, named: &[(String, Variant)]) -> Vec<usize> {
         let (Some(first), true) = (self.tasks.first(), self.ordering.method != Some(Method::Random)) else {
             return Vec::new();
         };
         let many = tasks::variants(first).map_or(0, |variants| variants.len());
-        // Arguments are unfolded in their order, each variant once.
+        // Arguments are expanded in order, each variant once.
         (0..many.min(named.len())).collect()
     }
 
-    /// The task that all variants are of, by the name that it was called by; its variants; and the one to begin with.
+    /// The task of all variants, under the name used; its variants; and the first one.
     fn one_task(&self, named: &[(String, Variant)]) -> Result<(String, Vec<Variant>, Variant), Failure> {
         let (task, first) = &named[0];
         if let Some((other, _)) = named.iter().find(|(other, _)| other != task) {
@@ -220,7 +220,7 @@ impl DesignRequest {
                 pool[own].clone()
             }
             None if pool.len() == 1 => first.clone(),
-            // The variant in which everything has its default, by the name that the task gives it if it does.
+            // The variant with all defaults, under the task's name for it if there is one.
             None => {
                 let default = first.task().variant(DEFAULT_VARIANT)?;
                 let declared = pool.iter().find(|variant| variant.values() == default.values());

@@ -1,5 +1,4 @@
-//! That a scenario can be run, before it is written: its names in logs, its classes, a few of its worlds. Drawing them is
-//! `curriculum`'s.
+//! Checks that a scenario can be run before it is written: its names in logs, its classes, a few of its worlds.
 
 use driftworld_curriculum::{Tried, Undrawable};
 use driftworld_env::Catalogue;
@@ -7,7 +6,7 @@ use driftworld_spec::{Classes, Scenario};
 
 use crate::{Failure, argument, scenarios, tasks, trials};
 
-/// What is looked at of each scenario; what one has in common with another is looked at once.
+/// Cache of checks: parts shared by several scenarios are checked once.
 pub(super) struct Drawable {
     worlds: u32,
     classes: Classes,

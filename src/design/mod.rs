@@ -1,5 +1,5 @@
-//! [`design`]: curricula from the names of tasks: which variants, in which order, in which blocks, and that their worlds can
-//! be drawn. Orders are `similarity`'s, blocks `curriculum`'s.
+//! [`design`]: builds curricula from the names of tasks: chooses variants, orders them, arranges them in blocks, and checks
+//! that their worlds can be drawn.
 
 mod choose;
 mod drawable;
@@ -22,19 +22,19 @@ pub use words::{element, schedule};
 use crate::{Failure, output_file};
 use drawable::Drawable;
 
-/// What came of a request.
+/// The result of a request.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct Designed {
-    /// The scenario; of experts and of several lifetimes one each.
+    /// The scenario; one each for experts and several lifetimes.
     pub scenarios: Vec<Scenario>,
-    /// The same variants, worlds and counts in other orders, where they were asked for.
+    /// The same variants, worlds and counts in other orders, if requested.
     pub controls: Vec<Scenario>,
-    /// Single-task experts of each lifetime, where they were asked for.
+    /// Single-task experts of each lifetime, if requested.
     pub experts: Vec<Scenario>,
     /// The variants and their order.
     pub chosen: Chosen,
-    /// What whoever asked for it may not expect.
+    /// Notes on what may be unexpected.
     pub notes: Vec<String>,
 }
 
@@ -42,7 +42,7 @@ impl Designed {
     /// Draws the blocks of the first scenario over the experiences into a PNG file.
     ///
     /// # Errors
-    /// [`Failure`] where it cannot be written.
+    /// [`Failure`] if it cannot be written.
     pub fn write_plot(&self, path: &Path) -> Result<(), Failure> {
         let Some(scenario) = self.scenarios.first() else {
             return Ok(());
@@ -51,10 +51,10 @@ impl Designed {
     }
 }
 
-/// Most regimes of all lifetimes that are designed together.
+/// Most regimes of all lifetimes designed together.
 const MAX_REGIMES: usize = 4_000_000;
 
-/// Refuses lifetimes that have no room in memory, by the scenarios of the first.
+/// Refuses lifetimes that would not fit in memory, judging by the scenarios of the first.
 fn refuse_too_many<'a>(lifetimes: usize, first: impl Iterator<Item = &'a Scenario>) -> Result<(), Failure> {
     let regimes: usize = first
         .flat_map(|scenario| &scenario.blocks)
@@ -69,11 +69,11 @@ fn refuse_too_many<'a>(lifetimes: usize, first: impl Iterator<Item = &'a Scenari
     )))
 }
 
-/// Designs what a request asks for. A few worlds of everything are drawn, and every variant on the way of a drift is looked
-/// at: what could not be run is refused.
+/// Designs a curriculum. Draws a few worlds of everything, and checks every variant along a drift: a design that could not be
+/// run is refused.
 ///
 /// # Errors
-/// [`Failure`] where a task is nowhere or wrong, the design cannot be, or the request contradicts itself.
+/// [`Failure`] if a task is missing or invalid, the design is impossible, or the request contradicts itself.
 ///
 /// # Example
 /// ```
@@ -115,7 +115,7 @@ pub fn design(request: &DesignRequest) -> Result<Designed, Failure> {
     for &kind in Control::ALL.iter().filter(|_| request.controls) {
         let order = control(&chosen.matrix, &chosen.order, kind, options.seed)?;
         let name = format!("{}-{}", options.name, kind.name());
-        // By their places in the order that the design itself has.
+        // By their places in the design's own order.
         let place = |index: &usize| chosen.order.iter().position(|own| own == index);
         let order: Vec<usize> = order.iter().filter_map(place).collect();
         controls.push(design_control(
@@ -132,7 +132,7 @@ pub fn design(request: &DesignRequest) -> Result<Designed, Failure> {
     }
     for scenario in scenarios.iter().chain(&controls).chain(&experts) {
         drawable.check(scenario)?;
-        // What the schema refuses, such as a name that no folder can have.
+        // Catches what the schema refuses, such as a name that no folder can have.
         Scenario::from_json("scenario", &scenario.to_json_pretty())?;
     }
     Ok(Designed {

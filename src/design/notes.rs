@@ -1,5 +1,4 @@
-//! What is said of a design that its request does not show: named variants that are not learned, orders that are not
-//! balanced, experts of mixtures.
+//! Notes on a design that go beyond its request: named variants that are not learned, unbalanced orders, experts of mixtures.
 
 use driftworld_spec::{DriftSwitch, ScenarioForm};
 
@@ -47,7 +46,7 @@ impl DesignRequest {
         Ok(notes)
     }
 
-    /// The variants that are held out; they may be named without their task, which is one of those that are learned.
+    /// The held-out variants; they may be named without their task, if it is one of those that are learned.
     pub(super) fn held_out(&self) -> Result<Vec<(String, driftworld_spec::Variant)>, Failure> {
         let all = tasks::with_tasks(&[self.tasks.as_slice(), &self.hold_out].concat());
         let found = tasks::variants_of(&all[self.tasks.len()..]);

@@ -1,5 +1,4 @@
-//! [`PairOptimum`]: of a probe of the reward, from which variant to which what is best changes. Experts are exchanged by
-//! `behavior`.
+//! [`PairOptimum`]: for a probe of the reward, whether the optimal behaviour changes between two variants.
 
 use driftworld_spec::Element;
 
@@ -10,26 +9,26 @@ use crate::elements::Optimum;
 /// More variants than these are compared with their neighbours only.
 const MOST_WITH_ALL: usize = 8;
 
-/// In how many pairs of worlds experts are exchanged.
+/// Pairs of worlds in which experts are exchanged.
 const WORLDS: u64 = 16;
 
-/// Whether two variants ask for other behaviour.
+/// Whether two variants call for different behaviour.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PairOptimum {
-    /// The variant that is met first.
+    /// The variant that is learned first.
     pub a: String,
     /// The other.
     pub b: String,
-    /// What the expert of `a` loses in worlds of `b`, and the reverse.
+    /// The loss of `a`'s expert in worlds of `b`, and the reverse.
     pub optimum: Optimum,
 }
 
 impl DesignRequest {
-    /// Whether what is best changes from variant to variant of a probe of the reward: of each pair, or of neighbours in the
-    /// order where there are more than eight variants. Empty of other designs, and where no worlds are to be drawn.
+    /// Whether the optimal behaviour changes between variants of a probe of the reward: for each pair, or for neighbours in the
+    /// order if there are more than eight variants. Empty for other designs, and if no worlds are to be drawn.
     ///
     /// # Errors
-    /// [`Failure`] where a world cannot be drawn.
+    /// [`Failure`] if a world cannot be drawn.
     pub fn optima(&self, chosen: &Chosen) -> Result<Vec<PairOptimum>, Failure> {
         let Some(Evidence::Probe { picked, element }) = &chosen.evidence else {
             return Ok(Vec::new());

@@ -1,4 +1,5 @@
-//! That the variants of a probe differ in the probed element only: tried on pairs of their worlds, and written into the scenario.
+//! Proves that the variants of a probe differ in the probed element only: tests pairs of their worlds, and writes the result
+//! into the scenario.
 
 use driftworld_generator::Sampler;
 use driftworld_spec::{Element, Modality, ProvenVariant, ScenarioProof, Variant};
@@ -7,14 +8,14 @@ use super::{Chosen, DesignRequest, Evidence};
 use crate::elements::{ElementsOutcome, ElementsRequest, elements_among};
 use crate::{Failure, argument};
 
-/// Pairs of worlds that are tried for each variant.
+/// Pairs of worlds tested per variant.
 const NUM_WORLDS: u64 = 8;
 
 impl DesignRequest {
-    /// Tries the variants of a probe; nothing where none was asked for, or where nothing is to be tried before it is written.
+    /// Tests the variants of a probe; `None` without a probe, or if nothing is to be tested before writing.
     ///
     /// # Errors
-    /// [`Failure`] with every variant that changes something else, too.
+    /// [`Failure`] that lists every variant that changes something else, too.
     pub(super) fn prove(&self, chosen: &Chosen) -> Result<Option<ScenarioProof>, Failure> {
         let (picked, element) = match &chosen.evidence {
             Some(Evidence::Probe { picked, element }) => (picked, Some(*element)),
@@ -31,7 +32,7 @@ impl DesignRequest {
         let own = asked(base)?;
         let mut others = variants.iter().map(asked);
         let are_alike = others.try_fold(true, |alike, other| Ok::<_, Failure>(alike && other? == own))?;
-        // Where the images are what differs, that is seen in what the worlds ask for.
+        // If the images differ, the comparison uses what the worlds ask for.
         let compared = self.modalities.clone().or_else(|| are_alike.then(|| own.clone()));
         let modalities = self.modalities.clone().unwrap_or(own);
         let request = ElementsRequest {
@@ -65,7 +66,7 @@ impl DesignRequest {
     }
 }
 
-/// Refuses a probe of which a variant changes another element than the one that is probed.
+/// Refuses a probe whose variants change another element than the probed one.
 fn refuse_others(found: &ElementsOutcome, element: Element, modalities: &[Modality]) -> Result<(), Failure> {
     let others = found.variants.iter().filter_map(|variant| {
         let other = variant.measured.iter().find(|own| !element.covers(own.element))?;

@@ -1,4 +1,4 @@
-//! [`DesignRequest`]: what a curriculum is designed from.
+//! [`DesignRequest`]: the options for designing a curriculum.
 
 use std::path::PathBuf;
 
@@ -10,31 +10,31 @@ use driftworld_spec::{By, Element, Modality, ScenarioForm};
 use crate::ordering::OrderRequest;
 use crate::{Failure, argument, libraries, within};
 
-/// The most lifetimes of one design.
+/// Most lifetimes per design.
 pub const MAX_LIFETIMES: u64 = 10_000;
 
-/// The most worlds of a regime that are drawn to see whether they can be.
+/// Most worlds per regime that are drawn as a check.
 pub const MAX_TRIED: u32 = 1_000_000;
 
-/// The order of the variants, where no method finds it.
+/// An order of variants by purpose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DesignOrder {
-    /// In small steps: the shortest path from the first, and of equally short ones that whose largest step is smallest.
+    /// Small steps: the shortest path from the first; ties go to the smaller largest step.
     Gradual,
-    /// By growing distance from the first: the unlike come last.
+    /// By growing distance from the first: different ones come last.
     Outward,
-    /// The longest path from the first: neighbours as unlike as can be.
+    /// The longest path from the first: neighbours are as different as possible.
     Abrupt,
-    /// The shortest path from the first: neighbours as alike as can be.
+    /// The shortest path from the first: neighbours are as similar as possible.
     Path,
-    /// Each time what is farthest from everything met so far.
+    /// Always the one farthest from all before.
     Farthest,
-    /// As they are named, whatever their distances.
+    /// In the given order, whatever their distances.
     Named,
 }
 
 impl DesignOrder {
-    /// The words for them.
+    /// The orders by word.
     pub const WORDS: [(&'static str, Self); 6] = [
         ("gradual", Self::Gradual),
         ("outward", Self::Outward),
@@ -44,7 +44,7 @@ impl DesignOrder {
         ("named", Self::Named),
     ];
 
-    /// The method that finds it; nothing for the shortest path, which each number of items has its own method for.
+    /// The method for it; `None` for the shortest path, whose method depends on the number of items.
     pub(crate) fn method(self) -> Option<Method> {
         match self {
             Self::Gradual => Some(Method::Gradual),
@@ -57,39 +57,39 @@ impl DesignOrder {
     }
 }
 
-/// What a curriculum is designed from.
+/// The options for designing a curriculum.
 #[derive(Clone, Debug)]
 pub struct DesignRequest {
-    /// Variants, or tasks, which stand for all their variants.
+    /// Variants, or tasks, which mean all their variants.
     pub tasks: Vec<String>,
-    /// How the order is found.
+    /// The options of the ordering method.
     pub ordering: OrderRequest,
-    /// The order, in place of one that a method finds.
+    /// The order, instead of a method's.
     pub order: Option<DesignOrder>,
-    /// What the variants that are put in order are compared by: what their task declares, or worlds where they are of several
-    /// tasks. Probes and steps are measured by parameters.
+    /// The measure for ordering variants: by default the one that their task declares, or worlds if there are several tasks.
+    /// Probes and steps are measured by parameters.
     pub by: Option<By>,
-    /// Probe one element: variants that differ from the start in it and in nothing else.
+    /// Probes one element: variants that differ from the start in it and in nothing else.
     pub probe: Option<Element>,
-    /// Which images the learner of a probe has; those that the task's worlds ask for where nobody says.
+    /// Image kinds of a probe's learner; by default those that the task's worlds ask for.
     pub modalities: Option<Vec<Modality>>,
-    /// How many variants the probe takes; all that are declared, and at least 4, where nobody says.
+    /// Number of variants in the probe; by default all declared ones, and at least 4.
     pub variants: Option<usize>,
-    /// Make a sequence of variants of which each is this far from the one before: in the probed element, or in all.
+    /// Makes a sequence of variants, each at this distance from the one before: in the probed element, or in total.
     pub step_distance: Option<f64>,
-    /// How far off each step may be; default [`DEFAULT_TOLERANCE`](super::DEFAULT_TOLERANCE).
+    /// Tolerance of each step; default [`DEFAULT_TOLERANCE`](super::DEFAULT_TOLERANCE).
     pub tolerance: Option<f64>,
-    /// How many steps: one fewer than variants; default [`DEFAULT_STEPS`](super::DEFAULT_STEPS).
+    /// Number of steps: one fewer than variants; default [`DEFAULT_STEPS`](super::DEFAULT_STEPS).
     pub steps: Option<u32>,
-    /// So many lifetimes, each in worlds of its own and, in the permuted form, which is then the default, in an order of its own.
+    /// Number of lifetimes, each in its own worlds and, in the permuted form, which is then the default, in its own order.
     pub lifetimes: Option<u64>,
-    /// Variants, or tasks, that are evaluated and never learned.
+    /// Variants, or tasks, that are evaluated but never learned.
     pub hold_out: Vec<String>,
-    /// Whether single-task experts of each lifetime are designed, too.
+    /// Whether to design single-task experts of each lifetime, too.
     pub experts: bool,
-    /// Whether the same variants are laid out in reversed, random and contrasting order, too.
+    /// Whether to design the reversed, random and contrasting orders of the same variants, too.
     pub controls: bool,
-    /// How many worlds of each regime are drawn to see whether they can be; 0 for none.
+    /// Worlds per regime that are drawn as a check; 0 for none.
     pub worlds: u32,
     /// Asset libraries whose classes the tasks use, in front of the built-in assets, the last one first.
     pub libraries: Vec<PathBuf>,
@@ -98,7 +98,7 @@ pub struct DesignRequest {
 }
 
 impl DesignRequest {
-    /// The request for the usual curriculum of these variants or tasks.
+    /// The request for the default curriculum of these variants or tasks.
     pub fn of<S: Into<String>>(tasks: impl IntoIterator<Item = S>) -> Self {
         Self {
             tasks: tasks.into_iter().map(Into::into).collect(),
@@ -121,7 +121,7 @@ impl DesignRequest {
         }
     }
 
-    /// The form; that of several lifetimes is the permuted one, unless something else says which variants come when.
+    /// The form; by default the permuted one for several lifetimes, unless another option determines the order.
     pub(super) fn form(&self) -> Option<ScenarioForm> {
         let is_drawn = self.lifetimes.is_some()
             && self.design.blocks.is_none()
@@ -130,7 +130,7 @@ impl DesignRequest {
         self.design.form.or(is_drawn.then_some(ScenarioForm::Permuted))
     }
 
-    /// Whether there are several scenarios, each in a file of its own.
+    /// Whether there are several scenarios, each in its own file.
     pub fn is_of_several(&self) -> bool {
         self.form() == Some(ScenarioForm::Expert) || self.lifetimes.is_some()
     }
@@ -139,7 +139,7 @@ impl DesignRequest {
         libraries::catalogue(&self.libraries)
     }
 
-    /// Refuses what contradicts itself, as [`design`](super::design) does first.
+    /// Refuses contradictory options, as [`design`](super::design) does first.
     ///
     /// # Errors
     /// [`Failure::Usage`].
@@ -222,7 +222,7 @@ impl DesignRequest {
         Ok(())
     }
 
-    /// Refuses an order beside the form whose order is drawn at random.
+    /// Refuses an order together with the form whose order is random.
     fn check_permuted(&self) -> Result<(), Failure> {
         match self
             .order_given()
@@ -237,9 +237,9 @@ impl DesignRequest {
         }
     }
 
-    /// The first option that says which variants come first.
+    /// The first option that determines the first variants.
     fn order_given(&self) -> Option<&'static str> {
-        // The start of a probe or of steps says what is varied, not what comes first.
+        // The start of a probe or of steps is what is varied, not what comes first.
         let is_varied = self.probe.is_some() || self.step_distance.is_some();
         let ordered = [
             ("order", self.order.is_some()),

@@ -1,11 +1,11 @@
-//! Words of the command line and of Python that stand for elements and schedules.
+//! Parses words for elements and schedules, from the command line and from Python.
 
 use driftworld_spec::{DriftSchedule, Element, did_you_mean};
 
 /// An element by its letter or name.
 ///
 /// # Errors
-/// What was expected.
+/// The expected words.
 pub fn element(text: &str) -> Result<Element, String> {
     let is_meant =
         |element: &Element| element.letter().eq_ignore_ascii_case(text) || element.name().eq_ignore_ascii_case(text);
@@ -18,7 +18,7 @@ pub fn element(text: &str) -> Result<Element, String> {
 /// A schedule, such as `cosine` or `step:4`.
 ///
 /// # Errors
-/// What was expected.
+/// The expected words.
 pub fn schedule(text: &str) -> Result<DriftSchedule, String> {
     let number = |word: &str| text.strip_prefix(word)?.parse().ok().filter(|number| *number > 0);
     match text {

@@ -1,4 +1,4 @@
-//! Every distance among variants, each under the name it is called by.
+//! All distances among variants, under their names.
 
 use driftworld_similarity::{DistanceMatrix, Placements, SimilarityError, VariantMeasure, Weights, Worlds};
 use driftworld_spec::{By, Variant, World};
@@ -7,17 +7,17 @@ use rayon::prelude::*;
 use super::pairs::{Means, Pairs, world_measure};
 use super::{DistancesError, NAME_IT, Sample, Scale};
 
-/// Every distance among variants, each under the name it is called by; in parallel.
+/// All distances among variants, under their names; computed in parallel.
 ///
-/// By parameters at the weights that the task declares and with `lay_over` laid over them; the matrix is a metric where the
-/// task's measures are. By anything else, worlds of each are drawn as `sample` says, and the first is compared with the first
-/// and so on. So the distance of two depends on them and on `sample`, and on nothing else in the list. Where `sample` does not
-/// say by what, it is what the variants' task declares.
+/// By parameters, with the weights that the task declares, overridden by `lay_over`; the matrix is a metric if the task's
+/// measures are. By other measures, worlds of each are drawn as in `sample`, and the first is compared with the first and so
+/// on. So the distance of two variants depends only on them and on `sample`, not on the rest of the list. If `sample` gives no
+/// measure, the variants' task decides.
 ///
 /// # Errors
-/// [`DistancesError::By`] for parameters of variants of several tasks, and where nobody says by what these are compared;
-/// [`DistancesError::Generator`] for worlds that cannot be drawn, [`DistancesError::Similarity`] for too many variants or what
-/// `lay_over` says; otherwise as [`between`](super::between).
+/// [`DistancesError::By`] for parameters of variants of several tasks, and if several tasks have no measure given;
+/// [`DistancesError::Generator`] for worlds that cannot be drawn, [`DistancesError::Similarity`] for too many variants or from
+/// `lay_over`; otherwise as [`between`](super::between).
 ///
 /// # Example
 /// ```
@@ -37,7 +37,7 @@ pub fn variant_matrix(
     variant_matrix_while(variants, sample, lay_over, || true)
 }
 
-/// The same for variants with the names of their tasks, under labels such as `find_objects#red`.
+/// Like [`variant_matrix`], for variants with the names of their tasks, under labels such as `find_objects#red`.
 ///
 /// # Errors
 /// As [`variant_matrix`].
@@ -50,10 +50,10 @@ pub fn labelled_matrix(
     variant_matrix(&variants.iter().map(label).collect::<Vec<_>>(), sample, lay_over)
 }
 
-/// The same, and given up as soon as `go_on`, which is asked before each pair, says no.
+/// Like [`labelled_matrix`], but cancelled as soon as `go_on`, which is called before each pair, returns false.
 ///
 /// # Errors
-/// As [`variant_matrix`]; [`DistancesError::Interrupted`] if it was given up.
+/// As [`variant_matrix`]; [`DistancesError::Interrupted`] if it was cancelled.
 pub fn variant_matrix_while(
     variants: &[(String, Variant)],
     sample: &Sample,
@@ -81,7 +81,7 @@ pub fn variant_matrix_while(
         (Some(by), _) => by,
         (None, task) => task.map_or(By::Parameters, |task| task.compare_by()),
     };
-    // Labels are looked at before anything is drawn.
+    // Labels are checked before anything is drawn.
     DistanceMatrix::check_labels(&labels)?;
     let weights = lay_over(task.map_or_else(Weights::default, |task| Weights::of_task(task)))?;
     if let (By::Parameters, Some(task)) = (by, task) {
@@ -124,7 +124,7 @@ pub fn variant_matrix_while(
         };
         return DistanceMatrix::measure(labels, apart);
     }
-    // One world of each variant at a time: what is made of them is large.
+    // One world of each variant at a time, because their prepared data are large.
     let size = variants.len();
     let pairs: Vec<(usize, usize)> = (0..size).flat_map(|a| (a + 1..size).map(move |b| (a, b))).collect();
     let mut means: Vec<Means> = pairs.iter().map(|_| Means::new(by)).collect();
@@ -146,7 +146,7 @@ pub fn variant_matrix_while(
         Ok::<_, DistancesError>(means[at(a, b)].distance(&weights).total)
     })?;
     Ok(match world_measure(by) {
-        // A mean of pseudometrics is one.
+        // A mean of pseudometrics is a pseudometric.
         Some(measure) => matrix.with_properties(measure.properties_among(drawn.iter().flatten())),
         None => matrix,
     })

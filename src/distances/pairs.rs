@@ -1,4 +1,4 @@
-//! [`Pairs`]: worlds made ready to be compared in pairs by one measure, and the [`Means`] over pairs of worlds of two variants.
+//! [`Pairs`]: worlds prepared for pairwise comparison by one measure, and the [`Means`] over pairs of worlds of two variants.
 
 use driftworld_env::{Catalogue, ExpertRun, Expertise, WorldAbstraction};
 use driftworld_similarity::distribution::Method;
@@ -12,16 +12,16 @@ use crate::behavior::{ExpertPair, POINTS};
 use crate::dynamics;
 use crate::picture_distance::{ACROSS, PictureDistanceError, Pose, Views, poses};
 
-/// Numbers of one comparison, as many as [`parts`] of the measure has, or as its remark needs.
+/// The numbers of one comparison: one per entry of [`parts`], or as many as the remark needs.
 pub(super) type Values = Vec<f64>;
 
-/// The measure of two worlds that has this name, if it is one of `similarity`'s.
+/// The measure of two worlds with this name, if it is one of `similarity`'s.
 pub(super) fn world_measure(by: By) -> Option<WorldMeasure> {
     let measure = by.name().split_once(':').map(|(_, measure)| measure);
     WorldMeasure::from_name(by.subject(), measure)
 }
 
-/// What the numbers of a measure count for, under which name and in which unit; none where they are of the whole process.
+/// Name, element and unit of each number of a measure; empty if it is about the whole process.
 fn parts(by: By) -> Vec<(&'static str, Element, &'static str)> {
     if let Some(measure) = world_measure(by) {
         return vec![(by.subject(), measure.element(), measure.label())];
@@ -43,7 +43,7 @@ fn parts(by: By) -> Vec<(&'static str, Element, &'static str)> {
     parts.to_vec()
 }
 
-/// Worlds, and what is made of each once.
+/// Worlds, with data computed once for each.
 pub(super) struct Pairs<'a> {
     by: By,
     worlds: &'a [World],
@@ -53,16 +53,16 @@ pub(super) struct Pairs<'a> {
 enum Ready {
     Rewards,
     World(WorldMeasure),
-    /// The poses that are free in each world alone, and the views from there.
+    /// The poses that are free in each world by itself, and the views from there.
     Pictures(Catalogue, Vec<(Vec<Pose>, Views)>),
     /// Tables over each world's own arena.
     Dynamics(Catalogue, Vec<WorldAbstraction>),
-    /// What the expert of each earns in its own world.
+    /// The reward of each world's own expert.
     Behavior(Expertise, Vec<ExpertRun>),
 }
 
 impl<'a> Pairs<'a> {
-    /// Makes worlds ready, in parallel; by parameters, worlds and placements there is nothing here to compare.
+    /// Prepares worlds in parallel; by parameters, worlds and placements there is nothing to compare here.
     pub(super) fn new(by: By, worlds: &'a [World], catalogue: &Catalogue) -> Result<Self, DistancesError> {
         let catalogue = catalogue.clone();
         let ready = match by.subject() {
@@ -94,7 +94,7 @@ impl<'a> Pairs<'a> {
         Ok(Self { by, worlds, ready })
     }
 
-    /// Compares two of them, by their numbers.
+    /// Compares two worlds by index.
     pub(super) fn between(&self, a: usize, b: usize) -> Result<Values, DistancesError> {
         let worlds = [&self.worlds[a], &self.worlds[b]];
         Ok(match &self.ready {
@@ -108,7 +108,7 @@ impl<'a> Pairs<'a> {
                     return self.looks(&a?, &b?);
                 }
                 let [(of_a, a), (of_b, b)] = [&seen[a], &seen[b]];
-                // Pictures are copied only where a place is taken in one of the worlds.
+                // Pictures are copied only if a place is occupied in one of the worlds.
                 let fewer = |views: &Views, own: &[Pose], other: &[Pose]| {
                     let common: Vec<usize> = (0..own.len()).filter(|k| other.contains(&own[*k])).collect();
                     (common.len() < own.len()).then(|| views.only(&common))
@@ -162,7 +162,7 @@ impl<'a> Pairs<'a> {
     }
 }
 
-/// The means of comparisons of worlds of two variants.
+/// Means over comparisons of worlds of two variants.
 pub(super) struct Means {
     by: By,
     sums: Values,
@@ -190,7 +190,7 @@ impl Means {
         self.sums[k] / self.count as f64
     }
 
-    /// What else is to be known of the number, behind a comma or a semicolon; often nothing.
+    /// Further notes on the number, starting with a comma or a semicolon; often empty.
     pub(super) fn remark(&self) -> String {
         match self.by.subject() {
             _ if self.by == By::BehaviorSuccess => {
@@ -208,7 +208,7 @@ impl Means {
         }
     }
 
-    /// The distance that they make.
+    /// The resulting distance.
     pub(super) fn distance(&self, weights: &Weights) -> Distance {
         match self.by {
             By::DynamicsBisimulation => Distance::whole(f64::midpoint(self.mean(0), self.mean(1))),
@@ -234,7 +234,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_measure_of_worlds_has_one_name() {
+    fn each_world_measure_has_one_name() {
         let names = By::names()
             .iter()
             .map(|name| By::from_name(name).expect("it is a name"));

@@ -17,14 +17,14 @@ fn matrix(names: &[&str]) -> DistanceMatrix {
 }
 
 #[test]
-fn variants_of_one_task_are_compared_by_what_it_declares() {
+fn variants_of_one_task_use_the_measure_it_declares() {
     let found = matrix(&["find_objects#blue", "find_objects#red", "find_objects#penalty"]);
     assert!(found.properties().is_metric());
     assert!(found.get(0, 1) > 0.0 && found.get(0, 2) > found.get(0, 1));
 }
 
 #[test]
-fn measuring_is_given_up_when_it_is_no_longer_wanted() {
+fn measuring_stops_when_cancelled() {
     for names in [
         ["find_objects#blue", "find_objects#red"],
         ["find_objects#blue", "get_to_goal#plain"],
@@ -37,7 +37,7 @@ fn measuring_is_given_up_when_it_is_no_longer_wanted() {
 }
 
 #[test]
-fn a_variant_is_compared_with_a_world_by_worlds() {
+fn variant_and_world_are_compared_by_worlds() {
     let variant = tasks::variant("find_objects#blue").expect("it is built in");
     let world = Side::World(Box::new(Sampler::new(&variant, 0).world(0).expect("it can be drawn")));
     let (variant, sample) = (Side::Variant(variant), Sample::default());
@@ -65,7 +65,7 @@ fn a_variant_is_compared_with_a_world_by_worlds() {
 }
 
 #[test]
-fn the_distance_of_a_pair_hangs_on_the_pair_alone() {
+fn distance_depends_on_the_pair_alone() {
     let (pair, more) = (
         ["find_objects#blue", "find_objects#penalty"],
         [
@@ -95,7 +95,7 @@ fn the_distance_of_a_pair_hangs_on_the_pair_alone() {
     assert!(matches!(refused, DistancesError::By { .. }));
 }
 
-/// Two worlds of each, so that the slow ones take no time.
+/// Two worlds of each, so that slow measures take little time.
 fn few(by: By) -> Sample {
     Sample {
         worlds: Some(2),
@@ -133,7 +133,7 @@ fn all_names() -> impl Iterator<Item = By> {
 }
 
 #[test]
-fn each_measure_obeys_the_laws_of_a_number_for_a_pair() {
+fn each_measure_is_a_symmetric_number_per_pair() {
     let names = ["find_objects#red", "find_objects#penalty", "get_to_goal#plain"];
     let built_in: Vec<(String, Variant)> = names
         .iter()
@@ -185,7 +185,7 @@ fn each_measure_obeys_the_laws_of_a_number_for_a_pair() {
 }
 
 #[test]
-fn a_task_says_what_its_variants_are_compared_by() {
+fn task_declares_the_measure_of_its_variants() {
     let text = |by: &str| {
         format!(
             r#"{{ "name": "lit", {by} "parameters": {{
@@ -218,7 +218,7 @@ fn a_task_says_what_its_variants_are_compared_by() {
 }
 
 #[test]
-fn more_worlds_than_take_a_sensible_time_are_refused_before_they_are_drawn() {
+fn too_many_worlds_are_refused_before_drawing() {
     let side = |name: &str| Side::Variant(tasks::variant(name).expect("it is built in"));
     let (a, b) = (side("find_objects#red"), side("find_objects#blue"));
     for by in [By::Behavior, By::Dynamics, By::PicturesWhole] {
@@ -232,7 +232,7 @@ fn more_worlds_than_take_a_sensible_time_are_refused_before_they_are_drawn() {
 }
 
 #[test]
-fn measures_say_what_they_are_made_of() {
+fn measures_describe_what_they_are_based_on() {
     let side = |name: &str| Side::Variant(tasks::variant(name).expect("it is built in"));
     let parts = |a: &str, b: &str, by: By| {
         let found = between(&side(a), &side(b), &few(by), Ok)
@@ -259,7 +259,7 @@ fn measures_say_what_they_are_made_of() {
 }
 
 #[test]
-fn shaping_is_no_other_reward_and_the_reverse_is_one() {
+fn shaping_gives_distance_0_and_the_reverse_1() {
     let side = |name: &str| Side::Variant(tasks::variant(name).expect("it is built in"));
     let rewards = Sample::by(By::Rewards);
     let apart = |a: &str, b: &str| {
@@ -274,7 +274,7 @@ fn shaping_is_no_other_reward_and_the_reverse_is_one() {
 }
 
 #[test]
-fn variants_of_several_tasks_are_compared_by_their_worlds() {
+fn variants_of_several_tasks_are_compared_by_worlds() {
     let found = matrix(&["find_objects#blue", "find_objects#red", "get_to_goal#plain"]);
     assert!(!found.properties().is_metric());
     assert!(found.get(0, 1) < found.get(0, 2));

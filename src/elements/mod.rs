@@ -1,5 +1,5 @@
-//! [`elements`]: which elements of the decision process the variants of a task change, found by trying it, beside what the
-//! task's parameters claim. The experiment on worlds is `env`'s.
+//! [`elements`]: measures which elements of the decision process the variants of a task change, and compares them with the
+//! claims of the task's parameters.
 
 mod optimum;
 mod outcome;
@@ -17,19 +17,19 @@ pub use request::{DEFAULT_ELEMENTS_WORLDS, ElementsRequest, MAX_ELEMENTS_WORLDS}
 
 use crate::{Failure, libraries, tasks};
 
-/// The most worlds in which it is tried whether a parameter makes a difference.
+/// Most worlds in which a parameter is tested for having no effect.
 const IDLE_WORLDS: u64 = 8;
 
-/// So many times as many steps as usual are tried before a parameter is said to make none.
+/// A parameter counts as having no effect only after this many times the usual steps.
 const IDLE_PATIENCE: u32 = 4;
 
-/// Tries which elements differ between variants of a task, and says where its parameters claim something else.
+/// Measures which elements differ between variants of a task, and reports where its parameters claim something else.
 ///
 /// Each variant is compared with the first that the task declares, or one named variant with another. Worlds are drawn in
-/// pairs: world number `i` of one variant with world number `i` of the other, under one seed.
+/// pairs: world `i` of one variant with world `i` of the other, under one seed.
 ///
 /// # Errors
-/// [`Failure`] where a task or variant is nowhere or wrong, a world cannot be drawn, or the request contradicts itself.
+/// [`Failure`] if a task or variant is missing or invalid, a world cannot be drawn, or the request contradicts itself.
 ///
 /// # Example
 /// ```
@@ -44,7 +44,7 @@ pub fn elements(request: &ElementsRequest) -> Result<ElementsOutcome, Failure> {
     elements_of(&tasks::task(&request.task)?, request)
 }
 
-/// The same for a task that has been read; the name in the request is what messages call it.
+/// Like [`elements`], for a task that has been read; the name in the request is used in messages.
 ///
 /// # Errors
 /// As [`elements`].
@@ -55,17 +55,17 @@ pub fn elements_of(task: &Arc<TaskSpec>, request: &ElementsRequest) -> Result<El
     tasks::check_variants(&compared, &trial.experiment.catalogue)?;
     let mut outcome = ElementsOutcome::new(request, task.name());
     trial.compare_all(&compared, &mut outcome, Trial::of_variant)?;
-    // One variant alone shows little of what a parameter can do.
+    // A single variant shows too little of a parameter's effects.
     if compared.len() == task.variant_names().len() {
         outcome.note_in_vain(task);
     }
     Ok(outcome)
 }
 
-/// Tries some variants of one task against the first of them: for each of the others what differs.
+/// Compares some variants of one task with the first of them: the differences of each.
 ///
 /// # Errors
-/// [`Failure`] where a world cannot be drawn.
+/// [`Failure`] if a world cannot be drawn.
 pub(crate) fn elements_among(variants: &[Variant], request: &ElementsRequest) -> Result<ElementsOutcome, Failure> {
     let trial = Trial::new(request)?;
     let mut outcome = ElementsOutcome::new(request, variants.first().map_or("", |first| first.task().name()));
@@ -76,7 +76,7 @@ pub(crate) fn elements_among(variants: &[Variant], request: &ElementsRequest) ->
 /// Compares a variant with a base in worlds of the base.
 type Compare = fn(&Trial, &Variant, &[World], &Variant) -> Result<VariantElements, Failure>;
 
-/// What holds for every variant that is tried.
+/// Data shared by all variants in a trial.
 struct Trial {
     experiment: Experiment,
     seed: u64,
@@ -149,7 +149,7 @@ impl Trial {
         Ok(outcome)
     }
 
-    /// The parameters that differ and made no difference: where one is set back alone, nothing changes.
+    /// The parameters that differ without effect: resetting one alone changes nothing.
     fn idle(&self, base: &Variant, other: &Variant, outcome: &VariantElements) -> Result<Vec<String>, Failure> {
         let names = &outcome.parameters;
         let is_alike = outcome.measured.is_empty();
@@ -169,13 +169,13 @@ impl Trial {
             ..*self
         };
         let mut idle: Vec<String> = Vec::new();
-        // One after the other, the last first: of two that would do alone, one is needed.
+        // One after the other, the last first: of two equivalent ones, one is needed.
         for name in names.iter().rev() {
             let back = idle.iter().chain([name]);
             let values: Vec<_> = back
                 .filter_map(|name| Some((name.clone(), base.value(name)?.clone())))
                 .collect();
-            // What the task's requirements do not allow cannot be tried, nor what cannot be drawn, as a start within a wall.
+            // Combinations that the task forbids or that cannot be drawn, such as a start within a wall, are not tested.
             let Ok(without) = other.with("without", values) else {
                 continue;
             };
@@ -194,7 +194,7 @@ impl Trial {
 
 /// The parameters in which two variants of a task differ, with the elements that they claim to affect.
 fn changed(a: &Variant, b: &Variant) -> Vec<(String, Vec<Element>)> {
-    // What nothing reads stands at its default.
+    // Unread parameters count with their defaults.
     let (a, b) = (a.as_read(), b.as_read());
     let differs = |(name, value): &(&String, &Value)| a.value(name) != Some(*value);
     let declared = |name: &String| {

@@ -1,5 +1,4 @@
-//! [`Optimum`]: whether a variant asks for other behaviour than the one that it is compared with. What experts earn in each
-//! other's worlds is measured by `behavior`.
+//! [`Optimum`]: whether a variant calls for other behaviour than the base variant.
 
 use driftworld_env::Catalogue;
 use driftworld_spec::Variant;
@@ -8,31 +7,31 @@ use serde::{Deserialize, Serialize};
 use crate::Failure;
 use crate::behavior::{BehaviorOutcome, ExpertPair, behavior};
 
-/// The most pairs of worlds in which experts are exchanged.
+/// Most pairs of worlds in which experts are exchanged.
 const MOST_WORLDS: u64 = 16;
 
-/// The least regret in points that counts as another optimum.
+/// Least regret, in points, that counts as another optimum.
 const LEAST_REGRET: f64 = 1.0;
 
-/// What the expert of the variant that is compared with loses in worlds of this one, and the reverse.
+/// The loss of the base variant's expert in worlds of this one, and the reverse.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Optimum {
-    /// Whether what is best there is not best here: the regret here is more than two standard errors above 0, and at least
-    /// a point.
+    /// Whether the base's optimum is not optimal here: the regret here is more than two standard errors above 0, and at least a
+    /// point.
     pub turned: bool,
-    /// What the other expert earns less here than this variant's own, in points, on average.
+    /// How much less the base's expert earns here than this variant's own, in points, on average.
     pub regret: f64,
-    /// What this variant's expert earns less there than the own one.
+    /// How much less this variant's expert earns there than the base's own.
     pub regret_in_base: f64,
-    /// Pairs of worlds that experts were exchanged in.
+    /// Pairs of worlds in which experts were exchanged.
     pub worlds: u64,
 }
 
 impl Optimum {
-    /// Exchanges the experts of two variants in pairs of worlds, 16 at most.
+    /// Exchanges the experts of two variants in pairs of worlds, at most 16.
     ///
     /// # Errors
-    /// [`Failure`] where a world cannot be drawn.
+    /// [`Failure`] if a world cannot be drawn.
     pub(crate) fn tried(
         base: &Variant,
         other: &Variant,
@@ -49,7 +48,7 @@ impl Optimum {
         )?))
     }
 
-    /// What an exchange of experts says, the first variant of it as the one that is compared with.
+    /// The result of an exchange of experts, with its first variant as the base.
     pub fn of(found: &BehaviorOutcome) -> Self {
         let count = found.pairs.len().max(1) as f64;
         let deviation = |pair: &ExpertPair| (pair.regret_in_b() - found.regret_in_b).powi(2);
@@ -70,7 +69,7 @@ mod tests {
 
     use super::*;
 
-    /// An exchange in which the expert of the first earns so much less in each world of the second.
+    /// An exchange in which the first's expert earns less by these amounts in worlds of the second.
     fn exchanged(regrets: &[f64]) -> Optimum {
         let pair = |regret: &f64| ExpertPair {
             b_in_b: ExpertRun {
@@ -91,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn an_optimum_is_another_where_regret_is_clear() {
+    fn clear_regret_means_another_optimum() {
         assert!(exchanged(&[100.0, 100.0, 100.0]).turned);
         assert!(exchanged(&[40.0, 60.0, 50.0]).turned);
         assert!(!exchanged(&[0.0, 0.0]).turned, "the same tour");

@@ -1,4 +1,4 @@
-//! [`ElementsOutcome`]: what was claimed, what was measured, and where the two contradict each other.
+//! [`ElementsOutcome`]: claimed and measured elements, and their contradictions.
 
 use driftworld_env::{Findings, Policy, Proof, Witness};
 use driftworld_spec::{Element, Modality, TaskSpec, Variant};
@@ -7,30 +7,30 @@ use serde::{Deserialize, Serialize};
 
 use super::{ElementsRequest, Optimum};
 
-/// What came of trying a task's variants.
+/// The result of testing a task's variants.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ElementsOutcome {
     /// The task's own name.
     pub task: String,
-    /// The variant that all others were compared with.
+    /// The base variant that all others were compared with.
     pub base: String,
-    /// The images of the learner; absent where they are those that the worlds ask for.
+    /// The learner's image kinds; absent if they are those that the worlds ask for.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub modalities: Option<Vec<Modality>>,
     /// Pairs of worlds for each variant.
     pub worlds: u64,
-    /// The seed that worlds were drawn under.
+    /// The seed of the worlds.
     pub seed: u64,
-    /// The most steps of an episode.
+    /// Most steps per episode.
     pub steps: u32,
-    /// The variants, in the order in which the task declares them.
+    /// The variants, in declaration order.
     pub variants: Vec<VariantElements>,
-    /// What parameters declare and none of the variants shows.
+    /// Declared effects of parameters that none of the variants shows.
     #[serde(skip_serializing_if = "Vec::is_empty", default)]
     pub in_vain: Vec<InVain>,
 }
 
-/// Elements that a parameter declares, and that differed in none of the variants that change it.
+/// Elements that a parameter declares, but that differed in none of the variants that change it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct InVain {
     /// The parameter.
@@ -41,32 +41,32 @@ pub struct InVain {
     pub variants: Vec<String>,
 }
 
-/// What a variant claims to change, and what it was seen to change.
+/// The claimed and measured changes of a variant.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct VariantElements {
     /// The variant's name.
     pub variant: String,
-    /// The parameters in which it differs from the variant that it was compared with.
+    /// The parameters in which it differs from the base.
     pub parameters: Vec<String>,
     /// The elements that these claim to affect, in the order of [`Element::WITH_FINE`].
     pub declared: Vec<Element>,
-    /// The elements that were seen to differ, in the same order.
+    /// The elements that were measured to differ, in the same order.
     pub measured: Vec<Measured>,
-    /// What was measured and is not declared.
+    /// Elements measured but not declared.
     pub contradictions: Vec<Contradiction>,
-    /// Parameters that differ and made no difference: where such a one alone is set back, nothing changes.
+    /// Parameters that differ without effect: resetting one alone changes nothing.
     pub idle: Vec<String>,
-    /// Whether what is best changes, of a variant that changes the reward; absent of others, and of drawn worlds that are
-    /// compared for a probe.
+    /// Whether the optimal behaviour changes, for a variant that changes the reward; absent for others, and for drawn worlds
+    /// that are compared for a probe.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub optimum: Option<Optimum>,
-    /// How much was tried.
+    /// How much was tested.
     pub proof: Proof,
-    /// All in a word.
+    /// The verdict in one word.
     pub verdict: Verdict,
 }
 
-/// An element that was seen to differ.
+/// An element that was measured to differ.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
     /// The element.
@@ -75,30 +75,30 @@ pub struct Measured {
     pub witness: Witness,
 }
 
-/// An element that was seen to differ and that nothing declares.
+/// An element that differs although nothing declares it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Contradiction {
     /// The element.
     pub element: Element,
-    /// What was claimed, where it was seen otherwise, and what to do, in a sentence.
+    /// The claim, where it fails, and what to do, as a sentence.
     pub message: String,
 }
 
-/// What the experiment says of a variant's claims.
+/// The experiment's verdict on a variant's claims.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, strum::IntoStaticStr)]
 #[serde(rename_all = "lowercase")]
 #[strum(serialize_all = "lowercase")]
 pub enum Verdict {
-    /// All that was measured is declared.
+    /// Everything measured is declared.
     Sound,
-    /// The same, and there are parameters that made no difference.
+    /// The same, but some parameters have no effect.
     Idle,
     /// Something was measured that is not declared.
     Contradicted,
 }
 
 impl Verdict {
-    /// The verdict in a word.
+    /// The verdict's word.
     pub fn name(self) -> &'static str {
         self.into()
     }
@@ -118,25 +118,24 @@ impl ElementsOutcome {
         }
     }
 
-    /// Whether nothing was measured that is not declared.
+    /// Whether everything measured is declared.
     pub fn is_sound(&self) -> bool {
         self.variants.iter().all(|variant| variant.contradictions.is_empty())
     }
 
-    /// Every contradiction, in a sentence.
+    /// Every contradiction, as a sentence.
     pub fn contradictions(&self) -> impl Iterator<Item = &str> {
         let each = self.variants.iter().flat_map(|variant| &variant.contradictions);
         each.map(|contradiction| contradiction.message.as_str())
     }
 
-    /// Every parameter that a variant sets and that made no difference, and every element that a parameter declares in vain, in a
-    /// sentence.
+    /// Every parameter that a variant sets without effect, and every element that a parameter declares in vain, as sentences.
     pub fn warnings(&self) -> impl Iterator<Item = String> {
         self.idle().chain(self.declared_in_vain())
     }
 
-    /// Notes what the parameters of a task declare and no variant shows, of all its variants. Where states differ in kind, or nothing
-    /// differs, nothing else can be said.
+    /// Records what the parameters of a task declare but none of its variants shows. If states differ in kind, or nothing
+    /// differs, nothing more can be concluded.
     pub(super) fn note_in_vain(&mut self, task: &TaskSpec) {
         for (name, parameter) in task.parameters() {
             let shows = |variant: &&VariantElements| {
@@ -225,7 +224,7 @@ impl VariantElements {
         own
     }
 
-    /// The elements that were seen to differ.
+    /// The elements that were measured to differ.
     pub fn elements(&self) -> Vec<Element> {
         self.measured.iter().map(|measured| measured.element).collect()
     }
@@ -239,7 +238,7 @@ impl VariantElements {
     }
 }
 
-/// A contradiction in a sentence: where, what was found, what was expected, what to do.
+/// A contradiction as a sentence: where, what was found, what was expected, what to do.
 fn message_of(
     base: &Variant,
     other: &Variant,
@@ -268,7 +267,7 @@ fn message_of(
     )
 }
 
-/// Where a witness was seen: `in world 3, step 17 of the expert, `.
+/// Where a witness occurred: `in world 3, step 17 of the expert, `.
 fn place(witness: &Witness) -> String {
     let policy = witness.policy.map_or("agent", Policy::name);
     match (witness.world, witness.step) {

@@ -1,4 +1,4 @@
-//! [`ElementsRequest`]: which variants are tried, on how many worlds, and for which learner.
+//! [`ElementsRequest`]: the variants to test, the number of worlds, and the learner.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -11,10 +11,10 @@ use crate::modality;
 use crate::numbers::{self, documented};
 use crate::{Failure, tasks, within};
 
-/// How many pairs of worlds are tried where nobody says.
+/// Default number of pairs of worlds.
 pub const DEFAULT_ELEMENTS_WORLDS: u64 = 32;
 
-/// The most pairs of worlds that can be tried.
+/// Most pairs of worlds.
 pub const MAX_ELEMENTS_WORLDS: u64 = 1_000;
 
 /// What is tried: the arguments of `driftworld elements`. There are 1 to [`MAX_ELEMENTS_WORLDS`] pairs of worlds, and 1 to
@@ -49,7 +49,7 @@ pub struct ElementsRequest {
 }
 
 impl ElementsRequest {
-    /// All variants of a task beside the first.
+    /// All variants of a task, compared with the first.
     pub fn of(task: impl Into<String>) -> Self {
         Self {
             task: task.into(),
@@ -62,7 +62,7 @@ impl ElementsRequest {
         }
     }
 
-    /// One variant of a task beside another.
+    /// One variant of a task, compared with another.
     pub fn between(task: impl Into<String>, a: impl Into<String>, b: impl Into<String>) -> Self {
         Self {
             between: Some([a.into(), b.into()]),
@@ -70,7 +70,7 @@ impl ElementsRequest {
         }
     }
 
-    /// Refuses what is out of its range.
+    /// Refuses values out of range.
     pub(super) fn check(&self) -> Result<(), Failure> {
         within("worlds", self.worlds, 1..=MAX_ELEMENTS_WORLDS)?;
         within("steps", self.steps.into(), 1..=MAX_EXPERIMENT_STEPS.into())?;
@@ -83,9 +83,9 @@ impl ElementsRequest {
         Ok(())
     }
 
-    /// The variants that are compared: the first with each of the others.
+    /// The variants to compare: the first with each of the others.
     pub(super) fn variants_of(&self, task: &Arc<TaskSpec>) -> Result<Vec<Variant>, Failure> {
-        // A variant may be called as everywhere else: TASK#VARIANT.
+        // A variant may be given as TASK#VARIANT.
         let own = |name: &str| tasks::split(name).1.unwrap_or(name).to_owned();
         if let Some(names) = &self.between {
             return names.iter().map(|name| Ok(task.variant(&own(name))?)).collect();

@@ -1,4 +1,4 @@
-//! What tasks claim against what is seen, and that the built-in tasks claim what is true.
+//! Claims of tasks compared with measurements; the claims of the built-in tasks are true.
 
 use super::*;
 
@@ -28,7 +28,7 @@ fn request() -> ElementsRequest {
 }
 
 #[test]
-fn claims_that_are_true_are_sound_and_what_nothing_reads_is_idle() {
+fn true_claims_are_sound_and_unread_parameters_idle() {
     for affects in [r#"["O"]"#, r#"["phi"]"#, r#"["O", "S"]"#] {
         let found = elements_of(&task(affects), &request()).expect("all are tried");
         assert!(found.is_sound(), "{found:#?}");
@@ -47,7 +47,7 @@ fn claims_that_are_true_are_sound_and_what_nothing_reads_is_idle() {
             warnings[0].starts_with("t#rich: reach made no difference"),
             "{warnings:?}"
         );
-        // What no variant shows that changes the colour is declared in vain.
+        // A declared effect that no variant with another colour shows is in vain.
         let vain = "t: color declares S, which differed from red in none of the variants that change it (blue, rich): ";
         let vain = if affects.contains('S') { vec![vain] } else { Vec::new() };
         assert_eq!(warnings.len(), 1 + vain.len(), "{warnings:?}");
@@ -56,7 +56,7 @@ fn claims_that_are_true_are_sound_and_what_nothing_reads_is_idle() {
 }
 
 #[test]
-fn a_claim_that_is_false_is_told_with_the_first_case() {
+fn false_claim_is_reported_with_the_first_case() {
     let found = elements_of(&task(r#"["p"]"#), &request()).expect("all are tried");
     assert!(!found.is_sound());
     assert_eq!(found.variants[0].verdict, Verdict::Contradicted);
@@ -95,7 +95,7 @@ fn one_variant_is_compared_with_another() {
 }
 
 #[test]
-fn an_outcome_is_a_value_that_is_written_and_read() {
+fn outcome_round_trips_through_json() {
     let found = elements_of(&task(r#"["S"]"#), &request()).expect("all are tried");
     let text = serde_json::to_string(&found).expect("it can be written");
     assert!(text.contains(r#""element":"phi""#), "{text}");
@@ -106,7 +106,7 @@ fn an_outcome_is_a_value_that_is_written_and_read() {
 }
 
 #[test]
-fn numbers_out_of_their_range_are_refused() {
+fn numbers_out_of_range_are_refused() {
     for asked in [
         ElementsRequest { worlds: 0, ..request() },
         ElementsRequest { steps: 0, ..request() },

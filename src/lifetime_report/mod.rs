@@ -1,5 +1,4 @@
-//! [`write_report`]: lifetimes on one page of HTML, with the distances between their blocks. Scores are `scoring`'s, pages
-//! and figures `report`'s.
+//! [`write_report`]: lifetimes on one HTML page, with the distances between their blocks.
 
 mod neighbours;
 
@@ -16,31 +15,31 @@ use crate::scoring::{ScoredLog, ScoringRequest, Setup, own_scale, score_logs};
 use crate::{Failure, Warn, log_folders};
 use neighbours::Neighbours;
 
-/// Which lifetimes a page shows, and how.
+/// The lifetimes on a page, and how they are shown.
 #[derive(Clone, Debug)]
 pub struct ReportRequest {
-    /// The logs, in the folders named or below them, and how they are scored; `recursive` does not matter.
+    /// The logs, in the given folders or below them, with the scoring options; `recursive` is ignored.
     pub scoring: ScoringRequest,
-    /// What stands on top of the page; the lifetime's name where there is none.
+    /// The page's heading; by default the lifetime's name.
     pub title: Option<String>,
-    /// When the report was made, to be written on it; without, the same logs give the same bytes.
+    /// The date shown on the report; without one, the same logs give the same bytes.
     pub date: Option<String>,
-    /// A distance matrix file for the distances between blocks; measured from the scenario in the log where there is none.
+    /// A distance matrix file for the distances between blocks; by default they are measured from the scenario in the log.
     pub distances: Option<PathBuf>,
-    /// Task specs that the logs name. Logs may name any file, so that only built-in tasks and these are looked at.
+    /// Task specs that the logs name. Logs may name any file, so only built-in tasks and these are read.
     pub tasks: Vec<PathBuf>,
     /// Which figures are shown.
     pub figures: Vec<Figure>,
     /// How they are drawn.
     pub figure_options: FigureOptions,
-    /// A folder to write the figures into, too.
+    /// A folder for the figures, too.
     pub plots: Option<PathBuf>,
-    /// The command that asks for it, to be written on the page.
+    /// The command line to show on the page.
     pub command: Option<String>,
 }
 
 impl ReportRequest {
-    /// The request for a page with everything on the logs in or below these folders.
+    /// The request for a full page on the logs in or below these folders.
     pub fn of<P: Into<PathBuf>>(logs: impl IntoIterator<Item = P>) -> Self {
         Self {
             scoring: ScoringRequest::of(logs),
@@ -56,22 +55,22 @@ impl ReportRequest {
     }
 }
 
-/// A page that was written.
+/// A finished page.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Page {
-    /// HTML that loads nothing.
+    /// Self-contained HTML.
     pub html: String,
-    /// How many lifetimes are on it.
+    /// Number of lifetimes on it.
     pub num_lifetimes: usize,
-    /// The figures that were written beside it, in words; `None` where none were asked for.
+    /// Describes the figures written beside it; `None` if none were requested.
     pub figures: Option<String>,
 }
 
-/// Writes the page of lifetimes. `warn` receives what is odd, log by log.
+/// Writes the page of lifetimes. `warn` receives warnings for each log.
 ///
 /// # Errors
-/// [`Failure`] where a log cannot be read or scored (it names all of them), or a figure cannot be written.
+/// [`Failure`] if a log cannot be read or scored (it names all of them), or a figure cannot be written.
 pub fn write_report(request: &ReportRequest, warn: Warn<'_>) -> Result<Page, Failure> {
     let asked = &request.scoring;
     let logs = log_folders::below(&asked.logs)?;
@@ -166,7 +165,7 @@ fn chapter_options(
     }
 }
 
-/// What a log says of its agent and of its scenario.
+/// A log's information on its agent and its scenario.
 fn facts(log: &Log) -> Vec<(String, String)> {
     let extra = &log.scenario_info.extra;
     let word = |place: &str, key: &str| extra.get(place)?.get(key)?.as_str();
@@ -181,7 +180,7 @@ fn facts(log: &Log) -> Vec<(String, String)> {
     said.collect()
 }
 
-/// What the lifetimes under these folders are called together: by the folder, or the first of several.
+/// A common name for the lifetimes under these folders: the folder's, or the first of several.
 fn called(folders: &[PathBuf]) -> String {
     let name = |path: &PathBuf| {
         let path = path.canonicalize().unwrap_or_else(|_| path.clone());

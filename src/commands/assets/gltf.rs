@@ -1,4 +1,4 @@
-//! Reading glTF files from disk: never more than their limits, and nothing outside a model's own folder.
+//! Reads glTF files from disk, within size limits, and nothing outside a model's own folder.
 
 use std::fs;
 use std::io::Read;
@@ -8,9 +8,9 @@ use crate::env::{Library, MAX_IMPORT_BYTES};
 
 use super::super::Failure;
 
-/// Refuses to write a library in place of a file that is something else, such as a model.
+/// Refuses to overwrite a file that is not a library, such as a model.
 pub(super) fn check_output(path: &Path) -> Result<(), Failure> {
-    // What is not there, or is a pipe or a device, is not opened: there is nothing to lose.
+    // A missing file, a pipe or a device is not opened: it has nothing to lose.
     if !fs::metadata(path).is_ok_and(|about| about.is_file() && about.len() > 0) {
         return Ok(());
     }
@@ -32,7 +32,7 @@ pub(super) fn model(path: &Path) -> Result<Vec<u8>, Failure> {
     Ok(driftworld_files::read(path, MAX_IMPORT_BYTES as u64)?)
 }
 
-/// Reads the files beside a glTF file, as far as they lie in its folder when all links are followed.
+/// Reads files beside a glTF file, provided that they lie in its folder after resolving all links.
 pub(super) fn beside(path: &Path) -> impl FnMut(&str) -> Result<Vec<u8>, String> {
     let folder = crate::documents::folder_of(path).to_owned();
     move |relative| {
@@ -42,7 +42,7 @@ pub(super) fn beside(path: &Path) -> impl FnMut(&str) -> Result<Vec<u8>, String>
             return Err("it leads out of the model's folder".to_owned());
         }
         let bytes = driftworld_files::read(&file, MAX_IMPORT_BYTES as u64);
-        // The model says which file it names.
+        // The model names the file.
         bytes.map_err(|error| error.without_path())
     }
 }

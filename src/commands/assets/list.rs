@@ -1,4 +1,4 @@
-//! `driftworld assets list`: tables of what can be drawn.
+//! `driftworld assets list`: tables of models.
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -40,7 +40,7 @@ impl List {
 }
 
 impl List {
-    /// What the tables say, for programs.
+    /// The contents of the tables, for programs.
     fn described(&self) -> Result<Vec<Value>, Failure> {
         if self.libraries.is_empty() {
             let catalogue = Catalogue::default();

@@ -1,4 +1,4 @@
-//! `driftworld assets`: libraries of models, made, listed and drawn. What a model is, is decided in `env`.
+//! `driftworld assets`: makes, lists and draws libraries of models.
 
 #[cfg(feature = "gltf")]
 mod gltf;

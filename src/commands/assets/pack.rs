@@ -1,4 +1,4 @@
-//! `driftworld assets pack`: glTF files into a library. How a file becomes a model is decided in `env`.
+//! `driftworld assets pack`: packs glTF files into a library.
 
 #[cfg(feature = "gltf")]
 use std::path::Path;
@@ -123,7 +123,7 @@ impl Pack {
     }
 }
 
-/// The first number from 1 that no model of the class has for its name.
+/// The first number from 1 that is not the name of a model of the class.
 #[cfg(feature = "gltf")]
 fn free_name(library: &Library, class: &str) -> String {
     let taken = |name: &String| {

@@ -1,4 +1,5 @@
-//! `driftworld assets show`: pictures of a class's models, of one model from all sides, level by level, or of every class.
+//! `driftworld assets show`: pictures of a class's models, of one model from all sides in all levels of detail, or of every
+//! class.
 
 #![expect(clippy::disallowed_methods, reason = "where a camera stands for a picture")]
 
@@ -40,21 +41,21 @@ pub(crate) struct Show {
     json: bool,
 }
 
-/// Height and width in metres that a model is drawn at, whatever its own size is.
+/// Height and width in metres at which a model is drawn, whatever its own size.
 const SHOWN_SIZE: f32 = 4.0;
 
-/// Pixels along each side of a picture; of one among those of all classes.
+/// Pixels along each side of a picture; for one among those of all classes.
 const SIZE: u32 = 220;
 const ALBUM_SIZE: u32 = 44;
 
-/// Of a class whose models have no names so many are shown among all classes, so many classes side by side.
+/// Unnamed models shown per class when showing all classes; also the number of classes side by side.
 const ALBUM_MODELS: usize = 7;
 const ALBUM_COLUMNS: usize = 2;
 
-/// Pictures beside each other.
+/// Pictures side by side.
 const COLUMNS: usize = 7;
 
-/// The most models of one sheet.
+/// Most models per sheet.
 const MOST_MODELS: usize = 210;
 
 impl Show {
@@ -105,7 +106,7 @@ impl Show {
         }
     }
 
-    /// All models of a class, some in each row.
+    /// All models of a class, several per row.
     fn models(&self, class: &str, names: &[String]) -> Result<Vec<SheetRow>, Failure> {
         let catalogue = self.libraries.catalogue()?;
         if names.len() > MOST_MODELS {
@@ -131,10 +132,10 @@ impl Show {
         Ok(rows.collect())
     }
 
-    /// One model from four sides, in each of its levels.
+    /// One model from four sides, in each of its levels of detail.
     fn levels(&self, class: &str, name: &str, libraries: &[Library]) -> Result<Vec<SheetRow>, Failure> {
         let is_it = |model: &&LibraryModel| model.class().to_lowercase() == class && model.name() == name;
-        // As in a catalogue, the last library comes first.
+        // As in a catalogue, the last library has priority.
         let own = libraries
             .iter()
             .rev()
@@ -174,7 +175,7 @@ impl Show {
         Ok(forms.iter().enumerate().map(row).collect())
     }
 
-    /// A model that fills a picture, turned to a heading in degrees; it is seen from the south.
+    /// A model that fills a picture, turned to a heading in degrees, seen from the south.
     fn picture(&self, asset: &Arc<Asset>, heading_deg: f32) -> Picture {
         let mut world = WorldDraft {
             objects: vec![Object::new("cube", [0.0, 0.0])],
@@ -252,7 +253,7 @@ fn triangles(asset: &Asset) -> usize {
     asset.parts.iter().map(|part| part.mesh.triangles.len()).sum()
 }
 
-/// The models of a class: those built in, then those of libraries, each once.
+/// The models of a class: the built-in ones, then those of libraries, each once.
 fn model_names(class: &str, libraries: &[Library]) -> Vec<String> {
     let mut names: Vec<String> = built_in(class).collect();
     for model in libraries.iter().flat_map(Library::models) {
@@ -267,9 +268,9 @@ fn model_names(class: &str, libraries: &[Library]) -> Vec<String> {
 mod tests {
     use super::*;
 
-    /// Every built-in model can be seen among all, on white, and none is cut off at a side.
+    /// Every built-in model is visible in the overview, on white, and not cut off at a side.
     #[test]
-    fn every_model_stands_on_white_and_is_whole() {
+    fn every_model_is_shown_whole_on_white() {
         for (class, _) in classes() {
             for name in built_in(class).step_by(5) {
                 let picture = cut_out(class, &name, 24);

@@ -1,4 +1,4 @@
-//! The option that names asset libraries. Reading them is the library's.
+//! The option that names asset libraries.
 
 use std::path::PathBuf;
 
@@ -21,7 +21,7 @@ pub(crate) struct LibraryChoice {
 }
 
 impl LibraryChoice {
-    /// The built-in assets, and the chosen libraries in front of them.
+    /// The built-in assets, with the chosen libraries in front of them.
     pub(crate) fn catalogue(&self) -> Result<Catalogue, Failure> {
         libraries::catalogue(&self.libraries)
     }
@@ -31,7 +31,7 @@ impl LibraryChoice {
         &self.libraries
     }
 
-    /// The checksum of each chosen library by its file's name, in the order they were named in; nothing if none was chosen.
+    /// The checksum of each chosen library by its file name, in the order given; empty if none was chosen.
     pub(crate) fn fingerprints(&self) -> Result<Vec<Value>, Failure> {
         let fingerprint = |path: &PathBuf| {
             let bytes = driftworld_files::read(path, MAX_LIBRARY_BYTES)?;
@@ -41,7 +41,7 @@ impl LibraryChoice {
         self.libraries.iter().map(fingerprint).collect()
     }
 
-    /// The chosen libraries, in the order they were named in.
+    /// The chosen libraries, in the order given.
     pub(super) fn read(&self) -> Result<Vec<Library>, Failure> {
         self.libraries.iter().map(|path| libraries::library(path)).collect()
     }

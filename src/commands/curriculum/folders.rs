@@ -1,4 +1,4 @@
-//! Where scenarios are written into folders: each in a file named after it, and nothing that stands there is replaced.
+//! Writes scenarios into folders: each into a file named after it, without replacing existing files.
 
 use std::path::{Path, PathBuf};
 
@@ -7,7 +7,7 @@ use driftworld_text::ShownPath;
 use crate::commands::{Failure, output, overwrite};
 use crate::spec::Scenario;
 
-/// Refuses standard output and files in place of the folder of several scenarios.
+/// Refuses standard output and files as the folder of several scenarios.
 pub(super) fn refuse_no_folder(path: &Path) -> Result<(), Failure> {
     if path.as_os_str() == "-" {
         return Err(Failure::usage(
@@ -23,7 +23,7 @@ pub(super) fn refuse_no_folder(path: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Refuses standard output in place of a folder.
+/// Refuses standard output as a folder.
 pub(super) fn refuse_standard_output(option: &str, folder: Option<&Path>) -> Result<(), Failure> {
     if folder.is_some_and(output::is_stdout) {
         return Err(Failure::usage(format!(
@@ -33,7 +33,7 @@ pub(super) fn refuse_standard_output(option: &str, folder: Option<&Path>) -> Res
     Ok(())
 }
 
-/// Refuses to replace what stands in folders that scenarios are written into.
+/// Refuses to replace existing files in the scenarios' folders.
 pub(super) fn refuse_existing(into: &[(Option<&PathBuf>, &Vec<Scenario>)]) -> Result<(), Failure> {
     let folders = into
         .iter()

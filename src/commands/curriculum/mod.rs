@@ -1,5 +1,4 @@
-//! `driftworld curriculum`: learning and evaluation blocks of variants in the order of their distances. The design is the
-//! library's; what is said of it is in `tables.rs`.
+//! `driftworld curriculum`: arranges variants, ordered by their distances, into learning and evaluation blocks.
 
 mod folders;
 mod tables;
@@ -183,7 +182,7 @@ pub(crate) struct Curriculum {
     json: bool,
 }
 
-/// What was designed: the variants in their order, each with the distance from the one before it, and what is said of them.
+/// The design as JSON: the variants in order, each with the distance from the one before it, and notes.
 fn described(designed: &Designed) -> serde_json::Value {
     let chosen = &designed.chosen;
     let mut before = None;
@@ -210,7 +209,7 @@ enum EvaluationSchedule {
     Ends,
 }
 
-/// How learning blocks are arranged.
+/// Forms: arrangements of learning blocks.
 const FORMS: [&str; 7] = [
     "condensed: Each variant once, in one long block",
     "dispersed: Each variant repeatedly, in short blocks (3, or as many as --blocks allows)",
@@ -228,7 +227,7 @@ const LABELS: [&str; 3] = [
     "observation: As part of the observation",
 ];
 
-/// How complex a scenario is and how difficult its tasks are, in l2logger's words.
+/// Complexities of a scenario and difficulties of its tasks, in l2logger's words.
 const COMPLEXITIES: [&str; 3] = ["1-low", "2-intermediate", "3-high"];
 const DIFFICULTIES: [&str; 3] = ["1-easy", "2-medium", "3-hard"];
 
@@ -276,7 +275,7 @@ impl Curriculum {
             }
         }
         let evidence = designed.chosen.evidence.as_ref();
-        // What is printed beside a scenario on standard output would spoil it.
+        // Text on standard output would corrupt a scenario printed there.
         let say = |text: String| {
             if to_stdout || self.json {
                 output::note(text);
@@ -378,7 +377,7 @@ impl Curriculum {
                 WorldSplit::Test => Split::Test,
             },
             paired_learning: self.paired_learning,
-            // What is held out is named in the request.
+            // Held-out variants are named in the request.
             held_out: Vec::new(),
             drifting: self.drift.map(|schedule| Drifting {
                 schedule,

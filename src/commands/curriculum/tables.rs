@@ -1,4 +1,4 @@
-//! What is shown of a curriculum: the proof of its variants, its blocks. The picture is `timeline.rs`'s.
+//! Tables of a curriculum: the evidence for its variants, and its blocks.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -11,13 +11,13 @@ use crate::commands::Failure;
 use crate::table::table;
 use crate::tasks;
 
-/// Variants in an order, as a scenario names them.
+/// Variants in an order, as named in scenarios.
 pub(crate) fn choices(variants: &[(String, Variant)], order: &[usize]) -> Vec<Choice> {
     let choice = |index: &usize| Choice::new(&variants[*index].0, variants[*index].1.name());
     order.iter().map(choice).collect()
 }
 
-/// What shows that variants are as was asked for, in the order in which they are met.
+/// The evidence that variants are as requested, in their learning order.
 pub(super) fn evidence(evidence: &Evidence, order: &[usize]) -> Result<String, Failure> {
     match evidence {
         Evidence::Probe { picked, element } => probe(picked, order, *element),
@@ -25,7 +25,7 @@ pub(super) fn evidence(evidence: &Evidence, order: &[usize]) -> Result<String, F
     }
 }
 
-/// The proof that variants differ from the first in one element only: every distance, 0 as such where it is exactly that.
+/// The evidence that variants differ from the first in one element only: every distance, with exact zeros marked as such.
 fn probe(picked: &[Picked], order: &[usize], element: Element) -> Result<String, Failure> {
     let anchor = &picked[0];
     let mut rows = Vec::new();
@@ -41,7 +41,7 @@ fn probe(picked: &[Picked], order: &[usize], element: Element) -> Result<String,
     ))
 }
 
-/// The proof that each variant is a step from the one before.
+/// The evidence that each variant is a step from the one before.
 fn steps(picked: &[Picked], wanted: &Steps) -> Result<String, Failure> {
     let mut rows = Vec::new();
     for (index, one) in picked.iter().enumerate() {
@@ -63,7 +63,7 @@ fn steps(picked: &[Picked], wanted: &Steps) -> Result<String, Failure> {
     ))
 }
 
-/// What each variant that was made sets, in a line; nothing where none was made.
+/// The values of each variant that was made, on one line; empty if none was made.
 fn made_values<'a>(picked: impl IntoIterator<Item = &'a Picked>) -> String {
     let mut lines = String::new();
     for one in picked.into_iter().filter(|one| one.is_made()) {
@@ -78,7 +78,7 @@ fn made_values<'a>(picked: impl IntoIterator<Item = &'a Picked>) -> String {
     if lines.is_empty() { lines } else { format!("\n{lines}") }
 }
 
-/// What a picked variant is called.
+/// The name of a picked variant.
 fn shown(picked: &Picked) -> String {
     format!("{}#{}", picked.variant.task().name(), picked.choice.name())
 }
@@ -93,7 +93,7 @@ fn row(picked: &Picked, apart: &Distance) -> Vec<String> {
     [shown(picked), is.to_owned()].into_iter().chain(elements).collect()
 }
 
-/// A distance to four places; 0 without places only where it is nothing else.
+/// A distance with four decimals; "0" without decimals only if it is exactly 0.
 fn exact(distance: f64) -> String {
     if distance == 0.0 {
         "0".to_owned()
@@ -102,7 +102,7 @@ fn exact(distance: f64) -> String {
     }
 }
 
-/// What a scenario learns in deployment, in a line: names, and how long the way is.
+/// What a scenario learns after deployment, on one line: names, and the length of the path.
 pub(super) fn path(scenario: &Scenario, matrix: &DistanceMatrix) -> String {
     let learning = |block: &&Block| block.kind == BlockKind::Learning && block.phase == Phase::Deployment;
     let blocks = scenario.blocks.iter().filter(learning);
@@ -137,7 +137,7 @@ fn label(matrix: &DistanceMatrix, regime: &Regime, name: &str) -> Option<usize> 
     matrix.labels().iter().position(|label| *label == id)
 }
 
-/// Where a regime is at its first or last experience: at a variant of the matrix, or so far on the way from one to another.
+/// The place of a regime at its first or last experience: at a variant of the matrix, or a share of the way between two.
 fn place(matrix: &DistanceMatrix, regime: &Regime, experience: u32) -> Option<(usize, usize, f64)> {
     let start = label(matrix, regime, regime.variant_name())?;
     let Some(drift) = &regime.drift else {
@@ -154,7 +154,7 @@ fn place(matrix: &DistanceMatrix, regime: &Regime, experience: u32) -> Option<(u
     })
 }
 
-/// How far two places are apart; unknown between two places of which one is on the way.
+/// The distance of two places; unknown if one is between variants.
 fn step(matrix: &DistanceMatrix, from: (usize, usize, f64), to: (usize, usize, f64)) -> Option<f64> {
     if from == to {
         return Some(0.0);
@@ -173,7 +173,7 @@ pub(super) fn learned(scenario: &Scenario) -> String {
     names.join(", ")
 }
 
-/// Whether what is best changes between variants: a row per pair.
+/// Whether the optimal behaviour changes between variants: a row per pair.
 pub(super) fn optima(found: &[PairOptimum]) -> String {
     let rows = found.iter().map(|pair| {
         let word = if pair.optimum.turned { "yes" } else { "no" };
@@ -193,7 +193,7 @@ pub(super) fn optima(found: &[PairOptimum]) -> String {
     )
 }
 
-/// The blocks of a scenario as a table, with the distance of each learning block's beginning from the end of the one before.
+/// The blocks of a scenario as a table, with the distance from the end of each learning block to the start of the next.
 pub(crate) fn blocks(scenario: &Scenario, measured: Option<(&DistanceMatrix, By)>) -> String {
     let matrix = measured.map(|(matrix, _)| matrix);
     let by = measured.map_or_else(String::new, |(_, by)| format!(" by {}", by.name()));
@@ -244,7 +244,7 @@ fn kind(block: &Block) -> &'static str {
     }
 }
 
-/// The names of the tasks that a scenario has by their paths.
+/// The names of the tasks that a scenario gives as paths.
 fn names_of_tasks(scenario: &Scenario) -> BTreeMap<&str, String> {
     let regimes = scenario.blocks.iter().flat_map(|block| &block.regimes);
     let called: BTreeSet<&str> = regimes.map(|regime| regime.task.as_str()).collect();
@@ -254,7 +254,7 @@ fn names_of_tasks(scenario: &Scenario) -> BTreeMap<&str, String> {
         .collect()
 }
 
-/// A regime's variant, and where it drifts.
+/// A regime's variant, with the destination of a drift.
 fn named(regime: &Regime, tasks: &BTreeMap<&str, String>) -> String {
     let task = tasks
         .get(regime.task.as_str())
@@ -276,7 +276,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_block_is_as_far_as_its_beginning_is_from_the_end_of_the_last() {
+    fn block_distance_is_from_the_last_end_to_its_start() {
         let at = [0.0_f64, 1.0, 3.0];
         let names = ["t#a", "t#b", "t#c"].map(str::to_owned).to_vec();
         let matrix = DistanceMatrix::measure(names, |a, b| {

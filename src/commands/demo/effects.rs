@@ -1,18 +1,18 @@
-//! What was learned, transferred and forgotten in a lifetime, read off the evaluations around its learning blocks.
+//! Summarises what was learned, transferred and forgotten in a lifetime, from the evaluations around its learning blocks.
 
 use crate::curriculum::{RegimeSummary, Summary};
 use crate::spec::BlockKind;
 use crate::table::table;
 use crate::tasks;
 
-/// The mean reward of a variant before and after another was learned.
+/// The mean reward of a variant before and after learning another.
 struct Change {
     /// The variant that was learned.
     learned: String,
     variant: String,
     before: f64,
     after: f64,
-    /// Whether the variant that changed had been learned before.
+    /// Whether the variant that changed was learned before.
     was_learned: bool,
 }
 
@@ -29,8 +29,8 @@ impl Change {
     }
 }
 
-/// One row for each variant: what it paid at first, what was transferred to it, learned and forgotten, what it paid at the
-/// end, and what it paid each agent `beside`; below in words where transfer and forgetting were largest.
+/// One row per variant: its first reward, how much of it was transferred, learned and forgotten, its last reward, and the
+/// reward of each agent in `beside`; below in words where transfer and forgetting were largest.
 pub(super) fn effects_table(summary: &Summary, beside: &[(String, Summary)]) -> String {
     let mut headings = vec![
         "variant",
@@ -77,8 +77,8 @@ fn evaluations_of<'a>(summary: &'a Summary, variant: &'a str) -> impl DoubleEnde
     of_kind(summary, BlockKind::Evaluation).filter(move |regime| regime.variant == variant)
 }
 
-/// Every variant that was learned, in the order of its first block, and was evaluated around it: in whole points of reward, so that
-/// the parts shown add up.
+/// Every variant that was learned, in the order of first blocks, and was evaluated around it: in whole points of reward, so
+/// that the parts shown add up.
 fn rows(summary: &Summary, beside: &[(String, Summary)]) -> Vec<Vec<String>> {
     let mut rows: Vec<Vec<String>> = Vec::new();
     for block in of_kind(summary, BlockKind::Learning) {
@@ -117,7 +117,7 @@ fn rows(summary: &Summary, beside: &[(String, Summary)]) -> Vec<Vec<String>> {
     rows
 }
 
-/// What each learning block did to the other variants that were evaluated before and after it.
+/// The effect of each learning block on the other variants evaluated before and after it.
 fn changes(summary: &Summary) -> Vec<Change> {
     let evaluation = |block: Option<usize>| {
         let own = of_kind(summary, BlockKind::Evaluation).filter(move |regime| Some(regime.block) == block);
@@ -177,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_not_learned_yet_transfers_and_what_was_learned_is_forgotten() {
+    fn change_counts_as_transfer_before_learning_and_as_forgetting_after() {
         let lifetime = summary(&[
             &[("a", 0.0), ("b", 1.0), ("c", 2.0)],
             &[("a", 5.0)],
@@ -203,8 +203,8 @@ Forgetting: learning b lowered a from 10 to 3, although a had been learned.";
     }
 
     proptest! {
-        /// Whatever the rewards are, what is shown of a variant adds up: what it paid at first and at the end are those of the
-        /// first and the last evaluation, and the parts are what lies between.
+        /// For any rewards, the parts shown for a variant add up: the first and last rewards are those of the first and the
+        /// last evaluation, and the parts sum to their difference.
         #[test]
         fn every_row_adds_up(rewards in prop::collection::vec(prop::array::uniform3(-500.0..500.0f64), 4)) {
             const NAMES: [&str; 3] = ["a", "b", "c"];
@@ -231,7 +231,7 @@ Forgetting: learning b lowered a from 10 to 3, although a had been learned.";
     }
 
     #[test]
-    fn an_agent_that_does_not_change_neither_transfers_nor_forgets() {
+    fn unchanging_agent_neither_transfers_nor_forgets() {
         let same: &[(&str, f64)] = &[("a", 1.0), ("b", 1.0)];
         let said = effects_table(&summary(&[same, &[("a", 1.0)], same, &[("b", 1.0)], same]), &[]);
         assert!(!said.contains("Transfer") && !said.contains("Forgetting"), "{said}");

@@ -1,5 +1,5 @@
-//! `driftworld demo`: the whole pipeline once, on `find_objects`, with every product kept. Each step is a subcommand of its own.
-//! `effects.rs` reads off what was learned, transferred and forgotten.
+//! `driftworld demo`: runs the whole pipeline once on `find_objects`, and keeps every product. Each step is also a separate
+//! subcommand.
 
 mod effects;
 
@@ -29,16 +29,16 @@ use crate::report::picture::heat_map;
 use crate::table::table;
 use crate::views::Views;
 
-/// The task that the demo is about.
+/// The demo's task.
 const TASK: &str = "find_objects";
 
-/// Its variants that the demo shows.
+/// The demo's variants.
 const VARIANTS: [&str; 3] = ["blue", "huddle", "turned"];
 
 /// Episodes of each learning block.
 const LEARN: u32 = 150;
 
-/// What is in the folder at the end.
+/// Contents of the folder at the end.
 const CONTENTS: &str = "  report.html        the lifetime on one page: metrics, curves, worlds
   contact-sheet.png  each variant as the agent sees it, and from above; alone in maps/ and worlds/
   distances.png      how far apart the variants are; the numbers in distances.csv
@@ -113,7 +113,7 @@ impl Demo {
         output::line(format!("\nEverything is in {}\n\n{CONTENTS}", folder.shown()))
     }
 
-    /// One world of each variant and its map, each in a file; and all side by side, as the agent sees them and from above.
+    /// One world of each variant with its map, each in a file; and all side by side, from the agent's view and from above.
     fn pictures(&self, variants: &[(String, Variant)]) -> Result<(), Failure> {
         let mut cells = Vec::new();
         for (_, variant) in variants {
@@ -149,7 +149,7 @@ impl Demo {
     }
 }
 
-/// The variants in their order, each with its distance from the one before it.
+/// The variants in order, each with its distance from the one before it.
 fn variants_table(variants: &[(String, Variant)], matrix: &DistanceMatrix, ordering: &Ordering) -> String {
     let mut before = None;
     let rows = ordering.indices.iter().map(|&index| {
@@ -162,7 +162,7 @@ fn variants_table(variants: &[(String, Variant)], matrix: &DistanceMatrix, order
     table(["variant", "distance", "what it is"], rows.collect::<Vec<_>>(), &[1])
 }
 
-/// Runs a scenario into a folder, in place of what an earlier demo left there.
+/// Runs a scenario into a folder, replacing the log of an earlier demo.
 fn run_lifetime(scenario: &Scenario, agent: &AgentArg, logs: &Path) -> Result<Summary, Failure> {
     remove_old_log(logs)?;
     let mut plan = scenarios::plan(scenario, Undrawable::Refused)?;
@@ -182,7 +182,7 @@ fn run_lifetime(scenario: &Scenario, agent: &AgentArg, logs: &Path) -> Result<Su
     run.run()
 }
 
-/// A demo may be run again and again: its own log is replaced, anything else in the way is not.
+/// The demo may be repeated: it replaces its own log, but nothing else.
 fn remove_old_log(logs: &Path) -> Result<(), Failure> {
     let failed = |error| Failure::in_file(logs, format!("cannot be removed: {error}"));
     if !logs.exists() {

@@ -1,4 +1,4 @@
-//! `driftworld logs aggregate`: the rows of logs as one table in a file. Which rows and columns it has is `metrics`'s business.
+//! `driftworld logs aggregate`: exports the rows of logs as one table in a file.
 
 use std::io::BufWriter;
 use std::path::PathBuf;

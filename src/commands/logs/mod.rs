@@ -1,4 +1,4 @@
-//! `driftworld logs`: logs checked, and brought together as one table. What a log may hold is `metrics`'s business.
+//! `driftworld logs`: validates logs, and exports them as one table.
 
 mod aggregate;
 mod validate;
@@ -54,7 +54,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn counts_are_easy_to_read() {
+    fn counts_are_readable() {
         let check = |number: u64, expected: &str| assert_eq!(count(number, "row"), expected);
         check(0, "0 rows");
         check(1, "1 row");

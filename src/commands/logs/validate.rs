@@ -1,4 +1,4 @@
-//! `driftworld logs validate`: every problem of a log with its place. The rules are the library's.
+//! `driftworld logs validate`: lists every problem of a log with its place.
 
 use std::path::PathBuf;
 
@@ -32,11 +32,11 @@ pub(crate) struct Validate {
     json: bool,
 }
 
-/// What was found of one log.
+/// The result for one log.
 struct Verdict {
     log: PathBuf,
     found: Validation,
-    /// Metrics columns and format version; nothing where `logger_info.json` cannot be read.
+    /// Metrics columns and format version; `None` if `logger_info.json` cannot be read.
     info: Option<(Vec<String>, String)>,
 }
 

@@ -1,4 +1,4 @@
-//! `driftworld metrics`: what agents kept and transferred, from the logs of their lifetimes. The metrics are the library's.
+//! `driftworld metrics`: what agents kept and transferred, from the logs of their lifetimes.
 
 mod power_table;
 mod reached_table;
@@ -106,7 +106,7 @@ pub(crate) struct Metrics {
 
 impl Metrics {
     pub(crate) fn run(self) -> Result<(), Failure> {
-        // A slip is refused also where nothing is drawn.
+        // Invalid options are refused even if nothing is drawn.
         let _ = (self.figures.shown()?, self.figures.options()?);
         let request = self.request()?;
         if let (Some(mode), Some(data)) = (self.ste_store_mode, self.scoring.ste_data()) {
@@ -141,7 +141,7 @@ impl Metrics {
         })
     }
 
-    /// The scores of the logs; figures are drawn and written on the way where they are asked for.
+    /// Scores the logs; if requested, also draws and writes figures.
     fn score(&self, request: &ScoringRequest) -> Result<Scores, Failure> {
         if !self.do_plot && self.plots.is_none() {
             return score(request, &|text| output::warning(text));
@@ -155,7 +155,7 @@ impl Metrics {
                 ..options.clone()
             };
             let drawn = drawn(&log.lifetime, &log.metrics.metrics_column, &shown, &options)?;
-            // Whoever panics with the lock has ended the process.
+            // A panic while holding the lock has already ended the process.
             files.lock().unwrap_or_else(PoisonError::into_inner).write(&drawn)
         })?;
         let files = files.into_inner().unwrap_or_else(PoisonError::into_inner);
@@ -163,16 +163,16 @@ impl Metrics {
         Ok(scores)
     }
 
-    /// Where results are saved.
+    /// The folder for results.
     fn folder(&self) -> PathBuf {
         let folder = self.save.as_ref().or(self.output_dir.as_ref());
         folder.cloned().unwrap_or_else(|| "results".into())
     }
 }
 
-/// Keeps the logs in the folder.
+/// Stores the logs in the folder.
 ///
-/// Where several logs of one task replace what is there, only the first does: the others are its further runs.
+/// If several logs of one task replace stored ones, only the first does: the others are its further runs.
 fn store(logs: &[PathBuf], mode: SteStoreMode, data: &Path) -> Result<(), Failure> {
     let mut replaced: Vec<String> = Vec::new();
     for log in logs {

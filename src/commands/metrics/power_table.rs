@@ -1,11 +1,11 @@
-//! What so many lifetimes can show, as a table. The numbers are `metrics`'.
+//! Table of what the given number of lifetimes can show.
 
 use crate::metrics::{MAX_POWER_LIFETIMES, MetricPower};
 use crate::table::table;
 
 use super::tables::number;
 
-/// A row per metric; `None` where there is none.
+/// A row per metric; `None` without metrics.
 pub(super) fn power(found: &[MetricPower]) -> Option<String> {
     let effect = found.first()?.effect;
     let rows = found.iter().map(|row| {

@@ -1,5 +1,4 @@
-//! What each task came to beside its expert, and what its evaluation curve says: the first tables that people see. The
-//! numbers are `metrics`'.
+//! Tables of each task's results compared with its expert, and of its evaluation curve.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -11,13 +10,13 @@ use super::tables::{mean, number, rounded, with_error};
 use crate::table::without_empty;
 use crate::variant_names::VariantNames;
 
-/// Tasks beyond these are in the JSON only.
+/// Further tasks are in the JSON only.
 const MOST_ROWS: usize = 40;
 
-/// What is said of a task that was never learned.
+/// Shown for a task that was never learned.
 const NEVER_LEARNED: &str = "never learned";
 
-/// A row per evaluated task: its first evaluation, the best after learning, the last, and the expert's level where there is one.
+/// A row per evaluated task: its first evaluation, the best after learning, the last, and the expert's level if there is one.
 /// `None` without evaluations.
 pub(super) fn reached(scores: &LifetimeMetrics, names: &VariantNames) -> Option<String> {
     let evaluated = || scores.reached.iter().filter(|(_, task)| !task.evaluations.is_empty());
@@ -83,7 +82,7 @@ pub(super) fn reached(scores: &LifetimeMetrics, names: &VariantNames) -> Option<
     Some(lines.join("\n"))
 }
 
-/// What those earn that cannot tell the tasks apart that look alike: a line for each set of them.
+/// Rewards of agents that cannot distinguish tasks that look alike: a line for each set of them.
 fn unlabelled(scores: &LifetimeMetrics, names: &VariantNames) -> Vec<String> {
     let tasks = &scores.reached;
     let mut sets: Vec<&Vec<String>> = Vec::new();
@@ -118,8 +117,8 @@ fn unlabelled(scores: &LifetimeMetrics, names: &VariantNames) -> Vec<String> {
     sets.into_iter().filter_map(line).collect()
 }
 
-/// A row per task that some of these lifetimes evaluate: means over lifetimes, and in how many it was never learned.
-/// `None` without any. `agent` is put behind the heading.
+/// A row per task that some of these lifetimes evaluate: means over lifetimes, and in how many it was never learned. `None`
+/// without any. `agent` is appended to the heading.
 pub(super) fn reached_by_several(agent: &str, lifetimes: &[LifetimeMetrics], names: &VariantNames) -> Option<String> {
     let mut tasks: BTreeMap<&str, Vec<&Reached>> = BTreeMap::new();
     for (name, task) in lifetimes.iter().flat_map(|lifetime| &lifetime.reached) {
@@ -171,10 +170,10 @@ pub(super) fn reached_by_several(agent: &str, lifetimes: &[LifetimeMetrics], nam
     (!rows.is_empty()).then(|| std::iter::once(table(rows)).chain(alike).collect::<Vec<_>>().join("\n"))
 }
 
-/// What numbers with and without % are.
+/// Explains numbers with and without %.
 const UNITS: &str = "\nIn % of the way from floor to ceiling where these are known, else in the log's unit.";
 
-/// A row per evaluated task: what its curve says. `None` unless a task is evaluated more than once.
+/// A row per evaluated task: measures of its curve. `None` unless a task is evaluated more than once.
 pub(super) fn curves(scores: &LifetimeMetrics, names: &VariantNames) -> Option<String> {
     let shown = || scores.curves.iter().filter(|(_, curve)| curve.points.len() > 1);
     let rows = shown().take(MOST_ROWS).map(|(name, curve)| {
@@ -209,17 +208,17 @@ pub(super) fn curves(scores: &LifetimeMetrics, names: &VariantNames) -> Option<S
     ))
 }
 
-/// Whether a task has an expert of its own: a ceiling that stands in for one is 100 %, and the best over it is the best.
+/// Whether a task has its own expert: a ceiling in its place is 100 %, which would repeat the best evaluation.
 fn has_own_expert(task: &Reached) -> bool {
     task.expert.is_some() && task.expert != task.ceiling
 }
 
-/// In whole percent; what rounds to nothing has no sign.
+/// In whole percent; zero has no sign.
 fn percent(share: f64) -> String {
     rounded(100.0 * share, 0) + "%"
 }
 
-/// Mean and standard error of an evaluation, as the part of the way from floor to ceiling where these are known.
+/// Mean and standard error of an evaluation, as the position between floor and ceiling if these are known.
 fn cell(task: &Reached, found: &EvaluationCell) -> String {
     let (mean, error) = match (found.score, task.floor.zip(task.ceiling)) {
         (Some(score), Some((floor, ceiling))) => {
@@ -231,12 +230,12 @@ fn cell(task: &Reached, found: &EvaluationCell) -> String {
     with_error(mean, error)
 }
 
-/// A level in the unit that the evaluations of its task are shown in.
+/// A level in the unit in which the evaluations of its task are shown.
 fn in_units_of(task: &Reached, level: f64) -> String {
     task.score(level).map_or_else(|| number(level), percent)
 }
 
-/// What 0 % and 100 % are.
+/// Explains 0 % and 100 %.
 fn scale(task: &Reached) -> String {
     match task.floor.zip(task.ceiling) {
         Some((floor, ceiling)) => whole(&format!("{floor:.1} to {ceiling:.1}")),

@@ -1,4 +1,4 @@
-//! Metrics as tables for people: of one lifetime, of several, of two agents. The JSON beside them is the library's.
+//! Tables of metrics: of one lifetime, of several, of two agents.
 
 use std::collections::BTreeSet;
 
@@ -14,7 +14,7 @@ use crate::scoring::{Comparison, Scores, Varied, own_scale};
 use crate::table::{table, without_empty};
 use crate::variant_names::VariantNames;
 
-/// The scores of one lifetime, or of several with what they say together.
+/// The scores of one lifetime, or of several with their aggregates.
 pub(super) fn scores(scores: &Scores, names: &VariantNames) -> String {
     let Some(comparison) = &scores.comparison else {
         let each = scores.lifetimes.iter().map(|lifetime| summary(lifetime, names));
@@ -68,7 +68,7 @@ fn summary(scores: &LifetimeMetrics, names: &VariantNames) -> String {
     parts.join("\n\n")
 }
 
-/// The band of a value, and its p. What may be said of the value is the library's to say.
+/// The band of a value, and its p.
 fn beside_null(band: Option<NullBand>) -> [String; 2] {
     let Some(band) = band else {
         return [whole("no null"), String::new()];
@@ -76,7 +76,7 @@ fn beside_null(band: Option<NullBand>) -> [String; 2] {
     [from_to(band.low, band.high), number(band.p)]
 }
 
-/// What null bands are, and how these were made.
+/// Explains null bands, and how these were computed.
 fn what_bands_are(scores: &LifetimeMetrics) -> String {
     let rows = match scores.null_bands.values().next().map(|band| band.exchanged) {
         Some(Exchanged::Positions) => "rows by their place in the evaluation, as the log names no world twice,",
@@ -92,7 +92,7 @@ fn what_bands_are(scores: &LifetimeMetrics) -> String {
     )
 }
 
-/// What the metrics are made of, and what they cannot tell; nothing where nothing is scaled.
+/// Explains what the metrics are based on, with their limits; `None` if nothing is scaled.
 fn scaled(scores: &LifetimeMetrics, names: &VariantNames) -> Option<String> {
     scores.normalization_data_range.as_ref()?;
     let by = |by: ScaledBy| {
@@ -116,12 +116,12 @@ fn scaled(scores: &LifetimeMetrics, names: &VariantNames) -> Option<String> {
     Some(text)
 }
 
-/// What metrics are made of where nothing is known of the tasks.
+/// What metrics are based on if nothing is known of the tasks.
 const SCALED: &str = "Metrics are computed after scaling each task to 1..101, by default between this lifetime's own \
      worst and best. They show how performance changed, not how good it was. To compare agents, use the rows above, \
      --scales, or --common-ranges.";
 
-/// Columns as they were logged, in the mean over lifetimes: how good agents are, before anything is scaled.
+/// Columns as logged, averaged over lifetimes: how good agents are, without scaling.
 fn as_logged(agents: &[(&str, &[LifetimeMetrics])]) -> String {
     let columns: BTreeSet<(usize, &str)> = agents
         .iter()
@@ -147,7 +147,7 @@ fn as_logged(agents: &[(&str, &[LifetimeMetrics])]) -> String {
     table(["as logged", "learning", "evaluation"], rows, &[1, 2])
 }
 
-/// Several lifetimes, and how they compare with another agent's.
+/// Several lifetimes, with a comparison with another agent's.
 fn several(scores: &Scores, together: &Comparison, names: &VariantNames) -> String {
     let (lifetimes, others) = (scores.lifetimes.as_slice(), scores.lifetimes_against.as_slice());
     let options = &scores.options;
@@ -199,7 +199,7 @@ fn several(scores: &Scores, together: &Comparison, names: &VariantNames) -> Stri
     parts.join("\n\n")
 }
 
-/// What must be known of an agent's lifetimes, each note once.
+/// Notes on an agent's lifetimes, each once.
 fn notes(label: &str, lifetimes: &[LifetimeMetrics]) -> Vec<String> {
     let all = lifetimes
         .iter()
@@ -213,7 +213,7 @@ fn notes(label: &str, lifetimes: &[LifetimeMetrics]) -> Vec<String> {
 fn improvements(together: &Comparison, share: &str) -> String {
     let alpha = 1.0 - together.intervals.confidence;
     let verdict = |improvement: &Improvement| match improvement.p_value {
-        // What 1 - 0.95 rounds to must not make a difference.
+        // The rounding of 1 - 0.95 must not matter.
         Some(p) if p <= alpha + 1e-12 && improvement.probability.value > 0.5 => "first is better",
         Some(p) if p <= alpha + 1e-12 => "other is better",
         Some(_) if improvement.least_p_value.is_some_and(|least| least > alpha + 1e-12) => "too few lifetimes",
@@ -238,7 +238,7 @@ fn improvements(together: &Comparison, share: &str) -> String {
     table(["metric", "P(better)", &share, "p", "", "tasks"], rows, &[1, 3, 5])
 }
 
-/// Each metric over the lifetimes, and what a reader must know about the intervals.
+/// Each metric over the lifetimes, with notes on the intervals.
 fn repeats(metrics: &[RepeatedMetric], share: &str) -> String {
     let few = metrics.iter().any(|row| row.iqm.t_interval.is_some());
     let rows = metrics.iter().map(|row| {
@@ -285,7 +285,7 @@ fn repeats(metrics: &[RepeatedMetric], share: &str) -> String {
     lines.join("\n")
 }
 
-/// What intervals of few lifetimes are worth.
+/// Caution about intervals of few lifetimes.
 const FEW: &str = "below ten lifetimes, bootstrap intervals contain the true value less often than they claim (82 \
      instead of 95 times in 100 with five lifetimes); use Student's (t), which assumes that lifetimes are normally \
      distributed";
@@ -294,12 +294,12 @@ fn interval(found: Option<Interval>) -> String {
     found.map_or_else(String::new, |found| from_to(found.low, found.high))
 }
 
-/// A range that is not broken.
+/// A range without line breaks.
 fn from_to(low: f64, high: f64) -> String {
     whole(&format!("{} to {}", short(low), short(high)))
 }
 
-/// A value with its standard error, where that is known, that is not broken.
+/// A value with its standard error, if known, without line breaks.
 pub(super) fn with_error(value: String, error: Option<String>) -> String {
     match error {
         Some(error) => whole(&format!("{value} ± {error}")),
@@ -307,23 +307,23 @@ pub(super) fn with_error(value: String, error: Option<String>) -> String {
     }
 }
 
-/// The mean of some values as `show` writes it; nothing of none.
+/// The mean of some values, formatted by `show`; empty without values.
 pub(super) fn mean(values: &[f64], show: fn(f64) -> String) -> String {
     let mean = values.iter().sum::<f64>() / values.len() as f64;
     if values.is_empty() { String::new() } else { show(mean) }
 }
 
-/// With three decimals; what rounds to nothing has no sign.
+/// With three decimals; zero has no sign.
 pub(super) fn number(value: f64) -> String {
     rounded(value, 3)
 }
 
-/// With about four digits, so that a table has room at 80 columns.
+/// With about four digits, so that tables fit 80 columns.
 fn short(value: f64) -> String {
     rounded(value, decimals(value))
 }
 
-/// How many decimals a value of this size has.
+/// Number of decimals for a value of this size.
 fn decimals(value: f64) -> usize {
     match value.abs() {
         size if size >= 100.0 => 1,
@@ -332,7 +332,7 @@ fn decimals(value: f64) -> usize {
     }
 }
 
-/// With so many decimals; what rounds to nothing has no sign.
+/// With this number of decimals; zero has no sign.
 pub(super) fn rounded(value: f64, decimals: usize) -> String {
     let shown = format!("{value:.decimals$}");
     let is_nothing = shown.chars().all(|letter| matches!(letter, '-' | '0' | '.'));
@@ -357,7 +357,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_number_that_rounds_to_nothing_has_no_sign() {
+    fn number_that_rounds_to_0_has_no_sign() {
         let check = |value: f64, expected: &str| assert_eq!(number(value), expected);
         check(-0.0, "0.000");
         check(-0.000_4, "0.000");
@@ -367,7 +367,7 @@ mod tests {
     }
 
     #[test]
-    fn a_short_number_has_about_four_digits() {
+    fn short_number_has_about_four_digits() {
         let check = |value: f64, expected: &str| assert_eq!(short(value), expected);
         check(-57.616, "-57.62");
         check(1.55, "1.550");

@@ -1,4 +1,4 @@
-//! `driftworld new` and `driftworld export`: a task spec to begin with, a small one or one that is built in.
+//! `driftworld new` and `driftworld export`: writes a task spec to start from, a small one or a built-in one.
 
 use std::path::{Path, PathBuf};
 
@@ -9,7 +9,7 @@ use super::{Failure, output, overwrite};
 use crate::spec::{TaskSpec, did_you_mean};
 use crate::tasks;
 
-/// A small task whose descriptions say what each part is for, under this name.
+/// A small task whose descriptions explain each part, under this name.
 const SCAFFOLD: (&str, &str) = ("my_task", include_str!("scaffold.json"));
 
 /// Write a small task spec to begin with.
@@ -97,7 +97,7 @@ impl Export {
     }
 }
 
-/// A task's text under another name, without the place of the schema, which is not beside the new file.
+/// A task's text under another name, without the schema's path, which does not exist beside the new file.
 fn renamed((old, text): (&str, &str), name: &str) -> Result<String, Failure> {
     let lines = text
         .lines()
@@ -105,7 +105,7 @@ fn renamed((old, text): (&str, &str), name: &str) -> Result<String, Failure> {
     let mut text = lines.collect::<Vec<_>>().join("\n");
     text.push('\n');
     let text = text.replacen(&format!("\"name\": \"{old}\""), &format!("\"name\": \"{name}\""), 1);
-    // In descriptions, too, a file is called by its name.
+    // Descriptions name the file, too.
     let text = text.replace(&format!("{old}.json#"), &format!("{name}.json#"));
     TaskSpec::from_json(&format!("{name}.json"), &text)?;
     Ok(text)
@@ -127,7 +127,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_scaffold_and_every_built_in_task_can_be_had_under_another_name() {
+    fn scaffold_and_built_in_tasks_can_be_renamed() {
         let all = tasks::groups().flat_map(|(_, tasks)| tasks);
         for task in all.copied().chain([SCAFFOLD]) {
             let text = renamed(task, "mine").expect("it is valid");

@@ -1,4 +1,4 @@
-//! [`OrderArgs`]: the options by which an order is found, for every command that orders. Finding it is the library's.
+//! [`OrderArgs`]: the ordering options shared by all commands.
 
 use std::str::FromStr;
 
@@ -32,17 +32,17 @@ pub(crate) struct OrderArgs {
     target_step: Option<f64>,
 }
 
-/// What `--order` can say.
+/// Values of `--order`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum OrderWord {
-    /// An order by what it is to show.
+    /// An order by purpose.
     Design(DesignOrder),
-    /// A way to find one.
+    /// A method.
     Method(Method),
 }
 
 impl OrderWord {
-    /// The method that finds it; nothing for the shortest path.
+    /// The method for it; `None` for the shortest path.
     fn method(self) -> Option<Method> {
         match self {
             Self::Method(method) => Some(method),
@@ -76,7 +76,7 @@ impl FromStr for OrderWord {
 }
 
 impl OrderArgs {
-    /// The same for the library, for a plain order.
+    /// The library's request for a plain order.
     pub(crate) fn request(&self) -> OrderRequest {
         OrderRequest {
             method: self.order.and_then(OrderWord::method),
@@ -86,7 +86,7 @@ impl OrderArgs {
         }
     }
 
-    /// As a design is asked for: the order of its blocks apart, where the word names one.
+    /// The library's request for a design: with the order of its blocks separate, if the word names one.
     pub(crate) fn design(&self) -> (OrderRequest, Option<DesignOrder>) {
         let (method, order) = match self.order {
             Some(OrderWord::Method(method)) => (Some(method), None),
@@ -108,7 +108,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn one_word_says_the_order_whether_by_aim_or_by_method() {
+    fn one_word_names_an_order_by_purpose_or_method() {
         assert_eq!("abrupt".parse(), Ok(OrderWord::Design(DesignOrder::Abrupt)));
         assert_eq!("two-opt".parse(), Ok(OrderWord::Method(Method::TwoOpt)));
         for method in Method::ALL {

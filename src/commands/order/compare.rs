@@ -1,11 +1,11 @@
-//! Every method on one matrix, side by side. What the columns mean is `similarity`'s.
+//! Compares all methods on one matrix.
 
 use crate::similarity::{DistanceMatrix, Method, OrderOptions, Ordering, order};
 use serde_json::{Value, json};
 
 use crate::table::table;
 
-/// Each method with what it found, or why it found nothing.
+/// Each method with its order, or its error.
 pub(super) struct Comparison {
     outcomes: Vec<(Method, Result<Ordering, String>)>,
 }
@@ -16,7 +16,7 @@ impl Comparison {
             let found = order(matrix, method, options).map_err(|error| error.to_string());
             (method, found)
         };
-        // Steps of a wanted length are compared where a length is wanted.
+        // Target steps are compared only if a length is given.
         let is_meant = |method: &Method| *method != Method::TargetStep || options.target_step.is_some();
         let methods = Method::ALL.iter().copied().filter(is_meant);
         Self {
@@ -24,7 +24,7 @@ impl Comparison {
         }
     }
 
-    /// A line for each method, and below it why some have no numbers.
+    /// A line for each method, followed by the reasons for missing numbers.
     pub(super) fn table(&self) -> String {
         let mut refusals = String::new();
         let mut rows = Vec::new();

@@ -1,4 +1,4 @@
-//! `driftworld order`: variants in an order by their distances. Distances and orders are `similarity`'s.
+//! `driftworld order`: orders variants by their distances.
 
 mod arguments;
 mod compare;
@@ -127,7 +127,7 @@ impl Order {
         ))
     }
 
-    /// Every distance, and by what it was measured, where it is not read from a file.
+    /// All distances, and the measure unless they are read from a file.
     fn measure(&self) -> Result<(DistanceMatrix, Option<By>), Failure> {
         if let Some(path) = &self.from_matrix {
             return Ok((matrix_file::read("from_matrix", path)?, None));
@@ -152,7 +152,7 @@ impl Order {
         Ok((matrix, Some(by)))
     }
 
-    /// The variants that may come first where nobody says which: those of the first argument, if there are others.
+    /// The default candidates for the first variant: those of the first argument, if there are others.
     fn firsts(&self) -> Vec<usize> {
         let first = self.tasks.first().and_then(|first| tasks::variants(first).ok());
         (0..first.map_or(0, |variants| variants.len())).collect()
@@ -178,7 +178,7 @@ fn json_of(matrix: &DistanceMatrix, method: Method, ordering: &Ordering, seed: u
     })
 }
 
-/// The items of an order with the step that leads to each.
+/// The items of an order, each with the step that leads to it.
 pub(crate) fn path_table(matrix: &DistanceMatrix, ordering: &Ordering) -> String {
     let rows = ordering.indices.iter().enumerate().map(|(place, index)| {
         let step = place

@@ -1,19 +1,19 @@
-//! Pictures in a terminal: each cell is a half block, with one pixel above and one below. What is sent is what changed.
+//! Pictures in a terminal: each cell is a half block with two pixels, one above the other. Only changed cells are sent.
 
 use std::fmt::Write;
 
 use crate::report::picture::Picture;
 
-/// A picture as cells of a terminal.
+/// A picture as terminal cells.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Cells {
     columns: usize,
-    /// The pixel above and the one below, row after row.
+    /// The upper and the lower pixel, row after row.
     cells: Vec<[[u8; 3]; 2]>,
 }
 
 impl Cells {
-    /// A picture in so many columns and rows, in the middle of black.
+    /// A picture centred on black, in this number of columns and rows.
     pub(super) fn new(picture: &Picture, columns: usize, rows: usize) -> Self {
         let (width, height) = (picture.width as usize, picture.height as usize);
         let (left, top) = (columns.saturating_sub(width) / 2, (2 * rows).saturating_sub(height) / 2);
@@ -37,18 +37,19 @@ impl Cells {
         }
     }
 
-    /// What makes a terminal that shows `before` show this: from its first row on, all where there is nothing of this size before.
+    /// The codes that turn a terminal showing `before` into this picture: from its first row on, everything if `before` is
+    /// missing or of another size.
     pub(super) fn drawn_over(&self, before: Option<&Self>) -> String {
         let before = before.filter(|before| (before.columns, before.cells.len()) == (self.columns, self.cells.len()));
         let mut out = String::new();
-        // Where the cursor is, and which colours are set.
+        // Tracks the cursor's place and the colours set.
         let (mut cursor, mut colors) = (None, None);
         for (place, cell) in self.cells.iter().enumerate() {
             if before.is_some_and(|before| before.cells[place] == *cell) {
                 continue;
             }
             let (row, column) = (place / self.columns, place % self.columns);
-            // Writing into a text cannot fail.
+            // Writing into a string cannot fail.
             if cursor != Some(place) || column == 0 {
                 let _ = write!(out, "\x1b[{};{}H", row + 1, column + 1);
             }
@@ -75,7 +76,7 @@ mod tests {
     const COLUMNS: usize = 7;
     const ROWS: usize = 4;
 
-    /// What a terminal shows: a small one, that knows what is sent here.
+    /// A minimal terminal that interprets the codes sent here.
     fn shown(sent: &str, shown: &mut [[[u8; 3]; 2]]) {
         let (mut place, mut colors) = (0, [[0; 3]; 2]);
         let mut rest = sent;
@@ -113,9 +114,9 @@ mod tests {
     }
 
     proptest! {
-        /// Whatever was shown, the terminal shows the picture then; and nothing is sent where nothing changed.
+        /// Whatever was shown before, the terminal then shows the picture; and nothing is sent if nothing changed.
         #[test]
-        fn the_terminal_shows_the_last_picture(pictures in prop::collection::vec(picture(), 1..4)) {
+        fn terminal_shows_the_last_picture(pictures in prop::collection::vec(picture(), 1..4)) {
             let mut terminal = vec![[[1; 3]; 2]; COLUMNS * ROWS];
             let mut before: Option<Cells> = None;
             for picture in pictures {

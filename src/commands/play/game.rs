@@ -1,4 +1,4 @@
-//! [`Game`]: a world that goes on by the keys that are pressed and the time that goes by. Which key is which is in `keys.rs`.
+//! [`Game`]: a world that advances with key presses and real time.
 
 use crate::Failure;
 use crate::env::{Catalogue, EndedBy, Environment, EpisodeOrigin, Recorder, Recording, Renderer, Step};
@@ -8,7 +8,7 @@ use crate::spec::World;
 
 use super::keys::{Held, Key};
 
-/// From where the world is shown.
+/// The view of the world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Shown {
     Agent,
@@ -16,28 +16,28 @@ enum Shown {
     Above,
 }
 
-/// A world that is played in.
+/// A world being played.
 pub(super) struct Game {
     world: World,
     origin: EpisodeOrigin,
     environment: Environment,
     recorder: Recorder,
-    /// Episodes that are over.
+    /// Finished episodes.
     recordings: Vec<Recording>,
     held: Held,
     shown: Shown,
-    /// Seconds between two steps, and when the next is due.
+    /// Seconds between two steps, and the time of the next.
     pace: f64,
     due: f64,
     way: Vec<[f32; 2]>,
     last: Option<Step>,
     said: String,
-    /// Whether the world stands while no key is held: where there is no action that does nothing.
+    /// Whether the world pauses while no key is held, because no action does nothing.
     waits: bool,
 }
 
 impl Game {
-    /// A game at its start, which goes on with a step every `pace` seconds.
+    /// A new game, with a step every `pace` seconds.
     pub(super) fn new(
         world: World,
         origin: EpisodeOrigin,
@@ -77,7 +77,7 @@ impl Game {
         (self.last, self.said) = (None, String::new());
     }
 
-    /// Takes a key that was pressed at a time in seconds; whether the picture is another then.
+    /// Handles a key pressed at a time in seconds; returns whether the picture changes.
     pub(super) fn press(&mut self, key: Key, now: f64) -> bool {
         match key {
             Key::View => {
@@ -99,7 +99,7 @@ impl Game {
         true
     }
 
-    /// Makes the step that is due, if one is; whether it did.
+    /// Makes the step that is due, if any; returns whether it did.
     pub(super) fn go_on(&mut self, now: f64) -> Result<bool, Failure> {
         if now < self.due || self.environment.ended() {
             return Ok(false);
@@ -107,7 +107,7 @@ impl Game {
         let Some((along, turn, interact)) = self.held.take(now).or((!self.waits).then_some((0.0, 0.0, false))) else {
             return Ok(false);
         };
-        // A pause is not made up for.
+        // Missed steps after a pause are not made up for.
         self.due = (self.due + self.pace).max(now);
         let agent = &self.world.agent_params;
         let (speed, rate) = (agent.max_linear_speed, agent.max_angular_speed);
@@ -123,7 +123,7 @@ impl Game {
         Ok(true)
     }
 
-    /// What there is to see, at most so many pixels across and down.
+    /// The current picture, within these pixel dimensions.
     pub(super) fn picture(&mut self, width: u32, height: u32) -> Result<Picture, Failure> {
         let size = width.min(height);
         match self.shown {
@@ -147,7 +147,7 @@ impl Game {
         Ok(Picture { width, height, rgb }.halved())
     }
 
-    /// The line below the picture: steps, time, return, what is carried, what happened last.
+    /// The status line: steps, time, return, carried objects, the last event.
     pub(super) fn status(&self) -> String {
         let end = self.last.as_ref().filter(|step| step.ended());
         let mut parts = vec![format!("step {}", self.environment.num_steps())];
@@ -161,7 +161,7 @@ impl Game {
         parts.join(" · ")
     }
 
-    /// The episodes that were played, the one under way included.
+    /// The played episodes, including the current one.
     pub(super) fn into_recordings(mut self) -> Vec<Recording> {
         self.keep();
         self.recordings
@@ -202,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn keys_walk_and_what_was_played_comes_out_once_more() {
+    fn keys_move_the_agent_and_the_game_can_be_replayed() {
         let mut game = game(ActionSpace::Normalized);
         let start = game.environment.agent().position;
         assert!(!game.press(Key::Ahead, 0.0), "a key alone changes no picture");
@@ -211,7 +211,7 @@ mod tests {
         assert!(game.go_on(0.1).unwrap());
         let walked = game.environment.agent().position;
         assert_ne!(start, walked);
-        // The key is no longer held, and the world goes on.
+        // The key is no longer held, but the world continues.
         assert!(game.go_on(1.0).unwrap());
         assert_eq!(game.environment.agent().position, walked);
         assert_eq!(game.environment.num_steps(), 3);
@@ -245,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn a_world_in_which_nothing_cannot_be_done_waits_for_keys() {
+    fn world_without_a_null_action_waits_for_keys() {
         let mut game = game(ActionSpace::Discrete(vec![[5.0, 0.0, 0.0], [0.0, 45.0, 0.0]]));
         assert!(!game.go_on(0.0).unwrap());
         game.press(Key::Right, 0.5);

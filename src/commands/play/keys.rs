@@ -1,23 +1,23 @@
-//! Keys as a terminal sends them, and what is held down: a terminal tells when a key is pressed, and never when it is let go.
+//! Keys of a terminal, and which are held down: a terminal reports key presses, but never releases.
 
-/// What a key stands for.
+/// The meaning of a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Key {
     Ahead,
     Back,
     Left,
     Right,
-    /// Use what is ahead, pick up, put down.
+    /// Use the object ahead, pick up, put down.
     Interact,
-    /// Look from elsewhere.
+    /// Change the view.
     View,
-    /// Begin anew.
+    /// Restart.
     Restart,
     Quit,
 }
 
 impl Key {
-    /// The keys in what a terminal sent; what stands for none is passed over.
+    /// Parses the keys in a terminal's bytes; unknown ones are skipped.
     pub(super) fn all(mut bytes: &[u8]) -> Vec<Self> {
         let mut keys = Vec::new();
         while let [first, rest @ ..] = bytes {
@@ -50,21 +50,21 @@ impl Key {
             b' ' | b'e' => Self::Interact,
             b'v' => Self::View,
             b'r' => Self::Restart,
-            // Ctrl-C and Ctrl-D arrive as these.
+            // Ctrl-C and Ctrl-D arrive as these bytes.
             b'q' | 0x03 | 0x04 => Self::Quit,
             _ => return None,
         })
     }
 }
 
-/// Seconds for which a key counts as held after it was pressed: until the terminal repeats it.
+/// Seconds for which a key counts as held after a press, until the terminal repeats it.
 const WALK: f64 = 0.3;
 const TURN: f64 = 0.15;
 
-/// What is held down.
+/// The keys held down.
 #[derive(Debug, Default)]
 pub(super) struct Held {
-    /// Until when: ahead or back, left or right, by the time that presses come with.
+    /// Expiry times of ahead or back, and left or right, on the clock of the presses.
     along: Option<(Key, f64)>,
     turn: Option<(Key, f64)>,
     interact: bool,
@@ -80,7 +80,7 @@ impl Held {
         }
     }
 
-    /// Shares of the greatest speed and turn rate, and whether to interact, which is done once; nothing where nothing is held.
+    /// Shares of the maximum speed and turn rate, and whether to interact, which happens once; `None` if nothing is held.
     pub(super) fn take(&mut self, now: f64) -> Option<(f64, f64, bool)> {
         let held = |key: Option<(Key, f64)>| key.filter(|(_, until)| now < *until).map(|(key, _)| key);
         let (along, turn) = (held(self.along), held(self.turn));
@@ -100,7 +100,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn letters_and_arrows_are_keys_and_what_is_none_is_passed_over() {
+    fn letters_and_arrows_are_keys_and_others_are_skipped() {
         let check = |bytes: &[u8], expected: &[Key]| assert_eq!(Key::all(bytes), expected, "{bytes:?}");
         check(b"wASd ", &[Key::Ahead, Key::Left, Key::Back, Key::Right, Key::Interact]);
         check(
@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn keys_are_held_for_a_moment_and_interaction_is_done_once() {
+    fn keys_are_held_briefly_and_interaction_happens_once() {
         let mut held = Held::default();
         assert_eq!(held.take(0.0), None);
         held.press(Key::Ahead, 1.0);

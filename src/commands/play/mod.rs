@@ -1,5 +1,4 @@
-//! `driftworld play`: walking through a world with the keys of a terminal. What keys do is in `game.rs`, how pictures become characters in
-//! `cells.rs`.
+//! `driftworld play`: walk through a world with the keys of a terminal.
 
 mod cells;
 mod game;
@@ -24,10 +23,10 @@ use super::film_choice::{self, summary};
 use super::interrupt::Interrupt;
 use super::{Failure, output};
 
-/// How often the terminal is looked at and drawn.
+/// Interval for polling the keyboard and drawing.
 const FRAME: Duration = Duration::from_millis(50);
 
-/// What the last line says.
+/// Text of the last line.
 const HELP: &str = "arrows or wasd: walk · space: use · v: view · r: again · q: quit";
 
 /// Walk through a world with the keys, in a terminal.
@@ -87,7 +86,7 @@ impl Play {
     }
 }
 
-/// Plays until somebody quits.
+/// Plays until the user quits.
 fn play(game: &mut Game, terminal: &RawTerminal, interrupt: &Interrupt) -> Result<(), Failure> {
     let begun = Instant::now();
     let (mut before, mut status): (Option<Cells>, String) = (None, String::new());
@@ -112,7 +111,7 @@ fn play(game: &mut Game, terminal: &RawTerminal, interrupt: &Interrupt) -> Resul
             (before, status, is_new) = (None, String::new(), true);
         }
         if is_new {
-            // Two lines below are words.
+            // Two lines below the picture hold text.
             let (columns, rows) = (
                 usize::from(found.0.clamp(2, 1000)),
                 usize::from(found.1.clamp(3, 500)) - 2,
@@ -123,7 +122,7 @@ fn play(game: &mut Game, terminal: &RawTerminal, interrupt: &Interrupt) -> Resul
             if said != status {
                 let line = |text: &str| printable(text).chars().take(columns).collect::<String>();
                 let (first, second) = (rows + 1, rows + 2);
-                // Writing into a text cannot fail.
+                // Writing into a string cannot fail.
                 let _ = write!(
                     sent,
                     "\x1b[{first};1H\x1b[K{}\x1b[{second};1H\x1b[K\x1b[2m{}\x1b[0m",

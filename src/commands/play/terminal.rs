@@ -1,5 +1,5 @@
-//! [`RawTerminal`]: a terminal that hands over keys as they are pressed, on a screen of its own. However the command ends, the terminal is
-//! as it was before: when it is dropped, and before a panic is told.
+//! [`RawTerminal`]: a terminal in raw mode on an alternate screen. The terminal is restored however the command ends: on drop,
+//! and before a panic message.
 
 use std::io::{self, IsTerminal, Write};
 #[cfg(unix)]
@@ -10,11 +10,11 @@ use rustix::termios::{OptionalActions, SpecialCodeIndex, Termios, tcgetattr, tcs
 
 use crate::Failure;
 
-/// How the terminal was before; nothing while it is so.
+/// The saved terminal settings; `None` unless in raw mode.
 #[cfg(unix)]
 static BEFORE: Mutex<Option<Termios>> = Mutex::new(None);
 
-/// A screen of its own without a cursor; back to the one before.
+/// Switches to the alternate screen without a cursor, and back.
 const ENTER: &str = "\x1b[?1049h\x1b[?25l\x1b[2J";
 const LEAVE: &str = "\x1b[0m\x1b[?25h\x1b[?1049l";
 
@@ -22,7 +22,7 @@ const LEAVE: &str = "\x1b[0m\x1b[?25h\x1b[?1049l";
 pub(super) struct RawTerminal(());
 
 impl RawTerminal {
-    /// Takes the terminal.
+    /// Switches the terminal to raw mode.
     pub(super) fn open() -> Result<Self, Failure> {
         let refused = |stream: &str| {
             Failure::input(format!(
@@ -46,7 +46,7 @@ impl RawTerminal {
         let before = tcgetattr(io::stdin()).map_err(failed)?;
         let mut raw = before.clone();
         raw.make_raw();
-        // Reading hands over what there is, and does not wait.
+        // Reads return what is available without waiting.
         raw.special_codes[SpecialCodeIndex::VMIN] = 0;
         raw.special_codes[SpecialCodeIndex::VTIME] = 0;
         *BEFORE.lock().unwrap_or_else(PoisonError::into_inner) = Some(before);
@@ -71,7 +71,7 @@ impl RawTerminal {
         ))
     }
 
-    /// What was typed since the last time; nothing at all where the terminal is gone.
+    /// The bytes typed since the last call; `None` if the terminal is gone.
     #[expect(clippy::unused_self, reason = "only who holds the terminal may")]
     pub(super) fn typed(&self) -> Option<Vec<u8>> {
         let mut bytes = [0; 256];
@@ -82,7 +82,7 @@ impl RawTerminal {
         }
     }
 
-    /// Sends text and codes.
+    /// Prints text and codes.
     #[expect(clippy::unused_self, reason = "only who holds the terminal may")]
     pub(super) fn show(&self, text: &str) -> Result<(), Failure> {
         let mut out = io::stdout().lock();
@@ -97,13 +97,13 @@ impl Drop for RawTerminal {
     }
 }
 
-/// Makes the terminal what it was; does nothing a second time.
+/// Restores the terminal's settings; does nothing when called again.
 fn restore() {
     #[cfg(unix)]
     {
         let before = BEFORE.lock().unwrap_or_else(PoisonError::into_inner).take();
         if let Some(before) = before {
-            // Whoever has gone needs nothing.
+            // A terminal that is gone needs nothing.
             let _ = tcsetattr(io::stdin(), OptionalActions::Now, &before);
             let _ = io::stdout().lock().write_all(LEAVE.as_bytes());
             let _ = io::stdout().lock().flush();

@@ -1,5 +1,4 @@
-//! `driftworld transfer-report`: whether similar variants transferred more, by logs and distances. Transfer is `metrics`'s, the
-//! correlation `similarity`'s, their meeting `curriculum`'s.
+//! `driftworld transfer-report`: whether similar variants transferred more, from logs and distances.
 
 mod words;
 

@@ -1,4 +1,4 @@
-//! The report as text, and the words of its picture. What is drawn where is in `pictures/scatter.rs`.
+//! The report as text, and the texts in its picture.
 
 use crate::curriculum::{DirectionReport, TransferReport};
 use crate::metrics::TransferMethod;
@@ -8,7 +8,7 @@ use driftworld_text::{counted, when};
 use crate::report::picture::{Panel, Point};
 use crate::table::table;
 
-/// How many pairs the table shows; the rest is counted.
+/// Most pairs in the table; the others are counted.
 const MOST_PAIRS: usize = 40;
 
 /// The whole report.
@@ -102,7 +102,7 @@ fn tests(report: &TransferReport) -> String {
     table(head, rows, &[2, 3, 4, 5, 6]) + &untested.concat()
 }
 
-/// The answer, by the test of ranks of each direction.
+/// The answer, by the rank test of each direction.
 fn conclusion(report: &TransferReport) -> String {
     let answer = |name: &str, direction: &DirectionReport| {
         let test = direction.spearman?;
@@ -121,10 +121,10 @@ fn conclusion(report: &TransferReport) -> String {
     answers.join("\n")
 }
 
-/// The largest p of which an effect is named.
+/// Largest p of a named effect.
 const SMALL: f64 = 0.05;
 
-/// What the numbers do and do not say.
+/// Limits of the numbers.
 fn notes(report: &TransferReport) -> Vec<String> {
     let mut notes = vec![
         "value: below 0, nearer variants transferred more; 0, distance predicted nothing. Spearman compares ranks, \
@@ -183,7 +183,7 @@ fn signed(value: f64) -> String {
     format!("{value:+.3}")
 }
 
-/// Not more digits than the test has.
+/// Shows no more digits than the test's resolution.
 fn share(p: f64, test: &MantelTest) -> String {
     if !test.exact && p <= 1.0 / (test.relabellings + 1) as f64 {
         return format!("≤ {p:.1e}");
@@ -191,7 +191,7 @@ fn share(p: f64, test: &MantelTest) -> String {
     format!("{p:.4}")
 }
 
-/// The picture's panels: one for each direction that has pairs.
+/// The picture's panels: one for each direction with pairs.
 pub(super) fn panels(report: &TransferReport) -> Vec<Panel> {
     let directions = [
         ("Forward: to variants not yet learned", &report.forward),
@@ -236,7 +236,7 @@ fn points(direction: &DirectionReport) -> Vec<Point> {
         .pairs
         .iter()
         .all(|pair| task(&pair.from) == first && task(&pair.to) == first);
-    // Where all are of one task, its name tells nothing.
+    // If all variants are of one task, its name is omitted.
     let short = |name: &str| match name.rsplit_once('#') {
         Some((_, variant)) if one_task => variant.to_owned(),
         _ => name.to_owned(),
