@@ -1,4 +1,4 @@
-//! Where logs are: the folders named, or all below them. Reading one is `metrics`'s.
+//! Finds logs: the given folders, or all below them.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -11,18 +11,17 @@ use crate::documents;
 use crate::{Failure, argument};
 use driftworld_text::ShownPath;
 
-/// How deep logs are looked for below a folder that is none itself.
+/// Maximum depth of the search below a folder that is no log itself.
 const MOST_LEVELS: usize = 4;
 
-/// The most logs that are taken together.
+/// Most logs in one search.
 const MOST_LOGS: usize = 10_000;
 
-/// The most folders that are looked into for logs.
+/// Most folders searched for logs.
 const MOST_FOLDERS: usize = 200_000;
 
-/// What a search for logs has looked into and found. A link below the folder that it begins at is taken if it leads to
-/// a log, and is not looked into: one to `/` would have it read the machine, one to a folder above would have it go
-/// round.
+/// The state of a search for logs. A link below the starting folder is followed only if it leads directly to a log: one to `/`
+/// would search the whole machine, one to a parent folder would never end.
 #[derive(Default)]
 struct Search {
     found: Vec<PathBuf>,
@@ -30,7 +29,7 @@ struct Search {
     read: usize,
 }
 
-/// The logs that were named, or with `is_recursive` all in and below the folders.
+/// The given logs, or with `is_recursive` all logs in and below the folders.
 pub(crate) fn found(arguments: &[PathBuf], is_recursive: bool) -> Result<Vec<PathBuf>, Failure> {
     if is_recursive {
         below(arguments)
@@ -39,7 +38,7 @@ pub(crate) fn found(arguments: &[PathBuf], is_recursive: bool) -> Result<Vec<Pat
     }
 }
 
-/// Every log that the arguments name, in order, those below a folder by name; each once.
+/// All logs in or below the arguments, in order, those below a folder sorted by name; each once.
 pub(crate) fn below(arguments: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     let mut found = Vec::new();
     for argument in arguments {
@@ -57,7 +56,7 @@ pub(crate) fn below(arguments: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     Ok(each_once(found))
 }
 
-/// Every log that the arguments name, in order, each once. A folder that is no log, but has logs below, is refused with advice.
+/// All logs among the arguments, in order, each once. A folder that is no log, but has logs below, is refused with advice.
 pub(crate) fn named(arguments: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     if let Some(folder) = arguments.iter().find(|folder| !is_log(folder)) {
         let below = search(folder)?;
@@ -78,8 +77,8 @@ pub(crate) fn named(arguments: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     Ok(each_once(arguments.to_vec()))
 }
 
-/// What each of several logs is called: its folder's name, with as many of the folders above in front as tell it from the others,
-/// such as `a/log` and `b/log`.
+/// A name for each of several logs: its folder's name, with as many parent folders as needed to distinguish it, such as `a/log`
+/// and `b/log`.
 pub(crate) fn names(logs: &[PathBuf]) -> Vec<String> {
     let paths: Vec<Vec<String>> = logs.iter().map(|log| folders_to(log)).collect();
     let end = |path: &[String], length: usize| path[path.len().saturating_sub(length)..].join("/");
@@ -106,7 +105,7 @@ pub(crate) fn names(logs: &[PathBuf]) -> Vec<String> {
     names
 }
 
-/// The names on the way from the root to a log, as it was named unless that leads back up.
+/// The folder names from the root to a log, as given unless the path contains `..`.
 fn folders_to(log: &Path) -> Vec<String> {
     let mut path = absolute(log).unwrap_or_else(|_| log.to_owned());
     if path.components().any(|part| part == Component::ParentDir) {
@@ -120,7 +119,7 @@ fn folders_to(log: &Path) -> Vec<String> {
         .collect()
 }
 
-/// The logs in and below a folder, by name.
+/// The logs in and below a folder, sorted by name.
 fn search(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     is_folder(folder)?;
     let mut search = Search::default();
@@ -175,7 +174,7 @@ impl Search {
         too_many(folder, self.found.len())
     }
 
-    /// Whether a folder is a log, be it one that lacks something.
+    /// Whether a folder is a log, even an incomplete one.
     fn is_log(&mut self, folder: &Path) -> Result<bool, Failure> {
         if has_info(folder) {
             return Ok(true);
@@ -195,7 +194,7 @@ impl Search {
         entries(folder).map_err(|error| Failure::in_file(folder, format!("cannot be read: {error}")))
     }
 
-    /// Takes down that a folder's entries are read.
+    /// Counts a folder whose entries are read.
     fn count(&mut self, folder: &Path) -> Result<(), Failure> {
         self.read += 1;
         if self.read <= MOST_FOLDERS {
@@ -219,27 +218,27 @@ fn too_many(path: &Path, logs: usize) -> Result<(), Failure> {
     ))
 }
 
-/// Whether a folder has one of the files that say what is in a log.
+/// Whether a folder has one of a log's info files.
 pub(crate) fn has_info(folder: &Path) -> bool {
     ["logger_info.json", "scenario_info.json"]
         .iter()
         .any(|name| folder.join(name).is_file())
 }
 
-/// Whether a folder is a log, be it one that lacks something.
+/// Whether a folder is a log, even an incomplete one.
 fn is_log(folder: &Path) -> bool {
-    // A folder of more folders than are looked into is none.
+    // A folder with more subfolders than the limit is no log.
     has_info(folder) || Search::default().is_log(folder).unwrap_or(false)
 }
 
-/// What may hold logs in a folder.
+/// An entry of a folder that may hold logs.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
 enum Entry {
     Folder,
     Link,
 }
 
-/// The folders in a folder, and the links, each by name.
+/// The folders in a folder, and the links, sorted by name.
 fn entries(folder: &Path) -> std::io::Result<Vec<(Entry, PathBuf)>> {
     let mut below = Vec::new();
     for entry in fs::read_dir(folder)? {
@@ -255,15 +254,15 @@ fn entries(folder: &Path) -> std::io::Result<Vec<(Entry, PathBuf)>> {
     Ok(below)
 }
 
-/// The folders in a folder, links to folders not among them.
+/// The folders in a folder, without links to folders.
 fn listed(folder: &Path) -> Vec<PathBuf> {
-    // What cannot be listed here is reported when it is searched.
+    // A folder that cannot be listed is reported when it is searched.
     let entries = entries(folder).unwrap_or_default().into_iter();
     let folders = entries.filter(|(kind, _)| *kind == Entry::Folder);
     folders.map(|(_, path)| path).collect()
 }
 
-/// A message with the log in front, unless it begins with it: some name a file below the log, others only what is meant.
+/// A message prefixed with the log, unless it begins with it: some messages name a file below the log, others only the fault.
 pub(crate) fn placed(log: &Path, message: &str) -> String {
     let log = log.shown().to_string();
     if message.starts_with(&log) {
@@ -278,7 +277,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn logs_of_one_name_are_told_apart_by_the_folders_above() {
+    fn logs_with_one_name_are_distinguished_by_parent_folders() {
         let check = |logs: &[&str], expected: &[&str]| {
             let logs: Vec<PathBuf> = logs.iter().map(PathBuf::from).collect();
             assert_eq!(names(&logs), expected, "{logs:?}");
@@ -302,7 +301,7 @@ mod tests {
     }
 
     #[test]
-    fn logs_are_found_even_where_they_lack_something() {
+    fn incomplete_logs_are_found() {
         let base = tempfile::tempdir().unwrap();
         let file = |path: &str| {
             let path = base.path().join(path);
@@ -359,7 +358,7 @@ mod tests {
     }
     #[cfg(unix)]
     #[test]
-    fn links_are_not_looked_into_and_a_link_to_a_log_is_taken() {
+    fn links_are_not_searched_but_a_link_to_a_log_is_taken() {
         use std::os::unix::fs::symlink;
         let base = tempfile::tempdir().unwrap();
         let root = base.path().join("logs");
@@ -374,14 +373,14 @@ mod tests {
         let mut search = Search::default();
         search.collect(&root, MOST_LEVELS).unwrap();
         assert_eq!(search.found, [root.join("a"), root.join("best")]);
-        // The folder itself; in `a`, which is a log, nothing is looked for.
+        // The folder itself; `a` is a log and not searched.
         assert_eq!(search.read, 2, "one look at the root for workers, one for logs");
-        // A folder that is named is looked into, also by a link.
+        // A folder given as an argument is searched, even through a link.
         assert_eq!(below(&[root.join("beside")]).unwrap(), [root.join("beside/log")]);
     }
 
     #[test]
-    fn a_search_ends_after_so_many_folders() {
+    fn search_stops_at_the_folder_limit() {
         let base = tempfile::tempdir().unwrap();
         fs::create_dir(base.path().join("a")).unwrap();
         let mut search = Search {

@@ -1,4 +1,4 @@
-//! The `driftworld` command as a program of its own. The work is in `commands/`, which the Python package calls as well.
+//! The `driftworld` program. The work is in `commands/`, which the Python package calls as well.
 
 use std::process::ExitCode;
 

@@ -1,25 +1,24 @@
-//! In which colours a map shows the things of a group: those that are seen most from above. The swatches are drawn in
-//! `map_legend.rs`.
+//! The colours of a group of things on a map: those most visible from above.
 
 use driftworld_env::{Image, Scene, top_down, top_down_scale};
 use driftworld_report::picture::Rgb;
 
 use crate::map_drawing::map_size;
 
-/// Pixels from north to south of the pictures that are counted.
+/// Height in pixels of the pictures that are counted.
 const HEIGHT: u32 = 192;
-/// Colours that are nearer to each other than this, in levels of 0 to 255, are one.
+/// Colours closer than this, in levels of 0 to 255, count as one.
 const NEAR: i32 = 48;
-/// So far, squared, light and shadow change a paint.
+/// Squared distance within which light and shadow change a paint.
 const SHADE: i32 = 96 * 96;
-/// The most colours that a swatch has.
+/// Most colours in a swatch.
 const MOST: usize = 3;
 /// Rims of doors and keys.
 const RIM: Rgb = [20, 24, 30];
 
-/// A scene of which groups of things are looked at from above, each alone.
+/// A scene whose groups of things are rendered from above, each alone.
 pub(crate) struct MapColors {
-    /// With nothing on its ground but a speck.
+    /// The scene with only a speck on its ground.
     scene: Scene,
     bare: Image,
 }
@@ -35,7 +34,7 @@ impl MapColors {
             }
             item.visible = false;
         }
-        // A map shows what stands outside the arena, too: with a speck that is as far out, all are of one scale.
+        // A map includes things outside the arena: with a speck at the same distance, all pictures have one scale.
         if let Some(mut speck) = scene.items.first().cloned() {
             speck.scale = 1e-3;
             (speck.visible, speck.position) = (true, far);
@@ -48,8 +47,8 @@ impl MapColors {
         }
     }
 
-    /// The colours of these items, what most is seen of first: one where they look alike, at most three. None where nothing of them
-    /// can be seen.
+    /// The colours of these items, the most visible first: one if they look alike, at most three. Empty if nothing of them is
+    /// visible.
     pub(crate) fn of_group(&self, members: &[usize]) -> Vec<Rgb> {
         let mut groups: Vec<(Rgb, usize)> = Vec::new();
         for (color, pixels) in self.of_members(members) {
@@ -62,8 +61,8 @@ impl MapColors {
         groups.into_iter().take(MOST).map(|(color, _)| color).collect()
     }
 
-    /// The colour of each of these items, as far as it is seen: the median of the pixels that are nearer to it than to the others,
-    /// with their number.
+    /// The visible colour of each of these items: the median of the pixels that are nearer to it than to the others, with their
+    /// number.
     fn of_members(&self, members: &[usize]) -> Vec<(Rgb, usize)> {
         let mut scene = self.scene.clone();
         for index in members {
@@ -92,7 +91,7 @@ impl MapColors {
         }
         let with_color = |(index, pixels): (&usize, &Vec<Rgb>)| {
             let shaded = median(pixels)?;
-            // Paint is shown as it is, if it is what one sees: not so a trunk's below leaves.
+            // The paint's own colour, if it is what is seen: unlike a trunk below leaves.
             let paint = scene.items[*index]
                 .color
                 .map(|paint| paint.map(|share| (share * 255.0) as u8));
@@ -103,7 +102,7 @@ impl MapColors {
     }
 }
 
-/// Places in a picture, by the square cells that they lie in.
+/// Places in a picture, indexed by square cells.
 struct Nearest<'a> {
     places: &'a [[f32; 2]],
     columns: usize,
@@ -111,10 +110,10 @@ struct Nearest<'a> {
 }
 
 impl<'a> Nearest<'a> {
-    /// Pixels along a cell.
+    /// Pixels per cell side.
     const CELL: usize = 4;
 
-    /// Places beyond the picture are in the cell at its rim that is nearest to them.
+    /// Places outside the picture go to the nearest cell at its edge.
     fn of(places: &'a [[f32; 2]], size: [u32; 2]) -> Self {
         let [columns, rows] = size.map(|pixels| (pixels as usize).div_ceil(Self::CELL).max(1));
         let mut cells = vec![Vec::new(); columns * rows];
@@ -125,7 +124,7 @@ impl<'a> Nearest<'a> {
         Self { places, columns, cells }
     }
 
-    /// The place nearest to a point of the picture, the first of several.
+    /// The place nearest to a point of the picture, the first of equals.
     fn to(&self, at: [f32; 2]) -> Option<usize> {
         let rows = self.cells.len() / self.columns;
         let [column, row] = at.map(|pixel| pixel as usize / Self::CELL);
@@ -156,7 +155,7 @@ impl<'a> Nearest<'a> {
     }
 }
 
-/// The median of pixels in each channel: what is seen in the middle of their shades.
+/// The median of pixels in each channel: the middle of their shades.
 fn median(pixels: &[Rgb]) -> Option<Rgb> {
     let half = pixels.len() / 2;
     let channel = |channel: usize| {
@@ -167,7 +166,7 @@ fn median(pixels: &[Rgb]) -> Option<Rgb> {
     Some([channel(0)?, channel(1)?, channel(2)?])
 }
 
-/// How far colours are apart, in levels, squared.
+/// The squared distance of colours, in levels.
 fn distance(one: Rgb, other: Rgb) -> i32 {
     let channels = one.iter().zip(other);
     channels.map(|(a, b)| (i32::from(*a) - i32::from(b)).pow(2)).sum()
@@ -197,10 +196,10 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(24))]
 
-        /// Cubes of so many paints have as many colours, up to three, each the paint of some, and none of another that more have;
-        /// whatever the size of the arena.
+        /// Cubes in several paints have as many colours, up to three, each the paint of some cube, and no more frequent one is
+        /// omitted; for any size of the arena.
         #[test]
-        fn the_colors_of_a_group_are_those_that_most_of_it_have(
+        fn group_colours_are_its_most_frequent_ones(
             paints in prop::collection::vec(0_usize..5, 1..8),
             side in 20.0..80.0_f64,
         ) {
@@ -231,7 +230,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn the_nearest_of_places_is_found_as_by_looking_at_all(
+        fn nearest_place_matches_brute_force(
             places in prop::collection::vec(prop::array::uniform2(-9.0..60.0_f32), 0..40),
             at in (0_u32..50, 0_u32..37),
         ) {

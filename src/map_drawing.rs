@@ -1,5 +1,5 @@
-//! Maps that can be read: the ground from above with a scale, north, where the agent starts, what pays and what costs,
-//! how far triggers reach and where things move. How the ground is drawn is `env`'s; the legend is in `map_legend.rs`.
+//! Annotated maps: the ground from above with a scale, north, the agent's start, positive and negative rewards, trigger ranges
+//! and paths.
 
 #![expect(clippy::disallowed_methods, reason = "where lines and words stand on a map")]
 
@@ -11,31 +11,31 @@ use crate::map_scale::{Bar, CORNERS, Places, freest, north, north_size};
 
 pub(crate) const INK: Rgb = [20, 24, 30];
 pub(crate) const WHITE: Rgb = [255, 255, 255];
-/// How far triggers reach.
+/// Colour of trigger ranges.
 pub(crate) const RING: Rgb = [255, 214, 0];
-/// Ways that things take.
+/// Colour of paths of objects.
 pub(crate) const TRAIL: Rgb = [255, 120, 200];
 const PAYS: Rgb = [0, 110, 50];
 const COSTS: Rgb = [190, 0, 20];
-/// With more objects that pay or cost than this, none has a sign of its own.
+/// With more rewarding objects than this, none has a sign.
 const MOST_SIGNS: usize = 60;
-/// On a smaller map signs would hide what they stand beside.
+/// On a smaller map, signs would hide the things beside them.
 const LEAST_SIGNED: u32 = 100;
 /// A smaller map without a legend has no room for a scale.
 const LEAST_SCALED: u32 = 80;
-/// A map is at most so many times as wide as high, and as high as wide.
+/// Largest aspect ratio of a map.
 const MOST_OBLONG: f32 = 2.0;
 
-/// What a map shows beside what stands in its world.
+/// Movements to show on a map.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Moves {
-    /// Where the agent is, and its heading in degrees.
+    /// The agent's place, and its heading in degrees.
     pub(crate) agent: ([f32; 2], f32),
-    /// The way that the agent took.
+    /// The path that the agent took.
     pub(crate) way: Vec<[f32; 2]>,
-    /// The ways of objects that moved.
+    /// The paths of objects that moved.
     pub(crate) trails: Vec<Vec<[f32; 2]>>,
-    /// For how many seconds they did.
+    /// Duration of the movements in seconds.
     pub(crate) seconds: f64,
 }
 
@@ -50,7 +50,7 @@ impl Moves {
     }
 }
 
-/// The map alone, a square, with scale and north in the corners where they cover least.
+/// A square map without a legend, with scale and north in the corners where they cover least.
 pub(crate) fn map(world: &World, scene: &Scene, moves: &Moves, size: u32) -> Drawing {
     let mut map = annotated(world, scene, moves, ground(scene, [size, size]));
     if size < LEAST_SCALED {
@@ -58,7 +58,7 @@ pub(crate) fn map(world: &World, scene: &Scene, moves: &Moves, size: u32) -> Dra
     }
     let places = Places::of(scene, [size, size]);
     let visible = scene.items.iter().filter(|item| item.visible);
-    // The agent's place counts for more than anything else.
+    // The agent's place has the highest priority.
     let mut marks = vec![(places.pixel(moves.agent.0), 1_000.0)];
     marks.extend(visible.map(|item| (places.pixel(item.position), 1.0)));
     marks.extend(places.pixels(&moves.way).into_iter().map(|place| (place, 0.01)));
@@ -72,14 +72,14 @@ pub(crate) fn map(world: &World, scene: &Scene, moves: &Moves, size: u32) -> Dra
     map
 }
 
-/// Pixels across and down of a map that is so high: as oblong as the arena, within limits.
+/// Width and height in pixels of a map with this height: the arena's aspect ratio, within limits.
 pub(crate) fn map_size(scene: &Scene, height: u32) -> [u32; 2] {
     let [wide, deep] = scene.arena_size();
     let aspect = (wide / deep.max(1e-3)).clamp(1.0 / MOST_OBLONG, MOST_OBLONG);
     [((height as f32 * aspect).round() as u32).max(1), height]
 }
 
-/// The ground from above with what stands on it, in neutral light, with smooth edges where that is allowed.
+/// The ground from above with everything on it, in neutral light, with smooth edges if allowed.
 pub(crate) fn ground(scene: &Scene, [width, height]: [u32; 2]) -> Picture {
     let twice = if width.max(height) <= 2048 { 2 } else { 1 };
     let image = top_down(&scene.clone().in_neutral_light(), width * twice, height * twice, None);
@@ -87,7 +87,7 @@ pub(crate) fn ground(scene: &Scene, [width, height]: [u32; 2]) -> Picture {
     if twice == 2 { picture.halved() } else { picture }
 }
 
-/// Whether the agent gets or loses something by an object.
+/// The reward or loss that the agent can get from an object.
 pub(crate) fn pay(object: &Object) -> f64 {
     if object.reward_stimulus.is_empty() && object.reward_once_stimulus.is_empty() {
         0.0
@@ -96,7 +96,8 @@ pub(crate) fn pay(object: &Object) -> f64 {
     }
 }
 
-/// How far from an object the agent sets it off, in metres on the ground; none without a stimulus that works at a distance.
+/// The distance, in metres on the ground, at which the agent triggers an object; `None` without a stimulus that works at a
+/// distance.
 pub(crate) fn trigger_radius(world: &World, scene: &Scene, index: usize) -> Option<f32> {
     let object = &world.objects[index];
     let effects = [
@@ -110,14 +111,14 @@ pub(crate) fn trigger_radius(world: &World, scene: &Scene, index: usize) -> Opti
     if reach <= 0.0 || !stimuli.any(|stimulus| *stimulus == Stimulus::AgentInRange) {
         return None;
     }
-    // Range is measured from middle to middle, at half of each one's height.
+    // Range is measured between centres, at half of each one's height.
     let item = scene.items.get(index)?;
     let rise = (item.body.height * item.scale - world.agent_params.agent_height as f32) / 2.0;
     let square = reach * reach - rise * rise;
     (square > 0.0).then(|| square.sqrt())
 }
 
-/// The ground with what only a map shows: rings, ways, signs, and the agent.
+/// The ground with annotations: rings, paths, signs, and the agent.
 pub(crate) fn annotated(world: &World, scene: &Scene, moves: &Moves, ground: Picture) -> Drawing {
     let size = ground.width.min(ground.height);
     let places = Places::of(scene, [ground.width, ground.height]);
@@ -156,7 +157,7 @@ pub(crate) fn annotated(world: &World, scene: &Scene, moves: &Moves, ground: Pic
         let own = all
             .iter()
             .find(|(at, _)| points.first().is_some_and(|start| apart(*at, *start) < 0.5));
-        // Of a thing smaller than a pixel, the pixel that it is in stays as it is.
+        // A thing smaller than a pixel leaves its pixel unmarked.
         let rim = |radius: f32| radius.max(1.5) + 1.5 * thin;
         let points = own.map_or_else(|| points.clone(), |(_, radius)| from_rim(&points, rim(*radius)));
         map.line(points.clone(), 3.0 * thin, INK);
@@ -190,7 +191,7 @@ fn apart(one: [f32; 2], other: [f32; 2]) -> f32 {
     (one[0] - other[0]).hypot(one[1] - other[1])
 }
 
-/// A way as far as it lies outside a disc around its start, which would be hidden below it; nothing of a shorter one.
+/// The part of a path outside a disc around its start, which would hide it; empty for a shorter path.
 fn from_rim(points: &[[f32; 2]], radius: f32) -> Vec<[f32; 2]> {
     let Some(start) = points.first().copied() else {
         return Vec::new();
@@ -199,7 +200,7 @@ fn from_rim(points: &[[f32; 2]], radius: f32) -> Vec<[f32; 2]> {
         return Vec::new();
     };
     let (from, to) = (points[out.max(1) - 1], points[out]);
-    // Between them the way leaves the disc: by halves, to a fraction of a pixel.
+    // The path leaves the disc between them: bisects to a fraction of a pixel.
     let (mut low, mut high) = (0.0_f32, 1.0_f32);
     let at = |share: f32| [0, 1].map(|axis| from[axis] + share * (to[axis] - from[axis]));
     for _ in 0..12 {
@@ -215,11 +216,11 @@ fn from_rim(points: &[[f32; 2]], radius: f32) -> Vec<[f32; 2]> {
     rest
 }
 
-/// A plus or a minus beside a thing with this middle and radius, at the corner where it covers the least of all things.
+/// A plus or a minus beside a thing with this centre and radius, at the corner where it covers the least of all things.
 fn sign(map: &mut Drawing, [x, y]: [f32; 2], radius: f32, pay: f64, size: u32, things: &[([f32; 2], f32)]) {
     let (text, color) = if pay > 0.0 { ("+", PAYS) } else { ("−", COSTS) };
     let letters = (size as f32 / 17.0).clamp(9.0, 30.0);
-    // A sign and its rim reach so far from its middle.
+    // Distance from a sign's centre to its rim.
     let reach = 0.42 * letters;
     let off = 0.71 * radius + reach;
     let covers = |at: [f32; 2]| -> f32 {
@@ -228,7 +229,7 @@ fn sign(map: &mut Drawing, [x, y]: [f32; 2], radius: f32, pay: f64, size: u32, t
     };
     let mut best = [x + off, y - off];
     for corner in [[x + off, y + off], [x - off, y - off], [x - off, y + off]] {
-        // Where it makes no difference, they all stand at one side.
+        // Ties go to one side, so that signs are aligned.
         if covers(corner) + 0.5 < covers(best) {
             best = corner;
         }
@@ -237,7 +238,7 @@ fn sign(map: &mut Drawing, [x, y]: [f32; 2], radius: f32, pay: f64, size: u32, t
     map.write(words.anchored(Side::Middle, Level::Middle).rimmed(WHITE));
 }
 
-/// An arrowhead at a place, with a dark rim.
+/// An arrowhead with a dark rim.
 pub(crate) fn arrow(map: &mut Drawing, [x, y]: [f32; 2], heading_deg: f32, size: f32) {
     let heading = heading_deg.to_radians();
     let (sin, cos) = (heading.sin(), heading.cos());
@@ -259,7 +260,7 @@ pub(crate) fn arrow(map: &mut Drawing, [x, y]: [f32; 2], heading_deg: f32, size:
     map.area(corners(0.0), WHITE);
 }
 
-/// A square arena without anything but the agent, at this share of its side from the middle.
+/// A square arena with only the agent, at this share of its side from the centre.
 #[cfg(test)]
 pub(crate) fn world_of_agent(side: f64, place: [f64; 2], heading: f64) -> World {
     let mut draft = driftworld_spec::WorldDraft::default();
@@ -310,10 +311,10 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(12))]
 
-        /// The bar's black pixels, counted, are as many as its words' metres are on the ground: the arena's rims, found as
-        /// pixels too, say how many pixels a metre has.
+        /// Counts the bar's black pixels: they match its label in metres on the ground, with the scale measured from the
+        /// arena's edges.
         #[test]
-        fn the_bar_is_as_long_as_it_says(side in 6.0..250.0_f64, size in 200_u32..500) {
+        fn scale_bar_has_its_labelled_length(side in 6.0..250.0_f64, size in 200_u32..500) {
             let world = world(side, Vec::new());
             let scene = Scene::from_world(&world);
             let whole = map(&world, &scene, &Moves::none(&world), size);
@@ -328,7 +329,7 @@ mod tests {
             prop_assert!(longest <= 0.31 * size as f32);
         }
 
-        /// Scale and north stand where the agent is not, wherever it stands.
+        /// Scale and north avoid the agent, wherever it is.
         #[test]
         fn nothing_covers_the_agent(x in -0.46..0.46_f64, y in -0.46..0.46_f64, heading in 0.0..360.0_f64, size in 80_u32..300) {
             let world = world_of_agent(16.0, [x, y], heading);
@@ -344,7 +345,7 @@ mod tests {
             }
         }
 
-        /// A map is as oblong as its arena: the margins around it are equally wide, but where it would be a strip.
+        /// A map has the arena's aspect ratio with equal margins on all sides, unless it would be a strip.
         #[test]
         fn oblong_arenas_have_oblong_maps(wide in 6.0..60.0_f64, deep in 6.0..60.0_f64, height in 60_u32..200) {
             let mut draft = WorldDraft::default();
@@ -362,7 +363,7 @@ mod tests {
             }
         }
 
-        /// What pays is as well seen with its sign as without, whatever the size of the map and the number of things around it.
+        /// A rewarding object is as visible with its sign as without, for any map size and number of things around it.
         #[test]
         fn signs_hide_nothing(places in prop::collection::vec((-4_i32..=4, -4_i32..=4), 1..6), size in 48_u32..400) {
             let objects = |reward: f64| -> Vec<Object> {
@@ -382,9 +383,9 @@ mod tests {
             }
         }
 
-        /// Ways begin beside what takes them: it is as well seen as without, and so is their end.
+        /// Paths start beside their object: it is as visible as without, and so is the end.
         #[test]
-        fn ways_hide_nothing_that_takes_them(angle in 0.0..6.2_f32, far in 4.0..20.0_f32, size in 64_u32..400) {
+        fn paths_hide_none_of_their_objects(angle in 0.0..6.2_f32, far in 4.0..20.0_f32, size in 64_u32..400) {
             let world = world(60.0, vec![object("geometric", [1.0, 2.0], 0.0, 0.0)]);
             let scene = Scene::from_world(&world);
             let trail: Vec<[f32; 2]> = (0..50)
@@ -405,14 +406,14 @@ mod tests {
             prop_assert!(shown != bare);
         }
 
-        /// The ring's yellow pixels lie as far from the object as its trigger reaches on the ground.
+        /// The ring's yellow pixels are as far from the object as its trigger reaches on the ground.
         #[test]
         fn rings_have_their_radius(reach in 2.0..9.0_f64, size in 220_u32..420) {
             let world = world(24.0, vec![object("geometric", [0.0, 0.0], 1.0, reach)]);
             let picture = drawn(&world, size);
             let metre = f64::from(size) / (24.0 * 1.06);
             let middle = f64::from(size) / 2.0;
-            // A cube is as high as the agent: what is left is the reach itself.
+            // A cube is as high as the agent, so only the range itself matters.
             let scene = Scene::from_world(&world);
             let height = f64::from(scene.items[0].body.height);
             let rise = (height - 1.0) / 2.0;
@@ -429,9 +430,9 @@ mod tests {
         }
     }
 
-    /// As many signs as there are things that pay and cost.
+    /// As many signs as there are objects with rewards.
     #[test]
-    fn what_pays_has_a_plus_and_what_costs_a_minus() {
+    fn positive_rewards_have_a_plus_and_negative_ones_a_minus() {
         let objects = vec![
             object("geometric", [0.0, 0.0], 100.0, 0.0),
             object("geometric", [4.0, 0.0], -1.0, 0.0),
@@ -445,7 +446,7 @@ mod tests {
 
     /// A dark world's map is as bright as a light one's.
     #[test]
-    fn dark_worlds_can_be_read() {
+    fn dark_worlds_have_readable_maps() {
         let bright = |light: f64| {
             let mut draft = WorldDraft::default();
             draft.environment_params.light_intensity = light;

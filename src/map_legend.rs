@@ -1,5 +1,5 @@
-//! The legend beside a map: what is on it, by class, colour and pay, what zones do, how far triggers reach and whose ways are
-//! drawn, with scale and north at its foot.
+//! The legend beside a map: objects by class, colour and reward, effects of zones, trigger ranges and paths, with scale and
+//! north at its foot.
 
 use driftworld_env::Scene;
 use driftworld_report::picture::{Drawing, Level, Picture, Rgb, Side, TextLine, ring, text_width};
@@ -10,13 +10,13 @@ use crate::map_colors::MapColors;
 use crate::map_drawing::{INK, Moves, RING, TRAIL, WHITE, annotated, arrow, ground, map_size, pay, trigger_radius};
 use crate::map_scale::{Bar, Places, north, north_size};
 
-/// Letters of the legend are this large at most, in pixels.
+/// Largest font size of the legend, in pixels.
 const LEGEND: f32 = 12.0;
 /// The longest bar beside a map, in pixels.
 const LONGEST_BAR: f32 = 140.0;
 
-/// A map of so many pixels from north to south, as wide as its arena is, and to its right the legend with scale and north, where they
-/// cover nothing.
+/// A map of this height, with the arena's aspect ratio, and to its right the legend with scale and north, where they cover
+/// nothing.
 pub(crate) fn map_with_legend(world: &World, scene: &Scene, moves: &Moves, size: u32) -> Drawing {
     let ground = ground(scene, map_size(scene, size));
     let places = Places::of(scene, [ground.width, ground.height]);
@@ -56,7 +56,7 @@ enum Mark {
     Way,
 }
 
-/// What is on a map: the objects by class, colour and pay, then walls, zones, reach and ways.
+/// The entries of a map's legend: objects by class, colour and reward, then walls, zones, ranges and paths.
 fn entries(world: &World, scene: &Scene, moves: &Moves, ground: &Picture) -> Vec<Entry> {
     let places = Places::of(scene, [ground.width, ground.height]);
     let mut entries = vec![Entry {
@@ -114,7 +114,7 @@ fn entries(world: &World, scene: &Scene, moves: &Moves, ground: &Picture) -> Vec
     entries
 }
 
-/// The objects that can be seen, grouped by name and pay, what pays or costs most first.
+/// The visible objects, grouped by name and reward, largest absolute reward first.
 fn object_entries(world: &World, scene: &Scene, ground: &Picture, places: &Places) -> Vec<Entry> {
     let mut groups: Vec<(String, f64, Vec<usize>)> = Vec::new();
     let objects = world.objects.iter().zip(&scene.items).enumerate();
@@ -143,7 +143,7 @@ fn object_entries(world: &World, scene: &Scene, ground: &Picture, places: &Place
     groups.into_iter().map(entry).collect()
 }
 
-/// What a zone does, in words.
+/// The effects of a zone as text.
 fn effects(zone: &Zone) -> Vec<String> {
     let mut words = Vec::new();
     if zone.reward_per_second != 0.0 {
@@ -166,7 +166,7 @@ fn effects(zone: &Zone) -> Vec<String> {
     words
 }
 
-/// The name of a group of objects: what is only a shape is better named by what it is for.
+/// The name of a group of objects: a plain shape is better named by its purpose.
 pub(crate) fn named(object: &Object) -> String {
     let class = object.class.to_lowercase();
     let shape = match (class.as_str(), object.model.0.trim().to_lowercase().as_str()) {
@@ -190,14 +190,14 @@ fn at(picture: &Picture, [x, y]: [f32; 2]) -> Rgb {
     [picture.rgb[start], picture.rgb[start + 1], picture.rgb[start + 2]]
 }
 
-/// The legend in a column of this height, with scale and north at its foot; what has no room is counted in the last line, the agent
-/// first. Without room for two lines there are no words.
+/// The legend in a column of this height, with scale and north at its foot; entries without room are counted in the last line,
+/// the agent's first. If there is no room for two lines, there is no text.
 fn legend(entries: &[Entry], letters: f32, height: u32, places: &Places) -> Drawing {
     let line = (letters * 1.45).round();
     let bar = Bar::of(places, (0.3 * places.size[0]).min(LONGEST_BAR));
     let arrow_side = north_size((height as f32).min(280.0));
     let foot = bar.size()[1].max(arrow_side) + 2.0;
-    // In a small legend there is no room for the note.
+    // A small legend has no room for the note.
     let note = if height as f32 > 9.0 * line + foot {
         "in even light"
     } else {
@@ -210,11 +210,11 @@ fn legend(entries: &[Entry], letters: f32, height: u32, places: &Places) -> Draw
         .map(|entry| (Some(entry.mark.clone()), entry.name.clone()))
         .collect();
     if shown.len() > rooms {
-        // The agent is known without words.
+        // The agent needs no explanation.
         shown.rotate_left(1);
         let left_out = shown.len() - rooms + 1;
         shown.truncate(rooms - 1);
-        // Below nothing it would say nothing.
+        // Without entries above, it would be meaningless.
         if !shown.is_empty() {
             shown.push((None, format!("and {left_out} more")));
         }
@@ -297,9 +297,9 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(12))]
 
-        /// The legend covers nothing: beside it, the map has no scale and no north either.
+        /// The legend covers nothing: the map beside it has no scale and no north.
         #[test]
-        fn the_map_beside_a_legend_is_bare(x in -0.46..0.46_f64, y in -0.46..0.46_f64, heading in 0.0..360.0_f64, size in 80_u32..300) {
+        fn map_beside_a_legend_is_bare(x in -0.46..0.46_f64, y in -0.46..0.46_f64, heading in 0.0..360.0_f64, size in 80_u32..300) {
             let side = 16.0;
             let world = world_of_agent(side, [x, y], heading);
             let scene = Scene::from_world(&world);
@@ -316,7 +316,7 @@ mod tests {
     }
 
     #[test]
-    fn the_legend_lists_what_is_there_and_nothing_else() {
+    fn legend_lists_exactly_what_is_on_the_map() {
         let mut gone = object("tent", [3.0, 3.0], 0.0);
         gone.color = Some(Color([1.0, 0.0, 0.0]));
         let objects = vec![
@@ -347,9 +347,9 @@ mod tests {
         assert!(!has(&scene, "tent") && !names(&scene).iter().any(|name| name.contains("rock")));
     }
 
-    /// What a zone does is in the legend, and what ends an episode as a failure.
+    /// The legend contains the effects of zones, including an episode's end as a failure.
     #[test]
-    fn the_legend_says_what_zones_do() {
+    fn legend_describes_the_effects_of_zones() {
         let zone = |name: &str, change: &dyn Fn(&mut Zone)| {
             let mut zone = Zone::disc([0.0, 0.0], 3.0);
             zone.name = Some(name.to_owned());

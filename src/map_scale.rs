@@ -1,5 +1,5 @@
-//! Scale and north of a map: from metres to pixels, a bar with its length, an arrow, and the corners where they cover least. What
-//! else is on a map is in `map_drawing.rs`.
+//! Scale and north of a map: converts metres to pixels, and draws a labelled bar and an arrow in the corners where they cover
+//! least.
 
 #![expect(clippy::disallowed_methods, reason = "where lines and words stand on a map")]
 
@@ -9,7 +9,7 @@ use driftworld_report::picture::{Drawing, Level, Rgb, Side, TextLine, text_width
 const INK: Rgb = [20, 24, 30];
 const WHITE: Rgb = [255, 255, 255];
 
-/// From metres to pixels of a map.
+/// Converts metres to pixels of a map.
 pub(crate) struct Places {
     pub(crate) size: [f32; 2],
     pub(crate) scale: f32,
@@ -33,10 +33,10 @@ impl Places {
     }
 }
 
-/// Corners of a map by whether they are on the right and below, the usual one of the bar first, that of north last.
+/// Corners of a map as (right, bottom), the bar's default first, north's last.
 pub(crate) const CORNERS: [[bool; 2]; 4] = [[false, true], [true, true], [false, false], [true, false]];
 
-/// Where a box of this size covers least, which takes that corner away.
+/// The corner where a box of this size covers least; removes it from the list.
 pub(crate) fn freest(
     corners: &mut Vec<[bool; 2]>,
     size: [f32; 2],
@@ -76,7 +76,7 @@ pub(crate) fn freest(
     place(corners.remove(best))
 }
 
-/// The length in metres of a bar: a round one of at most so many metres.
+/// The length of a bar in metres: a round number, at most `most`.
 fn bar_metres(most: f32) -> f32 {
     let power = 10_f32.powf(most.log10().floor());
     let steps = [5.0, 2.0, 1.0].into_iter().map(|step| step * power);
@@ -92,7 +92,7 @@ pub(crate) struct Bar {
 }
 
 impl Bar {
-    /// The bar of a map, at most so many pixels long.
+    /// The bar of a map, at most this long in pixels.
     pub(crate) fn of(places: &Places, most: f32) -> Self {
         let metres = bar_metres(most / places.scale);
         let size = places.size[1];
@@ -104,13 +104,13 @@ impl Bar {
         }
     }
 
-    /// Pixels that it takes with its words and a rim.
+    /// Its size in pixels, with label and rim.
     pub(crate) fn size(&self) -> [f32; 2] {
         let wide = self.long.max(text_width(&self.label, self.letters)) + 8.0;
         [wide, (self.letters * 1.1 + self.thick + 7.0).ceil()]
     }
 
-    /// Draws it with its top left corner at a place; on a map, on a light ground.
+    /// Draws it with its top left corner at a place; on a map, with a light background.
     pub(crate) fn draw(&self, on: &mut Drawing, [left, top]: [f32; 2], on_a_map: bool) {
         let [wide, high] = self.size();
         if on_a_map {
@@ -127,7 +127,7 @@ impl Bar {
     }
 }
 
-/// Pixels along each side that the arrow to the north takes on a map of this height.
+/// Side in pixels of the north arrow on a map of this height.
 pub(crate) fn north_size(size: f32) -> f32 {
     (1.72 * (size / 14.0).clamp(12.0, 44.0)).round()
 }

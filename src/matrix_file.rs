@@ -1,4 +1,4 @@
-//! Distance matrices as files: CSV or JSON, by the name's ending. The formats themselves are `similarity`'s.
+//! Distance matrices as files: CSV or JSON, by file extension.
 
 use std::path::Path;
 
@@ -8,10 +8,10 @@ use driftworld_text::{Cells, ShownPath, WordKind, removed};
 
 use crate::{Failure, argument, documents, output_file};
 
-/// The largest file of a matrix that is read, in bytes. It and the matrix are in memory together.
+/// Largest matrix file that is read, in bytes. The file and the matrix are in memory together.
 pub const MAX_MATRIX_BYTES: u64 = 400 << 20;
 
-/// What a file's name says it holds.
+/// The format given by a file's name.
 enum Format {
     Csv,
     Json,
@@ -31,12 +31,12 @@ fn format(option: &str, path: &Path) -> Result<Format, Failure> {
     }
 }
 
-/// Refuses a name that says no format, before anything is measured.
+/// Refuses a name without a known format, before anything is measured.
 pub(crate) fn expect_name(option: &str, path: &Path) -> Result<(), Failure> {
     format(option, path).map(|_| ())
 }
 
-/// Writes a matrix. CSV guards labels that a spreadsheet would take for formulas, unless `cells` are raw.
+/// Writes a matrix. CSV escapes labels that a spreadsheet would take for formulas, unless `cells` are raw.
 pub(crate) fn write(option: &str, path: &Path, matrix: &DistanceMatrix, cells: Cells) -> Result<(), Failure> {
     match format(option, path)? {
         Format::Csv => output_file::write(path, matrix.to_csv_with(cells).as_bytes()),

@@ -1,4 +1,4 @@
-//! The kinds of images there are, and how each is kept in a PNG file. What a pixel means is decided in `env`.
+//! The kinds of images, and their PNG formats.
 
 use crate::env::{Frame, Target, category_color, depth_to_gray};
 use crate::spec::Modality;
@@ -6,10 +6,10 @@ use crate::spec::Modality;
 use crate::report::ReportError;
 use crate::report::picture::{Gray, Picture};
 
-/// The greatest number of a 16-bit image.
+/// The largest value of a 16-bit image.
 const FULL: f32 = 65_535.0;
 
-/// All kinds of images, in the order of their numbers.
+/// All kinds of images, in numerical order.
 pub(crate) const ALL: [Modality; 5] = [
     Modality::Rgb,
     Modality::Depth,
@@ -26,7 +26,7 @@ pub(crate) fn name(kind: Modality) -> &'static str {
     NAMES[kind as usize]
 }
 
-/// A frame as colours, three bytes a pixel; the numbers of classes and instances have the colours of `color_of`.
+/// A frame as colours, three bytes per pixel; classes and instances are coloured by `color_of`.
 pub(crate) fn to_rgb(kind: Modality, frame: &Frame, color_of: fn(u32) -> [u8; 3]) -> Vec<u8> {
     match kind {
         Modality::Rgb => frame.rgb.clone(),
@@ -37,12 +37,12 @@ pub(crate) fn to_rgb(kind: Modality, frame: &Frame, color_of: fn(u32) -> [u8; 3]
     }
 }
 
-/// Distances as greys, three bytes for each.
+/// Distances as greys, three bytes each.
 pub(crate) fn gray_rgb(metres: &[f32]) -> Vec<u8> {
     depth_to_gray(metres).into_iter().flat_map(|gray| [gray; 3]).collect()
 }
 
-/// A colour for a number, unlike those of its neighbours; black for 0.
+/// A colour for a number, different from its neighbours'; black for 0.
 pub(crate) fn number_color(number: u32) -> [u8; 3] {
     [97_u32, 53, 151].map(|step| {
         let share = number.wrapping_mul(step) % 192;
@@ -50,8 +50,8 @@ pub(crate) fn number_color(number: u32) -> [u8; 3] {
     })
 }
 
-/// A PNG file's bytes: colours and reward categories as RGB; depths (in levels of so many metres, at most 65535 of them),
-/// classes and instances as 16-bit numbers. Numbers beyond are cut.
+/// A PNG file's bytes: colours and reward categories as RGB; depths (in levels of `metres_per_level`, at most 65535 of them),
+/// classes and instances as 16-bit numbers. Larger numbers are clamped.
 pub(crate) fn to_png(kind: Modality, frame: &Frame, metres_per_level: f32) -> Result<Vec<u8>, ReportError> {
     let (width, height) = (frame.width, frame.height);
     let picture = |rgb: Vec<u8>| Picture { width, height, rgb }.to_png();
@@ -68,7 +68,7 @@ pub(crate) fn to_png(kind: Modality, frame: &Frame, metres_per_level: f32) -> Re
     }
 }
 
-/// The images of a frame that are wanted.
+/// The requested images of a frame.
 pub(crate) fn target<'a>(frame: &'a mut Frame, kinds: &[Modality], supersampling: u32) -> Target<'a> {
     let mut target = Target {
         supersampling,
@@ -83,7 +83,7 @@ pub(crate) fn target<'a>(frame: &'a mut Frame, kinds: &[Modality], supersampling
     target
 }
 
-/// The finest of millimetres, centimetres and decimetres by which twice a distance can be told.
+/// The finest of millimetres, centimetres and decimetres that can represent twice a distance.
 pub(crate) fn metres_per_level(distance: f32) -> f32 {
     let fine = [0.001, 0.01].into_iter().find(|level| 2.0 * distance < level * FULL);
     fine.unwrap_or(0.1)
@@ -94,7 +94,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn depths_are_as_fine_as_the_distance_allows() {
+    fn depth_resolution_follows_the_distance() {
         assert_eq!([2.0, 40.0, 900.0].map(metres_per_level), [0.001, 0.01, 0.1]);
     }
 }

@@ -1,4 +1,4 @@
-//! Numbers and words as several options of the command line take them. What they mean stands with each.
+//! Parsers for numbers and words shared by several command line options.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use driftworld_spec::sound_name;
@@ -24,7 +24,7 @@ pub(crate) fn share(text: &str) -> Result<f64, String> {
     within(text, |share| 0.0 < share && share < 1.0, "a share above 0 and below 1")
 }
 
-/// A distance, or how much it may be off.
+/// A distance, or a tolerance.
 pub(crate) fn distance(text: &str) -> Result<f64, String> {
     within(
         text,
@@ -33,18 +33,18 @@ pub(crate) fn distance(text: &str) -> Result<f64, String> {
     )
 }
 
-/// A name that a task, a variant or a scenario can have.
+/// A valid name for a task, a variant or a scenario.
 pub(crate) fn name(text: &str) -> Result<String, String> {
     sound_name(text).map(|()| text.to_owned())
 }
 
-/// A number for which `is_sound` holds.
+/// A number that satisfies `is_sound`.
 pub(crate) fn within(text: &str, is_sound: impl FnOnce(f64) -> bool, expected: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|number| is_sound(*number));
     number.ok_or_else(|| format!("expected {expected}"))
 }
 
-/// Words that stand for the same in documents, each with what help says of it behind a colon, if anything.
+/// Words shared with documents, each with an optional help text after a colon.
 pub(crate) fn documented<T>(words: &'static [&'static str]) -> impl TypedValueParser<Value = T>
 where
     T: DeserializeOwned + Clone + Send + Sync + 'static,

@@ -1,4 +1,4 @@
-//! [`OrderRequest`]: how variants are ordered, with its ends by their names. Orders are `similarity`'s.
+//! [`OrderRequest`]: how variants are ordered, with the ends given by name.
 
 use driftworld_similarity::{DistanceMatrix, Method, OrderOptions, Ordering, SimilarityError, order};
 use driftworld_spec::did_you_mean;
@@ -6,24 +6,24 @@ use driftworld_text::first_of;
 
 use crate::{Failure, argument, tasks};
 
-/// As many labels as a message can hold.
+/// Most labels in a message.
 const MOST_LISTED: usize = 20;
 
 /// How an order is found.
 #[derive(Clone, Debug, Default)]
 pub struct OrderRequest {
-    /// The method; exact where possible if there is none, else two-opt.
+    /// The method; by default exact if possible, else two-opt.
     pub method: Option<Method>,
-    /// The item that comes first; whichever is best where there is none.
+    /// The first item; by default the best one.
     pub start: Option<String>,
-    /// The item that comes last; whichever is best where there is none.
+    /// The last item; by default the best one.
     pub end: Option<String>,
-    /// The step that the method target-step wants between neighbours.
+    /// The target length of steps for the method target-step.
     pub target_step: Option<f64>,
 }
 
 impl OrderRequest {
-    /// The order of a matrix's items, and the method that found it. `seed` is what the method random draws from.
+    /// The order of a matrix's items, and the method that found it. `seed` is the random method's seed.
     pub(crate) fn order(&self, matrix: &DistanceMatrix, seed: u64) -> Result<(Method, Ordering), Failure> {
         let method = self.method.unwrap_or_else(|| Method::default_for(matrix.len()));
         if self.target_step.is_some() && method != Method::TargetStep {
@@ -44,7 +44,7 @@ impl OrderRequest {
         Ok((method, ordering))
     }
 
-    /// The same, from whichever of some items makes the shortest path, where neither end is asked for.
+    /// Like [`Self::order`], starting at whichever of some items gives the shortest path, if neither end is given.
     pub(crate) fn order_from(
         &self,
         matrix: &DistanceMatrix,
@@ -57,7 +57,7 @@ impl OrderRequest {
         }
         let last = self.options(matrix, seed)?.last;
         let mut best: Option<(Method, Ordering)> = None;
-        // What was asked for as the last cannot be the first, too.
+        // The requested last item cannot be the first, too.
         for first in firsts.iter().filter(|first| Some(**first) != last) {
             let from = Self {
                 start: Some(matrix.labels()[*first].clone()),
@@ -71,7 +71,7 @@ impl OrderRequest {
         best.map_or_else(|| self.order(matrix, seed), Ok)
     }
 
-    /// The options that hold for every method.
+    /// The options shared by all methods.
     pub(crate) fn options(&self, matrix: &DistanceMatrix, seed: u64) -> Result<OrderOptions, Failure> {
         let position = |option: &str, name: &String| {
             position_of(matrix.labels(), name).map_err(|found| {
@@ -94,13 +94,13 @@ impl OrderRequest {
     }
 }
 
-/// The place of a label, by itself or by the name of its variant alone where that is one label's only; else what else is to be
-/// said of it.
+/// The index of a label, by the full label or by the variant's name alone if that is unique; otherwise a remark for the error
+/// message.
 pub(crate) fn position_of<S: AsRef<str>>(labels: &[S], name: &str) -> Result<usize, &'static str> {
     if let Some(place) = labels.iter().position(|label| label.as_ref() == name) {
         return Ok(place);
     }
-    // A task that was called by its path may be called by its name, too.
+    // A task given by its path may be called by its name, too.
     if name.contains('#') {
         let is_it = |label: &S| bare(label.as_ref()) == bare(name) && tasks::label_of(label.as_ref()) == name;
         return labels.iter().position(is_it).ok_or("");

@@ -1,4 +1,4 @@
-//! Files that are written whole or not at all, and never over a log.
+//! Writes files whole or not at all, and never over a log.
 
 use std::io::Write;
 use std::path::Path;
@@ -9,8 +9,8 @@ use driftworld_text::{ShownPath, WordKind, removed};
 
 use crate::{Failure, overwrite};
 
-/// Begins a file that is there whole or not at all; a device or a pipe is written straight. None that a log is made of
-/// is written over.
+/// Starts a file that appears whole or not at all; a device or a pipe is written directly. Refuses to overwrite the files of a
+/// log.
 pub(crate) fn create(path: &Path) -> Result<AtomicFile, Failure> {
     if path == Path::new("-") {
         let advice = "expected the path of a file; give /dev/stdout for standard output";
@@ -20,16 +20,16 @@ pub(crate) fn create(path: &Path) -> Result<AtomicFile, Failure> {
     AtomicFile::create(path).map_err(|error| unwritable(path, &error))
 }
 
-/// Writes a file as [`create`] begins it.
+/// Writes a file like [`create`].
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     let mut file = create(path)?;
     let written = file.write_all(bytes).and_then(|()| file.commit());
     written.map_err(|error| unwritable(path, &error))
 }
 
-/// Writes a picture: as SVG where the name ends in `.svg`, else as PNG.
+/// Writes a picture: as SVG if the name ends in `.svg`, else as PNG.
 ///
-/// A name that ends like another kind of file is refused: it would lie.
+/// Refuses a name with the extension of another format.
 pub(crate) fn write_picture(path: &Path, picture: &Drawing) -> Result<(), Failure> {
     const OTHERS: [&str; 14] = [
         "jpg", "jpeg", "gif", "bmp", "webp", "tif", "tiff", "pdf", "csv", "html", "json", "jsonl", "parquet", "txt",
@@ -47,7 +47,7 @@ pub(crate) fn write_picture(path: &Path, picture: &Drawing) -> Result<(), Failur
     write(path, &picture.to_png()?)
 }
 
-/// Refuses the name of a file whose ending names a format that was removed.
+/// Refuses a file extension whose format was removed.
 pub(crate) fn refuse_removed_ending(path: &Path) -> Result<(), Failure> {
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
     removed(WordKind::Format, ending).map_or(Ok(()), |message| {
@@ -55,7 +55,7 @@ pub(crate) fn refuse_removed_ending(path: &Path) -> Result<(), Failure> {
     })
 }
 
-/// Why a file cannot be written.
+/// The failure of writing a file.
 pub(crate) fn unwritable(path: &Path, error: &dyn std::fmt::Display) -> Failure {
     Failure::in_file(path, format!("cannot be written: {error}"))
 }

@@ -1,5 +1,4 @@
-//! What a command does not write over: files of a log, and what it reads itself. A slip of the keyboard is refused, and
-//! costs nothing.
+//! Refuses to overwrite files of a log, and the command's own inputs: a typing error must not destroy data.
 
 use std::path::{Path, PathBuf};
 
@@ -9,7 +8,7 @@ use driftworld_text::ShownPath;
 use crate::contents::Contents;
 use crate::{Failure, documents, tasks};
 
-/// The files of which a log is made.
+/// The files of a log.
 const LOG_FILES: [&str; 4] = [
     "data-log.tsv",
     "logger_info.json",
@@ -17,12 +16,12 @@ const LOG_FILES: [&str; 4] = [
     RECORDINGS_FILE,
 ];
 
-/// Why a file that is there already is not written over; `advice` says what to do instead.
+/// The failure for an existing file; `advice` suggests an alternative.
 pub(crate) fn exists(path: &Path, advice: &str) -> Failure {
     Failure::in_file(path, format!("found a file, expected none; {advice}"))
 }
 
-/// Refuses a file that a log is made of, and one that would be read as such a file if it were there.
+/// Refuses a file of a log, and one that would be read as such a file if it existed.
 pub(crate) fn refuse_log_files(target: &Path) -> Result<(), Failure> {
     let name = target.file_name().unwrap_or_default();
     if !LOG_FILES.iter().any(|log_file| name == *log_file) {
@@ -43,7 +42,7 @@ pub(crate) fn refuse_log_files(target: &Path) -> Result<(), Failure> {
 
 /// Refuses one file for two outputs: `targets` are options with the files that they name.
 pub(crate) fn refuse_same(targets: &[(&str, PathBuf)]) -> Result<(), Failure> {
-    // The folder as it is, for the file may not be there yet.
+    // Resolves the folder, because the file may not exist yet.
     let place = |path: &Path| {
         let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
         whole
@@ -68,7 +67,7 @@ pub(crate) fn refuse_same(targets: &[(&str, PathBuf)]) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Refuses a file that the command reads: `names` are paths, with or without a variant behind them.
+/// Refuses a file that the command reads: `names` are paths, with or without a variant appended.
 pub(crate) fn refuse_inputs<'a>(target: &Path, names: impl IntoIterator<Item = &'a str>) -> Result<(), Failure> {
     let Ok(target_itself) = target.canonicalize() else {
         return Ok(());

@@ -1,5 +1,4 @@
-//! Recorded episodes by what they are named: a log with the number of an experience, or a file of recordings. What a recording holds is
-//! `env`'s, where a log keeps it `curriculum`'s.
+//! Finds recorded episodes: in a log by the number of an experience, or in a file of recordings.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -12,21 +11,21 @@ use driftworld_text::{ShownPath, printable};
 use crate::Failure;
 use crate::contents::{Contents, OtherContents};
 
-/// Where recorded episodes are.
+/// A source of recorded episodes.
 pub struct RecordedEpisodes {
     path: PathBuf,
-    /// The rows of a log by their numbers; nothing for a file of recordings.
+    /// The rows of a log by their numbers; `None` for a file of recordings.
     rows: Option<BTreeMap<u64, Vec<LoggedRow>>>,
-    /// Whether the log is one that a run of ours wrote.
+    /// Whether the log was written by one of our runs.
     is_ours: bool,
-    /// The file that was read last, and whose block it is of.
+    /// The last file read, with its block.
     file: Option<(Block, Option<RecordingsFile>)>,
 }
 
 /// A worker and its block.
 type Block = (String, u64, BlockType);
 
-/// What a log says of an episode.
+/// An episode's row in a log.
 #[derive(Clone, Debug, PartialEq)]
 struct LoggedRow {
     block: Block,
@@ -35,10 +34,10 @@ struct LoggedRow {
 }
 
 impl RecordedEpisodes {
-    /// The episodes of a log's folder, or of a file of recordings.
+    /// Opens a log's folder, or a file of recordings.
     ///
     /// # Errors
-    /// If there is neither, or it cannot be read.
+    /// If it is neither, or cannot be read.
     pub fn open(path: &Path) -> Result<Self, Failure> {
         let mut this = Self {
             path: path.to_owned(),
@@ -56,7 +55,7 @@ impl RecordedEpisodes {
             return Err(other.into());
         }
         let log = read_log_with_texts(path)?;
-        // What others log under these names may be something else, such as a reward that was scaled.
+        // In other programs' logs, columns of these names may have another meaning, such as a scaled reward.
         this.is_ours = log.scenario_info.extra.contains_key("made_from");
         let rows: &mut BTreeMap<u64, Vec<LoggedRow>> = this.rows.get_or_insert_default();
         for row in log.rows.iter() {
@@ -72,8 +71,8 @@ impl RecordedEpisodes {
         Ok(this)
     }
 
-    /// The episodes that there are rows of, or that are in the file: numbers, and in a log whose they are. Block by block, so that each
-    /// file is read once.
+    /// The episodes with rows, or those in the file: numbers, and in a log the worker. Block by block, so that each file is
+    /// read once.
     pub fn all(&self) -> Vec<(u64, Option<String>)> {
         let Some(rows) = &self.rows else {
             let numbers: BTreeSet<u64> = self.listed().map(|origin| origin.experience).collect();
@@ -94,8 +93,8 @@ impl RecordedEpisodes {
         file.as_ref()?.damage()
     }
 
-    /// The recording of an episode; nothing where a log has its row and it was not recorded. Where several workers have an episode of
-    /// this number, `worker` says whose.
+    /// The recording of an episode; `None` if a log has its row but did not record it. If several workers have an episode of
+    /// this number, `worker` chooses one.
     ///
     /// # Errors
     /// If there is no such episode, or its recording is damaged.
@@ -116,10 +115,10 @@ impl RecordedEpisodes {
         }
     }
 
-    /// Runs an episode once more, and compares it with its recording and, where there is one, with its row in the log.
+    /// Repeats an episode, and compares it with its recording and, if there is one, with its row in the log.
     ///
     /// # Errors
-    /// That says what differs.
+    /// The difference.
     pub fn check(&self, recording: &Recording, worker: Option<&str>, catalogue: &Catalogue) -> Result<(), Failure> {
         let mut replay = Replay::new(recording, catalogue);
         while replay.step()?.is_some() {}
@@ -127,10 +126,10 @@ impl RecordedEpisodes {
         self.check_row(recording, worker)
     }
 
-    /// Compares a recording with its row in the log, where there is one that a run of ours wrote.
+    /// Compares a recording with its row in the log, if one of our runs wrote it.
     ///
     /// # Errors
-    /// That says what differs.
+    /// The difference.
     pub fn check_row(&self, recording: &Recording, worker: Option<&str>) -> Result<(), Failure> {
         if !self.is_ours {
             return Ok(());
@@ -203,7 +202,7 @@ impl RecordedEpisodes {
         Failure::in_file(&self.path, format!("found no episode {number}, expected {there}"))
     }
 
-    /// Why an episode of a log has no recording, and what to do.
+    /// The error for an episode of a log that was not recorded, with advice.
     pub fn unrecorded(&self, number: u64) -> Failure {
         Failure::input(format!(
             "{}: found no recording of episode {number} (an {RECORDINGS_FILE} beside its rows), expected one; run with {}",

@@ -1,5 +1,4 @@
-//! What is odd about the worlds that a task draws, each once, with where it was seen first. What is odd about one world is said by
-//! `spec`.
+//! Remarks on the worlds that a task draws, each once, with its first occurrence.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -8,23 +7,23 @@ use driftworld_generator::Sampler;
 use driftworld_spec::{Legend, TaskSpec, World, did_you_mean};
 use rayon::prelude::*;
 
-/// The most worlds of a variant that are looked through.
+/// Most worlds checked per variant.
 pub(crate) const MOST_LOOKED_THROUGH: u64 = 100;
 
-/// Something that is odd in some worlds of a task.
+/// A remark on some worlds of a task.
 struct Odd {
     /// The remark without its numbers, which may differ from world to world.
     kind: String,
     pointer: String,
     text: String,
-    /// Where it was seen first: the variant, and the number of its world.
+    /// Its first occurrence: the variant, and the index of its world.
     variant: String,
     index: u64,
     worlds: u64,
     variants: BTreeSet<String>,
 }
 
-/// What is odd about the first worlds of each variant, in sentences. Worlds that cannot be drawn say nothing.
+/// Remarks on the first worlds of each variant, as sentences. Worlds that cannot be drawn are skipped.
 pub(crate) fn of_task(task: &Arc<TaskSpec>, seed: u64, worlds: u64) -> Vec<String> {
     let worlds = worlds.clamp(1, MOST_LOOKED_THROUGH);
     let variants = task.all_variants();
@@ -56,7 +55,7 @@ pub(crate) fn of_task(task: &Arc<TaskSpec>, seed: u64, worlds: u64) -> Vec<Strin
     found.iter().map(|odd| odd.in_words(all)).collect()
 }
 
-/// Groups that the legend of a world's layout names and that its task does not have.
+/// Groups that the legend of a world's layout names but its task does not have.
 fn unknown_groups(world: &World, groups: &[&str]) -> Vec<(String, String)> {
     let legend = world.environment_params.layout.iter().flat_map(|layout| &layout.legend);
     let unknown = legend.filter_map(|(letter, meaning)| match meaning {
@@ -87,7 +86,7 @@ fn odd(pointer: String, text: String, variant: &str, index: u64) -> Odd {
     }
 }
 
-/// Adds what is odd to what was odd before: a world counts once for each kind.
+/// Adds new remarks to earlier ones: a world counts once per kind.
 fn gather(found: &mut Vec<Odd>, more: impl Iterator<Item = Odd>) {
     let mut seen = BTreeSet::new();
     for odd in more {
@@ -138,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn what_all_worlds_share_is_told_once() {
+    fn remark_on_all_worlds_is_made_once() {
         let lever = r#""objects": [{ "class": "switch", "coordinates": [2, 2], "switch": { "target": "nothing" } }]"#;
         let found = remarks(lever, 50);
         assert_eq!(found.len(), 1, "{found:?}");
@@ -151,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn a_legend_that_names_no_group_is_told_with_the_nearest() {
+    fn unknown_legend_group_is_reported_with_the_nearest_name() {
         let text = r#"{ "name": "t", "world": { "environment_params": { "layout": {
             "text": ["*****", "*P.G*", "*****"], "cell": 3, "legend": { "G": { "group": "gaol" } } } } },
             "groups": [{ "name": "goal", "count": 1, "object": { "class": "cube" }, "placement": { "cells": {} } }] }"#;
@@ -166,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn what_some_worlds_have_is_counted() {
+    fn remark_on_some_worlds_is_counted() {
         let zone = r#""rules": { "reward_per_second": 0 }, "objects": [
             { "class": "cube", "coordinates": [{ "param": "x" }, 0], "reward": 1, "reward_once_stimulus": ["AgentCollide"] }]"#;
         let found = remarks(zone, 100);

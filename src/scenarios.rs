@@ -1,5 +1,4 @@
-//! Scenario files, ours and the original's, and the tasks and world files that they name. What a scenario means is `spec`'s, living it
-//! `curriculum`'s.
+//! Reads scenario files, ours and the original's, and finds the tasks and world files that they name.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -15,13 +14,13 @@ use crate::documents::{self, DocumentError, Kind};
 use crate::tasks::{self, TaskError};
 use crate::worlds;
 
-/// The most files that are read to find a world with a name near to a missing one's.
+/// Most files read to find a world with a name similar to a missing one's.
 const MOST_READ: usize = 8;
 
-/// Told of what is odd.
+/// Receives warnings.
 pub type Warn<'a> = &'a mut dyn FnMut(String);
 
-/// A scenario that was read, and where its world files are looked for.
+/// A scenario that was read, with the place to look for its world files.
 #[derive(Clone, Debug)]
 pub struct ScenarioFile {
     /// The scenario.
@@ -32,10 +31,10 @@ pub struct ScenarioFile {
 }
 
 impl ScenarioFile {
-    /// Reads a scenario file in our form or in the original's.
+    /// Reads a scenario file in our format or in the original's.
     ///
     /// # Errors
-    /// [`DocumentError`] if it cannot be read or is wrong.
+    /// [`DocumentError`] if it cannot be read or is invalid.
     pub fn read(path: &Path, warn: Warn) -> Result<Self, DocumentError> {
         Ok(Self::from_text(
             path,
@@ -44,10 +43,10 @@ impl ScenarioFile {
         )?)
     }
 
-    /// Reads a scenario from its text; what it names by paths is looked for as if it stood at `path`.
+    /// Reads a scenario from its text; paths in it are resolved as if it were at `path`.
     ///
     /// # Errors
-    /// [`SpecError`] with all that is wrong.
+    /// [`SpecError`] with all faults.
     pub fn from_text(path: &Path, text: &str, warn: Warn) -> Result<Self, SpecError> {
         let name = documents::name_of(path);
         let original = is_original(text);
@@ -58,7 +57,7 @@ impl ScenarioFile {
             }
             scenario
         } else {
-            // With the tasks that can be found, so that every variant that they lack is named at once.
+            // With the tasks that can be found, so that all of their missing variants are reported at once.
             Scenario::from_json_with(&name, text, |task| task_from(path, task).ok())?
         };
         Ok(Self {
@@ -68,7 +67,7 @@ impl ScenarioFile {
         })
     }
 
-    /// Another scenario, as if it stood in the same file.
+    /// Another scenario, as if it were in the same file.
     #[must_use]
     pub fn with_scenario(&self, scenario: &Scenario) -> Self {
         Self {
@@ -77,7 +76,7 @@ impl ScenarioFile {
         }
     }
 
-    /// Whether a file is a scenario, in whichever form.
+    /// Whether a file is a scenario, in either format.
     pub fn is_one(path: &Path) -> bool {
         let text = documents::text(path).unwrap_or_default();
         Contents::of_text(&text) == Some(Contents::Scenario)
@@ -91,7 +90,7 @@ impl ScenarioFile {
         self.plan_named(missing, undrawable, warn).map(|(plan, _)| plan)
     }
 
-    /// The same, and what was found by the names that the scenario has for it.
+    /// Like [`Self::plan`], and returns what was found, by the scenario's names for it.
     ///
     /// # Errors
     /// As [`Plan::with_undrawable`].
@@ -119,7 +118,7 @@ impl ScenarioFile {
         Ok((plan, named))
     }
 
-    /// The world file that a regime names, from the scenario's folder; beside the scenario if it is not there.
+    /// The world file that a regime names, relative to the scenario's folder, or else directly beside the scenario.
     fn world(&self, named: &str, missing: Missing, warn: Warn) -> Result<FoundWorld, String> {
         let folder = self.path.parent().unwrap_or(Path::new(""));
         let named = Path::new(named);
@@ -175,13 +174,13 @@ impl ScenarioFile {
         }
     }
 
-    /// The world file with the nearest name in the folders where one was looked for.
+    /// The world file with the most similar name in the folders that were searched.
     fn nearest(&self, wanted: &[&PathBuf]) -> Option<PathBuf> {
         wanted.iter().find_map(|wanted| {
             let name = wanted.file_name()?.to_string_lossy().into_owned();
             let folder = Some(documents::folder_of(wanted)).filter(|folder| folder.is_dir())?;
             let mut files = worlds::json_files(folder).unwrap_or_default();
-            // Only what is near by its name is read: a folder may hold anything.
+            // Only files with similar names are read: a folder may contain anything.
             for _ in 0..MOST_READ {
                 let names = files
                     .iter()
@@ -213,7 +212,7 @@ impl ScenarioFile {
     }
 }
 
-/// What a scenario names, by the names that it has for it: with this its plan is made again, whatever became of the files.
+/// What a scenario names, by its names: the plan can be made from this again, even if the files change.
 #[derive(Clone, Debug, Default)]
 pub struct Named {
     /// Its tasks.
@@ -223,10 +222,10 @@ pub struct Named {
 }
 
 impl Named {
-    /// The scenario with these.
+    /// Plans the scenario with these.
     ///
     /// # Errors
-    /// As [`Plan::with_undrawable`], also where something is not among them.
+    /// As [`Plan::with_undrawable`], also if something is missing.
     pub fn plan(&self, scenario: &Scenario, undrawable: Undrawable) -> Result<Plan, CurriculumError> {
         let missing = |name: &str| format!("found {name:?}, expected a task that the scenario was read with");
         let mut sources = Sources {
@@ -237,10 +236,11 @@ impl Named {
     }
 }
 
-/// The task that a scenario names: a built-in one, a file from the scenario's folder, else one from the working folder.
+/// The task that a scenario names: a built-in one, a file relative to the scenario's folder, or one relative to the working
+/// folder.
 ///
 /// # Errors
-/// [`TaskError`] if there is none, or the document is wrong.
+/// [`TaskError`] if there is none, or the document is invalid.
 pub fn task_from(scenario: &Path, name: &str) -> Result<Arc<TaskSpec>, TaskError> {
     let there = scenario.parent().unwrap_or(Path::new("")).join(name);
     if tasks::text_by_name(name).is_none()
@@ -252,23 +252,23 @@ pub fn task_from(scenario: &Path, name: &str) -> Result<Arc<TaskSpec>, TaskError
     tasks::task(name)
 }
 
-/// What becomes of a world file that is nowhere.
+/// How a missing world file is treated.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Missing {
     /// It is an error.
     Refused,
-    /// The one with the nearest name is lived instead.
+    /// The one with the most similar name is used instead.
     StandIn,
 }
 
 impl Missing {
-    /// Whether another world may be lived in its place.
+    /// Whether another world may replace it.
     pub fn may_stand_in(may: bool) -> Self {
         if may { Self::StandIn } else { Self::Refused }
     }
 }
 
-/// The plan of a scenario without world files, whose tasks are built in or named by their paths from here.
+/// The plan of a scenario without world files, whose tasks are built in or given by paths from the working folder.
 ///
 /// # Errors
 /// As [`Plan::with_undrawable`].
@@ -284,7 +284,7 @@ pub fn plan(scenario: &Scenario, undrawable: Undrawable) -> Result<Plan, Curricu
     Plan::with_undrawable(scenario, &mut sources, undrawable)
 }
 
-/// Whether a text is a scenario of the original's.
+/// Whether a text is a scenario in the original's format.
 pub fn is_original(text: &str) -> bool {
     Kind::of(text) == Kind::L2ExplorerScenario
 }

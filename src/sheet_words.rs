@@ -1,5 +1,4 @@
-//! What is said in a contact sheet: which world and which camera a cell shows, what differs from another variant, and what
-//! holds for all cells. Which they show is chosen in `contact_sheet.rs`.
+//! Captions of a contact sheet: each entry's world and camera, its differences from another variant, and notes for all entries.
 
 use driftworld_spec::{Element, Modality, Value, Variant};
 use driftworld_text::whole;
@@ -7,24 +6,24 @@ use driftworld_text::whole;
 use crate::contact_sheet::{Choice, Look, Shown};
 use crate::value_words::short;
 
-/// What the worlds of a variant are called.
+/// How the worlds of a variant are named.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Worlds {
-    /// By their index.
+    /// By index.
     Numbered,
-    /// By when they come in a scenario, whose indices say nothing to a reader.
+    /// By position in a scenario, whose indices mean nothing to a reader.
     OfScenario,
-    /// The one that a drift ends with.
+    /// The last world of a drift.
     EndOfDrift,
 }
 
-/// What most of them are; of equals the first.
+/// The most frequent place; ties go to the first.
 pub(crate) fn commonest(places: &[String]) -> Option<&String> {
     let count = |place: &String| places.iter().filter(|other| *other == place).count();
     places.iter().rev().max_by_key(|place| count(place))
 }
 
-/// A few words as a sentence.
+/// Turns words into a sentence.
 pub(crate) fn sentence(words: &str) -> String {
     let mut letters = words.chars();
     let first = letters.next().map(|letter| letter.to_uppercase().collect::<String>());
@@ -40,7 +39,7 @@ fn listed<T: AsRef<str>>(words: &[T]) -> String {
     }
 }
 
-/// What holds for all cells: of which variants the values in brackets are, and where most of them are seen from.
+/// Notes for all entries: the variants whose values are in brackets, and the most frequent viewpoint.
 pub(crate) fn below_all(bases: &[String], places: &[String], usual: Option<&String>) -> Option<String> {
     let mut said = Vec::new();
     if !bases.is_empty() {
@@ -61,7 +60,7 @@ pub(crate) fn below_all(bases: &[String], places: &[String], usual: Option<&Stri
     (!said.is_empty()).then(|| said.join(" "))
 }
 
-/// What is said of a picture that is not in colours.
+/// Describes a picture that is not in colours.
 pub(crate) fn modality_words(modality: Modality) -> &'static str {
     match modality {
         Modality::Rgb => "",
@@ -72,7 +71,7 @@ pub(crate) fn modality_words(modality: Modality) -> &'static str {
     }
 }
 
-/// Which world and which camera, in words.
+/// Describes the world and the camera.
 pub(crate) fn placed(shown: &Shown, choice: Choice, look: Look) -> String {
     let place = choice.world % shown.count.max(1);
     let world = match (look.index, shown.worlds) {
@@ -94,7 +93,7 @@ pub(crate) fn placed(shown: &Shown, choice: Choice, look: Look) -> String {
     format!("{world}, {turn}")
 }
 
-/// The values that a variant has and another one has not, with those in brackets; each of them whole.
+/// The values of a variant that differ from another's, with the other's in brackets; none is cut.
 pub(crate) fn differences(base: &Variant, variant: &Variant) -> String {
     let parameters = variant.task().parameters();
     let short = |name: &str, value: &Value| {
@@ -110,7 +109,7 @@ pub(crate) fn differences(base: &Variant, variant: &Variant) -> String {
         .map(|(name, value)| {
             let (own, other) = (short(name, value), of_base(name));
             let other = if own == other { "another".to_owned() } else { other };
-            // A map may be called so itself: "map 2, 60 × 60 m".
+            // A map's value may begin with its name: "map 2, 60 × 60 m".
             let own = own.strip_prefix(&format!("{name} ")).unwrap_or(&own);
             whole(&format!("{name} {own} ({other})"))
         })
@@ -118,7 +117,7 @@ pub(crate) fn differences(base: &Variant, variant: &Variant) -> String {
     parts.join(", ") + if parts.is_empty() { "" } else { "." }
 }
 
-/// What is the same in the pictures of two variants, and what is not in them.
+/// What looks the same in the pictures of two variants, and what is outside them.
 pub(crate) fn alike(base: &Variant, variant: &Variant, [view, map]: [bool; 2]) -> String {
     let what = match (view, map) {
         (true, true) => "Looks the same, and so does the map",
@@ -156,7 +155,7 @@ mod tests {
         assert_eq!(listed(&["a", "b", "c", "d"]), "a, b, c and d");
     }
 
-    /// What differs between mazes is said in words, whole.
+    /// Differences between mazes are described as text, in full.
     #[test]
     fn layouts_in_captions_are_not_cut() {
         let task = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/worlds/maze.json");

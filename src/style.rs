@@ -1,20 +1,20 @@
-//! Colours of what is printed for people: when there are any, and what is set off. Pictures in the terminal are the console's.
+//! Colours of printed text: whether to use them, and what to highlight.
 
 use std::io::IsTerminal;
 use std::sync::atomic::{AtomicU8, Ordering};
 
 use clap::ColorChoice;
 
-/// What a text that is set off begins with: a letter that no text has (Unicode keeps it out of interchange), and the style's own.
+/// Marks the start of highlighted text: a Unicode noncharacter, which no text contains, followed by the style's own letter.
 const BEGIN: char = '\u{fdd0}';
 
-/// What it ends with.
+/// Marks the end of highlighted text.
 const END: char = '\u{fdd1}';
 
-/// What `--color` says.
+/// The value of `--color`.
 static CHOICE: AtomicU8 = AtomicU8::new(0);
 
-/// Follows `--color` from now on.
+/// Applies `--color`.
 pub(crate) fn follow(choice: ColorChoice) {
     let number = match choice {
         ColorChoice::Auto => 0,
@@ -24,17 +24,17 @@ pub(crate) fn follow(choice: ColorChoice) {
     CHOICE.store(number, Ordering::Relaxed);
 }
 
-/// Whether standard output takes colours.
+/// Whether standard output gets colours.
 pub(crate) fn of_stdout() -> bool {
     takes_colors(std::io::stdout().is_terminal())
 }
 
-/// Whether standard error does.
+/// Whether standard error gets colours.
 pub(crate) fn of_stderr() -> bool {
     takes_colors(std::io::stderr().is_terminal())
 }
 
-/// `--color` before `NO_COLOR` and `TERM=dumb` before what the stream is.
+/// `--color` overrides `NO_COLOR` and `TERM=dumb`, which override the kind of stream.
 fn takes_colors(is_terminal: bool) -> bool {
     match CHOICE.load(Ordering::Relaxed) {
         1 => true,
@@ -46,16 +46,16 @@ fn takes_colors(is_terminal: bool) -> bool {
     }
 }
 
-/// How a text is set off.
+/// A highlighting style.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Style {
     /// Headings.
     Strong,
-    /// What went well.
+    /// Success.
     Good,
-    /// What to look at.
+    /// Warnings.
     Odd,
-    /// What went wrong.
+    /// Errors.
     Bad,
 }
 
@@ -90,14 +90,14 @@ impl Style {
         }
     }
 
-    /// The style of what a line on standard error begins with, and how long that is.
+    /// The style of a message's prefix on standard error, and the prefix's length.
     pub(crate) fn of_message(line: &str) -> Option<(Self, usize)> {
         let kinds = [("error:", Self::Bad), ("warning:", Self::Odd), ("note:", Self::Strong)];
         let found = kinds.into_iter().find(|(word, _)| line.starts_with(word));
         found.map(|(word, style)| (style, word.len()))
     }
 
-    /// A text set off on standard output, where that takes colours.
+    /// Marks a text as highlighted on standard output, if that gets colours.
     pub(crate) fn on(self, text: &str) -> String {
         if of_stdout() && !text.is_empty() {
             format!("{BEGIN}{}{text}{END}", self.letter())
@@ -106,18 +106,18 @@ impl Style {
         }
     }
 
-    /// A text as a terminal obeys it.
+    /// A text with terminal codes.
     pub(crate) fn painted(self, text: &str) -> String {
         format!("{}{text}\u{1b}[0m", self.sequence())
     }
 }
 
-/// Whether something in a text is set off.
+/// Whether any part of a text is highlighted.
 pub(crate) fn is_set_off(text: &str) -> bool {
     text.contains(BEGIN)
 }
 
-/// A text with what [`Style::on`] set off as a terminal obeys it; `shown` is done to all that lies between.
+/// Replaces the marks of [`Style::on`] by terminal codes; `shown` is applied to all text in between.
 pub(crate) fn paint(text: &str, shown: impl Fn(&str) -> String) -> String {
     let mut painted = String::with_capacity(text.len());
     let mut rest = text;
@@ -144,7 +144,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_set_off_is_painted_and_all_else_is_shown() {
+    fn highlighted_text_is_coloured_and_the_rest_is_escaped() {
         let text = format!("a{BEGIN}sb{END}c{BEGIN}xd");
         assert_eq!(paint(&text, str::to_uppercase), "A\u{1b}[1mB\u{1b}[0mCXD");
         assert_eq!(paint("plain", str::to_owned), "plain");

@@ -1,5 +1,5 @@
-//! What a picture of a world is about, and whether a camera sees it: what pays, costs, moves or is used, counted by
-//! pixels; and how much room is before a camera. Which camera is taken is the contact sheet's choice.
+//! The subject of a picture of a world, and whether a camera sees it: objects that pay, cost, move or are used, counted in
+//! pixels; and the free space before a camera.
 
 use driftworld_env::{Camera, Renderer, Scene, Target};
 use driftworld_spec::{MotionModel, World};
@@ -9,13 +9,13 @@ use crate::Failure;
 /// Pixels along each side of the pictures that are counted.
 const SIDE: u32 = 64;
 
-/// Columns at each side of the pictures that do not count: what stands there is cut off, or overlooked.
+/// Columns at each side that do not count: things there are cut off, or easily overlooked.
 const MARGIN: u32 = SIDE / 8;
 
-/// From so many pixels on an object counts as seen: a thousandth of the picture, a cube of 1 m from 30 m.
+/// An object with at least this many pixels counts as visible: a thousandth of the picture, a cube of 1 m from 30 m.
 pub(crate) const ENOUGH: u32 = SIDE * SIDE / 1000;
 
-/// The objects that a picture is about: those that pay, cost, move or are used; where there are none, all.
+/// The subjects of a picture: objects that pay, cost, move or are used; if there are none, all objects.
 pub(crate) fn subjects(world: &World) -> Vec<usize> {
     let objects = || world.objects.iter().enumerate();
     let chosen = |is_subject: &dyn Fn(&driftworld_spec::Object) -> bool| -> Vec<usize> {
@@ -40,20 +40,20 @@ pub(crate) fn subjects(world: &World) -> Vec<usize> {
 /// How much of its subjects a camera sees.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Sight {
-    /// Subjects of which there is enough.
+    /// Subjects with enough pixels.
     pub(crate) seen: u32,
-    /// Pixels of all subjects, of 4,096, without the margins.
+    /// Pixels of all subjects, out of 4,096, without the margins.
     pub(crate) pixels: u32,
 }
 
 impl Sight {
-    /// Whether a reader finds what the picture is about.
+    /// Whether a reader can find the picture's subject.
     pub(crate) fn is_enough(self) -> bool {
         self.seen > 0
     }
 }
 
-/// What a camera sees of some of the scene's items.
+/// How much a camera sees of some of the scene's items.
 pub(crate) fn sight(
     renderer: &mut Renderer,
     scene: &Scene,
@@ -86,10 +86,10 @@ pub(crate) fn sight(
     })
 }
 
-/// More room than this is open all the same.
+/// More free space than this does not count.
 const OPEN_METRES: f32 = 30.0;
 
-/// How much room there is before a camera: the mean of the metres to what it sees, up to 30.
+/// Free space before a camera: the mean distance in metres to what it sees, up to 30.
 pub(crate) fn openness(renderer: &mut Renderer, scene: &Scene, camera: &Camera) -> Result<f32, Failure> {
     let mut depth = vec![0.0_f32; (SIDE * SIDE) as usize];
     let mut target = Target {
@@ -114,9 +114,9 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 40)))]
 
-        /// A cube is seen where its middle lies within the margins, and not where all of it lies in one of them.
+        /// A cube is visible if its centre lies within the margins, and not if it lies entirely in a margin.
         #[test]
-        fn what_stands_in_a_margin_is_not_seen(place in -1.2..1.2_f64) {
+        fn objects_in_a_margin_are_not_visible(place in -1.2..1.2_f64) {
             let mut draft = WorldDraft::default();
             draft.environment_params.map_size = [60.0, 60.0];
             draft.agent_params.coordinates = [0.0, -5.0];

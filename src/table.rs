@@ -1,23 +1,22 @@
-//! Tables for people: plain columns that stay readable when they are pasted or piped, and that fit the terminal. The JSON
-//! beside them is the commands' own.
+//! Plain-text tables: columns that stay readable when pasted or piped, and that fit the terminal.
 
 use driftworld_text::{Cells, printable};
 
 use crate::style::Style;
 use crate::wrap::{columns_of, columns_of_stdout, longest_piece, wrap};
 
-/// Blanks between two columns.
+/// Spaces between two columns.
 const GAP: usize = 2;
 
-/// The narrowest that a column of sentences is made before the table is given up, in columns of the terminal.
+/// Narrowest column of sentences, in terminal columns, before the table becomes a list.
 const NARROW: usize = 12;
 
-/// How texts stand in a table for spreadsheets, by the option `--raw-cells`.
+/// How texts in a table are escaped for spreadsheets, by the option `--raw-cells`.
 pub(crate) fn cells(raw: bool) -> Cells {
     if raw { Cells::Raw } else { Cells::Guarded }
 }
 
-/// A table with these headings; `numbers` are the columns that are set to the right.
+/// A table with these headings; the columns in `numbers` are right-aligned.
 pub(crate) fn table<H: Into<String>, R: Into<Vec<String>>>(
     headings: impl IntoIterator<Item = H>,
     rows: impl IntoIterator<Item = R>,
@@ -28,7 +27,7 @@ pub(crate) fn table<H: Into<String>, R: Into<Vec<String>>>(
     fitted(headings, rows, numbers, columns_of_stdout())
 }
 
-/// The same without the columns in which no row says anything.
+/// Like [`table`], without empty columns.
 pub(crate) fn without_empty(headings: &[&str], rows: &[Vec<String>], numbers: &[usize]) -> String {
     let says = |column: &usize| rows.is_empty() || rows.iter().any(|row| !row[*column].is_empty());
     let kept: Vec<usize> = (0..headings.len()).filter(says).collect();
@@ -36,7 +35,7 @@ pub(crate) fn without_empty(headings: &[&str], rows: &[Vec<String>], numbers: &[
     table(headings, rows, &numbers)
 }
 
-/// A table with these of its columns alone: headings, rows, and which columns are set to the right.
+/// Selects columns of a table: headings, rows, and which columns are right-aligned.
 fn only<H: Clone>(
     kept: &[usize],
     headings: &[H],
@@ -49,10 +48,10 @@ fn only<H: Clone>(
     (headings, rows.iter().map(of).collect(), numbers.collect())
 }
 
-/// A table of at most `width` columns of the terminal. Cells go on in further lines where need be, broken between words; where
-/// not even that fits, each row becomes a list.
+/// A table of at most `width` terminal columns. Cells wrap between words if necessary; if even that does not fit, each row
+/// becomes a list.
 fn fitted(headings: Vec<String>, rows: Vec<Vec<String>>, numbers: &[usize], width: Option<usize>) -> String {
-    // A cell is one line, whatever it says.
+    // A cell is one line, whatever it contains.
     let shown = |cells: Vec<String>| -> Vec<String> {
         let cells = cells.into_iter();
         cells.map(|cell| printable(&cell).into_owned()).collect()
@@ -72,8 +71,8 @@ fn fitted(headings: Vec<String>, rows: Vec<Vec<String>>, numbers: &[usize], widt
     lines.join("\n")
 }
 
-/// A table that has no room as it is: without columns in which no row says anything; else with the last column below each row;
-/// else each row as a list.
+/// A table that does not fit as it is: without empty columns; else with the last column below each row; else each row as a
+/// list.
 fn narrow(headings: &[String], rows: &[Vec<String>], numbers: &[usize], width: usize) -> String {
     let says = |column: &usize| rows.iter().any(|row| !matches!(row[*column].as_str(), "" | "-"));
     let kept: Vec<usize> = (0..headings.len()).filter(says).collect();
@@ -104,7 +103,7 @@ fn narrow(headings: &[String], rows: &[Vec<String>], numbers: &[usize], width: u
     shown.join("\n")
 }
 
-/// How wide each column becomes; nothing where they cannot stand beside each other.
+/// The width of each column; `None` if they do not fit side by side.
 fn widths(headings: &[String], rows: &[Vec<String>], width: Option<usize>) -> Option<Vec<usize>> {
     let all = || std::iter::once(headings).chain(rows.iter().map(Vec::as_slice));
     let widest = |column: usize, of: fn(&str) -> usize| {
@@ -121,7 +120,7 @@ fn widths(headings: &[String], rows: &[Vec<String>], width: Option<usize>) -> Op
     if least.iter().sum::<usize>() > room {
         return None;
     }
-    // The widest columns give way first, all down to one width.
+    // The widest columns shrink first, all to one width.
     let under = |cap: usize| -> Vec<usize> {
         let pairs = natural.iter().zip(&least);
         pairs.map(|(natural, least)| (*natural).min(cap.max(*least))).collect()
@@ -131,7 +130,7 @@ fn widths(headings: &[String], rows: &[Vec<String>], width: Option<usize>) -> Op
     Some(under(cap))
 }
 
-/// A row in as many lines as its highest cell needs.
+/// A row in as many lines as its tallest cell needs.
 fn lines(row: &[String], widths: &[usize], numbers: &[usize]) -> Vec<String> {
     let cells: Vec<Vec<String>> = row
         .iter()
@@ -161,7 +160,7 @@ fn lines(row: &[String], widths: &[usize], numbers: &[usize]) -> Vec<String> {
     (0..height).map(line).collect()
 }
 
-/// Each row as a list: its first cell, and below it what the others are and say.
+/// Each row as a list: its first cell, and below it the other headings and cells.
 fn listed(headings: &[String], rows: &[Vec<String>], width: usize) -> String {
     let name = headings
         .iter()
@@ -215,7 +214,7 @@ mod tests {
     }
 
     #[test]
-    fn cells_go_on_in_further_lines_broken_between_words() {
+    fn cells_wrap_between_words() {
         assert_eq!(
             example(Some(44)),
             "variant            reward  what it is\n\
@@ -227,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn where_there_is_no_room_the_last_column_goes_below() {
+    fn last_column_moves_below_if_space_is_short() {
         assert_eq!(
             example(Some(30)),
             "variant            reward\n\
@@ -237,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn where_columns_have_no_room_beside_each_other_rows_become_lists() {
+    fn rows_become_lists_if_columns_do_not_fit() {
         let row = |cells: [&str; 3]| cells.map(str::to_owned).to_vec();
         let shown = fitted(
             row(["variant", "second of the columns", ""]),
@@ -252,7 +251,7 @@ mod tests {
     }
 
     #[test]
-    fn columns_in_which_no_row_says_anything_are_left_out() {
+    fn empty_columns_are_left_out() {
         let row = |cells: [&str; 3]| cells.map(str::to_owned).to_vec();
         let rows = vec![row(["a", "", "1"]), row(["b", "", "22"])];
         assert_eq!(
@@ -263,7 +262,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_whole_stands_on_one_line(
+        fn unbreakable_text_stays_on_one_line(
             facts in proptest::collection::vec("[0-9]{1,6} ± [0-9]{1,6}", 1..5),
             words in "([a-z]{1,8} ){0,12}",
             width in 40_usize..90,
@@ -277,7 +276,7 @@ mod tests {
         }
 
         #[test]
-        fn no_line_is_wider_than_it_may_be_and_every_word_is_whole(
+        fn no_line_is_too_wide_and_every_word_is_whole(
             rows in proptest::collection::vec(proptest::collection::vec("([a-z#_]{1,8} ){0,6}", 4), 1..6),
             width in 40_usize..130,
         ) {

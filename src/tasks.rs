@@ -1,4 +1,4 @@
-//! The names by which tasks are called: `PATH`, `PATH#variant`, or a built-in such as `find_objects#red`.
+//! Resolves names of tasks: `PATH`, `PATH#variant`, or a built-in such as `find_objects#red`.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -10,7 +10,7 @@ use driftworld_files::FileError;
 use driftworld_spec::{Classes, DEFAULT_VARIANT, Problem, SpecError, TaskSpec, Variant, World, did_you_mean};
 use driftworld_text::printable;
 
-/// The tasks that are built in: name and text. The files are `examples/tasks/`.
+/// The built-in tasks: name and text. The files are in `examples/tasks/`.
 pub const BUILT_IN: [(&str, &str); 6] = [
     ("find_objects", include_str!("../examples/tasks/find_objects.json")),
     ("get_to_goal", include_str!("../examples/tasks/get_to_goal.json")),
@@ -20,17 +20,17 @@ pub const BUILT_IN: [(&str, &str); 6] = [
     ("blue_red_green", include_str!("../examples/tasks/blue_red_green.json")),
 ];
 
-/// The tasks of these names, with their texts.
+/// Expands to tasks with these names, and their texts.
 macro_rules! families {
     ($($name:literal)*) => {
         &[$(($name, include_str!(concat!("../examples/worlds/", $name, ".json")))),*]
     };
 }
 
-/// A group of tasks: what they ask for, and each with its name and text.
+/// A group of tasks: what they require, and each with its name and text.
 pub type Group = (&'static str, &'static [(&'static str, &'static str)]);
 
-/// More tasks, by what they ask for. The files are `examples/worlds/`.
+/// More tasks, by what they require. The files are in `examples/worlds/`.
 #[rustfmt::skip]
 pub const FAMILIES: [Group; 8] = [
     ("navigation", families![
@@ -51,26 +51,26 @@ pub const FAMILIES: [Group; 8] = [
     ("levels", families!["expedition" "hand_made"]),
 ];
 
-/// Why no task is found by its name.
+/// Errors raised while resolving a task's name.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum TaskError {
-    /// There is no such built-in task, and no such file.
+    /// There is neither such a built-in task nor such a file.
     #[error("{}", unknown(name))]
     Unknown {
         /// The name asked for.
         name: String,
     },
-    /// The file is there and cannot be read, is no regular file, is too large or is no text.
+    /// The file exists, but cannot be read, is no regular file, is too large, or is not text.
     #[error(transparent)]
     Unreadable(FileError),
     /// The file holds another kind of document, or is a folder.
     #[error(transparent)]
     Document(DocumentError),
-    /// The document is wrong, or has no such variant.
+    /// The document is invalid, or has no such variant.
     #[error(transparent)]
     Spec(#[from] SpecError),
-    /// The name is one of a family or a pattern where one variant is wanted.
+    /// The name stands for a family or a pattern, but one variant is needed.
     #[error(
         "{}: found a name of {count} variants, expected one of them, such as {first}",
         printable(name)
@@ -85,7 +85,7 @@ pub enum TaskError {
     },
 }
 
-/// That there is no such file, for a name that is a path; else that there is no such task.
+/// The message for a missing file if the name is a path; else for a missing task.
 fn unknown(name: &str) -> String {
     let has_ending = Path::new(name)
         .extension()
@@ -100,15 +100,15 @@ fn unknown(name: &str) -> String {
     format!("found task {name:?}, expected the path of a task spec or one of {all}{near}")
 }
 
-/// The classes and models that objects of worlds can be of, by the libraries at hand. Where one is not known, messages say
-/// how a library is named.
+/// The classes and models allowed for objects of worlds, given the libraries. Messages about unknown ones explain how to name a
+/// library.
 pub fn classes(catalogue: &Catalogue) -> Classes {
     catalogue
         .classes()
         .with_advice("give the library that has it with --assets LIBRARY, in Python assets=LIBRARY")
 }
 
-/// Refuses a task with objects of a class or model that is not known.
+/// Refuses a task with objects of an unknown class or model.
 ///
 /// # Errors
 /// [`SpecError::Document`] with every such object.
@@ -116,7 +116,7 @@ pub fn check_classes(name: &str, task: &TaskSpec, classes: &Classes) -> Result<(
     fail_on(name, task.unknown_classes(classes))
 }
 
-/// The same of a world.
+/// Refuses a world with objects of an unknown class or model.
 ///
 /// # Errors
 /// [`SpecError::Document`] with every such object.
@@ -136,7 +136,7 @@ fn fail_on(name: &str, problems: Vec<Problem>) -> Result<(), SpecError> {
     })
 }
 
-/// The same of the tasks of variants, each once.
+/// Refuses variants whose tasks have objects of an unknown class or model; checks each task once.
 ///
 /// # Errors
 /// As [`check_classes`].
@@ -160,12 +160,12 @@ pub fn built_in_names() -> Vec<&'static str> {
     BUILT_IN.iter().map(|(name, _)| *name).collect()
 }
 
-/// All that come with Driftworld, by what they ask for.
+/// All tasks that come with Driftworld, by what they require.
 pub fn groups() -> impl Iterator<Item = Group> {
     std::iter::once(("the paper's", &BUILT_IN[..])).chain(FAMILIES)
 }
 
-/// The text of the task of this name.
+/// The text of the task with this name.
 pub fn text_by_name(name: &str) -> Option<&'static str> {
     let mut known = groups().flat_map(|(_, tasks)| tasks);
     known.find(|(known, _)| *known == name).map(|(_, text)| *text)
@@ -176,7 +176,7 @@ fn names() -> impl Iterator<Item = &'static str> {
     groups().flat_map(|(_, tasks)| tasks).map(|(name, _)| *name)
 }
 
-/// A name cut into task and variant: `find_objects#red` is `("find_objects", Some("red"))`.
+/// Splits a name into task and variant: `find_objects#red` is `("find_objects", Some("red"))`.
 pub fn split(name: &str) -> (&str, Option<&str>) {
     match name.rsplit_once('#') {
         Some((task, variant)) => (task, Some(variant)),
@@ -184,10 +184,10 @@ pub fn split(name: &str) -> (&str, Option<&str>) {
     }
 }
 
-/// The task of this name or path; a variant behind `#` is left aside.
+/// The task with this name or path; a variant after `#` is ignored.
 ///
 /// # Errors
-/// [`TaskError`] if there is none, or the document is wrong.
+/// [`TaskError`] if there is none, or the document is invalid.
 pub fn task(name: &str) -> Result<Arc<TaskSpec>, TaskError> {
     let (task, _) = split(name);
     if let Some(text) = text_by_name(task) {
@@ -202,10 +202,10 @@ pub fn task(name: &str) -> Result<Arc<TaskSpec>, TaskError> {
     Ok(TaskSpec::from_json(&documents::name_of(path), &text)?)
 }
 
-/// The variant of this name; without one behind `#`, the variant in which every parameter has its default.
+/// The variant with this name; without one after `#`, the variant with all defaults.
 ///
 /// # Errors
-/// [`TaskError`] if there is none, or the document is wrong.
+/// [`TaskError`] if there is none, or the document is invalid.
 pub fn variant(name: &str) -> Result<Variant, TaskError> {
     let own = split(name).1.unwrap_or(DEFAULT_VARIANT);
     let task = task(name)?;
@@ -222,11 +222,11 @@ pub fn variant(name: &str) -> Result<Variant, TaskError> {
     })
 }
 
-/// The variants that a name stands for: the one behind `#`, the members of the family behind `#`, those whose names fit a pattern
-/// with `*` behind `#`, or all that the task declares.
+/// The variants that a name stands for: the one after `#`, the members of the family after `#`, those matching a pattern with
+/// `*` after `#`, or all that the task declares.
 ///
 /// # Errors
-/// [`TaskError`] if there is none, or the document is wrong.
+/// [`TaskError`] if there is none, or the document is invalid.
 pub fn variants(name: &str) -> Result<Vec<Variant>, TaskError> {
     let task = task(name)?;
     match split(name).1 {
@@ -235,8 +235,7 @@ pub fn variants(name: &str) -> Result<Vec<Variant>, TaskError> {
     }
 }
 
-/// The variants of a task that a name stands for, without the task in front of it: a variant, a family, or a pattern such as
-/// `light-*`.
+/// The variants of a task that a name without the task stands for: a variant, a family, or a pattern such as `light-*`.
 ///
 /// # Errors
 /// [`SpecError::UnknownVariant`] if there is none.
@@ -254,7 +253,7 @@ pub fn variants_called(task: &Arc<TaskSpec>, name: &str) -> Result<Vec<Variant>,
     members.into_iter().map(|member| task.variant(member)).collect()
 }
 
-/// Whether a name fits a pattern, in which `*` stands for any letters.
+/// Whether a name matches a pattern, in which `*` stands for any characters.
 fn fits(pattern: &str, name: &str) -> bool {
     match pattern.split_once('*') {
         None => pattern == name,
@@ -265,17 +264,17 @@ fn fits(pattern: &str, name: &str) -> bool {
     }
 }
 
-/// Whether a name is neither a path nor near to the name of a built-in task.
+/// Whether a name is neither a path nor similar to the name of a built-in task.
 fn is_word(name: &str) -> bool {
     !name.contains(['/', '\\', '.']) && did_you_mean(name, names()).is_empty()
 }
 
-/// Whether something is there that can be read; a folder, which may be called as a variant is, is none.
+/// Whether a readable file exists; a folder, which may have the name of a variant, does not count.
 fn is_document(path: &Path) -> bool {
     path.exists() && !path.is_dir()
 }
 
-/// The names with their tasks: a variant, a family or a pattern may stand without its task behind one that has it, as in
+/// The names with their tasks: a variant, a family or a pattern may follow a name with a task without repeating it, as in
 /// `find_objects#red dusk`.
 pub(crate) fn with_tasks(names: &[String]) -> Vec<String> {
     let mut known: Vec<(String, Arc<TaskSpec>)> = Vec::new();
@@ -287,7 +286,7 @@ pub(crate) fn with_tasks(names: &[String]) -> Vec<String> {
         }
         match task(of) {
             Ok(spec) => known.push((of.to_owned(), spec)),
-            // Behind a task a word is a variant of it, misspelt; unless it is near to the name of a task, or a path.
+            // After a task, a word is one of its variants, misspelt; unless it is similar to the name of a task, or a path.
             Err(TaskError::Unknown { .. }) if own.is_none() && is_word(name) => {
                 if let Some((task, _)) = known.last() {
                     return format!("{task}#{name}");
@@ -300,8 +299,8 @@ pub(crate) fn with_tasks(names: &[String]) -> Vec<String> {
     called.collect()
 }
 
-/// The variants that a list of names stands for, in that order, each once, with the names of their tasks as they were
-/// called. Behind a name with a task, others of the same task may stand without it.
+/// The variants that a list of names stands for, in that order, each once, with the names of their tasks as given. After a name
+/// with a task, others of the same task may omit it.
 ///
 /// # Errors
 /// As [`variants`].
@@ -321,8 +320,8 @@ pub fn variants_of(names: &[String]) -> Result<Vec<(String, Variant)>, TaskError
     Ok(found)
 }
 
-/// What tables call variants: `TASK#VARIANT` by the names that tasks have, also where a task was called by its path; by that path
-/// where two would have one name.
+/// The names of variants in tables: `TASK#VARIANT` by the tasks' own names, even if given by a path; by the path if two would
+/// be equal.
 pub(crate) fn labels_of(variants: &[(String, Variant)]) -> Vec<String> {
     let ids: Vec<String> = variants.iter().map(|(_, variant)| variant.id()).collect();
     let is_alone = |id: &String| ids.iter().filter(|other| *other == id).count() == 1;
@@ -336,7 +335,7 @@ pub(crate) fn labels_of(variants: &[(String, Variant)]) -> Vec<String> {
     variants.iter().zip(&ids).map(label).collect()
 }
 
-/// The name of a task that was called by its path or its name; the path itself where no task is there.
+/// The name of a task given by its path or name; the path itself if there is no task.
 pub(crate) fn name_of(called: &str) -> String {
     if BUILT_IN.iter().any(|(name, _)| *name == called) {
         return called.to_owned();
@@ -344,7 +343,7 @@ pub(crate) fn name_of(called: &str) -> String {
     task(called).map_or_else(|_| called.to_owned(), |task| task.name().to_owned())
 }
 
-/// A variant as tables call it, whatever its task was called by; a bare name as it is.
+/// A variant's name in tables, however its task was given; a bare name is unchanged.
 pub(crate) fn label_of(called: &str) -> String {
     match split(called) {
         (task, Some(variant)) => format!("{}#{variant}", name_of(task)),
@@ -364,7 +363,7 @@ mod tests {
     }
 
     #[test]
-    fn a_misspelt_name_is_told_the_names_there_are() {
+    fn misspelt_name_error_lists_the_tasks() {
         assert_eq!(
             variant("find_object#red").unwrap_err().to_string(),
             "found task \"find_object\", expected the path of a task spec or one of find_objects, get_to_goal, \
@@ -384,7 +383,7 @@ mod tests {
     }
 
     #[test]
-    fn of_a_path_it_is_said_that_there_is_no_such_file() {
+    fn missing_file_is_reported_for_a_path() {
         for name in ["nope.json", "no/where"] {
             let said = variant(name).unwrap_err().to_string();
             assert_eq!(
@@ -395,7 +394,7 @@ mod tests {
     }
 
     #[test]
-    fn variants_may_be_named_by_patterns_and_behind_their_task_without_it() {
+    fn variants_match_patterns_and_may_omit_the_task() {
         let names = |names: &[&str]| -> Vec<String> {
             let names: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
             let found = variants_of(&names).unwrap().into_iter();
@@ -416,7 +415,7 @@ mod tests {
             names(&["find_objects#*held"]),
             ["find_objects#held", "find_objects#long_held"]
         );
-        // A folder of the name of a variant is no document: this crate has one that is called `docs`.
+        // A folder with a variant's name is no document: this crate has one called `docs`.
         assert!(!is_document(Path::new("docs")) && is_document(Path::new("Cargo.toml")));
         let unknown = variants_of(&["find_objects#red".to_owned(), "dsk".to_owned()]).unwrap_err();
         assert!(unknown.to_string().ends_with("did you mean \"dusk\"?"), "{unknown}");

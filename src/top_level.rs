@@ -1,5 +1,4 @@
-//! [`TopLevel`]: which keys a JSON text has, found out without taking its values into memory.
-//! What they tell is `contents`' and `documents`'.
+//! [`TopLevel`]: finds the keys of a JSON text without loading its values.
 
 use std::collections::BTreeMap;
 
@@ -9,12 +8,12 @@ use serde_json::value::RawValue;
 /// The keys of an object.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct TopLevel {
-    /// Each with whether a list stands there, the last of two with one name.
+    /// Each with whether its value is a list; of repeated keys the last counts.
     keys: BTreeMap<String, bool>,
 }
 
 impl TopLevel {
-    /// Of a text; `None` for one that is no JSON object, or longer than any document may be.
+    /// From a text; `None` if it is no JSON object, or longer than any document may be.
     pub(crate) fn of(text: &str) -> Option<Self> {
         let text = text.trim_start_matches('\u{feff}');
         if text.len() > MAX_BYTES {
@@ -36,7 +35,7 @@ impl TopLevel {
         keys.iter().any(|key| self.has(key))
     }
 
-    /// Whether these are the keys of a scenario in the original's form.
+    /// Whether these are the keys of a scenario in the original's format.
     pub(crate) fn is_l2explorer_scenario(&self) -> bool {
         self.keys.get("scenario") == Some(&true) && !self.has("blocks")
     }
@@ -47,7 +46,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn keys_are_found_at_the_top_level_only() {
+    fn only_top_level_keys_are_found() {
         let keys =
             TopLevel::of("\u{feff} { \"a\": { \"blocks\": 1 }, \"maps\": [[{}]], \"n\\u0061me\": \"x\" }").unwrap();
         assert!(keys.has("maps") && keys.has("name") && !keys.has("blocks"));
@@ -58,7 +57,7 @@ mod tests {
     }
 
     #[test]
-    fn a_scenario_of_the_originals_is_a_list() {
+    fn original_scenario_is_a_list() {
         let is_one = |text: &str| TopLevel::of(text).is_some_and(|keys| keys.is_l2explorer_scenario());
         assert!(is_one("{\"scenario\": []}"));
         assert!(!is_one("{\"scenario\": {}}"));

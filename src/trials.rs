@@ -1,14 +1,14 @@
-//! What came of drawing a few worlds of everything, for people and for programs. Drawing them is `curriculum`'s.
+//! Tables and summaries of trial draws.
 
 use driftworld_curriculum::{Failed, Trial};
 use driftworld_text::when;
 
 use crate::table::table;
 
-/// The most failures that are told one by one.
+/// Most failures listed.
 const MOST_TOLD: usize = 10;
 
-/// How often drawing failed, a row for each variant or regime; and why, for the first that failed.
+/// How often drawing failed, a row for each variant or regime; with the reason of the first failures.
 pub(crate) fn shown(trials: &[Trial]) -> String {
     let share = |failed: u64, of: u64| match failed {
         0 => "0".to_owned(),
@@ -46,7 +46,7 @@ pub(crate) fn shown(trials: &[Trial]) -> String {
         "planner finishes",
     ];
     let mut lines = vec![table(headings, rows, &[0, 2, 3, 4, 5, 6, 7])];
-    // The first of each kind: what fails in one way may fail in another, too.
+    // The first of each kind: worlds may fail in several ways.
     let failed = trials.iter().flat_map(|trial| {
         let is_first =
             |(place, one): &(usize, &Failed)| !trial.failed[..*place].iter().any(|other| other.code == one.code);
@@ -66,14 +66,14 @@ pub(crate) fn shown(trials: &[Trial]) -> String {
     lines.join("\n")
 }
 
-/// That some worlds cannot be drawn, in a few words; nothing where all can.
+/// A short note that some worlds cannot be drawn; `None` if all can.
 pub(crate) fn summary(trials: &[Trial]) -> Option<String> {
     let failed: u64 = trials.iter().map(Trial::num_failed).sum();
     let worlds: u64 = trials.iter().map(|trial| trial.worlds).sum();
     (failed > 0).then(|| format!("{failed} of {worlds} worlds cannot be drawn"))
 }
 
-/// In which worlds the agent on rails did not come to the success that there is; nothing where it did in all.
+/// The worlds in which the planner missed a possible success; `None` if it missed none.
 pub(crate) fn unfinished(trial: &Trial) -> Option<String> {
     let expert = trial
         .expert

@@ -1,12 +1,12 @@
-//! Values in a few words, as captions have room for them. Values that are written whole are `spec`'s.
+//! Short forms of values for captions.
 
 use driftworld_spec::{Layout, RoomDoors, Value};
 use driftworld_text::counted;
 
-/// The most letters of a value whose parts are not known here.
+/// Longest value whose structure is unknown here.
 const LONGEST: usize = 40;
 
-/// A value in a few words: numbers with four digits, layouts by what they are made of.
+/// A short form of a value: numbers with four digits, layouts by their parts.
 pub(crate) fn short(value: &Value) -> String {
     match value {
         Value::Number(number) => rounded(*number),
@@ -24,7 +24,7 @@ fn bracketed(numbers: &[f64]) -> String {
     cut(&format!("[{}]", numbers.join(", ")))
 }
 
-/// Lists of words as such; what is more than that as JSON.
+/// Lists of words as such; anything else as JSON.
 fn json_words(json: &serde_json::Value) -> String {
     match json {
         serde_json::Value::Null => "none".to_owned(),
@@ -50,7 +50,7 @@ fn cut(text: &str) -> String {
     plain.chars().take(LONGEST - 1).chain(['…']).collect()
 }
 
-/// What a layout is made of; what is as usual is not said.
+/// The parts of a layout; defaults are omitted.
 fn layout_words(layout: &Layout) -> String {
     let mut words = Vec::new();
     let mut seed = None;
@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn layouts_are_words_and_no_cut_json() {
+    fn layouts_are_words_and_not_cut_json() {
         let cases = [
             (r#"{ "maze": {} }"#, "maze 8 × 8"),
             (

@@ -1,5 +1,5 @@
-//! [`VariantNames`]: what variants are called everywhere, `TASK#VARIANT`, by the names that l2logger's form has for them in logs,
-//! which are letters and digits alone.
+//! [`VariantNames`]: maps names in logs, which hold only letters and digits as l2logger requires, to the usual names of
+//! variants, `TASK#VARIANT`.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -7,15 +7,15 @@ use std::path::Path;
 use driftworld_curriculum::log_name_of_label;
 use serde_json::Value;
 
-/// The most bytes of a log's information that are looked through for names.
+/// Largest info file searched for names, in bytes.
 const MAX_INFO_BYTES: u64 = 64 << 20;
 
-/// What variants are called, by their names in logs.
+/// The usual names of variants, by their names in logs.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct VariantNames(BTreeMap<String, String>);
 
 impl VariantNames {
-    /// As the logs in these folders say it; logs of other programs say nothing, and are none the worse for it.
+    /// From the logs in these folders; logs of other programs have no names, which is no error.
     pub(crate) fn of_logs<P: AsRef<Path>>(folders: &[P]) -> Self {
         let mut names = BTreeMap::new();
         for folder in folders {
@@ -32,7 +32,7 @@ impl VariantNames {
         Self(names)
     }
 
-    /// What a variant is called that has this name in a log; that name itself where nobody says.
+    /// The usual name of a variant with this name in a log; the log's name if unknown.
     pub(crate) fn shown<'a>(&'a self, in_log: &'a str) -> &'a str {
         self.0.get(in_log).map_or(in_log, String::as_str)
     }
@@ -43,7 +43,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_log_says_what_its_variants_are_called() {
+    fn log_gives_the_names_of_its_variants() {
         let folder = tempfile::tempdir().expect("a temporary folder can be made");
         let info = r#"{ "made_from": { "berries#all-0.6-1": {}, "a_map.json": {} } }"#;
         std::fs::write(folder.path().join("scenario_info.json"), info).expect("the folder is ours");

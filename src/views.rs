@@ -1,4 +1,4 @@
-//! [`Views`]: the pictures of one world, as the agent sees it, from above and from near by.
+//! [`Views`]: the pictures of one world, as the agent sees it, from above and as close-ups.
 
 #![expect(clippy::disallowed_methods, reason = "where a camera stands for a picture")]
 
@@ -33,17 +33,17 @@ pub(crate) struct Seen {
     pub(crate) rgb: Picture,
     pub(crate) depth: Picture,
     pub(crate) segmentation: Picture,
-    /// Metres to what is seen, row by row; beyond the farthest thing in the sky.
+    /// Metres to each visible point, row by row; larger than `farthest` in the sky.
     distances: Vec<f32>,
-    /// Metres to the farthest thing that is not the sky.
+    /// Metres to the farthest visible point that is not sky.
     farthest: f32,
-    /// The reward categories that are in it.
+    /// The visible reward categories.
     categories: BTreeSet<u8>,
 }
 
 impl Seen {
-    /// The picture of distances with what its greys mean below it. It is white at one of a few distances, so that indoors there is
-    /// something to see.
+    /// The depth picture with a scale of its greys below it. White is at one of a few distances, so that indoor pictures have
+    /// contrast.
     pub(crate) fn depth_with_legend(&self) -> Drawing {
         let (width, height) = (self.depth.width, self.depth.height);
         let white = white_at(self.farthest);
@@ -74,7 +74,7 @@ impl Seen {
         drawing.line(rim, 1.0, INK);
         let is_beyond = self.distances.iter().any(|metres| *metres > white);
         let mut taken: Vec<[f32; 2]> = Vec::new();
-        // The ends first: what is between them has what room is left.
+        // The ends first: labels in between use the remaining room.
         for quarter in [4_u8, 0, 2, 1, 3] {
             let share = f32::from(quarter) / 4.0;
             let (side, words) = match quarter {
@@ -103,7 +103,7 @@ impl Seen {
         drawing
     }
 
-    /// The picture of reward categories with the names of those in it below.
+    /// The picture of reward categories with the names of the visible ones below.
     pub(crate) fn segmentation_with_legend(&self) -> Drawing {
         let (width, height) = (self.segmentation.width, self.segmentation.height);
         let letters = letters(width);
@@ -137,19 +137,19 @@ impl Seen {
 
 const INK: [u8; 3] = [38, 42, 48];
 
-/// Metres at which pictures of distances are white, as agents see them.
+/// Distance in metres that is white in depth pictures for agents.
 const DEPTH_METRES: f32 = 100.0;
 
-/// Metres at which those are white that people look at, by a scale.
+/// Distances in metres that may be white in depth pictures for people.
 const SCALES: [f32; 4] = [10.0, 20.0, 40.0, DEPTH_METRES];
 
-/// The first scale on which nothing is white but the sky.
+/// The first scale on which only the sky is white.
 fn white_at(farthest: f32) -> f32 {
     let scale = SCALES.into_iter().find(|most| *most >= farthest);
     scale.unwrap_or(DEPTH_METRES)
 }
 
-/// The size of a legend's letters below a picture of this width.
+/// Font size of a legend below a picture of this width.
 fn letters(width: u32) -> f32 {
     (width as f32 / 28.0).clamp(8.0, 15.0)
 }
@@ -157,18 +157,18 @@ fn letters(width: u32) -> f32 {
 /// Share of the overview's half that is left free along its edges.
 const RIM_OF_OVERVIEW: f32 = 0.04;
 
-/// Half the height at 1 m of a close-up from its usual distance: an angle of 42°.
+/// Half the height at 1 m of a close-up from its default distance: an angle of 42°.
 const CLOSE_UP_TANGENT: f32 = 0.384;
 
-/// A close-up of fewer pixels, of 4,096, shows nothing.
+/// A close-up with fewer pixels, out of 4,096, shows nothing.
 const LEAST_CLOSE_UP: u32 = 80;
 
-/// Turns of the camera that are tried, in degrees clockwise.
+/// Camera rotations that are tried, in degrees clockwise.
 pub(crate) const TURNS: [f32; 12] = [
     0.0, 30.0, -30.0, 60.0, -60.0, 90.0, -90.0, 120.0, -120.0, 150.0, -150.0, 180.0,
 ];
 
-/// What a reward category is.
+/// The name of a reward category.
 fn category_name(category: u8) -> &'static str {
     match category {
         CATEGORY_SKY => "sky",
@@ -181,7 +181,7 @@ fn category_name(category: u8) -> &'static str {
     }
 }
 
-/// The camera of the agent of a world at its start, turned clockwise.
+/// The camera of a world's agent at its start, rotated clockwise.
 pub(crate) fn agent_camera(world: &World, turn: f32) -> Camera {
     let agent = &world.agent_params;
     Camera::first_person(
@@ -197,11 +197,11 @@ impl<'a> Views<'a> {
         Self::with_catalogue(world, &Catalogue::default(), size, turn)
     }
 
-    /// The same with assets from a catalogue.
+    /// With assets from a catalogue.
     pub(crate) fn with_catalogue(world: &'a World, catalogue: &Catalogue, size: u32, turn: f32) -> Self {
         Self {
             world,
-            // With doors open that are.
+            // With doors open if they start open.
             scene: Environment::with_catalogue(world.clone(), catalogue.clone())
                 .scene()
                 .clone(),
@@ -211,7 +211,7 @@ impl<'a> Views<'a> {
         }
     }
 
-    /// The same, drawn by another renderer than the processor's.
+    /// With another renderer than the processor's.
     pub(crate) fn drawn_by(self, renderer: Renderer) -> Self {
         Self {
             renderer: Rc::new(RefCell::new(renderer)),
@@ -219,7 +219,7 @@ impl<'a> Views<'a> {
         }
     }
 
-    /// The same in another size.
+    /// With another size.
     pub(crate) fn of_size(&self, size: u32) -> Self {
         Self {
             size,
@@ -228,14 +228,14 @@ impl<'a> Views<'a> {
         }
     }
 
-    /// From outside, above a corner of the arena.
+    /// The world from outside, above a corner of the arena.
     pub(crate) fn overview(&self, width: u32) -> Result<Picture, Failure> {
         let scene = self.scene.clone().with_wall_tops().with_surroundings();
         let camera = self.above(&scene);
         self.smooth(&scene, &self.with_all_in_it(&scene, camera, width), width)
     }
 
-    /// The camera moved, and turned no way, so that all of the arena and of what stands in it is in a picture of this width.
+    /// Moves the camera, without rotating it, so that a picture of this width contains the whole arena with everything in it.
     fn with_all_in_it(&self, scene: &Scene, camera: Camera, width: u32) -> Camera {
         let [wide, deep] = scene.arena_size().map(|side| side / 2.0);
         let wall = self.highest_wall();
@@ -255,15 +255,15 @@ impl<'a> Views<'a> {
             [-heading.sin() * pitch.sin(), -heading.cos() * pitch.sin(), pitch.cos()],
         );
         let along = |of: [f32; 3], axis: [f32; 3]| of[0] * axis[0] + of[1] * axis[1] + of[2] * axis[2];
-        // Across, up and away from the arena's middle.
+        // Across, up and away from the arena's centre.
         let seen: Vec<[f32; 3]> = points
             .into_iter()
             .map(|point| [along(point, right), along(point, up), along(point, forward)])
             .collect();
         let tangent = (camera.field_of_view_deg / 2.0).to_radians().tan() * (1.0 - RIM_OF_OVERVIEW);
         let edges = [tangent * width as f32 / self.size as f32, tangent];
-        // Where the camera stands on these axes. A plane through the left edge holds it back as far as the leftmost point, and so on:
-        // it stands where the planes of two opposite edges meet, and behind all of them.
+        // The camera's position on these axes. A plane through the left edge must not pass the leftmost point, and so on: the
+        // camera is where the planes of opposite edges meet, and behind all of them.
         let bound = |axis: usize, sign: f32| {
             let reach = |point: &[f32; 3]| sign * point[axis] - edges[axis] * point[2];
             seen.iter().map(reach).fold(f32::MIN, f32::max)
@@ -286,7 +286,7 @@ impl<'a> Views<'a> {
             .fold(self.world.environment_params.wall_height, f64::max) as f32
     }
 
-    /// The camera of the overview, wherever it stands: it looks down steeply where walls within the arena would hide what is between them.
+    /// The direction of the overview's camera: steep if walls within the arena would hide what is between them.
     fn above(&self, scene: &Scene) -> Camera {
         let is_divided = self.world.plan().is_some_and(|plan| !plan.walls.is_empty());
         let span = scene.arena_size().into_iter().fold(4.0, f32::max);
@@ -297,7 +297,7 @@ impl<'a> Views<'a> {
         }
     }
 
-    /// What the agent sees at the start.
+    /// The agent's view at the start.
     pub(crate) fn first_person(&self) -> Result<Seen, Failure> {
         let camera = agent_camera(self.world, self.turn);
         let frame = self.frame(&self.scene, &camera, self.size, self.size)?;
@@ -314,7 +314,7 @@ impl<'a> Views<'a> {
         })
     }
 
-    /// What the agent sees at the start, in one kind of picture: classes and objects have a colour for each.
+    /// The agent's view at the start as one kind of image: classes and objects each have a colour.
     pub(crate) fn seen_in(&self, modality: Modality) -> Result<Picture, Failure> {
         let camera = agent_camera(self.world, self.turn);
         if modality == Modality::Rgb {
@@ -325,13 +325,13 @@ impl<'a> Views<'a> {
         Ok(Picture::new(self.size, self.size, rgb))
     }
 
-    /// What the agent sees at the start in colour, pixel by pixel as a learner gets it.
+    /// The agent's view at the start in colour, at a learner's resolution.
     pub(crate) fn as_learners_see(&self, side: u32) -> Result<Picture, Failure> {
         let frame = self.frame(&self.scene, &agent_camera(self.world, self.turn), side, side)?;
         Ok(Picture::new(side, side, frame.rgb))
     }
 
-    /// What the agent sees at the start in colour, with smooth edges.
+    /// The agent's view at the start in colour, with smooth edges.
     pub(crate) fn smoothly(&self, [width, height]: [u32; 2]) -> Result<Picture, Failure> {
         let camera = agent_camera(self.world, self.turn);
         let frame = self.frame(&self.scene, &camera, 2 * width, 2 * height)?;
@@ -339,7 +339,7 @@ impl<'a> Views<'a> {
         Ok(picture.halved())
     }
 
-    /// What the agent sees ahead, to its right, behind and to its left.
+    /// The agent's views ahead, to its right, behind and to its left.
     pub(crate) fn all_around(&self) -> Result<Vec<Picture>, Failure> {
         let look = |turn: f32| {
             let camera = Camera {
@@ -351,8 +351,8 @@ impl<'a> Views<'a> {
         [0.0, 90.0, 180.0, 270.0].into_iter().map(look).collect()
     }
 
-    /// The first object of each name that is nearest to the agent, from near by, with its name. What cannot be seen from anywhere near
-    /// it is left out.
+    /// Close-ups of the object of each name that is nearest to the agent, with its name. Objects that are not visible from
+    /// nearby are left out.
     pub(crate) fn close_ups(&self, most: usize) -> Result<Vec<(String, Picture)>, Failure> {
         let start = self.world.agent_params.coordinates;
         let far = |index: &usize| {
@@ -360,7 +360,7 @@ impl<'a> Views<'a> {
             (x - start[0]).hypot(y - start[1])
         };
         let mut indices: Vec<usize> = (0..self.world.objects.len()).collect();
-        // What pays first, then by distance.
+        // Rewarding objects first, then by distance.
         indices.sort_by(|a, b| {
             let pays = |index: &usize| self.world.objects[*index].is_target();
             pays(b).cmp(&pays(a)).then(far(a).total_cmp(&far(b)))
@@ -378,17 +378,17 @@ impl<'a> Views<'a> {
         Ok(shown)
     }
 
-    /// A camera that sees an object, where possible from where the agent is: walls and other things may be in the way.
+    /// A camera that sees an object, if possible from the agent's side: walls and other things may be in the way.
     fn near(&self, index: usize) -> Result<Option<Camera>, Failure> {
         let mut best: (u32, Option<Camera>) = (LEAST_CLOSE_UP, None);
-        // From the agent's side first; then closer by, at shares of the usual distance.
+        // From the agent's side first; then closer, at shares of the default distance.
         let places = [1.0, 0.6]
             .into_iter()
             .flat_map(|closeness| TURNS.map(|turn| (turn, closeness)));
         for (turn, closeness) in places {
             let camera = self.close_to(index, turn, closeness);
             let pixels = sight(&mut self.renderer.borrow_mut(), &self.scene, &camera, &[index])?.pixels;
-            // Another place is taken only where clearly more is seen.
+            // Another place must show clearly more.
             if pixels > best.0 + best.0 / 4 {
                 best = (pixels, Some(camera));
             }
@@ -396,8 +396,8 @@ impl<'a> Views<'a> {
         Ok(best.1)
     }
 
-    /// A camera that looks at an object from where the agent is, turned around it, so near that the object fills the picture; nearer
-    /// with a wider angle.
+    /// A camera that looks at an object from the agent's side, rotated around it, at a distance where the object fills the
+    /// picture; closer with a wider angle.
     fn close_to(&self, index: usize, turn: f32, closeness: f32) -> Camera {
         let item = &self.scene.items[index];
         let start = self.world.agent_params.coordinates.map(|metres| metres as f32);
@@ -420,17 +420,17 @@ impl<'a> Views<'a> {
         }
     }
 
-    /// The map with the agent's start on it, in even light.
+    /// The map with the agent's start, in even light.
     pub(crate) fn top_down(&self) -> Picture {
         map_drawing::map(self.world, &self.scene, &Moves::none(self.world), self.size).to_picture()
     }
 
-    /// The map with triggers, what pays and what costs, and ways, and a legend to its right with scale and north.
+    /// The map with triggers, signs of rewards and paths, and a legend to its right with scale and north.
     pub(crate) fn map_with_legend(&self, moves: &Moves) -> Drawing {
         map_legend::map_with_legend(self.world, &self.scene, moves, self.size)
     }
 
-    /// A colour picture with smooth edges: drawn at twice the size where that is allowed.
+    /// A colour picture with smooth edges: rendered at twice the size if allowed.
     fn smooth(&self, scene: &Scene, camera: &Camera, width: u32) -> Result<Picture, Failure> {
         let twice = if self.size.max(width) <= 2048 { 2 } else { 1 };
         let frame = self.frame(scene, camera, width * twice, self.size * twice)?;
@@ -469,7 +469,7 @@ mod tests {
         }
     }
 
-    /// The words of a drawing with where each begins and ends.
+    /// The texts of a drawing with their horizontal extents.
     fn words(drawing: &Drawing) -> Vec<(String, [f32; 2])> {
         let lines = drawing.shapes.iter().filter_map(|shape| match shape {
             Shape::Text(line) => Some(line),
@@ -490,9 +490,9 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 40)))]
 
-        /// No word of a scale of distances stands on another or outside, at any size, and the scale's end is always said.
+        /// The labels of a depth scale never overlap or leave the picture, at any size, and the scale's end is always labelled.
         #[test]
-        fn words_of_a_scale_stand_apart(size in 84_u32..700, farthest in 0.5..150.0_f32, sky in any::<bool>()) {
+        fn depth_scale_labels_stand_apart(size in 84_u32..700, farthest in 0.5..150.0_f32, sky in any::<bool>()) {
             let drawing = seen(size, farthest, sky).depth_with_legend();
             let mut words = words(&drawing);
             words.sort_by(|a, b| a.1[0].total_cmp(&b.1[0]));
@@ -505,9 +505,9 @@ mod tests {
             prop_assert_eq!(last.ends_with("and more"), sky || farthest > 100.0);
         }
 
-        /// Four things in the corners of an arena of any form are seen in the overview, by the pixels of each.
+        /// Things in all four corners of an arena of any shape are visible in the overview.
         #[test]
-        fn the_overview_leaves_no_corner_out(wide in 20.0..60.0_f64, deep in 20.0..60.0_f64, wall in 0.0..1.5_f64) {
+        fn overview_contains_every_corner(wide in 20.0..60.0_f64, deep in 20.0..60.0_f64, wall in 0.0..1.5_f64) {
             let side = wide.min(deep);
             let mut draft = WorldDraft::default();
             draft.environment_params.map_size = [wide, deep];
@@ -534,9 +534,9 @@ mod tests {
         }
     }
 
-    /// Where walls stand between the agent and a thing, its picture is of the thing all the same.
+    /// A close-up shows its object even if walls stand between it and the agent.
     #[test]
-    fn close_ups_show_things_and_no_walls() {
+    fn close_ups_show_objects_and_no_walls() {
         let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/worlds");
         for name in ["maze", "t_maze", "key_corridor", "locked_rooms"] {
             let variants = tasks::variants_of(&[folder.join(format!("{name}.json")).display().to_string()]);

@@ -1,5 +1,4 @@
-//! Worlds by what they are named: files of ours or of the original's, or variants with a seed and a number. Names of tasks
-//! are read by `tasks`.
+//! Finds worlds by name: files in our format or the original's, or variants with a seed and an index.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -19,7 +18,7 @@ use driftworld_text::ShownPath;
 
 use crate::{Failure, Warn, argument};
 
-/// A world file, in our form or in the original's, with layouts in place of its maps.
+/// A world file in our format or the original's, with its maps resolved to layouts.
 fn world_file(path: &Path, l2explorer: bool, maps: &MapLibrary) -> Result<(World, Vec<Warning>), Failure> {
     let name = documents::name_of(path);
     let text = documents::text_of(path, &[Contents::World])?;
@@ -44,11 +43,11 @@ pub(crate) fn is_world_file(name: &str) -> bool {
     let Ok(text) = documents::text(path) else {
         return false;
     };
-    // What is no JSON object is reported by whoever reads it as a task.
+    // Text that is no JSON object is reported by the reader of tasks.
     TopLevel::of(&text).is_some_and(|keys| !keys.has_any(&["name", "parameters", "groups"]))
 }
 
-/// Refuses a file that shows itself to be neither a world nor a task spec, and a folder.
+/// Refuses a folder, and a file that is recognised as neither a world nor a task spec.
 pub(crate) fn expect_world_or_task(name: &str) -> Result<(), Failure> {
     let path = Path::new(tasks::split(name).0);
     let shown = || Contents::of_text(&documents::text(path).ok()?);
@@ -59,7 +58,7 @@ pub(crate) fn expect_world_or_task(name: &str) -> Result<(), Failure> {
     }
 }
 
-/// The layouts of a maps file, or of all `.json` files of a folder.
+/// The layouts of a maps file, or of all `.json` files in a folder.
 pub(crate) fn maps(path: &Path) -> Result<MapLibrary, Failure> {
     let mut library = MapLibrary::default();
     for file in json_files(path)? {
@@ -79,7 +78,7 @@ pub(crate) fn maps(path: &Path) -> Result<MapLibrary, Failure> {
     Ok(library)
 }
 
-/// The file named, or the `.json` files of the folder named, sorted.
+/// The given file, or the `.json` files in the given folder, sorted.
 pub(crate) fn json_files(path: &Path) -> Result<Vec<PathBuf>, Failure> {
     if !path.is_dir() {
         return Ok(vec![path.to_owned()]);
@@ -119,11 +118,11 @@ pub(crate) struct WorldRequest {
 }
 
 impl WorldRequest {
-    /// What names an episode in this world.
+    /// Identifies an episode in this world.
     pub(crate) fn origin(&self) -> EpisodeOrigin {
         let (task, variant) = tasks::split(&self.world);
         let is_drawn = !self.is_file();
-        // Without a name it is the variant in which every parameter has its default.
+        // Without a name it is the variant with all defaults.
         let variant = variant.or(is_drawn.then_some(DEFAULT_VARIANT));
         EpisodeOrigin {
             task: Some(task.to_owned()),
@@ -143,7 +142,7 @@ impl WorldRequest {
         self.numbered(self.index)
     }
 
-    /// World number `index` of the variant, under the same seed.
+    /// The world of the variant with this index, under the same seed.
     pub(crate) fn numbered(&self, index: u64) -> Result<World, Failure> {
         expect_world_or_task(&self.world)?;
         if self.is_file() {
@@ -159,7 +158,7 @@ impl WorldRequest {
         Ok(sampler.world(index)?)
     }
 
-    /// Another world, by the same options: a file, or the first world of a variant.
+    /// Another world, with the same options: a file, or the first world of a variant.
     pub(crate) fn named(&self, name: &str, warn: Warn<'_>) -> Result<World, Failure> {
         let maps = self.maps.as_deref().map(maps).transpose()?.unwrap_or_default();
         if !self.l2explorer && !is_world_file(name) {
@@ -176,7 +175,7 @@ impl WorldRequest {
     }
 }
 
-/// The world of a file, with layouts in place of its maps.
+/// The world in a file, with its maps resolved to layouts.
 pub(crate) fn file(name: &str, l2explorer: bool, maps: &MapLibrary, warn: Warn<'_>) -> Result<World, Failure> {
     expect_world_or_task(name)?;
     let (world, warnings) = world_file(Path::new(name), l2explorer, maps)?;

@@ -1,19 +1,19 @@
-//! How wide lines may be, and texts broken between words so that they fit. Tables are `table.rs`'s, colours `style.rs`'s.
+//! Line widths, and wrapping of text between words.
 
 use driftworld_text::{NO_BREAK, with_blanks};
 use unicode_width::UnicodeWidthStr;
 
 use crate::style;
 
-/// The narrowest width that is taken seriously, in columns.
+/// Narrower widths are ignored, in columns.
 const NARROWEST: usize = 40;
 
-/// The columns of standard output: what `COLUMNS` says, else those of the terminal; nothing where lines may be of any length.
+/// The columns of standard output: from `COLUMNS`, else the terminal's; `None` if lines may have any length.
 pub(crate) fn columns_of_stdout() -> Option<usize> {
     asked_for().or_else(|| terminal_size::terminal_size_of(std::io::stdout()).map(columns))
 }
 
-/// The same of standard error.
+/// The columns of standard error.
 pub(crate) fn columns_of_stderr() -> Option<usize> {
     asked_for().or_else(|| terminal_size::terminal_size_of(std::io::stderr()).map(columns))
 }
@@ -27,12 +27,12 @@ fn asked_for() -> Option<usize> {
     (columns > 0).then(|| columns.max(NARROWEST))
 }
 
-/// How many columns a text takes.
+/// The width of a text in columns.
 pub(crate) fn columns_of(text: &str) -> usize {
     text.width()
 }
 
-/// The columns of the longest piece of a text that is not broken.
+/// The width of the longest unbreakable piece of a text.
 pub(crate) fn longest_piece(text: &str) -> usize {
     pieces(text)
         .map(|piece| columns_of(piece.trim_end()))
@@ -40,8 +40,8 @@ pub(crate) fn longest_piece(text: &str) -> usize {
         .unwrap_or(0)
 }
 
-/// A text in lines of at most `width` columns, broken behind blanks and commas alone: a longer word stays whole. No-break spaces become
-/// blanks where no line is broken.
+/// Wraps a text to lines of at most `width` columns, breaking only after spaces and commas: a longer word stays whole. No-break
+/// spaces become spaces.
 pub(crate) fn wrap(text: &str, width: usize) -> Vec<String> {
     let mut lines = Vec::new();
     let mut line = String::new();
@@ -56,13 +56,13 @@ pub(crate) fn wrap(text: &str, width: usize) -> Vec<String> {
     lines
 }
 
-/// Every line of a text wrapped; what goes on is set in as deep as its line.
+/// Wraps every line of a text; continuation lines keep its indentation.
 pub(crate) fn wrap_lines(text: &str, width: Option<usize>) -> String {
     let Some(width) = width else {
         return text.to_owned();
     };
     let wrapped = text.split('\n').map(|line| {
-        // What is set off was laid out already.
+        // Highlighted text was laid out already.
         if columns_of(line) <= width || style::is_set_off(line) {
             return line.to_owned();
         }
@@ -77,7 +77,7 @@ pub(crate) fn wrap_lines(text: &str, width: Option<usize>) -> String {
     wrapped.collect::<Vec<_>>().join("\n")
 }
 
-/// A text in pieces that stay whole, each with the blanks behind it.
+/// Splits a text into unbreakable pieces, each with the spaces after it.
 fn pieces(text: &str) -> impl Iterator<Item = &str> {
     let mut rest = text;
     std::iter::from_fn(move || {
@@ -87,7 +87,7 @@ fn pieces(text: &str) -> impl Iterator<Item = &str> {
             match (letter, letters.peek()) {
                 (_, None) => break rest.len(),
                 (' ', Some((next, after))) if *after != ' ' => break *next,
-                // Between the parts of a list, but not in a number such as 1,200.
+                // Between the elements of a list, but not in a number such as 1,200.
                 (',', Some((next, after))) if ![' ', NO_BREAK].contains(after) && !after.is_ascii_digit() => {
                     break *next;
                 }
@@ -106,7 +106,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn lines_break_behind_blanks_and_commas() {
+    fn lines_break_after_spaces_and_commas() {
         assert_eq!(wrap("one two  three", 8), ["one two", "three"]);
         assert_eq!(
             wrap("[\"rgb\",\"depth\"], 1,200", 10),

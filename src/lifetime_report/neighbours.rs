@@ -1,4 +1,4 @@
-//! How far apart neighbouring learning blocks are: by a matrix that was handed in, or as measured from the scenario in the log.
+//! Distances between neighbouring learning blocks: from a given matrix, or measured from the scenario in the log.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -14,39 +14,38 @@ use driftworld_text::{ShownPath, when};
 use crate::distances::{Sample, fitting, variant_matrix};
 use crate::{Failure, argument, matrix_file, tasks};
 
-/// Variants beyond these are not measured in passing.
+/// With more variants, distances are not measured automatically.
 const MOST_MEASURED: usize = 32;
 
-/// Where distances come from.
+/// The source of distances.
 pub(super) struct Neighbours {
     given: Option<Named>,
     tasks: Tasks,
     mode: VariantMode,
-    /// By the scenario's text: repeats live the same one.
+    /// By the scenario's text: repeats share a scenario.
     measured: BTreeMap<String, Result<Named, String>>,
 }
 
-/// A matrix, and its variants by the names that logs give them.
+/// A matrix, with its variants by their names in logs.
 struct Named {
     matrix: DistanceMatrix,
     index: BTreeMap<String, Ends>,
-    /// Where it comes from, as the end of a sentence.
+    /// Its source, as the end of a sentence.
     origin: String,
 }
 
-/// The variants that a block of a name begins and ends with: two only where it drifts.
+/// The first and last variants of a named block: different only if it drifts.
 #[derive(Clone, Copy)]
 struct Ends {
     first: usize,
     last: usize,
 }
 
-/// Distances of neighbours, and a sentence about them.
+/// Distances of neighbours, with a sentence about them.
 type Distances = (Option<Vec<Option<f64>>>, String);
 
 impl Neighbours {
-    /// Of the matrix in a file, or else to be measured.
-    /// Tasks that are not built in are those of these files.
+    /// Uses the matrix in a file, or else measures. Tasks that are not built in come from these files.
     pub(super) fn new(file: Option<&Path>, tasks: &[PathBuf], mode: VariantMode) -> Result<Self, Failure> {
         let read = |path: &Path| {
             let matrix = matrix_file::read("distances", path)?;
@@ -102,7 +101,7 @@ impl Neighbours {
     }
 }
 
-/// How far each learning block's variant is from the one learned before it, as the log says; `None` where it says nothing of it.
+/// The logged distance from each learning block's variant to the one learned before it; `None` if the log has none.
 fn logged(log: &Log, lifetime: &Lifetime) -> Option<Vec<Option<f64>>> {
     let column = log.rows.metric("distance")?;
     let numbers: BTreeMap<u64, f64> = log
@@ -178,7 +177,7 @@ impl Tasks {
         })
     }
 
-    /// The task of a name in a log: a file by its path, or else by its name alone, for the log may come from another
+    /// The task with a name in a log: a file by its path, or else by its file name, because the log may come from another
     /// folder.
     fn task(&self, called: &str) -> Option<Arc<TaskSpec>> {
         if tasks::text_by_name(called).is_some() {
@@ -192,7 +191,7 @@ impl Tasks {
     }
 }
 
-/// Measures the variants that a scenario learns, or says why that cannot be done.
+/// Measures the variants that a scenario learns, or returns why that is impossible.
 fn measure(scenario: &str, tasks: &Tasks) -> Result<Named, String> {
     let scenario = Scenario::from_json_with("scenario_info.json", scenario, |task| tasks.task(task))
         .map_err(|_| "the scenario in the log is not of this version".to_owned())?;

@@ -1,5 +1,4 @@
-//! How different two worlds look to an agent in them: pictures from the same places, compared. `env` draws the pictures and
-//! `similarity` compares them; where they are taken from is in `poses.rs`.
+//! Compares how two worlds look to an agent in them, by pictures from the same places.
 
 mod poses;
 
@@ -21,23 +20,23 @@ const SIDE: u32 = 48;
 
 const PIXELS: usize = (SIDE * SIDE) as usize;
 
-/// Points that each pixel is the mean of, along each side: small pictures of single points flicker.
+/// Samples per pixel along each side: small pictures with single samples flicker.
 const SUPERSAMPLING: u32 = 2;
 
-/// What can keep worlds from being compared by how they look.
+/// Errors raised while comparing worlds by their looks.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PictureDistanceError {
-    /// There is no place where an agent could stand in every world.
+    /// No place is free in every world.
     #[error(
         "pictures: found none of {tried} places free in all worlds, expected at least 1; where walls stand elsewhere, as in mazes \
          of other sizes, compare by worlds or by parameters"
     )]
     NoPlace {
-        /// How many places were tried.
+        /// Number of places tried.
         tried: u32,
     },
-    /// A world cannot be looked at.
+    /// A world cannot be rendered.
     #[error(transparent)]
     World(#[from] EnvError),
     /// Pictures cannot be compared.
@@ -56,9 +55,9 @@ impl PictureDistanceError {
     }
 }
 
-/// What an agent sees of one world from some poses, drawn once, to be compared with other worlds' from the same poses.
+/// An agent's views of one world from some poses, rendered once, for comparison with other worlds from the same poses.
 ///
-/// Each picture is taken with the world's own camera: its height and its field of view count as part of what is seen.
+/// Each picture uses the world's own camera: its height and its field of view are part of the view.
 #[derive(Clone, Debug)]
 pub struct Views {
     /// Picture after picture, `(poses, SIDE, SIDE, 3)` bytes.
@@ -67,20 +66,20 @@ pub struct Views {
     objects: Vec<bool>,
 }
 
-/// How different two worlds look, in what shows objects and in all else.
+/// The visual difference of two worlds, separated into objects and surroundings.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PictureParts {
-    /// Mean Oklab difference of the pixels that show an object in either world, `0..=1`; 0 where none does.
+    /// Mean Oklab difference of the pixels that show an object in either world, `0..=1`; 0 without any.
     pub objects: f64,
-    /// That of all other pixels.
+    /// Mean Oklab difference of all other pixels.
     pub surroundings: f64,
 }
 
 impl Views {
-    /// Draws them, on the processor: the same bytes on every machine.
+    /// Renders them on the processor: the same bytes on every machine.
     ///
     /// # Errors
-    /// [`PictureDistanceError::World`] if a picture cannot be drawn.
+    /// [`PictureDistanceError::World`] if a picture cannot be rendered.
     pub fn new(world: &World, poses: &[Pose], catalogue: &Catalogue) -> Result<Self, PictureDistanceError> {
         let environment = Environment::with_catalogue(world.clone(), catalogue.clone());
         let agent = &world.agent_params;
@@ -109,10 +108,10 @@ impl Views {
         Ok(Self { rgb, objects })
     }
 
-    /// Those from some of the poses, by their places in the list.
+    /// The views from some of the poses, by their indices.
     ///
     /// # Panics
-    /// When there is no pose of one of the numbers.
+    /// If an index is out of range.
     #[must_use]
     pub fn only(&self, poses: &[usize]) -> Self {
         let rgb = poses
@@ -140,13 +139,13 @@ impl Views {
     /// Mean distance of the pictures of two worlds, pose by pose, in `0..=1`.
     ///
     /// # Errors
-    /// [`PictureDistanceError::Compare`] unless both have as many pictures of one size.
+    /// [`PictureDistanceError::Compare`] unless both have the same number of pictures of one size.
     pub fn distance(&self, other: &Self, measure: PictureMeasure) -> Result<f64, PictureDistanceError> {
         Ok(views_distance(&self.pictures(), &other.pictures(), measure)?)
     }
 
-    /// How different they look where objects are seen, and elsewhere: so that small things that a task is about do not drown in
-    /// ground and sky. Symmetric, each `0..=1`; a distance, for each pair has pixels of its own.
+    /// The visual difference where objects are visible, and elsewhere, so that small objects are not drowned out by ground and
+    /// sky. Symmetric, each in `0..=1`; not a metric, because each pair compares different pixels.
     ///
     /// # Errors
     /// As [`Views::distance`].
@@ -203,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn it_sees_what_is_seen_and_nothing_else() {
+    fn only_visible_changes_count() {
         let red = with_tree(1.0, "[1.0, 0.0, 0.0]");
         let blue = with_tree(1.0, "[0.0, 0.0, 1.0]");
         let paying = with_tree(-5.0, "[1.0, 0.0, 0.0]");
@@ -221,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn small_things_count_beside_the_ground() {
+    fn small_objects_count_beside_the_ground() {
         let parts = |a: &World, b: &World| {
             let views = views(&[a, b]);
             let [a, b] = [&views[0], &views[1]];
@@ -238,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn the_camera_is_the_worlds_own() {
+    fn each_world_uses_its_own_camera() {
         let wide = World::from_json("w.json", r#"{ "agent_params": { "field_of_view": 100.0 } }"#).expect("sound");
         let tall = World::from_json("w.json", r#"{ "agent_params": { "agent_height": 4.0 } }"#).expect("sound");
         assert!(distance(&World::default(), &wide) > 0.0);
@@ -246,11 +245,11 @@ mod tests {
     }
 
     #[test]
-    fn nobody_stands_in_what_is_solid() {
+    fn solid_places_are_excluded() {
         let catalogue = Catalogue::default();
         let empty = world("", "");
         assert_eq!(poses(&[&empty], &catalogue).expect("all is free").len(), 64);
-        // Places are 25 m apart, the first 12.5 m from the middle.
+        // Places are 25 m apart, the first 12.5 m from the centre.
         let tree = |x: f64, y: f64| format!(r#"{{ "class": "tree", "coordinates": [{x:?}, {y:?}], "solid": true }}"#);
         let one = world("", &tree(12.5, 12.5));
         let places = [-37.5, -12.5, 12.5, 37.5];
@@ -264,7 +263,7 @@ mod tests {
     }
 
     #[test]
-    fn worlds_seen_from_one_set_of_poses_keep_the_laws_of_a_metric() {
+    fn views_from_one_set_of_poses_satisfy_the_metric_laws() {
         let worlds = [
             world("", ""),
             with_tree(1.0, "[1.0, 0.0, 0.0]"),

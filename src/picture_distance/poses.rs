@@ -1,14 +1,14 @@
-//! The places and directions from which worlds are compared by pictures. What is compared is in the module above.
+//! The places and directions from which worlds are compared by pictures.
 
 use driftworld_env::{Catalogue, Environment};
 use driftworld_spec::World;
 
 use super::{ACROSS, HEADINGS, PictureDistanceError};
 
-/// Where an agent stands and looks.
+/// A place and a direction of view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
-    /// Metres east and north of the middle of the arena.
+    /// Metres east and north of the arena's centre.
     pub position: [f64; 2],
     /// Degrees clockwise from north (+y).
     pub heading_deg: f64,
@@ -16,12 +16,12 @@ pub struct Pose {
 
 /// The same places and directions for all of these worlds.
 ///
-/// The rectangle around the middle that all arenas have is cut into 4 × 4 cells; an agent stands in the middle of each cell
-/// and looks in 4 directions, the first north. Cells whose middle an agent could not stand on in every
-/// world (a wall, a region that cannot be entered, a solid object) are left out. Cell by cell from the south-west, row by row.
+/// The rectangle around the centre that all arenas share is divided into 4 × 4 cells; an agent stands at the centre of each
+/// cell and looks in 4 directions, the first north. Cells whose centre is blocked in any world (by a wall, a forbidden region,
+/// a solid object) are left out. Cell by cell from the south-west, row by row.
 ///
 /// # Errors
-/// [`PictureDistanceError::NoPlace`]; [`PictureDistanceError::World`] for worlds that cannot be begun.
+/// [`PictureDistanceError::NoPlace`]; [`PictureDistanceError::World`] for worlds that cannot be started.
 pub fn poses(worlds: &[&World], catalogue: &Catalogue) -> Result<Vec<Pose>, PictureDistanceError> {
     let sizes = worlds.iter().map(|world| world.environment_params.arena_size());
     let [width, depth] = sizes.fold([f64::INFINITY; 2], |least, size| {

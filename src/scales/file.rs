@@ -1,4 +1,4 @@
-//! [`ScalesFile`]: floors and ceilings of variants as a file. Measuring them is the module's.
+//! [`ScalesFile`]: a file with floors and ceilings of variants.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -10,43 +10,43 @@ use serde::{Deserialize, Serialize};
 use super::{BestAgent, UnlabelledCeiling};
 use crate::{Failure, documents};
 
-/// Floors and ceilings of variants, and how they were measured. A file made by hand needs `scales` alone.
+/// Floors and ceilings of variants, and how they were measured. A file made by hand needs only `scales`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ScalesFile {
     /// Version of the program that measured them.
     #[serde(default)]
     pub version: String,
-    /// Worlds that each agent ran in, of each variant.
+    /// Worlds per variant that each agent ran in.
     #[serde(default)]
     pub worlds: u64,
-    /// The seed that they were drawn under.
+    /// The seed of the worlds.
     #[serde(default)]
     pub seed: u64,
     /// The variants by their names in logs, such as `findobjects_red`.
     pub scales: BTreeMap<String, VariantScale>,
-    /// Ceilings of agents that cannot tell the variants of a set apart.
+    /// Ceilings of agents that cannot distinguish the variants of a set.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub unlabelled: Vec<UnlabelledCeiling>,
 }
 
-/// The floor and ceiling of a variant, in units of reward for an episode.
+/// The floor and ceiling of a variant, in reward per episode.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct VariantScale {
     /// The variant's own name, such as `find_objects#red`.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub variant: String,
-    /// What the best agent earns that knows nothing.
+    /// Reward of the best agent that knows nothing.
     pub floor: f64,
-    /// What an agent earns that knows the map; where it is not above the floor, nothing can be learned.
+    /// Reward of an agent that knows the map; if it is not above the floor, nothing can be learned.
     pub ceiling: f64,
-    /// What each agent earned.
+    /// Results of each agent.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub agents: BTreeMap<String, AgentLevel>,
 }
 
-/// What an agent earned in a variant's worlds.
+/// An agent's results in a variant's worlds.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AgentLevel {
@@ -54,13 +54,12 @@ pub struct AgentLevel {
     pub mean: f64,
     /// Standard error of the mean, over worlds.
     pub standard_error: f64,
-    /// Part of the episodes that succeeded, 0..=1.
+    /// Share of successful episodes, 0..=1.
     pub success: f64,
 }
 
 impl AgentLevel {
-    /// Of episodes, at least two: what each paid, and whether it succeeded. Rounded to six decimals, as files have
-    /// them.
+    /// From at least two episodes, each with its reward and whether it succeeded. Rounded to six decimals, as in files.
     pub(super) fn of(episodes: &[(f64, bool)]) -> Self {
         let num = episodes.len() as f64;
         let mean = episodes.iter().map(|episode| episode.0).sum::<f64>() / num;
@@ -78,7 +77,7 @@ impl ScalesFile {
     /// Reads a file.
     ///
     /// # Errors
-    /// [`Failure`] where it cannot be read or says something else.
+    /// [`Failure`] if it cannot be read or has other contents.
     pub fn read(path: &Path) -> Result<Self, Failure> {
         let expected = "scales, such as {\"scales\": {\"find_red\": {\"floor\": 0, \"ceiling\": 10}}}";
         serde_json::from_str(&documents::text(path)?).map_err(|error| {

@@ -1,6 +1,5 @@
-//! Scales: what agents that know nothing earn in each variant, and one that knows all; measured, and read from files.
-//!
-//! Not here: what metrics do with them, see `driftworld-metrics`.
+//! Scales: measures the rewards of agents that know nothing, and of one that knows everything, in each variant; and reads them
+//! from files.
 
 mod file;
 mod unlabelled;
@@ -21,16 +20,16 @@ pub use unlabelled::{BestAgent, UnlabelledCeiling};
 
 use crate::{Failure, libraries, numbers, tasks};
 
-/// How many worlds each agent runs in where nobody says.
+/// Default number of worlds per agent.
 pub const DEFAULT_SCALES_WORLDS: u64 = 50;
 
-/// The most worlds that an agent can run in.
+/// Most worlds per agent.
 pub const MAX_SCALES_WORLDS: u64 = 10_000;
 
-/// The agents that make the floor: they know nothing of a variant.
+/// The agents for the floor: they know nothing of a variant.
 const FLOOR: [&str; 2] = ["random", "still"];
 
-/// The agent that makes the ceiling: it knows the map and what pays.
+/// The agent for the ceiling: it knows the map and the rewards.
 const CEILING: &str = "onrails";
 
 /// What is measured: the arguments of `driftworld scales`. There are 2 to [`MAX_SCALES_WORLDS`] worlds of each variant.
@@ -62,25 +61,23 @@ pub struct ScalesRequest {
     pub libraries: Vec<PathBuf>,
 }
 
-/// Names between commas; none in an empty text.
+/// Names separated by commas; none in an empty text.
 #[expect(clippy::unnecessary_wraps, reason = "as the command line reads values")]
 fn names(set: &str) -> Result<Vec<String>, Infallible> {
     let names = set.split(',').filter(|name| !name.is_empty());
     Ok(names.map(str::to_owned).collect())
 }
 
-/// Runs three agents in the same worlds of each variant: one that acts at random, one that stands still, one that knows
-/// the map. The better of the first two is the floor, the third the ceiling. `progress` gets each variant that is
-/// done.
+/// Runs three agents in the same worlds of each variant: one that acts at random, one that stands still, one that knows the
+/// map. The better of the first two is the floor, the third the ceiling. `progress` is called after each variant.
 ///
-/// For each set of variants in `unlabelled` these agents run in all of them: one that stands still, one that acts at
-/// random, the expert of each variant held fixed, and that expert until a reward shows that it is in another variant of
-/// the set. The ceilings are those that earn most in the mean over the set: of the agents that do the same in all
-/// variants, and of all. No better agent is known here; that there is none is not shown.
+/// For each set of variants in `unlabelled`, further agents run in all of them: one that stands still, one that acts at random,
+/// the expert of each variant held fixed, and that expert until a reward reveals another variant of the set. The ceilings are
+/// the highest means over the set: among agents that act alike in all variants, and among all. They are the best known agents;
+/// better ones are not excluded.
 ///
 /// # Errors
-/// [`Failure`] where a task or variant is nowhere or wrong, a world cannot be drawn, or the number of worlds is out of
-/// range.
+/// [`Failure`] if a task or variant is missing or invalid, a world cannot be drawn, or the number of worlds is out of range.
 pub fn scales(request: &ScalesRequest, progress: &(dyn Fn() + Sync)) -> Result<ScalesFile, Failure> {
     if !(2..=MAX_SCALES_WORLDS).contains(&request.worlds) {
         return Err(Failure::usage(format!(
@@ -110,7 +107,7 @@ pub fn scales(request: &ScalesRequest, progress: &(dyn Fn() + Sync)) -> Result<S
     })
 }
 
-/// How many variants a request names.
+/// Number of variants in a request.
 ///
 /// # Errors
 /// As [`scales`].
@@ -140,7 +137,7 @@ fn of_variant(variant: &Variant, request: &ScalesRequest, catalogue: &Catalogue)
     })
 }
 
-/// What an agent draws its own random numbers from: the same in every variant, and another in every world.
+/// The seed of an agent's random numbers: the same in every variant, but different in every world.
 fn agent_seed(request: &ScalesRequest, index: u64) -> u64 {
     request.seed.rotate_left(32) ^ index
 }
@@ -153,7 +150,7 @@ fn agents_of_scales() -> [(&'static str, Box<dyn Agent>); 3] {
     ]
 }
 
-/// What an agent earns in a world from the first step to the last, and whether it succeeds.
+/// The reward of an agent's whole episode in a world, and whether it succeeds.
 fn episode(agent: &mut dyn Agent, world: &World, catalogue: &Catalogue) -> Result<(f64, bool), Failure> {
     let mut environment = Environment::with_catalogue(world.clone(), catalogue.clone());
     let mut success = false;

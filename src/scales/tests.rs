@@ -1,4 +1,4 @@
-//! Scales: which agent makes which end, files, and standard errors. Agents are tested where they live.
+//! Scales: which agent gives which end, files, and standard errors.
 
 use super::*;
 
@@ -13,7 +13,7 @@ fn request(worlds: u64) -> ScalesRequest {
 }
 
 #[test]
-fn the_floor_is_the_better_of_random_and_still_and_the_ceiling_knows_the_map() {
+fn floor_is_the_better_of_random_and_still_and_the_ceiling_knows_the_map() {
     let found = scales(&request(3), &|| ()).unwrap();
     assert_eq!(
         found.scales.keys().collect::<Vec<_>>(),
@@ -27,15 +27,15 @@ fn the_floor_is_the_better_of_random_and_still_and_the_ceiling_knows_the_map() {
     let red = &found.scales["findobjects_red"];
     assert!(red.ceiling > red.floor + 100.0, "{red:?}");
     assert_eq!(red.agents["onrails"].success, 1.0);
-    // Whoever stands still there does as well as can be.
+    // Standing still is optimal there.
     let penalty = &found.scales["findobjects_penalty"];
     assert_eq!(penalty.floor, penalty.ceiling);
-    // Measured again, it is the same.
+    // Measuring again gives the same result.
     assert_eq!(scales(&request(3), &|| ()).unwrap(), found);
 }
 
 #[test]
-fn a_file_is_read_as_it_was_written() {
+fn scales_file_round_trips() {
     let found = scales(&request(2), &|| ()).unwrap();
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scales.json");
@@ -56,7 +56,7 @@ fn a_file_is_read_as_it_was_written() {
 }
 
 #[test]
-fn a_standard_error_is_of_the_mean_over_worlds() {
+fn standard_error_is_of_the_mean_over_worlds() {
     let level = AgentLevel::of(&[(1.0, true), (5.0, false), (3.0, false), (3.0, true)]);
     assert_eq!((level.mean, level.success), (3.0, 0.5));
     assert!((level.standard_error - (8.0_f64 / 3.0 / 4.0).sqrt()).abs() < 1e-6);
@@ -81,15 +81,15 @@ fn unlabelled(tasks: &[&str], sets: &[&[&str]], worlds: u64) -> Result<ScalesFil
 }
 
 #[test]
-fn whoever_cannot_know_what_pays_earns_less_than_the_expert() {
+fn agent_that_cannot_know_the_variant_earns_less_than_the_expert() {
     let tasks = ["select_object#green", "select_object#red", "select_object#dusk"];
     let found = unlabelled(&tasks, &[&[]], 4).unwrap();
-    // At dusk it looks otherwise.
+    // At dusk the world looks different.
     let [set] = found.unlabelled.as_slice() else {
         panic!("{found:?}")
     };
     assert_eq!(set.among, ["selectobject_green", "selectobject_red"]);
-    // It costs to be wrong, and episodes go on until 50 points are made or lost.
+    // Mistakes cost, and episodes last until 50 points are won or lost.
     let expert = set.among.iter().map(|name| found.scales[name].ceiling).sum::<f64>() / 2.0;
     let floor = set.among.iter().map(|name| found.scales[name].floor).sum::<f64>() / 2.0;
     assert!(
@@ -100,7 +100,7 @@ fn whoever_cannot_know_what_pays_earns_less_than_the_expert() {
         set.finds_out.mean() > expert - 10.0 && set.finds_out.mean() <= expert,
         "{set:?}"
     );
-    // Metrics get it by the names of logs, and nothing where no set was asked for.
+    // Metrics get the set under log names, and nothing if no set was requested.
     let anchors = found.anchors();
     let of_red = &anchors["selectobject_red"].unlabelled;
     assert_eq!(
@@ -109,13 +109,13 @@ fn whoever_cannot_know_what_pays_earns_less_than_the_expert() {
     );
     assert_eq!(anchors["selectobject_dusk"].unlabelled, []);
     assert_eq!(unlabelled(&tasks, &[], 2).unwrap().unlabelled, []);
-    // Named sets are the same sets.
+    // Naming the set gives the same result.
     let same = unlabelled(&tasks, &[&tasks[..2]], 4).unwrap();
     assert_eq!(same.unlabelled, found.unlabelled);
 }
 
 #[test]
-fn whoever_can_try_comes_near_the_expert() {
+fn agent_that_can_explore_comes_near_the_expert() {
     let tasks = ["find_objects#blue", "find_objects#turned"];
     let found = unlabelled(&tasks, &[&[]], 3).unwrap();
     let set = &found.unlabelled[0];
@@ -129,7 +129,7 @@ fn whoever_can_try_comes_near_the_expert() {
 }
 
 #[test]
-fn sets_that_can_be_told_apart_are_refused() {
+fn distinguishable_sets_are_refused() {
     let check = |sets: &[&[&str]], expected: &str| {
         let tasks = ["select_object#green", "select_object#dusk", "select_object#slow"];
         let said = unlabelled(&tasks, sets, 2).unwrap_err().to_string();

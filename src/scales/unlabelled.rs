@@ -1,5 +1,4 @@
-//! Ceilings of agents that cannot know the variant: nothing that they see at the start tells it, and no label does. What
-//! one agent does in one world is `env`'s.
+//! Ceilings of agents that cannot know the variant: neither their first view nor a label reveals it.
 
 use std::collections::BTreeMap;
 
@@ -13,49 +12,49 @@ use serde::{Deserialize, Serialize};
 use super::{AgentLevel, ScalesRequest, episode};
 use crate::{Failure, tasks};
 
-/// In how many worlds the first pictures are compared.
+/// Worlds in which the first pictures are compared.
 const PICTURES: u64 = 5;
 
-/// What agents earn at best that cannot know which of these variants they are in, as far as it is known.
+/// The best known rewards of agents that cannot know which of these variants they are in.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct UnlabelledCeiling {
-    /// The variants, each as likely as the others, by their names in logs.
+    /// The variants, equally likely, by their names in logs.
     pub among: Vec<String>,
-    /// The best agent that does the same in all of them, such as one without memory.
+    /// The best agent that acts alike in all of them, such as one without memory.
     pub fixed: BestAgent,
-    /// The best agent that may also find out within an episode, from what it is paid.
+    /// The best agent that may also infer the variant from rewards within an episode.
     pub finds_out: BestAgent,
 }
 
-/// The agent that earns most in the mean over a set of variants.
+/// The agent with the highest mean over a set of variants.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BestAgent {
-    /// Which agent it is, in words.
+    /// Description of the agent.
     #[serde(default)]
     pub agent: String,
-    /// What it earns in each of the variants.
+    /// Its results in each of the variants.
     pub levels: BTreeMap<String, AgentLevel>,
 }
 
 impl BestAgent {
-    /// What it earns in the mean over the variants.
+    /// Its mean reward over the variants.
     pub fn mean(&self) -> f64 {
         self.levels.values().map(|level| level.mean).sum::<f64>() / self.levels.len().max(1) as f64
     }
 }
 
-/// One agent that is tried.
+/// A candidate agent.
 #[derive(Clone, Copy)]
 enum Ignorant {
     /// Stands still.
     Still,
     /// Acts at random.
     Random,
-    /// The expert of one variant, whatever happens.
+    /// The expert of one variant throughout.
     Fixed(usize),
-    /// The expert of one variant until a reward shows another.
+    /// The expert of one variant until a reward reveals another.
     FindsOut(usize),
 }
 
@@ -78,7 +77,7 @@ impl Ignorant {
         }
     }
 
-    /// What it earns in one of these worlds, one of each variant, and whether it succeeds.
+    /// Its reward in one of these worlds, which are one of each variant, and whether it succeeds.
     fn run(self, worlds: &[World], place: usize, seed: u64, expertise: &Expertise) -> Result<(f64, bool), Failure> {
         let (abroad, catalogue) = (&worlds[place], &expertise.catalogue);
         let found = match self {
@@ -98,10 +97,10 @@ impl Ignorant {
     }
 }
 
-/// The sets that a request asks for: those that it names, or all of the measured variants that look alike.
+/// The requested sets: those named, or all measured variants that look alike.
 ///
 /// # Errors
-/// [`Failure`] where a named variant is not measured, stands alone, or does not look like the others.
+/// [`Failure`] if a named variant is not measured, is alone in its set, or does not look like the others.
 pub(super) fn sets_of<'a>(
     variants: &'a [(String, Variant)],
     request: &ScalesRequest,
@@ -124,7 +123,7 @@ pub(super) fn sets_of<'a>(
     Ok(sets)
 }
 
-/// All sets of two variants or more that look alike.
+/// All sets of at least two variants that look alike.
 fn alike<'a>(
     variants: &'a [(String, Variant)],
     request: &ScalesRequest,
@@ -149,7 +148,7 @@ fn alike<'a>(
     Ok(sets)
 }
 
-/// The set of these names, which must look alike.
+/// The set with these names, which must look alike.
 fn named<'a>(
     names: &[String],
     variants: &'a [(String, Variant)],
@@ -189,7 +188,7 @@ fn named<'a>(
     Ok(set)
 }
 
-/// By what two variants can be told apart before anything was paid; `None` if nothing shows it.
+/// What distinguishes two variants before any reward; `None` if nothing does.
 fn unlike(
     a: &Variant,
     b: &Variant,
@@ -209,7 +208,7 @@ fn unlike(
     Ok(None)
 }
 
-/// A world without what says what pays, when, and what ends an episode.
+/// A world without rewards, their conditions, and the ends of episodes.
 fn unpaid(world: &World) -> Result<World, Failure> {
     let bare = world.clone().edit(|world| {
         world.rules = Rules::default();
@@ -227,7 +226,7 @@ fn unpaid(world: &World) -> Result<World, Failure> {
     Ok(bare?)
 }
 
-/// What the agent sees at first, in the images that the world asks for.
+/// The agent's first view, in the images that the world asks for.
 fn first_picture(world: &World, catalogue: &Catalogue) -> (Vec<u8>, Vec<u8>) {
     let shows_pay = world.agent_params.modalities.contains(&Modality::Segmentation);
     let mut environment = Environment::with_catalogue(world.clone(), catalogue.clone());
@@ -236,11 +235,10 @@ fn first_picture(world: &World, catalogue: &Catalogue) -> (Vec<u8>, Vec<u8>) {
     (frame.rgb.clone(), pay)
 }
 
-/// Lets every agent run in the same worlds of each variant of a set, and takes those that earn most in the mean over
-/// variants.
+/// Runs every candidate in the same worlds of each variant of a set, and takes those with the highest mean over variants.
 ///
 /// # Errors
-/// [`Failure`] where a world cannot be drawn.
+/// [`Failure`] if a world cannot be drawn.
 pub(super) fn ceiling(
     set: &[&Variant],
     request: &ScalesRequest,
@@ -281,7 +279,7 @@ pub(super) fn ceiling(
     };
     let best = |is_one: &dyn Fn(Ignorant) -> bool| {
         let agents = Ignorant::all(set.len()).enumerate().filter(|(_, agent)| is_one(*agent));
-        // Of equals the first, which knows least.
+        // Ties go to the first, which knows least.
         let better = |best: BestAgent, other: BestAgent| if other.mean() > best.mean() { other } else { best };
         agents.map(of_agent).reduce(better).expect("one stands still")
     };

@@ -1,4 +1,4 @@
-//! [`Comparison`]: what several lifetimes say together, and of two agents which is better. The statistics are `metrics`'.
+//! [`Comparison`]: aggregates of several lifetimes, and comparisons of two agents.
 
 use std::collections::BTreeSet;
 
@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use crate::{Failure, argument};
 
-/// What several lifetimes say together.
+/// Aggregates of several lifetimes.
 #[derive(Clone, Debug, Serialize)]
 #[non_exhaustive]
 pub struct Comparison {
@@ -21,16 +21,16 @@ pub struct Comparison {
     /// Each metric over the other agent's lifetimes.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub repeats_against: Vec<RepeatedMetric>,
-    /// Each metric, how probably a lifetime is better than one of the other agent.
+    /// For each metric, the probability that a lifetime is better than one of the other agent.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub improvement: Vec<ComparedMetric>,
-    /// Each metric, what so many lifetimes can show, if that was asked for.
+    /// For each metric, what this number of lifetimes can show, if requested.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub power: Vec<MetricPower>,
 }
 
 impl Comparison {
-    /// Of lifetimes, and of another agent's, or none.
+    /// From lifetimes, and another agent's, if any.
     pub(super) fn new(
         lifetimes: &[LifetimeMetrics],
         others: &[LifetimeMetrics],

@@ -1,4 +1,4 @@
-//! The single-task experts that lifetimes are compared with: logs that were named, and those kept in a folder, read when they are needed.
+//! The single-task experts that lifetimes are compared with: given logs, and those stored in a folder, read on demand.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -17,7 +17,7 @@ pub(crate) struct Experts {
     stored: Vec<Stored>,
 }
 
-/// The stored experts of one task, and their logs once they were read.
+/// The stored experts of one task, and their logs once read.
 struct Stored {
     task: StoredTask,
     logs: OnceLock<Result<Vec<SteLog>, String>>,
@@ -40,7 +40,7 @@ impl Experts {
         })
     }
 
-    /// What is said of experts that were named for a lifetime without their task.
+    /// Notes on given experts whose task the lifetime does not have.
     pub(crate) fn left_aside(&self, log: &Log, options: &Options) -> Vec<String> {
         let tasks = tasks(log, options);
         let trained: Vec<&str> = self.trained().collect();
@@ -60,7 +60,7 @@ impl Experts {
         strangers.map(warning).collect()
     }
 
-    /// The experts of the tasks that a lifetime has.
+    /// The experts of a lifetime's tasks.
     pub(crate) fn of(&self, log: &Log, options: &Options) -> Result<Vec<SteLog>, Failure> {
         let trained: Vec<&str> = self.trained().collect();
         let taken = serving(&tasks(log, options), &trained);
@@ -70,7 +70,7 @@ impl Experts {
                 experts.push(self.named[index].clone());
                 continue;
             };
-            // What comes behind those that were named is stored.
+            // Indices beyond the given experts are stored ones.
             let stored = &self.stored[number];
             let read = || {
                 let logs = stored
@@ -89,15 +89,15 @@ impl Experts {
         Ok(of_the_lifetime(log, experts))
     }
 
-    /// The tasks that experts trained: of those that were named, then of those that are stored.
+    /// The tasks that experts trained: first the given ones, then the stored ones.
     fn trained(&self) -> impl Iterator<Item = &str> {
         let stored = self.stored.iter().map(|stored| stored.task.task_name.as_str());
         self.named.iter().map(SteLog::task_name).chain(stored)
     }
 }
 
-/// Of the experts of each task those that were designed with the lifetime, by the name of its scenario, where there are any: several
-/// lifetimes may be scored with the experts of all.
+/// For each task, the experts designed with the lifetime, by the name of its scenario, if there are any: several lifetimes may
+/// be scored with the experts of all.
 fn of_the_lifetime(log: &Log, experts: Vec<SteLog>) -> Vec<SteLog> {
     let Some(own) = scenario_name(log).map(|name| format!("{name}-")) else {
         return experts;
@@ -112,12 +112,12 @@ fn of_the_lifetime(log: &Log, experts: Vec<SteLog>) -> Vec<SteLog> {
     experts.into_iter().filter(serves).collect()
 }
 
-/// The name of the scenario that a log was run from, where it says.
+/// The name of the scenario that a log was run from, if logged.
 fn scenario_name(log: &Log) -> Option<&str> {
     log.scenario_info.extra.get("scenario")?.get("name")?.as_str()
 }
 
-/// Positions of the experts that serve some of the tasks.
+/// Indices of the experts that serve some of the tasks.
 fn serving(tasks: &[String], trained: &[&str]) -> BTreeSet<usize> {
     tasks.iter().flat_map(|task| experts_serving(task, trained)).collect()
 }
@@ -158,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn each_lifetime_has_its_own_experts_and_others_where_it_has_none() {
+    fn each_lifetime_uses_its_own_experts_or_else_others() {
         let expert = |scenario, task| SteLog::new(log_of(scenario, task)).expect("one task");
         let experts = vec![
             expert("c-1-red", "f_red"),

@@ -1,5 +1,4 @@
-//! What agents kept and transferred, from the folders of their logs: [`score`]. What a score is, is `metrics`'; what is
-//! printed of it, the command's.
+//! [`score`]: scores logs by folder: what agents kept and transferred.
 
 mod comparison;
 mod experts;

@@ -1,4 +1,4 @@
-//! [`ScoringRequest`]: which logs are scored, by which settings, and what they are compared with.
+//! [`ScoringRequest`]: the logs to score, the settings, and the comparisons.
 
 use std::path::PathBuf;
 
@@ -13,27 +13,28 @@ use driftworld_text::when;
 use super::settings;
 use crate::{Failure, argument, log_folders};
 
-/// Which logs are scored, and how.
+/// The logs to score, and how.
 #[derive(Clone, Debug, Default)]
 pub struct ScoringRequest {
-    /// Folders of logs; those of the settings file where there are none.
+    /// Folders of logs; by default those of the settings file.
     pub logs: Vec<PathBuf>,
-    /// Take all logs in the folders, also up to four levels below; links are not looked into.
+    /// Whether to take all logs in the folders, also up to four levels below; links are not searched.
     pub recursive: bool,
-    /// Folders of another agent's logs, or of folders of such: how probably is a lifetime of the first better?
+    /// Folders of another agent's logs, or folders that contain them, to compute the probability that a lifetime of the first
+    /// is better.
     pub against: Vec<PathBuf>,
-    /// How each lifetime is scored.
+    /// Scoring settings of each lifetime.
     pub settings: ScoringSettings,
-    /// Scale each task by its range over all lifetimes, not each lifetime by its own; so it is with `against` anyway.
+    /// Whether to scale each task by its range over all lifetimes, not each lifetime by its own; always so with `against`.
     pub common_ranges: bool,
-    /// Say how many lifetimes show a difference of this much, in each metric's own unit; needs several lifetimes.
+    /// Computes how many lifetimes show a difference of this size, in each metric's own unit; needs several lifetimes.
     pub power: Option<f64>,
     /// How intervals over several lifetimes are made.
     pub intervals: BootstrapOptions,
 }
 
 impl ScoringRequest {
-    /// The request to score these logs as is usual.
+    /// The request to score these logs with default settings.
     pub fn of<P: Into<PathBuf>>(logs: impl IntoIterator<Item = P>) -> Self {
         Self {
             logs: logs.into_iter().map(Into::into).collect(),
@@ -106,12 +107,12 @@ pub struct ScoringChoice {
     pub clamp_outliers: bool,
 }
 
-/// How a lifetime is scored: what was chosen, and what was read from files for it.
+/// Scoring settings: explicit choices, and contents of files.
 #[derive(Clone, Debug, Default)]
 pub struct ScoringSettings {
-    /// What was chosen.
+    /// Explicit choices.
     pub choice: ScoringChoice,
-    /// A JSON file of settings, l2metrics' or ours, to start from.
+    /// A JSON file of settings to start from, l2metrics' or ours.
     pub file: Option<PathBuf>,
     /// The range of each task.
     pub data_range: Option<DataRanges>,
@@ -119,12 +120,12 @@ pub struct ScoringSettings {
     pub scales: Option<Scales>,
     /// Normal noise on every performance of the lifetime, in normalised units.
     pub noise: Option<Noise>,
-    /// Follow the published definitions where the reference's program departs from them.
+    /// Whether to follow the published definitions where the reference's program departs from them.
     pub strict_definitions: bool,
 }
 
 impl ScoringSettings {
-    /// The options: defaults, then the file, then what is said here.
+    /// The options: defaults, overridden by the file, overridden by these settings.
     pub(crate) fn options(&self) -> Result<Options, Failure> {
         let mut options = match &self.file {
             Some(path) => settings::load(path)?.options,
@@ -157,7 +158,7 @@ impl ScoringSettings {
         Ok(options)
     }
 
-    /// The log that the file of settings was saved for.
+    /// The log for which the settings file was saved.
     fn log_of_file(&self) -> Result<Option<PathBuf>, Failure> {
         let path = self.file.as_deref();
         Ok(path.map(settings::load).transpose()?.and_then(|loaded| loaded.log_dir))

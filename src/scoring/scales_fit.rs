@@ -1,5 +1,5 @@
-//! What is said of scales that do not fit a log: that none does, that a name is nearly one, and that a set of tasks that
-//! look alike was measured with others alone. What is scaled by them is `metrics`'.
+//! Warnings about scales that do not fit a log: none applies, a name is slightly different, or a set of tasks that look alike
+//! was measured with other tasks.
 
 use driftworld_metrics::{Log, Options, Scales};
 use driftworld_spec::did_you_mean;
@@ -7,10 +7,10 @@ use driftworld_text::first_of;
 
 use super::experts::{scored_name, tasks};
 
-/// The most names that are listed.
+/// Most names listed.
 const MOST_NAMES: usize = 5;
 
-/// What a reader must know of the scales of this log.
+/// Warnings about the scales of this log.
 pub(super) fn unfit_scales(log: &Log, options: &Options) -> Vec<String> {
     let Some(scales) = &options.scales else {
         return Vec::new();
@@ -41,7 +41,7 @@ pub(super) fn unfit_scales(log: &Log, options: &Options) -> Vec<String> {
     found
 }
 
-/// Says so where tasks of a log are known to look alike, but were measured with others alone.
+/// A warning if tasks of a log are known to look alike, but were measured with other tasks only.
 fn alike_with_others(scales: &Scales, tasks: &[String]) -> Option<String> {
     let mut alone: Vec<&str> = Vec::new();
     for (name, anchors) in scales.iter().filter(|(name, _)| tasks.contains(name)) {

@@ -1,4 +1,4 @@
-//! [`ScoredLog`]: a log, the lifetime in it, and its scores; many at once. What a score is, is `metrics`'.
+//! [`ScoredLog`]: a log with its lifetime and scores; reads many in parallel.
 
 use std::path::{Path, PathBuf};
 
@@ -12,12 +12,12 @@ use super::Experts;
 use super::scales_fit::unfit_scales;
 use crate::{Failure, Warn, argument, log_folders};
 
-/// One lifetime with everything that is known of it.
+/// One lifetime with all its data.
 pub(crate) struct ScoredLog {
     pub(crate) log: Log,
     pub(crate) lifetime: Lifetime,
     pub(crate) metrics: LifetimeMetrics,
-    /// What is odd about it, which `warn` received already.
+    /// Warnings about it, which `warn` has received already.
     pub(crate) warnings: Vec<String>,
 }
 
@@ -54,7 +54,7 @@ impl ScoredLog {
     }
 }
 
-/// A column that is not there was asked for, or is what is asked for by default.
+/// Adds advice if the missing column was requested, or is the default.
 fn without_column(error: MetricsError) -> Failure {
     let MetricsError::UnknownColumn { column, available, .. } = &error else {
         return error.into();
@@ -63,13 +63,13 @@ fn without_column(error: MetricsError) -> Failure {
     Failure::because(format!("{}: {error}{advice}", argument("perf_measure")), error)
 }
 
-/// What is said of an expert's log that lacks rows.
+/// A warning about an expert's log that lacks rows.
 fn missing_rows(log: &Log) -> Option<String> {
     let missing = |warning: &&LogWarning| matches!(warning, LogWarning::Missing { .. });
     log.warnings.iter().find(missing).map(ToString::to_string)
 }
 
-/// Says how many rows are passed over because they have no number.
+/// A warning with the number of rows skipped because they have no number.
 fn missing_numbers(log: &Log, column: &str) -> Option<String> {
     let is_complete = |status: &ExpStatus| *status == ExpStatus::Complete;
     let complete = log
@@ -86,8 +86,8 @@ fn missing_numbers(log: &Log, column: &str) -> Option<String> {
         .then(|| format!("{missing} of {complete} complete rows have no number in column {column} and are ignored"))
 }
 
-/// Reads and scores many logs and keeps of each what `keep` makes of it. The failure names every log that cannot be
-/// scored, with the first error as its cause.
+/// Reads and scores many logs and keeps the result of `keep` for each. The failure names every log that cannot be scored, with
+/// the first error as its cause.
 pub(super) fn each_log<T: Send>(
     logs: &[PathBuf],
     experts: &Experts,

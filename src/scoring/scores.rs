@@ -1,4 +1,4 @@
-//! [`score`]: the scores of one lifetime or of several, together and against another agent's; and the files they are
+//! [`score`]: the scores of one lifetime or of several, aggregated and compared with another agent's; and the files they are
 //! saved in, under l2metrics' names.
 
 use std::path::{Path, PathBuf};
@@ -11,39 +11,38 @@ use super::varied::{Makeup, Varied};
 use super::{Comparison, ScoredLog, ScoringRequest, Setup, score_logs};
 use crate::{Failure, Warn, output_file};
 
-/// What several lifetimes are called together, as in l2metrics.
+/// The common name of several lifetimes, as in l2metrics.
 const NAME_OF_SEVERAL: &str = "ll_metrics";
 
-/// The scores of lifetimes. Serialises to what `driftworld metrics --json` prints: one lifetime alone, or several with
-/// what they say together.
+/// The scores of lifetimes. Serialises to the output of `driftworld metrics --json`: one lifetime alone, or several with their
+/// aggregates.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct Scores {
-    /// The lifetimes, each by itself, in the order of their logs.
+    /// The lifetimes separately, in the order of their logs.
     pub lifetimes: Vec<LifetimeMetrics>,
     /// Those of the other agent.
     pub lifetimes_against: Vec<LifetimeMetrics>,
-    /// What they say together; `None` for one lifetime alone.
+    /// Their aggregates; `None` for a single lifetime.
     pub comparison: Option<Comparison>,
-    /// What differs between them; `None` for one alone.
+    /// The differences between them; `None` for a single one.
     pub varied: Option<Varied>,
-    /// What they were scored by.
+    /// The scoring options.
     pub options: Options,
-    /// The folders that were asked for.
+    /// The requested folders.
     asked: Vec<PathBuf>,
     recursive: bool,
 }
 
-/// Scores the logs that a request names. `warn` receives what is odd, log by log.
+/// Scores the logs of a request. `warn` receives warnings for each log.
 ///
 /// # Errors
-/// [`Failure`] where a log cannot be read or scored, or the request contradicts itself; of several logs it names all that
-/// fail.
+/// [`Failure`] if a log cannot be read or scored, or the request contradicts itself; among several logs it names all that fail.
 pub fn score(request: &ScoringRequest, warn: Warn<'_>) -> Result<Scores, Failure> {
     score_looking(request, warn, |_| Ok(()))
 }
 
-/// The same, and hands each log with its lifetime to `look`, from any thread.
+/// Like [`score`], and passes each log with its lifetime to `look`, from any thread.
 pub(crate) fn score_looking(
     request: &ScoringRequest,
     warn: Warn<'_>,
@@ -77,14 +76,14 @@ pub(crate) fn score_looking(
 }
 
 impl Scores {
-    /// Saves the results in a folder, made if need be: of one lifetime `NAME_metrics.json`, `NAME_regime.tsv` and
-    /// `NAME_settings.json`; of several, or where folders were searched, `NAME.json`, `NAME.tsv`, `NAME_regime.tsv`,
-    /// `NAME_settings.json`; and `NAME_repeats.json` with what they say together. Hands back the files.
+    /// Saves the results in a folder, which is created if necessary: for one lifetime `NAME_metrics.json`, `NAME_regime.tsv`
+    /// and `NAME_settings.json`; for several, or after searching folders, `NAME.json`, `NAME.tsv`, `NAME_regime.tsv`,
+    /// `NAME_settings.json`; and `NAME_repeats.json` with their aggregates. Returns the files.
     ///
-    /// `name` is the log's, or `ll_metrics` for several, where there is none.
+    /// `name` defaults to the log's, or `ll_metrics` for several.
     ///
     /// # Errors
-    /// [`Failure`] where a file cannot be written, or for a name that no file can have.
+    /// [`Failure`] if a file cannot be written, or for a name that no file can have.
     pub fn save(&self, folder: &Path, name: Option<&str>) -> Result<Vec<PathBuf>, Failure> {
         let logs = self.asked.iter().map(|log| log.display().to_string());
         let settings = Settings {
@@ -131,7 +130,7 @@ impl Serialize for Scores {
     }
 }
 
-/// Refuses to say what lifetimes can show where there is one, or of a difference that is none.
+/// Refuses power calculations for a single lifetime, or for an invalid difference.
 fn check_power(effect: Option<f64>, num: usize) -> Result<(), Failure> {
     let Some(effect) = effect else { return Ok(()) };
     let (found, expected) = if !(effect.is_finite() && effect > 0.0) {
@@ -147,7 +146,7 @@ fn check_power(effect: Option<f64>, num: usize) -> Result<(), Failure> {
     ))
 }
 
-/// Each lifetime with what l2metrics' files have no field for.
+/// Each lifetime with the values that l2metrics' files have no field for.
 fn whole(lifetimes: &[LifetimeMetrics]) -> Vec<WholeLifetime<'_>> {
     lifetimes.iter().map(LifetimeMetrics::whole).collect()
 }

@@ -1,4 +1,4 @@
-//! Settings from files: as l2metrics or this command saved them, and ranges of tasks.
+//! Reads settings saved by l2metrics or by this command, and ranges of tasks.
 
 use std::path::{Path, PathBuf};
 
@@ -11,7 +11,7 @@ use serde_json::{Map, Value, json};
 use crate::contents::Contents;
 use crate::{Failure, documents};
 
-/// Keys of l2metrics' settings that say what is read, written or drawn, not how a lifetime is scored.
+/// Keys of l2metrics' settings about input, output or drawing, which do not affect scores.
 const NOT_SCORING: [&str; 13] = [
     "log_dir",
     "output_dir",
@@ -28,15 +28,15 @@ const NOT_SCORING: [&str; 13] = [
     "ste",
 ];
 
-/// What a settings file says.
+/// The contents of a settings file.
 #[derive(Debug)]
 pub(super) struct Loaded {
     pub(super) options: Options,
-    /// The log that the settings were saved for.
+    /// The log for which the settings were saved.
     pub(super) log_dir: Option<PathBuf>,
 }
 
-/// Reads a settings file, of l2metrics or ours.
+/// Reads a settings file, l2metrics' or ours.
 pub(super) fn load(path: &Path) -> Result<Loaded, Failure> {
     let text = documents::text_of(path, &[Contents::Settings])?;
     let mut settings = object(
@@ -94,7 +94,7 @@ pub(super) fn load(path: &Path) -> Result<Loaded, Failure> {
     Ok(Loaded { options, log_dir })
 }
 
-/// l2metrics says noise as `[MEAN, STD]`, and `[0, 0]` for none.
+/// l2metrics writes noise as `[MEAN, STD]`, and `[0, 0]` for none.
 fn noise_of_l2metrics(noise: &Value) -> Value {
     match noise.as_array().map(Vec::as_slice) {
         Some([mean, std]) if mean.as_f64() == Some(0.0) && std.as_f64() == Some(0.0) => Value::Null,
@@ -106,7 +106,7 @@ fn noise_of_l2metrics(noise: &Value) -> Value {
 /// Reads the ranges of tasks from a file: `{"find_red": {"min": 0, "max": 10}}`. Names are lower-cased, as in the metrics.
 ///
 /// # Errors
-/// [`Failure`] where it cannot be read or says something else.
+/// [`Failure`] if it cannot be read or has other contents.
 pub fn data_ranges(path: &Path) -> Result<DataRanges, Failure> {
     let expected = "an object of ranges, such as {\"find_red\": {\"min\": 0, \"max\": 10}}";
     let mut ranges = DataRanges::new();
@@ -132,7 +132,7 @@ pub fn data_ranges(path: &Path) -> Result<DataRanges, Failure> {
     Ok(ranges)
 }
 
-/// The file with the line and column at which a key of its object stands.
+/// The file with the line and column of a key in its object.
 fn place(path: &Path, text: &str, key: &str) -> String {
     let pointer = format!("/{}", key.replace('~', "~0").replace('/', "~1"));
     let wanted = [Wanted {
@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn settings_of_l2metrics_are_understood() {
+    fn l2metrics_settings_are_understood() {
         let text = r#"{"log_dir": "logs/a", "perf_measure": "performance", "maintenance_method": "both", "window_length": null,
             "noise": [0, 0.5], "do_smooth_eval_data": true, "show_eval_lines": true, "do_plot": true}"#;
         let Loaded { options, log_dir } = loaded(text).expect("these are settings");
@@ -198,7 +198,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_setting_is_named() {
+    fn unknown_settings_are_named() {
         let check = |text: &str, expected: &str| {
             assert_eq!(loaded(text).expect_err("it is wrong").to_string(), expected);
         };

@@ -1,5 +1,5 @@
-//! [`Setup`]: what lifetimes are scored by and compared with, and one scale where they are compared: each task's range over
-//! all of them. How performances are scaled is `metrics`'.
+//! [`Setup`]: the scoring options and experts of a request, with a common scale if lifetimes are compared: each task's range
+//! over all of them.
 
 use std::path::PathBuf;
 
@@ -9,17 +9,17 @@ use rayon::prelude::*;
 use super::{Experts, ScoringRequest};
 use crate::{Failure, log_folders};
 
-/// What lifetimes are scored by, and the logs that they are compared with.
+/// Scoring options, with the logs to compare with.
 pub(crate) struct Setup {
     pub(crate) logs: Vec<PathBuf>,
     pub(crate) options: Options,
     pub(crate) experts: Experts,
-    /// The other agent's; none where there is no other.
+    /// The other agent's logs; empty without another agent.
     pub(crate) others: Vec<PathBuf>,
 }
 
 impl Setup {
-    /// As the request says; on one scale for all lifetimes where two agents are compared, or where it is asked for.
+    /// From a request; with one scale for all lifetimes if two agents are compared, or on request.
     pub(crate) fn new(logs: Vec<PathBuf>, request: &ScoringRequest) -> Result<Self, Failure> {
         let (mut options, choice) = (request.settings.options()?, &request.settings.choice);
         let experts = Experts::new(&choice.experts, choice.expert_store.as_deref())?;
@@ -36,9 +36,9 @@ impl Setup {
     }
 }
 
-/// The options with each task's range over all these logs, so that levels of different lifetimes can be compared.
+/// The options with each task's range over all these logs, so that levels of different lifetimes are comparable.
 ///
-/// Where nothing is normalised, or ranges were given, they are as they were.
+/// Unchanged if nothing is normalised, or ranges were given.
 fn with_common_ranges(logs: &[PathBuf], experts: &Experts, mut options: Options) -> Options {
     if options.normalization_method == NormalizationMethod::Off || options.data_range.is_some() {
         return options;
@@ -48,7 +48,7 @@ fn with_common_ranges(logs: &[PathBuf], experts: &Experts, mut options: Options)
         let lifetime = Lifetime::prepare(&log, &experts.of(&log, &options).ok()?, &options).ok()?;
         lifetime.normalization_data_range().cloned()
     };
-    // What cannot be read or scored is reported when all are scored.
+    // Logs that cannot be read or scored are reported when all are scored.
     let own: Vec<_> = logs.par_iter().filter_map(own).collect();
     let mut common = DataRanges::new();
     for (task, range) in own.into_iter().flatten() {
@@ -59,7 +59,7 @@ fn with_common_ranges(logs: &[PathBuf], experts: &Experts, mut options: Options)
     options
 }
 
-/// What must be known before levels of different lifetimes are compared, where each has a scale of its own.
+/// A caution about comparing levels of lifetimes that each have their own scale.
 pub(crate) fn own_scale(options: &Options) -> Option<String> {
     let is_own = options.normalization_method != NormalizationMethod::Off
         && options.data_range.is_none()

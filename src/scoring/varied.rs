@@ -1,4 +1,4 @@
-//! [`Varied`]: what differs between lifetimes that are summed up together, so that an interval says what it is over.
+//! [`Varied`]: the differences between aggregated lifetimes, so that an interval states what it covers.
 
 use std::collections::BTreeSet;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -6,29 +6,29 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use driftworld_metrics::{BlockType, Log};
 use serde::Serialize;
 
-/// What of a lifetime other lifetimes may have, too.
+/// The properties of a lifetime that others may share.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Makeup {
     order: Vec<String>,
-    /// Of tasks, seeds and numbers of worlds, in whichever order; nothing where the log does not say them.
+    /// A hash of tasks, seeds and world indices in any order; `None` if not logged.
     learned: Option<u64>,
     evaluated: Option<u64>,
     agent: String,
     run_seed: String,
 }
 
-/// What differs between lifetimes. `None` where the logs do not say.
+/// Which properties differ between lifetimes. `None` if not logged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Varied {
     /// The order in which tasks are learned.
     pub order: bool,
-    /// The worlds that are learned in.
+    /// The worlds used for learning.
     pub learning_worlds: Option<bool>,
-    /// The worlds that are evaluated in. Where they are the same, an interval does not cover other worlds.
+    /// The worlds used for evaluation. If they are the same, an interval does not cover other worlds.
     pub evaluation_worlds: Option<bool>,
-    /// The agent, as logs name it.
+    /// The agent, by its name in logs.
     pub agent: bool,
-    /// The seed of the run, from which the agent's own random numbers come.
+    /// The run seed, which determines the agent's own random numbers.
     pub run_seed: bool,
 }
 
@@ -54,7 +54,7 @@ impl Makeup {
     }
 }
 
-/// The worlds of one kind of block, as one number.
+/// A hash of the worlds in one kind of block.
 fn worlds(log: &Log, kind: BlockType) -> Option<u64> {
     let rows = &log.rows;
     let indices = rows.metric("world_index")?;
@@ -80,7 +80,7 @@ fn worlds(log: &Log, kind: BlockType) -> Option<u64> {
 }
 
 impl Varied {
-    /// Between at least two lifetimes.
+    /// The differences between at least two lifetimes.
     pub(super) fn between(lifetimes: &[Makeup]) -> Option<Self> {
         let [first, others @ ..] = lifetimes else { return None };
         if others.is_empty() {
@@ -100,7 +100,7 @@ impl Varied {
         })
     }
 
-    /// The same in a sentence or two.
+    /// The differences in one or two sentences.
     pub fn sentence(self) -> String {
         let all = [
             ("order", Some(self.order)),
@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn what_differs_in_one_lifetime_differs() {
+    fn one_differing_lifetime_is_a_difference() {
         let lifetimes = [
             makeup(&["a", "b"], 1, Some(5)),
             makeup(&["a", "b"], 1, Some(5)),

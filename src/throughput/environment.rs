@@ -1,4 +1,4 @@
-//! How fast environments step, draw and reset, and how much memory one takes.
+//! Measures how fast environments step, render and reset, and how much memory one takes.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -12,13 +12,13 @@ use crate::Failure;
 
 use super::{Figures, rate, rates};
 
-/// 20 objects of 2,652 triangles spread over a walled arena of 100 × 100 m; rewards for touching and for coming near.
+/// 20 objects of 2,652 triangles spread over a walled arena of 100 × 100 m; rewards for touching and approaching.
 const ARENA_20: &str = include_str!("../../env/benches/scenes/arena_20.json");
 
 /// The same with 8 objects.
 const ARENA_8: &str = include_str!("../../env/benches/scenes/arena_8.json");
 
-/// A maze drawn for each world, with a goal. The agent starts in the middle of a cell.
+/// A maze drawn for each world, with a goal. The agent starts at the centre of a cell.
 const MAZE: &str = r#"{ "version": 2, "name": "maze",
     "world": {
         "environment_params": { "layout": { "maze": { "cells": [8, 8], "cell": 3, "height": 2.5, "braid": 0.2 } } },
@@ -27,19 +27,19 @@ const MAZE: &str = r#"{ "version": 2, "name": "maze",
     "groups": [{ "name": "goal", "count": 1, "placement": { "points": { "values": [[10.5, 10.5]] } },
                  "object": { "class": "geometric", "scale": 0.4, "reward": 1, "reward_once_stimulus": ["AgentCollide"] } }] }"#;
 
-/// Environments that step together: few enough that their pictures stay near the processor.
+/// Environments that step together: few enough that their pictures stay in the processor's cache.
 const NUM_ENVS: usize = 16;
 
-/// Environments that two cores share: enough that handing them out does not count.
+/// Environments shared by two cores: enough that scheduling does not matter.
 const NUM_ENVS_OF_TWO: usize = 256;
 
-/// A circle of 19 m radius, which passes between the objects.
+/// A circle of 19 m radius that passes between the objects.
 const CURVE: Action = Action::Continuous([5.0, 15.0, 0.0]);
 
-/// Environments whose memory is measured.
+/// Environments for measuring memory.
 const NUM_MEASURED: usize = 512;
 
-/// Steps, with physics, rewards and pictures, and resets, each second.
+/// Steps, with physics, rewards and pictures, and resets, per second.
 pub(crate) fn measure(round: Duration, renderer: RendererKind) -> Result<Figures, Failure> {
     if Renderer::new(renderer)?.kind() == RendererKind::Gpu {
         return measure_graphics(round);
@@ -89,7 +89,7 @@ pub(crate) fn measure(round: Duration, renderer: RendererKind) -> Result<Figures
     Ok(figures)
 }
 
-/// Steps with pictures of a graphics card, each second, in batches; all threads step.
+/// Steps with pictures from a graphics card, per second, in batches; all threads step.
 fn measure_graphics(round: Duration) -> Result<Figures, Failure> {
     let square = arena(ARENA_20, [84, 84])?;
     let colors = in_color(square.clone())?;
@@ -102,8 +102,8 @@ fn measure_graphics(round: Duration) -> Result<Figures, Failure> {
     ]))
 }
 
-/// Mazes of 8 × 8 cells with a goal and images of 84 × 84 pixels in colour, depth and segmentation; each world has one of
-/// its own.
+/// Mazes of 8 × 8 cells with a goal and images of 84 × 84 pixels in colour, depth and segmentation; each world has a different
+/// one.
 fn mazes() -> Result<Sampler, Failure> {
     let task = TaskSpec::from_json("maze.json", MAZE)?;
     Ok(Sampler::new(&task.variant("default")?, 7))
@@ -141,11 +141,11 @@ fn batch(world: &World, num_envs: usize, num_threads: usize, renderer: RendererK
     Ok(Batch::new(num_envs, Arc::new(move |_| Ok(world.clone())), options)?)
 }
 
-/// Steps of single environments each second, in a batch.
+/// Steps of single environments per second, in a batch.
 fn steps(mut batch: Batch, round: Duration) -> Result<f64, Failure> {
     let num_envs = batch.num_envs();
     let mut actions = vec![Action::Continuous([0.0; 3]); num_envs];
-    // Not all at the same place of the circle: the first ones set out, one after the other.
+    // Spreads them along the circle: groups start one after the other.
     for group in 0..NUM_ENVS {
         actions[group * num_envs / NUM_ENVS..(group + 1) * num_envs / NUM_ENVS].fill(CURVE);
         for _ in 0..4 {
@@ -155,8 +155,8 @@ fn steps(mut batch: Batch, round: Duration) -> Result<f64, Failure> {
     Ok(rate(round, |_| batch.step(&actions))? * num_envs as f64)
 }
 
-/// Memory that each of many environments adds to the process, images in all modalities of the bench included; where the system
-/// tells.
+/// Memory per environment that many of them add to the process, including images in all modalities of the bench; `None` if the
+/// system does not report it.
 fn kilobytes_per_environment(world: &World) -> Result<Option<u64>, Failure> {
     let Some(before) = resident() else { return Ok(None) };
     let batch = batch(world, NUM_MEASURED, 1, RendererKind::Cpu)?;
@@ -165,7 +165,7 @@ fn kilobytes_per_environment(world: &World) -> Result<Option<u64>, Failure> {
     Ok(Some(after.saturating_sub(before) / NUM_MEASURED as u64))
 }
 
-/// Kilobytes of this process in memory, on Linux.
+/// Resident memory of this process in kilobytes, on Linux.
 fn resident() -> Option<u64> {
     // The system's own, not by driftworld-files: no user names it.
     let status = std::fs::read_to_string("/proc/self/status").ok()?;

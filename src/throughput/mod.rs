@@ -1,5 +1,4 @@
-//! How fast environments are on this machine: the figures of `driftworld bench env`. All other benches are criterion's, beside
-//! each crate.
+//! Measures the speed of environments on this machine, for `driftworld bench env`.
 
 pub(crate) mod environment;
 
@@ -7,13 +6,13 @@ use std::time::{Duration, Instant};
 
 use serde_json::{Map, Value, json};
 
-/// Figures under their names.
+/// Figures by name.
 pub(crate) type Figures = Map<String, Value>;
 
-/// How many rounds the median is taken of.
+/// Number of rounds for the median.
 const ROUNDS: usize = 5;
 
-/// How often a job is done each second: the median of several rounds, after one to warm up.
+/// How often a job runs per second: the median of several rounds, after one to warm up.
 fn rate<E>(round: Duration, mut job: impl FnMut(u64) -> Result<(), E>) -> Result<f64, E> {
     let mut rates = Vec::with_capacity(ROUNDS);
     let mut index = 0;
@@ -21,7 +20,7 @@ fn rate<E>(round: Duration, mut job: impl FnMut(u64) -> Result<(), E>) -> Result
         let start = Instant::now();
         let first = index;
         while start.elapsed() < round {
-            // The clock is read once for several jobs, which may be short.
+            // Reads the clock once for several jobs, which may be short.
             for _ in 0..16 {
                 job(index)?;
                 index += 1;
@@ -35,7 +34,7 @@ fn rate<E>(round: Duration, mut job: impl FnMut(u64) -> Result<(), E>) -> Result
     Ok(rates[rates.len() / 2])
 }
 
-/// Figures that are rates, whole.
+/// Rates as whole numbers.
 fn rates<const N: usize>(figures: [(&str, f64); N]) -> Figures {
     let named = figures.into_iter();
     named
