@@ -1,5 +1,4 @@
-//! The stage `fences`: rules of the house that neither rustfmt, clippy nor cargo-deny know. Imports are in `rooms.rs`, public items
-//! in `unreached.rs`; links are checked by `book/build.py`.
+//! The stage `fences`: project rules that neither rustfmt, clippy nor cargo-deny can check.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -11,16 +10,16 @@ use crate::{metadata, rooms, unreached};
 
 const MAP: &str = "ARCHITECTURE.md";
 const UNSAFE: &str = "docs/unsafe.md";
-// In two pieces, for this file is checked, too.
+// In two pieces, because this file is checked, too.
 const TO_DO: &str = concat!("TO", "DO");
 
-/// Folders of developers, who name their own files.
+/// Developer tools, whose users are developers and name their own files.
 const TOOLS: [&str; 1] = ["xtask/"];
 
-/// Pages whose paths in backticks are all of this repository. Other pages also name files of their readers.
+/// Pages whose paths in backticks all belong to this repository. Other pages also name their readers' files.
 const MAPS: [&str; 3] = ["ARCHITECTURE.md", "CONTRIBUTING.md", "README.md"];
 
-/// Calls that only one crate makes: who has a reason writes `not by CRATE:` in a comment above.
+/// Calls reserved for one crate: exceptions need a comment `not by CRATE:` above with the reason.
 const ONE_WAY: [(&str, &str, &str); 4] = [
     (
         "fs::read(",
@@ -81,7 +80,7 @@ pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome> {
     }
 }
 
-/// What is wrong with the text of files.
+/// The violations in the text of files.
 fn check(sources: &Sources) -> Vec<String> {
     let mut findings = Vec::new();
     for (path, text) in sources.with_extensions(&["rs"]) {
@@ -113,7 +112,7 @@ fn check(sources: &Sources) -> Vec<String> {
     findings
 }
 
-/// Calls that only one crate makes, without a reason above.
+/// Reserved calls from other crates, without a reason above.
 fn other_ways(path: &str, text: &str) -> Vec<String> {
     let raw: Vec<&str> = text.lines().collect();
     let mut findings = Vec::new();
@@ -152,7 +151,8 @@ fn is_bare_to_do(line: &str) -> bool {
     })
 }
 
-/// Differences between the table of `docs/unsafe.md` and how often each Rust file has unsafe blocks, functions and implementations.
+/// Differences between the table in `docs/unsafe.md` and the number of unsafe blocks, functions and implementations in each
+/// Rust file.
 fn unsafety(sources: &Sources) -> Vec<String> {
     let in_line = |line: &str| {
         let code = line.split("//").next().unwrap_or_default();
@@ -194,13 +194,13 @@ fn prose(text: &str) -> impl Iterator<Item = (usize, &str)> {
     })
 }
 
-/// What stands between pairs of backticks.
+/// The texts between pairs of backticks.
 fn code_spans(line: &str) -> impl Iterator<Item = &str> {
     let closed = line.matches('`').count() / 2;
     line.split('`').skip(1).step_by(2).take(closed)
 }
 
-/// Whether what stands in backticks on a page looks like a path of this repository and leads nowhere.
+/// Whether a text in backticks on a page looks like a path of this repository but does not exist.
 fn dangles(sources: &Sources, page: &str, span: &str) -> bool {
     let is_one_word = !span.is_empty() && !span.contains(|letter: char| letter.is_whitespace() || letter == '<');
     let is_file = ["rs", "md", "toml", "json"].contains(&extension(span));
@@ -252,7 +252,7 @@ mod tests {
     }
 
     #[test]
-    fn files_open_with_their_purpose_and_name_the_issue_of_a_to_do() {
+    fn files_open_with_their_purpose_and_to_dos_name_an_issue() {
         check_files(
             &[
                 ("a.rs", "//! Purpose.\n"),
@@ -266,7 +266,7 @@ mod tests {
     }
 
     #[test]
-    fn files_are_opened_and_shown_in_one_way() {
+    fn reserved_calls_need_a_reason() {
         let text = "//! A.\nlet a = std::fs::read(path);\n// Locked, not by driftworld-files: it is a folder.\nlet a = File::open(path);\n\
                     let b = BlockFile::open(path.display().to_string());\nformat!(\"{}\", path.display());\n";
         check_files(&[("spec/src/a.rs", text)], &["spec/src/a.rs:2: ", "spec/src/a.rs:6: "]);
@@ -296,7 +296,7 @@ mod tests {
     }
 
     #[test]
-    fn the_list_of_unsafe_code_is_complete() {
+    fn list_of_unsafe_code_is_complete() {
         let code = concat!(
             "//! A.\n// un",
             "safe { }\nfn f() { un",

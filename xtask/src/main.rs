@@ -1,4 +1,4 @@
-//! The developer commands: `cargo xtask test`, each of its stages alone, and what writes generated files.
+//! The developer commands: `cargo xtask test`, each of its stages alone, and the generators of committed files.
 #![expect(
     clippy::print_stdout,
     clippy::print_stderr,
@@ -68,7 +68,7 @@ fn main() -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// The stages that the arguments name, and whether `--all` is among these.
+/// The stages named by the arguments, and whether `--all` is given.
 fn parse(words: &[&str]) -> Result<(Vec<&'static Stage>, bool)> {
     let named = |name: &str| {
         let known = || STAGES.map(|stage| stage.name).join(", ");
@@ -107,7 +107,7 @@ fn workspace(is_full: bool) -> Result<Workspace> {
     })
 }
 
-/// What Cargo says of the workspace around the current folder. Dependencies are not resolved, so no network is needed.
+/// Cargo's metadata of the current folder's workspace. Dependencies are not resolved, so no network is needed.
 fn metadata() -> Result<Value> {
     let mut cargo = std::process::Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     cargo.args(["metadata", "--no-deps", "--format-version", "1"]);
@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn stages_are_asked_for_alone_or_together() {
+    fn stages_are_requested_alone_or_together() {
         let (all, quick): (Vec<_>, Vec<_>) = (
             STAGES.iter().map(|stage| stage.name).collect(),
             STAGES

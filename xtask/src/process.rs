@@ -1,19 +1,19 @@
-//! Runs other programs. An error is a sentence that names the command and how it ended.
+//! Runs other programs. An error is a sentence with the command and how it ended.
 
 use std::env;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};
 
-/// An error is printed and ends the command; nothing else is done with it.
+/// Errors are only printed, and end the command.
 pub(crate) type Result<T = ()> = std::result::Result<T, String>;
 
-/// The checkout that xtask was called in.
+/// The checkout in which xtask was called.
 pub(crate) struct Workspace {
     /// The folder of the root `Cargo.toml`.
     pub(crate) root: PathBuf,
     /// Cargo's build folder.
     pub(crate) target: PathBuf,
-    /// Whether everything is checked, with all features and at full size, as `--all` asks.
+    /// Whether everything is checked, with all features and at full size, as with `--all`.
     pub(crate) is_full: bool,
 }
 
@@ -22,15 +22,15 @@ impl Workspace {
     pub(crate) fn cargo(&self, arguments: &[&str]) -> Command {
         let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
         let mut command = self.program(cargo.as_ref(), arguments);
-        // A stage builds once: files for building again would only cost time and disk.
+        // A stage builds once: incremental files would only cost time and disk space.
         if env::var_os("CARGO_INCREMENTAL").is_none() {
             command.env("CARGO_INCREMENTAL", "0");
         }
         command
     }
 
-    /// `cargo` over all crates with one set of features, so that no stage builds what another has built. Without `--all`, but
-    /// for the protocol of Unity and the fuzz targets: nothing builds on them, and they bring fifty crates along.
+    /// `cargo` for all crates with one set of features, so that stages share their builds. Without `--all`, excludes the Unity
+    /// protocol and the fuzz targets: nothing depends on them, and they need fifty further crates.
     pub(crate) fn cargo_everywhere(&self, arguments: &[&str]) -> Command {
         let mut command = self.cargo(arguments);
         command.arg("--workspace");
@@ -50,20 +50,20 @@ impl Workspace {
     }
 }
 
-/// Prints the command, runs it with our own input and output, and fails when it does.
+/// Prints the command, runs it with our own input and output, and fails if it fails.
 pub(crate) fn run(mut command: Command) -> Result {
     println!("$ {}", shown(&command));
     let status = command.status();
     ended(&command, status)
 }
 
-/// Whether the command starts and ends well; its output is thrown away.
+/// Whether the command starts and succeeds; its output is discarded.
 pub(crate) fn works(mut command: Command) -> bool {
     let quiet = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
     quiet.status().is_ok_and(|status| status.success())
 }
 
-/// What the command prints; its errors go to ours.
+/// The command's output; its errors are passed through.
 pub(crate) fn output(mut command: Command) -> Result<String> {
     let done = command.stderr(Stdio::inherit()).output();
     let text = done.as_ref().map_or_else(
@@ -102,7 +102,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn errors_show_the_command_as_a_user_would_type_it() {
+    fn errors_show_the_command_as_typed() {
         let mut command = Command::new("/opt/rust/bin/no-such-cargo");
         command.args(["doc", "--no-deps"]).env("RUSTDOCFLAGS", "-D warnings");
         let error = run(command).unwrap_err();

@@ -1,4 +1,4 @@
-//! The stages that need Python, and the virtual environments that they run in, below Cargo's build folder.
+//! The stages that need Python, with their virtual environments below Cargo's build folder.
 
 use std::env;
 use std::fs;
@@ -11,10 +11,10 @@ use crate::stage::{Outcome, missing};
 pub(crate) const NO_INTERPRETER: &str =
     "no Python from 3.10 on with venv and pip (Debian: apt install python3-venv), or name one in DRIFTWORLD_PYTHON";
 
-/// Any Python that the package supports.
+/// Any Python version that the package supports.
 pub(crate) const ANY: &str = "(3, 10) <= sys.version_info";
 
-/// Tests that hold with every version of Gymnasium: run once more with the oldest.
+/// Tests that pass with every version of Gymnasium: repeated with the oldest.
 const ANY_GYMNASIUM: [&str; 4] = [
     "tests/test_gymnasium.py",
     "tests/test_vector.py",
@@ -27,7 +27,7 @@ pub(crate) struct Environment {
     interpreter: PathBuf,
 }
 
-/// The interpreter that `DRIFTWORLD_PYTHON` names, else the first of the usual names, of such a version and with venv and pip.
+/// The interpreter in `DRIFTWORLD_PYTHON`, else the first of the usual names, with a suitable version, venv and pip.
 pub(crate) fn interpreter(version: &str) -> Option<PathBuf> {
     let usual = "python3 python python3.13 python3.12 python3.11 python3.10".split(' ');
     let names = env::var_os("DRIFTWORLD_PYTHON")
@@ -51,7 +51,7 @@ fn python(interpreter: &Path, arguments: &[&str]) -> Command {
 }
 
 impl Environment {
-    /// The one of that name with all that lists of packages ask for; made if it does not work.
+    /// The environment of this name with the packages of all these lists; created if it does not work.
     pub(crate) fn with(workspace: &Workspace, interpreter: &Path, name: &str, lists: &[&str]) -> Result<Self> {
         let folder = workspace.target.join("python").join(name);
         let environment = Self {
@@ -75,15 +75,15 @@ impl Environment {
         command
     }
 
-    /// Runs its pip in the root, with words and behind them what may have blanks in it.
+    /// Runs its pip in the root, with `words` split at spaces, followed by arguments that may contain spaces.
     pub(crate) fn pip(&self, workspace: &Workspace, words: &str, rest: &[&str]) -> Result {
         let mut pip = self.python(workspace, &["-m", "pip", "--disable-pip-version-check"]);
         pip.args(words.split(' ')).args(rest);
         run(pip)
     }
 
-    /// Installs the wheel without what it needs, which is there already. One interpreter builds it, whatever the environment's own,
-    /// so that Cargo finds nothing to do.
+    /// Installs the wheel without dependencies, which exist already. One interpreter builds it for all environments, so that
+    /// Cargo has nothing to rebuild.
     pub(crate) fn install_driftworld(&self, workspace: &Workspace) -> Result {
         let builder = Self::with(workspace, &interpreter(ANY).ok_or(NO_INTERPRETER)?, "newcomer", &[])?;
         let wheels = workspace.target.join("python/wheels");
@@ -93,7 +93,7 @@ impl Environment {
         self.pip(workspace, anew, &[wheels, "driftworld"])
     }
 
-    /// Runs tests of the package on the installed wheel, a file on each core, without a display.
+    /// Runs tests of the package on the installed wheel, one file per core, without a display.
     fn pytest(&self, workspace: &Workspace, arguments: &[&str]) -> Result {
         let mut pytest = self.python(workspace, &["-m", "pytest", "--quiet"]);
         pytest
@@ -105,7 +105,7 @@ impl Environment {
     }
 }
 
-/// Does what a newcomer does: an empty environment, the README's command, its examples, the command of the console.
+/// Follows a newcomer's steps: an empty environment, the README's command, its examples, the console command.
 pub(crate) fn wheel(workspace: &Workspace) -> Result<Outcome> {
     let Some(interpreter) = interpreter(ANY) else {
         return missing("PYTHON", NO_INTERPRETER.into());
@@ -118,13 +118,13 @@ pub(crate) fn wheel(workspace: &Workspace) -> Result<Outcome> {
     newcomer.pip(workspace, "install --quiet ./python", &[])?;
     let mut first_steps = newcomer.python(workspace, &["-W", "error"]);
     first_steps.arg(workspace.root.join("python/tests/newcomer.py"));
-    // From a folder outside the checkout's packages: what runs is what was installed.
+    // From a folder outside the checkout's packages, so that the installed package is used.
     first_steps.current_dir(workspace.target.join("python"));
     run(first_steps)?;
     Ok(Outcome::Passed(String::new()))
 }
 
-/// Judges `tests/documents` by the committed schemas, with the `jsonschema` of Python.
+/// Checks `tests/documents` against the committed schemas, with Python's `jsonschema`.
 pub(crate) fn documents(workspace: &Workspace) -> Result<Outcome> {
     let list = "tests/documents/requirements.txt";
     match quick_environment(workspace, list) {
@@ -135,7 +135,7 @@ pub(crate) fn documents(workspace: &Workspace) -> Result<Outcome> {
     }
 }
 
-/// Checks and tests the package with the libraries that are quick to install, then with the oldest Gymnasium in their place.
+/// Checks and tests the package with the libraries that are quick to install, then with the oldest Gymnasium instead.
 pub(crate) fn package(workspace: &Workspace) -> Result<Outcome> {
     let tests = match quick_environment(workspace, "python/tests/requirements.txt") {
         Ok(tests) => tests,
@@ -181,14 +181,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_users_own_environment_is_left_out() {
+    fn users_own_environment_is_ignored() {
         let command = python(Path::new("python3"), &["-c", ""]);
         assert_eq!(command.get_envs().filter(|(_, value)| value.is_none()).count(), 3);
         assert!(!works(python(Path::new("no-such-python"), &["-c", ""])));
     }
 
     #[test]
-    fn lists_and_tests_are_where_they_are_looked_for() {
+    fn lists_and_tests_exist() {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../python");
         for test in ANY_GYMNASIUM {
             assert!(folder.join(test).is_file(), "{test}");

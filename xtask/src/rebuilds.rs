@@ -1,5 +1,5 @@
-//! The stage `rebuilds`: no third-party crate lies in the build folder twice under one profile. Twice means that two of our
-//! crates ask different features of it, and everybody waits for it twice; `features/Cargo.toml` makes them one.
+//! The stage `rebuilds`: no third-party crate is in the build folder twice under one profile. That happens if two of our crates
+//! request different features of it, and makes everybody wait for it twice; `features/Cargo.toml` unifies them.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -8,7 +8,7 @@ use std::path::Path;
 use crate::process::{Result, Workspace, about};
 use crate::stage::{Outcome, missing};
 
-/// Looks through the build folder, after all that the other stages built into it.
+/// Searches the build folder after all other stages have built into it.
 pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome> {
     let mut built = 0;
     let mut twice = Vec::new();
@@ -32,7 +32,7 @@ pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome> {
     )
 }
 
-/// How many times each third-party library lies in a folder, as `name-version`. Checks leave no library.
+/// Number of builds of each third-party library in a folder, as `name-version`. Checks leave no library.
 fn builds(folder: &Path) -> Result<BTreeMap<String, usize>> {
     let mut builds = BTreeMap::new();
     if !folder.exists() {
@@ -42,7 +42,7 @@ fn builds(folder: &Path) -> Result<BTreeMap<String, usize>> {
         let path = entry.map_err(about(folder))?.path();
         let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
         let stem = name.strip_suffix(".rlib").or_else(|| name.strip_suffix(".so"));
-        // The sources that it was made of stand in the file beside it, as a rule for `make`.
+        // Its sources are listed in the file beside it, as a rule for `make`.
         let list = stem
             .and_then(|stem| stem.strip_prefix("lib"))
             .map(|stem| folder.join(format!("{stem}.d")));

@@ -1,9 +1,9 @@
-//! Which of our crates may import which, and where versions of dependencies stand. Third-party crates are fenced into rooms by
-//! `[bans]` of `deny.toml`.
+//! Checks which of our crates import which, and where versions of dependencies are given. `[bans]` in `deny.toml` restricts
+//! third-party crates.
 
 use serde_json::Value;
 
-/// Each crate with the crates of ours that it may import in any way, without `driftworld-` in front.
+/// Each crate with our crates that it may import, directly or indirectly, without the prefix `driftworld-`.
 const ROOMS: [(&str, &str); 17] = [
     ("features", ""),
     ("text", ""),
@@ -39,7 +39,7 @@ const ROOMS: [(&str, &str); 17] = [
     ("xtask", "features"),
 ];
 
-/// Imports that the table does not allow, in what `cargo metadata` says.
+/// Imports that the table does not allow, from `cargo metadata`.
 pub(crate) fn check(metadata: &Value) -> Vec<String> {
     let of = |value: &Value| value.as_array().cloned().unwrap_or_default();
     let name = |package: &Value| {
@@ -70,8 +70,8 @@ pub(crate) fn check(metadata: &Value) -> Vec<String> {
     findings
 }
 
-/// Dependencies of a manifest that bring a version or path of their own. `features/` may: it names third-party crates that no room
-/// imports.
+/// Dependencies of a manifest with their own version or path. `features/` may have them: it names third-party crates that no
+/// crate of ours imports.
 pub(crate) fn versions(path: &str, manifest: &str) -> Vec<String> {
     let mut is_dependency = false;
     let mut findings = Vec::new();
@@ -98,7 +98,7 @@ mod tests {
     use serde_json::json;
 
     #[test]
-    fn what_an_import_imports_is_allowed_too() {
+    fn indirect_imports_are_allowed() {
         let allowed = |name: &str| {
             ROOMS
                 .iter()
@@ -118,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn imports_beside_the_table_are_found() {
+    fn forbidden_imports_are_found() {
         let package = |name: &str, imports: &[&str]| {
             let dependencies: Vec<_> = imports.iter().map(|name| json!({ "name": name })).collect();
             json!({ "name": name, "dependencies": dependencies })
@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn versions_stand_in_the_root() {
+    fn versions_are_in_the_root() {
         let manifest = "[package]\nname = \"a\"\n[dependencies]\n# Why.\na.workspace = true\nb = { workspace = true, optional = true }\n\
                         c = \"1\"\n[target.'cfg(unix)'.dev-dependencies]\nd = { path = \"../d\" }\n[workspace.dependencies]\ne = \"1\"\n";
         let found = versions("spec/Cargo.toml", manifest);

@@ -1,5 +1,5 @@
-//! The stage `tests`: cargo-nextest where it is installed, `cargo test` elsewhere. Doc tests are a stage of their own, for
-//! nextest cannot run them.
+//! The stage `tests`: runs cargo-nextest if installed, otherwise `cargo test`. Doc tests are a separate stage, because nextest
+//! cannot run them.
 
 use std::env;
 use std::io::{self, BufRead, BufReader};
@@ -17,7 +17,7 @@ pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome> {
         workspace.cargo_everywhere(&["test", "--lib", "--bins", "--tests"])
     };
     if workspace.is_full {
-        // The commands of pages run in the build that their readers have.
+        // Commands on pages run in the build that readers have.
         run(workspace.cargo(&["build", "--release"]))?;
         let built = workspace.target.join("release/driftworld");
         command.env("DRIFTWORLD_FULL", "1").env("DRIFTWORLD_COMMAND", built);
@@ -27,8 +27,8 @@ pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome> {
     relay(command).map(|closing| Outcome::Passed(summary(&closing)))
 }
 
-/// Runs the command, passes on what it prints line by line, and returns the lines that close a test run: nextest's one
-/// `Summary`, or `test result` of each program.
+/// Runs the command, passes its output on line by line, and returns the closing lines of test runs: nextest's single `Summary`,
+/// or `test result` of each program.
 fn relay(mut command: Command) -> Result<Vec<String>> {
     let (reader, writer) = io::pipe().map_err(|error| error.to_string())?;
     let other = writer.try_clone().map_err(|error| error.to_string())?;
@@ -48,7 +48,7 @@ fn relay(mut command: Command) -> Result<Vec<String>> {
     ended(&command, child.and_then(|mut child| child.wait())).map(|()| closing)
 }
 
-/// nextest's own line, or the counts of all `cargo test` lines added up.
+/// nextest's own line, or the sum of all `cargo test` lines.
 fn summary(closing: &[String]) -> String {
     if let Some(line) = closing.iter().find(|line| line.starts_with("Summary")) {
         return line.clone();

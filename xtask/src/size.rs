@@ -1,4 +1,4 @@
-//! The stage `size` and `cargo xtask size`: `SIZE.md`, which lists the lines of code of each room beside a limit.
+//! The stage `size` and `cargo xtask size`: `SIZE.md` lists the lines of code of each room with a limit.
 
 use std::fs;
 
@@ -22,7 +22,7 @@ It also fails if a count is more than 2% out of date: `cargo xtask size` writes 
 |---|--:|--:|---|
 ";
 
-/// The rooms: a file belongs to the first that has a prefix of its path.
+/// The rooms: a file belongs to the first room with a prefix of its path.
 const ROOMS: [(&str, &[&str]); 23] = [
     ("spec", &["spec/", "schema_errors/"]),
     ("generator", &["generator/"]),
@@ -65,7 +65,7 @@ struct Row {
     reason: String,
 }
 
-/// Fails if a room is over its limit or the counts in the file are out of date.
+/// Fails if a room exceeds its limit or the counts in the file are out of date.
 pub(crate) fn check(workspace: &Workspace) -> Result<Outcome> {
     let counts = count(&Sources::read(&workspace.root)?);
     let written = fs::read_to_string(workspace.root.join(FILE)).unwrap_or_default();
@@ -73,7 +73,7 @@ pub(crate) fn check(workspace: &Workspace) -> Result<Outcome> {
     Ok(Outcome::Passed(summary(&counts)))
 }
 
-/// Writes the counts anew and keeps limits and reasons; fails if a room is over its limit.
+/// Updates the counts and keeps limits and reasons; fails if a room exceeds its limit.
 pub(crate) fn rewrite(workspace: &Workspace) -> Result {
     let counts = count(&Sources::read(&workspace.root)?);
     let path = workspace.root.join(FILE);
@@ -83,7 +83,7 @@ pub(crate) fn rewrite(workspace: &Workspace) -> Result {
     report(&complaints(&counts, &written, false))
 }
 
-/// Lines of code by room, without rooms that have none.
+/// Lines of code by room, without empty rooms.
 fn count(sources: &Sources) -> Vec<(&'static str, usize)> {
     let mut counts: Vec<(&str, usize)> = ROOMS.iter().map(|(room, _)| (*room, 0)).collect();
     let (mut tests, mut total) = (0, 0);
@@ -128,7 +128,7 @@ fn rows(text: &str) -> Vec<Row> {
     text.lines().filter_map(row).collect()
 }
 
-/// The file. A new room gets a limit a little above its count.
+/// The contents of the file. A new room gets a limit a little above its count.
 fn table(counts: &[(&str, usize)], written: &[Row]) -> String {
     let mut text = OPENING.to_owned();
     for (room, lines) in counts {
@@ -140,7 +140,7 @@ fn table(counts: &[(&str, usize)], written: &[Row]) -> String {
     text
 }
 
-/// What is wrong with the written rows. Differences below 20 lines are never out of date.
+/// Problems of the written rows. Differences below 20 lines are never out of date.
 fn complaints(counts: &[(&str, usize)], written: &[Row], are_counts_compared: bool) -> Vec<String> {
     let mut complaints = Vec::new();
     for &(room, lines) in counts {
@@ -214,7 +214,7 @@ mod tests {
     }
 
     #[test]
-    fn a_table_is_read_as_it_was_written() {
+    fn table_round_trips() {
         let written = [row("spec", 90, 120, "a new law"), row("gone", 1, 1, "")];
         let text = table(&[("spec", 100), ("generator", 30)], &written);
         assert!(text.starts_with(OPENING));
@@ -225,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn only_limits_and_old_counts_are_complaints() {
+    fn only_limits_and_old_counts_are_problems() {
         let found = |lines, written: &[Row]| complaints(&[("spec", lines)], written, true).join("\n");
         let written = [row("spec", 10_000, 10_100, "")];
         assert_eq!(found(10_100, &written), "");

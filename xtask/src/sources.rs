@@ -1,4 +1,4 @@
-//! The files of the checkout as git lists them, and the code of Rust and Python files without blank lines, comments and tests.
+//! The files of the checkout as listed by git, and the code of Rust and Python files without blank lines, comments and tests.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -7,7 +7,7 @@ use std::process::Command;
 
 use crate::process::{Result, output};
 
-/// Paths relative to the root, `/` between folders, each with its text; files that are not UTF-8 have an empty text.
+/// Paths relative to the root, with `/` between folders, each with its text; files that are not UTF-8 have an empty text.
 pub(crate) struct Sources {
     files: BTreeMap<String, String>,
 }
@@ -16,7 +16,7 @@ impl Sources {
     /// Reads tracked files, and new ones that git does not ignore.
     pub(crate) fn read(root: &Path) -> Result<Self> {
         let mut list = Command::new("git");
-        // A checkout that another user owns, as in a container, is read all the same.
+        // Also reads a checkout owned by another user, as in a container.
         list.args(["-c", &format!("safe.directory={}", root.display())])
             .args(["ls-files", "-z", "--cached", "--others", "--exclude-standard"])
             .current_dir(root);
@@ -26,7 +26,7 @@ impl Sources {
         Ok(Self { files: files.collect() })
     }
 
-    /// Sources made of these files.
+    /// Sources from these files.
     #[cfg(test)]
     pub(crate) fn of(files: &[(&str, &str)]) -> Self {
         let owned = files
@@ -41,7 +41,7 @@ impl Sources {
         files.filter(|(path, _)| extensions.contains(&extension(path)))
     }
 
-    /// The text of a file; empty without one.
+    /// The text of a file; empty if it does not exist.
     pub(crate) fn text(&self, path: &str) -> &str {
         self.files.get(path).map_or("", String::as_str)
     }
@@ -59,26 +59,26 @@ impl Sources {
                 .is_some_and(|(file, _)| file.starts_with(&folder))
     }
 
-    /// Whether any file, in whatever folder, has this name.
+    /// Whether any file, in any folder, has this name.
     pub(crate) fn has_name(&self, name: &str) -> bool {
         self.files.keys().any(|file| file.rsplit('/').next() == Some(name))
     }
 }
 
-/// The letters after the last dot of a file's name; empty for a name without a dot.
+/// The part of a file's name after the last dot; empty without a dot.
 pub(crate) fn extension(path: &str) -> &str {
     let name = path.rsplit('/').next().unwrap_or(path);
     name.rsplit_once('.').map_or("", |(_, extension)| extension)
 }
 
-/// Whether a whole file is made for tests, benches, examples or fuzzing.
+/// Whether a whole file is for tests, benches, examples or fuzzing.
 pub(crate) fn is_test_file(path: &str) -> bool {
     let (folders, name) = path.rsplit_once('/').unwrap_or(("", path));
     let is_test_folder = |folder: &str| ["tests", "benches", "examples", "fuzz"].contains(&folder);
     name == "tests.rs" || folders.split('/').any(is_test_folder)
 }
 
-/// A file's lines of code: for each line whether it is one, and whether it belongs to a test.
+/// Classifies each line of a file: whether it is code, and whether it belongs to a test.
 pub(crate) fn lines_of_code(path: &str, text: &str) -> Vec<Line> {
     let lines: Vec<&str> = text.lines().collect();
     let is_python = extension(path) == "py";
@@ -105,7 +105,7 @@ pub(crate) fn lines_of_code(path: &str, text: &str) -> Vec<Line> {
     found
 }
 
-/// What a line of a file is.
+/// The class of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Line {
     /// Blank, or a comment.
@@ -114,7 +114,7 @@ pub(crate) enum Line {
     Test,
 }
 
-/// The end of the block comment or docstring that begins a line, and what follows its opening.
+/// The end marker of the block comment or docstring that starts on a line, and the text after its opening.
 fn opened_comment(word: &str, is_python: bool) -> Option<(&'static str, &str)> {
     if is_python {
         let word = word.strip_prefix('r').unwrap_or(word);
@@ -123,12 +123,12 @@ fn opened_comment(word: &str, is_python: bool) -> Option<(&'static str, &str)> {
     word.strip_prefix("/*").map(|rest| ("*/", rest))
 }
 
-/// A line without the comment at its end.
+/// A line without its trailing comment.
 fn before_comment(line: &str) -> &str {
     line.split_once(" // ").map_or(line, |(code, _)| code)
 }
 
-/// The lines of a file; those of comments and of tests are empty.
+/// The lines of a file; comments and tests become empty.
 pub(crate) fn shipped_lines(text: &str) -> Vec<&str> {
     let code = |line: &str| !line.trim_start().starts_with("//");
     let mut lines: Vec<&str> = text
@@ -146,7 +146,7 @@ pub(crate) fn shipped_lines(text: &str) -> Vec<&str> {
     lines
 }
 
-/// The last line of the item, field or statement that begins at a line; files are formatted.
+/// The last line of the item, field or statement that starts at a line; files are formatted.
 pub(crate) fn end(lines: &[&str], start: usize) -> usize {
     let indent = |line: &str| line.len() - line.trim_start().len();
     let Some(first) = lines.get(start) else {
@@ -162,7 +162,7 @@ pub(crate) fn end(lines: &[&str], start: usize) -> usize {
     rest.map_or(lines.len() - 1, |length| start + length)
 }
 
-/// Whether a letter may stand in a name.
+/// Whether a character may occur in a name.
 pub(crate) fn is_of_name(letter: char) -> bool {
     letter.is_alphanumeric() || letter == '_'
 }
@@ -187,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn tests_are_counted_apart() {
+    fn tests_are_counted_separately() {
         let inline = "fn f() {}\n#[cfg(test)]\nmod tests {\n    fn g() {}\n}\nfn h() {}\n";
         assert_eq!(
             lines_of_code("spec/src/a.rs", inline),
@@ -202,7 +202,7 @@ mod tests {
         ] {
             assert_eq!(lines_of_code(path, "fn f() {}\n"), [Test], "{path}");
         }
-        // A module in a file of its own is no block to skip.
+        // A module in its own file is no block to skip.
         assert_eq!(
             lines_of_code("spec/src/a.rs", "#[cfg(test)]\nmod tests;\nfn f() {}\n"),
             [Code, Code, Code]

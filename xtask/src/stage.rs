@@ -1,4 +1,4 @@
-//! The stages of `cargo xtask test`: their names, their order, and running them one after the other.
+//! The stages of `cargo xtask test`: names, order, and execution.
 
 use std::env;
 use std::process::Command;
@@ -7,11 +7,11 @@ use std::time::Instant;
 use crate::process::{Result, Workspace, run, works};
 use crate::{examples, fences, python, rebuilds, runner, schemas, size, unity};
 
-/// How a stage that did not fail ended.
+/// The outcome of a stage that did not fail.
 pub(crate) enum Outcome {
-    /// With a note for the summary, maybe empty.
+    /// With a note for the summary, possibly empty.
     Passed(String),
-    /// With what was not checked.
+    /// With the checks that were skipped.
     Partly(String),
     /// With what is missing.
     Skipped(String),
@@ -21,9 +21,9 @@ pub(crate) enum Outcome {
 pub(crate) struct Stage {
     /// The word after `--only`.
     pub(crate) name: &'static str,
-    /// Whether it runs without `--all`, too.
+    /// Whether it also runs without `--all`.
     pub(crate) is_quick: bool,
-    /// What holds when it passes.
+    /// What a pass means.
     about: &'static str,
     run: fn(&Workspace) -> Result<Outcome>,
 }
@@ -44,8 +44,7 @@ const fn slow(name: &'static str, about: &'static str, run: fn(&Workspace) -> Re
     }
 }
 
-/// In the order in which they run. With `--all`, everything is built with the feature `full`, so `tests` also compares the
-/// renderers.
+/// In execution order. With `--all`, everything is built with the feature `full`, so `tests` also compares the renderers.
 pub(crate) const STAGES: [Stage; 17] = [
     quick("fmt", "every file is formatted by rustfmt", fmt),
     quick("clippy", "no compiler or clippy warning in any target", clippy),
@@ -127,7 +126,7 @@ fn fmt(workspace: &Workspace) -> Result<Outcome> {
 }
 
 fn clippy(workspace: &Workspace) -> Result<Outcome> {
-    // Benches bring crates of their own.
+    // Benches need further crates.
     let targets: &[&str] = if workspace.is_full {
         &["clippy", "--all-targets"]
     } else {
@@ -171,7 +170,7 @@ fn docs(workspace: &Workspace) -> Result<Outcome> {
     )))
 }
 
-/// Advisories are checked as far as their database can be reached.
+/// Advisories are checked if their database is reachable.
 fn deny(workspace: &Workspace) -> Result<Outcome> {
     if !works(workspace.cargo(&["deny", "--version"])) {
         return missing(
@@ -181,7 +180,7 @@ fn deny(workspace: &Workspace) -> Result<Outcome> {
     }
     let deny = |arguments: &[&str]| {
         let mut command = workspace.cargo(&["deny", "--workspace", "--all-features"]);
-        // Nobody is there to be asked for a password.
+        // Nobody is there to enter a password.
         command.args(arguments).env("GIT_TERMINAL_PROMPT", "0");
         command
     };
@@ -194,7 +193,7 @@ fn deny(workspace: &Workspace) -> Result<Outcome> {
     passed(deny(&["check", "advisories"]))
 }
 
-/// A stage that misses something is skipped, or fails where `DRIFTWORLD_REQUIRE_…` is set.
+/// Skips a stage that lacks something, or fails if `DRIFTWORLD_REQUIRE_…` is set.
 pub(crate) fn missing(what: &str, reason: String) -> Result<Outcome> {
     let variable = format!("DRIFTWORLD_REQUIRE_{what}");
     match env::var_os(&variable) {
@@ -211,7 +210,7 @@ pub(crate) fn list() {
     }
 }
 
-/// Runs the stages in the given order, stops at the first that fails, and closes with a table.
+/// Runs the stages in order, stops at the first failure, and prints a table.
 pub(crate) fn run_all(workspace: &Workspace, stages: &[&Stage]) -> Result {
     let start = Instant::now();
     let mut table = Vec::new();
@@ -266,14 +265,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_passed_in_part_is_not_called_passed() {
+    fn partial_pass_is_not_called_passed() {
         assert_eq!(verdict(1, &[]), "the stage passed");
         assert_eq!(verdict(3, &[]), "all 3 stages passed");
         assert_eq!(verdict(3, &["deny"]), "all 3 stages passed, in part only: deny");
     }
 
     #[test]
-    fn what_is_missing_is_skipped_unless_it_is_required() {
+    fn missing_tools_skip_unless_required() {
         assert!(
             matches!(missing("NOTHING_OF_OURS", "no room".into()), Ok(Outcome::Skipped(reason)) if reason == "no room")
         );

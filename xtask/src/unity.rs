@@ -5,14 +5,14 @@ use crate::process::{Result, Workspace, run};
 use crate::python::{ANY, Environment, NO_INTERPRETER, interpreter};
 use crate::stage::{Outcome, missing};
 
-/// The versions of `mlagents-envs`: the last that asks for no certain Python, the newest, and the original's. With the original's,
-/// what the package `driftworld` sees is compared with what the client sees.
+/// The versions of `mlagents-envs`: the last without a Python requirement, the newest, and the original's. With the original's,
+/// the views of the package `driftworld` are compared with the client's.
 const CLIENTS: [&str; 3] = ["0.28", "1.1", COMPARED];
 const COMPARED: &str = "0.16";
 
-/// Builds the executable, and runs the tests once with each client, one after the other in one environment.
+/// Builds the executable, and runs the tests once per client, one after the other in one environment.
 pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome> {
-    // Python 3.12 has no numpy below 1.24, which the clients were written for.
+    // Python 3.12 has no numpy below 1.24, which the clients need.
     let Some(interpreter) = interpreter("(3, 10) <= sys.version_info < (3, 12)").or_else(|| interpreter(ANY)) else {
         return missing("UNITY_CLIENTS", NO_INTERPRETER.into());
     };
@@ -45,7 +45,7 @@ pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome> {
     Ok(Outcome::Passed(format!("by mlagents-envs {}", CLIENTS.join(", "))))
 }
 
-/// Installs a client. Some run where their own lists of needs say that they do not: their packages are installed without these.
+/// Installs a client. Some work although their own requirements exclude it: their packages are installed without dependencies.
 fn install(workspace: &Workspace, environment: &Environment, client: &str) -> Result {
     let list = |kind: &str| format!("unity/tests/clients/{kind}-{client}.txt");
     environment.pip(workspace, "install --quiet --requirement", &[&list("requirements")])?;

@@ -1,13 +1,13 @@
-//! Public items of the libraries that nothing reaches: neither their own crate names them, nor another, nor a program.
+//! Finds public items of the libraries that nothing uses: neither their own crate, nor another, nor a program.
 //!
-//! Code is compared by names, so an item counts as reached if another item of its name is. Tests, benches, the fuzzer and
-//! developer tools reach nothing.
+//! Code is compared by names, so an item counts as used if another item of its name is. Tests, benches, the fuzzer and
+//! developer tools do not count.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::sources::{Sources, end, is_of_name, is_test_file, shipped_lines};
 
-/// Items that no other code names, each with the reason to keep it.
+/// Unused items that are kept, each with the reason.
 const KEPT: [(&str, &str); 4] = [
     ("differs_in", "tests say in which elements worlds differ"),
     ("ShownPath", "a trait whose method `shown` is called"),
@@ -18,10 +18,10 @@ const KEPT: [(&str, &str); 4] = [
     ("with_renderer", "tests compare the pictures of both renderers"),
 ];
 
-/// Folders whose code is left out: developer tools.
+/// Folders whose code is ignored: developer tools.
 const LEFT_OUT: [&str; 2] = ["xtask/", "fuzz/"];
 
-/// Folders of programs. They reach what they name, and nobody has to reach what they have.
+/// Folders of programs. Their uses count, and their own items need no use.
 const PROGRAMS: [&str; 4] = ["src/commands/", "src/console/", "python/", "examples/"];
 
 /// A public item.
@@ -36,17 +36,17 @@ pub(crate) struct Item<'a> {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Kind {
-    /// Used as `name` or `module::name`, but not behind a dot.
+    /// Used as `name` or `module::name`, but not after a dot.
     Function,
-    /// Used behind a dot or two colons.
+    /// Used after a dot or two colons.
     Method,
-    /// Used behind two colons.
+    /// Used after two colons.
     Associated,
     /// A type, a trait or a constant.
     Other,
 }
 
-/// A line where a name stands, and what is in front of the name.
+/// A line that contains a name, and the text before the name.
 struct Use<'a> {
     file: usize,
     line: usize,
@@ -56,7 +56,7 @@ struct Use<'a> {
 /// A file's path and its lines; comments and tests are empty lines.
 type File<'a> = (&'a str, Vec<&'a str>);
 
-/// Every unreached item, without those that are kept for a reason, sorted by place.
+/// Every unused item that is not kept, sorted by place.
 pub(crate) fn find(sources: &Sources) -> Vec<Item<'_>> {
     let rust = sources.with_extensions(&["rs"]);
     let shipped = rust.filter(|(path, _)| !is_test_file(path) || path.starts_with("examples/"));
@@ -74,7 +74,7 @@ pub(crate) fn find(sources: &Sources) -> Vec<Item<'_>> {
     }
     let mut dead_lines = BTreeSet::new();
     let mut unreached = Vec::new();
-    // What only an unreached item names is unreached, too.
+    // Items used only by unused items are unused, too.
     loop {
         let is_reached = |(item, own): &(Item<'_>, BTreeSet<_>)| {
             uses[item.name].iter().any(|place| {
@@ -97,7 +97,7 @@ pub(crate) fn find(sources: &Sources) -> Vec<Item<'_>> {
 }
 
 impl Kind {
-    /// Whether a name behind this is one of an item of this kind.
+    /// Whether a name after this text can be an item of this kind.
     fn is_used(self, before: &str) -> bool {
         let behind_dot = before.ends_with('.') && !before.ends_with("..");
         let behind_colons = before.ends_with("::");
@@ -110,7 +110,7 @@ impl Kind {
     }
 }
 
-/// The public item that begins at a line.
+/// The public item that starts at a line.
 fn item<'a>(path: &'a str, lines: &[&'a str], at: usize) -> Option<Item<'a>> {
     let line = lines[at].trim_start();
     let mut words = line
@@ -138,7 +138,7 @@ fn item<'a>(path: &'a str, lines: &[&'a str], at: usize) -> Option<Item<'a>> {
         _ => return None,
     };
     let name = words.next()?.split(|letter| !is_of_name(letter)).next()?;
-    // Macros write names of their own.
+    // Macros may have other names there.
     let is_name = name.starts_with(is_of_name);
     is_name.then_some(Item {
         path,
@@ -148,7 +148,7 @@ fn item<'a>(path: &'a str, lines: &[&'a str], at: usize) -> Option<Item<'a>> {
     })
 }
 
-/// The lines that an item takes, as file and line: its definition and, for types and traits, `impl` blocks that name it.
+/// The lines of an item, as file and line: its definition and, for types and traits, `impl` blocks that name it.
 fn own_lines(
     files: &[File<'_>],
     file: usize,
@@ -169,7 +169,7 @@ fn own_lines(
         .collect()
 }
 
-/// Where each name stands, but for `use` declarations.
+/// The occurrences of each name, except in `use` declarations.
 fn uses<'a>(files: &[File<'a>]) -> BTreeMap<&'a str, Vec<Use<'a>>> {
     let mut uses: BTreeMap<&str, Vec<Use<'_>>> = BTreeMap::new();
     for (file, (_, lines)) in files.iter().enumerate() {
@@ -188,7 +188,7 @@ fn uses<'a>(files: &[File<'a>]) -> BTreeMap<&'a str, Vec<Use<'a>>> {
     uses
 }
 
-/// Whether a line begins a `use` declaration, of whatever visibility; texts may begin so, too, but name no paths.
+/// Whether a line starts a `use` declaration of any visibility; texts may start so, too, but name no paths.
 fn is_use(line: &str) -> bool {
     let split = line
         .split_once("use ")
@@ -196,7 +196,7 @@ fn is_use(line: &str) -> bool {
     split.is_some_and(|(before, _)| before.is_empty() || before.starts_with("pub") && before.ends_with([' ']))
 }
 
-/// The words of a line that may be names, each with its place.
+/// The words of a line that may be names, each with its position.
 fn names(line: &str) -> Vec<(usize, &str)> {
     let mut found = Vec::new();
     let mut rest = line;
@@ -220,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn items_that_other_code_names_are_reached() {
+    fn used_items_are_reached() {
         let library = (
             "spec/src/a.rs",
             "pub fn draw() {\n    draw()\n}\npub const LIMIT: usize = 3;\n",
@@ -237,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn tests_comments_and_declarations_reach_nothing() {
+    fn tests_comments_and_declarations_do_not_count() {
         let library = (
             "spec/src/a.rs",
             "pub fn draw() {}\n#[cfg(test)]\nmod tests {\n    fn f() {\n        draw();\n    }\n}\n",
@@ -255,7 +255,7 @@ mod tests {
     }
 
     #[test]
-    fn what_only_unreached_code_names_is_unreached() {
+    fn items_used_only_by_unused_code_are_unreached() {
         let text = "pub struct Map;\nimpl Map {\n    pub fn new() -> Map {\n        Map\n    }\n}\npub fn chart() -> Map {\n    Map::new()\n}\n";
         check(&[("spec/src/a.rs", text)], &["Map", "new", "chart"]);
         check(
@@ -268,7 +268,7 @@ mod tests {
     }
 
     #[test]
-    fn methods_are_told_from_functions() {
+    fn methods_are_distinguished_from_functions() {
         let text = "impl Map {\n    pub fn of(\n        &self,\n    ) {\n    }\n    pub const fn empty() {}\n}\n";
         check(
             &[("spec/src/a.rs", text), ("src/b.rs", "fn f() {\n    of(empty());\n}\n")],
