@@ -1,6 +1,6 @@
 """Driftworld: typed task specs to worlds, distances, curricula, and first-person environments.
 
-Importing it registers the environments with Gymnasium and does nothing else.
+Importing the package only registers the environments with Gymnasium.
 """
 
 from __future__ import annotations

@@ -1,4 +1,6 @@
-"""The ``driftworld`` command, as the wheel installs it and as ``python -m driftworld`` runs it. Its work is native, but for ``benchmark``."""
+"""The ``driftworld`` command, as installed by the wheel and run by ``python -m driftworld``. All subcommands except
+``benchmark`` are native.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +16,7 @@ def main() -> int:
         from driftworld.benchmark import command
 
         return command.main(sys.argv[2:])
-    # As in the program itself: an interrupt ends it, unless a subcommand asks to be told.
+    # As in the native binary: an interrupt ends the process, unless a subcommand handles it.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     code = _native.main(["driftworld", *sys.argv[1:]])
     if sys.argv[1:] in (["-h"], ["--help"], ["help"]):

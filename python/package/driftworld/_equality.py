@@ -1,6 +1,6 @@
-"""Whether two results of environments are the same to the last bit, and if not, where they differ first.
+"""Compares two results of environments bit by bit, and names the first difference.
 
-Stricter than ``numpy.array_equal``: types and shapes count as well. What is compared with what, the callers say.
+Stricter than ``numpy.array_equal``: types and shapes count as well.
 """
 
 from __future__ import annotations
@@ -12,12 +12,13 @@ import numpy as np
 
 
 def first_difference(left: Any, right: Any, place: str = "") -> str | None:
-    """Where two values differ first, as ``place: left against right``; ``None`` when they are equal to the last bit.
+    """The first difference between two values, as ``place: left against right``; ``None`` if they are equal to the last
+    bit.
 
     Args:
-        left: Numbers, texts, arrays, or mappings and sequences of such, as deep as may be.
-        right: What it is held against.
-        place: What the values are called in the answer.
+        left: Numbers, strings, arrays, or mappings and sequences of these, nested to any depth.
+        right: The value to compare with.
+        place: Name of the values in the answer.
     """
     if isinstance(left, Mapping) and isinstance(right, Mapping):
         return _of_mappings(left, right, place)
@@ -61,7 +62,7 @@ def _of_arrays(left: np.ndarray[Any, Any], right: np.ndarray[Any, Any], place: s
         return f"{place}: {left.dtype} {left.shape} against {right.dtype} {right.shape}"
     if left.dtype == object:
         return _of_sequences(left.ravel().tolist(), right.ravel().tolist(), place)
-    # As bytes: one NaN is like another, and 0.0 is not -0.0.
+    # Compares bytes: NaNs with the same bits are equal, and 0.0 differs from -0.0.
     if left.tobytes() == right.tobytes():
         return None
     flat_left, flat_right = left.ravel(), right.ravel()

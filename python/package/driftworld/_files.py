@@ -1,4 +1,4 @@
-"""Files are read and written here: regular files only, up to a limit, and whole or not at all. What is in them is the callers'."""
+"""Reads and writes files: regular files only, up to a size limit, and atomically."""
 
 from __future__ import annotations
 
@@ -8,22 +8,22 @@ from typing import Literal
 
 from driftworld import _native
 
-#: What a file is read as; each has a limit of its own (docs/limits.md).
+#: What a file is read as; each kind has its own size limit (docs/limits.md).
 FileKind = Literal["document", "library", "matrix"]
 
 
 def read_bytes(path: str | os.PathLike[str], kind: FileKind = "document") -> bytes:
-    """The bytes of a regular file; devices, pipes and files above the limit are refused before any of them is read.
+    """The bytes of a regular file. Devices, pipes and files above the limit are refused before anything is read.
 
     Raises:
-        OSError: If there is none, or something else.
+        OSError: If the file does not exist or is not a regular file.
     """
     try:
         return _native.read_file(path, kind)
     except OSError as error:
         if error.errno is None:
             raise
-        # As Python's own functions say it.
+        # In the words of Python's own functions.
         raise OSError(error.errno, os.strerror(error.errno), os.fspath(path)) from None
 
 
@@ -31,18 +31,19 @@ def read_text(path: str | os.PathLike[str], kind: FileKind = "document") -> str:
     """The text of a regular file, without a byte order mark.
 
     Raises:
-        OSError: As :func:`read_bytes`.
+        OSError: Like :func:`read_bytes`.
         UnicodeDecodeError: If it is not UTF-8.
     """
     return read_bytes(path, kind).decode("utf-8-sig")
 
 
 def write_whole(path: Path, content: bytes) -> None:
-    """Writes a file under a temporary name in its folder, which is made where it is missing, and renames it. It gets the mode that the
-    umask leaves to it, or keeps the one that it had; devices and pipes are written straight."""
+    """Writes a file atomically: under a temporary name in its folder, which is created if missing, then renames it. The
+    file keeps its mode, and a new one gets the mode that the umask leaves; devices and pipes are written directly.
+    """
     try:
         _native.write_file(path, content)
     except OSError as error:
-        # As Python's own functions say it.
+        # In the words of Python's own functions.
         error.filename = str(path)
         raise

@@ -1,4 +1,4 @@
-"""Tables for notebooks. What is in them is said where the values are."""
+"""HTML tables for notebooks."""
 
 from __future__ import annotations
 
@@ -12,9 +12,10 @@ def table(
     caption: str = "",
     shades: Iterable[Sequence[float]] = (),
 ) -> str:
-    """A table as HTML: columns of numbers at the right, but for the first, and others at the left. All texts are escaped.
+    """An HTML table: numeric columns are right-aligned except the first, the others left-aligned. All texts are
+    escaped.
 
-    ``shades`` say for each row how strongly each of its cells behind the first is tinted, in 0..=1.
+    ``shades`` gives the tint of every cell after the first, row by row, in 0..=1.
     """
 
     listed = [*rows]
@@ -22,7 +23,7 @@ def table(
     aligned = ["right" if column and numeric[column] else "left" for column in range(len(head))]
 
     def cells(tag: str, texts: Sequence[str], tints: Sequence[float] = ()) -> str:
-        # Seen through, so that letters can be read on a light page and on a dark one.
+        # Translucent, so that the text is readable on light and dark pages.
         colors = ["", *(f"; background-color: rgba(66, 133, 244, {0.6 * tint:.2f})" for tint in tints)]
         colors += [""] * (len(texts) - len(colors))
         told = (
@@ -38,7 +39,7 @@ def table(
 
 
 def _is_number(text: str) -> bool:
-    """Whether a cell holds a number, or stands for none."""
+    """Whether a cell holds a number or the sign for a missing one."""
     return text in ("", "-") or text.lstrip("-+\N{MINUS SIGN}")[:1].isdigit()
 
 
@@ -48,7 +49,7 @@ def note(text: str) -> str:
 
 
 def number(value: object) -> str:
-    """A value of a table in three digits behind the point, ``-`` for none."""
+    """A table value with three decimals, ``-`` for ``None``."""
     if value is None:
         return "-"
     return f"{value:.3f}" if isinstance(value, float) else str(value)

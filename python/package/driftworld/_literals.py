@@ -1,6 +1,6 @@
-"""The words that closed sets of options take, as types: a misspelt one is an error before the program runs.
+"""Literal types for options with a closed set of values, so that type checkers catch misspellings.
 
-What the words mean is said where they are taken; that these are all of them, and no others, is tested.
+Tests check that each type lists exactly the accepted values.
 """
 
 from __future__ import annotations

@@ -1,4 +1,5 @@
-"""What the native module has, as types: a section for each file of ``python/src/``. Private but for what ``driftworld`` re-exports.
+"""Type stub of the native module, with a section for each file of ``python/src/``. Private, except for what
+``driftworld`` re-exports.
 
 ``python/tests/test_native_stub.py`` compares it with the module itself.
 """
@@ -18,7 +19,7 @@ _Stepped: TypeAlias = tuple[NDArray[np.float64], NDArray[np.bool_], NDArray[np.b
 
 @final
 class Batch:
-    """Environments that step together; single environments are batches of one."""
+    """Environments that step together; a single environment is a batch of one."""
 
     def __new__(
         cls,
@@ -73,7 +74,7 @@ _PlanValues: TypeAlias = tuple[str, list[tuple[str, str, str]], list[tuple[str, 
 
 @final
 class Plan:
-    """A scenario with everything that it names."""
+    """A scenario with all the tasks and worlds that it names."""
 
     def __new__(
         cls, path: str | PathLike[str], text: str, stand_in: bool | None, skip_undrawable: bool
@@ -98,7 +99,7 @@ class Plan:
 
 @final
 class Journal:
-    """The log that a lifetime is lived into."""
+    """The log of a lifetime, open for writing."""
 
     def __new__(cls, folder: str | PathLike[str], plan: Plan, agent: str, resume: bool, record: bool) -> Journal: ...
     @property
@@ -137,7 +138,7 @@ def removed_format(ending: str) -> str | None: ...
 
 @final
 class Matrix:
-    """Every distance among some items."""
+    """All pairwise distances among some items."""
 
     @staticmethod
     def measure(
@@ -179,19 +180,20 @@ def check(
 
 @final
 class Drift:
-    """The way from one variant of a task to another: ``Drift(blue, dusk, schedule="cosine").at(0.25)``.
+    """The path from one variant of a task to another: ``Drift(blue, dusk, schedule="cosine").at(0.25)``.
 
     Args:
-        from_: Where it begins.
-        to: Where it leads: a variant of the same task, unless whole variants switch.
+        from_: The first variant.
+        to: The last variant, of the same task unless whole variants switch.
         schedule: ``"linear"``, ``"cosine"``, ``{"steps": n}`` or ``{"sawtooth": n}``, with n from 1 on.
-        switch: When values with nothing in between change: ``"at_point"``, or at random, more likely as the drift goes on,
-            with ``"mixture"``. With ``"task"`` the whole variant is one of the two at random; they may be of two tasks.
-        seed: The seed of what is drawn at random.
+        switch: When values that cannot be interpolated change: ``"at_point"``, or with ``"mixture"`` at random, more
+            likely as the drift goes on. With ``"task"`` the whole variant is one of the two at random; they may belong
+            to two tasks.
+        seed: The seed of random switches.
 
     Raises:
-        GeneratorError: If the variants are of different tasks.
-        ValueError: For a schedule or a switch that there is not.
+        GeneratorError: If the variants belong to different tasks.
+        ValueError: For an unknown schedule or switch.
     """
 
     def __new__(
@@ -204,8 +206,7 @@ class Drift:
         seed: int = 0,
     ) -> Drift: ...
     def at(self, progress: float, index: int = 0) -> Variant:
-        """The variant when ``progress``, in 0..=1, has passed; ``index`` is the number of the world, which only mixtures
-        look at."""
+        """The variant at ``progress``, in 0..=1; ``index`` is the number of the world, which only mixtures use."""
 
 # -- files.rs ----------------------------------------------------------------------------------------------------------
 
@@ -246,7 +247,7 @@ def validate_log(folder: str | PathLike[str]) -> dict[str, Any]: ...
 
 @final
 class RecordingHandle:
-    """An episode as it was recorded."""
+    """A recorded episode."""
 
     @staticmethod
     def from_text(text: str) -> RecordingHandle: ...
@@ -280,7 +281,7 @@ def report(logs: Sequence[str], options: dict[str, Any]) -> tuple[str, list[str]
 
 @final
 class Stream:
-    """Worlds without end: number *i* under a seed."""
+    """An endless stream of worlds: number *i* under a seed."""
 
     @staticmethod
     def variants(variants: Sequence[Variant]) -> Stream: ...
@@ -299,28 +300,29 @@ class Stream:
 class TaskSpec:
     """A task: what its worlds have in common, and exactly what varies between them.
 
-    Made by :meth:`load`, :meth:`from_json` or :meth:`from_dict`. Never changes; equal when the documents say the same; pickles.
+    Made by :meth:`load`, :meth:`from_json` or :meth:`from_dict`. Immutable and picklable; equal if the documents have
+    the same content.
     """
 
     @staticmethod
     def load(name_or_path: str | PathLike[str]) -> TaskSpec:
-        """The task of a built-in name, such as ``"find_objects"``, or of a path; a variant behind ``#`` is left aside.
+        """The task with a built-in name, such as ``"find_objects"``, or at a path; a variant after ``#`` is ignored.
 
         Raises:
-            TaskError: If there is none, or it cannot be read.
+            TaskError: If it does not exist or cannot be read.
             SpecError: If the document is wrong, with every problem and its place.
         """
 
     @staticmethod
     def from_json(name: str, text: str) -> TaskSpec:
-        """The task that a JSON text says; ``name`` is what messages call the text."""
+        """The task in a JSON text; ``name`` is used in messages."""
 
     @staticmethod
     def from_dict(document: dict[str, Any], name: str = "task spec") -> TaskSpec:
-        """The task that a dictionary says; ``name`` is what messages call it."""
+        """The task in a dictionary; ``name`` is used in messages."""
 
     def to_json(self) -> str:
-        """The document as one line of JSON: :meth:`from_json` reads the same task from it."""
+        """The document as one line of JSON; :meth:`from_json` reads the same task from it."""
 
     def to_dict(self) -> dict[str, Any]:
         """The document as a dictionary."""
@@ -331,7 +333,7 @@ class TaskSpec:
 
     @property
     def description(self) -> str:
-        """What it is, in its author's words."""
+        """Its author's description."""
 
     @property
     def parameters(self) -> dict[str, dict[str, Any]]:
@@ -339,24 +341,24 @@ class TaskSpec:
 
     @property
     def families(self) -> dict[str, list[str]]:
-        """Its families of variants, which grids and sweeps declare, each with the names of its members."""
+        """The families of variants declared by grids and sweeps, each with the names of its members."""
 
     def _repr_html_(self) -> str: ...
     def variant_names(self) -> list[str]:
-        """The names of the variants that it declares, families unfolded; ``["default"]`` if it declares none."""
+        """The names of the declared variants, with families expanded; ``["default"]`` if none is declared."""
 
     def all_variants(self) -> list[Variant]:
         """The same as :attr:`variants`."""
 
     @property
     def variants(self) -> list[Variant]:
-        """All variants that it declares, in the order of the document."""
+        """All declared variants, in the order of the document."""
 
     def variant(self, name: str | None = None) -> Variant:
-        """One variant; without a name the one in which every parameter has its default.
+        """One variant; without a name, the one with the default of every parameter.
 
         Raises:
-            TaskError: If it has none of this name.
+            TaskError: If there is no variant of this name.
         """
 
     def sample(self, variant: str | None = None, seed: int = 0, index: int = 0) -> dict[str, Any]:
@@ -366,9 +368,9 @@ class TaskSpec:
 
 @final
 class Variant:
-    """One variant of a task, in which every parameter that is not drawn anew in each world has its value.
+    """One variant of a task: every parameter that is not drawn for each world has its value.
 
-    Never changes; equal when worlds and distances are the same; pickles.
+    Immutable and picklable; equal if worlds and distances are the same.
     """
 
     @property
@@ -381,11 +383,11 @@ class Variant:
 
     @property
     def task(self) -> TaskSpec:
-        """The task that it is a variant of."""
+        """The task that it belongs to."""
 
     @property
     def description(self) -> str | None:
-        """What its author says of it, if anything."""
+        """Its author's description, if any."""
 
     def _repr_html_(self) -> str: ...
     @property
@@ -394,55 +396,58 @@ class Variant:
 
     @property
     def hash(self) -> str:
-        """A hash of everything that its worlds and its distances are made from: 64 hexadecimal digits."""
+        """A hash of everything that determines its worlds and distances: 64 hexadecimal digits."""
 
     def with_values(self, name: str, /, **changes: Any) -> Variant:
-        """A variant like this one under another name, with some parameters at other values: ``with_values("dim", light=0.5)``.
+        """A copy of this variant under another name, with some parameters changed: ``with_values("dim", light=0.5)``.
 
         Raises:
-            SpecError: With every parameter that cannot have its value.
+            SpecError: With every parameter whose value is not allowed.
             ValueError: For a name that is empty or has a ``#``, or a number that is not finite.
         """
 
     def at_distance(
         self, distance: float, subject: str | Sequence[str], *, tolerance: float = 1e-3, name: str = "found"
     ) -> tuple[Variant, float]:
-        """A variant at a wanted distance from this one, by as few changed parameters as will do, and its distance.
+        """A variant at a given distance from this one that changes as few parameters as possible, and its distance.
 
         Args:
-            distance: The wanted one: 0 or more, where 1 is one parameter moved over its whole range.
-            subject: What may change: an element of the decision process (``"reward"`` or ``"R"``; the distance is the one in
-                it), or a list of parameters (the distance is the whole one).
-            tolerance: How far off it may be.
-            name: What it is called.
+            distance: The requested distance: 0 or more, where 1 is one parameter moved over its whole range.
+            subject: What may change: an element of the decision process (``"reward"`` or ``"R"``; the distance in that
+                element counts), or a list of parameters (the total distance counts).
+            tolerance: Accepted deviation from the distance.
+            name: Name of the variant.
 
         Raises:
-            GeneratorError: If nothing can change, or no variant is as far; with the nearest.
+            GeneratorError: If nothing can change, or no variant is that far away; names the nearest one.
             ValueError: For a name that is empty or has a ``#``.
         """
 
     def sample(self, seed: int = 0, index: int = 0) -> dict[str, Any]:
-        """World number ``index`` under a seed: the same on every machine, whatever was drawn before.
+        """World number ``index`` under a seed: the same on every machine, and independent of earlier draws.
 
         Raises:
-            GeneratorError: If it cannot be drawn.
+            GeneratorError: If the world cannot be drawn.
         """
 
     def sample_json(self, seed: int = 0, index: int = 0) -> str:
         """The same as one line of JSON."""
 
     def sample_many(self, count: int, *, seed: int = 0, start: int = 0, threads: int = 0) -> list[dict[str, Any]]:
-        """``count`` worlds from number ``start`` on, drawn by several threads, at most 1024: 0 for one on each processor."""
+        """``count`` worlds from number ``start`` on, drawn by ``threads`` threads, at most 1024; 0 is one for each
+        processor.
+        """
 
     def sample_many_json(self, count: int, *, seed: int = 0, start: int = 0, threads: int = 0) -> list[str]:
         """The same, each world as one line of JSON."""
 
     def try_worlds(self, count: int, *, seed: int = 0) -> dict[str, Any]:
-        """Draws the first ``count`` worlds under a seed, and says how often that fails, and why.
+        """Draws the first ``count`` worlds under a seed, and counts failures by reason.
 
         Returns:
-            ``variant``, ``seed`` and ``worlds``; how many failed for want of a ``placement``, by a ``requirement``, or for an
-            ``other`` reason; and ``failed``, the first 100 of them: ``index``, ``progress``, ``code`` and ``reason``.
+            ``variant``, ``seed`` and ``worlds``; how many failed because of a ``placement``, a ``requirement``, or for
+            an ``other`` reason; and ``failed``, the first 100 of them: ``index``, ``progress``, ``code`` and
+            ``reason``.
         """
 
     def __hash__(self) -> int: ...

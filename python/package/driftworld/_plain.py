@@ -1,4 +1,4 @@
-"""NumPy's values and paths as JSON can say them. Documents that go to the native module are written with it."""
+"""Converts NumPy values and paths to JSON, for documents that are passed to the native module."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ import numpy as np
 
 
 def plain(value: Any) -> Any:
-    """What ``json.dumps`` writes instead of a value that it does not know.
+    """The ``default`` of ``json.dumps``: converts a value that it does not know.
 
     Raises:
-        TypeError: If it is neither a number or an array of NumPy, nor a path.
+        TypeError: If the value is neither a NumPy number or array nor a path.
     """
     if isinstance(value, np.generic):
         return value.item()

@@ -1,10 +1,11 @@
 """How fast the environments are through Python, beside the same batch in Rust, and beside peers that are installed.
 
-``python -m driftworld.bench`` prints a table of what it measured in this run on this machine; ``--quick`` measures for a moment only,
-which says that it works and not how fast. Criterion's benches of the Rust crates and ``driftworld bench`` are elsewhere.
+``python -m driftworld.bench`` prints a table of this run's measurements on this machine; ``--quick`` measures only
+briefly, to check that it works.
 
-Peers: ViZDoom (``pip install vizdoom``) and MiniWorld (``pip install miniworld``; it needs a display, ``xvfb-run`` makes one). Each is
-measured with one environment of its own next to one of ours with a single thread, at the peer's usual picture size.
+Peers: ViZDoom (``pip install vizdoom``) and MiniWorld (``pip install miniworld``; it needs a display, ``xvfb-run``
+makes one). Each is measured with one environment, next to a single-threaded Driftworld environment at the peer's usual
+image size.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ __all__ = ["main", "measure"]
 
 FIND = "driftworld/FindObjects-v0"
 _THREE = ("rgb", "depth", "segmentation")
-#: A rate is the median of so many stretches.
+#: A rate is the median of this many measurements.
 _STRETCHES = 15
 
 
@@ -36,11 +37,11 @@ def measure(*, seconds: float = 2.0, peers: bool = True) -> dict[str, Any]:
     """Measures everything.
 
     Args:
-        seconds: How long each rate is measured, in 15 stretches whose median counts.
-        peers: Whether to measure ViZDoom and MiniWorld where they are installed.
+        seconds: Time spent on each rate, which is the median of 15 measurements.
+        peers: Whether to measure ViZDoom and MiniWorld if they are installed.
 
     Returns:
-        Rates per second, overheads in µs and ratios by name; of a peer that could not be measured the reason.
+        Rates per second, overheads in µs and ratios by name; for a peer that could not be measured, the reason.
     """
     figures: dict[str, Any] = {
         "machine": {
@@ -66,12 +67,12 @@ def measure(*, seconds: float = 2.0, peers: bool = True) -> dict[str, Any]:
 
 
 def _rate(work: Callable[[], int], seconds: float) -> float:
-    """How often per second: ``work`` does some and says how much."""
+    """The rate per second; ``work`` returns the amount of work that it did."""
     return _rates([work], seconds)[0]
 
 
 def _rates(works: Sequence[Callable[[], int]], seconds: float) -> list[float]:
-    """The same of several, in turns, so that a busy moment of the machine falls on all of them."""
+    """The rates of several works, measured in turns, so that a busy moment of the machine affects all of them."""
     for work in works:
         work()
     rates: list[list[float]] = [[] for _ in works]
@@ -90,7 +91,7 @@ def _batch(env: Any) -> Any:
 
 
 def _vector(name: str, seconds: float, options: dict[str, Any]) -> dict[str, Any]:
-    """64 environments: steps through Python and the same steps without coming back to it."""
+    """64 environments: steps through Python, and the same steps without returning to it."""
     envs = gymnasium.make_vec(FIND, num_envs=64, vectorization_mode="vector_entry_point", **options)
     envs.reset(seed=0)
     envs.action_space.seed(0)
@@ -112,7 +113,7 @@ def _vector(name: str, seconds: float, options: dict[str, Any]) -> dict[str, Any
 
 
 def _single(seconds: float) -> dict[str, Any]:
-    """One environment: what a step costs beyond the step in Rust."""
+    """One environment: the overhead of a step over the same step in Rust."""
     env = gymnasium.make(FIND, modalities=_THREE, disable_env_checker=True).unwrapped
     env.reset(seed=0)
     action = np.array([0.5, 0.2, 0.0], dtype=np.float32)
@@ -128,7 +129,7 @@ def _single(seconds: float) -> dict[str, Any]:
             left[0] -= 1
         return 16
 
-    # The batch of a single environment does not begin anew by itself, so Rust's share is measured on one that does.
+    # The batch of a single environment does not reset itself, so Rust's share is measured on one that does.
     alone = gymnasium.make_vec(
         FIND,
         num_envs=1,
@@ -162,7 +163,7 @@ def _resets(seconds: float) -> dict[str, Any]:
 
 
 def _ours(size: tuple[int, int], seconds: float) -> float:
-    """One environment of ours, one thread, with everything a peer draws and more."""
+    """One Driftworld environment with one thread, drawing everything that the peer draws and more."""
     env = gymnasium.make(FIND, modalities=_THREE, size=size, disable_env_checker=True).unwrapped
     env.action_space.seed(0)
     actions = [env.action_space.sample() for _ in range(64)]
@@ -170,7 +171,7 @@ def _ours(size: tuple[int, int], seconds: float) -> float:
 
 
 def _steps(env: Any, actions: list[Any]) -> Callable[[], int]:
-    """64 random steps, and resets where episodes end, whose time counts."""
+    """64 random steps, including the time of resets when episodes end."""
     env.reset(seed=0)
 
     def work() -> int:
@@ -193,7 +194,7 @@ def _beside(name: str, peer: Callable[[float], float], size: tuple[int, int], se
 
 
 def _vizdoom(seconds: float) -> float:
-    """ViZDoom's basic scenario with depth and labels, as its own examples step it."""
+    """ViZDoom's basic scenario with depth and labels, stepped as in its own examples."""
     import vizdoom
 
     game = vizdoom.DoomGame()
@@ -224,7 +225,7 @@ def _vizdoom(seconds: float) -> float:
 
 
 def _miniworld(seconds: float) -> float:
-    """MiniWorld's smallest room in colour alone."""
+    """MiniWorld's smallest room, colour images only."""
     import miniworld  # noqa: F401 - registers its environments
 
     env = gymnasium.make("MiniWorld-OneRoom-v0", obs_width=84, obs_height=84)

@@ -1,4 +1,4 @@
-"""The numbers of classes in class segmentation, the images of modality ``class``."""
+"""Class numbers of the class segmentation, the images of modality ``class``."""
 
 from __future__ import annotations
 
@@ -12,14 +12,15 @@ from driftworld.envs.options import library_bytes
 def segmentation_classes(assets: str | PathLike[str] | Iterable[str | PathLike[str]] = ()) -> dict[str, int]:
     """The number of each class in images of modality ``class``: the same in every world, in rising order.
 
-    Built-in classes have 1 to 29, those of libraries follow from 32 on in the order of their names; a library's models of a
-    built-in class have that class's number. Beside these, 0 is where there is no object, and 31 is every class that is not known.
+    Built-in classes have the numbers 1 to 29, and those of libraries follow from 32 on in the order of their names; a
+    library's models of a built-in class have that class's number. In addition, 0 means no object, and 31 stands for
+    every unknown class.
 
     Args:
         assets: Paths of asset libraries, as an environment takes them.
 
     Raises:
-        EnvError: For a file that is no library.
+        EnvError: For a file that is not an asset library.
 
     >>> segmentation_classes()["barrel"]
     2

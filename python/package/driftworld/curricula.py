@@ -1,7 +1,6 @@
-"""Curricula: learning and evaluation blocks of variants, designed, read, iterated and lived.
+"""Curricula: learning and evaluation blocks of variants, to design, read, iterate and run.
 
-A curriculum is a scenario, the document that ``driftworld curriculum`` writes and ``driftworld run`` lives. Living one is in
-``lifetimes.py``, scoring what was lived in ``scores.py``.
+A curriculum is a scenario, the document that ``driftworld curriculum`` writes and ``driftworld run`` runs.
 """
 
 from __future__ import annotations
@@ -53,13 +52,14 @@ class Experience:
         block: Its block, from 0.
         regime: Its regime in the block, from 0.
         learning: Whether the agent may learn from it.
-        variant: What it is called: ``task#variant``, in a drift with both ends.
+        variant: The variant's name: ``task#variant``, in a drift with both ends.
         seed: The seed of its world; ``None`` for a world from a file.
         index: The number of its world under the seed.
-        progress: How far on its way a drift is, in 0..=1; 0 where nothing drifts.
-        chance: The seed that the agent's own random numbers should be drawn from.
+        progress: Progress of the drift, in 0..=1; 0 without a drift.
+        chance: The seed for the agent's own random numbers.
         steps: Decisions after which no more experiences of its regime begin, if it has such a budget.
-        label: Where the scenario tells the task: ``number``, ``of``, ``name``, and ``observed``, whether in observations.
+        label: The task label if the scenario gives one: ``number``, ``of``, ``name``, and ``observed``, whether it is
+            part of observations.
     """
 
     number: int
@@ -81,21 +81,21 @@ class Experience:
         return self.variant.rpartition("#")[0]
 
     def world(self) -> dict[str, Any]:
-        """Its world, as it is run: with the scenario's limit of steps laid over it."""
+        """Its world as it is run, with the scenario's limit of steps applied."""
         world: dict[str, Any] = _native.parsed(self._plan.world(self.number).text())
         return world
 
 
 @dataclass(frozen=True)
 class Block:
-    """Experiences in which the agent learns, or does not. Iterating it gives them; ``len(block)``, ``block[0]``, ``block[-2:]``.
+    """A learning or evaluation block: a sequence of experiences, with ``len(block)``, ``block[0]``, ``block[-2:]``.
 
     Attributes:
         number: Its number in the curriculum, from 0.
         kind: ``"learning"`` or ``"evaluation"``.
         phase: ``"deployment"`` or ``"pre_deployment"``.
         first: The number of its first experience.
-        num_experiences: How many it has.
+        num_experiences: The number of its experiences.
     """
 
     number: int
@@ -135,18 +135,18 @@ class Curriculum(Sequence[Block]):
         curriculum.run(agent, log="logs/mine")
 
     Args:
-        text: The scenario, as JSON text; ours, or one of L2Explorer's.
-        path: What messages call it; tasks and worlds that it names by paths are looked for from its folder first.
-        stand_in: Let the world file with the nearest name stand in for one that is nowhere; if not given, in L2Explorer's
-            scenarios only, as ``driftworld run`` does.
+        text: The scenario, as JSON text; Driftworld's or L2Explorer's.
+        path: Its name in messages; tasks and worlds given by paths are searched for in its folder first.
+        stand_in: Replace a missing world file by the one with the nearest name; by default in L2Explorer's scenarios
+            only, like ``driftworld run``.
 
     Raises:
         SpecError: If the scenario is wrong, with pointer, line and column.
-        CurriculumError: If something that it names cannot be had.
+        CurriculumError: If something that it names cannot be loaded.
     """
 
     def __init__(self, text: str, path: PathLike = "scenario", *, stand_in: bool | None = None) -> None:
-        # A world that cannot be drawn matters to who lives it, not to who looks through the others.
+        # A world that cannot be drawn matters only when the scenario is run.
         plan = _native.Plan(Path(path), text, stand_in, True)
         for warning in plan.warnings:
             warnings.warn(warning, stacklevel=2)
@@ -176,16 +176,16 @@ class Curriculum(Sequence[Block]):
 
         Raises:
             FileNotFoundError: If there is no such file.
-            SpecError, CurriculumError: As the class.
+            SpecError, CurriculumError: Like the class.
         """
         return cls(read_text(path), path, stand_in=stand_in)
 
     @classmethod
     def from_dict(cls, scenario: Mapping[str, Any], *, folder: PathLike = ".") -> Curriculum:
-        """Takes a scenario from a dictionary; what it names by paths is looked for in ``folder``.
+        """Takes a scenario from a dictionary; relative paths in it are searched for in ``folder``.
 
         Raises:
-            SpecError, CurriculumError: As the class.
+            SpecError, CurriculumError: Like the class.
         """
         return cls(json.dumps(scenario), Path(folder) / "scenario")
 
@@ -230,45 +230,49 @@ class Curriculum(Sequence[Block]):
         Args:
             tasks: Variants, or tasks, which stand for all their variants.
             name: The scenario's name.
-            learn: Experiences of each learning block; 2,500 if not given.
-            eval_episodes: Experiences of each variant in each evaluation block; 50 if not given.
-            evaluate: When the agent is evaluated, frozen, in all variants: ``"every"`` block (default) or at the ``"ends"``.
-            evaluate_after: After so many learning blocks each instead; 0 is before the first.
+            learn: Experiences of each learning block; 2,500 by default.
+            eval_episodes: Experiences of each variant in each evaluation block; 50 by default.
+            evaluate: When the agent is evaluated, frozen, in all variants: ``"every"`` block (default) or at the
+                ``"ends"``.
+            evaluate_after: Evaluate after these numbers of learning blocks instead; 0 is before the first.
             pre_deployment: Experiences of the first variant in a block before deployment.
             form: ``"condensed"``, ``"dispersed"``, ``"permuted"``, ``"alternating"``, ``"joint"`` or ``"custom"``.
-            blocks: How many learning blocks; as many as the form has of itself if not given.
+            blocks: Number of learning blocks; by default the form's own.
             method: The method of the order, as for :func:`driftworld.order`.
-            start: The variant that comes first; if not given, the one that is named first.
+            start: The variant that comes first; by default the one that is named first.
             end: The variant that comes last.
-            target_step: The step that the method ``target-step`` wants.
-            order: From ``start`` on: ``"gradual"``, ``"outward"``, ``"abrupt"``, ``"path"``, ``"farthest"``, or as they are ``"named"``.
-            by: What the variants are compared by, as for :func:`driftworld.distance`; not with ``probe`` or ``step_distance``.
-            probe: Take variants that differ from the start in this element alone: ``"state"``, ``"action"``, ``"transition"``,
-                ``"reward"`` or ``"observation"``.
-            modalities: Which images the learner has that the probe is for; those that the task's worlds ask for if not given.
-            variants: How many the probe takes.
-            step_distance: Make a sequence of variants, each so far from the one before.
-            tolerance: How far off each step may be.
-            steps: How many steps.
-            drift: Learning blocks drift from each variant to the next: ``"linear"``, ``"cosine"``, ``"step:N"`` or ``"sawtooth:N"``.
-            mix: Values with nothing in between switch at random; with ``"task"`` each experience is of one of the two
-                variants, which may be of two tasks.
+            target_step: The step of the method ``target-step``.
+            order: From ``start`` on: ``"gradual"``, ``"outward"``, ``"abrupt"``, ``"path"``, ``"farthest"``, or as they
+                are ``"named"``.
+            by: The basis of comparison, as for :func:`driftworld.distance`; not with ``probe`` or ``step_distance``.
+            probe: Take variants that differ from the start in this element alone: ``"state"``, ``"action"``,
+                ``"transition"``, ``"reward"`` or ``"observation"``.
+            modalities: The images that the probed learner sees; by default those that the task's worlds ask for.
+            variants: Number of variants in the probe.
+            step_distance: Make a sequence of variants, each at this distance from the one before.
+            tolerance: Accepted deviation of each step.
+            steps: Number of steps.
+            drift: Learning blocks drift from each variant to the next: ``"linear"``, ``"cosine"``, ``"step:N"`` or
+                ``"sawtooth:N"``.
+            mix: Values that cannot be interpolated switch at random; with ``"task"`` each experience uses one of the
+                two variants, which may belong to two tasks.
             task_label: Whether the learner gets a task label: ``"none"`` (default), ``"info"`` or ``"observation"``.
-            seed: What all worlds follow from.
-            split: Which worlds it is evaluated in: ``"validation"`` to choose hyperparameters, ``"test"`` (default) for what
-                is reported. The two share no world.
-            paired_learning: The variants of a task are learned in the same layouts, one by one. If not, no two share one.
-            hold_out: Variants, or tasks, that are evaluated and never learned.
-            worlds: Draw so many worlds of each regime first, and refuse a design that could not run; 5 if not given, 0 for
-                none.
-            assets: An asset library whose classes the tasks use.
+            seed: The seed of all worlds.
+            split: The evaluation worlds: ``"validation"`` to choose hyperparameters, ``"test"`` (default) for reported
+                results. The two share no world.
+            paired_learning: Learn the variants of a task in the same layouts, experience by experience. Otherwise no
+                two share a layout.
+            hold_out: Variants, or tasks, that are evaluated but never learned.
+            worlds: Number of worlds of each regime to draw first, refusing a design that could not run; 5 by default, 0
+                for none.
+            assets: An asset library with classes that the tasks use.
             controls: A folder to write the controls into: the same variants in reversed, random and contrasting order.
             plot: A PNG file to draw the blocks into.
 
         Raises:
-            SpecError, TaskError: If a task is wrong or nowhere.
-            CurriculumError: If the design cannot be.
-            TypeError: For a number that is none.
+            SpecError, TaskError: If a task is wrong or missing.
+            CurriculumError: If the design is impossible.
+            TypeError: For a value that is not a number.
         """
         options = dict(locals())
         del options["cls"]
@@ -276,34 +280,36 @@ class Curriculum(Sequence[Block]):
 
     @classmethod
     def experts(cls, *tasks: str, **options: Any) -> list[Curriculum]:
-        """Single-task experts to compare with: a curriculum for every variant that the lifetime learns, in which it alone is
-        learned, as long as in the lifetime, in the same worlds and after the same experiences before deployment.
+        """Single-task experts to compare with: one curriculum for every learned variant of the lifetime. Each learns
+        its variant alone, for as long as the lifetime does, in the same worlds and after the same experiences before
+        deployment.
 
         Args:
             tasks: As for :meth:`design`.
-            options: Those of the lifetime, as for :meth:`design`, which also says what is raised; and ``lifetime``, its number
-                among :meth:`lifetimes`, from 0.
+            options: Those of the lifetime, as for :meth:`design`, which also lists the errors; and ``lifetime``, its
+                number among :meth:`lifetimes`, from 0.
 
         Raises:
-            TypeError: For an option that there is not.
+            TypeError: For an unknown option.
         """
         return cls._several("experts", options, {"tasks": tasks, "experts": True}, ("lifetime", "fixed_evaluation"))
 
     @classmethod
     def lifetimes(cls, count: int, *tasks: str, **options: Any) -> list[Curriculum]:
-        """So many lifetimes, each in worlds of its own and, in the permuted form, which is the default, in an order of its own.
+        """Designs ``count`` lifetimes, each with its own worlds and, in the permuted form, the default, with its own
+        order.
 
-        The orders are the rows of a balanced Latin square: each variant comes equally often in each place and after each other.
-        With an order, blocks or a drift, all have that one.
+        The orders are the rows of a balanced Latin square: each variant comes equally often in each place and after
+        each other variant. With an order, blocks or a drift, all share it.
 
         Args:
-            count: How many, 1 to 10,000.
+            count: Number of lifetimes, 1 to 10,000.
             tasks: As for :meth:`design`.
-            options: As for :meth:`design`, which also says what is raised; and ``fixed_evaluation``: all are evaluated in the
-                same worlds.
+            options: As for :meth:`design`, which also lists the errors; and ``fixed_evaluation``: all are evaluated in
+                the same worlds.
 
         Raises:
-            TypeError: For an option that there is not.
+            TypeError: For an unknown option.
         """
         return cls._several("lifetimes", options, {"tasks": tasks, "lifetimes": count}, ("fixed_evaluation",))
 
@@ -331,45 +337,45 @@ class Curriculum(Sequence[Block]):
 
     @property
     def num_experiences(self) -> int:
-        """How many experiences the whole lifetime has."""
+        """The number of experiences in the whole lifetime."""
         return len(self._plan)
 
     def experience(self, number: int) -> Experience:
         """An experience by its number over the whole lifetime.
 
         Raises:
-            CurriculumError: If there is none.
+            CurriculumError: If there is no such experience.
         """
         return _experience(self._plan, number)
 
     def to_dict(self) -> dict[str, Any]:
-        """The scenario as a dictionary of its own."""
+        """The scenario as a new dictionary."""
         return self._plan.scenario()
 
     def save(self, path: PathLike) -> None:
-        """Writes the scenario file. What it names by paths is not moved with it."""
+        """Writes the scenario file. Files that it names by paths are not copied."""
         write_whole(Path(path), self._plan.text().encode())
 
     def try_worlds(self, count: int = 5) -> list[dict[str, Any]]:
-        """Draws so many worlds of each regime, along its drift where it has one, and says how often that fails, and why.
+        """Draws ``count`` worlds of each regime, along its drift if it has one, and counts failures by reason.
 
-        Every variant on the way of a drift is looked at, too. Regimes with the same worlds are tried once.
+        Every variant along a drift is checked, too. Regimes with the same worlds are tried once.
 
         Args:
-            count: How many worlds of each regime, evenly over its experiences.
+            count: Number of worlds of each regime, spread evenly over its experiences.
 
         Returns:
-            One dictionary for each regime: ``block``, ``variant``, ``seed`` and ``worlds``; how many failed for want of a
-            ``placement``, by a ``requirement``, or for an ``other`` reason; and ``failed``, the first 100 of them: ``experience``,
-            ``index``, ``progress``, ``code`` and ``reason``.
+            One dictionary for each regime: ``block``, ``variant``, ``seed`` and ``worlds``; how many failed because of
+            a ``placement``, a ``requirement``, or for an ``other`` reason; and ``failed``, the first 100 of them:
+            ``experience``, ``index``, ``progress``, ``code`` and ``reason``.
         """
         return self._plan.try_worlds(count)
 
     def environment(self, **options: Any) -> gymnasium.Env[Any, Any]:
-        """The environment that :meth:`run` uses, for agents that are made for its spaces.
+        """The environment that :meth:`run` uses, for agents that need its spaces.
 
         Args:
-            options: As for :class:`driftworld.DriftworldEnv`, without what the curriculum says itself.
+            options: As for :class:`driftworld.DriftworldEnv`, without those that the curriculum sets itself.
         """
         return environment(self._plan, options)
 
@@ -389,38 +395,41 @@ class Curriculum(Sequence[Block]):
     ) -> Summary:
         """Runs an agent through the curriculum, and logs every experience as ``driftworld run`` does.
 
-        Interrupted in whatever way, it goes on with the same call at the first experience that is not in the log. An agent that
-        has ``save`` and ``load`` is saved after each learning block, into a folder beside the log, ``LOG.agent``, and loaded when the
-        log is taken up; what it learned since then it runs through again, unlogged. Without them, hand over one that has learned
-        what is in the log.
+        After any interruption, the same call resumes at the first experience that is not in the log. An agent with
+        ``save`` and ``load`` is saved after each learning block, into the folder ``LOG.agent`` beside the log, and
+        loaded on resuming; experiences learned since then are run again, unlogged. Without these methods, pass an agent
+        that has learned everything in the log.
 
         Args:
             agent: See :class:`driftworld.Agent`.
-            log: The folder of the log; without one nothing is kept.
-            resume: Go on with the log in the folder, if there is one; else the folder must hold nothing.
-            skip_undrawable: Leave out experiences whose worlds cannot be drawn: each has a row without numbers in the log, and is
-                counted in the summary. If not, the run stops there; the same call with this goes on.
-            check_frozen: Run 4 drawn evaluations of each block once more at its end, unlogged, and refuse an agent that does not
-                do the same in them: evaluations change it, or its random numbers are not drawn from the seed of the experience.
-            seed: What the agent begins experiences with follows from it, too: another seed is a repeat in the same worlds. 0 is the
-                run that the curriculum has of itself.
-            paired_chance: Give ``begin`` the same number in every evaluation of a world, so that an agent that has not changed
-                earns the same in it. An agent can know a world by that number; by default it is another one in every block.
-            record: Keep what is done in each experience, in an ``actions.jsonl`` beside its rows, so that :func:`driftworld.replay` and
-                ``driftworld replay`` draw it once more. A log that was begun so goes on so.
-            watch: Called with each experience and its reward as soon as it is logged, NaN for one that is left out; ``False`` from it ends
-                the run there.
-            options: Options of the environment, as for :class:`driftworld.DriftworldEnv`: ``modalities``, ``size``, ``actions`` and
-                so on. A log is taken up only with the same ones. Infos name neither variant nor world, and have no ``events``,
-                unless ``info="full"`` asks for them.
+            log: The folder of the log; by default no log is written.
+            resume: Resume the log in the folder, if there is one; otherwise the folder must be empty.
+            skip_undrawable: Skip experiences whose worlds cannot be drawn: each gets a row without numbers in the log,
+                and is counted in the summary. Otherwise the run stops there; the same call with this option resumes it.
+            check_frozen: Repeat 4 randomly chosen evaluations of each block at its end, unlogged, and refuse an agent
+                that behaves differently: evaluations change it, or it does not draw its random numbers from the seed of
+                the experience.
+            seed: Also seeds the agent's random numbers in each experience: another seed is a repeat in the same worlds.
+                0 is the curriculum's own run.
+            paired_chance: Give ``begin`` the same seed in every evaluation of a world, so that an unchanged agent earns
+                the same reward in it. An agent can recognise a world by that seed; by default every block uses another
+                one.
+            record: Record the actions of each experience in an ``actions.jsonl`` beside its rows, for
+                :func:`driftworld.replay` and ``driftworld replay``. A log started with this keeps recording when
+                resumed.
+            watch: Called with each experience and its reward as soon as it is logged, NaN for a skipped one; returning
+                ``False`` ends the run there.
+            options: Options of the environment, as for :class:`driftworld.DriftworldEnv`: ``modalities``, ``size``,
+                ``actions`` and so on. A log can only be resumed with the same ones. Infos name neither variant nor
+                world, and have no ``events``, unless ``info="full"`` asks for them.
 
         Raises:
-            CurriculumError: If evaluations change the agent, an option stands over what variants differ in, the log is of another
-                curriculum, agent or environment, or a world cannot be drawn.
-            MetricsError: If the log cannot be read or written, or the folder holds something else.
-            EnvError: If an action is none.
+            CurriculumError: If evaluations change the agent, an option overrides a difference between variants, the log
+                belongs to another curriculum, agent or environment, or a world cannot be drawn.
+            MetricsError: If the log cannot be read or written, or the folder contains something else.
+            EnvError: If an action is invalid.
             TypeError: If the agent lacks a method.
-            ValueError: If an option is wrong; then no log is begun.
+            ValueError: If an option is wrong; no log is started.
         """
         plan = self._own_plan(skip_undrawable, seed)
 
@@ -447,21 +456,23 @@ class Curriculum(Sequence[Block]):
         watch: Callable[[Experience, float], Any] | None = None,
         **options: Any,
     ) -> Summary:
-        """Runs through the curriculum as :meth:`run` does, many experiences of a block at the same time.
+        """Like :meth:`run`, with many experiences of a block at the same time.
 
-        Each environment takes the block's next experience when its last one has ended; a block begins when all of the one before are
-        over. The log has the same columns, in the order of the curriculum, and is of the same worlds. An agent that does in each
-        environment what another one does in :meth:`run` earns the same in evaluations; with one environment, everywhere.
+        Each environment takes the block's next experience when its last one has ended; a block starts when the one
+        before has finished. The log has the same columns and worlds, in the order of the curriculum. An agent that
+        behaves in each environment as another one does in :meth:`run` earns the same rewards in evaluations; with one
+        environment, in all experiences.
 
         Args:
             agent: See :class:`driftworld.VectorAgent`.
-            log: The folder of the log; without one nothing is kept.
-            num_envs: How many environments, 1 to 65,536. A log is taken up only with as many.
+            log: The folder of the log; by default no log is written.
+            num_envs: Number of environments, 1 to 65,536. A log can only be resumed with the same number.
             num_threads: Threads that step; 0 is one for each processor.
-            resume: As for :meth:`run`. What was under way when a learning block was interrupted has been learned from and is not
-                in the log: only an agent with ``save`` and ``load`` goes on as if nothing had happened.
+            resume: As for :meth:`run`. Experiences under way when a learning block was interrupted have been learned
+                from and are not in the log: only an agent with ``save`` and ``load`` continues as if nothing had
+                happened.
             skip_undrawable: As for :meth:`run`, like all that follows.
-            check_frozen: As there, of the first 4 evaluations of each block: these share the same batches again.
+            check_frozen: As there, for the first 4 evaluations of each block, which then share the same batches again.
             seed: As there.
             paired_chance: As there.
             watch: As there.
@@ -483,7 +494,9 @@ class Curriculum(Sequence[Block]):
         return Lifetime(plan, agent, log, resume, check_frozen, record).live(made_with, rollout)
 
     def _own_plan(self, skip_undrawable: bool, seed: int) -> _native.Plan:
-        """A plan of one run: what that depends on is noted in it. Of the same tasks, whatever became of their files since."""
+        """The plan of one run, in which its settings are noted. It uses the loaded tasks, even if their files have
+        changed since.
+        """
         plan = _native.Plan.from_values(self._plan.values(), skip_undrawable)
         plan.set_run_seed(seed)
         return plan
@@ -502,7 +515,7 @@ class Curriculum(Sequence[Block]):
 
     def _repr_html_(self) -> str:
         def variants(block: Block) -> str:
-            """Those of its regimes: of the first experience of each."""
+            """The variants of its regimes, each from the regime's first experience."""
             names: dict[str, None] = {}
             place = 0
             for regime in self.scenario["blocks"][block.number]["regimes"]:
@@ -517,7 +530,7 @@ class Curriculum(Sequence[Block]):
         return table(("block", "kind", "variants", "experiences"), rows, told)
 
     def __eq__(self, other: object) -> bool:
-        """Whether the same is lived: scenario, tasks and world files say the same."""
+        """Whether both would run the same: scenario, tasks and world files are equal."""
         if not isinstance(other, Curriculum):
             return NotImplemented
         return self._plan is other._plan or self._plan.values()[:3] == other._plan.values()[:3]
@@ -526,7 +539,7 @@ class Curriculum(Sequence[Block]):
         return hash(self._plan.text())
 
     def __getstate__(self) -> dict[str, Any]:
-        # With its tasks, and not only their names: files may not be where it is unpickled, or be others.
+        # Includes the tasks themselves: their files may be missing or different where it is unpickled.
         return {name: value for name, value in self.__dict__.items() if name not in ("scenario", "_blocks")}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
@@ -546,13 +559,13 @@ def _is_whole(value: Any) -> bool:
 
 
 def _designed(options: dict[str, Any]) -> list[str]:
-    """The texts of the scenarios that were designed. Controls are written into their folder."""
+    """The texts of the designed scenarios. Controls are written into their folder."""
     tasks = options.pop("tasks")
     if not tasks:
         raise ValueError('tasks: found none, expected at least one, such as "find_objects#red"')
     if not all(isinstance(task, str) for task in tasks):
         raise TypeError('tasks: expected names such as "find_objects#red": a scenario calls tasks by their names')
-    # First, so that what is wrong with a task is raised with its place.
+    # Checks the tasks first, so that their errors are raised with their place.
     variants(*tasks)
     for name in _WHOLE:
         if options.get(name) is not None and not _is_whole(options[name]):

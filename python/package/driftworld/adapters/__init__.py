@@ -1,4 +1,4 @@
-"""The environments as other libraries want them, one file for each library; nothing of them is imported before it is asked for.
+"""Adapters for other libraries, one file for each library, which is imported only when its adapter is used.
 
-Libraries that take Gymnasium's own environments and vector environments (CleanRL, TorchRL, RLlib) need no adapter and have none here.
+Libraries that take Gymnasium's own environments and vector environments (CleanRL, TorchRL, RLlib) need no adapter.
 """

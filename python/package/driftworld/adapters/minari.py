@@ -1,4 +1,4 @@
-"""Episodes written down as a Minari data set, each with the variant, seed, index and hash of its world. Reading it is Minari's.
+"""Collects episodes into a Minari data set, each with the variant, seed, index and hash of its world.
 
 import gymnasium, minari
 from driftworld.adapters.minari import collect
@@ -44,26 +44,26 @@ def collect(
     code_permalink: str | None = None,
     description: str | None = None,
 ) -> Any:
-    """Runs episodes and writes each down as soon as it is over, so that memory holds one at a time.
+    """Runs episodes and stores each as soon as it ends, so that memory holds one at a time.
 
-    Images are kept as they are (Minari's own default, JPEG, loses a little).
+    Images are stored unchanged (Minari's default, JPEG, is lossy).
 
     Args:
-        env: From ``gymnasium.make``, so that the data set can make it again (``recover_environment``).
+        env: From ``gymnasium.make``, so that the data set can recreate it (``recover_environment``).
         dataset_id: Such as ``"driftworld/find-objects/random-v0"``; it must not exist yet.
-        episodes: How many, from 1.
-        seed: Worlds 0, 1, 2, … under this seed; random actions are drawn under it as well.
-        policy: An action for an observation and the info that came with it; ``None`` acts at random.
-        queue: Variants, one in each episode in turn, over and over; ``None`` stays with the environment's.
-        algorithm_name: What acted; ``"random"`` without a policy.
-        author: As Minari's ``create_dataset_from_buffers``, like those below.
-        author_email: Of the author.
-        code_permalink: Where the code is.
-        description: What it is for.
+        episodes: Number of episodes, from 1.
+        seed: Uses worlds 0, 1, 2, … under this seed; also seeds random actions.
+        policy: Maps an observation and its info to an action; ``None`` acts at random.
+        queue: Variants, one for each episode in turn, cycling; ``None`` keeps the environment's own.
+        algorithm_name: Name of the policy; ``"random"`` by default if there is no policy.
+        author: As in Minari's ``create_dataset_from_buffers``, like those below.
+        author_email: The author's email address.
+        code_permalink: A link to the code.
+        description: What the data set is for.
 
     Returns:
-        The ``minari.MinariDataset``; ``dataset.storage.get_episode_metadata([0])`` has ``variant_id``, ``task_id``, ``world_index``,
-        ``world_seed``, ``world_hash``, ``episode_return`` and, where infos say it, ``is_success``.
+        The ``minari.MinariDataset``; ``dataset.storage.get_episode_metadata([0])`` has ``variant_id``, ``task_id``,
+        ``world_index``, ``world_seed``, ``world_hash``, ``episode_return`` and, if the infos have it, ``is_success``.
 
     Raises:
         ValueError: ``episodes`` is below 1.
@@ -81,7 +81,7 @@ def collect(
         )
         if dataset is None:
             with warnings.catch_warnings():
-                # Minari warns of each of these that is left out; whether to say who one is, is the caller's to know.
+                # Minari warns about each of these that is missing; giving them is the caller's choice.
                 warnings.simplefilter("ignore", UserWarning)
                 dataset = minari.create_dataset_from_buffers(
                     dataset_id,
@@ -108,9 +108,9 @@ def _lived(
     seed: int | None,
     options: dict[str, Any],
 ) -> tuple[Any, dict[str, Any]]:
-    """One episode as Minari's buffer, and what is to be known of it."""
+    """Runs one episode; returns Minari's buffer and the metadata."""
     observation, info = env.reset(seed=seed, options=options)
-    # Of the environment itself: the info names the variant only where the agent may know it.
+    # From the environment itself: the info names the variant only if the agent may know it.
     told = env.unwrapped.origin()  # type: ignore[attr-defined]
     observations, actions, rewards, terminations, truncations = [observation], [], [], [], []
     has_ended = False
@@ -133,7 +133,7 @@ def _lived(
         truncations=truncations,
         infos=None,
     )
-    # Minari keeps `seed` for itself.
+    # Minari reserves `seed` for itself.
     metadata = {
         "task_id": told["task_id"],
         "variant_id": told["variant_id"],
@@ -147,7 +147,7 @@ def _lived(
 
 
 def _columns(rows: list[Any]) -> Any:
-    """A list of dictionaries as a dictionary of lists; anything else as it is."""
+    """Converts a list of dictionaries to a dictionary of lists; returns anything else unchanged."""
     if rows and isinstance(rows[0], dict):
         return {name: [row[name] for row in rows] for name in rows[0]}
     return rows

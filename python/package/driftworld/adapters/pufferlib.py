@@ -1,12 +1,12 @@
-"""The native vector environment as PufferLib's ``PufferEnv`` (3.0): one object that is many agents. Training is PufferLib's.
+"""The native vector environment as PufferLib's ``PufferEnv`` (3.0): one object with many agents.
 
     import pufferlib.vector
     from driftworld.adapters.pufferlib import DriftworldPuffer
 
     environments = pufferlib.vector.make(DriftworldPuffer, env_kwargs={"num_envs": 64, "actions": "discrete"})
 
-Observations are one Box here, so ``modalities`` is a single one, ``"rgb"`` if nothing is said. PufferLib brings the buffers, in
-shared memory if it likes; what our batch wrote is copied into them once a step.
+Observations must be one Box, so ``modalities`` names a single modality, ``"rgb"`` by default. PufferLib provides the
+buffers, possibly in shared memory; the native batch's output is copied into them once a step.
 """
 
 from __future__ import annotations
@@ -30,16 +30,16 @@ __all__ = ["DriftworldPuffer"]
 
 
 class DriftworldPuffer(PufferEnv):  # type: ignore[misc, unused-ignore] # Any where it is not installed.
-    """Environments that step together and begin anew by themselves, as PufferLib's native ones.
+    """Environments that step together and reset themselves, like PufferLib's native ones.
 
-    Infos come when episodes end, one each: ``episode_return``, ``episode_length``, ``is_success`` (0.0 or 1.0), to be averaged as
-    PufferLib does; and ``variant_id``, which variant it was.
+    Each finished episode yields one info: ``episode_return``, ``episode_length`` and ``is_success`` (0.0 or 1.0), which
+    PufferLib averages, and ``variant_id``.
 
     Args:
         env_id: Such as ``"driftworld/FindObjects-v0"``.
-        num_envs: How many agents, from 1.
-        buf: PufferLib's buffers; ``None`` makes some.
-        seed: For the first reset, if that is given none.
+        num_envs: Number of agents, from 1.
+        buf: PufferLib's buffers; ``None`` allocates them.
+        seed: Used by the first reset if it is given none.
         **options: Options of the environment, such as ``variant`` or ``size``; a ``Dict`` of modalities is refused.
 
     Raises:
@@ -74,7 +74,7 @@ class DriftworldPuffer(PufferEnv):  # type: ignore[misc, unused-ignore] # Any wh
         super().__init__(buf)
 
     def reset(self, seed: int | None = None) -> tuple[npt.NDArray[Any], list[dict[str, Any]]]:
-        """Begins new episodes everywhere, under :func:`driftworld.spread_seeds`."""
+        """Starts new episodes everywhere, under :func:`driftworld.spread_seeds`."""
         seed, self._seed = self._seed if seed is None else seed, None
         self.observations[:], told = self.envs.reset(seed=seed)
         self._variants = list(told["variant_id"])
@@ -89,7 +89,7 @@ class DriftworldPuffer(PufferEnv):  # type: ignore[misc, unused-ignore] # Any wh
     def step(
         self, actions: npt.NDArray[Any]
     ) -> tuple[npt.NDArray[Any], npt.NDArray[Any], npt.NDArray[Any], npt.NDArray[Any], list[dict[str, Any]]]:
-        """One step of all; the arrays are PufferLib's buffers."""
+        """Steps all environments; the returned arrays are PufferLib's buffers."""
         observations, rewards, terminated, truncated, told = self.envs.step(
             np.asarray(actions).reshape(self.envs.action_space.shape)
         )
@@ -120,5 +120,5 @@ class DriftworldPuffer(PufferEnv):  # type: ignore[misc, unused-ignore] # Any wh
         return None if pictures is None else pictures[0]
 
     def close(self) -> None:
-        """Marks them as closed; their memory goes when nothing refers to them any more."""
+        """Marks the environments as closed; their memory is freed when nothing refers to them any more."""
         self.envs.close()

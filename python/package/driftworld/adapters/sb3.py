@@ -1,14 +1,14 @@
-"""The native vector environment as Stable-Baselines3's ``VecEnv``. Training is Stable-Baselines3's.
+"""The native vector environment as Stable-Baselines3's ``VecEnv``.
 
     from driftworld.adapters.sb3 import make_vec_env
     from stable_baselines3 import PPO
 
     PPO("CnnPolicy", make_vec_env("driftworld/FindObjects-v0", num_envs=16, seed=0, modalities="rgb", actions="discrete")).learn(100_000)
 
-``Agent`` is the other way round: a model of Stable-Baselines3 that runs through a curriculum of ours.
+``Agent`` is the reverse: it runs a Stable-Baselines3 model through a Driftworld curriculum.
 
-Observations are copies, for Stable-Baselines3 keeps the last one while the next is made. Without this adapter,
-``DummyVecEnv`` works as well, one environment at a time.
+Observations are copies, because Stable-Baselines3 keeps the last one while the next is made. ``DummyVecEnv`` also works
+without this adapter, but steps one environment at a time.
 """
 
 from __future__ import annotations
@@ -43,16 +43,16 @@ def make_vec_env(
     monitor_dir: str | None = None,
     **options: Any,
 ) -> VecEnv:
-    """Environments that step together, as Stable-Baselines3 wants them.
+    """Makes environments that step together, as a ``VecEnv``.
 
     Args:
         env_id: Such as ``"driftworld/FindObjects-v0"``.
-        num_envs: How many, from 1.
-        seed: The environments draw their worlds under :func:`driftworld.spread_seeds` of it; ``None`` draws one.
-        monitor_dir: A folder for ``monitor.csv``, the returns of all episodes; ``None`` writes no file. Returns and lengths are in
-            ``info["episode"]`` either way, so that Stable-Baselines3 prints ``ep_rew_mean``.
-        **options: Options of the environment, such as ``variant``, ``modalities`` or ``num_threads``; ``autoreset_mode`` and ``copy``
-            are set here.
+        num_envs: Number of environments, from 1.
+        seed: Worlds are drawn under :func:`driftworld.spread_seeds` of it; ``None`` draws a random seed.
+        monitor_dir: A folder for ``monitor.csv``, the returns of all episodes; ``None`` writes no file. Returns and
+            lengths are in ``info["episode"]`` either way, so that Stable-Baselines3 prints ``ep_rew_mean``.
+        **options: Options of the environment, such as ``variant``, ``modalities`` or ``num_threads``;
+            ``autoreset_mode`` and ``copy`` are fixed.
 
     Returns:
         A :class:`DriftworldVecEnv` within ``VecMonitor``.
@@ -65,18 +65,18 @@ def make_vec_env(
 class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where it is not installed.
     """The native vector environment behind Stable-Baselines3's interface.
 
-    An episode's end is followed by the next episode's first observation, as Stable-Baselines3 expects; ``info`` then says
-    ``"terminal_observation"`` and ``"TimeLimit.truncated"``, and the rest of it is what the step itself returned.
-    ``get_attr``, ``set_attr`` and ``env_method`` answer for each environment by itself, as ``DummyVecEnv`` does over single ones;
-    what would change nothing is refused.
+    When an episode ends, the step returns the next episode's first observation, as Stable-Baselines3 expects; ``info``
+    then has ``"terminal_observation"`` and ``"TimeLimit.truncated"``, and its other entries belong to the step itself.
+    ``get_attr``, ``set_attr`` and ``env_method`` work on each environment, as ``DummyVecEnv`` does over single ones;
+    calls that would have no effect are refused.
 
     Args:
         env_id: Such as ``"driftworld/FindObjects-v0"``.
-        num_envs: How many, from 1.
+        num_envs: Number of environments, from 1.
         **options: Options of the environment.
 
     Attributes:
-        envs: Gymnasium's view of the same environments; stepping it by hand would leave Stable-Baselines3 behind.
+        envs: The underlying Gymnasium vector environment; stepping it directly would put Stable-Baselines3 out of sync.
     """
 
     def __init__(self, env_id: str, num_envs: int = 1, **options: Any) -> None:
@@ -99,18 +99,20 @@ class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where
         super().__init__(num_envs, self.envs.single_observation_space, self.envs.single_action_space)
 
     def seed(self, seed: int | None = None) -> Sequence[int | None]:
-        """Seeds the next reset, by :func:`driftworld.spread_seeds`; ``None`` draws a seed. Returns the seed of each environment."""
+        """Seeds the next reset, by :func:`driftworld.spread_seeds`; ``None`` draws a random seed. Returns each
+        environment's seed.
+        """
         if seed is None:
             seed = int(np.random.randint(0, np.iinfo(np.int32).max))
         self._seeds: list[int | None] = list(driftworld.spread_seeds(seed, self.num_envs))
         return self._seeds
 
     def set_options(self, options: Sequence[dict[str, Any]] | dict[str, Any] | None = None) -> None:
-        """Says what comes next, in the midst of ``learn``, too: from its next episode on, each environment does what its options ask.
+        """Sets the options of each environment from its next episode on; also works during ``learn``.
 
         Args:
-            options: What ``reset(options=…)`` of a single environment takes, for all or one by one, such as
-                ``[{"variant": "red"}, {"variant": "blue"}]``. :meth:`reset` asks for them once more.
+            options: What ``reset(options=…)`` of a single environment takes, for all or as a list with one entry each,
+                such as ``[{"variant": "red"}, {"variant": "blue"}]``. :meth:`reset` applies them again.
         """
         super().set_options(cast(Any, options))
         groups = self._groups()
@@ -119,7 +121,7 @@ class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where
                 unknown = sorted(asked.keys() - _NEXT)
                 if unknown:
                     raise ValueError(f"set_options: found {unknown[0]!r}, expected some of {', '.join(_NEXT)}")
-                # Wrong ones change nothing anywhere.
+                # Invalid options change no environment.
                 self._native.check_next(**asked)
         except Exception:
             self._reset_options()
@@ -128,7 +130,7 @@ class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where
             self.envs.set_next(**asked, mask=mask)
 
     def reset(self) -> Any:
-        """Begins new episodes everywhere, with the seeds and options set before; both are used once.
+        """Starts new episodes everywhere, with the seeds and options set before; both are used once.
 
         Returns:
             The first observations, ``(num_envs, …)``.
@@ -137,7 +139,7 @@ class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where
         try:
             for options, mask in self._groups():
                 seeds = [seed if is_in else None for seed, is_in in zip(self._seeds, mask, strict=True)]
-                # With a mask, also one of all: as a single environment has it, each takes a queue for itself.
+                # Always with a mask, even one of all: like a single environment, each then gets a queue of its own.
                 asked: dict[str, Any] = {**options, "reset_mask": mask}
                 observations, told = self.envs.reset(
                     seed=seeds if any(seed is not None for seed in seeds) else None, options=asked
@@ -145,13 +147,13 @@ class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where
                 for index in np.flatnonzero(mask):
                     self.reset_infos[index] = _of_one(told, int(index))
         finally:
-            # Wrong ones are not asked for again.
+            # Invalid options are not applied again.
             self._reset_seeds()
             self._reset_options()
         return observations
 
     def _groups(self) -> list[tuple[dict[str, Any], npt.NDArray[np.bool_]]]:
-        """The different options, each with the environments that it is for."""
+        """The distinct options, each with the mask of its environments."""
         groups: list[tuple[dict[str, Any], npt.NDArray[np.bool_]]] = []
         for index, options in enumerate(self._options):
             mask = next((mask for known, mask in groups if known == options), None)
@@ -162,11 +164,11 @@ class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where
         return groups
 
     def step_async(self, actions: npt.NDArray[Any]) -> None:
-        """Keeps the actions, ``(num_envs, …)``; the step is made in :meth:`step_wait`."""
+        """Stores the actions, ``(num_envs, …)``; :meth:`step_wait` makes the step."""
         self._actions = actions
 
     def step_wait(self) -> tuple[Any, npt.NDArray[np.float32], npt.NDArray[np.bool_], list[dict[str, Any]]]:
-        """One step of all environments: observations, rewards (float32), dones, and one info for each."""
+        """Steps all environments: observations, rewards (float32), dones, and one info for each."""
         if self._actions is None:
             raise RuntimeError("step_wait: found no actions, expected step_async before; call step(actions)")
         observations, rewards, terminated, truncated, told = self.envs.step(self._actions)
@@ -185,7 +187,9 @@ class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where
         return observations, np.asarray(rewards, dtype=np.float32), dones, infos
 
     def close(self) -> None:
-        """Marks them as closed; may be called again. Their memory goes when nothing refers to them any more."""
+        """Marks the environments as closed; may be called again. Their memory is freed when nothing refers to them any
+        more.
+        """
         self.envs.close()
 
     def get_images(self) -> Sequence[npt.NDArray[np.uint8] | None]:
@@ -194,18 +198,18 @@ class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where
         return list(pictures) if pictures is not None else [None] * self.num_envs
 
     def get_attr(self, attr_name: str, indices: int | Iterable[int] | None = None) -> list[Any]:
-        """An attribute of each of these environments, as ``DummyVecEnv`` has it over single ones.
+        """An attribute of each of these environments, as ``DummyVecEnv`` returns it for single ones.
 
         Raises:
-            AttributeError: There is none of that name.
+            AttributeError: There is no such attribute.
         """
         return [part.get_wrapper_attr(attr_name) for part in self._chosen(indices)]
 
     def set_attr(self, attr_name: str, value: Any, indices: int | Iterable[int] | None = None) -> None:
-        """Sets an attribute of your own in each of these environments; :meth:`get_attr` has it again.
+        """Sets a user-defined attribute in each of these environments, for :meth:`get_attr`.
 
         Raises:
-            ValueError: For an option that environments are made with, and for what they have of themselves: nothing would change.
+            ValueError: For a constructor option or a built-in attribute, where setting it would have no effect.
         """
         chosen = self._chosen(indices)
         for part in chosen:
@@ -220,12 +224,12 @@ class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where
         indices: int | Iterable[int] | None = None,
         **method_kwargs: Any,
     ) -> list[Any]:
-        """What a method of each of these environments answers, as ``DummyVecEnv`` has it over single ones.
+        """Calls a method of each of these environments, as ``DummyVecEnv`` does for single ones.
 
-        ``"reset"`` begins an episode in these alone; the step after it hands out the rest.
+        ``"reset"`` starts an episode in these alone; the next step returns the remaining results.
 
         Raises:
-            AttributeError: There is none of that name.
+            AttributeError: There is no such method.
             RuntimeError: For ``"step"``, and for ``"close"`` of some: environments step and close together.
         """
         chosen = self._chosen(indices)
@@ -235,20 +239,20 @@ class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where
         return [part.get_wrapper_attr(method_name)(*method_args, **method_kwargs) for part in chosen]
 
     def env_is_wrapped(self, wrapper_class: type[Any], indices: int | Iterable[int] | None = None) -> list[bool]:
-        """Never: there is nothing around native environments."""
+        """Always False: native environments have no wrappers."""
         return [False for _ in self._chosen(indices)]
 
     def _chosen(self, indices: int | Iterable[int] | None) -> list[Part]:
-        """The environments that are asked for; negative numbers count from the last."""
+        """The selected environments; negative numbers count from the last."""
         return [self._parts[index] for index in self._get_indices(indices)]
 
 
-#: What the options of an environment may say.
+#: The options that an environment accepts.
 _NEXT = ("variant", "index", "world", "queue")
 
 
 class _Monitor(VecMonitor):  # type: ignore[misc, unused-ignore] # Any where it is not installed.
-    """Counts an episode from its beginning also where that was asked of some environments alone."""
+    """Starts counting an episode anew also if only some environments were reset."""
 
     def env_method(
         self,
@@ -257,7 +261,7 @@ class _Monitor(VecMonitor):  # type: ignore[misc, unused-ignore] # Any where it 
         indices: int | Iterable[int] | None = None,
         **method_kwargs: Any,
     ) -> list[Any]:
-        """As :meth:`DriftworldVecEnv.env_method`."""
+        """Like :meth:`DriftworldVecEnv.env_method`."""
         answers: list[Any] = self.venv.env_method(method_name, *method_args, indices=indices, **method_kwargs)
         if method_name == "reset":
             chosen = list(self._get_indices(indices))
@@ -267,11 +271,11 @@ class _Monitor(VecMonitor):  # type: ignore[misc, unused-ignore] # Any where it 
 
 
 def _of_one(told: Mapping[str, Any], index: int) -> dict[str, Any]:
-    """What a vector environment told of one of its environments."""
+    """The info of one environment, from a vector environment's infos."""
     one: dict[str, Any] = {}
     for name, values in told.items():
         mask = told.get(f"_{name}")
-        # Masks themselves have none, and say nothing by themselves.
+        # Mask entries have no masks of their own and carry no values.
         if mask is None or not mask[index]:
             continue
         value = _of_one(values, index) if isinstance(values, Mapping) else values[index]

@@ -1,10 +1,10 @@
-"""``Agent``: a model of Stable-Baselines3 that runs through a curriculum. It is imported from ``driftworld.adapters.sb3``.
+"""``Agent``: runs a Stable-Baselines3 model through a curriculum. Import it from ``driftworld.adapters.sb3``.
 
     options = {"modalities": "rgb", "size": 36, "actions": "discrete"}
     model = DQN("CnnPolicy", curriculum.environment(**options))
     curriculum.run(Agent(model, total_timesteps=100_000), "logs/dqn", **options)
 
-The environment of the model only says which spaces and how many environments there are; the curriculum makes its own.
+The model's environment only defines the spaces and the number of environments; the curriculum makes its own.
 """
 
 from __future__ import annotations
@@ -29,35 +29,40 @@ from stable_baselines3.common.vec_env import VecEnvWrapper, VecMonitor, VecTrans
 
 from driftworld.lifetimes import Transition
 
-#: What a model keeps when another one is loaded into it.
+#: Attributes that a model keeps when another one is loaded into it.
 _KEPT = ("env", "_vec_normalize_env", "_logger", "_custom_logger")
-#: What falls with the share of ``total_timesteps`` that is left, in those models that have it.
+#: Schedules over the remaining share of ``total_timesteps``, for models that have them.
 _SCHEDULES = ("lr_schedule", "clip_range", "clip_range_vf", "exploration_schedule")
 
 
 class Agent:
-    """A model that collects rollouts as Stable-Baselines3's ``OnPolicyAlgorithm`` or ``OffPolicyAlgorithm`` does: PPO, A2C, DQN, SAC, TD3.
+    """Wraps a model that collects rollouts like Stable-Baselines3's ``OnPolicyAlgorithm`` or ``OffPolicyAlgorithm``:
+    PPO, A2C, DQN, SAC, TD3.
 
-    It updates when ``model.learn`` would, and to the same weights from the same experience. Evaluations draw from the seeds of
-    their experiences, and leave the model and the global random generators as they were. In :meth:`driftworld.Curriculum.run_vector`
-    all environments of an evaluation share one draw, so an action also depends on the experiences that run beside it.
+    It updates when ``model.learn`` would, and to the same weights from the same experience. Evaluations use the seeds
+    of their experiences, and leave the model and the global random generators unchanged. In
+    :meth:`driftworld.Curriculum.run_vector` all environments of an evaluation share one random stream, so an action
+    also depends on the experiences that run beside it.
 
-    Near the end of a block some environments have no experience. PPO's updates leave their steps out. DQN fills a row of its replay
-    buffer as soon as there are ``n_envs`` steps of any environments, and counts rows.
+    Near the end of a block some environments have no experience. PPO's updates skip their steps. DQN adds a row to its
+    replay buffer as soon as there are ``n_envs`` steps of any environments, and counts rows.
 
-    :meth:`save` writes a folder: ``model.zip``, for Stable-Baselines3's own ``load``, and ``rest.pkl``, which has the buffer. Both
-    are read by unpickling, which may run code.
+    :meth:`save` writes a folder: ``model.zip``, for Stable-Baselines3's own ``load``, and ``rest.pkl`` with the buffer.
+    Loading unpickles both, which may run code.
 
     Args:
-        model: Made with ``curriculum.environment(**options)``, or with a ``DummyVecEnv`` of ``num_envs`` such environments.
-        total_timesteps: As ``model.learn`` takes it: decisions after which schedules stay at their end. It may be left out where
-            all of the model's numbers are constant.
-        policy: ``"sampled"`` or ``"greedy"``, in evaluations; ``None`` is sampled for PPO and its kin, greedy for the others.
+        model: Made with ``curriculum.environment(**options)``, or with a ``DummyVecEnv`` of ``num_envs`` such
+            environments.
+        total_timesteps: As for ``model.learn``: decisions after which schedules stay at their final value. It may be
+            omitted if the model has no schedules.
+        policy: ``"sampled"`` or ``"greedy"``, in evaluations; ``None`` is sampled for on-policy models, greedy for the
+            others.
 
     Raises:
-        TypeError: If the model collects rollouts in a way of its own, as recurrent ones do.
-        ValueError: If the model has a schedule and there is no ``total_timesteps``; if its environment normalizes or stacks
-            observations; if it has ``use_sde``; for other options of the replay buffer that do not go with several environments.
+        TypeError: If the model collects rollouts in its own way, like recurrent models.
+        ValueError: If the model has a schedule and there is no ``total_timesteps``; if its environment normalizes or
+            stacks observations; if it has ``use_sde``; for other replay buffer options that do not support several
+            environments.
     """
 
     def __init__(self, model: Any, *, total_timesteps: int | None = None, policy: str | None = None) -> None:
@@ -72,7 +77,7 @@ class Agent:
         if self.policy not in ("sampled", "greedy"):
             raise ValueError(f"policy: found {policy!r}, expected sampled or greedy")
         if not model.verbose and model.tensorboard_log is None and not model._custom_logger:
-            # Stable-Baselines3's own logger makes a folder for temporary files, which nobody removes, even if it writes nothing.
+            # Stable-Baselines3's own logger creates a temporary folder and never removes it, even if it writes nothing.
             model.set_logger(Logger(folder=None, output_formats=[]))
         model._setup_learn(total_timesteps or 0)
         model.policy.set_training_mode(False)
@@ -82,14 +87,14 @@ class Agent:
         self._frozen = False
 
     def begin(self, *beginning: Any) -> None:
-        """Seeds the evaluation that begins: ``(label, seed)``, or ``(env, label, seed)``."""
+        """Seeds the evaluation that starts: ``(label, seed)``, or ``(env, label, seed)``."""
         env, seed = (beginning[0] if len(beginning) == 3 else 0), beginning[-1]
         if env >= len(self._chances):
             raise ValueError(f"Agent: found more environments than the model's {len(self._chances)}; pass num_envs={len(self._chances)}")
         self._chances[env] = np.random.default_rng([seed, self.model.seed or 0])
 
     def freeze(self, frozen: bool) -> None:
-        """Whether it is being evaluated."""
+        """Sets whether the agent is being evaluated."""
         self._frozen = frozen
 
     def act(self, observations: Any, infos: dict[str, Any]) -> Any:
@@ -104,7 +109,7 @@ class Agent:
         return actions if is_many else actions[0]
 
     def learn(self, transition: Any) -> None:
-        """Keeps a step, and learns when ``model.learn`` would."""
+        """Stores a step, and learns when ``model.learn`` would."""
         if isinstance(transition, Transition):
             following = _lifted(transition.next_observation)
             numbers = [transition.reward, transition.terminated, transition.truncated, True]
@@ -117,7 +122,7 @@ class Agent:
         )
 
     def _seen(self, observations: Any) -> Any:
-        """Observations as the model's environment shows them: images with the channels first."""
+        """Observations as the model's environment returns them: images with the channels first."""
         space, model = self.model.observation_space, self.model
         spaces = getattr(space, "spaces", {"": space})
         arrays = observations if isinstance(observations, Mapping) else {"": observations}
@@ -133,13 +138,13 @@ class Agent:
 
     @contextmanager
     def _apart(self, active: NDArray[Any]) -> Iterator[None]:
-        """Draws from the seeds of these environments' experiences; the generators of learning stay as they are."""
+        """Draws from the seeds of these environments' experiences, and leaves the learning generators unchanged."""
         model = self.model
         seed = int(np.random.SeedSequence([int(self._chances[env].integers(2**32)) for env in active]).generate_state(1)[0])
         before, space = np.random.get_state(), model.action_space
         cards = [model.device] if model.device.type == "cuda" else []
         with torch.random.fork_rng(devices=cards):
-            # `torch.manual_seed` takes milliseconds where torch was built for cards and there is none.
+            # `torch.manual_seed` takes milliseconds if torch was built for GPUs and there is none.
             torch.default_generator.manual_seed(seed)
             if cards:
                 torch.cuda.manual_seed(seed)
@@ -160,7 +165,7 @@ class Agent:
         save_to_pkl(path / "rest.pkl", (self._collector.state(), chances))
 
     def load(self, path: Path) -> None:
-        """Becomes what :meth:`save` wrote."""
+        """Loads what :meth:`save` wrote."""
         loaded = type(self.model).load(path / "model.zip", device=self.model.device)
         vars(self.model).update({name: value for name, value in vars(loaded).items() if name not in _KEPT})
         state, (torch_state, numpy_state) = load_from_pkl(path / "rest.pkl")
@@ -175,10 +180,10 @@ class _Collector:
 
     Args:
         model: The model.
-        total: Decisions after which schedules stay at their end.
+        total: Decisions after which schedules stay at their final value.
     """
 
-    #: The model's buffer, and what else there is of a rollout.
+    #: The attribute name of the model's buffer, and the other attributes that make up a rollout.
     kept: tuple[str, ...] = ()
     buffer = ""
 
@@ -186,32 +191,32 @@ class _Collector:
         self.model, self.total = model, total
 
     def state(self) -> dict[str, Any]:
-        """What is kept of a rollout."""
+        """The state of the current rollout."""
         return {"buffer": getattr(self.model, self.buffer), **{name: getattr(self, name) for name in self.kept}}
 
     def load_state(self, state: dict[str, Any]) -> None:
-        """Takes back what :meth:`state` gave."""
+        """Restores what :meth:`state` returned."""
         setattr(self.model, self.buffer, state["buffer"])
         vars(self).update({name: state[name] for name in self.kept})
 
     def act(self, seen: Any) -> NDArray[Any]:
-        """Actions with exploration; what learning needs of them is kept."""
+        """Actions with exploration; stores what learning needs of them."""
         raise NotImplementedError
 
     def learn(
         self, following: Any, rewards: NDArray[np.float32], ended: NDArray[np.bool_], cut_off: NDArray[np.bool_], active: NDArray[np.bool_]
     ) -> None:  # fmt: skip
-        """Keeps a step, of the environments that are active, and learns if it is time to."""
+        """Stores a step of the active environments, and learns if it is time to."""
         raise NotImplementedError
 
     def note_progress(self) -> None:
-        """Tells the model how much of its schedules is left."""
+        """Updates the model's remaining progress."""
         if self.total is not None:
             self.model._update_current_progress_remaining(min(self.model.num_timesteps, self.total), self.total)
 
 
 class _OnPolicy(_Collector):
-    """What ``OnPolicyAlgorithm.collect_rollouts`` does in one call, step by step."""
+    """``OnPolicyAlgorithm.collect_rollouts``, step by step."""
 
     kept = ("active", "starts")
     buffer = "rollout_buffer"
@@ -223,7 +228,7 @@ class _OnPolicy(_Collector):
         self.starts = np.ones(model.n_envs, dtype=np.bool_)
 
     def act(self, seen: Any) -> NDArray[Any]:
-        """Actions, clipped to the space; as they were drawn they are kept, with what the policy thinks of them."""
+        """Actions clipped to the space; stores the unclipped ones with their values and log probabilities."""
         model = self.model
         with torch.no_grad():
             drawn, self.values, self.log_probs = model.policy(obs_as_tensor(seen, model.device))
@@ -237,13 +242,13 @@ class _OnPolicy(_Collector):
     def learn(
         self, following: Any, rewards: NDArray[np.float32], ended: NDArray[np.bool_], cut_off: NDArray[np.bool_], active: NDArray[np.bool_]
     ) -> None:  # fmt: skip
-        """As :meth:`_Collector.learn`: a full buffer is learned from."""
+        """Like :meth:`_Collector.learn`; learns when the buffer is full."""
         model, buffer = self.model, self.model.rollout_buffer
         model.num_timesteps += int(active.sum())
         for env in np.flatnonzero(cut_off).tolist():
             last = model.policy.obs_to_tensor(_row(following, env))[0]
             with torch.no_grad():
-                # In float32, as Stable-Baselines3 does.
+                # In float32, like Stable-Baselines3.
                 rewards[env] += (model.gamma * model.policy.predict_values(last)[0]).item()
         drawn = self.drawn if hasattr(model.action_space, "low") else self.drawn.reshape(model.n_envs, -1)
         buffer.add(self.seen, drawn, rewards, self.starts, self.values, self.log_probs)
@@ -255,7 +260,7 @@ class _OnPolicy(_Collector):
             values = model.policy.predict_values(obs_as_tensor(following, model.device))
         buffer.compute_returns_and_advantage(last_values=values, dones=self.starts)
         self.note_progress()
-        # As the buffer flattens its own arrays: environment by environment.
+        # In the order in which the buffer flattens its own arrays: environment by environment.
         places = np.flatnonzero(np.stack(self.active, axis=1))
         if len(places) < buffer.buffer_size * model.n_envs:
             buffer.get = partial(_active_samples, buffer, places)
@@ -267,7 +272,7 @@ class _OnPolicy(_Collector):
 
 
 class _OffPolicy(_Collector):
-    """What ``OffPolicyAlgorithm.collect_rollouts`` does in one call, step by step; a step is a row of ``n_envs`` decisions."""
+    """``OffPolicyAlgorithm.collect_rollouts``, step by step; a step is a row of ``n_envs`` decisions."""
 
     kept = ("waiting", "steps", "episodes")
     buffer = "replay_buffer"
@@ -278,7 +283,7 @@ class _OffPolicy(_Collector):
         self.steps = self.episodes = 0
 
     def act(self, seen: Any) -> NDArray[Any]:
-        """Actions with exploration; as the replay buffer wants them they are kept."""
+        """Actions with exploration; stores them in the form that the replay buffer expects."""
         model = self.model
         self.seen = model._last_obs = seen
         actions, self.stored = model._sample_action(model.learning_starts, model.action_noise, model.n_envs)
@@ -287,7 +292,7 @@ class _OffPolicy(_Collector):
     def learn(
         self, following: Any, rewards: NDArray[np.float32], ended: NDArray[np.bool_], cut_off: NDArray[np.bool_], active: NDArray[np.bool_]
     ) -> None:  # fmt: skip
-        """As :meth:`_Collector.learn`: stores a row if there are enough decisions for one."""
+        """Like :meth:`_Collector.learn`; stores a row as soon as there are enough decisions for one."""
         model = self.model
         for env in np.flatnonzero(active).tolist():
             info = {"TimeLimit.truncated": bool(cut_off[env])}
@@ -333,8 +338,8 @@ def _refuse(model: Any, total: int | None) -> None:
 
 
 def _active_samples(buffer: Any, places: NDArray[np.intp], batch_size: int | None = None) -> Iterator[Any]:
-    """What ``buffer.get`` gives, from these places of its flattened arrays alone."""
-    # Its own call flattens them.
+    """Like ``buffer.get``, for these positions of its flattened arrays only."""
+    # A first call of `get` flattens the arrays.
     next(type(buffer).get(buffer, 1))
     shuffled = np.random.permutation(places)
     for start in range(0, len(shuffled), batch_size or len(shuffled)):
@@ -347,7 +352,7 @@ def _lifted(observation: Any) -> Any:
 
 
 def _row(observations: Any, env: int) -> Any:
-    """What one environment shows."""
+    """The observation of one environment."""
     if isinstance(observations, Mapping):
         return {kind: array[env] for kind, array in observations.items()}
     return observations[env]

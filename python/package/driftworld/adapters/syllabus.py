@@ -1,4 +1,4 @@
-"""An environment for Syllabus (``syllabus-rl`` 0.7): its curricula choose the variant of each episode.
+"""An environment for Syllabus (``syllabus-rl`` 0.7), whose curricula choose the variant of each episode.
 
     env = DriftworldTaskEnv(gymnasium.make("driftworld/FindObjects-v0"), {"red": 486.0, "blue": 486.0, "dusk": 450.0})
     replay = {"strategy": "value_l1", "replay_schedule": "fixed"}
@@ -6,8 +6,9 @@
     shared = make_multiprocessing_curriculum(curriculum)
     env = GymnasiumSyncWrapper(env, env.task_space, shared.components)
 
-Version 0.7 does not install ``matplotlib`` and ``scipy``, lets NumPy raise at each underflow, and needs the schedule above. With
-NumPy 1.25, learning progress needs a subclass whose ``_sample_distribution`` is ``list(super()._sample_distribution())``.
+Version 0.7 does not install ``matplotlib`` and ``scipy``, lets NumPy raise at each underflow, and needs the schedule
+above. With NumPy 1.25, learning progress needs a subclass whose ``_sample_distribution`` is
+``list(super()._sample_distribution())``.
 """
 
 from __future__ import annotations
@@ -29,17 +30,19 @@ __all__ = ["DriftworldTaskEnv"]
 
 
 class DriftworldTaskEnv(TaskWrapper):  # type: ignore[misc, unused-ignore] # Any where it is not installed.
-    """An environment whose tasks are variants, by their numbers. Each episode is of one task; a change is made at the next reset.
+    """An environment whose tasks are variants, by number. Each episode has one task; a change takes effect at the next
+    reset.
 
-    After each step ``info["task_completion"]`` is the share of the ceiling that the episode has earned, 0 to 1; ``info["task"]`` is
-    the task. Learning progress needs ``continuous_progress=True``, or only a whole ceiling counts.
+    After each step ``info["task_completion"]`` is the episode's reward as a share of the ceiling, 0 to 1;
+    ``info["task"]`` is the task. Learning progress needs ``continuous_progress=True``, otherwise only reaching the full
+    ceiling counts.
 
     Args:
         env: From ``gymnasium.make``.
-        ceilings: What an expert earns (``driftworld scales``), by the names of the variants, which are the tasks in this order.
+        ceilings: An expert's reward (``driftworld scales``) by variant name; the variants are the tasks, in this order.
 
     Attributes:
-        task_space: What curricula of Syllabus are made with.
+        task_space: The task space to pass to Syllabus's curricula.
         variants: The names of the tasks.
 
     Raises:
@@ -54,7 +57,7 @@ class DriftworldTaskEnv(TaskWrapper):  # type: ignore[misc, unused-ignore] # Any
         for name in ceilings:
             env.unwrapped._members.checked({"variant": name}, many=False)  # type: ignore[attr-defined]
         self.variants, self.ceilings = list(ceilings), list(ceilings.values())
-        # Numbers, for prioritized level replay makes an array of them.
+        # Numbers, because prioritized level replay makes an array of them.
         self.task_space = DiscreteTaskSpace(len(ceilings))
         self.task = self._next = 0
         self._earned = 0.0
@@ -62,7 +65,7 @@ class DriftworldTaskEnv(TaskWrapper):  # type: ignore[misc, unused-ignore] # Any
     def reset(
         self, new_task: int | None = None, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Any, dict[str, Any]]:
-        """Begins an episode of ``new_task``, or of the task that was asked for last."""
+        """Starts an episode of ``new_task``, or of the task set last."""
         if new_task is not None:
             self.change_task(new_task)
         self.task, self._earned, self.task_completion = self._next, 0.0, 0.0
@@ -70,7 +73,7 @@ class DriftworldTaskEnv(TaskWrapper):  # type: ignore[misc, unused-ignore] # Any
         return observation, {**info, "task": self.task, "task_completion": 0.0}
 
     def change_task(self, new_task: int) -> None:
-        """Says which task the next episode is of."""
+        """Sets the task of the next episode."""
         if new_task not in range(len(self.variants)):
             raise ValueError(f"task: found {new_task!r}, expected 0 to {len(self.variants) - 1}")
         self._next = int(new_task)

@@ -1,4 +1,5 @@
-"""Continual learners compared: frozen sequences of tasks, a runner that takes up where it was killed, and tables from its logs.
+"""Compares continual learners: frozen sequences of tasks, a runner that resumes after being killed, and tables from its
+logs.
 
     driftworld benchmark list
     driftworld benchmark run smoke --learner finetuning --learner ewc --seeds 2 --jobs 2 -o results

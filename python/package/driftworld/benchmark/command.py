@@ -16,7 +16,7 @@ from driftworld.benchmark.runner import STALE, Cell, learners_by_name, make_lear
 from driftworld.benchmark.sequence import Sequence
 from driftworld.benchmark.table import Results
 
-#: What a decision costs one core where nobody has measured it, in seconds, and what a cell leaves behind, in bytes.
+#: Default estimates: seconds that a decision takes one core, and bytes that a cell leaves on disk.
 _SECONDS, _BYTES = 0.0002, 400_000
 
 _MINE = '''"""My learner."""
@@ -131,7 +131,7 @@ def _run(parsed: argparse.Namespace) -> None:
     left = [cell for cell in cells if not (cell.folder(parsed.output) / "report.json").is_file()]
     decisions = sequence.decisions * len(sequence.tasks)
     hours = len(left) * decisions * _SECONDS / 3600
-    # What no learner can be made of is said before anything runs. A plan needs no torch.
+    # Errors in learners' arguments are reported before anything runs. A dry run needs no torch.
     with contextlib.suppress(ImportError) if parsed.dry_run else contextlib.nullcontext():
         for cell in {cell.learner: cell for cell in cells}.values():
             make_learner(cell, sequence, "sampled")

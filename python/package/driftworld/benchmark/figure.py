@@ -1,4 +1,4 @@
-"""A figure of a table: what each learner can do as its life goes on."""
+"""A figure of a table: each learner's performance over its lifetime."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ _STYLE = (
 
 
 def figure(results: Results, reference: str = "finetuning") -> str:
-    """An SVG with a panel for each learner: the mean of all tasks after each task, sampled.
+    """An SVG with a panel for each learner: the mean of all tasks after each task, with sampled actions.
 
-    Bold is the interquartile mean over seeds, thin each seed, and grey the ``reference``.
+    Bold lines are interquartile means over seeds, thin lines single seeds, and grey lines the ``reference``.
     """
     curves = {label: np.array([run.sampled.values.mean(axis=1) for run in runs]) for label, runs in results.runs.items()}
     means = {label: np.apply_along_axis(interquartile_mean, 0, each) for label, each in curves.items()}

@@ -1,8 +1,8 @@
-"""The measures that papers report of a lifetime, each as its source defines it. Needs only NumPy.
+"""Published measures of a lifetime, each as its source defines it. Needs only NumPy.
 
-The matrix of a lifetime of ``T`` tasks has a row for each block of evaluation, the first before any learning, and a
-column for each task, in the order of learning: ``values[k, i]`` is task ``i`` after ``k`` tasks. The papers evaluate
-many times while a task is learned and take the mean of the last few. A row is one block of evaluation instead.
+The matrix of a lifetime of ``T`` tasks has a row for each evaluation block, the first before any learning, and a column
+for each task, in the order of learning: ``values[k, i]`` is task ``i`` after ``k`` tasks. The papers evaluate many
+times while a task is learned and take the mean of the last few. Here a row is one evaluation block instead.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ class Matrix:
 
     Attributes:
         values: ``(T + 1, T)``; 0 and 1 are the ends of the scale.
-        curves: For each task what its learning episodes earned on the same scale, in the order in which they ended.
+        curves: For each task the rewards of its learning episodes on the same scale, in the order in which they ended.
         steps: For each task the lengths of these episodes; empty if all have the same length.
     """
 
@@ -36,13 +36,15 @@ class Matrix:
 
     @classmethod
     def pooled(cls, lifetimes: SequenceOf[Matrix]) -> Matrix:
-        """The mean of several seeds. Continual World and COOM divide only after averaging: theirs are its measures."""
+        """The mean of several seeds. Continual World and COOM divide only after averaging, so their measures are those
+        of this mean.
+        """
         values = np.mean([each.values for each in lifetimes], axis=0)
         areas = np.mean([each.areas() for each in lifetimes], axis=0)
         return cls(values, tuple(areas[:, None]))
 
     def performance(self) -> float:
-        """Mean of all tasks at the end."""
+        """Mean of all tasks at the end of the lifetime."""
         return float(self.values[-1].mean())
 
     def learned(self) -> Floats:
@@ -50,14 +52,14 @@ class Matrix:
         return np.diagonal(self.values, offset=-1).copy()
 
     def forgetting(self) -> float:
-        """Mean over all tasks, the last included, of what was lost from right after learning to the end."""
+        """Mean over all tasks, including the last, of the loss from right after learning to the end."""
         return float((self.learned() - self.values[-1]).mean())
 
     def forward_transfer(self, alone: Matrix) -> float:
         """Mean over the tasks of (AUC − AUC alone) / (1 − AUC alone); meaningless once an AUC alone reaches 1.
 
         Args:
-            alone: The same tasks, each learned from scratch for as many steps.
+            alone: The same tasks, each learned from scratch for the same number of steps.
         """
         here, there = self.areas(), alone.areas()
         return float(((here - there) / (1.0 - there)).mean())
@@ -68,7 +70,7 @@ class Matrix:
         return np.array([np.average(curve, weights=each) for curve, each in zip(self.curves, steps, strict=True)])
 
     def backward(self) -> float:
-        """Mean over all tasks but the last of what later tasks did to them; below 0 is forgetting."""
+        """Mean over all tasks but the last of the change caused by later tasks; below 0 is forgetting."""
         return _mean(list((self.values[-1] - self.learned())[:-1]))
 
     def coom(self, alone: Matrix) -> dict[str, float]:
@@ -102,9 +104,9 @@ def cora(values: ArrayLike) -> dict[str, Floats]:
     """Isolated forgetting and zero-shot transfer of CORA (Powers et al. 2022, arXiv:2110.10067).
 
     Both are the change of task ``i`` while task ``j`` is learned, over the largest absolute evaluation of ``i`` in any
-    seed (CORA: in its whole smoothed curve, and undefined if that is 0). Forgetting counts where ``j`` comes after
-    ``i``, transfer where it comes before; elsewhere there is NaN. Entries are means over seeds. CORA prints ten times
-    the entries; the averages beside its tables are means of rows, of columns and of all entries, without NaN.
+    seed (CORA: in its whole smoothed curve, and undefined if that is 0). Forgetting is defined where ``j`` comes after
+    ``i``, transfer where it comes before; other entries are NaN. Entries are means over seeds. CORA prints ten times
+    the entries; the averages beside its tables are means of rows, of columns and of all entries, ignoring NaN.
 
     Args:
         values: A matrix as above, or one for each seed: ``(seeds, T + 1, T)``.
@@ -137,8 +139,8 @@ def interquartile_mean(values: ArrayLike) -> float:
 def interval(values: ArrayLike, draws: int = 10_000, seed: int = 0) -> tuple[float, float]:
     """The 95 % interval of the interquartile mean, by rliable's stratified percentile bootstrap.
 
-    Of ``(seeds, tasks)``, seeds are drawn for each task separately. rliable takes 50,000 draws from another generator.
-    Of a few seeds without tasks, every draw that there can be is taken once, and the interval is exact.
+    For ``(seeds, tasks)``, seeds are drawn for each task separately. rliable takes 50,000 draws from another generator.
+    For a few seeds without tasks, every possible draw is taken once, and the interval is exact.
     """
     found = np.asarray(values, dtype=float)
     if found.ndim == 1 and len(found) ** len(found) <= draws:

@@ -1,8 +1,9 @@
-"""Runs the cells of a table: each once, by whoever is free, and on from where it was killed.
+"""Runs the cells of a table: each once, in any free process, and resumes killed ones.
 
-A cell's folder is ``FOLDER/SEQUENCE/LEARNER/SEED``. While it runs, its logs and its learner are in ``work/``; what stays is
-``report.json`` and ``logs.tar.xz``. Several processes and several machines may share the folder: who makes the folder ``claim/``
-first runs the cell, and touches it while it does. A claim that nobody touches any more is taken away by renaming it.
+A cell's folder is ``FOLDER/SEQUENCE/LEARNER/SEED``. While it runs, its logs and its learner are in ``work/``; only
+``report.json`` and ``logs.tar.xz`` remain. Several processes and several machines may share the folder: the process
+that creates the folder ``claim/`` runs the cell, and touches the folder meanwhile. A claim that is no longer touched is
+removed by renaming it.
 """
 
 from __future__ import annotations
@@ -35,8 +36,8 @@ from driftworld.benchmark.sequence import Sequence
 from driftworld.curricula import Curriculum
 from driftworld.logs import read_log
 
-#: Seconds after which a claim that was not touched is anybody's; ``DRIFTWORLD_STALE_SECONDS`` in the environment says another number,
-#: the same in all processes that share the folder.
+#: Seconds after which an untouched claim is stale; can be set by ``DRIFTWORLD_STALE_SECONDS`` in the environment, to
+#: the same value in all processes that share the folder.
 STALE = float(os.environ.get("DRIFTWORLD_STALE_SECONDS", "60"))
 #: Seconds between two touches.
 TOUCH = STALE / 12
@@ -51,7 +52,7 @@ class Cell:
         learner: Name of a learner of ``driftworld.learners``, or ``FILE.py:CLASS``.
         seed: Of the worlds and of the learner.
         split: ``"test"``, or ``"validation"`` to tune.
-        arguments: Of the learner, laid over those that the sequence has for it.
+        arguments: Of the learner, overriding the sequence's arguments for it.
     """
 
     sequence: str
@@ -62,17 +63,17 @@ class Cell:
 
     @property
     def label(self) -> str:
-        """What rows of tables and folders call the learner."""
+        """The learner's name in tables and folders."""
         own = self.learner.rpartition(":")[2].lower() if ":" in self.learner else self.learner
         return "-".join([own, *(f"{name}={value}" for name, value in self.arguments)])
 
     def folder(self, results: Path) -> Path:
-        """Where its results are."""
+        """The folder of its results."""
         name = Sequence.load(self.sequence).name + ("" if self.split == "test" else f"-{self.split}")
         return results / name / self.label / str(self.seed)
 
     def run(self, results: Path) -> dict[str, Any] | None:
-        """Runs it, or goes on with it; its report. ``None`` if somebody else is running it."""
+        """Runs or resumes the cell; returns its report, or ``None`` if another process is running it."""
         folder = self.folder(results)
         report = folder / "report.json"
         if report.is_file():
@@ -86,14 +87,14 @@ class Cell:
         return _read(report)
 
     def source(self) -> dict[str, str] | None:
-        """Name and SHA-256 of the file of a learner that does not come with Driftworld."""
+        """Name and SHA-256 of the learner's file, if it does not come with Driftworld."""
         if ":" not in self.learner:
             return None
         path = Path(self.learner.rpartition(":")[0])
         return {"file": path.name, "sha256": hashlib.sha256(path.read_bytes()).hexdigest()}
 
     def _finished(self, report: Path) -> dict[str, Any]:
-        """What is there already, if this cell would be the same."""
+        """The existing report, if it was made by the same cell."""
         found, own = _read(report), self.source()
         if own is not None and found.get("source", own) != own:
             raise ValueError(
@@ -110,10 +111,11 @@ def _read(file: Path) -> dict[str, Any]:
 
 @contextlib.contextmanager
 def _claim(claim: Path) -> Iterator[bool]:
-    """Whether the folder was ours to make."""
+    """Yields whether this process created the folder."""
     with contextlib.suppress(FileNotFoundError):
         if time.time() - claim.stat().st_mtime > STALE:
-            # Only one process can rename a folder; another may have renamed the stale one, and made its own, meanwhile.
+            # Only one process can rename a folder; meanwhile another may have renamed the stale one and created its
+            # own.
             gone = claim.with_name(f"claim-{uuid.uuid4().hex}")
             with contextlib.suppress(FileNotFoundError):
                 claim.rename(gone)
@@ -148,7 +150,7 @@ def learner_class(name: str) -> Any:
     """The class of a learner, by its name in ``driftworld.learners`` or as ``FILE.py:CLASS``.
 
     Raises:
-        ValueError: If there is none.
+        ValueError: If there is no such class.
     """
     if ":" in name:
         file, _, own = name.rpartition(":")
@@ -177,7 +179,7 @@ def learners_by_name() -> dict[str, Any]:
 
 
 def make_learner(cell: Cell, sequence: Sequence, policy: str) -> Any:
-    """The learner of a cell as it is before it learns."""
+    """The learner of a cell, before it learns anything."""
     from driftworld.learners import Settings
 
     arguments = arguments_of(cell, sequence)
@@ -195,7 +197,7 @@ def make_learner(cell: Cell, sequence: Sequence, policy: str) -> Any:
 
 
 def arguments_of(cell: Cell, sequence: Sequence) -> dict[str, Any]:
-    """What the learner of a cell is made with: the settings of PPO and its own arguments, defaults included."""
+    """Arguments of a cell's learner: PPO's settings and its own arguments, including defaults."""
     from driftworld.learners import Settings
 
     parameters = inspect.signature(learner_class(cell.learner)).parameters
@@ -204,7 +206,7 @@ def arguments_of(cell: Cell, sequence: Sequence) -> dict[str, Any]:
         for name, each in parameters.items()
         if isinstance(each.default, (int, float, str)) and name not in ("seed", "size", "policy")
     }
-    # Methods that have to know it in advance get the length of the lifetime.
+    # Methods that need the length of the lifetime in advance get it.
     length = {"max_tasks": len(sequence.tasks), "task_decisions": sequence.decisions}
     own |= {name: value for name, value in length.items() if name in parameters}
     given = {**sequence.learners.get("all", {}), **sequence.learners.get(cell.learner, {}), **dict(cell.arguments)}
@@ -212,7 +214,7 @@ def arguments_of(cell: Cell, sequence: Sequence) -> dict[str, Any]:
 
 
 def _live(cell: Cell, folder: Path) -> None:
-    """The whole of a cell: the lifetime, and the greedy evaluations of what the learner was after each task."""
+    """Runs a whole cell: the lifetime, and the greedy evaluations of the learner after each task."""
     import torch
 
     torch.set_num_threads(1)
@@ -224,7 +226,7 @@ def _live(cell: Cell, folder: Path) -> None:
     save = learner.save
 
     def save_and_keep(path: Path) -> None:
-        """Keeps what the learner is after each task, by how many decisions it has learned from."""
+        """Keeps a copy of the learner after each task, named by the number of decisions learned from."""
         save(path)
         shutil.copyfile(path, work / "unfinished")
         (work / "unfinished").rename(kept / f"{learner.decisions:012d}.pt")
@@ -235,7 +237,7 @@ def _live(cell: Cell, folder: Path) -> None:
     evaluations = [block for block in curriculum.scenario["blocks"] if block["type"] == "evaluation"]
     saves = sorted(kept.iterdir())
     if len(saves) < len(evaluations) - 1:
-        # A kill between a block's last row and its save lost the learner of that moment.
+        # The process was killed between a block's last row and the save, so that state of the learner is lost.
         shutil.rmtree(work)
         _live(cell, folder)
         return
@@ -249,7 +251,7 @@ def _live(cell: Cell, folder: Path) -> None:
 
 
 def digest(logs: Iterable[Path]) -> str:
-    """SHA-256 of all that logs say, but for the time stamps: equal where two runs were equal to the bit."""
+    """SHA-256 of the logs without time stamps: equal if two runs were equal to the bit."""
     print = hashlib.sha256()
     for log in logs:
         columns = read_log(log).columns
@@ -259,7 +261,7 @@ def digest(logs: Iterable[Path]) -> str:
 
 
 def _finish(cell: Cell, sequence: Sequence, folder: Path, logs: list[Path], report: dict[str, Any]) -> None:
-    """Packs the logs, writes the report, and then lets the rest go."""
+    """Packs the logs, writes the report, and then deletes the rest."""
     packed = io.BytesIO()
     with tarfile.open(fileobj=packed, mode="w:xz", format=tarfile.USTAR_FORMAT) as tar:
         for log in logs:
@@ -283,20 +285,21 @@ def run_cells(
     cells: Iterable[Cell], results: str | os.PathLike[str], jobs: int = 1, ray: str | None = None,
     watch: Callable[[Cell, dict[str, Any] | None], None] | None = None,
 ) -> list[dict[str, Any] | None]:  # fmt: skip
-    """Runs cells, several at a time; each once, whoever else runs them in the same folder. Finished ones are not run again.
+    """Runs cells, ``jobs`` at a time; each once, even if other processes run them in the same folder. Finished ones are
+    not run again.
 
     Args:
-        cells: Which.
+        cells: The cells to run.
         results: The folder, which several machines may share.
-        jobs: Processes here.
-        ray: The address of a Ray cluster whose nodes share the folder: they run the cells in place of processes here.
-        watch: Called with each cell and its report, in order, as soon as both are there.
+        jobs: Number of local processes.
+        ray: The address of a Ray cluster whose nodes share the folder: they run the cells instead of local processes.
+        watch: Called with each cell and its report, in order, as soon as the report and all earlier ones are there.
 
     Returns:
-        The reports, in order; ``None`` for those that somebody else is running.
+        The reports, in order; ``None`` for cells that another process is running.
 
     Raises:
-        ValueError: If a finished cell is another file's.
+        ValueError: If a finished cell was run with another learner file.
     """
     cells, folder = list(cells), Path(results).absolute()
     found: list[dict[str, Any] | None] = []
@@ -312,13 +315,13 @@ def run_cells(
         return note(_run_by_ray(cells, folder, ray))
     if jobs == 1:
         return note(cell.run(folder) for cell in cells)
-    # Each in a process of its own: what one leaves behind is no other's.
+    # A separate process for each cell, so that none affects another.
     with ProcessPoolExecutor(jobs, mp_context=get_context("spawn"), max_tasks_per_child=1) as pool:
         return note(pool.map(partial(Cell.run, results=folder), cells))
 
 
 def _run_by_ray(cells: list[Cell], folder: Path, address: str) -> list[dict[str, Any] | None]:
-    """Cells as tasks of Ray: those of a node that dies are run again elsewhere, from where they were."""
+    """Runs cells as Ray tasks: if a node dies, its cells are resumed on another."""
     os.environ.setdefault("RAY_worker_niceness", "0")
     import ray
 
@@ -326,7 +329,7 @@ def _run_by_ray(cells: list[Cell], folder: Path, address: str) -> list[dict[str,
 
     @ray.remote(num_cpus=1, max_retries=-1, max_calls=1)
     def run(cell: Cell) -> dict[str, Any] | None:
-        # The claim of a node that died is not touched any more.
+        # The claim of a dead node is no longer touched.
         while (report := cell.run(folder)) is None:
             time.sleep(TOUCH)
         return report

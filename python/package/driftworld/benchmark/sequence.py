@@ -1,4 +1,4 @@
-"""Sequences of tasks: what is learned in which order, for how long, seen and acted how. Each is a JSON file of ``sequences/``."""
+"""Sequences of tasks: their order, length, observations and actions. Each is a JSON file of ``sequences/``."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from driftworld.curricula import Curriculum
 
 _FILES = files("driftworld.benchmark") / "sequences"
 
-#: More worlds than a task is learned in.
+#: More than the number of worlds that a task is learned in.
 _WORLDS_APART = 10**9
 
 
@@ -28,12 +28,13 @@ class Sequence:
         name: Of the file, without its ending.
         about: What it is for, in a sentence.
         tasks: Variants, in the order in which they are learned.
-        decisions: How many are learned from in each task.
-        evaluations: Worlds of each task after each task.
-        num_envs: Environments that learn at the same time.
+        decisions: Number of decisions to learn from in each task.
+        evaluations: Number of worlds in which each task is evaluated after each task.
+        num_envs: Number of environments used in parallel for learning.
         options: Of the environments.
-        scale: For each task the rewards that count 0 and 1: a random agent's that acts as rarely as the learners do, and the planner's.
-        learners: Arguments of learners, by name, where they are not the defaults.
+        scale: For each task the rewards that map to 0 and 1: those of a random agent that acts as rarely as the
+            learners, and of the planner.
+        learners: Arguments of learners that differ from the defaults, by learner name.
         frozen: For each task a hash of its first worlds, and of its first frames.
     """
 
@@ -50,10 +51,10 @@ class Sequence:
 
     @classmethod
     def load(cls, name: str) -> Sequence:
-        """The sequence of this name, or of a file.
+        """The sequence with this name, or from a file.
 
         Raises:
-            ValueError: If there is none, or its file is wrong.
+            ValueError: If it does not exist, or its file is wrong.
         """
         own = _FILES / f"{name}.json"
         path = Path(name)
@@ -67,11 +68,13 @@ class Sequence:
 
     @staticmethod
     def names() -> list[str]:
-        """Those that come with Driftworld."""
+        """The names of the sequences that come with Driftworld."""
         return sorted(each.name.removesuffix(".json") for each in _FILES.iterdir() if each.name.endswith(".json"))
 
     def curriculum(self, seed: int, split: str = "test") -> Curriculum:
-        """The lifetime of a seed: its worlds are its own. With ``split="validation"``, one to tune in, which shares no world with others."""
+        """The lifetime of a seed, in worlds of its own. With ``split="validation"``, one for tuning, which shares no
+        world with others.
+        """
         designed = Curriculum.design(
             *dict.fromkeys(self.tasks), name=f"{self.name}_{seed}", form="condensed", order="named", learn=self.decisions,
             eval_episodes=self.evaluations, task_label="info", seed=seed, split=split, worlds=0,  # type: ignore[arg-type]
@@ -80,7 +83,7 @@ class Sequence:
         regimes = {f"{regime['task']}#{regime['variant']}": regime for block in blocks[::2] for regime in block["regimes"]}
         lifetime = [evaluation]
         for place, task in enumerate(self.tasks):
-            # A task that comes again is learned in other worlds.
+            # A task that occurs again is learned in other worlds.
             again = self.tasks[:place].count(task) * _WORLDS_APART
             regime = {**regimes[task], "steps": self.decisions, "first_index": regimes[task]["first_index"] + again}
             lifetime += [{"type": "learning", "regimes": [regime]}, evaluation]
@@ -88,16 +91,16 @@ class Sequence:
 
     @staticmethod
     def logged(task: str) -> str:
-        """What logs call a task."""
+        """The name of a task in logs."""
         return task.replace("_", "").replace("#", "_")
 
     def scaled(self, task: str, reward: Any) -> Any:
-        """Rewards of a task, 0 at the random agent's and 1 at the planner's."""
+        """Rewards of a task, scaled to 0 for the random agent and 1 for the planner."""
         low, high = self.scale[task]
         return (np.asarray(reward, dtype=float) - low) / (high - low)
 
     def prints(self, task: str) -> dict[str, str]:
-        """A hash of the first worlds and the first 100 frames of a task: what :attr:`frozen` has."""
+        """Hashes of a task's first worlds and first 100 frames, as stored in :attr:`frozen`."""
         env = gymnasium.make("driftworld/Task-v0", task=task, info="full", disable_env_checker=True, **self.options)
         env.action_space.seed(0)
         observation, info = env.reset(seed=0)
@@ -112,7 +115,7 @@ class Sequence:
         return {"worlds": worlds.hexdigest(), "frames": frames.hexdigest()}
 
     def check(self) -> list[str]:
-        """Tasks whose worlds or frames are not what they were when the sequence was frozen, each in a sentence."""
+        """Describes each task whose worlds or frames have changed since the sequence was frozen, one sentence each."""
         wrong = []
         for task, frozen in self.frozen.items():
             found = self.prints(task)

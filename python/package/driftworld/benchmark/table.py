@@ -1,4 +1,4 @@
-"""Tables of what was run, from the logs alone."""
+"""Tables of finished runs, made from the logs alone."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from driftworld.benchmark.measures import Floats, Matrix, interquartile_mean, in
 from driftworld.benchmark.sequence import Sequence
 from driftworld.logs import read_log
 
-#: The share of the scale from which on a task counts as learned.
+#: Share of the scale above which a task counts as learned.
 LEARNED = 0.5
 
 
@@ -27,11 +27,11 @@ class Run:
     """One finished cell.
 
     Attributes:
-        folder: Where it is.
-        report: What the learner says of itself.
-        sampled: Of evaluations by the sampling policy.
-        greedy: Of those by the likeliest actions; its first row is the sampling policy's, which knows nothing yet.
-        rewards: Of the learning episodes, for each task.
+        folder: Its folder.
+        report: The learner's report.
+        sampled: Evaluations with sampled actions.
+        greedy: Evaluations with the likeliest actions; the first row is the sampling policy's, before any learning.
+        rewards: Rewards of the learning episodes, for each task.
     """
 
     folder: Path
@@ -42,7 +42,7 @@ class Run:
 
     @classmethod
     def read(cls, folder: Path, sequence: Sequence) -> Run:
-        """A cell from its report and its logs."""
+        """Reads a cell from its report and its logs."""
         report = json.loads((folder / "report.json").read_text(encoding="utf-8"))
         with tempfile.TemporaryDirectory() as place:
             with tarfile.open(folder / "logs.tar.xz") as tar:
@@ -57,7 +57,7 @@ class Run:
 
 
 def _of_log(log: Path, sequence: Sequence) -> tuple[list[Floats], list[Floats], list[Floats]]:
-    """A row of the matrix for each block of evaluation; rewards and lengths of episodes for each block of learning."""
+    """A matrix row for each evaluation block; rewards and lengths of episodes for each learning block."""
     columns = read_log(log).columns
     blocks, rewards = columns["block_num"], columns["reward"].astype(float)
     names = [sequence.logged(task) for task in sequence.tasks]
@@ -78,8 +78,8 @@ class Results:
     """All finished cells of a sequence.
 
     Args:
-        sequence: Which.
-        folder: Where the runner put them, such as ``results/mixed``.
+        sequence: The sequence.
+        folder: The runner's output folder, such as ``results/mixed``.
     """
 
     sequence: Sequence
@@ -90,7 +90,7 @@ class Results:
         """By learner, in the order of seeds.
 
         Raises:
-            ValueError: If there are none.
+            ValueError: If there are no finished cells.
         """
         found: dict[str, list[Run]] = {}
         for report in sorted(self.folder.glob("*/*/report.json"), key=lambda path: (path.parts[-3], int(path.parts[-2]))):
@@ -101,7 +101,9 @@ class Results:
         return found
 
     def rows(self) -> list[dict[str, Any]]:
-        """One for each learner: every measure as its interquartile mean over seeds, with its interval, as ``(mean, low, high)``."""
+        """One row for each learner: every measure as ``(mean, low, high)``, the interquartile mean over seeds and its
+        interval.
+        """
         alone = {run.report["seed"]: run.sampled for run in self.runs.get("from_scratch", [])}
         measures: dict[str, Callable[[Run], float | None]] = {
             "performance": lambda run: run.sampled.performance(),
@@ -124,7 +126,8 @@ class Results:
         return sorted(rows, key=lambda row: -row["performance"][0])
 
     def markdown(self, figure: str | None = None) -> str:
-        """A page: the table, a figure if there is a link to one, each task of each learner, and what it does not show."""
+        """A page with the table, a figure if a link is given, each task of each learner, and the limits of the results.
+        """
         shown = ["", f"![]({figure})", "", _FIGURE] if figure else []
         runs = [run for runs in self.runs.values() for run in runs]
         hours = sum(run.report["seconds"] for run in runs) / 3600
@@ -170,7 +173,7 @@ def _cell(value: tuple[float, float, float] | None) -> str:
 
 
 def _head(sequence: Sequence) -> list[str]:
-    """The title, what the sequence is, and what the columns are."""
+    """The title, a description of the sequence, and the meaning of the columns."""
     title, about, *rest = _HEAD.format(sequence=sequence, share=LEARNED).split("\n\n")
     return "\n\n".join([title, textwrap.fill(about, 120), *rest]).splitlines()
 

@@ -1,7 +1,7 @@
-"""A contract that every environment of ours has to keep, and a check that holds any task of a user's against it.
+"""The contract of every Driftworld environment, and a check of any user's task against it.
 
-``python -m driftworld.check find_objects#red my_task.json my_world.json`` prints a table of what passed and what failed, with what to
-do; :func:`check` is the same from a program. Nothing is trained here, and nothing is timed.
+``python -m driftworld.check find_objects#red my_task.json my_world.json`` prints a table of passed and failed rules,
+with advice; :func:`check` does the same from a program. Nothing is trained or timed.
 """
 
 from __future__ import annotations
@@ -32,29 +32,29 @@ def check(
     processes: bool = True,
     **options: Any,
 ) -> Report:
-    """Holds a task against the contract.
+    """Checks a task against the contract.
 
     Args:
-        task: A built-in task or a path, with ``#variant`` or without; the path of a world; or the id of an environment.
-        num_envs: How many environments the vector ones have, from 1.
-        steps: How many steps of random actions each comparison takes, from 1; episodes are cut to 9 steps, so that 60 hold many
-            ends.
+        task: A built-in task or a path, with or without ``#variant``; the path of a world; or the id of an environment.
+        num_envs: Number of environments in vector environments, from 1.
+        steps: Number of random steps in each comparison, from 1; episodes are cut to 9 steps, so that 60 steps contain
+            many ends.
         seed: Of worlds and actions.
         processes: Whether to compare with ``AsyncVectorEnv`` as well, which starts a process for each environment.
         **options: Options of the environment, such as ``modalities="rgb"``.
 
     Returns:
-        A :class:`Report`; a rule that is broken is a finding in it, never an exception.
+        A :class:`Report`; a broken rule is a finding in it, never an exception.
 
     Raises:
-        driftworld.DriftworldError: The task does not exist, or its spec is wrong: there is nothing to check then.
+        driftworld.DriftworldError: The task does not exist, or its spec is wrong, so there is nothing to check.
         ValueError: ``num_envs`` or ``steps`` is below 1.
     """
     if num_envs < 1 or steps < 1:
         raise ValueError(f"num_envs, steps: found {num_envs} and {steps}, expected at least 1 of each")
     env_id, more = _environment_of(task)
     case = Case(env_id, {**more, **options}, num_envs, steps, seed)
-    # Whatever cannot be made at all says so here, in its own words.
+    # If the environment cannot be made at all, this raises its own error.
     case.single().close()
     rules = [rule for rule in RULES if processes or rule.check is not equal_in_processes]
     findings = tuple(rule.look(case) for rule in rules)
@@ -62,7 +62,7 @@ def check(
 
 
 def _environment_of(task: str) -> tuple[str, dict[str, Any]]:
-    """The id and the options by which Gymnasium makes the environment of a task, a world, or an id."""
+    """The Gymnasium id and the options that make the environment of a task, a world, or an id."""
     if task.startswith("driftworld/"):
         return task, {}
     path = Path(task)
@@ -71,14 +71,14 @@ def _environment_of(task: str) -> tuple[str, dict[str, Any]]:
             document = json.loads(read_text(path))
         except ValueError:
             document = {}
-        # A task spec declares parameters around a template; whatever is wrong with it, its own reader says.
+        # A task spec declares parameters around a template; its own reader reports anything wrong with it.
         if isinstance(document, dict) and not {"template", "parameters", "variants"} & document.keys():
             return "driftworld/World-v0", {"world": task}
     return "driftworld/Task-v0", {"task": task}
 
 
 def versions() -> dict[str, str]:
-    """Of what a report depends on."""
+    """Versions of everything that a report depends on."""
     return {
         "python": platform.python_version(),
         "driftworld": driftworld.__version__,

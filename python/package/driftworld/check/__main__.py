@@ -1,6 +1,6 @@
-"""The command ``python -m driftworld.check``: a table, or JSON, for each task. The checking itself is :func:`driftworld.check.check`.
+"""The command ``python -m driftworld.check``: prints a table, or JSON, for each task.
 
-Exit status: 0 when all passed, 1 when something failed, 2 for arguments that it does not understand.
+Exit status: 0 if everything passed, 1 if something failed, 2 for invalid arguments.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ def _option(text: str) -> tuple[str, Any]:
 
 
 def _checked(task: str, asked: argparse.Namespace) -> Report:
-    """The report on a task, also where there is nothing to check because it cannot be made."""
+    """The report on a task, even if the task cannot be made and there is nothing to check."""
     try:
         return check(
             task,

@@ -1,4 +1,4 @@
-"""What is checked: a task with its options, as each kind of environment that rules compare. The rules are in ``rules.py``."""
+"""``Case``: a task with its options, as each kind of environment that the rules compare."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from typing import Any
 
 import gymnasium
 
-#: Episodes are cut so short that many ends and restarts fall into a check.
+#: Episodes are cut short, so that a check contains many ends and restarts.
 SHORT_EPISODE = 9
 
 
 @dataclass(frozen=True)
 class Case:
-    """A task with the options and the measure of a check."""
+    """A task with the options and the size of a check."""
 
     env_id: str
     options: dict[str, Any]
@@ -25,7 +25,7 @@ class Case:
         return gymnasium.make(self.env_id, disable_env_checker=True, **{**self.options, **more})
 
     def bare(self, **more: Any) -> gymnasium.Env[Any, Any]:
-        """Without Gymnasium's wrappers."""
+        """The single environment without Gymnasium's wrappers."""
         return self.single(**more).unwrapped
 
     def native(self, **more: Any) -> Any:
@@ -35,13 +35,13 @@ class Case:
         )
 
     def gymnasiums(self, mode: str, **vector_kwargs: Any) -> Any:
-        """The same environments in Gymnasium's own loop: ``"sync"``, or ``"async"`` with a process for each."""
+        """The same environments in Gymnasium's own vector loop: ``"sync"``, or ``"async"`` with a process for each."""
         options = {"max_episode_steps": SHORT_EPISODE, **self.options}
         return gymnasium.make_vec(
             self.env_id, num_envs=self.num_envs, vectorization_mode=mode, vector_kwargs=vector_kwargs, **options
         )
 
     def actions(self, space: gymnasium.Space[Any]) -> list[Any]:
-        """The same random actions whoever asks."""
+        """Random actions, the same at every call."""
         space.seed(self.seed)
         return [space.sample() for _ in range(self.steps)]

@@ -1,4 +1,4 @@
-"""What a check found: :class:`Finding` and :class:`Report`. What is looked for is in ``rules.py``."""
+"""The results of a check: :class:`Finding` and :class:`Report`."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Finding:
-    """What became of one rule.
+    """The result of one rule.
 
     Attributes:
         rule: The rule in a few words.
         outcome: ``"passed"``, ``"failed"`` or ``"skipped"``.
-        detail: What was found where it failed, or why it was skipped; empty where it passed.
+        detail: What was found if it failed, or why it was skipped; empty if it passed.
         advice: What to do about a failure; empty otherwise.
     """
 
@@ -25,11 +25,11 @@ class Finding:
 
 @dataclass(frozen=True)
 class Report:
-    """What became of all rules for one task.
+    """The results of all rules for one task.
 
     Attributes:
-        task: What was checked.
-        findings: One for each rule, in the order in which they were looked at.
+        task: The task that was checked.
+        findings: One for each rule, in the order in which they were checked.
         versions: Of Python, Driftworld, Gymnasium and numpy.
     """
 

@@ -1,6 +1,6 @@
-"""The rules that environments keep, each a function that raises where it is broken. What they are tried on is in ``case.py``.
+"""The rules that environments must keep, each a function that raises if its rule is broken.
 
-What has to be equal is compared to the last bit, by ``_equality``.
+Values that must be equal are compared to the last bit, by ``_equality``.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ from driftworld.envs import spread_seeds
 
 
 class Broken(Exception):
-    """A rule is broken; the text says how."""
+    """A rule is broken; the message describes how."""
 
 
 class NotHere(Exception):
-    """A rule cannot be looked at on this machine; the text says why."""
+    """A rule cannot be checked on this machine; the message gives the reason."""
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class Rule:
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("error")
-                # Of libraries below us, about themselves.
+                # These come from libraries below and concern only them.
                 warnings.simplefilter("ignore", DeprecationWarning)
                 warnings.simplefilter("ignore", ResourceWarning)
                 self.check(case)
@@ -63,7 +63,7 @@ def _passes_gymnasiums_check(case: Case) -> None:
     from gymnasium.utils.env_checker import check_env
 
     env = case.bare(render_mode="rgb_array")
-    # It opens a window if windows are among the modes; whether one opens has a rule of its own.
+    # `check_env` opens a window if windows are among the modes; a separate rule checks that.
     env.metadata = {**env.metadata, "render_modes": ["rgb_array"]}
     check_env(env)
 
@@ -109,7 +109,7 @@ def _same_seed_same_worlds(case: Case) -> None:
 def _goes_on_from_its_state(case: Case) -> None:
     with closing(case.bare()) as env, closing(case.bare()) as other:
         actions = case.actions(env.action_space)
-        # Where episodes end within a few steps, the state is taken earlier; at the latest before the first.
+        # Takes the state earlier if episodes end within a few steps, at the latest before the first step.
         for before in (SHORT_EPISODE // 2, 1, 0):
             env.reset(seed=case.seed)
             if not any(any(env.step(action)[2:4]) for action in actions[:before]):
@@ -134,7 +134,7 @@ def _can_be_sent(case: Case) -> None:
 
 
 def _walk(env: gymnasium.Env[Any, Any], case: Case) -> list[Any]:
-    """An episode of random actions, all that came back."""
+    """Runs an episode of random actions; returns everything that the environment returned."""
     told: list[Any] = [env.reset(seed=case.seed)]
     for action in case.actions(env.action_space)[:SHORT_EPISODE]:
         told.append(copy.deepcopy(env.step(action)))
@@ -199,7 +199,7 @@ def _equal_in_a_loop(case: Case) -> None:
 
 
 def equal_in_processes(case: Case) -> None:
-    # Spawned processes import everything anew, as on other platforms; ours have threads, which do not survive a fork.
+    # Spawned processes import everything again, as on other platforms; Driftworld's threads do not survive a fork.
     with closing(case.native()) as ours, closing(case.gymnasiums("async", context="spawn")) as theirs:
         _expect_same_lives(case, ours, theirs)
 
@@ -226,7 +226,7 @@ def _autoreset(mode: str) -> Callable[[Case], None]:
 
 
 def _expect_same_lives(case: Case, ours: Any, theirs: Any, *, resets_by_mask: bool = False) -> None:
-    """The same seeds and actions for both; everything that comes back must be equal."""
+    """Runs both with the same seeds and actions; everything that they return must be equal."""
     _expect_same(ours.single_observation_space, theirs.single_observation_space, "single_observation_space")
     _expect_same(ours.single_action_space, theirs.single_action_space, "single_action_space")
     _expect_same(ours.reset(seed=case.seed), theirs.reset(seed=spread_seeds(case.seed, theirs.num_envs)), "reset")
@@ -238,7 +238,7 @@ def _expect_same_lives(case: Case, ours: Any, theirs: Any, *, resets_by_mask: bo
         ended = np.logical_or(left[2], left[3])
         num_ends += int(ended.sum())
         if resets_by_mask and ended.any():
-            # Gymnasium's loop takes the mask out of the dictionary that it is given.
+            # Gymnasium's loop removes the mask from the dictionary that it is given.
             one, other = (env.reset(options={"reset_mask": ended.copy()}) for env in (ours, theirs))
             _expect_same(one, other, f"reset by mask after step {number}")
     if num_ends == 0 and case.steps > 2 * SHORT_EPISODE and "max_episode_steps" not in case.options:
