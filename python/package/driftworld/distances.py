@@ -1,7 +1,6 @@
-"""How far apart variants and worlds are, matrices of it, and orders by it.
+"""Distances between variants and between worlds, distance matrices, and orders by distance.
 
-The measures are the ones of ``driftworld distance`` and ``driftworld order``, with the same numbers. Which variants there are is
-in ``specs.py``.
+The measures are those of ``driftworld distance`` and ``driftworld order``, with the same numbers.
 """
 
 from __future__ import annotations
@@ -37,20 +36,21 @@ SHOWN = 20
 
 Weights = Mapping[str, float]
 PathLike = str | os.PathLike[str]
-#: The methods that look for the best path from a first one; ``None`` stands for the method that fits the number of items.
+#: The methods that search for the best path from a first item; ``None`` stands for the method that fits the number of
+#: items.
 SEEKING = frozenset([None, "nearest", "exact", "two-opt", "abrupt", "farthest", "target-step", "gradual", "outward"])
 Named = str | Variant | TaskSpec
 
 
 class Distance(float):
-    """How far apart two are: a number, with what it is made of.
+    """A distance: a number, with the parts it is made of.
 
     Attributes:
-        elements: The distance in each element of the decision process, by letter: ``S``, ``A``, ``T``, ``R``, ``O``; ``None``
-            where nothing could differ.
-        parts: What was compared: dictionaries with ``name``, ``element``, ``measure``, ``how`` (for distributions), ``raw``,
-            ``normalised``, ``weight`` and ``share``, those that matter most first.
-        by: What the two were compared by, such as ``"parameters"``.
+        elements: The distance in each element of the decision process, by letter: ``S``, ``A``, ``T``, ``R``, ``O``;
+            ``None`` if nothing could differ.
+        parts: The compared parts: dictionaries with ``name``, ``element``, ``measure``, ``how`` (for distributions),
+            ``raw``, ``normalised``, ``weight`` and ``share``, largest contribution first.
+        by: The basis of comparison, such as ``"parameters"``.
         compared: How the two were compared, in words.
     """
 
@@ -67,7 +67,7 @@ class Distance(float):
         by: str,
         compared: str,
     ) -> Self:
-        """A distance of all elements together, at least 0, and what it is made of."""
+        """The total distance, at least 0, and the parts it is made of."""
         distance = super().__new__(cls, total)
         distance.elements, distance.parts = dict(elements), list(parts)
         distance.by, distance.compared = by, compared
@@ -75,7 +75,7 @@ class Distance(float):
 
     @property
     def total(self) -> float:
-        """All elements together, at least 0, as a plain number."""
+        """The total distance, at least 0, as a plain number."""
         return float(self)
 
     def __repr__(self) -> str:
@@ -100,7 +100,7 @@ class Distance(float):
         return (self.total, self.elements, self.parts, self.by, self.compared)
 
     def explain(self) -> str:
-        """What the distance is made of, as a table in plain text."""
+        """The parts of the distance, as a table in plain text."""
         lines = [f"{self.total:.4f}, {self.compared}"]
         for letter, value in self.elements.items():
             lines.append(f"  {letter} {ELEMENTS[letter]:<12} {'-' if value is None else f'{value:.4f}'}")
@@ -133,31 +133,32 @@ def distance(
     scale: Scale = "units",
     assets: PathLike | Iterable[PathLike] = (),
 ) -> Distance:
-    """How far apart two variants, or two worlds, are.
+    """The distance between two variants, or two worlds.
 
-    Two variants of one task are compared by what the task declares, which is parameters where it says nothing, at its weights
-    and by its measures. Variants of different tasks are compared by worlds drawn from each under one seed, worlds as they are.
+    Two variants of one task are compared as the task declares, by parameters by default, with its weights and measures.
+    Variants of different tasks are compared by worlds drawn from each under one seed; worlds are compared directly.
 
     Args:
-        a: A variant, its name such as ``"find_objects#red"``, a world as a dictionary or JSON text, or the path of a world.
-        b: Another.
-        weights: What elements weigh, over what the task says: ``{"R": 2}`` or ``{"reward": 2}``, each 0 to 1,000,000.
-        worlds: Compare so many worlds of each, 1 to 100,000, even where both are variants of one task; 16 where they are not, 4
-            by pictures and dynamics, 64 by placements.
-        seed: The seed of worlds that are drawn.
-        index: The number of the first of them.
+        a: A variant, its name such as ``"find_objects#red"``, a world as a dictionary or JSON text, or the path of a
+            world.
+        b: The other variant or world.
+        weights: Weights of elements, overriding the task's: ``{"R": 2}`` or ``{"reward": 2}``, each 0 to 1,000,000.
+        worlds: Number of worlds of each to compare, 1 to 100,000, even if both are variants of one task; otherwise the
+            default is 16, 4 by pictures and dynamics, 64 by placements.
+        seed: The seed of drawn worlds.
+        index: The number of the first drawn world.
         by: ``"parameters"`` (two variants of one task), ``"worlds"``, ``"pictures"``, ``"occupancy"``,
-            ``"placements"``, ``"objects"``, ``"colors"``, ``"rewards"``, ``"dynamics"``, ``"behavior"``, some with a measure behind a colon, such as
-            ``"occupancy:jaccard"``.
-        scale: By parameters, ``"units"`` (1 is one parameter over its whole range) or ``"share"`` (of the task's diameter, all of
-            them over their whole ranges).
-        assets: Paths of asset libraries whose classes the worlds use.
+            ``"placements"``, ``"objects"``, ``"colors"``, ``"rewards"``, ``"dynamics"``, ``"behavior"``, some with a
+            measure after a colon, such as ``"occupancy:jaccard"``.
+        scale: By parameters, ``"units"`` (1 is one parameter over its whole range) or ``"share"`` (of the task's
+            diameter, where all parameters span their whole ranges).
+        assets: Paths of asset libraries with classes that the worlds use.
 
     Raises:
         SpecError: If a document is wrong.
         TaskError: If there is no such task or variant.
         GeneratorError: If a world cannot be drawn.
-        SimilarityError: For a weight that is none.
+        SimilarityError: For an invalid weight.
     """
     laid = None if weights is None else dict(weights)
     sides = _side(a), _side(b)
@@ -180,7 +181,7 @@ def distance(
 
 
 def _side(side: Any) -> Variant | tuple[str, str]:
-    """A variant, or the name and the text of a world."""
+    """The variant itself, or the name and the text of a world."""
     if isinstance(side, Variant):
         return side
     if isinstance(side, TaskSpec):
@@ -201,17 +202,18 @@ def _is_world_file(name: str) -> bool:
 
 
 class DistanceMatrix:
-    """Every distance among labelled items: symmetric, at least 0, and 0 on the diagonal.
+    """All pairwise distances among labelled items: symmetric, at least 0, and 0 on the diagonal.
 
-    ``np.asarray(matrix)`` is the array; ``matrix[0, 1]`` and ``matrix["task#a", "task#b"]`` are distances, ``matrix["task#a"]`` is a row.
-    As of a data frame, what is iterated and what is ``in`` it are labels. Two are equal if labels and distances are.
+    ``np.asarray(matrix)`` is the array; ``matrix[0, 1]`` and ``matrix["task#a", "task#b"]`` are distances,
+    ``matrix["task#a"]`` is a row. Like a data frame, it iterates over labels, and ``in`` tests for a label. Two
+    matrices are equal if labels and distances are.
 
     Args:
-        labels: What the items are called, each once.
+        labels: Names of the items, each once.
         values: The distances, float64 (items, items).
 
     Raises:
-        SimilarityError: If the numbers are no distances, or do not fit the labels.
+        SimilarityError: If the numbers are not distances, or do not fit the labels.
     """
 
     def __init__(self, labels: Sequence[str], values: ArrayLike) -> None:
@@ -227,24 +229,25 @@ class DistanceMatrix:
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> DistanceMatrix:
-        """Reads a matrix, as :meth:`save` and ``driftworld order --matrix`` write it, by the file's ending.
+        """Reads a matrix written by :meth:`save` or ``driftworld order --matrix``, in the format of the file's
+        extension.
 
         Raises:
-            SimilarityError: If the file holds no distances.
+            SimilarityError: If the file contains no distances.
         """
         path = Path(path)
         read = _native.Matrix.from_csv if _ending(path) == ".csv" else _native.Matrix.from_json
         return cls._of(read(read_text(path, "matrix")))
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes the matrix as ``.csv`` or ``.json``, by the name's ending."""
+        """Writes the matrix as ``.csv`` or ``.json``, by the name's extension."""
         path = Path(path)
         native = self._native
         write_whole(path, (native.to_csv() if _ending(path) == ".csv" else native.to_json()).encode())
 
     @property
     def labels(self) -> list[str]:
-        """What the items are called."""
+        """Names of the items."""
         return self._native.labels
 
     @property
@@ -257,11 +260,12 @@ class DistanceMatrix:
 
     @property
     def is_metric(self) -> bool:
-        """Whether no detour is shorter than the straight way, by what is known of the measure."""
+        """Whether the triangle inequality holds, as far as known for the measure."""
         return self._native.is_metric
 
     def embed(self, dim: int = 2) -> NDArray[np.float64]:
-        """The items as points whose distances are as true as they can be (classical scaling), float64 (items, dim).
+        """Embeds the items as points that preserve the distances as well as possible (classical scaling), float64
+        (items, dim).
 
         Args:
             dim: 1 or 2. The first axis is the longer one.
@@ -272,7 +276,7 @@ class DistanceMatrix:
         return points[:, :dim]
 
     def explained(self) -> float:
-        """How much of the matrix two dimensions show, in 0..=1."""
+        """Share of the matrix that two dimensions explain, in 0..=1."""
         return self._native.map()[1]
 
     def order(
@@ -313,7 +317,7 @@ class DistanceMatrix:
         return self.values.dtype
 
     def to_pandas(self) -> pandas.DataFrame:
-        """The distances as a data frame, rows and columns by the labels.
+        """The distances as a data frame, with the labels on rows and columns.
 
         Raises:
             ImportError: If pandas is not installed.
@@ -360,7 +364,7 @@ class DistanceMatrix:
     def _repr_html_(self) -> str:
         shown = min(len(self), SHOWN)
         labels = self.labels[:shown]
-        # Over the columns a variant goes by its own name where all are of one task.
+        # Column heads omit the task if all variants belong to the same one.
         tasks = {label.partition("#")[0] for label in labels}
         heads = [label.partition("#")[2] or label for label in labels] if len(tasks) == 1 else labels
         more = f"; the first {shown} are shown" if shown < len(self) else ""
@@ -374,7 +378,7 @@ class DistanceMatrix:
 
 
 def _matrix_again(text: str) -> DistanceMatrix:
-    """A matrix in another process."""
+    """Unpickles a matrix."""
     return DistanceMatrix._of(_native.Matrix.from_json(text))
 
 
@@ -388,17 +392,18 @@ def _ending(path: Path) -> str:
 
 @dataclass(frozen=True)
 class Order(Sequence[str]):
-    """Items in an order by their distances. A sequence of their labels: ``order[0]``, ``order[-2:]``, ``"task#a" in order``.
+    """Items in an order by their distances. A sequence of their labels: ``order[0]``, ``order[-2:]``, ``"task#a" in
+    order``.
 
     Attributes:
-        method: How it was found.
+        method: The method that found it.
         order: The labels, in order.
-        indices: The same as numbers of items, from 0.
+        indices: The same as item indices, from 0.
         steps: The distance from each item to the next.
         length: The sum of the steps.
         largest_step: The largest of them.
         mean_step: Their mean.
-        anchor_correlation: How steadily the order leads away from its first item, a rank correlation in −1..=1, or ``None``.
+        anchor_correlation: Rank correlation, in −1..=1, between place and distance from the first item, or ``None``.
         share_of_shorter_random_orders: The share of 1,000 random orders, drawn from ``seed``, that are shorter.
     """
 
@@ -434,13 +439,13 @@ class Order(Sequence[str]):
         return table(("", "item", "from the one before"), self._rows(False)) + note(self._summary())
 
     def _rows(self, padded: bool) -> list[tuple[str, str, str]]:
-        """A row for each item: its place, its label, the step to it."""
+        """A row for each item: its place, its label, and the step to it."""
         wide = max(map(len, self.order), default=0) if padded else 0
         steps = ["", *(f"{step:.4f}" for step in self.steps)]
         return [(f"{place}", f"{label:<{wide}}", step) for place, (label, step) in enumerate(zip(self.order, steps), start=1)]
 
     def _summary(self) -> str:
-        """What is said of the whole."""
+        """A summary of the whole order."""
         return (
             f"{self.method}: length {self.length:.4f}, largest step {self.largest_step:.4f}; "
             f"{self.share_of_shorter_random_orders:.1%} of random orders are shorter"
@@ -456,22 +461,23 @@ def distance_matrix(
     scale: Scale = "units",
     assets: PathLike | Iterable[PathLike] = (),
 ) -> DistanceMatrix:
-    """Every distance among variants, measured in parallel.
+    """All pairwise distances among variants, measured in parallel.
 
-    The distance of two depends on them and on ``by`` alone, and on nothing else in the list.
+    The distance of a pair depends only on the two variants and on ``by``, not on the rest of the list.
 
     Args:
         items: Names, variants and task specs; a task stands for all its variants, and each variant is taken once.
         weights: As for :func:`distance`.
-        by: As for :func:`distance`, by default what the variants' task declares; variants of several tasks need it.
-        worlds: Compare so many worlds of each, drawn under seed 0, 1 to 10,000; by default 16, 4 by pictures
-            and dynamics, 64 by placements.
+        by: As for :func:`distance`, by default as the variants' task declares; required for variants of several tasks.
+        worlds: Number of worlds of each to compare, drawn under seed 0, 1 to 10,000; by default 16, 4 by pictures and
+            dynamics, 64 by placements.
         scale: As for :func:`distance`.
-        assets: Paths of asset libraries whose classes the worlds use.
+        assets: Paths of asset libraries with classes that the worlds use.
 
     Raises:
-        SpecError, TaskError, GeneratorError, SimilarityError: As :func:`distance`; SimilarityError also for more than 20,000.
-        ValueError: If two that differ are called the same.
+        SpecError, TaskError, GeneratorError, SimilarityError: As :func:`distance`; SimilarityError also for more than
+            20,000 variants.
+        ValueError: If two different variants have the same name.
     """
     found = _variants(items)
     laid = None if weights is None else dict(weights)
@@ -499,23 +505,23 @@ def order(
     scale: Scale = "units",
     assets: PathLike | Iterable[PathLike] = (),
 ) -> Order:
-    """Variants in an order by their distances.
+    """Orders variants by their distances.
 
     Args:
-        items: A matrix, or what :func:`distance_matrix` takes.
+        items: A matrix, or items as for :func:`distance_matrix`.
         method: ``nearest``, ``exact`` (up to 15), ``two-opt``, ``abrupt``, ``farthest``, ``random``, ``target-step``,
-            ``gradual``, ``outward`` or ``given``; exact where possible if none is given, else two-opt.
-        start: The label that comes first; if none is given, the variant that is named first, for methods that look for a path
-            from a first one, and whichever is best of a matrix or a task named whole.
+            ``gradual``, ``outward`` or ``given``; by default exact where possible, else two-opt.
+        start: The label that comes first. By default, methods that search for a path from a first item start at the
+            variant named first, or at the best one of a matrix or of a whole task.
         end: The label that comes last.
-        seed: What ``random`` draws from.
-        target_step: The step that ``target-step`` wants.
+        seed: The seed of ``random``.
+        target_step: The step of ``target-step``.
         weights: As for :func:`distance`.
         by, worlds, scale, assets: As for :func:`distance_matrix`.
 
     Raises:
-        SimilarityError: If there is no such method, or it cannot have such ends or items.
-        ValueError: If a label is none of the items'.
+        SimilarityError: If the method is unknown, or does not support these ends or items.
+        ValueError: If a label belongs to none of the items.
     """
     if isinstance(items, DistanceMatrix):
         if weights is not None:

@@ -293,7 +293,7 @@ def run_cells(
         results: The folder, which several machines may share.
         jobs: Number of local processes.
         ray: The address of a Ray cluster whose nodes share the folder: they run the cells instead of local processes.
-        watch: Called with each cell and its report, in order, as soon as the report and all earlier ones are there.
+        watch: Called with each cell and its report, in order, as soon as the report is there.
 
     Returns:
         The reports, in order; ``None`` for cells that another process is running.

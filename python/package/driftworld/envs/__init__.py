@@ -1,6 +1,6 @@
 """Gymnasium environments: one world at a time, or many at once.
 
-What a world does in a step is decided in Rust; here are the spaces, the infos and Gymnasium's rules around it.
+The simulation runs in Rust; this package adds the spaces, the infos and Gymnasium's rules.
 """
 
 from __future__ import annotations

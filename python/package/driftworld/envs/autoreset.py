@@ -1,4 +1,4 @@
-"""``AutoresetMode``, Gymnasium's own or, for Gymnasium 1.0 that does not have it yet, one of the same names."""
+"""``AutoresetMode``: Gymnasium's own, or one with the same names for Gymnasium 1.0, which lacks it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ else:
     except ImportError:
 
         class AutoresetMode(Enum):
-            """When an episode that has ended is followed by the next."""
+            """When the next episode starts after one has ended."""
 
             NEXT_STEP = "NextStep"
             SAME_STEP = "SameStep"
@@ -21,7 +21,7 @@ else:
 
 
 def autoreset_mode_of(mode: Any) -> AutoresetMode:
-    """The mode of a name: ``next_step``, ``same_step`` or ``disabled``, or of Gymnasium's value for it.
+    """The mode with a name, ``next_step``, ``same_step`` or ``disabled``, or with Gymnasium's value for it.
 
     Raises:
         ValueError: For anything else.

@@ -1,8 +1,9 @@
-"""Infos through Gymnasium's wrappers that turn arrays into another library's, such as ``gymnasium.wrappers.vector.NumpyToTorch``.
+"""Lets infos pass through Gymnasium's wrappers that convert arrays for another library, such as
+``gymnasium.wrappers.vector.NumpyToTorch``.
 
-Those wrappers convert infos as well, and know neither words nor arrays of objects, which infos of vector environments are full of:
-they end in an endless recursion, or in an error. Here Gymnasium's own table of conversions is told what to do with both: words stay
-as they are, and arrays of objects stay arrays of objects, with each object converted.
+Those wrappers also convert infos, but support neither strings nor object arrays, of which infos of vector environments
+are full: they recurse endlessly or raise an error. This module extends Gymnasium's own conversion tables: strings stay
+as they are, and object arrays stay object arrays with each object converted.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-#: Gymnasium's tables of conversions: since 1.2 one for all libraries, before that one from NumPy to each.
+#: Gymnasium's conversion tables: since 1.2 one for all libraries, before that one from NumPy to each.
 _TABLES = {
     "gymnasium.wrappers.array_conversion": "array_conversion",
     "gymnasium.wrappers.numpy_to_torch": "numpy_to_torch",
@@ -23,7 +24,9 @@ _told: set[str] = set()
 
 
 def teach_conversions() -> None:
-    """Tells tables that were imported what infos hold. Those wrappers are imported before they ask for a reset: so does this."""
+    """Extends the tables of imported modules for values in infos. Called at resets, because the wrappers are imported
+    before their first reset.
+    """
     for module, name in _TABLES.items():
         if module in sys.modules and module not in _told:
             convert = getattr(sys.modules[module], name, None)

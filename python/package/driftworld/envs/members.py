@@ -1,6 +1,6 @@
 """``Members``: the environments of a native batch with their spaces, observations and infos.
 
-Single and vector environments are both made of it; what Gymnasium wants of each is in ``single.py`` and ``vector.py``.
+The common part of single and vector environments; ``single.py`` and ``vector.py`` add Gymnasium's interfaces.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ Stepped = tuple[NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_], NDArr
 
 
 class Prepared(NamedTuple):
-    """What a reset asks for: sources and streams, one for each environment, indices, and a world."""
+    """The checked options of a reset: sources and streams, one for each environment, indices, and a world."""
 
     sources: list[Source] | None
     streams: list[_native.Stream] | None
@@ -48,16 +48,17 @@ class Prepared(NamedTuple):
 
 
 class Members:
-    """The environments of a batch. All that it is made from are values: nothing that a user or another program may change.
+    """The environments of a batch. It keeps only values, nothing that a user or another program may change.
 
     Args:
         home: The task, or the one world.
         sources: Where the worlds of each environment come from.
-        options: What is laid over the worlds.
+        options: Options applied to the worlds.
         autoreset: ``"next_step"``, ``"same_step"`` or ``"disabled"``.
         num_threads: Threads that step and draw; 0 is one for each processor.
-        max_episode_steps: A limit of steps that the worlds know nothing of.
-        labels: The ids of the variants in the order of their labels; the task's, and then the others of the sources if not given.
+        max_episode_steps: A limit of steps in addition to the worlds' own.
+        labels: The ids of the variants in the order of their labels; by default the task's, then the others of the
+            sources.
     """
 
     def __init__(
@@ -105,12 +106,12 @@ class Members:
         last = self.batch.final_buffers()
         self._final_views = None if last is None else self._arranged(last)
         self.has_seed = [False] * self.num_envs
-        #: Which environments had a reset: before that, their worlds are nobody's choice.
+        #: Which environments have been reset; before that, nobody has chosen their worlds.
         self.has_begun = np.zeros(self.num_envs, dtype=np.bool_)
         self._names = [""] * self.num_envs
 
     def limited(self, spec: EnvSpec | None) -> EnvSpec | None:
-        """A spec of Gymnasium's that says the limit of steps that options lay over all worlds."""
+        """Gymnasium's spec, with the limit of steps that options set for all worlds."""
         if spec is not None and self._options.max_steps:
             spec = copy(spec)
             limits = [limit for limit in (spec.max_episode_steps, self._options.max_steps) if limit]
@@ -126,7 +127,7 @@ class Members:
         return views
 
     def _layouts(self, options: Options, sources: list[Source]) -> list[dict[str, Any]]:
-        """What the environments look like: one layout for each variant there is."""
+        """The layouts of the environments: one for each distinct variant."""
         variants: dict[str, _native.Variant] = {}
         others: dict[int, Source] = {}
         for source in sources:
@@ -139,8 +140,8 @@ class Members:
         return [layout for stream in streams for layout in options.layouts(stream)]
 
     def _streams(self, sources: list[Source]) -> list[_native.Stream]:
-        """Each environment's worlds, after a look whether they fit into the spaces."""
-        # Where all have the same, it is one object, and looked at once.
+        """Each environment's worlds, after checking that they fit the spaces."""
+        # A source shared by all environments is one object, and is checked once.
         made: dict[int, list[_native.Stream]] = {}
         for source in sources:
             if id(source) not in made:
@@ -149,7 +150,7 @@ class Members:
         return [made[id(source)][env] for env, source in enumerate(sources)]
 
     def _check(self, source: Source, stream: _native.Stream) -> None:
-        """Looks whether the worlds of a source fit into the spaces."""
+        """Checks that the worlds of a source fit the spaces."""
         if isinstance(source, (OneVariant, Queue)):
             new = {variant.hash: variant for variant in _variants(source)}
             new = {hash: variant for hash, variant in new.items() if hash not in self._checked}
@@ -163,7 +164,7 @@ class Members:
         self._warn_of_covered(list(new.values()) or list(_ends(source)))
 
     def _warn_of_covered(self, variants: Sequence[_native.Variant]) -> None:
-        """Warns of options that take away what these variants differ in, once of each option."""
+        """Warns of options that hide differences between these variants, once for each option."""
         if not variants:
             return
         first = [] if self._home.first is None else [self._home.first]
@@ -174,12 +175,12 @@ class Members:
                 warnings.warn(told, stacklevel=2)
 
     def checked(self, options: Mapping[str, Any], *, many: bool, deals: bool = False) -> Prepared:
-        """What the options of a reset ask for, looked through before anything is changed.
+        """The options of a reset, checked before anything is changed.
 
         Args:
-            options: As users hand them to ``reset``.
+            options: As passed to ``reset``.
             many: Whether there may be one variant for each environment.
-            deals: Whether a queue is dealt out to all; else each environment has it for itself.
+            deals: Whether a queue is dealt out among all environments; otherwise each has the queue for itself.
         """
         known = ["variant", "index", "world", "queue", *(["variants"] if many else [])]
         unknown = [key for key in options if key not in known]
@@ -198,7 +199,7 @@ class Members:
         return Prepared(sources, streams, self._indices(options.get("index")), given)
 
     def take(self, prepared: Prepared, env: int, seed: int | None) -> None:
-        """Lets one environment do what was asked for with its next episode; with a seed, under it."""
+        """Applies checked options to an environment's next episode; with a seed, under that seed."""
         if prepared.sources is not None and prepared.streams is not None:
             self.batch.stream(env, prepared.streams[env])
             self._sources[env] = prepared.sources[env]
@@ -212,10 +213,10 @@ class Members:
             self.batch.give(env, prepared.world)
 
     def set_next(self, envs: Sequence[int], asked: Mapping[str, Any]) -> None:
-        """Says what these environments do with their next episode; nothing is changed if anything is wrong.
+        """Sets the next episode of these environments; nothing is changed if anything is wrong.
 
         Args:
-            envs: Which of them.
+            envs: The environments.
             asked: Options of a reset, each for all of them or as a list with one for each; a queue is one for all.
         """
         queue = asked.get("queue")
@@ -225,7 +226,7 @@ class Members:
         chosen: list[Prepared] = []
         for place in range(len(envs)):
             options = {**{name: values[place] for name, values in spread.items()}, "queue": queue}
-            # Handles and documents by what they are: the lists keep them, so numbers are not used again.
+            # Handles and documents are keyed by identity: the lists keep them alive, so ids are not reused.
             key = tuple(one if isinstance(one, str) else id(one) for one in options.values())
             if key not in prepared:
                 prepared[key] = self.checked(options, many=False)
@@ -259,10 +260,10 @@ class Members:
         return [index_in_range(index)] * self.num_envs
 
     def recording(self, env: int) -> _native.RecordingHandle:
-        """What was done in an environment's episode.
+        """The recording of an environment's episode.
 
         Raises:
-            RuntimeError: Unless it is taken down.
+            RuntimeError: If it is not being recorded.
         """
         found = self.batch.recording(env)
         if found is None:
@@ -270,11 +271,11 @@ class Members:
         return found
 
     def origin(self, env: int) -> dict[str, Any]:
-        """Where an environment's world comes from."""
+        """The origin of an environment's world."""
         return dict(zip(info.ORIGIN, self.batch.origin(env), strict=True))
 
     def reset_info(self, env: int) -> dict[str, Any]:
-        """What a reset says of an environment; notes in which variant it is."""
+        """The info of a reset; also notes the environment's variant."""
         if not (self.has_infos or self._shows_label):
             return {}
         origin = self.origin(env)
@@ -289,7 +290,7 @@ class Members:
         return found
 
     def ended_by(self, env: int) -> str | None:
-        """What ended an environment's episode; None for a limit of steps, which may as well be a wrapper's."""
+        """What ended an environment's episode; None for a limit of steps, which may also be a wrapper's."""
         word = self.batch.ended_by(env)
         return None if word == "steps" else word
 
@@ -299,12 +300,12 @@ class Members:
             _write(self._views["task"], env, label(self._labels, variant))
 
     def label_number(self, env: int) -> int:
-        """The number of an environment's variant among those of the task; −1 for one that is not among them."""
+        """The number of an environment's variant among those of the task; −1 if it is not one of them."""
         name = self._names[env]
         return self._labels.index(name) if name in self._labels else -1
 
     def observation(self, env: int) -> Any:
-        """An environment's observation, in memory of its own."""
+        """A copy of an environment's observation."""
         return self._one(self._views, env)
 
     def final_observation(self, env: int) -> Any:
@@ -313,7 +314,7 @@ class Members:
         return self._one(self._final_views, env)
 
     def note_finals(self, env: int) -> None:
-        """Keeps the label of an episode that has ended for its last observation."""
+        """Keeps the label of an ended episode for its last observation."""
         if self._final_views is not None and "task" in self._final_views:
             _write(self._final_views["task"], env, self._views["task"][env])
 
@@ -323,14 +324,14 @@ class Members:
         return {kind: view[env].copy() for kind, view in views.items()}
 
     def observations(self, copied: bool) -> Any:
-        """All observations: copies, or views on the batch's buffers that nobody can write through."""
+        """All observations: copies, or read-only views of the batch's buffers."""
         if not self._options.is_dict:
             view = self._views[self._modalities[0]]
             return view.copy() if copied else view
         return {kind: view.copy() if copied else view[:] for kind, view in self._views.items()}
 
     def expect_form(self, out: Any) -> None:
-        """Refuses arrays that observations cannot be written into."""
+        """Refuses arrays of another form than the observations."""
         views, arrays = (self._views, out) if self._options.is_dict else ({"": self._views[self._modalities[0]]}, {"": out})
         wanted = {kind: (view.shape, view.dtype.name) for kind, view in views.items()}
         if not isinstance(arrays, Mapping) or {kind: _form(array) for kind, array in arrays.items()} != wanted:
@@ -341,7 +342,7 @@ class Members:
             raise ValueError(f"out: found other arrays than observations have, expected {told}; nothing was changed")
 
     def write_into(self, out: Any) -> None:
-        """Writes all observations into such arrays."""
+        """Writes all observations into the given arrays."""
         if not self._options.is_dict:
             np.copyto(out, self._views[self._modalities[0]])
             return
@@ -349,7 +350,7 @@ class Members:
             np.copyto(out[kind], view)
 
     def step_one(self, action: Any) -> tuple[float, bool, bool, bool, bool]:
-        """A step of the only environment: reward, terminated, truncated, success, whether anything happened."""
+        """Steps the only environment: reward, terminated, truncated, success, whether anything happened."""
         if self._is_discrete:
             return self.batch.step_one_by_row(self._row(action))
         numbers = np.asarray(action, dtype=np.float64)
@@ -370,7 +371,7 @@ class Members:
         return row
 
     def step(self, actions: Any) -> Stepped:
-        """A step of all: actions of shape ``(num_envs,)`` or ``(num_envs, numbers)``."""
+        """Steps all environments: actions of shape ``(num_envs,)`` or ``(num_envs, numbers)``."""
         given = np.asarray(actions)
         wanted = (self.num_envs, *(self.action_space.shape or ()))
         if given.shape != wanted:
@@ -384,7 +385,7 @@ class Members:
         return self.batch.step_numbers(np.ascontiguousarray(given, dtype=np.float64))
 
     def written(self) -> dict[str, Any]:
-        """All that a copy is made from: running worlds, and where their next ones come from."""
+        """The state for copying and pickling: running worlds, and the sources of the next ones."""
         envs = range(self.num_envs)
         return {
             "made_with": (self._home, list(self._sources), self._options, *self._made_with, self._labels),
@@ -398,7 +399,7 @@ class Members:
 
     @classmethod
     def again(cls, written: dict[str, Any]) -> Members:
-        """Environments that go on where others stood."""
+        """Restores environments from :meth:`written`."""
         members = cls(*written["made_with"])
         for env in range(members.num_envs):
             members.batch.set_place(env, written["places"][env])
@@ -420,12 +421,12 @@ def _ends(source: Source) -> Sequence[_native.Variant]:
     return (source.from_, source.to) if isinstance(source, Drifting) else ()
 
 
-#: Rows that a native batch can be handed.
+#: Range of row numbers that a native batch accepts.
 _LEAST_ROW, _LAST_ROW = -(2**63), 2**63 - 1
 
 
 def _form(array: Any) -> tuple[tuple[int, ...], str] | None:
-    """Shape and type of an array that can be written into."""
+    """Shape and type of a writable array."""
     is_free = isinstance(array, np.ndarray) and array.flags.writeable
     return (array.shape, array.dtype.name) if is_free else None
 
@@ -435,20 +436,20 @@ def _is_locked(array: Any) -> bool:
 
 
 def _locked(array: NDArray[Any]) -> NDArray[Any]:
-    """An array that cannot be written into, nor made writable through a view."""
+    """Makes an array read-only, so that no view of it can be made writable either."""
     array.flags.writeable = False
     return array
 
 
 def _write(array: NDArray[Any], env: int, row: Any) -> None:
-    """Writes into an array that is locked for all others."""
+    """Writes into an array that is read-only for everyone else."""
     array.flags.writeable = True
     array[env] = row
     array.flags.writeable = False
 
 
 def _each(option: str, value: Any, count: int) -> list[Any]:
-    """One value for each of so many environments: the same for all, or those of a list."""
+    """One value for each of ``count`` environments: the same for all, or those of a list."""
     if isinstance(value, np.ndarray) and value.ndim == 1:
         value = value.tolist()
     if not isinstance(value, (list, tuple)):

@@ -1,4 +1,4 @@
-"""The options of environments: read once, handed to the native batch as what it lays over each world."""
+"""The options of environments: checked once, then passed to the native batch as overrides of each world."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from driftworld._files import read_bytes
 from driftworld._literals import ActionsName, DepthForm, InfoFor, Modality, RendererName, TaskLabel
 from driftworld.errors import SpecError
 
-#: What an observation may hold.
+#: The modalities that an observation may have.
 MODALITIES: tuple[Modality, ...] = get_args(Modality)
 DEPTHS: tuple[DepthForm, ...] = get_args(DepthForm)
 RENDERERS: tuple[RendererName, ...] = get_args(RendererName)
 LABELS: tuple[TaskLabel, ...] = get_args(TaskLabel)
 INFOS: tuple[InfoFor, ...] = get_args(InfoFor)
-#: What is laid over the actions of worlds; ``"task"`` lays nothing over a table, and −1..1 over numbers.
+#: The overrides of worlds' actions; ``"task"`` leaves a table as it is, and scales numbers to −1..1.
 ACTIONS: dict[str, str | None] = {
     "task": None,
     "normalized": "normalized",
@@ -35,9 +35,9 @@ ACTIONS: dict[str, str | None] = {
 
 
 class EnvOptions(TypedDict, total=False):
-    """What single and vector environments both take, each option with its type and its default.
+    """The common options of single and vector environments, with types and defaults.
 
-    What the options mean is said in :class:`driftworld.DriftworldEnv`.
+    They are documented in :class:`driftworld.DriftworldEnv`.
     """
 
     modalities: Annotated[Modality | Sequence[Modality] | None, None]
@@ -63,7 +63,9 @@ _Init = TypeVar("_Init", bound=Callable[..., None])
 
 
 def shows_options(init: _Init) -> _Init:
-    """Lets a constructor's ``**options`` be seen by name, with types and defaults, before ``render_mode``: in ``help`` and tools."""
+    """Shows a constructor's ``**options`` by name, with types and defaults, before ``render_mode``: in ``help`` and
+    tools.
+    """
     signature, hints = inspect.signature(init), get_type_hints(EnvOptions)
     keyword = inspect.Parameter.KEYWORD_ONLY
     options = [
@@ -82,16 +84,16 @@ class Options:
     """Checked options of an environment; single and vector environments share them.
 
     Attributes:
-        modalities: What an observation holds, in this order; what the worlds ask for if ``None``.
+        modalities: The modalities of an observation, in this order; ``None`` for those that the worlds ask for.
         is_dict: Whether an observation is a dictionary, or its one modality alone.
-        depth: The numbers of depth images.
-        renderer: What draws.
-        task_label: Where the agent is told which variant it is in.
+        depth: The format of depth images.
+        renderer: The renderer.
+        task_label: Where the agent gets the label of its variant.
         names_variant: Whether infos name task and variant.
-        has_infos: Whether there is anything in infos.
-        libraries: The bytes of asset libraries, the last one first in search.
-        max_steps: The limit of steps laid over each world, if any.
-        overrides: What is laid over each world, as JSON.
+        has_infos: Whether infos contain anything.
+        libraries: The bytes of asset libraries; the last one is searched first.
+        max_steps: The limit of steps set for each world, if any.
+        overrides: Overrides of each world, as JSON.
     """
 
     modalities: tuple[str, ...] | None
@@ -107,10 +109,10 @@ class Options:
 
     @classmethod
     def read(cls, given: EnvOptions) -> Options:
-        """Reads them; what is not given has its default.
+        """Checks the options, and fills in defaults.
 
         Raises:
-            ValueError: For a value that is not among those that an option knows; it says which there are.
+            ValueError: For an unknown value of an option; lists the allowed ones.
         """
         options = {**_DEFAULTS, **given}
         modalities, task_label = options["modalities"], options["task_label"]
@@ -162,10 +164,10 @@ class Options:
         )
 
     def layouts(self, stream: _native.Stream) -> list[dict[str, Any]]:
-        """What environments of each variant of a stream look like.
+        """The layout of each variant of a stream.
 
         Raises:
-            SpecError: If an option is out of range, or does not go with the worlds.
+            SpecError: If an option is out of range, or does not fit the worlds.
         """
         try:
             return [json.loads(text) for text in stream.layouts(self.overrides)]
@@ -174,11 +176,11 @@ class Options:
 
     @property
     def images(self) -> str | None:
-        """The images that observations hold, as JSON, where the options say it."""
+        """The images in observations, as JSON, if the options specify them."""
         return None if self.modalities is None else json.dumps(images_among(self.modalities))
 
     def shown(self, layouts: Iterable[dict[str, Any]]) -> Options:
-        """The same with the modalities that worlds of these layouts ask for, where none are said.
+        """Fills in the modalities that worlds of these layouts ask for, if none are given.
 
         Raises:
             ValueError: If they ask for none at all.
@@ -191,7 +193,7 @@ class Options:
         return replace(self, modalities=tuple(kind for kind in MODALITIES if kind in asked))
 
 
-#: What to do in place of taking away by these options what variants differ in.
+#: Advice for each option that hides differences between variants.
 _INSTEAD = {
     "modalities": "; with blank=True and all their modalities each shows its own images",
     "actions": "; actions=None is what each variant says",
@@ -199,7 +201,8 @@ _INSTEAD = {
 
 
 def coverings(found: str) -> dict[str, str]:
-    """What the native module found that options take away from variants, in words, by option."""
+    """Messages, by option, about the differences between variants that options hide, from the native module's findings.
+    """
     told = {}
     for each in json.loads(found):
         option, said = each["option"], [(name, json.dumps(value)) for name, value in each["said"]]
@@ -221,16 +224,16 @@ def coverings(found: str) -> dict[str, str]:
 
 
 def images_among(kinds: Iterable[str]) -> list[str]:
-    """What of an observation is an image."""
+    """The modalities that are images."""
     return [kind for kind in kinds if kind != "state"]
 
 
 def modalities_of(layout: dict[str, Any]) -> list[str]:
-    """What worlds of a layout show."""
+    """The modalities of worlds with this layout."""
     return [*layout["modalities"], *(["state"] if layout["state_len"] else [])]
 
 
-#: The option behind each value that options lay over a world.
+#: The option behind each world value that options override.
 _OPTIONS = {
     "/agent_params/modalities": "modalities",
     "/agent_params/observation_size": "size",
@@ -244,7 +247,7 @@ _OPTIONS = {
 
 
 def _as_options(error: SpecError) -> SpecError:
-    """The same mistake, told of the option instead of the world that it was laid over."""
+    """Rewrites an error to name the option instead of the world value that it overrides."""
     lines = []
     for problem in error.problems:
         option = next((name for pointer, name in _OPTIONS.items() if problem["pointer"].startswith(pointer)), None)
@@ -262,10 +265,10 @@ def _as_options(error: SpecError) -> SpecError:
 
 
 def expect_same_spaces(ours: dict[str, Any], theirs: dict[str, Any], modalities: Sequence[str]) -> None:
-    """Checks that worlds of another variant fit into the spaces of an environment, whose observations hold these modalities.
+    """Checks that worlds of another variant fit the spaces of an environment with these modalities.
 
     Raises:
-        ValueError: That says what differs.
+        ValueError: Names the difference.
     """
     for key in ("height", "width", "state_features", "instruction_len"):
         if ours[key] != theirs[key]:
@@ -288,9 +291,9 @@ def expect_same_spaces(ours: dict[str, Any], theirs: dict[str, Any], modalities:
 
 
 def fits_into(action: dict[str, Any], other: dict[str, Any]) -> bool:
-    """Whether actions of one kind can be handed over as those of the other: the same, or without the last numbers.
+    """Whether actions of one kind are valid as those of the other: the same, or without the last numbers.
 
-    Bounds that worlds draw anew hold all that are within them.
+    Bounds that worlds randomize include all values within them.
     """
     if action == other:
         return True
@@ -304,7 +307,7 @@ def fits_into(action: dict[str, Any], other: dict[str, Any]) -> bool:
 
 
 def widest_action(layouts: Sequence[dict[str, Any]]) -> dict[str, Any]:
-    """The actions of these layouts that all others fit into; those of the first if there are none such."""
+    """The actions of these layouts that all others fit into; the first layout's if there are none."""
     actions: list[dict[str, Any]] = [layout["action"] for layout in layouts]
     return next((one for one in actions if all(fits_into(action, one) for action in actions)), actions[0])
 
@@ -319,7 +322,7 @@ def refuse_unknown(made: type, given: Iterable[str]) -> None:
     """Refuses options that a class's constructor does not have.
 
     Raises:
-        TypeError: That names them, and the option that was most likely meant.
+        TypeError: Names them, and suggests the closest option.
     """
     parameters = inspect.signature(made.__init__).parameters  # type: ignore[misc]
     if any(parameter.kind is parameter.VAR_KEYWORD for parameter in parameters.values()):

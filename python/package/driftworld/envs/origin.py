@@ -1,7 +1,4 @@
-"""Where worlds come from: names, handles and documents turned into what the native batch draws from.
-
-Which options stand over the worlds is in ``options.py``.
-"""
+"""Sources of worlds: turns names, handles and documents into streams that the native batch draws from."""
 
 from __future__ import annotations
 
@@ -20,7 +17,7 @@ from numpy.typing import NDArray
 from driftworld import _native
 from driftworld._files import read_text
 
-#: The largest seed that worlds are drawn under: what fits into the arrays of vector environments' infos.
+#: The largest seed of worlds: the maximum of the integer arrays in vector environments' infos.
 MAX_SEED = 2**63 - 1
 
 
@@ -37,7 +34,7 @@ class OneVariant:
 
 @dataclass(frozen=True, eq=False)
 class OneWorld:
-    """One world again and again: what it is called, and its JSON."""
+    """One world over and over: its name and its JSON."""
 
     name: str
     text: str
@@ -49,7 +46,7 @@ class OneWorld:
 
 @dataclass(frozen=True, eq=False)
 class DrawnWorld:
-    """A world that was drawn, in the native module's hands."""
+    """A drawn world, held by the native module."""
 
     world: _native.Stream
 
@@ -60,7 +57,7 @@ class DrawnWorld:
 
 @dataclass(frozen=True, eq=False)
 class Drifting:
-    """The worlds on the way from one variant to another; schedule and switch are JSON."""
+    """Worlds drifting from one variant to another; schedule and switch are JSON."""
 
     from_: _native.Variant
     to: _native.Variant
@@ -79,28 +76,28 @@ class Queue:
     """Variants dealt out like cards, over and over: environment 0 takes the first, 1 the second, and so on.
 
     Attributes:
-        variants: The different ones.
-        order: Their places in the order in which they come, uint32.
+        variants: The distinct variants.
+        order: The queue as indices into ``variants``, uint32.
     """
 
     variants: tuple[_native.Variant, ...]
     order: NDArray[np.uint32]
 
     def streams(self, num_envs: int) -> list[_native.Stream]:
-        """Each environment's share. All have the order together: a long one is held once."""
+        """Each environment's share. All share the order, so a long one is stored once."""
         return _native.Stream.dealt(self.variants, self.order, num_envs)
 
 
 @dataclass(frozen=True, eq=False)
 class OwnQueue(Queue):
-    """A queue that each environment has for itself: it begins with the first variant."""
+    """A queue that each environment has for itself, starting with the first variant."""
 
     def streams(self, num_envs: int) -> list[_native.Stream]:
         """The whole queue, for each environment."""
         return _native.Stream.dealt(self.variants, self.order, 1) * num_envs
 
 
-#: Where an environment's worlds come from, as values: what a user said is in none of them.
+#: The source of an environment's worlds, as immutable values without the user's own objects.
 Source = OneVariant | OneWorld | DrawnWorld | Drifting | Queue
 
 
@@ -110,7 +107,7 @@ class Home:
     Args:
         task: A built-in name or a path, with or without ``#variant``; a task spec or a variant.
         world: The path of a world, its JSON, or a dictionary, in place of a task.
-        variant: The variant to begin with, in place of the one behind ``#``: its name, or a handle.
+        variant: The variant to start with, instead of the one after ``#``: its name, or a handle.
     """
 
     def __init__(self, task: Any, world: Any, variant: Any) -> None:
@@ -134,18 +131,20 @@ class Home:
             self.first = self.variant(variant, "variant")
 
     def __getstate__(self) -> dict[str, Any]:
-        # What was looked up can be looked up again.
+        # Cached look-ups can be repeated.
         return {**self.__dict__, "_known": {}}
 
     def labels(self, sources: Iterable[Source]) -> list[str]:
-        """The ids of the variants that an agent may be told: those of the task, and then what else it or the sources begin with."""
+        """The ids of the variants that an agent may be told: those of the task, then any others that it or the sources
+        start with.
+        """
         if self.task is None or self.first is None:
             return []
         begun = [source.variant.id for source in sources if isinstance(source, OneVariant)]
         return list(dict.fromkeys([*(variant.id for variant in self.task.all_variants()), self.first.id, *begun]))
 
     def source(self) -> Source:
-        """The worlds that the environment begins with."""
+        """The worlds that the environment starts with."""
         if self.world is not None:
             return self.world
         assert self.first is not None, "a home is of a task or of a world"
@@ -154,14 +153,14 @@ class Home:
     def sources(
         self, num_envs: int, variants: Sequence[Any] | None, drift: Mapping[str, Any] | None
     ) -> list[Source]:
-        """What each environment begins with: its own among the variants, the drift, or what all begin with."""
+        """The initial source of each environment: its entry in ``variants``, the drift, or the common source."""
         home = self.source() if drift is None else self.drift(drift)
         if variants is None:
             return [home] * num_envs
         return [home if name is None else OneVariant(self.variant(name, "variant")) for name in variants]
 
     def variant(self, name: Any, option: str) -> _native.Variant:
-        """A variant by what a user calls it: a name, ``task#variant`` of this or another task, or a handle."""
+        """Finds a variant by a user's name for it: a name, ``task#variant`` of this or another task, or a handle."""
         handle = _handle(name)
         if handle is not None:
             return handle
@@ -174,19 +173,20 @@ class Home:
                 return _native.TaskSpec.load(task).variant(own)
         if self.task is None:
             raise ValueError(f"{option}: found {name!r} in an environment of one world, expected none or task#variant")
-        # A task never changes, and finding a variant takes longer than a short episode's step.
+        # A task is immutable, and finding a variant takes longer than a step of a short episode.
         if own not in self._known:
             self._known[own] = self.task.variant(own)
         return self._known[own]
 
     def queue(self, names: Iterable[Any]) -> Queue:
-        """A queue of what a user calls variants; each is found once, however often it comes."""
+        """A queue from users' names of variants; each is found once, however often it occurs."""
         listed = list(names)
         places: dict[Any, int] = {}
         found: list[_native.Variant] = []
         order = np.empty(len(listed), dtype=np.uint32)
         for turn, name in enumerate(listed):
-            # Handles by what they are and not by what they say, which is long; the list keeps them, so numbers are not used again.
+            # Handles are keyed by identity, not by content, which is long; the list keeps them alive, so ids are not
+            # reused.
             key = name if isinstance(name, str) else id(name)
             place = places.get(key)
             if place is None:
@@ -196,7 +196,7 @@ class Home:
         return Queue(tuple(found), order)
 
     def drift(self, drift: Mapping[str, Any]) -> Drifting:
-        """The worlds on the way from the first variant to another."""
+        """The worlds drifting from the first variant to another."""
         if not isinstance(drift, Mapping):
             raise ValueError(f'drift: found {drift!r}, expected a dictionary, as in {{"to": "dusk", "episodes": 500}}')
         known = {"to", "episodes", "schedule", "switch"}
@@ -221,13 +221,13 @@ def _episodes(found: Any) -> int:
 
 
 def _handle(value: Any) -> _native.Variant | None:
-    """The native variant in a variant of the toolkit's, or itself."""
+    """The native variant of a toolkit variant, or the value itself if it is native."""
     value = getattr(value, "_native", value)
     return value if isinstance(value, _native.Variant) else None
 
 
 def _task(task: Any) -> tuple[_native.TaskSpec, _native.Variant | None]:
-    """The task, and the variant that its name has behind ``#``."""
+    """The task, and the variant after ``#`` in its name."""
     variant = _handle(task)
     if variant is not None:
         return variant.task, variant
@@ -245,7 +245,7 @@ def _task(task: Any) -> tuple[_native.TaskSpec, _native.Variant | None]:
 
 
 def world_text(world: Any) -> tuple[str, str]:
-    """The name and the JSON of a world: a path, JSON text, a dictionary, or one that was drawn."""
+    """The name and the JSON of a world: from a path, JSON text, a dictionary, or a drawn world."""
     if isinstance(world, _native.Stream):
         return "world", world.text()
     if isinstance(world, Mapping):
@@ -264,13 +264,15 @@ def world_text(world: Any) -> tuple[str, str]:
 
 
 def spread_seeds(seed: int, num_envs: int) -> list[int]:
-    """The seeds of environments that step together: the seed itself for the first, and for each other one drawn from it.
+    """The seeds of environments that step together: the seed itself for the first, and seeds drawn from it for the
+    others.
 
-    A seed of 2⁶³ or more is folded first, as ``reset`` does it. They are not added up: environments under seeds s and s + 1 share no world. The first ones are the same however many there are.
+    A seed of 2⁶³ or more is folded first, as by ``reset``. Seeds are not consecutive: environments under seeds s and s
+    + 1 share no world. The first seeds do not depend on ``num_envs``.
 
     Args:
-        seed: What all of them follow from, a whole number from 0.
-        num_envs: How many environments, from 1.
+        seed: The common seed, a whole number from 0.
+        num_envs: Number of environments, from 1.
 
     Returns:
         One seed for each environment, each 0 to 2⁶³ − 1.
@@ -296,10 +298,10 @@ def whole_number(found: Any, option: str = "seed") -> int:
 
 
 def folded_seed(seed: Any) -> int:
-    """The seed that worlds are drawn under for a seed of Gymnasium's, which may be any whole number from 0.
+    """The seed used for worlds, from a Gymnasium seed, which may be any whole number from 0.
 
-    One below 2⁶³ is itself. A larger one becomes the first 8 bytes of the SHA-256 of its hexadecimal digits (ASCII, lower case), read as a big-endian number,
-    without the highest bit.
+    A seed below 2⁶³ is used as it is. A larger one becomes the first 8 bytes of the SHA-256 of its hexadecimal digits
+    (ASCII, lower case), read as a big-endian number, without the highest bit.
     """
     number = whole_number(seed)
     if number <= MAX_SEED:
@@ -309,7 +311,7 @@ def folded_seed(seed: Any) -> int:
 
 
 def index_in_range(index: Any, option: str = "index") -> int:
-    """The number of a world that can be drawn."""
+    """Checks that a world index is in range."""
     number = whole_number(index, option)
     if number > MAX_SEED:
         raise ValueError(f"{option}: found {number}, expected a whole number in 0..{MAX_SEED}")

@@ -1,4 +1,4 @@
-"""``Part``: one of the environments of a ``DriftworldVectorEnv``, for programs that want to ask each by itself."""
+"""``Part``: one environment of a ``DriftworldVectorEnv``, for programs that need to access each separately."""
 
 from __future__ import annotations
 
@@ -18,21 +18,22 @@ from driftworld.recordings import Recording
 if TYPE_CHECKING:
     from driftworld.envs.vector import DriftworldVectorEnv
 
-#: What environments are made with, and what holds until they are made anew.
+#: Constructor options and other values that are fixed until an environment is made again.
 MADE_WITH = (
     *EnvOptions.__annotations__,
     *("task", "world", "variant", "variants", "render_mode", "render_size", "camera", "max_episode_steps", "num_threads"),
 )
-#: What only a vector environment is made with.
+#: Constructor options of vector environments only.
 _OF_MANY = ("num_envs", "vectorization_mode", "autoreset_mode", "copy", "num_threads", "max_episode_steps")
 
 
 class Part(gymnasium.Env[Any, Any]):
-    """One of the environments that step together. It answers as a :class:`driftworld.DriftworldEnv` does, in all but steps.
+    """One of the environments that step together. Behaves like a :class:`driftworld.DriftworldEnv`, except that it
+    cannot step alone.
 
     Args:
-        envs: All of them.
-        index: Which of them it is.
+        envs: The vector environment.
+        index: Index of this environment.
     """
 
     metadata = DriftworldEnv.metadata
@@ -46,7 +47,7 @@ class Part(gymnasium.Env[Any, Any]):
 
     @property  # type: ignore[misc]
     def spec(self) -> EnvSpec | None:  # type: ignore[override]
-        """What ``gymnasium.make`` makes one such environment from."""
+        """The spec from which ``gymnasium.make`` makes one such environment."""
         spec = copy.deepcopy(self._envs.spec)
         if spec is not None:
             limit = spec.kwargs.get("max_episode_steps")
@@ -65,15 +66,15 @@ class Part(gymnasium.Env[Any, Any]):
         return self._envs.np_random_seed[self._index]
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
-        """Begins an episode here; the other environments go on."""
+        """Starts an episode here; the other environments continue."""
         return self._envs.reset_one(self._index, seed=seed, options=options)
 
     def set_next(self, *, variant: Any = None, index: int | None = None, world: Any = None, queue: Any = None) -> None:
-        """Says what its next episode is, as :meth:`DriftworldEnv.set_next` does; the one that runs goes on."""
+        """Sets its next episode, like :meth:`DriftworldEnv.set_next`; the current one continues."""
         self._envs.set_next_one(self._index, variant=variant, index=index, world=world, queue=queue)
 
     def step(self, action: Any) -> Any:
-        """Refused: they step together.
+        """Refused: the environments step together.
 
         Raises:
             RuntimeError: Always.
@@ -81,7 +82,7 @@ class Part(gymnasium.Env[Any, Any]):
         raise RuntimeError(f"step: found one of {self._envs.num_envs} environments, expected step(actions) of all at once")
 
     def close(self) -> None:
-        """Refused: they are closed together.
+        """Refused: the environments are closed together.
 
         Raises:
             RuntimeError: Always.
@@ -102,34 +103,34 @@ class Part(gymnasium.Env[Any, Any]):
         return self._envs.picture(self._index)
 
     def state(self) -> dict[str, Any]:
-        """Its world as it is now."""
+        """The current state of its world."""
         return self._envs.state(self._index)
 
     def origin(self) -> dict[str, Any]:
-        """Where its world comes from."""
+        """The origin of its world."""
         return self._envs.origin(self._index)
 
     def warnings(self) -> list[str]:
-        """What is odd about its world."""
+        """Warnings about its world."""
         return self._envs.warnings(self._index)
 
     def record(self, records: bool = True) -> None:
-        """Takes down what is done here from now on, or no longer."""
+        """Starts or stops recording."""
         self._envs.record(records, self._index)
 
     def recording(self) -> Recording:
-        """What was done in its episode so far."""
+        """The recording of its episode so far."""
         return self._envs.recording(self._index)
 
     def get_keys_to_action(self) -> dict[tuple[str, ...], Any]:
-        """Keys for people, as :meth:`DriftworldEnv.get_keys_to_action` has them."""
+        """Keyboard controls, as in :meth:`DriftworldEnv.get_keys_to_action`."""
         return self._envs.keys_to_action()
 
     def refuse_to_set(self, name: str, value: Any) -> None:
-        """Refuses what would be set and change nothing.
+        """Refuses to set attributes that would have no effect.
 
         Raises:
-            ValueError: For an option that environments are made with, and for what they have of themselves.
+            ValueError: For constructor options and built-in attributes.
         """
         if name in MADE_WITH:
             raise ValueError(

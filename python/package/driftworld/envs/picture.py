@@ -1,4 +1,4 @@
-"""Pictures for people: what an agent sees, the world from above, or both. Observations are not made here."""
+"""Rendered images for people: the agent's view, the world from above, or both. Observations do not use this module."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ CAMERAS: tuple[CameraName, ...] = get_args(CameraName)
 
 
 class Camera:
-    """Where pictures are taken from, and how large they are.
+    """The viewpoint and size of rendered images.
 
     Args:
-        name: ``"agent"``, ``"above"``, or ``"both"``: what the agent sees and beside it a square from above.
+        name: ``"agent"``, ``"above"``, or ``"both"``: the agent's view with a square view from above beside it.
         size: Height and width in pixels, each 1 to 4096.
     """
 
@@ -34,7 +34,8 @@ class Camera:
         self._size = (height, width)
 
     def picture(self, batch: _native.Batch, env: int) -> NDArray[np.uint8]:
-        """One environment, uint8 (height, width, 3); with ``"both"`` as wide as width and height together."""
+        """An image of one environment, uint8 (height, width, 3); with ``"both"`` as wide as width and height together.
+        """
         height, width = self._size
         if self._name != "both":
             return batch.picture(env, height, width, self._name == "above")

@@ -1,4 +1,4 @@
-"""The ids under which Gymnasium knows the environments. What they do is in ``single.py`` and ``vector.py``."""
+"""Registers the environments' ids with Gymnasium."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ def _camel(name: str) -> str:
     return "".join(word.capitalize() for word in name.split("_"))
 
 
-#: Each id and the options that it stands for: one for each task that comes with the package, and two for any task or world.
+#: The options of each id: one for each task that comes with the package, and two for any task or world.
 ENV_IDS: dict[str, dict[str, Any]] = {
     **{f"driftworld/{_camel(task)}-v0": {"task": task} for _, tasks in _native.task_groups() for task in tasks},
     "driftworld/Task-v0": {},
@@ -22,13 +22,13 @@ ENV_IDS: dict[str, dict[str, Any]] = {
 }
 
 
-#: MiniWorld's ids, and the names that they stand for.
+#: MiniWorld's ids, and the names of their environments.
 MINIWORLD_IDS: dict[str, dict[str, Any]] = {f"driftworld/MiniWorld-{name}-v0": {"name": name} for name in names()}
 
 
 def register_envs() -> None:
-    """Registers every id that is not registered yet; ``import driftworld`` does it."""
-    # Entry points are strings, so that specs can be written down.
+    """Registers every id that is not registered yet; called by ``import driftworld``."""
+    # Entry points are strings, so that specs can be serialised.
     for env_id, options in ENV_IDS.items():
         if env_id not in gymnasium.registry:
             gymnasium.register(

@@ -1,4 +1,4 @@
-"""``DriftworldEnv``: one environment. It is a native batch of one; the many are in ``vector.py``."""
+"""``DriftworldEnv``: a single environment, which is a native batch of one."""
 
 from __future__ import annotations
 
@@ -33,44 +33,46 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
     Args:
         task: A built-in name or a path, with or without ``#variant``; a task spec or a variant.
         world: The path of a world, its JSON, or a dictionary, in place of a task.
-        variant: The variant to begin with; without one, the one behind ``#``, else that of all defaults.
-        modalities: What an observation holds: ``"rgb"`` alone is a ``Box``, a list such as ``["rgb", "depth"]`` a ``Dict``.
-            There are ``rgb`` uint8 (h, w, 3); ``depth`` (h, w, 1); ``segmentation`` uint8 (h, w, 1), reward categories; ``class``
-            uint16 and ``instance`` uint32 (h, w, 1); ``state`` float32 (n,). What the task asks for if not given, as a ``Dict``.
-        blank: With ``modalities``: images that a variant does not ask for are 0, in place of being drawn all the same. So one space
-            serves variants that differ in what they show.
-        size: Pixels along each side, or (height, width); as the task says if not given.
+        variant: The variant to start with; by default the one after ``#``, else the one with all defaults.
+        modalities: The modalities of observations: ``"rgb"`` alone is a ``Box``, a list such as ``["rgb", "depth"]`` a
+            ``Dict``. Available are ``rgb`` uint8 (h, w, 3); ``depth`` (h, w, 1); ``segmentation`` uint8 (h, w, 1),
+            reward categories; ``class`` uint16 and ``instance`` uint32 (h, w, 1); ``state`` float32 (n,). By default
+            those that the task asks for, as a ``Dict``.
+        blank: With ``modalities``: images that a variant does not ask for are 0 instead of drawn, so that variants with
+            different images share one space.
+        size: Pixels along each side, or (height, width); by default the task's.
         depth: ``"uint8"``, grey from 0 at the camera to 255 at 100 m; ``"uint16"``, millimetres; ``"float32"``, metres.
         actions: ``"task"``, rows of the task's table if it has one, else numbers in −1..1; ``"normalized"``, −1..1;
-            ``"continuous"``, in m/s and °/s; ``"discrete"``, rows of the built-in table; or a table of rows (speed in m/s, turn
-            rate in °/s, interact if above 0.5); ``None`` for exactly what the task says.
-        interact: Whether the agent can interact; as the task says if not given.
-        frame_skip: Time steps for which each action is held; as the task says if not given.
-        max_steps: Steps after which an episode is truncated, 0 for never; as the task says if not given.
+            ``"continuous"``, in m/s and °/s; ``"discrete"``, rows of the built-in table; or a table of rows (speed in
+            m/s, turn rate in °/s, interact if above 0.5); ``None`` for exactly the task's actions.
+        interact: Whether the agent can interact; by default as in the task.
+        frame_skip: Time steps for which each action is held; by default the task's.
+        max_steps: Steps after which an episode is truncated, 0 for never; by default the task's.
         supersampling: Points per pixel along each side, 1 to 4; more is smoother and slower.
         renderer: ``"cpu"``, ``"gpu"``, or ``"auto"`` for a graphics card if there is one.
-        drift: The way to another variant, such as ``{"to": "dusk", "episodes": 500, "schedule": "cosine"}``.
+        drift: A drift to another variant, such as ``{"to": "dusk", "episodes": 500, "schedule": "cosine"}``.
         task_label: Whether the agent gets the label of its variant: ``"none"``; in ``"info"``, a number; or in the
-            ``"observation"``, as ``"task"``, one-hot (in the info, too, where the observation is a single image).
-        info: ``"agent"``: infos name task and variant only where ``task_label`` tells the agent. ``"full"``: always, for records.
-            ``"none"``: infos are empty, which saves time in large batches; ``final_obs`` of the autoreset ``"same_step"`` stays.
+            ``"observation"``, as ``"task"``, one-hot (in the info instead if the observation is a single image).
+        info: ``"agent"``: infos name task and variant only if ``task_label`` tells the agent. ``"full"``: always, for
+            records. ``"none"``: infos are empty, which saves time in large batches; ``final_obs`` of the autoreset
+            ``"same_step"`` stays.
         assets: Paths of asset libraries (``driftworld assets pack``).
         render_mode: ``"rgb_array"``, ``"human"`` or ``None``.
-        render_size: Height and width of rendered pictures.
-        camera: What is rendered: what the ``"agent"`` sees, the world from ``"above"``, or ``"both"``.
+        render_size: Height and width of rendered images.
+        camera: What is rendered: the ``"agent"``'s view, the world from ``"above"``, or ``"both"``.
 
     Raises:
         SpecError: If the task or an option is wrong, with pointer, line and column.
         TaskError: If there is no such task or variant.
-        ValueError: For a value that an option does not know.
-        TypeError: For an option that there is not.
-        EnvError: If a graphics card is asked for and none works.
+        ValueError: For an unknown value of an option.
+        TypeError: For an unknown option.
+        EnvError: If a graphics card is requested and none works.
     """
 
     metadata: dict[str, Any] = {"render_modes": ["human", "rgb_array"], "render_fps": 10}
 
     def __new__(cls, *args: Any, **options: Any) -> Self:
-        """Refuses unknown options before Python does, to name the one that was meant."""
+        """Refuses unknown options before Python does, to suggest the intended one."""
         refuse_unknown(cls, options)
         return super().__new__(cls)
 
@@ -104,7 +106,7 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
 
     @property
     def spec(self) -> EnvSpec | None:  # type: ignore[override]
-        """What ``gymnasium.make`` made it from; its ``max_episode_steps`` is the limit of steps that the options say."""
+        """The spec of ``gymnasium.make``; its ``max_episode_steps`` is the limit of steps set by the options."""
         return self._spec
 
     @spec.setter
@@ -112,19 +114,19 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
         self._spec = self._members.limited(spec)
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
-        """Begins an episode.
+        """Starts an episode.
 
         Args:
-            seed: World 0 under this seed, a whole number from 0; one of 2⁶³ or more is folded by a hash, which ``info["seed"]`` then
-                says (docs/python.md); without one the next world under the seed there was. An environment that never had a
-                seed draws one from ``np_random``.
-            options: ``"variant"``, a name; ``"queue"``, a list of variants, one in each episode in turn, over and over; both hold
-                until another is given. ``"index"``, the number of the world. ``"world"``, a world (path, JSON, dictionary) for
-                this episode alone, such as what :meth:`state` said.
+            seed: Starts with world 0 under this seed, a whole number from 0; one of 2⁶³ or more is folded by a hash,
+                whose result is in ``info["seed"]`` (docs/python.md). Without a seed, the next world under the current
+                seed. An environment that never had a seed draws one from ``np_random``.
+            options: ``"variant"``, a name; ``"queue"``, a list of variants, one for each episode in turn, cycling; both
+                stay in effect until replaced. ``"index"``, the number of the world. ``"world"``, a world (path, JSON,
+                dictionary) for this episode only, such as one from :meth:`state`.
 
         Returns:
-            The first observation, and the info: ``seed``, ``index``, ``world_hash`` (of the world as it was drawn, before options
-            were laid over it), ``events`` and ``is_success``; ``task_id`` and ``variant_id`` with a ``task_label`` or
+            The first observation, and the info: ``seed``, ``index``, ``world_hash`` (of the world as drawn, before
+            options are applied), ``events`` and ``is_success``; ``task_id`` and ``variant_id`` with a ``task_label`` or
             ``info="full"``.
         """
         teach_conversions()
@@ -142,35 +144,35 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
         return members.observation(0), info
 
     def set_next(self, *, variant: Any = None, index: int | None = None, world: Any = None, queue: Any = None) -> None:
-        """Says what the next episode is; the one that runs goes on. As ``options`` of :meth:`reset`, only earlier.
+        """Sets the next episode, like ``options`` of :meth:`reset` but in advance; the current one continues.
 
         Args:
             variant: From the next episode on: a name, or a :class:`driftworld.Variant`.
-            index: The number of the next world. A reset with a ``seed`` begins at world 0 all the same.
-            world: A world for the next episode alone: a path, JSON, a dictionary.
-            queue: In place of ``variant``: a list of variants, one in each episode in turn, over and over.
+            index: The number of the next world. A reset with a ``seed`` still starts at world 0.
+            world: A world for the next episode only: a path, JSON, a dictionary.
+            queue: Instead of ``variant``: a list of variants, one for each episode in turn, cycling.
 
         Raises:
-            ValueError, TaskError, SpecError: As :meth:`reset` does; nothing is changed then.
+            ValueError, TaskError, SpecError: Like :meth:`reset`; nothing is changed then.
         """
         self._members.set_next([0], {"variant": variant, "index": index, "world": world, "queue": queue})
 
     def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
-        """Lets the agent act once.
+        """Executes one action of the agent.
 
         Args:
-            action: An element of the action space. Numbers beyond it are cut off.
+            action: An element of the action space. Numbers outside it are clipped.
 
         Returns:
-            Observation, reward, terminated, truncated, and the info: ``events``, a tuple of dictionaries with ``object``, ``tag``,
-            ``stimulus``, ``reward``, ``destroyed`` and ``effect`` (None, or what a door, switch or thing did: ``opened``, ``closed``,
-            ``switched``, ``picked_up``, ``put_down``); ``is_success``, whether the episode has ended well;
-            and ``ended_by``: None until it has ended, then ``"all_collected"``, ``"touch"``, ``"opened"``, ``"carried"``, ``"delivered"``,
-            ``"return"``, ``"energy"``, ``"zone"`` or ``"time"``; None, too, where a limit of steps cut it off, as
-            Gymnasium's own may.
+            Observation, reward, terminated, truncated, and the info: ``events``, a tuple of dictionaries with
+            ``object``, ``tag``, ``stimulus``, ``reward``, ``destroyed`` and ``effect`` (None, or what a door, switch or
+            thing did: ``opened``, ``closed``, ``switched``, ``picked_up``, ``put_down``); ``is_success``, whether the
+            episode has ended successfully; and ``ended_by``: None until it has ended, then ``"all_collected"``,
+            ``"touch"``, ``"opened"``, ``"carried"``, ``"delivered"``, ``"return"``, ``"energy"``, ``"zone"`` or
+            ``"time"``; None also if a limit of steps truncated it, such as Gymnasium's own.
 
         Raises:
-            EnvError: After the end of an episode, or for an action that is none.
+            EnvError: After the end of an episode, or for an invalid action.
             gymnasium.error.ResetNeeded: Before the first reset.
         """
         members = self._members
@@ -189,7 +191,7 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
         return observation, reward, terminated, truncated, info
 
     def render(self) -> NDArray[np.uint8] | None:  # type: ignore[override]
-        """The picture, uint8 (height, width, 3), or with ``"human"`` a window that shows it."""
+        """The image, uint8 (height, width, 3); with ``"human"``, shows it in a window."""
         if self.render_mode is None:
             gymnasium.logger.warn('render: found no render_mode, expected gym.make(…, render_mode="rgb_array")')
             return None
@@ -202,16 +204,18 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
         return None
 
     def state(self) -> dict[str, Any]:
-        """The world as it is now, as a document: a reset to it (``options={"world": …}``) goes on to the last bit."""
+        """The current world as a document: a reset to it (``options={"world": …}``) continues identically to the last
+        bit.
+        """
         state: dict[str, Any] = _native.parsed(self._members.batch.state(0))
         return state
 
     def record(self, records: bool = True) -> None:
-        """Takes down what is done from now on, or no longer: :meth:`recording` has it."""
+        """Starts or stops recording; :meth:`recording` returns the result."""
         self._members.batch.record(records)
 
     def recording(self) -> Recording:
-        """What was done in the episode so far; after a reset, before the first step, in the one before.
+        """The recording of the episode so far; between a reset and the first step, that of the previous episode.
 
         Raises:
             RuntimeError: Unless :meth:`record` was called.
@@ -219,49 +223,52 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
         return Recording(self._members.recording(0))
 
     def _repr_png_(self) -> bytes | None:
-        """What a notebook shows of it: the agent's view, and the world from above."""
+        """Image for notebooks: the agent's view, and the world from above."""
         if not self._members.has_begun[0]:
             return None
         return _native.png(Camera("both", (240, 240)).picture(self._members.batch, 0))
 
     def origin(self) -> dict[str, Any]:
-        """Where the world comes from, for records and not for agents: ``task_id``, ``variant_id``, ``seed``, ``index``, ``world_hash``."""
+        """The origin of the world, for records and not for agents: ``task_id``, ``variant_id``, ``seed``, ``index``,
+        ``world_hash``.
+        """
         return self._members.origin(0)
 
     def warnings(self) -> list[str]:
-        """What the world asks for that is not as its author may think: a class that nobody knows, a switch without a door, a key that
-        lies behind its own door. Remarks on its document begin with the place there."""
+        """Suspicious parts of the world: an unknown class, a switch without a door, a key behind its own door. Remarks
+        about its document start with the place there.
+        """
         return self._members.batch.warnings(0)
 
     def get_keys_to_action(self) -> dict[tuple[str, ...], Any]:
-        """Keys for :func:`gymnasium.utils.play.play`: W and S go, A and D turn, the space bar interacts.
+        """Keys for :func:`gymnasium.utils.play.play`: W and S move, A and D turn, the space bar interacts.
 
         Raises:
-            ValueError: Unless actions are ``"normalized"`` or ``"continuous"``: a table has no row for doing nothing.
+            ValueError: Unless actions are ``"normalized"`` or ``"continuous"``: a table has no row for standing still.
         """
         return keys_to_action(self.action_space, self._members.layout)
 
     def close(self) -> None:
-        """Closes the window, if there is one. The environment itself goes when nothing refers to it any more."""
+        """Closes the window, if there is one. The environment's memory is freed when nothing refers to it any more."""
         if self._window is not None:
             self._window.close()
             self._window = None
 
     def __getstate__(self) -> dict[str, Any]:
         kept = {name: value for name, value in self.__dict__.items() if name not in ("_members", "_window")}
-        # Also of a shallow copy: the two would draw from it in turns.
+        # Copied in shallow copies, too: otherwise both copies would draw from it in turn.
         kept["_np_random"] = copy.deepcopy(self._np_random)
         return {"kept": kept, "members": self._members.written()}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        # Never through `__init__`: a subclass has its own, with arguments that nobody knows here.
+        # Bypasses `__init__`: a subclass has its own, with unknown arguments.
         self.__dict__.update(state["kept"])
         self._window = None
         self._members = Members.again(state["members"])
 
 
 def keys_to_action(space: gymnasium.Space[Any], layout: Mapping[str, Any]) -> dict[tuple[str, ...], Any]:
-    """What :meth:`DriftworldEnv.get_keys_to_action` says of actions of this space in worlds of this layout."""
+    """The result of :meth:`DriftworldEnv.get_keys_to_action` for actions of this space in worlds of this layout."""
     if not isinstance(space, gymnasium.spaces.Box) or layout["action_model"] == "bywaypoint":
         raise ValueError(
             'get_keys_to_action: found actions that are rows or places, expected speeds: actions="normalized" in a variant '

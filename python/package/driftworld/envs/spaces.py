@@ -1,4 +1,4 @@
-"""Observation and action spaces from the layout of an environment. Batching them is Gymnasium's."""
+"""Observation and action spaces from the layout of an environment."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 
 from driftworld.envs.options import Options
 
-#: Depth of the sky in metres; nothing is farther.
+#: Depth of the sky in metres, the largest depth.
 FAR_DEPTH = 1000.0
-#: Velocities have no bound of their own; a space wants one.
+#: Bound of velocities, which are unbounded; a space needs one.
 _LARGE = 1e6
-#: Nor have rewards; each part of one is at most 1e9.
+#: Bound of rewards, which have no bound either; each part of a reward is at most 1e9.
 _REWARD = 1e12
 #: Least and greatest value of each number of a state feature.
 _FEATURES: dict[str, list[tuple[float, float]]] = {
@@ -34,7 +34,7 @@ _FEATURES: dict[str, list[tuple[float, float]]] = {
     "zone": [(0.0, 1000.0), (-_REWARD, _REWARD)],
 }
 
-#: What each number of an instruction lies in.
+#: Bounds of each number of an instruction.
 _INSTRUCTION = (-1e6, 1e6)
 
 
@@ -63,7 +63,7 @@ def _box(kind: str, options: Options, layout: dict[str, Any]) -> spaces.Box:
 
 
 def action_space(layout: dict[str, Any]) -> spaces.Space[Any]:
-    """The space of one action: a ``Discrete`` of rows, or a ``Box`` of numbers."""
+    """The space of one action: a ``Discrete`` of table rows, or a ``Box`` of numbers."""
     action = layout["action"]
     if "n" in action:
         return spaces.Discrete(action["n"])
@@ -72,5 +72,5 @@ def action_space(layout: dict[str, Any]) -> spaces.Space[Any]:
 
 
 def label(names: list[str], variant_id: str) -> NDArray[np.float32]:
-    """A variant as a one-hot vector among the names; all 0 for one that is not among them."""
+    """A variant as a one-hot vector among the names; all 0 if it is not one of them."""
     return np.array([float(name == variant_id) for name in names], dtype=np.float32)

@@ -1,4 +1,4 @@
-"""``DriftworldVectorEnv``: many environments that step together in one call into Rust. One alone is in ``single.py``."""
+"""``DriftworldVectorEnv``: many environments that step together in one call into Rust."""
 
 from __future__ import annotations
 
@@ -30,33 +30,36 @@ from driftworld.recordings import Recording
 if TYPE_CHECKING:
     from typing_extensions import Self, Unpack
 
-#: As many as a native batch holds.
+#: Capacity of a native batch.
 MOST_ENVS = 65_536
 
 
 class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
-    """Environments that step together, without the interpreter's lock, into buffers that are kept.
+    """Environments that step together, without the GIL, into reused buffers.
 
-    Each behaves as a :class:`DriftworldEnv` of the same options and seed does, bit for bit.
+    Each behaves like a :class:`DriftworldEnv` with the same options and seed, bit for bit.
 
-    Observations, rewards, flags and infos are new arrays at each step, the caller's to keep and to change. With ``copy=False``,
-    **observations are views** on the batch's buffers: they cannot be written into, and the next step or reset writes new numbers into
-    the arrays that the last one handed out. That saves a copy, for those who are done with an observation before the next comes.
+    Observations, rewards, flags and infos are new arrays at each step, which the caller may keep and change. With
+    ``copy=False``, **observations are views** of the batch's buffers: they are read-only, and the next step or reset
+    overwrites the arrays that the last one returned. That saves a copy if an observation is no longer needed when the
+    next arrives.
 
     Args:
         task: A task, as for :class:`DriftworldEnv`; so are all options that are not named here.
-        num_envs: How many environments there are, 1 to 65,536.
-        variants: The variant that each begins with, in place of ``variant``.
-        autoreset_mode: When an episode that has ended is followed by the next: ``"next_step"``, ``"same_step"``, ``"disabled"``, or
-            one of Gymnasium's ``AutoresetMode``.
-        copy: Whether observations are the caller's own, as Gymnasium's vector environments hand them out; or read-only views.
-        num_threads: Threads that step and draw, no more than there are environments, nor than four for each processor; 0 is one for
-            each processor.
-        max_episode_steps: A limit of steps that the worlds know nothing of, as ``TimeLimit`` sets one; ``make_vec`` hands it over.
+        num_envs: Number of environments, 1 to 65,536.
+        variants: The first variant of each environment, instead of ``variant``.
+        autoreset_mode: When the next episode starts after one has ended: ``"next_step"``, ``"same_step"``,
+            ``"disabled"``, or one of Gymnasium's ``AutoresetMode``.
+        copy: Whether observations are copies, as in Gymnasium's vector environments; otherwise they are read-only
+            views.
+        num_threads: Threads that step and draw, at most one for each environment and four for each processor; 0 is one
+            for each processor.
+        max_episode_steps: A limit of steps in addition to the worlds' own, like that of ``TimeLimit``; ``make_vec``
+            passes it.
 
     Raises:
-        SpecError, TaskError, ValueError: As :class:`DriftworldEnv`.
-        EnvError: If the observations would take more than 16 GiB, or more memory than there is.
+        SpecError, TaskError, ValueError: Like :class:`DriftworldEnv`.
+        EnvError: If the observations would need more than 16 GiB, or more memory than there is.
 
     It belongs to one thread at a time.
     """
@@ -68,7 +71,7 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
     }
 
     def __new__(cls, *args: Any, **options: Any) -> Self:
-        """Refuses unknown options before Python does, to name the one that was meant."""
+        """Refuses unknown options before Python does, to suggest the intended one."""
         refuse_unknown(cls, options)
         return super().__new__(cls)
 
@@ -137,7 +140,7 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
 
     @property
     def spec(self) -> EnvSpec | None:  # type: ignore[override]
-        """What ``gymnasium.make_vec`` made them from; its ``max_episode_steps`` is the limit of steps that the options say."""
+        """The spec of ``gymnasium.make_vec``; its ``max_episode_steps`` is the limit of steps set by the options."""
         return self._spec
 
     @spec.setter
@@ -146,7 +149,7 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
 
     @property  # type: ignore[misc]
     def np_random(self) -> tuple[np.random.Generator, ...]:  # type: ignore[override]
-        """The random generator of each environment; it is only asked where an environment never had a seed."""
+        """The random generator of each environment; only used if an environment never had a seed."""
         return tuple(self._generator(env) for env in range(self.num_envs))
 
     @property
@@ -172,14 +175,16 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         seed: int | Sequence[int | None] | None = None,
         options: dict[str, Any] | None = None,
     ) -> tuple[Any, dict[str, Any]]:
-        """Begins an episode in every environment, or in some.
+        """Starts an episode in every environment, or in some.
 
         Args:
-            seed: The environments draw under :func:`driftworld.spread_seeds` of it, the first under the seed itself; or each under
-                its own from a list; ``None`` goes on. (Gymnasium's own loops add 0, 1, 2 and so on, so that two seeds share worlds.)
-            options: As for :meth:`DriftworldEnv.reset`, for all environments; and ``"variants"``, a variant for each; ``"index"`` may
-                be a list; a ``"queue"`` is dealt out like cards, episode after episode; ``"reset_mask"``, bool (num_envs,), says
-                which environments begin, the others go on. With a mask, each of these takes a queue for itself, from its start.
+            seed: The environments draw under :func:`driftworld.spread_seeds` of it, the first under the seed itself; or
+                each under its own from a list; ``None`` continues. (Gymnasium's own loops add 0, 1, 2 and so on, so
+                that two seeds share worlds.)
+            options: As for :meth:`DriftworldEnv.reset`, for all environments; and ``"variants"``, a variant for each;
+                ``"index"`` may be a list; a ``"queue"`` is dealt out like cards, episode after episode;
+                ``"reset_mask"``, bool (num_envs,), selects the environments to reset, and the others continue. With a
+                mask, each selected environment gets a queue of its own, from its start.
 
         Returns:
             Observations and infos, as :class:`gymnasium.vector.SyncVectorEnv` has them.
@@ -202,10 +207,10 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
     def reset_one(
         self, env: int, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Any, dict[str, Any]]:
-        """Begins an episode in one environment, as :meth:`DriftworldEnv.reset` does; the others go on.
+        """Starts an episode in one environment, like :meth:`DriftworldEnv.reset`; the others continue.
 
         Returns:
-            Its first observation and its info, as a single environment has them.
+            Its first observation and its info, like a single environment's.
         """
         self._expect("reset_one", env)
         teach_conversions()
@@ -213,44 +218,44 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         prepared = members.checked(options or {}, many=False)
         own = self._seeds([seed if one == env else None for one in range(self.num_envs)])[env]
         self._begin([env], [own] * self.num_envs, prepared, np.arange(self.num_envs) == env)
-        # The label that an observation carries is noted with the info.
+        # `reset_info` notes the label that the observation contains, so it comes first.
         info = members.reset_info(env)
         return members.observation(env), info
 
     def set_next(
         self, *, variant: Any = None, index: Any = None, world: Any = None, queue: Any = None, mask: Any = None
     ) -> None:
-        """Says what the next episodes are; those that run go on. Autoreset begins them as they come.
+        """Sets the next episodes; the current ones continue. Autoreset starts the new ones as the current ones end.
 
         Args:
             variant: From the next episode on: a name or a :class:`driftworld.Variant` for all, or a list of them.
-            index: The number of the next world, or a list. A reset with a ``seed`` begins at world 0 all the same.
-            world: A world for the next episode alone, or a list: a path, JSON, a dictionary.
-            queue: In place of ``variant``: a list of variants, which each environment takes in turn, over and over.
-            mask: Bool ``(num_envs,)``: which environments; all if not given. Lists have one entry for each of these alone, ``None`` for
-                no change.
+            index: The number of the next world, or a list. A reset with a ``seed`` still starts at world 0.
+            world: A world for the next episode only, or a list: a path, JSON, a dictionary.
+            queue: Instead of ``variant``: a list of variants, which each environment takes in turn, cycling.
+            mask: Bool ``(num_envs,)``: the selected environments, by default all. Lists have one entry for each
+                selected environment, ``None`` for no change.
 
         Raises:
-            ValueError, TaskError, SpecError: As :meth:`reset` does; nothing is changed then.
+            ValueError, TaskError, SpecError: Like :meth:`reset`; nothing is changed then.
         """
         chosen = range(self.num_envs) if mask is None else np.flatnonzero(self._mask(mask, "mask")).tolist()
         self._members.set_next(chosen, {"variant": variant, "index": index, "world": world, "queue": queue})
 
     def check_next(self, **asked: Any) -> None:
-        """Refuses what :meth:`set_next` would refuse of one environment, and changes nothing."""
+        """Checks arguments like :meth:`set_next` for one environment, without changing anything."""
         self._members.checked(asked, many=False)
 
     def set_next_one(self, env: int, **asked: Any) -> None:
-        """The same for one environment, as :meth:`DriftworldEnv.set_next` takes it."""
+        """Like :meth:`set_next`, for one environment, with the arguments of :meth:`DriftworldEnv.set_next`."""
         self._expect("set_next", env)
         self._members.set_next([env], asked)
 
     def _begin(
         self, chosen: Sequence[int], seeds: list[int | None], prepared: Prepared, mask: NDArray[np.bool_] | None
     ) -> None:
-        """Begins episodes in these environments, which are those of the mask."""
+        """Starts episodes in the chosen environments, which are those of the mask."""
         members = self._members
-        # Until it is done: Ctrl-C may come in between.
+        # Set back until it is done: Ctrl-C may come in between.
         members.has_begun[chosen] = False
         for env in chosen:
             own = seeds[env]
@@ -262,7 +267,7 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         try:
             members.batch.reset(mask)
         except EnvError:
-            # Of an environment without a world: the others have begun, and the next step asks it again.
+            # One environment has no world: the others have started, and the next step tries again.
             members.has_begun[chosen] = True
             raise
         members.has_begun[chosen] = True
@@ -295,23 +300,24 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
     def step(
         self, actions: Any, *, out: Any = None
     ) -> tuple[Any, NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]]:
-        """Lets every agent act once.
+        """Executes one action of every agent.
 
-        With ``"next_step"``, an environment whose episode has ended begins the next one: its action is ignored, it pays 0, and its
-        observation is the first. With ``"same_step"`` it does so at once: ``info["final_obs"]`` and ``info["final_info"]`` hold what
-        the old episode ended with.
+        With ``"next_step"``, an environment whose episode has ended starts the next one: its action is ignored, its
+        reward is 0, and its observation is the first. With ``"same_step"`` it does so at once: ``info["final_obs"]``
+        and ``info["final_info"]`` hold the last observation and info of the old episode.
 
         Args:
             actions: ``(num_envs,)`` rows, or ``(num_envs, numbers)``.
-            out: The caller's own arrays, in the form of observations, such as a row of a learner's buffer: observations are written into
-                them, without a copy in between, and handed out.
+            out: The caller's own arrays, in the form of observations, such as a row of a learner's buffer: observations
+                are written directly into them and returned.
 
         Returns:
             Observations; rewards float64, terminated and truncated bool, each ``(num_envs,)``; infos.
 
         Raises:
-            EnvError: For an action that is none, or with ``"disabled"`` after the end of an episode; nothing is changed then.
-            gymnasium.error.ResetNeeded: Before every environment had its first reset.
+            EnvError: For an invalid action, or with ``"disabled"`` after the end of an episode; nothing is changed
+                then.
+            gymnasium.error.ResetNeeded: If an environment has not been reset yet.
         """
         members = self._members
         if not members.has_begun.all():
@@ -338,7 +344,7 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         return out, rewards, terminated, truncated, infos
 
     def _infos(self, success: NDArray[np.bool_], eventful: list[int]) -> dict[str, Any]:
-        """What every step says of every environment."""
+        """The infos of a step, for every environment."""
         events = self._nothing.copy()
         for env in eventful:
             events[env] = self._members.batch.events(env)
@@ -356,7 +362,7 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         return infos
 
     def _add_beginning(self, infos: dict[str, Any], env: int) -> None:
-        """Adds what an episode that began in this step says, and what the one before it ended with."""
+        """Adds the info of an episode that started in this step, and the final info of the one before."""
         members = self._members
         if self._mode == AutoresetMode.SAME_STEP:
             members.note_finals(env)
@@ -382,10 +388,10 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         )
 
     def render(self) -> tuple[NDArray[np.uint8], ...] | None:  # type: ignore[override]
-        """A picture of each environment, uint8 (height, width, 3); ``None`` without a render mode.
+        """An image of each environment, uint8 (height, width, 3); ``None`` without a render mode.
 
         Raises:
-            gymnasium.error.ResetNeeded: Before every environment had its first reset.
+            gymnasium.error.ResetNeeded: If an environment has not been reset yet.
         """
         if self.render_mode is None:
             return None
@@ -395,43 +401,43 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
 
     @property
     def has_begun(self) -> NDArray[np.bool_]:
-        """Which environments had a reset, bool ``(num_envs,)``."""
+        """Which environments have been reset, bool ``(num_envs,)``."""
         return self._members.has_begun.copy()
 
     def picture(self, env: int) -> NDArray[np.uint8]:
-        """The picture of one environment, as :meth:`render` has it."""
+        """An image of one environment, as in :meth:`render`."""
         self._expect("picture", env)
         return self._camera.picture(self._members.batch, env)
 
     def keys_to_action(self) -> dict[tuple[str, ...], Any]:
-        """Keys for people, as :meth:`DriftworldEnv.get_keys_to_action` has them."""
+        """Keyboard controls, as in :meth:`DriftworldEnv.get_keys_to_action`."""
         return keys_to_action(self.single_action_space, self._members.layout)
 
     def warnings(self, env: int) -> list[str]:
-        """What the world of an environment asks for that is not as its author may think, as :meth:`DriftworldEnv.warnings` says."""
+        """Suspicious parts of an environment's world, as in :meth:`DriftworldEnv.warnings`."""
         self._expect("warnings", env)
         return self._members.batch.warnings(env)
 
     def state(self, env: int) -> dict[str, Any]:
-        """The world of an environment as it is now, as a document."""
+        """The current world of an environment, as a document."""
         self._expect("state", env)
         state: dict[str, Any] = _native.parsed(self._members.batch.state(env))
         return state
 
     def origin(self, env: int) -> dict[str, Any]:
-        """Where the world of an environment comes from, as :meth:`DriftworldEnv.origin` says it."""
+        """The origin of an environment's world, as in :meth:`DriftworldEnv.origin`."""
         self._expect("origin", env)
         return self._members.origin(env)
 
     def record(self, records: bool = True, env: int | None = None) -> None:
-        """Takes down what is done from now on in an environment, or in all, or no longer: :meth:`recording` has it."""
+        """Starts or stops recording in an environment, or in all; :meth:`recording` returns the result."""
         if env is not None:
             self._expect("record", env)
         self._members.batch.record(records, env)
 
     def recording(self, env: int) -> Recording:
-        """What was done in an environment's episode so far; before its first step, so also in the step that ended an episode with the
-        autoreset mode ``"same_step"``, in the one before.
+        """The recording of an environment's episode so far. Before the episode's first step, it is that of the previous
+        episode, also after the step that ended it in the autoreset mode ``"same_step"``.
 
         Raises:
             IndexError: If there is no such environment.
@@ -441,8 +447,9 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         return Recording(self._members.recording(env))
 
     def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
-        """What each environment answers: ``state``, ``origin``, ``recording`` and ``warnings`` one by one, anything else is the
-        same for all."""
+        """Calls a method for each environment: ``state``, ``origin``, ``recording`` and ``warnings`` are per
+        environment, anything else is the same for all.
+        """
         name = {"observation_space": "single_observation_space", "action_space": "single_action_space"}.get(name, name)
         if name in ("state", "origin", "recording", "warnings"):
             return tuple(getattr(self, name)(env) for env in range(self.num_envs))
@@ -457,24 +464,24 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
 
     def __getstate__(self) -> dict[str, Any]:
         kept = {name: value for name, value in self.__dict__.items() if name != "_members"}
-        # Also of a shallow copy: the two would change them in turns.
+        # Copied in shallow copies, too: otherwise both copies would change them in turn.
         for name in ("_generators", "_generator_seeds", "_ended"):
             kept[name] = deepcopy(kept[name])
         return {"kept": kept, "members": self._members.written()}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        # Never through `__init__`: a subclass has its own, with arguments that nobody knows here.
+        # Bypasses `__init__`: a subclass has its own, with unknown arguments.
         self.__dict__.update(state["kept"])
         self._members = Members.again(state["members"])
 
 
 def _some(numbers: list[int]) -> str:
-    """The first of them, in words."""
+    """The first of the numbers, as text."""
     return ", ".join(map(str, numbers[:5])) + (f" and {len(numbers) - 5} more" if len(numbers) > 5 else "")
 
 
 def _limit(steps: Any) -> int | None:
-    """A limit of steps as Gymnasium's ``TimeLimit`` takes it; −1 is none, as for ``gymnasium.make``."""
+    """A limit of steps as for Gymnasium's ``TimeLimit``; −1 is none, as for ``gymnasium.make``."""
     if steps is None or steps == -1:
         return None
     found = whole("max_episode_steps", steps)

@@ -1,4 +1,4 @@
-"""``Window``: pictures on a screen, through pygame. Nothing is drawn here."""
+"""``Window``: shows images on the screen, through pygame."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from numpy.typing import NDArray
 
 
 class Window:
-    """A window that shows pictures at a given pace.
+    """A window that shows images at a given rate.
 
     Args:
-        title: What it is called.
-        fps: Pictures per second; showing one waits for its time.
+        title: Its title.
+        fps: Images per second; :meth:`show` waits accordingly.
 
     Raises:
         gymnasium.error.DependencyNotInstalled: Without pygame.
@@ -31,14 +31,14 @@ class Window:
         self._pygame = pygame
         Window._open += 1
         self._fps = fps
-        # Only what shows pictures: sound would look for devices.
+        # Initialises the display only: sound would search for devices.
         pygame.display.init()
         pygame.display.set_caption(title)
         self._surface: pygame.Surface | None = None
         self._clock = pygame.time.Clock()
 
     def show(self, picture: NDArray[np.uint8]) -> None:
-        """Shows a picture, uint8 (height, width, 3)."""
+        """Shows an image, uint8 (height, width, 3)."""
         pygame = self._pygame
         height, width, _ = picture.shape
         if self._surface is None:
@@ -49,8 +49,8 @@ class Window:
         pygame.display.flip()
 
     def close(self) -> None:
-        """Takes it off the screen."""
+        """Closes the window."""
         Window._open -= 1
-        # pygame has one screen for all windows.
+        # pygame has one display for all windows.
         if Window._open == 0:
             self._pygame.display.quit()
