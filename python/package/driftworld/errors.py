@@ -1,6 +1,6 @@
 """The exceptions of Driftworld: one base, one subclass for each part of the toolkit.
 
-What they say is written where the mistake is found, in Rust; here is only what a program may ask them.
+Messages are written in Rust, where the errors are found.
 """
 
 from __future__ import annotations
@@ -9,14 +9,14 @@ from typing import Any
 
 
 class DriftworldError(Exception):
-    """Anything that Driftworld refuses or cannot do.
+    """Base of all errors raised by Driftworld.
 
     Attributes:
-        code: A stable name for the kind of mistake, such as ``"spec/unknown-key"``; ``None`` where there is none.
-        pointer: JSON pointer to the first value that is wrong, such as ``"/variants/red/light"``.
+        code: A stable name for the kind of error, such as ``"spec/unknown-key"``, or ``None``.
+        pointer: JSON pointer to the first wrong value, such as ``"/variants/red/light"``.
         line: Its line in the text, from 1.
         column: Its column, in characters from 1.
-        expected: What should have stood there.
+        expected: What was expected there.
         problems: Every problem of a document, in the order of places: dictionaries with ``code``, ``pointer``,
             ``line``, ``column``, ``found``, ``expected``, ``advice`` and ``message``.
     """
@@ -51,12 +51,12 @@ def _again(
     line: int | None,
     column: int | None,
 ) -> DriftworldError:
-    """The exception in another process."""
+    """Unpickles an exception."""
     return kind(message, code=code, problems=problems, line=line, column=column)
 
 
 class SpecError(DriftworldError, ValueError):
-    """A task spec, world or scenario is wrong; each problem comes with its place."""
+    """A task spec, world or scenario is wrong; each problem has its place."""
 
 
 class TaskError(DriftworldError, LookupError, ValueError):
@@ -72,7 +72,7 @@ class SimilarityError(DriftworldError):
 
 
 class EnvError(DriftworldError):
-    """A world cannot be run or drawn as asked for, or an action cannot be carried out."""
+    """A world cannot be run or drawn as requested, or an action cannot be carried out."""
 
 
 class MetricsError(DriftworldError):

@@ -1,6 +1,6 @@
-"""Which elements of the decision process the variants of a task change, tried out.
+"""Measures which elements of the decision process the variants of a task change.
 
-The experiment is that of ``driftworld elements``, with the same result. What elements are is in ``docs/similarity.md``.
+The experiment and its results are those of ``driftworld elements``. ``docs/similarity.md`` explains elements.
 """
 
 from __future__ import annotations
@@ -25,26 +25,26 @@ def elements(
     steps: int = 100,
     assets: str | os.PathLike[str] | None = None,
 ) -> dict[str, Any]:
-    """Tries which elements of the decision process variants change, beside what the task declares.
+    """Measures which elements of the decision process variants change, and compares them with the task's declarations.
 
     Every variant is compared with the first that the task declares, or ``a`` with ``b``.
 
     Args:
         task: A task, its built-in name such as ``"find_objects"``, or its path.
-        a: A variant of the task, beside ``b``.
+        a: A variant of the task, to compare with ``b``.
         b: Another variant of the task.
-        modalities: Which images the learner has, such as ``["rgb", "depth"]``; those that the worlds ask for if absent.
-        worlds: How many pairs of worlds are tried, 1 to 1,000.
-        seed: The seed that worlds are drawn under.
-        steps: The most steps of an episode, 1 to 100,000.
-        assets: A library of assets whose classes the task uses.
+        modalities: The learner's images, such as ``["rgb", "depth"]``; by default those that the worlds ask for.
+        worlds: Number of pairs of worlds to try, 1 to 1,000.
+        seed: The seed of the worlds.
+        steps: Largest number of steps in an episode, 1 to 100,000.
+        assets: An asset library with classes that the task uses.
 
     Returns:
-        A dictionary with ``task``, ``base`` (the variant that others were compared with), ``worlds``, ``seed``, ``steps`` and
-        ``variants``: a list of dictionaries with ``variant``, ``parameters`` (in which it differs), ``declared`` (letters),
-        ``measured`` (each with ``element`` and ``witness``), ``contradictions`` (each with ``element`` and ``message``),
-        ``idle`` (parameters that made no difference), ``proof`` (how much was tried) and ``verdict`` (``"sound"``, ``"idle"`` or
-        ``"contradicted"``).
+        A dictionary with ``task``, ``base`` (the variant that the others are compared with), ``worlds``, ``seed``,
+        ``steps`` and ``variants``: a list of dictionaries with ``variant``, ``parameters`` (in which it differs),
+        ``declared`` (letters), ``measured`` (each with ``element`` and ``witness``), ``contradictions`` (each with
+        ``element`` and ``message``), ``idle`` (parameters that made no difference), ``proof`` (the extent of the
+        experiment) and ``verdict`` (``"sound"``, ``"idle"`` or ``"contradicted"``).
 
     Raises:
         TaskError: If there is no such task or variant, or a world cannot be drawn.

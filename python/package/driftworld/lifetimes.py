@@ -1,6 +1,6 @@
-"""Living a curriculum: an agent in a single environment, experience after experience, each logged.
+"""Runs an agent through a curriculum in a single environment, and logs each experience.
 
-Which experiences there are is said by ``curricula.py``, what a log holds by the native journal: the columns of ``driftworld run``.
+The log has the columns of ``driftworld run``.
 """
 
 from __future__ import annotations
@@ -36,22 +36,22 @@ if TYPE_CHECKING:
     from driftworld.curricula import Experience
 
 
-#: The file among an agent's saves that says which lifetime they are of.
+#: The file among an agent's saves that identifies their lifetime.
 WHOSE = "lifetime.json"
 
 
 @dataclass(frozen=True, slots=True)
 class Transition:
-    """One step, as an agent learns from it.
+    """One step, as given to ``learn``.
 
     Attributes:
-        observation: What it saw before.
-        action: What it did.
-        reward: What that paid.
-        terminated: Whether what happened ended the episode.
-        truncated: Whether a limit of steps did.
-        next_observation: What it saw then.
-        info: What the step said beside it.
+        observation: The observation before the step.
+        action: The action.
+        reward: Its reward.
+        terminated: Whether an event ended the episode.
+        truncated: Whether a limit of steps ended it.
+        next_observation: The observation after the step.
+        info: The info of the step.
     """
 
     observation: Any
@@ -65,52 +65,56 @@ class Transition:
 
 @runtime_checkable
 class Agent(Protocol):
-    """Who runs through a curriculum.
+    """An agent that can run through a curriculum.
 
-    Beside these three methods an agent may have
+    Besides these three methods an agent may have
 
-    - ``name``, what logs call it; its class's name if not;
-    - ``begin(label, seed)``, called before each experience with the name of its variant where the scenario tells it, else
-      ``None``, and the seed of its random numbers: another one in every block, so that no world is known by it,
-      unless ``paired_chance`` is asked for;
-    - ``policy``, how it chooses its actions in evaluations, such as ``"sampled"`` or ``"greedy"``; it is noted in the log;
-    - ``save(path)`` and ``load(path)``, called with a path that nothing is at, respectively with the last that was saved at: after
-      each learning block, and when a log is taken up.
+    - ``name``, its name in logs; by default the class's name;
+    - ``begin(label, seed)``, called before each experience with the name of its variant if the scenario tells it, else
+      ``None``, and the seed of its random numbers: another one in every block, so that no world can be recognised by
+      it, unless ``paired_chance`` is used;
+    - ``policy``, how it chooses its actions in evaluations, such as ``"sampled"`` or ``"greedy"``; it is noted in the
+      log;
+    - ``save(path)`` and ``load(path)``: ``save`` is called after each learning block, with a path where nothing exists;
+      ``load`` when a log is resumed, with the path of the last save.
     """
 
     def act(self, observation: Any, info: dict[str, Any]) -> Any:
-        """An action for an observation; ``info`` is what the last reset or step said beside it.
+        """Returns an action for an observation; ``info`` comes from the last reset or step.
 
-        There are ``is_success``, and ``task_label`` where the scenario says so; with ``info="full"`` also what names the world.
+        It has ``is_success``, and ``task_label`` if the scenario tells it; with ``info="full"`` also the world's
+        origin.
         """
 
     def learn(self, transition: Transition) -> None:
         """Learns from a step; only called in learning blocks."""
 
     def freeze(self, frozen: bool) -> None:
-        """Called before the first block, and before each block where it changes whether the agent may learn.
+        """Called before the first block, and before each block in which learning is switched on or off.
 
-        A frozen agent does the same in the same world, drawn by the same seed: some evaluations of each block are run once more
-        at its end, and a lifetime in which it does something else is refused. Running statistics, memories and random numbers of
-        evaluations are kept apart from those of learning; the latter are drawn from the seed that ``begin`` gets.
+        A frozen agent must behave identically in the same world with the same seed: some evaluations of each block are
+        repeated at its end, and a lifetime in which the agent behaves differently is refused. Keep running statistics,
+        memories and random numbers of evaluations separate from those of learning, and draw the random numbers from the
+        seed that ``begin`` gets.
         """
 
 
 @dataclass(frozen=True)
 class Summary:
-    """What a lifetime came to.
+    """The results of a lifetime.
 
     Attributes:
-        experiences: How many were run, those of earlier runs included.
-        skipped: How many were left out because their worlds cannot be drawn.
-        left_out: The first 100 of those: dictionaries with ``experience``, ``block``, ``variant``, ``progress`` and ``reason``.
-        steps: Steps of all that were run.
+        experiences: Number of experiences run, including those of earlier runs.
+        skipped: Number of experiences skipped because their worlds cannot be drawn.
+        left_out: The first 100 skipped experiences: dictionaries with ``experience``, ``block``, ``variant``,
+            ``progress`` and ``reason``.
+        steps: Total steps of the experiences run.
         finished: Whether the whole curriculum was run.
-        ended_by: How many were ended by what, by the words of the log: ``touch``, ``zone``, ``steps``, …; ``unknown`` where the log
-            does not say.
-        regimes: One dictionary for each regime that was begun: ``block``, ``kind``, ``variant``, ``experiences``, ``skipped``,
+        ended_by: Number of experiences by what ended them, in the log's words: ``touch``, ``zone``, ``steps``, …;
+            ``unknown`` if the log does not have it.
+        regimes: One dictionary for each regime started: ``block``, ``kind``, ``variant``, ``experiences``, ``skipped``,
             ``mean_reward`` and ``success_rate``.
-        log: The folder of the log, if it was kept.
+        log: The folder of the log, if one was written.
     """
 
     experiences: int
@@ -150,15 +154,15 @@ class Summary:
 
 
 class Lifetime:
-    """A curriculum under way.
+    """A run of a curriculum.
 
     Args:
-        plan: What is lived.
-        agent: Who lives it.
-        log: The folder to log into; without one the log is forgotten.
-        resume: Go on with the log in the folder if there is one.
-        check_frozen: Run some evaluations of each block once more, and refuse an agent that does something else in them.
-        record: Keep what is done in each experience, beside its row.
+        plan: The plan of the curriculum.
+        agent: The agent.
+        log: The folder of the log; by default the log is discarded.
+        resume: Resume the log in the folder if there is one.
+        check_frozen: Repeat some evaluations of each block, and refuse an agent that behaves differently.
+        record: Record each experience, beside its row.
     """
 
     def __init__(
@@ -177,20 +181,21 @@ class Lifetime:
         self._plan, self._agent = plan, agent
         self._log = None if log is None else Path(log)
         self._resume, self._check_frozen, self._record = resume, check_frozen, record
-        # What is saved lies beside the log: a log holds rows, nothing else.
+        # Saves are kept beside the log, because a log contains only rows.
         self._saves = None if self._log is None else _beside(self._log)
         self._whose = ""
 
     def live(self, made_with: Mapping[str, Any], rollout: Callable[[Callable[[int], None]], Rollout]) -> Summary:
-        """Runs it from the first experience that is not in the log to the last.
+        """Runs the curriculum from the first experience that is not in the log to the last.
 
         Args:
-            made_with: What the lifetime depends on beside the plan, by name; a log is taken up only with the same.
-            rollout: Makes what lives single experiences, from what saves the agent after so many of them.
+            made_with: Settings, beside the plan, that affect the lifetime, by name; a log can only be resumed with the
+                same ones.
+            rollout: Makes the :class:`Rollout`, given a function that saves the agent after a number of experiences.
         """
         with ExitStack() as stack:
             folder = self._log or Path(stack.enter_context(tempfile.TemporaryDirectory())) / "log"
-            # First: where an option is wrong no log is begun.
+            # First, so that no log is started if an option is wrong.
             lived = rollout(self._save)
             stack.callback(lived.close)
             policy = getattr(self._agent, "policy", None)
@@ -207,14 +212,14 @@ class Lifetime:
             try:
                 said = journal.run(self._plan, lived, self._load(done), self._check_frozen)
             except CurriculumError as error:
-                # Else the same call would go on behind what was refused.
+                # Otherwise the same call would resume after the refused block.
                 if error.code == "curriculum/not-frozen":
                     journal.withdraw_block()
                 raise
         return Summary(**said, log=self._log)
 
     def _own_saves(self, done: int, lifetime: dict[str, Any]) -> None:
-        """Sees to it that what is saved beside the log is of this lifetime: what another one left there goes."""
+        """Makes sure that the saves beside the log belong to this lifetime: those of another one are removed."""
         if self._saves is None:
             return
         self._whose = json.dumps(lifetime, sort_keys=True, indent=2)
@@ -225,12 +230,12 @@ class Lifetime:
             _remove(place)
 
     def _save(self, done: int) -> None:
-        """Lets the agent save itself after so many experiences; then what was saved before goes."""
+        """Saves the agent after ``done`` experiences, then removes older saves."""
         if self._saves is None or not hasattr(self._agent, "save"):
             return
         self._saves.mkdir(parents=True, exist_ok=True)
         write_whole(self._saves / WHOSE, self._whose.encode())
-        # Renamed when it is whole: what lies under a number was saved to the end.
+        # Renamed when complete: a save under a number is always whole.
         unfinished = self._saves / "unfinished"
         _remove(unfinished)
         self._agent.save(unfinished)
@@ -243,16 +248,17 @@ class Lifetime:
                 _remove(place)
 
     def _saved(self) -> list[tuple[int, Path]]:
-        """Where the agent was saved, and after how many experiences, in order."""
+        """The agent's saves, each with its number of experiences, in order."""
         if self._saves is None or not self._saves.is_dir():
             return []
         places = [place for place in self._saves.iterdir() if re.fullmatch(r"\d{8,}", place.name)]
         return sorted((int(place.name), place) for place in places)
 
     def _load(self, done: int) -> int:
-        """Brings an agent that can be loaded to its last save before the end of the log; from how many experiences it has learned.
+        """Loads an agent from its last save before the end of the log, if it supports that; returns the number of
+        experiences it has learned from.
 
-        What it learned after that it learns again. One that cannot be loaded has learned what is in the log.
+        Later experiences are learned again. An agent without ``load`` is assumed to have learned everything in the log.
         """
         if done == 0 or not hasattr(self._agent, "load"):
             return done
@@ -263,42 +269,42 @@ class Lifetime:
 
 
 class Trace:
-    """What an agent saw and did in one evaluation: a hash for each step."""
+    """An agent's observations and actions in one evaluation: a hash for each step."""
 
     def __init__(self) -> None:
         self.steps: list[bytes] = []
         self._seen = b""
 
     def see(self, observation: Any) -> None:
-        """What is seen before a step; taken before the agent may write into it."""
+        """Adds the observation before a step; called before the agent can write into it."""
         self._seen = _print_of(observation)
 
     def do(self, action: Any) -> None:
-        """What is done then."""
+        """Adds the action."""
         self.steps.append(self._seen + _print_of(action))
 
 
 class Frozenness:
-    """Looks whether an agent does the same when evaluations of a block are run once more."""
+    """Checks that an agent behaves identically when evaluations of a block are repeated."""
 
     def __init__(self) -> None:
         self._first: dict[int, Trace] = {}
         self._repeated: Sequence[int] = ()
 
     def begin_block(self, repeated: Sequence[int]) -> None:
-        """Forgets the block before; these experiences are run twice."""
+        """Forgets the previous block; ``repeated`` experiences are run twice."""
         self._first.clear()
         self._repeated = repeated
 
     def trace(self, number: int) -> Trace | None:
-        """What an experience is to be written down in; ``None`` for one that is never run twice."""
+        """The trace for recording an experience; ``None`` if it is never repeated."""
         return Trace() if number in self._repeated else None
 
     def expect_same(self, now: Experience, trace: Trace | None) -> None:
-        """Compares an experience with its first run, if this is the second.
+        """Compares an experience with its first run, if this is the repetition.
 
         Raises:
-            CurriculumError: If the agent did something else, with the first step in which it did.
+            CurriculumError: If the agent behaved differently; names the first such step.
         """
         if trace is None:
             return
@@ -330,19 +336,19 @@ def _print_of(value: Any) -> bytes:
 
 
 class Rollout:
-    """An agent in its environment, which the native loop asks for one experience after the other.
+    """An agent in its environment; the native loop calls it for one experience after the other.
 
     Args:
-        agent: Who acts.
+        agent: The agent.
         env: The environment.
         experience: Finds an experience by its number.
         options: Options of the environment.
-        paired_chance: Give every evaluation of a world the same number in all blocks.
-        watch: Called with each experience and what it paid, as soon as it is logged; may say ``False`` to end there.
-        save: Saves the agent after so many experiences.
+        paired_chance: Use the same seed for every evaluation of a world in all blocks.
+        watch: Called with each experience and its reward, as soon as it is logged; returning ``False`` ends the run.
+        save: Saves the agent after a number of experiences.
     """
 
-    #: Which evaluations of a block are run twice: the first, or some that seeds draw.
+    #: Which evaluations of a block are repeated: the first ones, or a random sample drawn from seeds.
     repeats_first = False
 
     def __init__(
@@ -365,25 +371,27 @@ class Rollout:
         self._env.close()
 
     def _beginning(self, now: Experience) -> tuple[str | None, int]:
-        """What an agent is given before an experience: the name of its variant where it may know it, and a number for its chance."""
+        """The arguments of ``begin`` for an experience: the name of its variant if the agent may know it, and a seed.
+        """
         chance = now.chance
         if not (now.learning or self._paired_chance):
-            # The same only when the experience is run once more: worlds come again in every block.
+            # The same only when the experience is repeated: worlds recur in every block.
             print = hashlib.sha256(f"{now.block} {chance}".encode()).digest()
             chance = int.from_bytes(print[:8], "big")
         return None if now.label is None else now.label["name"], chance
 
     def _seconds(self, steps: int, time: tuple[float, int, float]) -> float:
-        """How long so many steps take, by the time that :meth:`experience` was given."""
+        """Duration of ``steps`` steps, from the time values passed to :meth:`experience`."""
         time_step, skip, max_seconds = time
         seconds_per_step = time_step * (self._options.get("frame_skip") or skip)
-        # A limit of seconds cuts the last step short; one of steps stands in its place.
+        # A limit of seconds cuts the last step short; an option `max_steps` replaces it.
         limited = max_seconds > 0 and self._options.get("max_steps") is None
         return min(steps * seconds_per_step, max_seconds if limited else math.inf)
 
     def begin_block(self, learning: bool, repeated: Sequence[int]) -> None:
-        """Before the first experience of a block; ``repeated`` are run twice. An agent without labels is not to see the border between
-        two blocks of learning."""
+        """Called before the first experience of a block; ``repeated`` are run twice. An agent without labels must not
+        see the border between two learning blocks.
+        """
         self._frozenness.begin_block(repeated)
         if self._frozen is not (not learning):
             self._frozen = not learning
@@ -392,9 +400,11 @@ class Rollout:
     def experience(
         self, number: int, world: _native.Stream, time: tuple[float, int, float]
     ) -> tuple[float, bool, int, float, bool, str | None]:
-        """One experience in its world: reward, success, steps, seconds, whether a limit cut it off, and what ended it.
+        """Runs one experience in its world: reward, success, steps, seconds, whether a limit truncated it, and what
+        ended it.
 
-        ``time`` is the world's time step in seconds, for how many of these each action is held, and its limit of seconds, 0 for none.
+        ``time`` is the world's time step in seconds, the number of time steps per action, and its limit of seconds, 0
+        for none.
         """
         now = self._experience(number)
         begin = getattr(self._agent, "begin", None)
@@ -423,21 +433,21 @@ class Rollout:
         return earned, bool(info["is_success"]), steps, self._seconds(steps, time), cut_off, ended_by
 
     def record(self) -> None:
-        """Takes down what is done in each experience from now on."""
+        """Records each experience from now on."""
         self._env.unwrapped.record()
 
     def recording(self, number: int) -> _native.RecordingHandle:
-        """What was done in the experience that was asked for last."""
+        """The recording of the last experience."""
         handle: _native.RecordingHandle = self._env.unwrapped.recording()._handle
         return handle
 
     def logged(self, number: int, reward: float) -> bool:
-        """After an experience was logged, NaN for one that was left out; whether to go on."""
+        """Called after an experience is logged, with NaN for a skipped one; returns whether to continue."""
         return self._watch is None or self._watch(self._experience(number), reward) is not False
 
 
 def environment(plan: _native.Plan, options: Mapping[str, Any]) -> gymnasium.Env[Any, Any]:
-    """The environment that a plan is lived in, at its first world."""
+    """The environment for running a plan, starting in its first world."""
     refuse_options(options)
     refuse_covering(plan, options)
     world, options = first_world(plan, options)
@@ -446,7 +456,7 @@ def environment(plan: _native.Plan, options: Mapping[str, Any]) -> gymnasium.Env
 
 
 def refuse_options(options: Mapping[str, Any]) -> None:
-    """Refuses options of environments that the curriculum has the say over."""
+    """Refuses environment options that the curriculum controls."""
     refused = [name for name in ("task", "world", "variant", "drift", "task_label") if name in options]
     if refused:
         raise TypeError(f"{refused[0]}: found it among the options, expected none: the curriculum says what is lived")
@@ -455,10 +465,10 @@ def refuse_options(options: Mapping[str, Any]) -> None:
 
 
 def refuse_covering(plan: _native.Plan, options: Mapping[str, Any]) -> None:
-    """Refuses options that take away what variants of a plan differ in: a lifetime would compare what is one.
+    """Refuses options that hide differences between a plan's variants: the lifetime would compare identical variants.
 
     Raises:
-        CurriculumError: That names the options, the keys of worlds, and the variants.
+        CurriculumError: Names the options, the worlds' keys, and the variants.
     """
     read = Options.read(cast(EnvOptions, dict(options)))
     told = coverings(plan.covered(read.overrides, read.images))
@@ -467,9 +477,10 @@ def refuse_covering(plan: _native.Plan, options: Mapping[str, Any]) -> None:
 
 
 def first_world(plan: _native.Plan, options: Mapping[str, Any]) -> tuple[_native.Stream, dict[str, Any]]:
-    """A world of a plan into whose spaces all its others fit, and options that say so.
+    """A world of a plan whose spaces fit all its others, and options to go with it.
 
-    Where no modalities are said, observations hold all that any world of the plan asks for; what a world does not ask for is 0.
+    Without the option ``modalities``, observations have all modalities that any world of the plan asks for; those that
+    a world does not ask for are 0.
     """
     worlds = _some_worlds(plan)
     read = Options.read(cast(EnvOptions, dict(options)))
@@ -482,7 +493,9 @@ def first_world(plan: _native.Plan, options: Mapping[str, Any]) -> tuple[_native
 
 
 def _some_worlds(plan: _native.Plan) -> list[_native.Stream]:
-    """Worlds of all regimes of a plan, from both ends of drifts; of regimes whose worlds cannot be drawn one that can, if need be."""
+    """Worlds of all regimes of a plan, from both ends of drifts. If a regime's world cannot be drawn, another of its
+    worlds is used if possible.
+    """
     found, refused = [], None
     for number in plan.ends_of_regimes():
         try:
@@ -500,7 +513,7 @@ def _some_worlds(plan: _native.Plan) -> list[_native.Stream]:
 
 
 def origin(experience: Experience) -> dict[str, Any]:
-    """What names an experience's variant and world, for those who ask for it."""
+    """The names of an experience's variant and world, for full infos."""
     return {
         "task_id": experience.task,
         "variant_id": experience.variant,
@@ -509,20 +522,21 @@ def origin(experience: Experience) -> dict[str, Any]:
     }
 
 
-#: What an agent in a curriculum is given beside observations, whatever the scenario says of labels.
+#: Info entries that an agent in a curriculum always gets, whatever the scenario's task labels.
 PERMITTED = ("is_success", "ended_by")
 
 
 class Permitted(gymnasium.Wrapper[Any, Any, Any, Any]):
-    """An environment whose infos hold what the scenario permits: no name of a variant or a world, and no events.
+    """An environment whose infos only contain what the scenario permits: no name of a variant or a world, and no
+    events.
 
-    Where the scenario wants labels, the number of the variant is ``info["task_label"]``, or one-hot ``"task"`` in observations that
-    are a dictionary.
+    If the scenario has labels, the number of the variant is ``info["task_label"]``, or one-hot ``"task"`` in dictionary
+    observations.
 
     Args:
         env: The environment.
-        label: The label of the first experience, or ``None`` where none are given.
-        full: Leave everything in infos, with the names of the experience.
+        label: The label of the first experience, or ``None`` without labels.
+        full: Keep all entries of infos, and add the origin of the experience.
     """
 
     def __init__(self, env: gymnasium.Env[Any, Any], label: Mapping[str, Any] | None, full: bool) -> None:
@@ -534,7 +548,7 @@ class Permitted(gymnasium.Wrapper[Any, Any, Any, Any]):
             self.observation_space = gymnasium.spaces.Dict({**env.observation_space.spaces, "task": box})
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
-        """Begins an episode; ``options["label"]`` is its label, ``options["origin"]`` what it is called in full infos."""
+        """Starts an episode; ``options["label"]`` is its label, ``options["origin"]`` its names in full infos."""
         options = dict(options or {})
         self._label = options.pop("label", self._label)
         names = options.pop("origin", {})
@@ -542,7 +556,7 @@ class Permitted(gymnasium.Wrapper[Any, Any, Any, Any]):
         return self._permitted(observation, {**info, **names})
 
     def step(self, action: Any) -> tuple[Any, Any, bool, bool, dict[str, Any]]:
-        """Lets the agent act once."""
+        """Executes one action of the agent."""
         observation, reward, terminated, truncated, info = self.env.step(action)
         observation, info = self._permitted(observation, info)
         return observation, reward, terminated, truncated, info
@@ -558,19 +572,19 @@ class Permitted(gymnasium.Wrapper[Any, Any, Any, Any]):
 
 
 def is_observed(label: Mapping[str, Any] | None, space: gymnasium.Space[Any]) -> bool:
-    """Whether a label is a part of observations; where they are a single image, it is in the infos."""
+    """Whether a label is part of observations; if they are a single image, it is in the infos."""
     return label is not None and bool(label["observed"]) and isinstance(space, gymnasium.spaces.Dict)
 
 
 def one_hot(label: Mapping[str, Any]) -> NDArray[np.float32]:
-    """A label as observations have it."""
+    """A label in the form used in observations."""
     numbers = np.zeros(label["of"], dtype=np.float32)
     numbers[label["number"]] = 1.0
     return numbers
 
 
 def _beside(log: Path) -> Path:
-    """The folder beside a log that its agent is saved into."""
+    """The folder beside a log where its agent is saved."""
     whole = Path(os.path.abspath(log))
     if not whole.name:
         raise ValueError(f"log: found {str(log)!r}, expected the path of a folder of its own")
@@ -578,7 +592,9 @@ def _beside(log: Path) -> Path:
 
 
 def noted(options: Mapping[str, Any]) -> dict[str, Any]:
-    """Options of an environment as they are written down: the same however they were written; left out where none is given."""
+    """Environment options in a canonical form for the log, however they were written; options set to ``None`` are left
+    out.
+    """
     told: dict[str, Any] = json.loads(json.dumps(options, default=_said, sort_keys=True))
     return {name: value for name, value in told.items() if value is not None}
 
@@ -587,7 +603,7 @@ def _said(value: Any) -> Any:
     try:
         return plain(value)
     except TypeError:
-        # Never its address: it would be another in every process.
+        # Never the address, which differs between processes.
         return list(value) if isinstance(value, Iterable) else type(value).__qualname__
 
 

@@ -1,4 +1,4 @@
-"""Experience logs in the l2logger format: written, read, checked. What they score is in ``scores.py``."""
+"""Writes, reads and checks experience logs in the l2logger format."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from driftworld.recordings import Recording
 
-#: Columns that hold whole numbers or numbers as they are; all others of a log but its metrics hold words.
+#: Columns of words and whole numbers that every log has.
 _WORDS = ("worker_id", "block_type", "block_subtype", "task_name", "task_params", "exp_status")
 
 
@@ -34,15 +34,15 @@ class LogWriter:
             log.write(block_num=0, exp_num=0, block_type="train", task_name="find_red", reward=3.0)
 
     Args:
-        path: A new or empty folder; with ``resume`` that of a log which was interrupted.
-        columns: The metrics that every row has: a name, or several.
-        scenario_info: What the run is about, written into ``scenario_info.json``: ``complexity``, ``difficulty`` and
-            ``scenario_type`` (``condensed``, ``dispersed``, ``permuted``, ``alternating``, ``ste``, ``custom``) are words of the
-            format, anything else is kept as it is.
-        resume: Go on with the log in the folder.
+        path: A new or empty folder; with ``resume``, that of an interrupted log.
+        columns: The metrics of every row: a name, or several.
+        scenario_info: Description of the run, written into ``scenario_info.json``: ``complexity``, ``difficulty`` and
+            ``scenario_type`` (``condensed``, ``dispersed``, ``permuted``, ``alternating``, ``ste``, ``custom``) are
+            words of the format, anything else is stored unchanged.
+        resume: Resume the log in the folder.
 
     Raises:
-        MetricsError: If the folder holds something already, or is being written by another.
+        MetricsError: If the folder is not empty, or another process is writing it.
     """
 
     def __init__(
@@ -74,22 +74,22 @@ class LogWriter:
         recording: Recording | None = None,
         **metrics: float,
     ) -> None:
-        """Writes one row, stamped with the time now.
+        """Writes one row with the current time.
 
         Args:
-            block_num: The block, from 0; never falls.
-            exp_num: The experience over the whole lifetime, from 0; never falls.
+            block_num: The block, from 0; never decreases.
+            exp_num: The experience over the whole lifetime, from 0; never decreases.
             block_type: ``"train"`` or ``"test"``.
             task_name: By convention ``task_variant``, letters and digits on both sides.
-            task_params: Parameters of the task; experiences of one block and task have the same.
+            task_params: Parameters of the task; the same for all experiences of one block and task.
             block_subtype: ``"wake"`` or ``"sleep"``.
             exp_status: ``"complete"`` or ``"incomplete"``.
-            worker_id: Who gathered the experience.
-            recording: What was done in it, as ``env.recording()`` has it: it is kept beside the row, for :func:`driftworld.replay`.
-            metrics: The numbers: at least every metrics column, the same names in every row; NaN for no value.
+            worker_id: The worker that gathered the experience.
+            recording: The recording from ``env.recording()``, stored beside the row for :func:`driftworld.replay`.
+            metrics: Values of at least every metrics column, with the same names in every row; NaN for a missing value.
 
         Raises:
-            MetricsError: If the row breaks a rule of the format; then nothing is written.
+            MetricsError: If the row breaks a rule of the format; nothing is written.
             ValueError: If the log is closed.
         """
         numbers = {name: float(value) for name, value in metrics.items()}
@@ -100,7 +100,7 @@ class LogWriter:
         )
 
     def close(self) -> None:
-        """Ends the log: asks the disk to have all of it."""
+        """Ends the log and syncs it to disk."""
         self._file.close()
 
     def __enter__(self) -> Self:
@@ -114,17 +114,19 @@ class LogWriter:
 
 @dataclass(frozen=True, eq=False)
 class Log:
-    """A log as it was read: a table, as data frames are. ``len(log)`` counts its rows; ``log["reward"]`` is a column, and what is
-    iterated and what is ``in`` it are the names of columns. Two are equal if they say the same, whatever their folders are called.
+    """A log that was read: a table, like a data frame. ``len(log)`` is the number of rows; ``log["reward"]`` is a
+    column; it iterates over column names, and ``in`` tests for one. Two logs are equal if their contents are, whatever
+    the names of their folders.
 
     Attributes:
         run_id: The name of its folder.
-        columns: Every column by its name, each an array (rows,): int64 for ``block_num`` and ``exp_num``, datetime64[us] for
-            ``timestamp``, float64 for metrics, objects for words and for ``task_params``, which are dictionaries.
+        columns: Every column by its name, each an array (rows,): int64 for ``block_num`` and ``exp_num``,
+            datetime64[us] for ``timestamp``, float64 for metrics, objects for words and for ``task_params``, which are
+            dictionaries.
         metrics: The names of its metrics columns.
-        scenario_info: What ``scenario_info.json`` says.
-        logger_info: What ``logger_info.json`` says.
-        warnings: What is odd about it.
+        scenario_info: Contents of ``scenario_info.json``.
+        logger_info: Contents of ``logger_info.json``.
+        warnings: Suspicious parts of the log.
     """
 
     run_id: str
@@ -144,7 +146,7 @@ class Log:
         return column in self.columns
 
     def keys(self) -> KeysView[str]:
-        """The names of the columns: ``dict(log)`` has them with their arrays."""
+        """The names of the columns; ``dict(log)`` maps them to their arrays."""
         return self.columns.keys()
 
     def __eq__(self, other: object) -> bool:
@@ -170,16 +172,16 @@ class Log:
 
 
 def _is_same(one: NDArray[Any], other: NDArray[Any]) -> bool:
-    """Whether columns hold the same, NaN for NaN."""
+    """Whether two columns are equal, with NaN equal to NaN."""
     return one.dtype == other.dtype and np.array_equal(one, other, equal_nan=one.dtype == np.float64)
 
 
 def read_log(path: str | os.PathLike[str], *, texts: bool = False) -> Log:
-    """Reads a log, ours or that of any agent that logs with l2logger.
+    """Reads a log, written by Driftworld or by any other program that uses l2logger.
 
     Args:
         path: Its folder.
-        texts: Read columns of words that ``logger_info.json`` does not declare, too.
+        texts: Also read text columns that ``logger_info.json`` does not declare.
 
     Raises:
         MetricsError: If it cannot be read, with file, line and column.
@@ -208,15 +210,15 @@ def _array(name: str, column: Any) -> NDArray[Any]:
 
 
 def validate_log(path: str | os.PathLike[str]) -> dict[str, Any]:
-    """Every problem of a log.
+    """Lists every problem of a log.
 
     Args:
         path: Its folder.
 
     Returns:
-        ``valid``; ``problems``, dictionaries with ``code`` and ``message``, and ``more_problems``, how many are not listed;
-        ``warnings`` and ``more_warnings``; and counts: ``rows``, ``complete_rows``, ``experiences``, ``files``, ``workers``,
-        ``blocks``, ``tasks``.
+        ``valid``; ``problems``, dictionaries with ``code`` and ``message``, and ``more_problems``, the number of
+        unlisted ones; ``warnings`` and ``more_warnings``; and counts: ``rows``, ``complete_rows``, ``experiences``,
+        ``files``, ``workers``, ``blocks``, ``tasks``.
     """
     return _native.validate_log(Path(path))
 

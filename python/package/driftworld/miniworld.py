@@ -1,9 +1,10 @@
-"""MiniWorld's published environments, as ids such as ``driftworld/MiniWorld-Hallway-v0``: its actions, pictures, rewards and limits
-over worlds of our families.
+"""MiniWorld's published environments, under ids such as ``driftworld/MiniWorld-Hallway-v0``: its actions, images,
+rewards and limits, with worlds of Driftworld's task families.
 
-What each is, is data: ``miniworld.json`` has, by MiniWorld's names, the ``task`` of ours and its ``variant``, what is ``laid`` over
-the task's document (a value for each JSON pointer, null to take something away), the limit of ``steps`` (0 for none), how many of
-MiniWorld's ``actions`` there are, what ``pays``, and whether a step is a ``fast`` one. ``like`` takes all from another name.
+``miniworld.json`` describes each: by MiniWorld's names, Driftworld's ``task`` and ``variant``, what is ``laid`` over
+the task's document (a value for each JSON pointer, null to remove one), the limit of ``steps`` (0 for none), the number
+of MiniWorld's ``actions``, what ``pays``, and whether a step is a ``fast`` one. ``like`` copies all entries of another
+name.
 """
 
 from __future__ import annotations
@@ -25,7 +26,9 @@ __all__ = ["Actions", "MiniWorldEnv", "names", "task"]
 
 
 class Actions(IntEnum):
-    """MiniWorld's actions by its numbers. The space of an environment has the first 3, 4, 5 or all of them; steps take any."""
+    """MiniWorld's actions and their numbers. The space of an environment has the first 3, 4, 5 or all of them; steps
+    accept any.
+    """
 
     turn_left = 0
     turn_right = 1
@@ -37,15 +40,16 @@ class Actions(IntEnum):
     done = 7
 
 
-#: Seconds, metres per second and degrees per second of a step, by whether it is a fast one: 0.15 m or 15°, and 0.7 m or 45°.
+#: Seconds, metres per second and degrees per second of a step, for normal and fast steps: 0.15 m or 15°, and 0.7 m or
+#: 45°.
 _STEPS = {False: (0.2, 0.75, 75.0), True: (0.5, 1.4, 90.0)}
-#: What a state says, in this order: three numbers of what is carried, the energy, and the share of the steps that are left.
+#: State features, in this order: three numbers for the carried object, the energy, and the share of steps left.
 _FEATURES = ["carrying", "energy", "steps_left"]
 
 
 @dataclass(frozen=True)
 class _Published:
-    """An environment of MiniWorld's: an entry of ``miniworld.json``."""
+    """One of MiniWorld's environments: an entry of ``miniworld.json``."""
 
     task: str
     steps: int
@@ -56,7 +60,7 @@ class _Published:
     laid: dict[str, Any] = field(default_factory=dict)
 
     def rows(self) -> list[list[float]]:
-        """All of MiniWorld's actions as rows of ours: speed, turn rate, and whether to interact."""
+        """All of MiniWorld's actions as rows of Driftworld's: speed, turn rate, and whether to interact."""
         _, speed, turn = _STEPS[self.fast]
         handles = [0.0, 0.0, float(self.actions > Actions.pickup)]
         still = [0.0, 0.0, 0.0]
@@ -81,7 +85,7 @@ def names() -> list[str]:
 
 
 def task(name: str) -> TaskSpec:
-    """The task spec whose worlds stand for an environment of MiniWorld's: one of our families, with MiniWorld's sizes.
+    """The task spec for one of MiniWorld's environments: one of Driftworld's families, with MiniWorld's sizes.
 
     Args:
         name: Such as ``"Hallway"``.
@@ -102,7 +106,7 @@ def task(name: str) -> TaskSpec:
 
 
 def _lay(document: Any, pointer: str, value: Any) -> None:
-    """Puts a value where a pointer says, be it behind the last of a list; None takes away what is there."""
+    """Sets the value at a pointer, which may be one past the end of a list; None removes it."""
     *way, last = pointer.split("/")[1:]
     for key in way:
         document = document[int(key) if isinstance(document, list) else key]
@@ -115,16 +119,17 @@ def _lay(document: Any, pointer: str, value: Any) -> None:
 
 
 class MiniWorldEnv(DriftworldEnv):
-    """An environment of MiniWorld's, by its name: its spaces, what its steps do and pay, and when its episodes end.
+    """One of MiniWorld's environments, by name: with its spaces, steps, rewards and episode ends.
 
     Args:
         name: Such as ``"Hallway"``.
         obs_width: Pixels of an observation from left to right.
         obs_height: Pixels from top to bottom.
-        variant: A variant of the family, such as ``"dusk"``, in place of the one that stands for MiniWorld's.
+        variant: A variant of the family, such as ``"dusk"``, instead of the one that represents MiniWorld's
+            environment.
         render_mode: ``"rgb_array"``, ``"human"`` or ``None``.
-        view: What is rendered: what the ``"agent"`` sees, or the world from the ``"top"``.
-        window_width: Pixels of a rendered picture from left to right.
+        view: What is rendered: the ``"agent"``'s view, or the world from the ``"top"``.
+        window_width: Pixels of a rendered image from left to right.
         window_height: Pixels from top to bottom.
 
     Attributes:
@@ -132,7 +137,7 @@ class MiniWorldEnv(DriftworldEnv):
         max_episode_steps: Steps after which an episode is truncated; infinite for none.
 
     Raises:
-        ValueError: If MiniWorld has no such environment, or for a value that an option does not know.
+        ValueError: If MiniWorld has no such environment, or for an unknown value of an option.
         TaskError: If the family has no such variant.
     """
 
@@ -174,22 +179,22 @@ class MiniWorldEnv(DriftworldEnv):
 
     @property
     def step_count(self) -> int:
-        """Steps since the episode began; without a limit, since the last reset."""
+        """Steps since the start of the episode; without a limit, since the last reset."""
         return self._steps
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
-        """Begins an episode, as :meth:`driftworld.DriftworldEnv.reset` does."""
+        """Starts an episode, like :meth:`driftworld.DriftworldEnv.reset`."""
         seen, info = super().reset(seed=seed, options=options)
         return self._shown(seen), info
 
     def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
-        """Lets the agent act once, as :meth:`driftworld.DriftworldEnv.step` does, and pays as MiniWorld does."""
-        # Ours is one action for both, and MiniWorld's does nothing here.
+        """Executes one action of the agent, like :meth:`driftworld.DriftworldEnv.step`, with MiniWorld's rewards."""
+        # Driftworld has one action for both; MiniWorld's has no effect here.
         if action == (Actions.pickup if self._carries else Actions.drop):
             action = Actions.done
         seen, _, terminated, truncated, info = super().step(action)
         shown = self._shown(seen)
-        # In MiniWorld a success in the last step ends an episode in both ways.
+        # In MiniWorld a success in the last step both terminates and truncates an episode.
         truncated = truncated or self.step_count >= self.max_episode_steps
         pays, reward = self._published.pays, 0.0
         if pays == "success" and info["is_success"]:
@@ -205,7 +210,7 @@ class MiniWorldEnv(DriftworldEnv):
         return shown, reward, terminated, truncated, info
 
     def _shown(self, seen: dict[str, Any]) -> Any:
-        """What an agent of MiniWorld's is shown; what the rules need to know is noted."""
+        """The observation of a MiniWorld agent; also notes what the rules need."""
         state, limit = seen["state"], self._published.steps
         self._carries = bool(state[0] > 0)
         self._steps = round((1.0 - float(state[4])) * limit) if limit else self._members.batch.episode_steps(0)

@@ -1,4 +1,4 @@
-"""Recorded episodes: read from a log, run once more, drawn. How episodes are lived and recorded is in ``lifetimes.py`` and ``envs/``."""
+"""Reads recorded episodes from a log, replays them, and renders them."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ PathLike = str | os.PathLike[str]
 
 
 class Recording:
-    """An episode as the world that it began in and what was done in each step.
+    """An episode, stored as its initial world and the action of each step.
 
-    ``env.recording()`` and :meth:`read` make it. In a notebook it shows itself as a sheet of its frames.
+    Made by ``env.recording()`` and :meth:`read`. A notebook shows it as a sheet of its frames.
 
     Attributes:
         experience: Its number in the log, or in its file.
         block: Its block.
-        task, variant, seed, index: What names its world, where it has names.
+        task, variant, seed, index: The origin of its world, if known.
         steps: Its steps.
-        reward: What they paid in all.
-        ended_by: What ended it, in the words of the log; ``None`` if nothing did.
-        seconds_per_step: Seconds of the world's own time in a step.
+        reward: Their total reward.
+        ended_by: What ended it, in the log's words; ``None`` if nothing did.
+        seconds_per_step: Simulated seconds in a step.
         recorded_by: The version of Driftworld that recorded it.
-        actions: What was done: rows of the action table, int64 ``(steps,)``, or numbers, float64 ``(steps, 3)``.
+        actions: The actions: rows of the action table, int64 ``(steps,)``, or numbers, float64 ``(steps, 3)``.
     """
 
     experience: int
@@ -53,20 +53,21 @@ class Recording:
 
     @classmethod
     def read(cls, log: PathLike, episode: int, *, worker: str | None = None) -> Recording:
-        """The recording of an episode.
+        """Reads the recording of an episode.
 
         Args:
             log: The folder of a log, or a file of recordings.
             episode: The number of the episode: ``exp_num`` in the log.
-            worker: Whose it is, where several workers have one of this number.
+            worker: The worker, if several have an episode with this number.
 
         Raises:
-            DriftworldError: If there is none; :class:`CurriculumError` if it is damaged; :class:`MetricsError` if the log is.
+            DriftworldError: If it does not exist; :class:`CurriculumError` if it is damaged; :class:`MetricsError` if
+                the log is.
         """
         return cls(_native.read_recording(Path(log), episode, worker))
 
     def world(self) -> dict[str, Any]:
-        """The world that it began in."""
+        """Its initial world."""
         world: dict[str, Any] = _native.parsed(self._handle.world())
         return world
 
@@ -81,19 +82,19 @@ class Recording:
         renderer: RendererName = "cpu",
         assets: PathLike | tuple[PathLike, ...] = (),
     ) -> NDArray[np.uint8]:
-        """Its frames, uint8 ``(frames, height, width, 3)``: the start, every so many steps, and the end.
+        """Its frames, uint8 ``(frames, height, width, 3)``: the start, one for every ``every`` steps, and the end.
 
         Args:
             size: Pixels along each side of the agent's view, and of the map; 1 to 2048.
-            view: What the ``"agent"`` sees, the map from ``"above"``, or ``"both"`` side by side.
-            modality: What of the agent's view: ``"rgb"``, ``"depth"`` or ``"segmentation"``.
-            every: One frame for so many steps.
-            captions: A line above each frame: time, return, what is carried, what happened.
+            view: The ``"agent"``'s view, the map from ``"above"``, or ``"both"`` side by side.
+            modality: The modality of the agent's view: ``"rgb"``, ``"depth"`` or ``"segmentation"``.
+            every: Number of steps for each frame.
+            captions: A line above each frame: time, return, carried object, events.
             renderer: As for :class:`DriftworldEnv`.
             assets: Paths of the asset libraries that it was recorded with.
 
         Raises:
-            EnvError: If the episode does not come out as it was recorded.
+            EnvError: If the replay differs from the recording.
             ValueError: If an option is wrong.
         """
         return self._handle.frames(_shown(size, view, modality, every, captions, renderer, assets))
@@ -111,15 +112,15 @@ class Recording:
         renderer: RendererName = "cpu",
         assets: PathLike | tuple[PathLike, ...] = (),
     ) -> None:
-        """Writes it as a film (``.gif``, ``.apng``), or as one picture of the frames that matter (``.png``).
+        """Writes it as a film (``.gif``, ``.apng``), or as one image of the key frames (``.png``).
 
         Args:
             file: The file.
             size, view, modality, every, captions, renderer, assets: As for :meth:`frames`.
-            fps: Frames per second; if not given, the world's own time.
+            fps: Frames per second; by default simulated time.
 
         Raises:
-            EnvError, ValueError: As :meth:`frames`.
+            EnvError, ValueError: Like :meth:`frames`.
         """
         self._handle.write(Path(file), _shown(size, view, modality, every, captions, renderer, assets), fps)
 
@@ -164,20 +165,20 @@ def _shown(
 def replay(
     log: PathLike, episode: int, file: PathLike | None = None, *, worker: str | None = None, **options: Any
 ) -> NDArray[np.uint8] | None:
-    """Runs an episode of a recorded log once more, and draws it.
+    """Replays an episode of a recorded log, and renders it.
 
     Args:
         log: The folder of a log, or a file of recordings.
         episode: The number of the episode: ``exp_num`` in the log.
         file: Where to write it: ``.gif`` or ``.apng`` for a film, ``.png`` for a sheet.
-        worker: Whose it is, where several workers have one of this number.
+        worker: The worker, if several have an episode with this number.
         options: As for :meth:`Recording.frames`, or with ``file`` for :meth:`Recording.save`.
 
     Returns:
-        The frames, uint8 ``(frames, height, width, 3)``; nothing if they were written.
+        The frames, uint8 ``(frames, height, width, 3)``; ``None`` if they were written.
 
     Raises:
-        EnvError: If the episode does not come out as it was recorded.
+        EnvError: If the replay differs from the recording.
         DriftworldError: If there is no such episode, or its recording is damaged.
         ValueError: If an option is wrong.
     """

@@ -1,7 +1,7 @@
-"""What agents kept and transferred, from the logs of their lifetimes; and the page that shows it.
+"""Scores the logs of lifetimes: what agents retained and transferred. Also makes the report page.
 
-The numbers are those of ``driftworld metrics``, the page that of ``driftworld report``: their options have the same names here.
-Reading and writing logs is in ``logs.py``.
+The numbers are those of ``driftworld metrics``, the page that of ``driftworld report``, and options have the same
+names.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 PathLike = str | os.PathLike[str]
 Paths = PathLike | Iterable[PathLike]
 
-#: The values of a lifetime as a whole, in the order in which they are told.
+#: The metrics of a lifetime as a whole, in display order.
 LIFETIME = (
     "perf_recovery",
     "avg_train_perf",
@@ -55,22 +55,24 @@ LIFETIME = (
 class Metrics:
     """The scores of one lifetime or of several.
 
-    ``metrics["avg_train_perf"]`` is the value of one lifetime; of several, a list of one for each.
+    ``metrics["avg_train_perf"]`` is the value of one lifetime; for several, a list with one value each.
 
     Attributes:
-        lifetimes: Of each lifetime everything that was computed, as ``driftworld metrics --json`` says it.
-        repeats: Of several lifetimes each metric over all of them, with interquartile mean, mean and median and their bootstrap
-            intervals; ``null`` is the null band of the mean over lifetimes, where evaluations alone decide the metric;
-            ``reading`` and ``word`` say what may be said of it, as in :attr:`readings`. Empty for one.
-        improvement: With ``against``, of each metric how probably a lifetime is better than one of the other agent.
+        lifetimes: All results of each lifetime, as in ``driftworld metrics --json``.
+        repeats: For several lifetimes, each metric over all of them, with interquartile mean, mean and median and their
+            bootstrap intervals; ``null`` is the null band of the mean over lifetimes, if the metric depends on
+            evaluations alone; ``reading`` and ``word`` interpret it, as in :attr:`readings`. Empty for one lifetime.
+        improvement: With ``against``, for each metric the probability that a lifetime is better than one of the other
+            agent.
         lifetimes_against: The other agent's lifetimes.
-        repeats_against: Each metric over those.
-        intervals: How the intervals were made.
-        power: With ``power``, of each metric the standard ``deviations`` between lifetimes, the ``power`` of Welch's test at 5 % for the
-            ``effect`` asked about, the ``lifetimes_needed`` of each agent for a power of 80 %, and the ``smallest_effect`` that the
-            lifetimes at hand show.
-        varied: Of several lifetimes whether ``order``, ``learning_worlds``, ``evaluation_worlds``, ``agent`` and ``run_seed``
-            differ between them, so that one knows what intervals are over; ``None`` where the logs do not say.
+        repeats_against: Each metric over the other agent's lifetimes.
+        intervals: How the intervals were computed.
+        power: With ``power``, for each metric the standard ``deviations`` between lifetimes, the ``power`` of Welch's
+            test at 5 % for the requested ``effect``, the ``lifetimes_needed`` of each agent for a power of 80 %, and
+            the ``smallest_effect`` that these lifetimes can show.
+        varied: For several lifetimes, whether ``order``, ``learning_worlds``, ``evaluation_worlds``, ``agent`` and
+            ``run_seed`` differ between them, which shows the sources of variation behind the intervals; ``None`` if the
+            logs do not have it.
     """
 
     lifetimes: list[dict[str, Any]]
@@ -102,7 +104,7 @@ class Metrics:
 
     @property
     def lifetime(self) -> dict[str, Any]:
-        """The values of the lifetime as a whole; of several the mean of each over those lifetimes that have it."""
+        """The values of the lifetime as a whole; for several, the mean of each over those lifetimes that have it."""
         if len(self.lifetimes) == 1:
             only = self.lifetimes[0]
             return {name: only[name] for name in LIFETIME if name in only}
@@ -118,73 +120,76 @@ class Metrics:
         """The values of each task of the one lifetime.
 
         Raises:
-            ValueError: If there are several lifetimes; ask each of :attr:`lifetimes` then.
+            ValueError: If there are several lifetimes; use each of :attr:`lifetimes` instead.
         """
         tasks: dict[str, dict[str, Any]] = self._only("tasks", "task_metrics")
         return tasks
 
     @property
     def null(self) -> dict[str, dict[str, Any]]:
-        """The null band of each metric of the one lifetime that evaluations alone decide.
+        """The null band of each metric of the one lifetime that depends on evaluations alone.
 
         Each has ``value``; ``low`` and ``high``, the central 95 % of values when the evaluation rows of each world are
         permuted across evaluations 1,000 times, as if the agent never changed; ``p``, from 0 to 1; and ``exchanged``,
-        ``"worlds"``, ``"positions"`` or ``"worlds_and_positions"``. A metric that is missing has no null: learning
-        decides it, too. Contrasts of transfer are there whatever ``transfer_method`` is.
+        ``"worlds"``, ``"positions"`` or ``"worlds_and_positions"``. Metrics that also depend on training performance
+        have no null band and are missing. Transfer contrasts are included whatever ``transfer_method`` is.
 
         Raises:
-            ValueError: If there are several lifetimes; ask each of :attr:`lifetimes` for its ``"null"`` then.
+            ValueError: If there are several lifetimes; use ``"null"`` of each of :attr:`lifetimes` instead.
         """
         bands: dict[str, dict[str, Any]] = self._only("null", "null")
         return bands
 
     @property
     def readings(self) -> dict[str, dict[str, Any]]:
-        """What may be said of each metric of the one lifetime: the rows of the table that ``driftworld metrics`` prints.
+        """The interpretation of each metric of the one lifetime: the rows of the table that ``driftworld metrics``
+        prints.
 
-        Each has ``value``; ``explanation``, what it says; ``good``, which way is good; ``null_band``, as in :attr:`null`, or
-        ``None``; ``reading``, ``"good"``, ``"bad"``, ``"mixed"``, ``"unclear"``, ``"untested"`` or ``"undefined"``, or ``None``
-        for a metric without a value that means no effect; and ``word``, the reading as every table and page has it, such as
-        ``"helps"`` or ``"no clear effect"``. ``docs/metrics.md`` says what decides it.
+        Each has ``value``; ``explanation``, its meaning; ``good``, the good direction; ``null_band``, as in
+        :attr:`null`, or ``None``; ``reading``, ``"good"``, ``"bad"``, ``"mixed"``, ``"unclear"``, ``"untested"`` or
+        ``"undefined"``, or ``None`` for a metric without a value that means no effect; and ``word``, the reading as
+        shown in tables and reports, such as ``"helps"`` or ``"no clear effect"``. ``docs/metrics.md`` explains the
+        rules.
 
         Raises:
-            ValueError: If there are several lifetimes; ask each of :attr:`lifetimes` for its ``"readings"`` then, and
-                :attr:`repeats` for what they say together.
+            ValueError: If there are several lifetimes; use ``"readings"`` of each of :attr:`lifetimes` instead, and
+                :attr:`repeats` for all together.
         """
         rows: dict[str, dict[str, Any]] = self._only("readings", "readings")
         return rows
 
     @property
     def reached(self) -> dict[str, dict[str, Any]]:
-        """What each task of the one lifetime came to, in the log's unit.
+        """The performance reached in each task of the one lifetime, in the log's unit.
 
         Each has ``evaluations``, a list of ``block``, ``mean``, ``standard_error`` over worlds and ``num_worlds``;
         ``best``, the place of the highest after learning; ``expert``, the expert's level; and ``share``, the best over
-        the expert. Below 0.2 the task was never learned. With scales, ``unlabelled`` has what the best known agents earn
-        that cannot tell the task from others (``among``): ``fixed`` and ``finds_out``.
+        the expert. Below 0.2 the task was never learned. With scales, ``unlabelled`` has the rewards of the best known
+        agents that cannot tell the task from others (``among``): ``fixed`` and ``finds_out``.
 
         Raises:
-            ValueError: If there are several lifetimes; ask each of :attr:`lifetimes` for its ``"reached"`` then.
+            ValueError: If there are several lifetimes; use ``"reached"`` of each of :attr:`lifetimes` instead.
         """
         tasks: dict[str, dict[str, Any]] = self._only("reached", "reached")
         return tasks
 
     @property
     def curves(self) -> dict[str, dict[str, Any]]:
-        """What the evaluation curve of each task of the one lifetime says, without regard to borders between tasks.
+        """Measures of each task's evaluation curve in the one lifetime, independent of task borders.
 
         Each has ``points``, a list of ``learned``, ``mean`` and ``standard_error``; ``area``, ``forgetting`` and its
-        ``forgetting_error``, ``regret`` (or ``None``), in the log's unit, or if ``is_scaled``, as parts of the way from floor to
-        ceiling; ``lag`` and ``num_present`` in learning experiences. ``docs/metrics.md`` defines them.
+        ``forgetting_error``, ``regret`` (or ``None``), in the log's unit, or if ``is_scaled``, as fractions of the
+        range from floor to ceiling; ``lag`` and ``num_present`` in learning experiences. ``docs/metrics.md`` defines
+        them.
 
         Raises:
-            ValueError: If there are several lifetimes; ask each of :attr:`lifetimes` for its ``"curves"`` then.
+            ValueError: If there are several lifetimes; use ``"curves"`` of each of :attr:`lifetimes` instead.
         """
         tasks: dict[str, dict[str, Any]] = self._only("curves", "curves")
         return tasks
 
     def _only(self, name: str, field: str) -> Any:
-        """A field of the one lifetime, for the property of this name."""
+        """A field of the one lifetime, for the property ``name``."""
         if len(self.lifetimes) != 1:
             raise ValueError(f"{name}: found {len(self.lifetimes)} lifetimes, expected one; see `lifetimes`")
         return self.lifetimes[0][field]
@@ -194,7 +199,7 @@ class Metrics:
         return values[0] if len(values) == 1 else values
 
     def to_pandas(self) -> pandas.DataFrame:
-        """The values of the lifetimes as a data frame, a row for each, by the names of their logs.
+        """The values of the lifetimes as a data frame, a row for each, indexed by the names of their logs.
 
         Raises:
             ImportError: If pandas is not installed.
@@ -205,7 +210,8 @@ class Metrics:
         return _pandas().DataFrame(rows, index=index, columns=names)
 
     def regimes(self) -> pandas.DataFrame:
-        """The regimes of the lifetimes as a data frame, a row for each: what it is, and its values in normalised units.
+        """The regimes of the lifetimes as a data frame, a row for each, with its description and its values in
+        normalised units.
 
         Raises:
             ImportError: If pandas is not installed.
@@ -213,17 +219,17 @@ class Metrics:
         return _pandas().DataFrame(self._handle().regimes())
 
     def save(self, folder: PathLike, *, name: str | None = None) -> None:
-        """Saves the results as ``driftworld metrics --do-save`` does: of one lifetime ``NAME_metrics.json``, ``NAME_regime.tsv``
-        and ``NAME_settings.json``, of several ``NAME.json``, ``NAME.tsv`` and more.
+        """Saves the results like ``driftworld metrics --do-save``: for one lifetime ``NAME_metrics.json``,
+        ``NAME_regime.tsv`` and ``NAME_settings.json``, for several ``NAME.json``, ``NAME.tsv`` and more.
 
         Args:
-            folder: Where; made if need be.
-            name: The log's, or ``ll_metrics`` for several, if not given.
+            folder: The output folder, created if necessary.
+            name: ``NAME``; by default the log's, or ``ll_metrics`` for several.
         """
         self._handle().save(folder, name)
 
     def _handle(self) -> _native.Scores:
-        """The scores themselves; a copy in another process scores the logs again."""
+        """The native scores; an unpickled copy scores the logs again."""
         return self._scores if self._scores is not None else _native.Scores.of(*self._asked)[0]
 
     def __getstate__(self) -> dict[str, Any]:
@@ -264,36 +270,37 @@ def metrics(
     """Scores the logs of lifetimes.
 
     Args:
-        logs: The folder of a log, or several, which are taken as repeats by one agent.
+        logs: The folder of a log, or several, which count as repeats by one agent.
         ste: Folders of logs of single-task experts to compare with.
         against: Folders of another agent's logs.
-        recursive: Take all logs in the folders, also up to four levels below; links are not looked into.
+        recursive: Score all logs in the folders, up to four levels deep; links are not followed.
         ste_data: The folder where ``driftworld metrics --ste-store-mode`` keeps experts.
-        perf_measure: The column that holds the performance; ``"reward"`` if not given.
+        perf_measure: The column of the performance; ``"reward"`` by default.
         variant_mode: Whether variants of a task count as tasks: ``"aware"`` (default) or ``"agnostic"``.
         ste_averaging_method: ``"metrics"`` (default) or ``"time"``.
         aggregation_method: ``"mean"`` (default) or ``"median"``.
         maintenance_method: ``"mrlep"`` (default), ``"mrtlp"`` or ``"both"``.
         transfer_method: ``"ratio"`` (default), ``"contrast"`` or ``"both"``.
         normalization_method: ``"task"`` (default), ``"run"`` or ``"none"``.
-        smoothing_method: ``"flat"`` (default), ``"hanning"``, ``"hamming"``, ``"bartlett"``, ``"blackman"`` or ``"none"``.
+        smoothing_method: ``"flat"`` (default), ``"hanning"``, ``"hamming"``, ``"bartlett"``, ``"blackman"`` or
+            ``"none"``.
         smooth_eval_data: Smooth evaluations too.
-        window_length: Of the smoothing window, in experiences.
+        window_length: Length of the smoothing window, in experiences.
         clamp_outliers: Clip performances to the ranges given, or to the 0.1 and 0.9 quantiles of each task.
         data_range: The range of each task: ``{"findobjects_red": {"min": 0, "max": 10}}``.
-        scales: Floor and ceiling of tasks, as a file of ``driftworld scales`` or as
-            ``{"findobjects_red": {"floor": 2, "ceiling": 486}}``; not together with ``data_range``.
+        scales: Floor and ceiling of tasks, as a file of ``driftworld scales`` or as ``{"findobjects_red": {"floor": 2,
+            "ceiling": 486}}``; not together with ``data_range``.
         noise: Mean and standard deviation of normal noise on every performance.
-        noise_seed: What it is drawn from.
-        strict_definitions: Follow the published definitions where the reference's program departs from them.
+        noise_seed: The seed of the noise.
+        strict_definitions: Follow the published definitions where the reference program departs from them.
         load_settings: A JSON file of settings to start from.
         common_ranges: Scale each task by its range over all lifetimes.
-        power: Say of each metric how many lifetimes of two agents show a difference of this much, in the metric's own unit;
-            needs several lifetimes.
-        confidence: How much of the bootstrap's distribution an interval holds.
-        resamples: How many times lifetimes are drawn again.
+        power: Compute for each metric the number of lifetimes of two agents needed to show a difference of this size,
+            in the metric's own unit; needs several lifetimes.
+        confidence: Share of the bootstrap distribution in an interval.
+        resamples: Number of bootstrap resamples.
         resampling: ``"runs"``, whole lifetimes, by default; or ``"strata"``, within each task.
-        bootstrap_seed: What the draws come from.
+        bootstrap_seed: The seed of the resampling.
 
     Raises:
         MetricsError: If a log cannot be read or scored, or an option is wrong.
@@ -329,22 +336,22 @@ def report(
     load_settings: PathLike | None = None,
     common_ranges: bool = False,
 ) -> str:
-    """Shows lifetimes on one page of HTML that loads nothing: metrics, curriculum, curves.
+    """Makes a self-contained HTML page about lifetimes: metrics, curriculum, curves.
 
     Args:
         logs: Folders of logs, or folders of such folders.
-        path: The file to write; without one the page is handed back only.
+        path: The file to write; by default the page is only returned.
         ste: Folders of logs of single-task experts to compare with.
         against: Folders of another agent's logs.
-        title: What stands on top; the lifetime's name if not given.
-        date: When the report was made, to be written on it; left out, the same logs give the same bytes.
-        distances: A distance matrix file, as :meth:`DistanceMatrix.save` writes it.
-        plots: A folder to write the figures into, too.
-        plot_types: Which figures: ``"all"``, or some of ``raw``, ``lb``, ``eb``, ``ste``, ``timeline``.
-        unit: What the horizontal axis counts: ``"exp_num"`` or ``"steps"``.
+        title: The title; by default the lifetime's name.
+        date: The date to print on the report; without it, the same logs give the same bytes.
+        distances: A distance matrix file, as written by :meth:`DistanceMatrix.save`.
+        plots: A folder to also write the figures to.
+        plot_types: The figures: ``"all"``, or some of ``raw``, ``lb``, ``eb``, ``ste``, ``timeline``.
+        unit: The unit of the horizontal axis: ``"exp_num"`` or ``"steps"``.
         perf_measure: As for :func:`metrics`.
         variant_mode: As for :func:`metrics`.
-        load_settings: As for :func:`metrics`; settings say all that else can be said of scoring.
+        load_settings: As for :func:`metrics`; the settings file has all other scoring options.
         common_ranges: As for :func:`metrics`.
 
     Returns:
@@ -368,14 +375,14 @@ def report(
 
 
 def _row_of_one(row: Mapping[str, Any]) -> tuple[str, ...]:
-    """A row of the table of one lifetime, as ``driftworld metrics`` has it."""
+    """A row of the table of one lifetime, as in ``driftworld metrics``."""
     error = (row["null_band"] or {}).get("standard_error")
     value = number(row["value"]) + ("" if error is None else f"\N{NO-BREAK SPACE}±\N{NO-BREAK SPACE}{number(error)}")
     return (row["name"], value, *_beside_null(row["null_band"]), row["word"] or "", row["explanation"])
 
 
 def _row_of_several(row: Mapping[str, Any]) -> tuple[str, ...]:
-    """A row of the table of several lifetimes: Student's interval where there are few, else the bootstrap's."""
+    """A row of the table of several lifetimes: with Student's interval for few lifetimes, else the bootstrap's."""
     interval = row["iqm"].get("t_interval") or row["iqm"].get("interval")
     ends = "" if interval is None else f"{number(interval['low'])} to {number(interval['high'])}"
     mean = number(row["mean"]["value"])
@@ -393,7 +400,7 @@ def _warn(said: Iterable[str]) -> None:
 
 
 def _paths(paths: Paths, name: str | None = None) -> list[str]:
-    """The paths of an argument; one that must be given has a name."""
+    """The paths of an argument; ``name`` marks a required argument."""
     folders = [os.fspath(path) for path in ([paths] if isinstance(paths, (str, os.PathLike)) else paths)]
     if name is not None and not folders:
         raise ValueError(f"{name}: found none, expected the folder of a log, or several")

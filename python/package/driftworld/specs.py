@@ -1,7 +1,6 @@
-"""Task specs, their variants, drifts between them, and documents checked.
+"""Task specs, their variants, drifts between them, and the validation of documents.
 
-``TaskSpec``, ``Variant`` and ``Drift`` are the native classes; worlds are dictionaries, as the JSON of a reset says them.
-Distances are in ``distances.py``.
+``TaskSpec``, ``Variant`` and ``Drift`` are the native classes; worlds are dictionaries in the JSON format of worlds.
 """
 
 from __future__ import annotations
@@ -27,12 +26,14 @@ def built_in_tasks() -> list[str]:
 
 
 def task_groups() -> dict[str, list[str]]:
-    """The names of all tasks that come with the package, by what they ask for. Each has an id, such as ``driftworld/KeyCorridor-v0``."""
+    """The names of all tasks that come with the package, grouped by kind. Each has an id, such as
+    ``driftworld/KeyCorridor-v0``.
+    """
     return dict(_native.task_groups())
 
 
 def variant(name: str | os.PathLike[str]) -> Variant:
-    """The variant of a name: ``"find_objects#red"``, ``"my.json#night"``; without ``#`` that of all defaults.
+    """The variant with a name: ``"find_objects#red"``, ``"my.json#night"``; without ``#`` the one with all defaults.
 
     Raises:
         TaskError: If there is no such task, file or variant.
@@ -42,19 +43,19 @@ def variant(name: str | os.PathLike[str]) -> Variant:
 
 
 def variants(*names: str | Variant | TaskSpec) -> list[tuple[str, Variant]]:
-    """The variants that names stand for, each once, with what they are called.
+    """The variants that names refer to, each once, with their names.
 
     Args:
-        names: ``task#variant`` for one, ``task#family`` for the members of a family, ``task`` for all that a task declares;
-            variants and task specs stand for themselves.
+        names: ``task#variant`` for one, ``task#family`` for the members of a family, ``task`` for all variants that a
+            task declares; variants and task specs are used directly.
 
     Returns:
-        Pairs of ``task#variant``, where the task is called as it was here, and the variant.
+        Pairs of ``task#variant``, with the task named as in the argument, and the variant.
 
     Raises:
         TaskError: If there is no such task, file or variant.
         SpecError: If a document is wrong.
-        ValueError: If two that differ are called the same.
+        ValueError: If two different variants have the same name.
     """
     found: dict[str, Variant] = {}
     for name in names:
@@ -68,7 +69,8 @@ def variants(*names: str | Variant | TaskSpec) -> list[tuple[str, Variant]]:
 
 
 def _variant_html(variant: Variant) -> str:
-    """The values of a variant as a table: those that are not the task's defaults first, the others in a line below."""
+    """The values of a variant as a table: those that differ from the task's defaults first, the others in a line below.
+    """
     usual = variant.task.variant().values
     parameters = variant.task.parameters
     rows = [
@@ -83,7 +85,7 @@ def _variant_html(variant: Variant) -> str:
 
 
 def _task_html(task: TaskSpec) -> str:
-    """What each variant of a task changes, as a table."""
+    """The changes of each variant of a task, as a table."""
     usual = task.variant().values
     rows = [
         (
@@ -97,7 +99,7 @@ def _task_html(task: TaskSpec) -> str:
 
 
 def _said(value: Any) -> str:
-    """A value as JSON says it; a text without quotes."""
+    """A value as JSON, strings without quotes."""
     if isinstance(value, float):
         return f"{value:g}"
     return value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
@@ -122,24 +124,25 @@ def validate(
     check: bool = False,
     assets: str | os.PathLike[str] | Iterable[str | os.PathLike[str]] = (),
 ) -> list[dict[str, Any]]:
-    """Every problem of a document, in the order of places; none if it is valid.
+    """Lists every problem of a document, in the order of places; empty if it is valid.
 
     Args:
         document: A path, the name of a built-in task, JSON text, or a dictionary.
-        kind: ``"task"``, ``"world"``, ``"scenario"``, ``"maps"``, ``"l2explorer-world"`` or ``"l2explorer-scenario"``; seen from
-            the document's keys if not given, as ``driftworld validate`` does.
-        check: Raise what is wrong instead of handing it back.
-        assets: Paths of asset libraries, whose classes objects may have beside the built-in ones.
+        kind: ``"task"``, ``"world"``, ``"scenario"``, ``"maps"``, ``"l2explorer-world"`` or ``"l2explorer-scenario"``;
+            by default detected from the document's keys, like ``driftworld validate``.
+        check: Raise an error instead of returning the problems.
+        assets: Paths of asset libraries, with classes that objects may have beside the built-in ones.
 
-    What is odd about it, without being wrong, is warned of.
+    Suspicious but valid parts cause warnings.
 
     Returns:
-        Dictionaries with ``code``, ``pointer``, ``line``, ``column`` (from 1; of a dictionary as it is written without line
-        breaks), ``found``, ``expected``, ``advice`` and ``message``. What is not JSON at all has no ``found`` and ``expected``.
+        Dictionaries with ``code``, ``pointer``, ``line``, ``column`` (from 1; for a dictionary, as if written without
+        line breaks), ``found``, ``expected``, ``advice`` and ``message``. Text that is not JSON has no ``found`` and
+        ``expected``.
 
     Raises:
-        SpecError: With ``check``, and something is wrong: with all problems, and pointer, line and column of the first.
-        CurriculumError: With ``check``, for a scenario with two variants that no log could tell apart.
+        SpecError: With ``check``, if something is wrong: with all problems, and pointer, line and column of the first.
+        CurriculumError: With ``check``, for a scenario with two variants that a log could not tell apart.
         FileNotFoundError: If there is no such file.
         ValueError: If there is no such kind.
     """
@@ -155,7 +158,7 @@ def validate(
 
 
 def document_text(document: str | os.PathLike[str] | Mapping[str, Any]) -> tuple[str, str]:
-    """What messages call a document, and its text.
+    """A document's name for messages, and its text.
 
     Raises:
         FileNotFoundError: If there is no such file.
@@ -179,15 +182,15 @@ def document_text(document: str | os.PathLike[str] | Mapping[str, Any]) -> tuple
 
 
 def _task_again(name: str, text: str) -> TaskSpec:
-    """A task spec in another process."""
+    """Unpickles a task spec."""
     return TaskSpec.from_json(name, text)
 
 
 def _variant_again(task: TaskSpec, name: str, values: str) -> Variant:
-    """A variant in another process."""
+    """Unpickles a variant."""
     return _native.variant_again(task, name, values)
 
 
 def _drift_again(from_: Variant, to: Variant, schedule: str | None, switch: Any, seed: int) -> Drift:
-    """A drift in another process."""
+    """Unpickles a drift."""
     return Drift(from_, to, schedule=None if schedule is None else json.loads(schedule), switch=switch, seed=seed)

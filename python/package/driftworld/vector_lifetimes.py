@@ -1,4 +1,4 @@
-"""Living a curriculum in many environments at the same time: what ``lifetimes.py`` does in one."""
+"""Runs an agent through a curriculum in many environments at the same time, like ``lifetimes.py`` in one."""
 
 from __future__ import annotations
 
@@ -29,18 +29,20 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class VectorTransition:
-    """One step of all environments, as an agent learns from it. Arrays are the agent's to keep; the first axis is the environment.
+    """One step of all environments, as given to ``learn``. The agent may keep the arrays; their first axis is the
+    environment.
 
     Attributes:
-        observations: What was seen before.
-        actions: What was done.
-        rewards: What that paid, float64 ``(num_envs,)``.
-        terminated: Whether what happened ended the episode, bool ``(num_envs,)``.
-        truncated: Whether a limit of steps did, bool ``(num_envs,)``.
-        next_observations: What was seen then: of an episode that has ended its last observation, never the first of the next.
-        active: Which environments run an experience, bool ``(num_envs,)``; near the end of a block some have none. What the others
-            hold is to be left out.
-        infos: What the step said beside it.
+        observations: The observations before the step.
+        actions: The actions.
+        rewards: Their rewards, float64 ``(num_envs,)``.
+        terminated: Whether an event ended the episode, bool ``(num_envs,)``.
+        truncated: Whether a limit of steps ended it, bool ``(num_envs,)``.
+        next_observations: The observations after the step; for an ended episode its last observation, never the first
+            of the next.
+        active: Which environments run an experience, bool ``(num_envs,)``; near the end of a block some have none.
+            Ignore the values of the others.
+        infos: The infos of the step.
     """
 
     observations: Any
@@ -55,41 +57,46 @@ class VectorTransition:
 
 @runtime_checkable
 class VectorAgent(Protocol):
-    """Who runs through a curriculum in many environments at the same time (:meth:`driftworld.Curriculum.run_vector`).
+    """An agent that can run through a curriculum in many environments at the same time
+    (:meth:`driftworld.Curriculum.run_vector`).
 
-    It may have ``name``, ``policy``, ``save`` and ``load`` as :class:`driftworld.Agent` has them, and ``begin(env, label, seed)``, called
-    before each experience with the number of its environment, and what ``Agent.begin`` gets.
+    It may have ``name``, ``policy``, ``save`` and ``load`` like :class:`driftworld.Agent`, and ``begin(env, label,
+    seed)``, called before each experience with the number of its environment and the arguments of ``Agent.begin``.
     """
 
     def act(self, observations: Any, infos: dict[str, Any]) -> Any:
-        """Actions for all environments, ``(num_envs,)`` rows or ``(num_envs, numbers)``.
+        """Returns actions for all environments, ``(num_envs,)`` rows or ``(num_envs, numbers)``.
 
-        ``infos`` holds ``active`` and ``is_success``, bool ``(num_envs,)``, and what the scenario permits, as ``Agent.act`` gets it.
+        ``infos`` has ``active`` and ``is_success``, bool ``(num_envs,)``, and the entries that the scenario permits, as
+        in ``Agent.act``.
         """
 
     def learn(self, transition: VectorTransition) -> None:
-        """Learns from a step of all; only called in learning blocks."""
+        """Learns from a step of all environments; only called in learning blocks."""
 
     def freeze(self, frozen: bool) -> None:
-        """As :meth:`driftworld.Agent.freeze`. In a block that is run once more, the same experiences share the same batches."""
+        """Like :meth:`driftworld.Agent.freeze`. When evaluations are repeated, the same experiences share the same
+        batches.
+        """
 
 
 class VectorRollout(Rollout):
-    """An agent in its environments. The native loop asks for one experience after the other, and gets those that ran meanwhile.
+    """An agent in its environments. The native loop asks for one experience after the other, some of which have already
+    run by then.
 
     Args:
-        plan: Where the worlds are from.
-        agent: Who acts.
-        num_envs: How many environments.
+        plan: The source of the worlds.
+        agent: The agent.
+        num_envs: Number of environments.
         num_threads: Threads that step them.
         experience: Finds an experience by its number.
         options: Options of the environments.
-        paired_chance: Give every evaluation of a world the same number in all blocks.
-        watch: Called with each experience and what it paid, as soon as it is logged; may say ``False`` to end there.
-        save: Saves the agent after so many experiences.
+        paired_chance: Use the same seed for every evaluation of a world in all blocks.
+        watch: Called with each experience and its reward, as soon as it is logged; returning ``False`` ends the run.
+        save: Saves the agent after a number of experiences.
     """
 
-    #: So that they share the batches that they shared at first: an agent may compute the last bits by batch.
+    #: They share the same batches as at first: an agent's last bits may depend on the batch.
     repeats_first = True
 
     def __init__(
@@ -106,7 +113,7 @@ class VectorRollout(Rollout):
     ) -> None:
         refuse_options(options)
         refuse_covering(plan, options)
-        # Views: what an agent gets is copied once, when all environments that end have begun anew.
+        # Views: the agent's copy is made once, after all ended environments have been reset.
         world, options = first_world(plan, options)
         envs = DriftworldVectorEnv(
             world=world, num_envs=num_envs, num_threads=num_threads, copy=False, **options
@@ -122,16 +129,16 @@ class VectorRollout(Rollout):
         self._abandon()
 
     def record(self) -> None:
-        """Takes down what is done in each experience from now on."""
+        """Records each experience from now on."""
         self._env.record()
         self._records = True
 
     def recording(self, number: int) -> _native.RecordingHandle:
-        """What was done in an experience that is over; it is handed out once."""
+        """The recording of a finished experience; available once."""
         return self._recordings.pop(number)
 
     def _abandon(self) -> None:
-        """Forgets what is under way."""
+        """Discards the experiences under way."""
         self._next, self._block = 0, -1
         self._running: list[int | None] = [None] * self._num_envs
         self._regimes = np.zeros(self._num_envs, dtype=np.int64)
@@ -147,16 +154,19 @@ class VectorRollout(Rollout):
         self._events.fill(())
 
     def begin_block(self, learning: bool, repeated: Sequence[int]) -> None:
-        """Before the first experience of a block; ``repeated`` are run twice."""
+        """Called before the first experience of a block; ``repeated`` are run twice."""
         self._abandon()
         super().begin_block(learning, repeated)
 
     def experience(
         self, number: int, world: _native.Stream, time: tuple[float, int, float]
     ) -> tuple[float, bool, int, float, bool, str | None]:
-        """One experience, which may have run while earlier ones were asked for: as :meth:`driftworld.lifetimes.Rollout.experience`."""
+        """Returns one experience, which may have run while earlier ones were asked for; like
+        :meth:`driftworld.lifetimes.Rollout.experience`.
+        """
         now = self._experience(number)
-        # An earlier one that is neither under way nor over is run once more, with all behind it, so that batches are what they were.
+        # An earlier experience that is neither under way nor finished is run again, with all later ones, so that
+        # batches are the same as before.
         if now.block != self._block or (number < self._next and not (number in self._over or number in self._running)):
             self._abandon()
             self._next, self._block, self._learning = number, now.block, now.learning
@@ -167,7 +177,7 @@ class VectorRollout(Rollout):
         return reward, success, steps, self._seconds(steps, time), truncated, ended_by
 
     def _step(self) -> None:
-        """One step of all environments, after those without an experience got the next ones of the block."""
+        """Steps all environments, after assigning the next experiences of the block to idle ones."""
         begun = [self._begin(env) for env in range(self._num_envs) if self._running[env] is None]
         if any(begun):
             self._observations = self._copied()
@@ -206,13 +216,13 @@ class VectorRollout(Rollout):
             self._running[env] = None
 
     def _begin(self, env: int) -> bool:
-        """Begins the block's next experience in an environment; whether there is one."""
+        """Starts the block's next experience in an environment; returns whether there is one."""
         while self._next < len(self._plan):
             now = self._experience(self._next)
             if now.block != self._block:
                 return False
             if now.steps is not None and self._decisions[now.regime] >= now.steps:
-                # As the native loop passes over what a spent budget leaves out.
+                # Skips what a spent budget leaves out, like the native loop.
                 self._next = self._plan.after(self._next)
                 continue
             self._next += 1
@@ -221,7 +231,7 @@ class VectorRollout(Rollout):
             except CurriculumError as error:
                 if error.code != "curriculum/world":
                     raise
-                # The native loop leaves it out, or refuses it, when its turn comes.
+                # The native loop skips or refuses it when its turn comes.
                 continue
             begin = getattr(self._agent, "begin", None)
             if begin is not None:
@@ -240,7 +250,7 @@ class VectorRollout(Rollout):
         return False
 
     def _copied(self) -> Any:
-        """The present observations as the agent's own, with labels where they hold them."""
+        """A copy of the current observations, with labels if observations contain them."""
         seen = self._seen
         if not isinstance(seen, Mapping):
             return seen.copy()
@@ -250,7 +260,7 @@ class VectorRollout(Rollout):
         return copied
 
     def _permitted(self, active: NDArray[np.bool_]) -> dict[str, Any]:
-        """What the agent is given beside observations."""
+        """The infos given to the agent."""
         infos = {"active": active, "is_success": self._success.copy()}
         if self._labelled and not self._observed:
             infos["task_label"] = np.array([-1 if label is None else label["number"] for label in self._labels])
@@ -264,7 +274,7 @@ class VectorRollout(Rollout):
 
 
 def _row(observations: Any, env: int) -> Any:
-    """What one environment shows."""
+    """The observation of one environment."""
     if isinstance(observations, Mapping):
         return {kind: array[env] for kind, array in observations.items()}
     return observations[env]

@@ -1,4 +1,5 @@
-"""Learners for curricula: PPO for small images, and one file for each continual method. Each is a ``driftworld.VectorAgent``.
+"""Learners for curricula: PPO for small images, and one file for each continual method. Each is a
+``driftworld.VectorAgent``.
 
     from driftworld.learners import EWC
 
@@ -6,7 +7,7 @@
     curriculum.run_vector(learner, "logs/ewc", num_envs=64, modalities="rgb", size=32, actions=ACTIONS, frame_skip=5)
     print(learner.report())
 
-They need torch. All have the same network, and learn from the same number of decisions; none draws from a global generator.
+They need torch. All have the same network, and learn from the same number of decisions; none uses a global generator.
 """
 
 try:

@@ -1,20 +1,23 @@
-"""CLEAR: PPO on what is new, V-trace and cloning on a fair sample of everything that was ever done. It knows of no tasks.
+"""CLEAR: PPO on new experience, V-trace and cloning on a uniform sample of all past experience. It does not use task
+labels.
 
-A reservoir keeps stretches of ``settings.rollout`` steps of one environment (Vitter 1985, algorithm R). After the passes over a
-rollout come as many steps of the optimiser as one pass has, each on stretches drawn from the reservoir, with the loss
+A reservoir stores stretches of ``settings.rollout`` steps of one environment (Vitter 1985, algorithm R). The passes
+over a rollout are followed by as many optimiser steps as one pass has, each on stretches drawn from the reservoir, with
+the loss
 
     ½ (V − vₛ)² − A log π(a|s) − entropy · H(π) + policy_cloning · KL(π_then ‖ π) + value_cloning · (V − V_then)²,
 
-where vₛ and A are V-trace's targets and advantages (Espeholt et al. 2018, arXiv:1802.01561, eq. 1) and *then* is when it was done.
-Source: Rolnick et al. 2019 (arXiv:1811.11682), section 3.
+where vₛ and A are V-trace's targets and advantages (Espeholt et al. 2018, arXiv:1802.01561, eq. 1) and *then* marks
+values at the time of the action. Source: Rolnick et al. 2019 (arXiv:1811.11682), section 3.
 
 Known traps:
 
-- Its learner is PPO, not IMPALA, and its losses are means, not sums: the paper's weights of cloning do not carry over.
-- It takes more steps of the optimiser than PPO with as many epochs. For an equal number give it one epoch less.
-- The reservoir is megabytes: ``report()["method_bytes"]`` says how many.
-- A stretch that ends amid an episode is bootstrapped with today's value of its last image; an episode that ran out of time with the
-  value that its own last image had then, for that image is not kept.
+- Its learner is PPO, not IMPALA, and its losses are means, not sums: the paper's cloning weights do not carry over.
+- It takes more optimiser steps than PPO with the same number of epochs. For an equal number, use one epoch less.
+- The reservoir takes megabytes: ``report()["method_bytes"]`` is its size.
+- A stretch that ends during an episode is bootstrapped with the current value of its last image. An episode truncated
+  by a limit of steps is bootstrapped with the value that its last image had at the time, because that image is not
+  stored.
 """
 
 from __future__ import annotations
@@ -29,16 +32,16 @@ from driftworld.learners.rollout import Rollout
 
 
 class Reservoir:
-    """A fair sample of all stretches of experience ever offered: each is kept with probability capacity / offered.
+    """A uniform sample of all stretches of experience ever offered: each is kept with probability capacity / offered.
 
     Args:
-        capacity: Stretches that it holds, from 1.
-        seed: Of what is kept and drawn, from 0.
+        capacity: Largest number of stretches, from 1.
+        seed: The seed of the sampling, from 0.
 
     Attributes:
-        offered: How many stretches were offered.
-        stretches: Those that are kept, each a dictionary of the tensors of a :class:`driftworld.learners.rollout.Rollout` for one
-            environment.
+        offered: Number of stretches offered so far.
+        stretches: The stored stretches, each a dictionary of the tensors of a
+            :class:`driftworld.learners.rollout.Rollout` for one environment.
     """
 
     def __init__(self, capacity: int, seed: int) -> None:
@@ -47,7 +50,7 @@ class Reservoir:
         self.chance = np.random.default_rng(seed)
 
     def offer(self, rollout: Rollout) -> None:
-        """Offers the stretch of every environment that has an active step in a rollout."""
+        """Offers the stretches of all environments with an active step in a rollout."""
         for env in rollout.active.any(dim=0).nonzero().squeeze(-1).tolist():
             self.offered += 1
             place = len(self.stretches)
@@ -68,19 +71,19 @@ class Reservoir:
 def v_trace(
     rollout: Rollout, values: torch.Tensor, log_ratio: torch.Tensor, discount: float
 ) -> tuple[torch.Tensor, torch.Tensor]:
-    """V-trace's targets and advantages, ``(length, n)`` each; ratios are cut off at 1.
+    """V-trace's targets and advantages, ``(length, n)`` each; ratios are truncated at 1.
 
     Args:
-        rollout: What was done.
-        values: What its images are worth now, ``(length + 1, n)``.
-        log_ratio: Log-probability of each action now, less that when it was done, ``(length, n)``.
+        rollout: The rollout.
+        values: Current values of its images, ``(length + 1, n)``.
+        log_ratio: Current log-probability of each action minus that at the time of the action, ``(length, n)``.
         discount: For each decision, 0 to 1.
     """
     ratio = log_ratio.exp().clamp(max=1.0)
     surprise = rollout.rewards + discount * rollout.following(values) - values[:-1]
     advantages, later = torch.zeros_like(ratio), torch.zeros_like(ratio[0])
     for step in reversed(range(len(ratio))):
-        # With both cut at 1, the advantage is how far the target is above the value. Nothing crosses the end of an episode.
+        # With both truncated at 1, the advantage is the target minus the value. Nothing crosses the end of an episode.
         later = ratio[step] * (surprise[step] + discount * later * ~rollout.ended[step])
         advantages[step] = later
     return values[:-1] + advantages, advantages
@@ -90,11 +93,11 @@ class CLEAR(PPO):
     """PPO with experience replay.
 
     Args:
-        num_actions: Rows of the table of actions.
-        num_envs: Environments that it acts in.
-        capacity: Stretches that the reservoir holds, from 1; one is 100 kB at 32 × 32 pixels and 32 steps.
-        policy_cloning: Weight of the divergence from the policy of then, from 0.
-        value_cloning: Weight of the squared distance from the value of then, from 0.
+        num_actions: Number of rows in the action table.
+        num_envs: Number of environments.
+        capacity: Largest number of stretches in the reservoir, from 1; one is 100 kB at 32 × 32 pixels and 32 steps.
+        policy_cloning: Weight of the divergence from the policy at the time, from 0.
+        value_cloning: Weight of the squared distance from the value at the time, from 0.
         **options: As for :class:`PPO`.
 
     Attributes:
@@ -112,9 +115,9 @@ class CLEAR(PPO):
         self.reservoir = Reservoir(capacity, self.seed)
 
     def after_update(self, rollout: Rollout) -> None:
-        """Offers the rollout, and takes as many steps on old stretches as a pass over it has."""
+        """Offers the rollout, and takes as many steps on old stretches as one pass has."""
         if len(rollout.rewards) == self.settings.rollout:
-            # What a border cut short is left out: stretches are of one length.
+            # Rollouts cut short by a border are skipped: all stretches have the same length.
             self.reservoir.offer(rollout)
         if not self.reservoir.stretches:
             return
@@ -122,7 +125,7 @@ class CLEAR(PPO):
             self.step(self.replay_loss(self.reservoir.draw(max(1, self.settings.minibatch // self.settings.rollout))))
 
     def replay_loss(self, old: Rollout) -> torch.Tensor:
-        """The loss on old stretches; a mean over their active steps."""
+        """The loss on old stretches, averaged over their active steps."""
         length, count = old.rewards.shape
         log_policy, values = self.network(old.images.flatten(0, 1))
         log_policy, values = log_policy.view(length + 1, count, -1)[:-1], values.view(length + 1, count)
@@ -147,6 +150,6 @@ class CLEAR(PPO):
         }  # fmt: skip
 
     def load_method_state(self, state: dict[str, Any]) -> None:
-        """Takes it back."""
+        """Restores the reservoir."""
         self.reservoir.offered, self.reservoir.stretches = state["offered"], list(state["stretches"])
         self.reservoir.chance.bit_generator.state = state["chance"]

@@ -1,4 +1,4 @@
-"""EWC: a spring from every weight to where it was, as strong as the weight was important for the policy.
+"""EWC: a quadratic penalty ("spring") on the change of every weight, in proportion to its importance for the policy.
 
 EWC (Kirkpatrick et al. 2017, arXiv:1612.00796, eq. 3) has a set of springs for each finished task k:
 
@@ -9,12 +9,14 @@ Online EWC (Schwarz et al. 2018, arXiv:1805.06370) has one set: F ← decay · F
 
 Known traps:
 
-- The square is of each sample's gradient. The square of a batch's mean gradient is another thing, and almost 0 after learning.
-- Actions are weighted by the policy, not by what was done: else it is the empirical Fisher.
-- Fisher information falls as a policy becomes certain, so that the best learned tasks are held least. Importances are therefore
-  scaled to mean 1 in each task, over the tensors that the policy depends on; ``strength`` then means the same everywhere.
-- The policy does not depend on the value's head: nothing holds that one.
-- A task that comes again gets a second set of springs, which pull to another place than the first.
+- The square is of each sample's gradient. The square of a batch's mean gradient is something else, and almost 0 after
+  learning.
+- Actions are weighted by the policy, not sampled: otherwise it is the empirical Fisher.
+- Fisher information falls as a policy becomes certain, so that the best learned tasks would be protected least.
+  Importances are therefore scaled to mean 1 in each task, over the tensors that the policy depends on; ``strength``
+  then means the same for every task.
+- The policy does not depend on the value head, which is therefore unconstrained.
+- A task that occurs again gets a second set of springs, with other targets than the first.
 """
 
 from __future__ import annotations
@@ -31,12 +33,13 @@ Weights = dict[str, torch.Tensor]
 
 
 def fisher(network: nn.Module, images: torch.Tensor, chunk: int = 32) -> Weights:
-    """The diagonal of the policy's Fisher information, for each parameter of a network: squares per sample, actions by the policy.
+    """The diagonal of the policy's Fisher information, for each parameter of a network: squares per sample, actions by
+    the policy.
 
     Args:
         network: Maps images ``(n, …)`` to log-probabilities ``(n, num_actions)`` and anything else.
-        images: What is seen, ``(n, …)``, from 1.
-        chunk: Images at a time; each needs memory for the gradients of all weights.
+        images: Observed images, ``(n, …)``, at least 1.
+        chunk: Number of images at a time; each needs memory for the gradients of all weights.
     """
     weights = {name: weight.detach() for name, weight in network.named_parameters()}
 
@@ -57,7 +60,7 @@ def fisher(network: nn.Module, images: torch.Tensor, chunk: int = 32) -> Weights
 
 
 def normalized(importance: Weights) -> Weights:
-    """Importances of mean 1 over the tensors in which any is above 0."""
+    """Importances scaled to mean 1 over the tensors in which any is above 0."""
     used = [values for values in importance.values() if values.any()]
     mean = sum(values.sum() for values in used) / max(1, sum(values.numel() for values in used))
     return {name: values / mean if used else values for name, values in importance.items()}
@@ -67,14 +70,14 @@ class EWC(PPO):
     """PPO with springs to the weights at the end of each task.
 
     Args:
-        num_actions: Rows of the table of actions.
-        num_envs: Environments that it acts in.
+        num_actions: Number of rows in the action table.
+        num_envs: Number of environments.
         strength: λ of the springs, from 0; tune it on sequences that are not scored.
-        samples: Observations of the last rollout that the importances are computed from, from 1.
+        samples: Number of observations from the last rollout used to compute importances, from 1.
         **options: As for :class:`PPO`; ``borders`` is ``"labels"`` by default.
 
     Attributes:
-        springs: A pair of importances and weights for each finished task; one in all for :class:`OnlineEWC`.
+        springs: A pair of importances and weights for each finished task; a single pair for :class:`OnlineEWC`.
     """
 
     name = "ewc"
@@ -88,7 +91,7 @@ class EWC(PPO):
         self.springs: list[tuple[Weights, Weights]] = []
 
     def end_task(self, label: str | None) -> None:
-        """Adds the springs of the task that ends, by what was seen last in it."""
+        """Adds the springs of the ending task, computed from its last observations."""
         seen = self.rollout.images[:-1][self.rollout.active]
         chosen = torch.randperm(len(seen), generator=self.shuffles)[: self.samples]
         if len(chosen):
@@ -96,11 +99,11 @@ class EWC(PPO):
             self.add_springs(normalized(fisher(self.network, seen[chosen])), anchor)
 
     def add_springs(self, importance: Weights, anchor: Weights) -> None:
-        """Adds the springs of a task to those of the others."""
+        """Adds the springs of a task to the others."""
         self.springs.append((importance, anchor))
 
     def extra_loss(self) -> torch.Tensor | None:
-        """The energy of all springs; none in the first task."""
+        """The energy of all springs; ``None`` in the first task."""
         if not self.springs:
             return None
         weights = dict(self.network.named_parameters())
@@ -116,17 +119,17 @@ class EWC(PPO):
         return {"springs": self.springs}
 
     def load_method_state(self, state: dict[str, Any]) -> None:
-        """Takes them back."""
+        """Restores the springs."""
         self.springs = [(importance, anchor) for importance, anchor in state["springs"]]
 
 
 class OnlineEWC(EWC):
-    """EWC with one set of springs, whose importances are those of all tasks and whose ends are the last task's weights.
+    """EWC with one set of springs: importances accumulated over all tasks, and the last task's weights as targets.
 
     Args:
-        num_actions: Rows of the table of actions.
-        num_envs: Environments that it acts in.
-        decay: γ, what is left of old importances at each border, 0 to 1.
+        num_actions: Number of rows in the action table.
+        num_envs: Number of environments.
+        decay: γ, the factor applied to old importances at each border, 0 to 1.
         **options: As for :class:`EWC`.
     """
 
@@ -137,7 +140,7 @@ class OnlineEWC(EWC):
         self.decay = decay
 
     def add_springs(self, importance: Weights, anchor: Weights) -> None:
-        """Adds the importances to what is left of the old ones."""
+        """Adds the importances to the decayed old ones."""
         for old, _ in self.springs:
             importance = {name: self.decay * old[name] + values for name, values in importance.items()}
         self.springs = [(importance, anchor)]

@@ -1,4 +1,4 @@
-"""Networks as files for the command's ``--agent net:FILE``, in the format safetensors."""
+"""Exports networks as files for the command's ``--agent net:FILE``, in the safetensors format."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from driftworld.learners.networks import PatchNetwork
 def write_network(
     learner: Any, path: str | PathLike[str], actions: Sequence[Sequence[float]], frame_skip: int | None, interact: bool
 ) -> None:  # fmt: skip
-    """Writes the network of a learner, and how it acts. Arguments and errors are those of ``Learner.export``."""
-    # What it acts by is in ``look``: one that is not PPO's may do more than this network.
+    """Writes a learner's network and how it acts. For arguments and errors, see ``Learner.export``."""
+    # The policy is in ``look``: an override of PPO's may do more than this network.
     if type(learner).look.__module__ != "driftworld.learners.ppo" or type(learner.network) is not PatchNetwork:
         raise ValueError(f"{learner.name}: found a learner with a memory, masks or a network of its own, expected a PatchNetwork alone")
     table = [[float(number) for number in row] for row in actions]
@@ -33,7 +33,9 @@ def write_network(
 
 
 def safetensors(tensors: Mapping[str, torch.Tensor], metadata: Mapping[str, str]) -> bytes:
-    """Tensors of float32 in the format safetensors: eight bytes with the length of a JSON header, the header, and numbers."""
+    """Encodes float32 tensors in the safetensors format: eight bytes with the length of a JSON header, the header, and
+    the numbers.
+    """
     header: dict[str, object] = {"__metadata__": dict(metadata)}
     parts, end = [], 0
     for name, tensor in tensors.items():
@@ -41,6 +43,6 @@ def safetensors(tensors: Mapping[str, torch.Tensor], metadata: Mapping[str, str]
         begin, end = end, end + len(parts[-1])
         header[name] = {"dtype": "F32", "shape": list(tensor.shape), "data_offsets": [begin, end]}
     text = json.dumps(header).encode()
-    # Numbers begin at a multiple of eight bytes.
+    # Numbers start at a multiple of eight bytes.
     text += b" " * (-len(text) % 8)
     return struct.pack("<Q", len(text)) + text + b"".join(parts)

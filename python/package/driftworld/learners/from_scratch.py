@@ -2,8 +2,8 @@
 
 Its learning curves are the reference of forward transfer, and its forgetting is complete by construction.
 
-Known traps: a task that comes again is learned again from nothing; each visit draws other weights. Lifetimes with different
-orders see the same initial weights at the same *place*, not for the same task.
+Known traps: a task that occurs again is learned again from scratch; each visit draws other weights. Lifetimes with
+different orders see the same initial weights at the same *place*, not for the same task.
 """
 
 from __future__ import annotations
@@ -12,14 +12,15 @@ from driftworld.learners.ppo import PPO
 
 
 class FromScratch(PPO):
-    """PPO that starts again with a fresh network and optimiser in every task. Arguments as :class:`PPO`; ``borders`` is ``"labels"``
-    by default."""
+    """PPO with a new network and optimiser for every task. Arguments as for :class:`PPO`; ``borders`` is ``"labels"``
+    by default.
+    """
 
     name = "from_scratch"
     own_borders = "labels"
 
     def begin_task(self, label: str | None) -> None:
-        """Draws a network; that of the first task is PPO's."""
+        """Draws a new network; the first task keeps PPO's."""
         if self.tasks > 1:
             self.network.load_state_dict(self.fresh_network(self.tasks).state_dict())
             self.reset_optimizer()

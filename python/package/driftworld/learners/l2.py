@@ -1,11 +1,11 @@
-"""L2: a spring from every weight to where it was at the last border of tasks.
+"""L2: a quadratic penalty ("spring") on the change of every weight since the last task border.
 
-loss = loss of PPO + strength / 2 · Σᵢ (θᵢ − θᵢ*)², where θ* are the weights at the end of the last task. It is EWC with all
-importances 1, and the control of EWC (Kirkpatrick et al. 2017, arXiv:1612.00796, fig. 2): a method that is no better has not used
-its importances.
+loss = loss of PPO + strength / 2 · Σᵢ (θᵢ − θᵢ*)², where θ* are the weights at the end of the last task. It is EWC with
+all importances 1, and the control for EWC (Kirkpatrick et al. 2017, arXiv:1612.00796, fig. 2): a method that does no
+better gains nothing from its importances.
 
-Known traps: a spring that keeps old tasks keeps new ones from being learned, so report both; ``strength`` is tuned on sequences
-that are not scored. The value's weights are held like all others.
+Known traps: a spring that preserves old tasks hinders new ones, so report both; tune ``strength`` on sequences that are
+not scored. The value head's weights are penalised like all others.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from driftworld.learners.ppo import PPO
 
 
 class L2(PPO):
-    """PPO with a spring to the weights at the end of the last task.
+    """PPO with a spring towards the weights at the end of the last task.
 
     Args:
-        num_actions: Rows of the table of actions.
-        num_envs: Environments that it acts in.
-        strength: Of the springs, from 0; tune it on sequences that are not scored.
+        num_actions: Number of rows in the action table.
+        num_envs: Number of environments.
+        strength: Strength of the springs, from 0; tune it on sequences that are not scored.
         **options: As for :class:`PPO`; ``borders`` is ``"labels"`` by default.
     """
 
@@ -36,20 +36,20 @@ class L2(PPO):
         self.anchor: dict[str, torch.Tensor] = {}
 
     def end_task(self, label: str | None) -> None:
-        """Moves the springs' ends to the present weights."""
+        """Sets the springs' targets to the current weights."""
         self.anchor = {name: weight.detach().clone() for name, weight in self.network.named_parameters()}
 
     def extra_loss(self) -> torch.Tensor | None:
-        """The energy of the springs; none in the first task."""
+        """The energy of the springs; ``None`` in the first task."""
         if not self.anchor:
             return None
         weights = self.network.named_parameters()
         return 0.5 * self.strength * sum((weight - self.anchor[name]).square().sum() for name, weight in weights)
 
     def method_state(self) -> dict[str, Any]:
-        """The springs' ends."""
+        """The springs' targets."""
         return {"anchor": self.anchor}
 
     def load_method_state(self, state: dict[str, Any]) -> None:
-        """Takes them back."""
+        """Restores the springs' targets."""
         self.anchor = state["anchor"]

@@ -1,4 +1,4 @@
-"""What all learners share: borders of tasks, random numbers of their own, saving, and what they report. Learning is ``ppo.py``."""
+"""``Learner``, the common base of all learners: task borders, random numbers, saving and reports."""
 
 from __future__ import annotations
 
@@ -18,36 +18,36 @@ from driftworld.learners.networks import PatchNetwork
 
 
 class Learner:
-    """The part of a learner that does not depend on how it learns.
+    """The part of a learner that does not depend on the learning algorithm.
 
-    Its life is cut into tasks where ``borders`` says so. A continual method overrides :meth:`begin_task`, :meth:`end_task` and
-    :meth:`method_state`.
+    ``borders`` determines where one task ends and the next begins. A continual method overrides :meth:`begin_task`,
+    :meth:`end_task` and :meth:`method_state`.
 
     Args:
-        num_actions: Rows of the table of actions.
-        num_envs: Environments that it acts in.
-        seed: Of the weights, the actions and the minibatches, from 0.
+        num_actions: Number of rows in the action table.
+        num_envs: Number of environments.
+        seed: The seed of weights, actions and minibatches, from 0.
         size: Side of the images in pixels, a multiple of 8.
         policy: Actions in evaluations: ``"sampled"`` from the policy, or ``"greedy"``, the likeliest. Learning samples.
-        borders: Where a task ends: ``"none"``, nowhere; ``"labels"``, where the label of a learning experience changes, so that a
-            block of mixed labels has many borders; ``"blocks"``, at each learning block after an evaluation, and after
-            :meth:`load_state_dict`. ``None`` is the method's own.
+        borders: Where a task ends: ``"none"``, nowhere; ``"labels"``, where the label of a learning experience changes,
+            so that a block of mixed labels has many borders; ``"blocks"``, at each learning block after an evaluation,
+            and after :meth:`load_state_dict`. ``None`` is the method's default.
 
     Attributes:
-        network: Of ``torch``.
+        network: The ``torch`` network.
         decisions: Decisions learned from, over all environments.
-        task_decisions: Those since the last border.
-        updates: Steps of the optimiser.
+        task_decisions: Decisions since the last border.
+        updates: Optimiser steps.
         seconds: Processor seconds spent in acting while learning, in learning, and at borders.
-        task: Label of the task that is learned, if it has one.
-        tasks: Tasks begun. Without borders there is one.
+        task: Label of the current task, if it has one.
+        tasks: Number of tasks started; 1 without borders.
 
     Raises:
-        ValueError: If ``policy``, ``borders`` or ``size`` is none of those above.
+        ValueError: If ``policy``, ``borders`` or ``size`` is not one of those above.
     """
 
     name = "learner"
-    #: What ``borders=None`` stands for.
+    #: The meaning of ``borders=None``.
     own_borders = "none"
 
     def __init__(
@@ -69,39 +69,43 @@ class Learner:
         self.seconds = 0.0
 
     def make_network(self) -> nn.Module:
-        """A network; it is drawn from torch's global generator, which is seeded before and restored afterwards."""
+        """Makes a network; it is drawn from torch's global generator, which is seeded before and restored afterwards.
+        """
         return PatchNetwork(self.num_actions, self.size)
 
     def fresh_network(self, *more: int) -> nn.Module:
-        """A network as at the start of a life; numbers behind the seed draw another one."""
+        """A network as at the start of a lifetime; further numbers extend the seed and draw another one."""
         with torch.random.fork_rng(devices=[]):
             torch.manual_seed(int(np.random.SeedSequence([self.seed, *more]).generate_state(1)[0]))
             return self.make_network()
 
     def begin_task(self, label: str | None) -> None:
-        """Called before the first experience of each task, the first one included."""
+        """Called before the first experience of each task, including the first task."""
 
     def end_task(self, label: str | None) -> None:
-        """Called where a task ends, before :meth:`begin_task`, when everything in it has been learned from."""
+        """Called at the end of a task, before :meth:`begin_task`, when everything in it has been learned from."""
 
     def method_state(self) -> dict[str, Any]:
-        """What the method keeps, in tensors, numbers, texts, lists and dictionaries; saved, and counted as memory."""
+        """The method's own state, in tensors, numbers, strings, lists and dictionaries; it is saved, and counted as
+        memory.
+        """
         return {}
 
     def load_method_state(self, state: dict[str, Any]) -> None:
-        """Takes back what :meth:`method_state` gave."""
+        """Restores the result of :meth:`method_state`."""
 
     def finish_rollout(self) -> None:
-        """Learns from what has not been learned from."""
+        """Learns from the steps that have not been learned from yet."""
 
     def forget_rollout(self) -> None:
-        """Forgets the steps that were learned from last."""
+        """Discards the steps that were learned from last."""
 
     def begin(self, env: int, label: str | None, seed: int) -> None:
-        """Called before an experience: its actions are drawn from its own seed. A task may end, and another one begin.
+        """Called before an experience, whose seed determines its actions. A task may end here, and another begin.
 
         Raises:
-            ValueError: If borders are where labels change, and there is none; or if there are more environments than ``num_envs``.
+            ValueError: If ``borders`` is ``"labels"`` and the label is missing; or if there are more environments than
+                ``num_envs``.
         """
         if env >= self.num_envs:
             raise ValueError(
@@ -130,15 +134,15 @@ class Learner:
         self.seconds += time.process_time() - began
 
     def freeze(self, frozen: bool) -> None:
-        """Whether it is being evaluated."""
+        """Sets whether the learner is being evaluated."""
         self._resumes = self._resumes or (self.frozen and not frozen)
         self.frozen = frozen
 
     def images(self, observations: Any) -> torch.Tensor:
-        """Images ``(num_envs, size, size, 3)``, bytes, from observations that are images or have them as ``"rgb"``.
+        """Images ``(num_envs, size, size, 3)``, bytes, from image observations or from their entry ``"rgb"``.
 
         Raises:
-            ValueError: If they are of another shape.
+            ValueError: If the images have another shape.
         """
         found = observations["rgb"] if isinstance(observations, Mapping) else observations
         expected = (self.num_envs, self.size, self.size, 3)
@@ -150,7 +154,9 @@ class Learner:
         return torch.from_numpy(found)
 
     def state_dict(self) -> dict[str, Any]:
-        """All that it is between two experiences: :meth:`load_state_dict` makes another one go on to the same bits."""
+        """The complete state between two experiences: after :meth:`load_state_dict`, another learner continues
+        identically to the bit.
+        """
         counts = ("task", "tasks", "decisions", "task_decisions", "updates", "seconds")
         return {
             "network": self.network.state_dict(), "shuffles": self.shuffles.get_state(),
@@ -158,40 +164,41 @@ class Learner:
         }  # fmt: skip
 
     def load_state_dict(self, state: dict[str, Any]) -> None:
-        """Becomes what :meth:`state_dict` gave. The learner must have been made with the same arguments."""
+        """Restores the result of :meth:`state_dict`. The learner must have been made with the same arguments."""
         self.network.load_state_dict(state["network"])
         self.shuffles.set_state(state["shuffles"])
         vars(self).update(state["counts"])
-        # A run that goes on with a learning block says nothing of the evaluation before it.
+        # A run resumed within a learning block does not report the evaluation before it.
         self._resumes = True
         self.load_method_state(state["method"])
 
     def save(self, path: Path) -> None:
-        """Writes :meth:`state_dict` into a file."""
+        """Writes :meth:`state_dict` to a file."""
         torch.save(self.state_dict(), path)
 
     def load(self, path: Path) -> None:
-        """Reads what :meth:`save` wrote: tensors and plain values, no code."""
+        """Loads a file of :meth:`save`: tensors and plain values, no code."""
         self.load_state_dict(torch.load(path, weights_only=True))
 
     def export(
         self, path: str | PathLike[str], *, actions: Sequence[Sequence[float]], frame_skip: int | None = None, interact: bool = True
     ) -> None:  # fmt: skip
-        """Writes the network in the format safetensors, for ``--agent net:FILE`` of the command.
+        """Writes the network in the safetensors format, for ``--agent net:FILE`` of the command.
 
         Args:
             path: The file to write.
-            actions: The table of actions that it was trained with.
-            frame_skip: The time steps for which each was held; one step of the world if ``None``.
-            interact: Whether it could interact.
+            actions: The action table that it was trained with.
+            frame_skip: Time steps for which each action was held; ``None`` for one step of the world.
+            interact: Whether the agent could interact.
 
         Raises:
-            ValueError: If it acts by more than a :class:`PatchNetwork`, or the table has not ``num_actions`` rows of three numbers.
+            ValueError: If the learner acts by more than a :class:`PatchNetwork`, or the table does not have
+                ``num_actions`` rows of three numbers.
         """
         write_network(self, path, actions, frame_skip, interact)
 
     def digest(self) -> str:
-        """SHA-256 of :meth:`state_dict` without the seconds: equal where two learners are equal to the bit."""
+        """SHA-256 of :meth:`state_dict` without the seconds: equal if two learners are equal to the bit."""
         state = self.state_dict()
         del state["counts"]["seconds"]
         print = hashlib.sha256()
@@ -201,11 +208,11 @@ class Learner:
         return print.hexdigest()
 
     def report(self) -> dict[str, Any]:
-        """What a paper says of a learner.
+        """The learner's details, for a paper.
 
         Returns:
-            ``learner``, ``policy``, ``borders``, ``seed``, ``decisions``, ``updates``, ``tasks``; ``seconds`` of the processor;
-            ``memory_bytes`` of all that it keeps; and ``method_bytes``, the part of the continual method.
+            ``learner``, ``policy``, ``borders``, ``seed``, ``decisions``, ``updates``, ``tasks``; processor
+            ``seconds``; ``memory_bytes`` of the whole state; and ``method_bytes``, the continual method's part of it.
         """
         kept = self.state_dict()
         return {
@@ -226,5 +233,5 @@ def leaves(value: Any, name: str = "") -> Iterator[tuple[str, Any]]:
 
 
 def memory(value: Any) -> int:
-    """Bytes of the tensors in it."""
+    """Size of the tensors in a value, in bytes."""
     return sum(each.nbytes for _, each in leaves(value) if isinstance(each, torch.Tensor))

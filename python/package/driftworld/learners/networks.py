@@ -1,23 +1,23 @@
-"""Networks of the learners: policy and value of small images, without memory and with a GRU."""
+"""Networks of the learners: policy and value for small images, without memory and with a GRU."""
 
 from __future__ import annotations
 
 import torch
 from torch import nn
 
-#: Pixels of a patch's side; the second layer joins two by two patches.
+#: Side of a patch in pixels; the second layer joins 2 × 2 patches.
 PATCH = 4
 
 
 class Patches(nn.Module):
-    """Features of images: patches of 4 × 4 pixels, then 2 × 2 of those, then a hidden layer.
+    """Features of images: patches of 4 × 4 pixels, then 2 × 2 patches, then a hidden layer.
 
-    Both layers of patches are matrix products. On one thread they cost a third of convolutions of the same width.
+    Both patch layers are matrix products. On one thread they cost a third of convolutions of the same width.
 
     Args:
         size: Side of the images in pixels, a multiple of 8.
-        width: Features of a patch; the second layer has twice as many.
-        hidden: Features of the image.
+        width: Number of features of a patch; the second layer has twice as many.
+        hidden: Number of features of the image.
     """
 
     def __init__(self, size: int, width: int, hidden: int) -> None:
@@ -52,16 +52,16 @@ def initialize(network: nn.Module) -> None:
 
 
 class PatchNetwork(nn.Module):
-    """Policy and value of an image: 142,000 weights and 361,000 multiplications at 32 × 32 pixels.
+    """Policy and value for an image: 142,000 weights and 361,000 multiplications at 32 × 32 pixels.
 
     Args:
-        num_actions: How many actions there are.
+        num_actions: Number of actions.
         size: Side of the images in pixels, a multiple of 8.
-        width: Features of a patch of 4 × 4 pixels.
-        hidden: Units of the last hidden layer.
+        width: Number of features of a patch of 4 × 4 pixels.
+        hidden: Number of units in the last hidden layer.
 
     Raises:
-        ValueError: If ``size`` is no multiple of 8.
+        ValueError: If ``size`` is not a multiple of 8.
     """
 
     def __init__(self, num_actions: int, size: int = 32, width: int = 32, hidden: int = 128) -> None:
@@ -77,16 +77,16 @@ class PatchNetwork(nn.Module):
 
 
 class RecurrentNetwork(nn.Module):
-    """Policy and value of a sequence of images: :class:`PatchNetwork` with a GRU before its heads.
+    """Policy and value for a sequence of images: :class:`PatchNetwork` with a GRU before its heads.
 
     Args:
-        num_actions: How many actions there are.
+        num_actions: Number of actions.
         size: Side of the images in pixels, a multiple of 8.
-        width: Features of a patch of 4 × 4 pixels.
-        hidden: Units of the hidden layer, and of the GRU.
+        width: Number of features of a patch of 4 × 4 pixels.
+        hidden: Number of units in the hidden layer, and in the GRU.
 
     Raises:
-        ValueError: If ``size`` is no multiple of 8.
+        ValueError: If ``size`` is not a multiple of 8.
     """
 
     def __init__(self, num_actions: int, size: int = 32, width: int = 32, hidden: int = 128) -> None:
@@ -104,7 +104,7 @@ class RecurrentNetwork(nn.Module):
         Args:
             images: ``(length, n, size, size, 3)``, bytes.
             state: The memory before the first step, ``(n, hidden)``.
-            starts: Where an episode starts, bool ``(length, n)``: the memory is emptied before that step.
+            starts: Whether an episode starts at a step, bool ``(length, n)``: the memory is reset before it.
 
         Returns:
             Log-probabilities ``(length, n, num_actions)``, values ``(length, n)``, and the memory after the last step.
@@ -115,6 +115,6 @@ class RecurrentNetwork(nn.Module):
         for step in range(length):
             state = self.memory(features[step], state * ~starts[step].unsqueeze(-1))
             states.append(state)
-        # The heads see the image itself, too: what needs no memory is learned as fast as without one.
+        # The heads also get the image features directly: what needs no memory is learned as fast as without one.
         seen = torch.stack(states) + features
         return torch.log_softmax(self.policy(seen), dim=-1), self.value(seen).squeeze(-1), state

@@ -1,18 +1,20 @@
-"""PackNet: every task gets weights of its own, which never move again; later tasks use them and train the others.
+"""PackNet: every task gets its own weights, which are then frozen; later tasks use them and train the rest.
 
-Near the end of a task each layer keeps its largest free weights, an equal share for each task to come; the rest is set to 0 and
-free for later tasks. The kept ones are trained on for the rest of the task. In evaluations a task uses its own weights and those of
-the tasks before it. Source: Mallya and Lazebnik 2018 (arXiv:1711.05769), section 3; as in Continual World (Wołczyk et al. 2021,
-arXiv:2105.10919), every task gets an equal share, and biases belong to the first task.
+Near the end of a task each layer keeps its largest free weights, an equal share for each remaining task; the rest are
+set to 0 and free for later tasks. The kept weights are trained further until the end of the task. In evaluations a task
+uses its own weights and those of the tasks before it. Source: Mallya and Lazebnik 2018 (arXiv:1711.05769), section 3;
+as in Continual World (Wołczyk et al. 2021, arXiv:2105.10919), every task gets an equal share, and biases belong to the
+first task.
 
 Known traps:
 
-- A gradient of 0 does not stop Adam: its moments move a weight on. They are cleared at borders and after pruning.
-- The learner must know how long a task is (``task_decisions``) and how many there are (``max_tasks``). The decisions of retraining
-  count: they are the last ``retraining`` of the task. A task that ends before has not been retrained, and its policy is worse.
-- The label says which weights an evaluation uses. A method without labels in evaluations is another problem.
-- The value's head is left free: it is needed for learning alone, and not forgotten by anything that is scored.
-- A task that comes again is a further task with weights of its own.
+- A gradient of 0 does not stop Adam: its moments keep moving a weight. They are cleared at borders and after pruning.
+- The learner must know the length of a task (``task_decisions``) and the number of tasks (``max_tasks``). Retraining is
+  included: it takes the last share ``retraining`` of the task. A task that ends earlier is not retrained, and its
+  policy is worse.
+- The label selects the weights of an evaluation. Evaluating without labels is a different problem.
+- The value head is not constrained: it is only needed for learning, and forgetting it affects no score.
+- A task that occurs again counts as a further task with its own weights.
 """
 
 from __future__ import annotations
@@ -28,18 +30,19 @@ from driftworld.learners.rollout import Rollout
 
 
 class PackNet(PPO):
-    """PPO with a part of the weights for each task.
+    """PPO with a share of the weights for each task.
 
     Args:
-        num_actions: Rows of the table of actions.
-        num_envs: Environments that it acts in.
-        max_tasks: Tasks of the lifetime, each visit counted, from 1.
-        task_decisions: Decisions of each task, from 1.
+        num_actions: Number of rows in the action table.
+        num_envs: Number of environments.
+        max_tasks: Number of tasks in the lifetime, counting each visit, from 1.
+        task_decisions: Number of decisions in each task, from 1.
         retraining: Share of them after pruning, 0 to 1.
         **options: As for :class:`PPO`; ``borders`` is ``"labels"`` by default.
 
     Attributes:
-        owners: For each parameter but the value's head, which task owns each weight: 0 for none, else its number from 1.
+        owners: For each parameter except the value head, the task that owns each weight: 0 for none, else its number
+            from 1.
     """
 
     name = "packnet"
@@ -60,7 +63,7 @@ class PackNet(PPO):
         self._views: dict[int, dict[str, torch.Tensor]] = {}
 
     def begin_task(self, label: str | None) -> None:
-        """Gives the task a number.
+        """Numbers the task.
 
         Raises:
             ValueError: If there are more tasks than ``max_tasks``.
@@ -73,7 +76,7 @@ class PackNet(PPO):
         self.reset_optimizer()
 
     def end_task(self, label: str | None) -> None:
-        """Prunes if that has not happened."""
+        """Prunes if that has not been done yet."""
         if not self.is_pruned:
             self.prune()
 
@@ -84,7 +87,7 @@ class PackNet(PPO):
 
     @torch.no_grad()
     def prune(self) -> None:
-        """Gives the task its share of the free weights of each layer, the largest, and sets the others to 0."""
+        """Assigns to the task its share of each layer's free weights, the largest, and sets the others to 0."""
         for name, weight in self.network.named_parameters():
             if name not in self.owners:
                 continue
@@ -102,19 +105,19 @@ class PackNet(PPO):
         self.reset_optimizer()
 
     def mask_gradients(self) -> None:
-        """Lets free weights learn before pruning, and the task's own afterwards."""
+        """Lets all free weights learn before pruning, and only the task's own afterwards."""
         learning = self.tasks if self.is_pruned else 0
         for name, weight in self.network.named_parameters():
             if name in self.owners and weight.grad is not None:
                 weight.grad.mul_(self.owners[name] == learning)
 
     def freeze(self, frozen: bool) -> None:
-        """Whether it is being evaluated."""
+        """Sets whether the learner is being evaluated."""
         super().freeze(frozen)
         self._views.clear()
 
     def look(self, images: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
-        """Each environment by the weights of its label's task; an unknown label by those of the present one."""
+        """Evaluates each environment with the weights of its label's task; an unknown label uses the current task's."""
         if not self.frozen:
             return super().look(images)
         slots = torch.tensor([self.slots.get(str(label), self.tasks) for label in self.labels])
@@ -125,7 +128,8 @@ class PackNet(PPO):
         return log_policy, values
 
     def _weights(self, slot: int) -> Mapping[str, torch.Tensor]:
-        """The weights that a task uses: its own and those of the tasks before; the present one's free weights, too."""
+        """The weights that a task uses: its own and those of earlier tasks; the current task also uses the free ones.
+        """
         if slot not in self._views:
             fewest = 0 if slot == self.tasks else 1
             self._views[slot] = {
@@ -137,11 +141,11 @@ class PackNet(PPO):
         return self._views[slot]
 
     def method_state(self) -> dict[str, Any]:
-        """Owners, and the numbers of labels."""
+        """The owners, and the task numbers of labels."""
         return {"owners": self.owners, "slots": dict(self.slots), "is_pruned": self.is_pruned}
 
     def load_method_state(self, state: dict[str, Any]) -> None:
-        """Takes them back."""
+        """Restores the owners and the task numbers."""
         self.owners = {name: owner.clone() for name, owner in state["owners"].items()}
         self.slots, self.is_pruned = dict(state["slots"]), state["is_pruned"]
         self._views.clear()

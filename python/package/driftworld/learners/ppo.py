@@ -1,8 +1,8 @@
 """PPO (Schulman et al. 2017, arXiv:1707.06347), with the hooks that a continual method overrides.
 
-Three things are easy to get wrong, and are tested: an episode that ran out of time is bootstrapped from its own last observation,
-one that terminated is not; a step of an environment without an experience is not learned from; evaluations have random numbers
-of their own, so that looking more often changes nothing that is learned.
+Three rules are easy to break, and are tested: a truncated episode is bootstrapped from its own last observation, a
+terminated one is not; steps of environments without an experience are not learned from; evaluations have their own
+random numbers, so that evaluating more often does not change learning.
 """
 
 from __future__ import annotations
@@ -24,20 +24,23 @@ from driftworld.vector_lifetimes import VectorTransition
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """Numbers of PPO. The defaults learn easy tasks in 150,000 decisions of 32 × 32 pixels, each held for 5 time steps.
+    """Hyperparameters of PPO. The defaults learn easy tasks in 150,000 decisions of 32 × 32 pixels, each held for 5
+    time steps.
 
     Attributes:
         rollout: Steps of each environment between updates, from 1.
         epochs: Passes over a rollout, from 1.
-        minibatch: Decisions for a step of the optimiser, about, from 2.
-        learning_rate: Of Adam, above 0.
-        annealing: Decisions after a border of tasks in which the learning rate falls to a tenth; 0 keeps it.
+        minibatch: Approximate number of decisions in an optimiser step, from 2.
+        learning_rate: Adam's learning rate, above 0.
+        annealing: Number of decisions after a task border over which the learning rate falls to a tenth; 0 keeps it
+            constant.
         discount: For each decision, 0 to 1.
-        trace: λ of generalised advantages, 0 to 1.
-        clip: How far a ratio of probabilities may leave 1, above 0.
-        entropy: Weight of the policy's entropy, from 0. With 0.01 the policy freezes after an easy task and learns no other.
-        reward_scale: Factor of rewards, above 0: 0.01 where an object pays 100.
-        max_gradient: Longest gradient, above 0; longer ones are shortened to it.
+        trace: λ of generalised advantage estimation, 0 to 1.
+        clip: Largest deviation of a probability ratio from 1, above 0.
+        entropy: Weight of the policy's entropy, from 0. With 0.01 the policy becomes deterministic after an easy task
+            and learns no other.
+        reward_scale: Factor of rewards, above 0: 0.01 if an object pays 100.
+        max_gradient: Largest gradient norm, above 0; larger gradients are clipped to it.
 
     Raises:
         ValueError: If a number is out of its range.
@@ -69,18 +72,19 @@ class Settings:
 
 
 class PPO(Learner):
-    """PPO with one network and one optimiser for its whole life: a :class:`driftworld.VectorAgent`.
+    """PPO with one network and one optimiser for the whole lifetime: a :class:`driftworld.VectorAgent`.
 
-    It sees colour images and chooses rows of a table of actions: run it with ``modalities="rgb"``, ``size`` as here and
-    ``actions=[…]``. The same seed gives the same weights to the bit on the same machine with ``torch.set_num_threads(1)``.
+    Observations are colour images, and actions are rows of an action table: run it with ``modalities="rgb"``, the same
+    ``size`` and ``actions=[…]``. The same seed gives bit-identical weights on the same machine with
+    ``torch.set_num_threads(1)``.
 
-    A subclass is a continual method. It overrides some of :meth:`extra_loss` (added to each step's loss), :meth:`mask_gradients`
-    (what may move), :meth:`after_update` (steps on other data), ``begin_task`` and ``end_task`` (borders of tasks), and
-    ``method_state`` (what is saved, and counted as memory).
+    A subclass is a continual method. It overrides some of :meth:`extra_loss` (added to each step's loss),
+    :meth:`mask_gradients` (the weights that may change), :meth:`after_update` (steps on other data), ``begin_task`` and
+    ``end_task`` (task borders), and ``method_state`` (saved state, counted as memory).
 
     Args:
-        num_actions: Rows of the table of actions.
-        num_envs: Environments that it acts in.
+        num_actions: Number of rows in the action table.
+        num_envs: Number of environments.
         settings: See :class:`Settings`.
         **options: ``seed``, ``size``, ``policy`` and ``borders``, see :class:`Learner`.
 
@@ -97,11 +101,11 @@ class PPO(Learner):
         self.reset_optimizer()
 
     def extra_loss(self) -> torch.Tensor | None:
-        """A loss, a scalar, that is added in each step of the optimiser."""
+        """A scalar loss to add in each optimiser step."""
         return None
 
     def mask_gradients(self) -> None:
-        """Called before each step of the optimiser, and before gradients are shortened; may change them in place."""
+        """Called before each optimiser step, before gradients are clipped; may change them in place."""
 
     def after_update(self, rollout: Rollout) -> None:
         """Called after the passes over a rollout; may take more steps with :meth:`step`."""
@@ -111,7 +115,7 @@ class PPO(Learner):
         """Actions ``(num_envs,)`` for images ``(num_envs, size, size, 3)``, alone or as ``"rgb"`` of a dictionary.
 
         Raises:
-            ValueError: If the images are of another shape.
+            ValueError: If the images have another shape.
         """
         began = time.process_time()
         images = self.images(observations)
@@ -129,14 +133,16 @@ class PPO(Learner):
 
     @torch.no_grad()
     def learn(self, transition: VectorTransition) -> None:
-        """Keeps a step, and learns when the rollout is full. One that is not goes on in the task's next learning block."""
+        """Stores a step, and learns when the rollout is full. An unfinished rollout continues in the task's next
+        learning block.
+        """
         began = time.process_time()
         rollout, t = self.rollout, self.time
         rollout.rewards[t] = torch.from_numpy(transition.rewards * self.settings.reward_scale)
         rollout.terminated[t] = torch.from_numpy(transition.terminated)
         rollout.ended[t] = torch.from_numpy(transition.terminated | transition.truncated)
         rollout.active[t] = torch.from_numpy(transition.active)
-        # The next call of act replaces it, by another episode's first image where one has ended.
+        # The next call of act replaces it, with the next episode's first image if one has ended.
         rollout.images[t + 1] = following = self.images(transition.next_observations)
         cut_off = torch.from_numpy(np.flatnonzero(transition.truncated & ~transition.terminated))
         if len(cut_off):
@@ -149,12 +155,12 @@ class PPO(Learner):
         self.seconds += time.process_time() - began
 
     def look(self, images: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
-        """Log-probabilities and values for acting, of one image for each environment."""
+        """Log-probabilities and values for acting, for one image of each environment."""
         log_policy, values = self.network(images)
         return log_policy, values
 
     def values_of(self, images: torch.Tensor, envs: torch.Tensor) -> torch.Tensor:
-        """Values ``(len(envs),)`` of what some environments see; no step is taken."""
+        """Values ``(len(envs),)`` of the observations of some environments, without a step."""
         values: torch.Tensor = self.network(images[envs])[1]
         return values
 
@@ -165,7 +171,7 @@ class PPO(Learner):
 
     @torch.no_grad()
     def finish_rollout(self) -> None:
-        """Learns from the steps since the last update; at a border they are fewer than ``settings.rollout``."""
+        """Learns from the steps since the last update; at a border there are fewer than ``settings.rollout``."""
         length, self.time = self.time, 0
         if length == 0:
             return
@@ -175,11 +181,11 @@ class PPO(Learner):
             self.update(rollout)
 
     def forget_rollout(self) -> None:
-        """Marks all steps as not active."""
+        """Marks all steps as inactive."""
         self.rollout.active.zero_()
 
     def update(self, rollout: Rollout) -> None:
-        """Passes of PPO over a rollout, then what the method adds."""
+        """PPO's passes over a rollout, then the method's additional steps."""
         settings = self.settings
         left = 1.0 - self.task_decisions / settings.annealing if settings.annealing else 1.0
         for group in self.optimizer.param_groups:
@@ -191,7 +197,9 @@ class PPO(Learner):
         self.after_update(rollout)
 
     def parts(self, rollout: Rollout) -> Iterator[torch.Tensor]:
-        """Places of active steps in the flattened rollout, shuffled, in parts of about one size: a single advantage has no deviation."""
+        """Indices of active steps in the flattened rollout, shuffled, in parts of about equal size: a single advantage
+        has no deviation.
+        """
         places = rollout.active.flatten().nonzero().squeeze(-1)
         if len(places) > 1:
             shuffled = places[torch.randperm(len(places), generator=self.shuffles)]
@@ -211,7 +219,7 @@ class PPO(Learner):
         return 0.5 * (values - target).square().mean() - gain - self.settings.entropy * entropy
 
     def step(self, loss: torch.Tensor) -> None:
-        """One step of the optimiser, with the method's loss and mask."""
+        """One optimiser step, with the method's loss and mask."""
         extra = self.extra_loss()
         self.optimizer.zero_grad()
         (loss if extra is None else loss + extra).backward()
@@ -221,18 +229,20 @@ class PPO(Learner):
         self.updates += 1
 
     def reset_optimizer(self) -> None:
-        """Adam without moments, for the present network."""
+        """Starts Adam without moments, for the current network."""
         rate = self.settings.learning_rate
         self.optimizer = torch.optim.Adam(self.network.parameters(), lr=rate, eps=1e-5, foreach=True)
 
     def state_dict(self) -> dict[str, Any]:
-        """All that it is between two experiences: :meth:`load_state_dict` makes another one go on to the same bits."""
+        """The complete state between two experiences: after :meth:`load_state_dict`, another learner continues
+        identically to the bit.
+        """
         return {
             **super().state_dict(), "optimizer": self.optimizer.state_dict(), "rollout": dict(vars(self.rollout)), "time": self.time
         }  # fmt: skip
 
     def load_state_dict(self, state: dict[str, Any]) -> None:
-        """Becomes what :meth:`state_dict` gave. The learner must have been made with the same arguments."""
+        """Restores the result of :meth:`state_dict`. The learner must have been made with the same arguments."""
         super().load_state_dict(state)
         self.optimizer.load_state_dict(state["optimizer"])
         vars(self.rollout).update({name: rows.clone() for name, rows in state["rollout"].items()})

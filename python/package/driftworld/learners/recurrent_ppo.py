@@ -1,16 +1,17 @@
-"""Recurrent PPO: PPO with a GRU, which learns from whole sequences of single environments.
+"""Recurrent PPO: PPO with a GRU, trained on whole sequences of single environments.
 
-The memory is emptied where an episode starts. A rollout keeps the memory that it began with; each pass runs through the sequences
-from there, so that gradients reach back to the start of the rollout (truncated backpropagation through time).
+The memory is reset at the start of an episode. A rollout stores its initial memory; each pass runs through the
+sequences from there, so that gradients reach back to the start of the rollout (truncated backpropagation through time).
 Source: stored states as in R2D2 (Kapturowski et al. 2019, section 3), without its burn-in; PPO as in ``ppo.py``.
 
 Known traps:
 
-- The memory at the start of a rollout is that of older weights: after several passes it is stale. Few epochs keep it small.
-- A cue that was seen before the rollout began is remembered, but how to remember it gets no gradient: ``settings.rollout`` should
-  not be shorter than the gap that is to be bridged.
-- The other methods look at single images: they do not combine with it as they are.
-- The last observation of an episode that ran out of time is valued with the memory of that episode, not with an empty one.
+- The initial memory of a rollout was computed with older weights, so it is stale after several passes. Few epochs limit
+  this.
+- A cue seen before the rollout is remembered, but remembering it gets no gradient: ``settings.rollout`` should not be
+  shorter than the gap to bridge.
+- The other methods use single images, and cannot be combined with it unchanged.
+- The last observation of a truncated episode is evaluated with that episode's memory, not with an empty one.
 """
 
 from __future__ import annotations
@@ -27,10 +28,10 @@ from driftworld.learners.rollout import Rollout
 
 
 class RecurrentPPO(PPO):
-    """PPO with :class:`driftworld.learners.networks.RecurrentNetwork`. Arguments as :class:`PPO`.
+    """PPO with :class:`driftworld.learners.networks.RecurrentNetwork`. Arguments as for :class:`PPO`.
 
     Attributes:
-        memory: What it remembers in each environment, ``(num_envs, hidden)``.
+        memory: The memory in each environment, ``(num_envs, hidden)``.
     """
 
     name = "recurrent_ppo"
@@ -40,7 +41,7 @@ class RecurrentPPO(PPO):
         length = self.settings.rollout
         self.memory = torch.zeros(num_envs, self.network.hidden)
         self._starts = torch.ones(num_envs, dtype=torch.bool)
-        # Beside the rest of the rollout, so that they are saved with it.
+        # Stored with the rest of the rollout, so that they are saved with it.
         vars(self.rollout).update(
             starts=torch.zeros((length, num_envs), dtype=torch.bool), memories=torch.zeros(length, num_envs, self.network.hidden)
         )  # fmt: skip
@@ -50,12 +51,12 @@ class RecurrentPPO(PPO):
         return RecurrentNetwork(self.num_actions, self.size)
 
     def begin(self, env: int, label: str | None, seed: int) -> None:
-        """Before an experience: what was remembered in its environment is forgotten."""
+        """Called before an experience: resets the memory of its environment."""
         super().begin(env, label, seed)
         self._starts[env] = True
 
     def look(self, images: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
-        """Log-probabilities and values for acting; the memory goes on by a step."""
+        """Log-probabilities and values for acting; advances the memory by a step."""
         if not self.frozen:
             self._extra("starts")[self.time], self._extra("memories")[self.time] = self._starts, self.memory
         log_policy, values, self.memory = self.network(images.unsqueeze(0), self.memory, self._starts.unsqueeze(0))
@@ -63,13 +64,13 @@ class RecurrentPPO(PPO):
         return log_policy.squeeze(0), values.squeeze(0)
 
     def values_of(self, images: torch.Tensor, envs: torch.Tensor) -> torch.Tensor:
-        """Values of what some environments see after all that they remember; the memory stays as it is."""
+        """Values of the observations of some environments, given their memory, which stays unchanged."""
         starts = torch.zeros((1, len(envs)), dtype=torch.bool)
         values: torch.Tensor = self.network(images[envs].unsqueeze(0), self.memory[envs], starts)[1]
         return values.squeeze(0)
 
     def parts(self, rollout: Rollout) -> Iterator[torch.Tensor]:
-        """Places of active steps in the flattened rollout, in parts of whole environments."""
+        """Indices of active steps in the flattened rollout, in parts of whole environments."""
         envs = rollout.active.any(dim=0).nonzero().squeeze(-1)
         if int(rollout.active.sum()) < 2:
             return
@@ -83,7 +84,7 @@ class RecurrentPPO(PPO):
                 yield places
 
     def look_again(self, rollout: Rollout, part: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
-        """Runs through the sequences of a part once more, with gradients."""
+        """Runs through the sequences of a part again, with gradients."""
         envs, columns = (part % self.num_envs).unique(return_inverse=True)
         starts, memories = (vars(rollout)[name] for name in ("starts", "memories"))
         log_policy, values, _ = self.network(rollout.images[:-1, envs], memories[0, envs], starts[:, envs])

@@ -1,4 +1,4 @@
-"""What a learner saw and did since its last update, and generalised advantages of it."""
+"""The experience since a learner's last update, and generalised advantage estimation."""
 
 from __future__ import annotations
 
@@ -6,18 +6,19 @@ import torch
 
 
 class Rollout:
-    """What ``num_envs`` environments did in ``length`` steps: tensors ``(length, num_envs, …)``, images and values one more.
+    """``length`` steps of ``num_envs`` environments: tensors ``(length, num_envs, …)``, one step more for images and
+    values.
 
     Attributes:
         images: Bytes ``(length + 1, num_envs, size, size, 3)``.
-        values: What each image was worth, ``(length + 1, num_envs)``.
-        last_values: What the last image of an episode was worth, where a limit of steps ended one, ``(length, num_envs)``.
+        values: Value of each image, ``(length + 1, num_envs)``.
+        last_values: Value of an episode's last image where a limit of steps ended it, ``(length, num_envs)``.
         log_policy: Log-probabilities of all actions, ``(length, num_envs, num_actions)``.
-        actions: Numbers of actions, ``(length, num_envs)``.
+        actions: Action indices, ``(length, num_envs)``.
         rewards: Scaled rewards, ``(length, num_envs)``.
-        terminated: Where what happened ended an episode, ``(length, num_envs)``.
-        ended: Where that or a limit of steps did.
-        active: Where there was an experience; other steps are not learned from.
+        terminated: Whether the episode terminated, ``(length, num_envs)``.
+        ended: Whether it terminated or was truncated by a limit of steps.
+        active: Whether an experience was running; other steps are not learned from.
     """
 
     def __init__(self, length: int, num_envs: int, size: int, num_actions: int) -> None:
@@ -32,29 +33,31 @@ class Rollout:
         self.active = torch.zeros((length, num_envs), dtype=torch.bool)
 
     def first(self, length: int) -> Rollout:
-        """A view on its first steps."""
+        """A view of its first steps."""
         view = object.__new__(type(self))
         longer = ("images", "values")
         vars(view).update({name: rows[: length + (name in longer)] for name, rows in vars(self).items()})
         return view
 
     def following(self, values: torch.Tensor) -> torch.Tensor:
-        """What came after each step, ``(length, num_envs)``, by values ``(length + 1, num_envs)`` of the images.
+        """The value after each step, ``(length, num_envs)``, from values ``(length + 1, num_envs)`` of the images.
 
-        It is 0 after a termination, and ``last_values`` after a truncation: never the next episode's first image.
+        It is 0 after a termination, and ``last_values`` after a truncation: never the value of the next episode's first
+        image.
         """
         return torch.where(self.ended, self.last_values, values[1:]) * ~self.terminated
 
 
 def gae(rollout: Rollout, discount: float, trace: float) -> torch.Tensor:
-    """Generalised advantages ``(length, num_envs)``: Σ (discount · trace)ᵏ δ, up to the end of the episode or of the rollout.
+    """Generalised advantage estimates ``(length, num_envs)``: Σ (discount · trace)ᵏ δ, up to the end of the episode or
+    of the rollout.
 
     δ = reward + discount · V(next) − V. Source: Schulman et al. 2016 (arXiv:1506.02438), eq. 16.
 
     Args:
-        rollout: With ``values`` of all images.
+        rollout: The rollout, with ``values`` of all images.
         discount: For each decision, 0 to 1.
-        trace: λ, 0 (one step) to 1 (all of them).
+        trace: λ, 0 (one step) to 1 (all steps).
     """
     surprise = rollout.rewards + discount * rollout.following(rollout.values) - rollout.values[:-1]
     carried = discount * trace * ~rollout.ended

@@ -1,13 +1,14 @@
-"""Shrink and perturb: at each border of tasks all weights get smaller, and some of a fresh network's are added.
+"""Shrink and perturb: at each task border all weights are scaled down, and scaled weights of a fresh network are added.
 
-θ ← shrink · θ + perturb · θ_fresh, with θ_fresh as at the start of a life. Source: Ash and Adams 2020 (arXiv:1910.08475), alg. 1. It is
-meant for plasticity (a network that learned long learns new things more slowly), not against forgetting.
+θ ← shrink · θ + perturb · θ_fresh, with θ_fresh as at the start of a lifetime. Source: Ash and Adams 2020
+(arXiv:1910.08475), alg. 1. It preserves plasticity (a network trained for long learns new tasks more slowly), and does
+not prevent forgetting.
 
 Known traps:
 
-- Adam's moments belong to the weights before; they are cleared, so that this is compared with ``ResetOptimizer``.
-- A rectified network of n layers without biases that shrinks by s has outputs smaller by sⁿ: the policy gets less certain, which
-  is a part of the effect. Compare with another ``entropy``, too.
+- Adam's moments belong to the old weights; they are cleared, so compare this method with ``ResetOptimizer``.
+- Shrinking a ReLU network of n layers without biases by s scales its outputs by sⁿ: the policy becomes less certain,
+  which is part of the effect. Compare with another ``entropy``, too.
 """
 
 from __future__ import annotations
@@ -20,12 +21,12 @@ from driftworld.learners.ppo import PPO
 
 
 class ShrinkAndPerturb(PPO):
-    """PPO whose weights shrink and are perturbed where a task ends.
+    """PPO whose weights are shrunk and perturbed at the end of each task.
 
     Args:
-        num_actions: Rows of the table of actions.
-        num_envs: Environments that it acts in.
-        shrink: Factor of the weights, 0 to 1.
+        num_actions: Number of rows in the action table.
+        num_envs: Number of environments.
+        shrink: Factor of the old weights, 0 to 1.
         perturb: Factor of the fresh weights, from 0.
         **options: As for :class:`PPO`; ``borders`` is ``"labels"`` by default.
     """
@@ -41,7 +42,7 @@ class ShrinkAndPerturb(PPO):
 
     @torch.no_grad()
     def end_task(self, label: str | None) -> None:
-        """Shrinks, perturbs, and clears Adam's moments."""
+        """Shrinks and perturbs the weights, and clears Adam's moments."""
         fresh = dict(self.fresh_network(self.tasks).named_parameters())
         for name, weight in self.network.named_parameters():
             weight.mul_(self.shrink).add_(fresh[name], alpha=self.perturb)
