@@ -1,5 +1,5 @@
-//! Law of asset libraries. Input that starts with [`SEALED`] gets a valid header in front, so that the checksum does not stop the
-//! fuzzer.
+//! Law of asset libraries. Input that starts with [`SEALED`] gets a valid header in front, so that the checksum does not
+//! stop the fuzzer.
 
 use driftworld_env::Library;
 use sha2::{Digest, Sha256};

@@ -224,7 +224,7 @@ fn on_disk(file: &[u8]) {
         }
         Err(error) => {
             refusal::message(&error.to_string());
-            // Not through driftworld-files: the test's own file, which no user named.
+            // The test's own file, not by driftworld-files: no user names it.
             let left = fs::read(&path).expect("it is there");
             assert_eq!(left, file, "what is refused is left alone");
         }

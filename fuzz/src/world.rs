@@ -46,7 +46,7 @@ pub(crate) fn check(bytes: &[u8]) {
     }
 }
 
-/// What is written of a world is the world.
+/// A world round-trips through its own JSON.
 pub(crate) fn written_and_read(world: &World) {
     let text = world.to_json();
     let again =

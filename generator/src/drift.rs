@@ -9,7 +9,7 @@ use crate::stream::Stream;
 /// How values that cannot be interpolated change: texts, booleans, numbers from a list.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Switch {
-    /// At the fraction that the parameter declares as `switch_at`; a half where it declares none.
+    /// At the fraction that the parameter declares as `switch_at`, or halfway if it declares none.
     #[default]
     AtPoint,
     /// By chance: at fraction t of the drift a world has the new value with probability t, drawn under this seed.
@@ -103,8 +103,8 @@ impl Drift {
         }
     }
 
-    /// The drift that a scenario's regime declares, from its variant to the drift's; mixing switches draw under the regime's
-    /// seed.
+    /// The drift that a scenario's regime declares, from its variant to the drift's; mixing switches draw under the
+    /// regime's seed.
     ///
     /// # Errors
     /// [`GeneratorError::DifferentTasks`].

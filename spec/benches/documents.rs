@@ -1,4 +1,4 @@
-//! How long it takes to read and check documents. Drawing worlds is measured in generator/benches/worlds.rs.
+//! Benchmarks of reading and checking documents. Drawing worlds is measured in generator/benches/worlds.rs.
 
 use std::hint::black_box;
 
@@ -40,7 +40,7 @@ fn documents(c: &mut Criterion) {
     });
 }
 
-/// A maze of 20 × 20 cells from a seed to its walls.
+/// Plans a maze of 20 × 20 cells from a seed.
 fn layouts(c: &mut Criterion) {
     let layout = Layout {
         maze: Some(Maze {

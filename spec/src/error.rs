@@ -59,7 +59,7 @@ impl Problem {
         }
     }
 
-    /// Moves the problem to a value below `place`.
+    /// The same problem, with its pointer moved below `place`.
     pub(crate) fn within(mut self, place: &str) -> Self {
         self.pointer.insert_str(0, place);
         self

@@ -1,5 +1,5 @@
-//! Reports invalid names as problems of a document. The grammar is in `driftworld-text`; the schemas repeat as much of it as they
-//! can.
+//! Reports invalid names as problems of a document. The grammar is in `driftworld-text`; the schemas repeat as much of
+//! it as they can.
 
 use driftworld_text::{check_name, quoted};
 

@@ -1,5 +1,5 @@
-//! [`Oklab`]: a colour space whose Euclidean distance follows perception. Uses `libm`, so that every platform gives the same
-//! bits.
+//! [`Oklab`]: a colour space whose Euclidean distance follows perception. Uses `libm`, so that every platform gives
+//! the same bits.
 
 use crate::Color;
 
@@ -68,8 +68,8 @@ impl Oklab {
 }
 
 impl Color {
-    /// Euclidean distance in [`Oklab`]: 0 for equal colours, about 0.02 just noticeable, 1 between black and white, which is the
-    /// largest.
+    /// Euclidean distance in [`Oklab`]: 0 for equal colours, about 0.02 just noticeable, 1 between black and white, which
+    /// is the largest.
     ///
     /// # Example
     /// ```
@@ -82,8 +82,8 @@ impl Color {
         Oklab::from(self).distance(Oklab::from(other))
     }
 
-    /// The colour at fraction `t` of the straight line to another in [`Oklab`]; each channel is clipped to what a screen can
-    /// show.
+    /// The colour at fraction `t` of the straight line to another in [`Oklab`]; each channel is clipped to what a
+    /// screen can show.
     #[must_use]
     pub fn mix(self, other: Self, t: f64) -> Self {
         let (from, to) = (Oklab::from(self).0, Oklab::from(other).0);

@@ -1,5 +1,5 @@
-//! The advice in messages, taken: whatever a message about a document under `tests/documents` says to do mends what it complains
-//! of. The messages themselves are compared in `documents.rs`.
+//! Follows the advice in messages: for every bad document under `tests/documents`, applying the advice fixes the reported
+//! problem. The messages themselves are compared in `documents.rs`.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use driftworld_spec::maps::MapLibrary;
 use driftworld_spec::{Problem, Scenario, SpecError, TaskSpec, World};
 use serde_json::Value;
 
-/// What stands before a value that an advice spells out.
+/// Phrases before a value that an advice spells out.
 const BEFORE_A_VALUE: [&str; 4] = [
     "drop the quotes: ",
     "write the number alone: ",
@@ -24,7 +24,7 @@ fn load(kind: &str, text: &str) -> Result<(), SpecError> {
     }
 }
 
-/// The document as the advice would have it; `None` where the advice leaves a choice to the author.
+/// The document after following the advice; `None` if the advice leaves a choice to the author.
 fn mended(document: &Value, problem: &Problem) -> Option<Value> {
     let mut document = document.clone();
     let advice = problem.advice.as_deref()?;
@@ -59,7 +59,7 @@ fn rename(object: &mut Value, key: &str, near: String) -> Option<()> {
     Some(())
 }
 
-/// What a document earns, place and complaint, without its lines.
+/// The problems of a document, by place and complaint, without line numbers.
 fn complaints(kind: &str, text: &str) -> Vec<(String, String)> {
     let error = load(kind, text).err();
     let problems = error.iter().flat_map(SpecError::problems);
@@ -80,7 +80,7 @@ fn bad_documents(kind: &str) -> impl Iterator<Item = String> {
 }
 
 #[test]
-fn each_piece_of_advice_mends_what_its_message_complains_of() {
+fn following_the_advice_fixes_the_reported_problem() {
     let mut taken = 0;
     for kind in ["world", "task", "scenario", "maps"] {
         for text in bad_documents(kind) {

@@ -1,4 +1,4 @@
-//! Mistakes in different parts of a task are named at once, whatever kinds they are of, and nothing is said that only follows from them.
+//! Mistakes of different kinds in different parts of a task are reported together, without problems that merely follow from them.
 
 use std::collections::BTreeSet;
 
@@ -6,10 +6,10 @@ use driftworld_spec::{Classes, TaskSpec};
 use proptest::prelude::*;
 use serde_json::{Value, json};
 
-/// A mistake: where something is put in place of what stands there.
+/// A mistake: a pointer, and the value to put there.
 type Mistake = (&'static str, Value);
 
-/// Mistakes that the schema finds and mistakes that only later checks can find, each in a part of its own.
+/// Mistakes that the schema finds and mistakes that only later checks find, each in a separate part.
 fn mistakes() -> Vec<Mistake> {
     vec![
         ("/groups/0/colour", json!("red")),
@@ -37,7 +37,7 @@ fn sound() -> Value {
     serde_json::from_str(&text).expect("it is JSON")
 }
 
-/// What is said of a task with these mistakes, each problem without its line and column.
+/// The problems of a task with these mistakes, without line and column.
 fn said(chosen: &[&Mistake]) -> BTreeSet<String> {
     let mut task = sound();
     for (pointer, value) in chosen {
@@ -60,7 +60,7 @@ fn said(chosen: &[&Mistake]) -> BTreeSet<String> {
 }
 
 #[test]
-fn each_mistake_alone_is_named_where_it_stands() {
+fn single_mistake_is_reported_at_its_place() {
     assert!(said(&[]).is_empty(), "{:?}", said(&[]));
     for mistake in &mistakes() {
         let found = said(&[mistake]);
@@ -75,9 +75,9 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 150)))]
 
     #[test]
-    fn mistakes_together_are_what_they_are_alone(chosen in prop::sample::subsequence((0..mistakes().len()).collect::<Vec<_>>(), 1..7)) {
+    fn combined_mistakes_report_each_problem(chosen in prop::sample::subsequence((0..mistakes().len()).collect::<Vec<_>>(), 1..7)) {
         let all = mistakes();
-        // A group that the schema refuses is not looked into any further.
+        // A group that the schema refuses is not checked any further.
         let hidden = |mistake: &Mistake| mistake.0 == "/groups/1/object/class" && chosen.iter().any(|other| all[*other].0 == "/groups/1/count");
         let chosen: Vec<&Mistake> = chosen.iter().map(|number| &all[*number]).filter(|mistake| !hidden(mistake)).collect();
         let alone: BTreeSet<String> = chosen.iter().flat_map(|mistake| said(&[mistake])).collect();
@@ -86,7 +86,7 @@ proptest! {
 }
 
 #[test]
-fn the_two_mistakes_of_the_readme_are_told_together() {
+fn both_mistakes_of_the_readme_are_reported_together() {
     let variant = ("/variants/dusk/light", json!(60));
     let reference = ("/world/environment_params/light_intensity", json!({ "param": "ligth" }));
     let found: Vec<String> = said(&[&variant, &reference]).into_iter().collect();
@@ -98,9 +98,9 @@ fn the_two_mistakes_of_the_readme_are_told_together() {
     );
 }
 
-/// A list that is left before its end may hold more problems than were counted; the message says so.
+/// A list that was left before its end may have more problems than were counted; the message says so.
 #[test]
-fn where_problems_were_not_counted_to_the_end_there_are_at_least_so_many() {
+fn incomplete_count_of_problems_is_reported_as_a_minimum() {
     let said = |num: usize| {
         let objects = vec![json!({ "class": "cube", "coordinates": [0, "x"], "heading": "h", "reward": "r" }); num];
         let text = json!({ "objects": objects }).to_string();

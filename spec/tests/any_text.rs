@@ -1,4 +1,4 @@
-//! Whatever the text, reading ends in a document or in an error that says where: never in a panic.
+//! Reading any text gives a document or an error with a place, but never panics.
 
 use driftworld_spec::{Scenario, SpecError, TaskSpec, World};
 use proptest::prelude::*;
@@ -9,7 +9,7 @@ fn example(name: &str) -> String {
     std::fs::read_to_string(path).expect("the example tasks ship with the project")
 }
 
-/// Reads a text as everything it could be; every problem has a place in the text.
+/// Reads a text as every kind of document; every problem must have a place in the text.
 fn read_all(text: &str) {
     let lines = text.lines().count().max(1) + 1;
     let errors = [
@@ -34,7 +34,7 @@ fn read_all(text: &str) {
     }
 }
 
-/// Values that stand in wrong places.
+/// Values of the wrong kind.
 fn wrong_value() -> impl Strategy<Value = Value> {
     prop_oneof![
         Just(Value::Null),
@@ -52,7 +52,7 @@ fn wrong_value() -> impl Strategy<Value = Value> {
     ]
 }
 
-/// Puts a value at the nth place of a document, counted depth first.
+/// Replaces the nth value of a document, counted depth first.
 fn replace_nth(json: &mut Value, n: &mut usize, with: &Value) {
     if *n == 0 {
         *json = with.clone();
@@ -69,25 +69,25 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 192)))]
 
     #[test]
-    fn any_text_at_all(text in "\\PC{0,200}") {
+    fn any_text_is_read_or_refused(text in "\\PC{0,200}") {
         read_all(&text);
     }
 
     #[test]
-    fn a_task_that_is_cut_off_anywhere(end in 0usize..4000) {
+    fn truncated_task_is_read_or_refused(end in 0usize..4000) {
         let text = example("find_objects");
         read_all(&text[..text.floor_char_boundary(end.min(text.len()))]);
     }
 
     #[test]
-    fn a_task_with_any_value_anywhere(place in 0usize..260, with in wrong_value()) {
+    fn task_with_any_value_replaced_is_read_or_refused(place in 0usize..260, with in wrong_value()) {
         let mut json: Value = serde_json::from_str(&example("find_objects")).expect("the example is JSON");
         replace_nth(&mut json, &mut place.clone(), &with);
         read_all(&serde_json::to_string_pretty(&json).expect("JSON serialises"));
     }
 
     #[test]
-    fn a_task_with_any_bytes_swapped(at in 0usize..3500, with in "[{}\\[\\],:\"0-9a-z ]{1,3}") {
+    fn task_with_swapped_bytes_is_read_or_refused(at in 0usize..3500, with in "[{}\\[\\],:\"0-9a-z ]{1,3}") {
         let mut text = example("get_to_goal");
         let at = text.floor_char_boundary(at.min(text.len() - 1));
         let end = text.ceil_char_boundary((at + with.len()).min(text.len()));
@@ -97,7 +97,7 @@ proptest! {
 }
 
 #[test]
-fn a_billion_objects_and_deep_nesting_are_refused_quickly() {
+fn huge_and_deeply_nested_documents_are_refused_quickly() {
     read_all(&"[".repeat(1_000_000));
     read_all(&"{\"a\":".repeat(100_000));
     let text = example("find_objects").replace("\"value\": 5", "\"value\": 1000000000");

@@ -1,4 +1,4 @@
-//! Look-ups in tasks: what is wrong with one, and where it is said. The worlds that they make are tested in the generator.
+//! Errors of look-ups in tasks, and their places. The resulting worlds are tested in the generator.
 
 use driftworld_spec::{TaskSpec, Value};
 
@@ -11,7 +11,7 @@ const PARAMETERS: &str = r#"
     "size": { "role": "randomized", "type": "number", "affects": ["S"], "distribution": { "uniform": { "low": 1, "high": 2 } } },
     "map": { "role": "variant", "type": "layout", "affects": ["S"], "choices": [{ "walls": [] }], "default": { "walls": [] } }"#;
 
-/// A task whose light is this, with these parameters more.
+/// A task with this light, and further parameters.
 fn task(light: &str, more: &str) -> String {
     format!(
         r#"{{ "name": "t", "parameters": {{ {PARAMETERS}{more} }},
@@ -68,7 +68,7 @@ fn a_look_up_that_comes_to_nothing_is_refused_where_it_is_wrong() {
 }
 
 #[test]
-fn a_value_between_the_cases_is_refused_when_a_variant_takes_it() {
+fn value_without_a_case_is_refused_when_a_variant_takes_it() {
     let text = task(r#"{ "case": { "param": "tint" }, "of": { "red": 1, "blue": 2 } }"#, "");
     let task = TaskSpec::from_json("t.json", &text).unwrap_or_else(|error| panic!("{error}"));
     let near = task.variant("near").expect("it is declared");
@@ -79,7 +79,7 @@ fn a_value_between_the_cases_is_refused_when_a_variant_takes_it() {
 }
 
 #[test]
-fn a_margin_without_a_case_is_refused_when_a_variant_takes_it() {
+fn margin_without_a_case_is_refused_when_a_variant_takes_it() {
     let apart = r#"{ "case": { "param": "tint" }, "of": { "red": 1, "blue": 2 } }"#;
     let group = |margins: &str| {
         let cubes =

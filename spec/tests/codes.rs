@@ -1,4 +1,4 @@
-//! Every code that an error of this crate can carry, with a document that earns it and the message its author sees.
+//! Every error code of this crate, with a document that causes it and the message that its author sees.
 
 use std::collections::BTreeSet;
 
@@ -150,7 +150,7 @@ fn every_code_in_the_source_has_a_case_here_and_every_case_its_message() {
     assert!(missing.is_empty(), "no case for {missing:?}");
 }
 
-/// Every `"spec/…"` between quotes in the crate's source.
+/// Every quoted `"spec/…"` in the crate's source.
 fn codes_in_source() -> BTreeSet<String> {
     let mut folders = vec![std::path::PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/src"))];
     let mut codes = BTreeSet::new();

@@ -1,4 +1,4 @@
-//! The laws of distributions: against scipy's values, and against the definitions. What is drawn is tested in the generator.
+//! Laws of distributions, compared with scipy's values and with their definitions. Draws are tested in the generator.
 
 use driftworld_spec::{Distribution, Number, Spread, Value};
 use proptest::prelude::*;
@@ -13,21 +13,21 @@ struct Case {
     quantile: Vec<[f64; 2]>,
 }
 
-/// How far two numbers are apart, as a share of the greater, or outright where both are small.
+/// The difference of two numbers, relative to the greater, or absolute if both are small.
 fn miss(found: f64, expected: f64) -> f64 {
     (found - expected).abs() / expected.abs().max(1.0)
 }
 
-/// The values are scipy's; `oracles/distributions.py` made them.
+/// The values come from scipy, through `oracles/distributions.py`.
 #[test]
-fn mean_variance_cumulative_function_and_quantiles_are_those_of_scipy() {
+fn moments_cumulative_function_and_quantiles_agree_with_scipy() {
     let text = include_str!("oracles/distributions.json");
     let cases: Vec<Case> = serde_json::from_str(text).expect("the oracle file is what its script writes");
     assert!(cases.len() >= 40);
     for case in cases {
         let name = case.distribution.to_string();
         assert_eq!(case.distribution.fault(), None, "{name}");
-        // Variances of tight distributions far from 0 lose digits in scipy itself: it subtracts squares.
+        // scipy itself loses digits of variances of narrow distributions far from 0, because it subtracts squares.
         let tolerance = 1e-9;
         let mean = case.distribution.mean().expect("it draws numbers");
         assert!(
@@ -43,7 +43,7 @@ fn mean_variance_cumulative_function_and_quantiles_are_those_of_scipy() {
         );
         for [x, expected] in case.cdf {
             let found = case.distribution.cdf(x).expect("it draws numbers");
-            // Binomials of 100,000 go through the logarithm of the gamma function: 1e6, of which the last digit is 1e-10.
+            // Binomials of 100,000 use the logarithm of the gamma function: about 1e6, whose last digit is 1e-10.
             assert!(
                 (found - expected).abs() < 1e-10,
                 "{name}: cdf({x}) is {found}, expected {expected}"
@@ -51,7 +51,7 @@ fn mean_variance_cumulative_function_and_quantiles_are_those_of_scipy() {
         }
         for [p, expected] in case.quantile {
             let found = case.distribution.quantile(p).expect("it draws numbers");
-            // At 1 - 1e-9 a quantile moves by what the last bits of p are worth.
+            // At 1 - 1e-9, a quantile moves with the last bits of p.
             assert!(
                 miss(found, expected) < 1e-7,
                 "{name}: quantile({p}) is {found}, expected {expected}"
@@ -60,7 +60,7 @@ fn mean_variance_cumulative_function_and_quantiles_are_those_of_scipy() {
     }
 }
 
-/// Any distribution of numbers that can be drawn from, but for mixtures.
+/// Any drawable distribution of numbers, except mixtures.
 fn any_family() -> impl Strategy<Value = Distribution> {
     prop_oneof![
         (-9.0..9.0, 0.01..9.0).prop_map(|(low, wide): (f64, f64)| Distribution::Uniform { low, high: low + wide }),
@@ -114,7 +114,7 @@ fn any_family() -> impl Strategy<Value = Distribution> {
     ]
 }
 
-/// Any distribution of numbers that can be drawn from.
+/// Any drawable distribution of numbers.
 fn any_numbers() -> impl Strategy<Value = Distribution> {
     any_family().prop_recursive(2, 6, 3, |inner| {
         prop::collection::vec((inner, 0.01..3.0), 1..4).prop_map(|parts: Vec<(Distribution, f64)>| {
@@ -131,7 +131,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: crate::tier::quick_or_full(24, 512), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn quantile_and_cumulative_function_are_each_others_inverse(law in any_numbers(), p in 0.001..0.999_f64, q in 0.001..0.999_f64) {
+    fn quantile_and_cumulative_function_are_inverse(law in any_numbers(), p in 0.001..0.999_f64, q in 0.001..0.999_f64) {
         prop_assert_eq!(law.fault(), None);
         let quantile = |p| law.quantile(p).expect("it draws numbers");
         let cdf = |x| law.cdf(x).expect("it draws numbers");
@@ -144,7 +144,7 @@ proptest! {
     }
 
     #[test]
-    fn a_distribution_survives_writing_and_reading(law in any_numbers()) {
+    fn distribution_round_trips_through_json(law in any_numbers()) {
         let text = serde_json::to_string(&law).expect("a distribution serialises");
         prop_assert_eq!(serde_json::from_str::<Distribution>(&text).expect("and reads back"), law);
         prop_assert!(serde_json::from_str::<Distribution<Number>>(&text).is_ok());
@@ -155,8 +155,8 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: crate::tier::quick_or_full(24, 64), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn mean_and_variance_are_those_of_the_quantiles(law in any_family()) {
-        // Midpoints of 400 equal shares of probability; tails are cut and steps are coarse, so the tolerance is wide.
+    fn mean_and_variance_agree_with_the_quantiles(law in any_family()) {
+        // Midpoints of 400 equal shares of probability: this cuts the tails and is coarse, so the tolerance is wide.
         let shares = 400;
         let numbers: Vec<f64> = (0..shares)
             .map(|k| law.quantile((f64::from(k) + 0.5) / f64::from(shares)).expect("it draws numbers"))
@@ -170,7 +170,7 @@ proptest! {
     }
 
     #[test]
-    fn a_mixture_has_the_moments_of_its_parts(parts in prop::collection::vec((any_family(), 0.01..3.0), 1..5)) {
+    fn mixture_has_the_moments_of_its_parts(parts in prop::collection::vec((any_family(), 0.01..3.0), 1..5)) {
         let (parts, weights): (Vec<Distribution>, Vec<f64>) = parts.into_iter().unzip();
         let total: f64 = weights.iter().sum();
         let mean_of = |of: &dyn Fn(&Distribution) -> f64| -> f64 {
@@ -211,7 +211,7 @@ fn points_have_the_moments_of_their_shapes() {
         radius: 4.0,
     };
     assert!(close(covariance(&disc), [[4.0, 0.0], [0.0, 4.0]]));
-    // Two points 2 apart along x, half and half: variance 1 along x, none along y.
+    // Two points 2 apart along x with equal weights: variance 1 along x, none along y.
     let two = Distribution::Mixture {
         parts: [-1.0, 1.0]
             .map(|x| Distribution::Constant {

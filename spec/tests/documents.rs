@@ -1,5 +1,5 @@
-//! The documents under `tests/documents`: the committed schemas alone refuse the bad ones and accept the good ones, and
-//! each bad one earns the message beside it. What the schemas cannot see is tested in `tasks.rs` and `codes.rs`.
+//! The documents under `tests/documents`: the committed schemas alone refuse the bad ones and accept the good ones, and each bad
+//! one gives the message in its snapshot. Checks beyond the schemas are tested in `tasks.rs` and `codes.rs`.
 
 use std::collections::BTreeSet;
 use std::panic::catch_unwind;
@@ -10,13 +10,13 @@ use driftworld_spec::{Scenario, SpecError, TaskSpec, World};
 use serde_json::Value;
 
 const KINDS: [&str; 4] = ["world", "task", "scenario", "maps"];
-/// Keys of a schema that no good document has, as pointers into the schema, each with a reason.
+/// Keys of a schema that no good document contains, as pointers into the schema, each with a reason.
 const KEYS_WITHOUT_A_DOCUMENT: [(&str, &str); 0] = [];
 
 /// One file of the suite.
 struct Case {
     kind: &'static str,
-    /// The file's path below `tests/documents`: what its messages call it.
+    /// The file's path below `tests/documents`, which is its name in messages.
     name: String,
     path: PathBuf,
 }
@@ -30,7 +30,7 @@ impl Case {
         serde_json::from_str(&self.text()).unwrap_or_else(|error| panic!("{}: {error}", self.name))
     }
 
-    /// Reads the document as an author's would be read.
+    /// Reads the document as a user's would be read.
     fn load(&self) -> Result<(), SpecError> {
         let text = self.text();
         match self.kind {
@@ -50,7 +50,7 @@ fn folder(verdict: &str, kind: &str) -> PathBuf {
     root().join("tests/documents").join(verdict).join(kind)
 }
 
-/// The names, without the ending, of a folder's files that have this ending; sorted.
+/// The names, without extension, of a folder's files with this extension; sorted.
 fn stems(folder: &Path, ending: &str) -> BTreeSet<String> {
     let entries = std::fs::read_dir(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
     let names = entries.map(|entry| entry.expect("the folder can be listed").file_name());
@@ -76,7 +76,7 @@ fn schema(kind: &str) -> Value {
     serde_json::from_str(&text).expect("a committed schema is JSON")
 }
 
-/// The documents of a verdict that the committed schemas judge otherwise, and how many there are in all.
+/// The documents of a verdict that the committed schemas judge differently, and the total number.
 fn judged_otherwise(verdict: &str, expect_valid: bool) -> (Vec<String>, usize) {
     let mut otherwise = Vec::new();
     let mut count = 0;
@@ -93,14 +93,14 @@ fn judged_otherwise(verdict: &str, expect_valid: bool) -> (Vec<String>, usize) {
 }
 
 #[test]
-fn the_schemas_alone_refuse_every_bad_document() {
+fn schemas_alone_refuse_every_bad_document() {
     let (accepted, count) = judged_otherwise("bad", false);
     assert!(accepted.is_empty(), "accepted, though bad: {accepted:#?}");
     assert!(count >= 300, "{count} bad documents");
 }
 
 #[test]
-fn the_schemas_alone_accept_every_good_document() {
+fn schemas_alone_accept_every_good_document() {
     let (refused, count) = judged_otherwise("good", true);
     assert!(refused.is_empty(), "refused, though good: {refused:#?}");
     assert!(count >= 30, "{count} good documents");
@@ -113,7 +113,7 @@ fn every_good_document_loads() {
     }
 }
 
-/// Compares a bad document's message with the snapshot beside it.
+/// Compares a bad document's message with its snapshot.
 fn compare(case: &Case) {
     let error = case.load().expect_err(&case.name);
     let mut settings = insta::Settings::new();
@@ -125,8 +125,8 @@ fn compare(case: &Case) {
 }
 
 #[test]
-fn every_bad_document_earns_the_message_beside_it() {
-    // A change of wording touches many messages: go on after the first that differs.
+fn every_bad_document_gives_its_snapshot_message() {
+    // A change of wording affects many messages: continues after the first difference.
     let differs = |case: &Case| catch_unwind(|| compare(case)).is_err();
     let cases = KINDS.iter().flat_map(|kind| cases("bad", kind));
     let changed: Vec<String> = cases.filter(differs).map(|case| case.name).collect();
@@ -135,14 +135,14 @@ fn every_bad_document_earns_the_message_beside_it() {
         "the message of each of these is not the one beside it: {changed:#?}\n\
          if the new ones are what authors should read, rewrite them: INSTA_UPDATE=always cargo test -p driftworld-spec"
     );
-    // Whatever insta was told to let pass: each document has its snapshot, and each snapshot its document.
+    // Independent of insta's settings, each document has its snapshot, and each snapshot its document.
     for kind in KINDS {
         let folder = folder("bad", kind);
         assert_eq!(stems(&folder, ".json"), stems(&folder, ".snap"), "bad/{kind}");
     }
 }
 
-/// Gathers the pointers of the properties of a schema that a value has; of all of them if there is no value.
+/// Collects pointers to the schema's properties that a value has, or to all of them without a value.
 fn properties(schema: &Value, pointer: &str, value: Option<&Value>, found: &mut BTreeSet<String>) {
     let Some(node) = schema.pointer(pointer).and_then(Value::as_object) else {
         return;
@@ -161,7 +161,7 @@ fn properties(schema: &Value, pointer: &str, value: Option<&Value>, found: &mut 
         let inner = value.map(|value| value.get(key));
         let place_pointer = format!("{pointer}/properties/{key}");
         let fresh = *place != Value::Bool(false) && inner != Some(None) && found.insert(place_pointer.clone());
-        // Without a value, a place that was seen before has nothing new to show.
+        // Without a value, a place seen before adds nothing.
         if fresh || matches!(inner, Some(Some(_))) {
             properties(schema, &place_pointer, inner.flatten(), found);
         }
@@ -180,7 +180,7 @@ fn properties(schema: &Value, pointer: &str, value: Option<&Value>, found: &mut 
     }
 }
 
-/// Each value of a list; once no value if there is no list.
+/// Each value of a list, or once `None` without a list.
 fn each(values: Option<Vec<&Value>>) -> Vec<Option<&Value>> {
     values.map_or_else(|| vec![None], |values| values.into_iter().map(Some).collect())
 }

@@ -1,8 +1,8 @@
-//! Parameters of type JSON: what they may be is said by the place where they stand, when the task is read.
+//! Parameters of type JSON: the place that uses one decides which values it may have, when the task is read.
 
 use driftworld_spec::{ParameterType, TaskSpec, Value};
 
-/// What is said of a task with this parameter, of which a part of the world is.
+/// The message for a task with this parameter, which fills a part of the world.
 fn said(parameter: &str, world: &str, variants: &str) -> String {
     let text = format!(
         r#"{{ "name": "t", "parameters": {{ "p": {parameter} }}, "world": {world}, "variants": {{ "v": {variants} }} }}"#
@@ -83,7 +83,7 @@ fn values_are_checked_where_they_stand_and_refused_where_they_are_written() {
 }
 
 #[test]
-fn a_choice_called_default_is_checked_where_it_stands() {
+fn choice_called_default_is_checked_by_its_place() {
     let parameter = r#"{ "role": "variant", "type": "json", "affects": ["O"],
         "choices": { "a": ["depht"], "default": ["depht"] }, "default": "a" }"#;
     let said = said(
@@ -96,7 +96,7 @@ fn a_choice_called_default_is_checked_where_it_stands() {
 }
 
 #[test]
-fn a_value_that_no_choice_is_is_refused_also_by_code() {
+fn value_outside_the_choices_is_refused_also_in_code() {
     let text = r#"{ "name": "t", "parameters": { "p": {
         "role": "variant", "type": "json", "affects": ["O"], "choices": [["rgb"], null], "default": ["rgb"] } } }"#;
     let task = TaskSpec::from_json("t", text).unwrap();

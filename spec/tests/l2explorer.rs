@@ -1,7 +1,7 @@
-//! L2Explorer's dialect: its own map files are read, and so is every world that it can describe. What single values may look
-//! like is tested beside the code.
+//! L2Explorer's dialect: reads its own map files, and every world that it can describe. Lenient forms of single values are tested
+//! next to the code.
 //!
-//! The original's files stay where they are: their test is skipped, visibly, without them.
+//! The original's files are not in the repository; without them, their test is visibly skipped.
 
 use driftworld_spec::{
     ActionModel, AgentParams, Color, EnvironmentParams, GameMode, ImageParams, Model, MotionModel, Object, Rules,
@@ -35,7 +35,7 @@ fn every_map_of_the_original_is_read() {
 
 const BLACK: Color = Color([0.0; 3]);
 
-/// How fast what moves goes, which the original's files do not say, in metres per second.
+/// Speed of moving objects in metres per second, which the original's files do not give.
 const ASSUMED_SPEED: f64 = 2.0;
 
 fn moves(model: MotionModel) -> bool {
@@ -55,7 +55,7 @@ fn stimuli() -> impl Strategy<Value = Vec<Stimulus>> {
     proptest::sample::subsequence(all, 0..=3)
 }
 
-/// Arenas, and how far an object may stand from the middle along x and y.
+/// Arenas, with the largest coordinates of an object along x and y.
 fn environment() -> impl Strategy<Value = EnvironmentParams> {
     (color(), 0.0..=100.0, 0u8..=4, [0.5..=300.0, 0.5..=300.0]).prop_map(
         |(bounding_wall_color, light_intensity, predefined_map, map_size)| EnvironmentParams {
@@ -98,7 +98,7 @@ fn agent() -> impl Strategy<Value = AgentParams> {
         )
 }
 
-/// An object that the original can describe, its place as a share of the arena; `named` objects get a name later.
+/// An object that the original can describe, with its place as a share of the arena; `named` objects get a name later.
 fn object() -> impl Strategy<Value = (Object, bool)> {
     let class = prop_oneof![
         select(vec!["geometric", "cube", "icosphere", "tree", "barrel"]).prop_map(str::to_owned),
@@ -139,7 +139,7 @@ fn object() -> impl Strategy<Value = (Object, bool)> {
         )
 }
 
-/// Worlds that the original can describe whole.
+/// Worlds that the original can describe completely.
 fn sayable() -> impl Strategy<Value = WorldDraft> {
     let image =
         (0.1..=100.0, 1u32..=360, 1u32..=360).prop_map(|(zoom, yaw_subdivisions, vertical_subdivisions)| ImageParams {
@@ -181,7 +181,7 @@ fn sayable() -> impl Strategy<Value = WorldDraft> {
         )
 }
 
-/// The keys of the original, by the part that has them.
+/// The keys of the original, by part.
 const KEYS: [(&str, &[&str]); 4] = [
     (
         "",
@@ -229,7 +229,7 @@ const KEYS: [(&str, &[&str]); 4] = [
     ),
 ];
 
-/// A world as a file of the original: its keys alone.
+/// A world as a file of the original, with only its keys.
 fn original(world: &World) -> String {
     let mut json: serde_json::Value = serde_json::from_str(&world.to_json()).expect("a world is JSON");
     let keep = |part: &mut serde_json::Value, keys: &[&str]| {
@@ -257,11 +257,11 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 192)))]
 
     #[test]
-    fn a_world_that_the_original_can_describe_is_read_with_no_other_warning(world in sayable()) {
+    fn world_that_the_original_can_describe_is_read_without_other_warnings(world in sayable()) {
         let world = sound(world)?;
         let text = original(&world);
         let (back, found) = World::from_l2explorer("written", &text).map_err(|e| TestCaseError::fail(e.to_string()))?;
-        // All but the speed of what moves, which is said to be assumed, and what stands in the walls of a map.
+        // Except the speed of moving objects, which is assumed with a warning, and objects inside the walls of a map.
         let movers = world.objects.iter().filter(|object| moves(object.motion_model)).count();
         let assumed = found.iter().filter(|warning| warning.text.contains("m/s is assumed")).count();
         let walled = found.iter().filter(|warning| warning.text.contains("inside region")).count();
@@ -271,8 +271,7 @@ proptest! {
     }
 }
 
-/// The documents that the laws below begin with: what the original's generator writes, in small, and its examples where they are
-/// at hand.
+/// The starting documents of the laws below: small ones as the original's generator writes them, and its examples if available.
 fn originals() -> Vec<(String, serde_json::Value)> {
     let object = |class: &str, x: f64| {
         serde_json::json!({
@@ -303,7 +302,7 @@ fn originals() -> Vec<(String, serde_json::Value)> {
     let default = concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/reference");
     let root = std::env::var("DRIFTWORLD_REFERENCE").unwrap_or_else(|_| default.to_owned());
     for file in ["map_findobjects_0", "map_simple", "map_spawning"] {
-        // Where they are not at hand the first test says so.
+        // If they are missing, the first test says so.
         if let Ok(text) = std::fs::read_to_string(format!("{root}/l2explorer/{file}.json")) {
             found.push((
                 file.to_owned(),
@@ -332,7 +331,7 @@ fn pointers(value: &serde_json::Value, at: &str, all: &mut Vec<String>) {
     }
 }
 
-/// What an entry is replaced by; nothing means that it is taken out.
+/// The replacement of an entry; `None` removes it.
 fn replacement() -> impl Strategy<Value = Option<serde_json::Value>> {
     use serde_json::json;
     prop_oneof![
@@ -378,10 +377,10 @@ fn put(document: &mut serde_json::Value, pointer: &str, value: Option<serde_json
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 1024)))]
 
-    /// Whatever becomes of entries of the original's keys, the document loads, unless a number is out of range; what was not
-    /// touched is read as before, and each assumption is told once at its place.
+    /// After any edits of the original's keys, the document loads unless a number is out of range; unedited parts are read as
+    /// before, and each assumption gives one warning at its place.
     #[test]
-    fn a_spoilt_document_of_the_original_is_loaded_and_nothing_else_changes(
+    fn edited_document_of_the_original_loads_and_nothing_else_changes(
         which in any::<proptest::sample::Index>(),
         spoilt in vec((any::<proptest::sample::Index>(), replacement(), any::<bool>()), 1..4),
     ) {
@@ -408,11 +407,11 @@ proptest! {
         let (after, warnings) = match read(&changed) {
             Ok(read) => read,
             Err(error) => {
-                // Only numbers out of range and texts that are too long are refused, where they stand.
+                // Only numbers out of range and overlong texts are refused, at their place.
                 for problem in error.problems() {
                     let found = changed.pointer(&problem.pointer).cloned().unwrap_or_default();
                     let is_beyond = has_number_or_long_text(&found);
-                    // Items change their places when one before them is taken out: what counts is the part.
+                    // Items shift when an earlier one is removed, so compares by part.
                     let part = |pointer: &str| pointer.split('/').nth(1).map(str::to_owned);
                     let is_spoilt = touched.iter().any(|place| part(place) == part(&problem.pointer));
                     let is_side = problem.pointer == "/environment_params/map_size";

@@ -1,4 +1,4 @@
-//! Laws of layouts, over drawn ones: what their plans have whatever their numbers. Bad layouts are in `codes.rs`.
+//! Laws of plans, tested on random layouts. Invalid layouts are tested in `codes.rs`.
 
 use std::collections::BTreeMap;
 
@@ -40,7 +40,7 @@ fn rooms() -> impl Strategy<Value = Rooms> {
     )
 }
 
-/// A text with a border of walls: walls, floor and doorways within.
+/// A text with a border of walls around walls, floor and doorways.
 fn texts() -> impl Strategy<Value = Layout> {
     (1_usize..8, 1_usize..8).prop_flat_map(|(columns, rows)| {
         let letters = prop::sample::select(vec!['#', '*', ' ', '.', 'A', 'D', 'G']);
@@ -76,12 +76,12 @@ fn layouts() -> impl Strategy<Value = Layout> {
     (drawn, 0.0..=1.0).prop_map(|(layout, standing)| Layout { standing, ..layout })
 }
 
-/// How many pairs of neighbouring cells are open to each other.
+/// The number of pairs of neighbouring cells that are open to each other.
 fn open_sides(plan: &Plan) -> usize {
     plan.cells.iter().map(|cell| cell.open_sides() as usize).sum::<usize>() / 2
 }
 
-/// Whether a point lies in a convex polygon whose corners go counterclockwise, or on its border.
+/// Whether a convex, counterclockwise polygon contains a point, including its border.
 fn holds(corners: &[[f64; 2]], point: [f64; 2]) -> bool {
     (0..corners.len()).all(|k| {
         let (a, b) = (corners[k], corners[(k + 1) % corners.len()]);
@@ -89,7 +89,7 @@ fn holds(corners: &[[f64; 2]], point: [f64; 2]) -> bool {
     })
 }
 
-/// Distance of a point to a rectangle along the axes, 0 within.
+/// Distance of a point to an axis-aligned rectangle, 0 inside.
 fn distance(corners: &[[f64; 2]], point: [f64; 2]) -> f64 {
     let along = [0, 1].map(|axis| {
         let low = corners.iter().map(|corner| corner[axis]).fold(f64::INFINITY, f64::min);
@@ -108,7 +108,7 @@ fn in_a_wall(plan: &Plan, point: [f64; 2]) -> bool {
 
 proptest! {
     #[test]
-    fn the_same_seed_makes_the_same_plan_and_its_seed_is_written_down(layout in layouts(), other in 0_u64..9) {
+    fn same_seed_gives_same_plan_and_is_saved(layout in layouts(), other in 0_u64..9) {
         let plan = layout.plan(other);
         prop_assert_eq!(&plan, &layout.plan(other));
         prop_assert_eq!(&plan, &layout.plan(other + 1));
@@ -116,7 +116,7 @@ proptest! {
     }
 
     #[test]
-    fn every_cell_of_a_maze_and_of_rooms_can_be_reached(layout in layouts()) {
+    fn every_cell_of_mazes_and_rooms_can_be_reached(layout in layouts()) {
         let plan = layout.plan(0);
         if layout.text.is_none() {
             prop_assert_eq!(plan.cut_off(), 0);
@@ -125,21 +125,21 @@ proptest! {
     }
 
     #[test]
-    fn a_perfect_maze_has_one_way_from_each_cell_to_each(drawn in mazes()) {
+    fn perfect_maze_has_one_path_between_any_two_cells(drawn in mazes()) {
         let plan = maze(Maze { braid: 0.0, ..drawn }, 1.0).plan(0);
         prop_assert_eq!(open_sides(&plan), plan.cells.len() - 1);
         prop_assert_eq!(plan.cut_off(), 0);
     }
 
     #[test]
-    fn a_braided_maze_has_no_dead_end(drawn in mazes()) {
+    fn fully_braided_maze_has_no_dead_end(drawn in mazes()) {
         let wide = drawn.cells.iter().all(|count| *count > 1);
         let plan = maze(Maze { braid: 1.0, ..drawn }, 1.0).plan(0);
         prop_assert!(!wide || plan.cells.iter().all(|cell| cell.open_sides() >= 2));
     }
 
     #[test]
-    fn more_braid_opens_more(drawn in mazes(), less in 0.0..=1.0) {
+    fn more_braid_opens_more_sides(drawn in mazes(), less in 0.0..=1.0) {
         let of = |braid| maze(Maze { braid, ..drawn.clone() }, 1.0).plan(0);
         let (few, many) = (of(less * drawn.braid), of(drawn.braid));
         for (few, many) in few.cells.iter().zip(&many.cells) {
@@ -148,10 +148,10 @@ proptest! {
     }
 
     #[test]
-    fn walls_of_a_smaller_share_are_among_those_of_a_larger(layout in layouts(), share in 0.0..=1.0) {
+    fn walls_of_a_smaller_share_are_a_subset(layout in layouts(), share in 0.0..=1.0) {
         let [few, many] = [share * layout.standing, layout.standing]
             .map(|standing| Layout { standing, ..layout.clone() }.plan(0));
-        // Over the corners and the middle of each, and a grid of points.
+        // Checks the corners and the middle of each wall, and a grid of points.
         for wall in &few.walls {
             let middle = [0, 1].map(|axis| wall.polygon.iter().map(|corner| corner[axis]).sum::<f64>() / 4.0);
             prop_assert!(in_a_wall(&many, middle), "{middle:?}");
@@ -167,7 +167,7 @@ proptest! {
     }
 
     #[test]
-    fn cells_lie_in_free_space_with_half_a_corridor_around_them(layout in layouts()) {
+    fn cells_are_in_free_space_with_half_a_corridor_around_them(layout in layouts()) {
         let plan = layout.plan(0);
         let wall = layout.maze.as_ref().map_or(0.0, |maze| maze.wall)
             .max(layout.rooms.as_ref().map_or(0.0, |rooms| rooms.wall));
@@ -183,7 +183,7 @@ proptest! {
     }
 
     #[test]
-    fn between_open_cells_no_wall_stands_and_between_others_one_does(layout in layouts()) {
+    fn walls_stand_exactly_between_closed_cells(layout in layouts()) {
         let plan = layout.plan(0);
         for (number, cell) in plan.cells.iter().enumerate() {
             let open: Vec<usize> = plan.neighbours(number).collect();
@@ -228,7 +228,7 @@ proptest! {
     }
 
     #[test]
-    fn a_text_has_its_letters_where_it_has_them(layout in texts()) {
+    fn text_layout_keeps_its_letters_in_place(layout in texts()) {
         let plan = layout.plan(0);
         let rows: Vec<Vec<char>> = layout.text.iter().flatten().map(|row| row.chars().collect()).collect();
         for (number, row) in rows.iter().enumerate() {
@@ -252,7 +252,7 @@ fn world(layout: &str) -> World {
 }
 
 #[test]
-fn a_map_of_minigrid_and_one_of_deepmind_lab_are_read() {
+fn maps_of_minigrid_and_deepmind_lab_are_read() {
     let grid = world(
         &serde_json::json!({
             "text": ["#######", "#A..#.#", "#...D.#", "#...#G#", "#######"],
@@ -289,7 +289,7 @@ fn a_map_of_minigrid_and_one_of_deepmind_lab_are_read() {
 }
 
 #[test]
-fn a_predefined_layout_is_the_map_of_its_number() {
+fn predefined_layout_is_the_map_with_its_number() {
     let layout = world(r#"{ "predefined": 2 }"#);
     let map = World::from_json("w.json", r#"{ "environment_params": { "predefined_map": 2 } }"#).expect("it is sound");
     let shapes = |world: &World| {
@@ -308,7 +308,7 @@ fn a_predefined_layout_is_the_map_of_its_number() {
 }
 
 #[test]
-fn the_seed_of_the_world_draws_a_layout_without_one() {
+fn layout_without_a_seed_uses_the_worlds() {
     let of = |seed: &str, own: &str| {
         let text =
             format!(r#"{{ {seed} "environment_params": {{ "layout": {{ "maze": {{ "cells": [6, 6]{own} }} }} }} }}"#);
@@ -321,7 +321,7 @@ fn the_seed_of_the_world_draws_a_layout_without_one() {
 }
 
 #[test]
-fn what_cannot_be_reached_is_remarked_upon() {
+fn unreachable_cells_get_a_remark() {
     let text = "{ \"environment_params\": {\n \"layout\": { \"text\": [\"#####\", \"#.#.#\", \"#####\"] } } }";
     let remarks = World::from_json("w.json", text)
         .expect("it is sound")
@@ -336,7 +336,7 @@ fn what_cannot_be_reached_is_remarked_upon() {
 }
 
 #[test]
-fn overlapping_walls_stand() {
+fn overlapping_walls_are_allowed() {
     let crossed = world(
         r#"{ "walls": [{ "from": [-3, 0], "to": [3, 0] }, { "from": [0, -3], "to": [0, 3], "thickness": 1, "height": 1 },
              { "circle": { "center": [0, 0], "radius": 2 } }, { "polygon": [[5, 5], [6, 5], [5, 6]], "color": "red" }] }"#,

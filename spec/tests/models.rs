@@ -1,4 +1,4 @@
-//! Models of classes: a task is accepted exactly where each object that it can draw has a model of its class.
+//! Models of classes: a task is accepted exactly if every object that it can draw has a model of its class.
 
 use driftworld_spec::{Classes, Model, Models, TaskSpec};
 use proptest::prelude::*;
@@ -24,7 +24,7 @@ impl Models for Wood {
     }
 }
 
-/// Where a text comes from.
+/// The source of a text.
 #[derive(Clone, Debug)]
 enum Origin {
     Written(&'static str),
@@ -42,7 +42,7 @@ fn origin(words: &'static [&'static str]) -> impl Strategy<Value = Origin> {
 }
 
 impl Origin {
-    /// What stands in the object; declares what it takes.
+    /// The text's form in the object; declares the parameters that it uses.
     fn declared(&self, name: &str, parameters: &mut serde_json::Map<String, Value>) -> Value {
         let declared = match self {
             Self::Written(word) => return json!(word),
@@ -64,7 +64,7 @@ impl Origin {
         }
     }
 
-    /// What it can be in the variant that takes the first or the last of its choices.
+    /// Its possible values in the variant that takes the first or the last of its choices.
     fn of_variant(&self, last: bool) -> &[&'static str] {
         let words = self.words();
         match self {
@@ -79,7 +79,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(100, 2000)))]
 
     #[test]
-    fn a_task_is_refused_exactly_where_an_object_can_have_an_unknown_model(
+    fn task_is_refused_exactly_if_an_object_can_have_an_unknown_model(
         class in origin(&["tree", "rock"]), model in origin(&["oak", "1", "2", "foxx"]), body in any::<bool>(), fixture in any::<bool>(),
     ) {
         let mut parameters = serde_json::Map::new();

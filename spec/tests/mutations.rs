@@ -1,9 +1,9 @@
-//! Single mistakes in the shipped tasks: nearly all of the messages name the place where the mistake is.
+//! Single mistakes in the shipped tasks: nearly all messages point to the place of the mistake.
 
 use driftworld_spec::TaskSpec;
 use serde_json::{Value, json};
 
-/// What a mistake does to a key.
+/// A mistake in a key.
 #[derive(Clone, Copy, Debug)]
 enum Mistake {
     Misspelt,
@@ -11,7 +11,7 @@ enum Mistake {
     Mistyped,
 }
 
-/// Keys that authors choose themselves stand in these: another name for one is no mistake where it stands.
+/// Objects whose keys are names chosen by the author: renaming one is not a mistake at that place.
 fn is_chosen(parent: &str) -> bool {
     let words: Vec<&str> = parent.split('/').skip(1).collect();
     matches!(
@@ -20,7 +20,7 @@ fn is_chosen(parent: &str) -> bool {
     )
 }
 
-/// Every key of a document: the pointers of what it stands in, and the key.
+/// Every key of a document, after the pointer to its parent.
 fn keys(json: &Value, pointer: &str, found: &mut Vec<(String, String)>) {
     match json {
         Value::Object(map) => {
@@ -43,7 +43,7 @@ fn escaped(key: &str) -> String {
     key.replace('~', "~0").replace('/', "~1")
 }
 
-/// The document with a mistake, and where that is.
+/// The document with a mistake, and the place of the mistake.
 fn mistaken(document: &Value, parent: &str, key: &str, mistake: Mistake) -> (Value, String) {
     let mut document = document.clone();
     let map = document
@@ -76,7 +76,7 @@ fn mistaken(document: &Value, parent: &str, key: &str, mistake: Mistake) -> (Val
 }
 
 #[test]
-fn nearly_every_mistake_in_a_shipped_task_is_named_where_it_is() {
+fn nearly_every_mistake_in_a_shipped_task_is_reported_at_its_place() {
     let (mut refused, mut missed) = (0, Vec::new());
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/tasks");
     for entry in std::fs::read_dir(folder).expect("the tasks are there") {
@@ -85,7 +85,7 @@ fn nearly_every_mistake_in_a_shipped_task_is_named_where_it_is() {
         let document: Value = serde_json::from_str(&text).expect("it is JSON");
         let mut all = Vec::new();
         keys(&document, "", &mut all);
-        // A part of them is enough, another one for each task.
+        // A sample is enough, a different one for each task.
         let step = crate::tier::quick_or_full(7, 2);
         for (place, (parent, key)) in all
             .iter()

@@ -1,5 +1,4 @@
-//! Names of variants, groups, regimes and scenarios: a document with one is read exactly when the grammar has it,
-//! whatever the name says.
+//! Names of variants, groups, regimes and scenarios: a document is read exactly if the grammar allows its names.
 
 use std::sync::Arc;
 
@@ -21,7 +20,7 @@ fn scenario(name: &str, regime: &str) -> Result<Scenario, SpecError> {
     Scenario::from_json("s.json", &document.to_string())
 }
 
-/// Every place that a name can stand in.
+/// Every place for a name.
 fn refusals(name: &str) -> [Option<SpecError>; 4] {
     [
         task(name, "g").err(),
@@ -50,7 +49,7 @@ fn check(name: &str) {
 }
 
 #[test]
-fn names_that_lead_out_of_a_folder_or_deceive_a_terminal_are_refused_everywhere() {
+fn names_that_leave_a_folder_or_deceive_a_terminal_are_refused_everywhere() {
     for name in [
         ".",
         "..",
@@ -87,7 +86,7 @@ fn names_that_lead_out_of_a_folder_or_deceive_a_terminal_are_refused_everywhere(
 }
 
 #[test]
-fn the_message_says_where_what_and_which() {
+fn message_states_place_name_and_fault() {
     let said = |variant: &str| task(variant, "g").expect_err("it is no name").to_string();
     assert_eq!(
         said("con"),
@@ -102,7 +101,7 @@ fn the_message_says_where_what_and_which() {
 }
 
 #[test]
-fn a_task_may_not_be_a_device_and_a_parameter_may() {
+fn device_name_is_refused_for_a_task_and_allowed_for_a_parameter() {
     let spec = |task: &str| {
         let parameters =
             json!({ "aux": { "role": "variant", "type": "number", "affects": ["O"], "range": [0, 1], "default": 0 } });
@@ -114,7 +113,7 @@ fn a_task_may_not_be_a_device_and_a_parameter_may() {
 }
 
 #[test]
-fn members_of_a_family_have_sound_names() {
+fn members_of_a_family_have_valid_names() {
     let choices = json!(["a b", "c/d", "x"]);
     let parameters = json!({ "word": { "role": "variant", "type": "string", "affects": ["S"], "choices": choices, "default": "x" } });
     let variants = json!({ "look": { "grid": { "word": choices } } });
@@ -129,7 +128,7 @@ fn members_of_a_family_have_sound_names() {
 
 proptest! {
     #[test]
-    fn a_document_is_read_exactly_when_the_grammar_has_its_names(
+    fn document_is_read_exactly_if_the_grammar_allows_its_names(
         name in prop_oneof!["[a-z._+-]{1,5}", "[ -~]{1,5}", "\\PC{1,4}", "(?s).{1,4}", "(con|nul|com1|lpt¹)(\\.[a-z]{0,2})?"]
     ) {
         check(&name);

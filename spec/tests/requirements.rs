@@ -1,4 +1,4 @@
-//! What `require` compares, and the messages for what it cannot. The grammar is tested in `task/expression/mod.rs`.
+//! Comparisons that `require` allows, and the messages for others. The grammar is tested in `task/expression/mod.rs`.
 
 use driftworld_spec::{TaskSpec, Value};
 use proptest::prelude::*;
@@ -24,7 +24,7 @@ fn task(require: &str) -> Result<std::sync::Arc<TaskSpec>, String> {
 }
 
 #[test]
-fn things_of_one_kind_are_compared() {
+fn values_of_one_type_are_compared() {
     for require in [
         "trigger != other_trigger",
         "trigger == 'touch' or other_trigger == 'far'",
@@ -82,7 +82,7 @@ fn what_cannot_be_compared_is_refused_with_what_was_found_and_expected() {
     insta::assert_snapshot!(said.join("\n"));
 }
 
-/// Conditions of random parts, sound or not.
+/// Conditions of random parts, valid or not.
 fn condition() -> impl Strategy<Value = String> {
     let part = prop::sample::select(vec![
         "count",
@@ -114,9 +114,9 @@ fn condition() -> impl Strategy<Value = String> {
 }
 
 proptest! {
-    /// Conditions that load are true or false whatever the values are.
+    /// Conditions that load are true or false for all values.
     #[test]
-    fn what_loads_has_a_meaning_for_all_values(require in condition(), count in 0_i64..10, drawn in 0.0..1.0, pick in any::<[bool; 6]>()) {
+    fn accepted_condition_is_always_defined(require in condition(), count in 0_i64..10, drawn in 0.0..1.0, pick in any::<[bool; 6]>()) {
         let Ok(task) = task(&require) else { return Ok(()) };
         let text = |which: bool, one: &str, other: &str| Value::Text(if which { one } else { other }.to_owned());
         let color = |which: bool, one: &str, other: &str| {

@@ -1,4 +1,4 @@
-//! The schemas themselves: valid as schemas, equal to the committed files, and in agreement with the types.
+//! The schemas are valid, equal to the committed files, and agree with the types.
 
 use driftworld_spec::{Object, World, reference, schema};
 use serde_json::Value;
@@ -11,7 +11,7 @@ fn every_schema_is_a_valid_schema() {
 }
 
 #[test]
-fn the_committed_schemas_are_those_of_the_code() {
+fn committed_schemas_are_up_to_date() {
     for (name, schema) in schema::all() {
         let path = format!("{}/../schemas/{name}", env!("CARGO_MANIFEST_DIR"));
         let committed = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
@@ -23,7 +23,7 @@ fn the_committed_schemas_are_those_of_the_code() {
 }
 
 #[test]
-fn the_committed_reference_is_that_of_the_code() {
+fn committed_reference_is_up_to_date() {
     for (name, page) in reference::pages() {
         let path = format!("{}/../docs/reference/{name}", env!("CARGO_MANIFEST_DIR"));
         let committed = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
@@ -32,14 +32,14 @@ fn the_committed_reference_is_that_of_the_code() {
 }
 
 #[test]
-fn what_the_types_write_the_schema_accepts() {
+fn schemas_accept_what_the_types_write() {
     let mut world = World::default();
     world.push(Object::new("tree", [1.0, 2.0])).expect("a tree is sound");
     let again = World::from_json("written", &world.to_json()).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(again, world);
 }
 
-/// Every part of a schema with its pointer, conditions (`if`, `then`) left out: they say again what stands elsewhere.
+/// Every part of a schema with its pointer, without conditions (`if`, `then`), which repeat other parts.
 fn parts(part: &Value, pointer: &str, visit: &mut impl FnMut(&str, &Value)) {
     visit(pointer, part);
     let keep = |key: &str| !matches!(key, "if" | "then" | "examples" | "default" | "allOf" | "not");
@@ -117,7 +117,7 @@ fn every_definition_of_an_object_has_examples_and_every_example_is_valid() {
     }
 }
 
-/// Words alone need no example: they are listed.
+/// Lists of words need no example.
 fn is_enumeration(part: &Value) -> bool {
     part["oneOf"]
         .as_array()

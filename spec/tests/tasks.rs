@@ -1,4 +1,4 @@
-//! The task specs that ship with the project load, and broken ones are refused with the messages that authors see.
+//! The shipped task specs load, and broken ones are refused with the messages that authors see.
 
 use driftworld_spec::{Color, TaskSpec, Value};
 
@@ -17,7 +17,7 @@ fn every_example_task_loads_with_its_variants() {
 }
 
 #[test]
-fn a_variant_has_its_own_values_over_those_it_extends_over_the_defaults() {
+fn variant_overrides_those_it_extends_and_the_defaults() {
     let task = TaskSpec::from_json("find_objects.json", &read("find_objects")).unwrap();
     let dusk = task.variant("dusk").unwrap();
     assert_eq!(dusk.id(), "find_objects#dusk");
@@ -100,7 +100,7 @@ fn broken_tasks_are_refused_and_the_message_says_how_to_mend_them() {
 }
 
 #[test]
-fn a_task_spec_of_version_1_is_read_and_its_margins_are_kept() {
+fn task_spec_of_version_1_is_read_with_its_margins() {
     let text = r#"{ VERSION "name": "old", "groups": [{ "name": "trees", "count": 3, "object": { "class": "tree" },
         "placement": { "disc": { "center": [0, 0], "radius": 20 } }, "wall_margin": 3, "agent_margin": 5 }] }"#;
     for version in ["", "\"version\": 1,"] {
@@ -119,14 +119,14 @@ fn a_task_spec_of_version_1_is_read_and_its_margins_are_kept() {
     );
 }
 
-/// A task that broke something once: what it is refused with, or `None` if it is sound.
+/// The error of a task that once caused a bug, or `None` if it is valid.
 #[track_caller]
 fn said(text: &str) -> Option<String> {
     TaskSpec::from_json("t.json", text).err().map(|error| error.to_string())
 }
 
 #[test]
-fn counts_written_in_any_way_are_read_or_refused_and_never_panic() {
+fn counts_in_any_notation_are_read_or_refused_without_panic() {
     let with = |count: &str| {
         said(&format!(
             r#"{{ "version": 2, "name": "t", "parameters": {{ "v": {{ "role": "fixed", "type": "vector", "value": [1, 2] }} }},
@@ -142,7 +142,7 @@ fn counts_written_in_any_way_are_read_or_refused_and_never_panic() {
 }
 
 #[test]
-fn what_a_single_place_draws_looks_at_no_objects_before() {
+fn single_place_needs_a_distribution_that_ignores_earlier_objects() {
     let start = |law: &str| {
         said(&format!(
             r#"{{ "version": 2, "name": "t", "world": {{ "agent_params": {{ "coordinates": {law} }} }} }}"#
@@ -160,7 +160,7 @@ fn what_a_single_place_draws_looks_at_no_objects_before() {
 }
 
 #[test]
-fn an_index_is_checked_against_the_shortest_vector_that_there_can_be() {
+fn index_is_checked_against_the_shortest_possible_vector() {
     let text = r#"{ "version": 2, "name": "t", "parameters": {
         "d": { "role": "variant", "type": "distribution", "affects": ["R"],
                "choices": [{ "dirichlet": { "alpha": [1, 1, 1] } }, { "dirichlet": { "alpha": [1, 1] } }],
@@ -172,7 +172,7 @@ fn an_index_is_checked_against_the_shortest_vector_that_there_can_be() {
 }
 
 #[test]
-fn a_requirement_that_names_no_parameter_and_never_holds_is_said_as_it_stands() {
+fn requirement_without_parameters_that_never_holds_is_refused() {
     for variants in ["{}", r#"{ "v": {} }"#] {
         let text = format!(r#"{{ "version": 2, "name": "t", "require": ["1 > 2"], "variants": {variants} }}"#);
         let error = TaskSpec::from_json("t.json", &text).unwrap_err();

@@ -50,8 +50,8 @@ pub enum NameFault {
     Start(char),
     /// The name ends with a dot, which Windows drops.
     EndsWithDot,
-    /// The name is not in NFC: composed characters are written as several, or in another order, so that two names could look the
-    /// same.
+    /// The name is not in NFC: composed characters are written as several, or in another order, so that two names could
+    /// look the same.
     NotNormalised,
     /// Windows reserves the name for a device.
     Device,

@@ -52,8 +52,8 @@ pub fn is_unprintable(letter: char) -> bool {
 /// The text in one line: every unprintable character in the notation of Rust and Swift, `\u{202e}`, except
 /// `\n`, `\r` and `\t`.
 ///
-/// For untrusted text inside a sentence: it cannot end the line and forge one of ours. Text that is already escaped stays as it
-/// is.
+/// For untrusted text inside a sentence: it cannot end the line and forge one of ours. Text that is already escaped
+/// stays as it is.
 ///
 /// # Example
 /// ```

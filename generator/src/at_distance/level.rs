@@ -1,6 +1,6 @@
-//! Moves several numbers at once, one of which adds its distance to that of the others: computes points with the wanted sum, and
-//! asks the task whether it allows each. `scan.rs` takes over if no number adds its distance, or the allowed region is too narrow
-//! to hit.
+//! Moves several numbers at once, one of which adds its distance to that of the others: computes points with the wanted sum,
+//! and asks the task whether it allows each. `scan.rs` takes over if no number adds its distance, or the allowed region is too
+//! narrow to hit.
 
 use std::collections::HashMap;
 

@@ -150,8 +150,8 @@ impl<D: FnMut(&Variant) -> f64> Search<'_, D> {
     }
 }
 
-/// Extreme values of a number: the ends of its range; for a heading also the opposite direction, for a vector the farthest
-/// corner.
+/// Extreme values of a number: the ends of its range; for a heading also the opposite direction, for a vector the
+/// farthest corner.
 pub(super) fn ends_of(from: &Variant, name: &str, parameter: &Parameter) -> Vec<Value> {
     let Some(Domain::Range([low, high])) = parameter.domain() else {
         return Vec::new();

@@ -46,8 +46,8 @@ pub(super) struct FreeParameters<'a> {
     pub(super) listed: Vec<Free<'a>>,
     /// Parameters that decide what is read, or are read only under a condition.
     pub(super) tied: Vec<&'a str>,
-    /// Whether the distance may not grow evenly when all numbers move together: one decides what is read, or moves in integer
-    /// steps.
+    /// Whether the distance may not grow evenly when all numbers move together: one decides what is read, or moves in
+    /// integer steps.
     pub(super) is_bent: bool,
 }
 

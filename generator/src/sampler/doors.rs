@@ -13,8 +13,8 @@ use crate::stream::Rng;
 /// The tag of every door.
 const DOOR: &str = "door";
 
-/// The colours of locked doors, all clearly different. If there are more doors, several share a colour, and their keys open each
-/// of them.
+/// The colours of locked doors, all clearly different. If there are more doors, several share a colour, and their keys
+/// open each of them.
 const COLORS: [&str; 8] = ["red", "blue", "yellow", "lime", "magenta", "cyan", "orange", "white"];
 
 /// Least distance of a key from walls, and from objects and the agent, in metres; less in smaller cells.

@@ -48,8 +48,8 @@ impl Sampler {
                 object.seed = object.seed.or_else(|| Some(seeds.seed(first + turn)));
             }
             let mut rng = group.placement.stream.at(index, first + turn, 0);
-            // The agent must fit between the object and the wall: a body is about as wide as its scale, walls are thinner than
-            // agents.
+            // The agent must fit between the object and the wall: a body is about as wide as its scale, walls are
+            // thinner than agents.
             let mouth = 1.5 * draft.world.agent_params.agent_width + object.scale / 2.0;
             let is_free = !object.solid || draft.context.asks_for_doorways(asked, cells.as_ref(), mouth);
             let request = Request {

@@ -1,5 +1,5 @@
-//! Places the agent in a cell of a layout. Starts that are a point or a distribution of points are filled in elsewhere, as holes
-//! of the world.
+//! Places the agent in a cell of a layout. Starts that are a point or a distribution of points are filled in elsewhere, as
+//! holes of the world.
 
 use driftworld_spec::{CellKind, Distribution, Legend, WorldDraft};
 

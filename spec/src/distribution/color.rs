@@ -5,8 +5,8 @@ use crate::Color;
 use crate::value::Value;
 
 impl<N> Distribution<N> {
-    /// Whether it or one of its parts draws colours from a continuum: `color_uniform`, `color_normal`, `color_perturb` or
-    /// `color_hsv`.
+    /// Whether it or one of its parts draws colours from a continuum: `color_uniform`, `color_normal`, `color_perturb`
+    /// or `color_hsv`.
     pub fn draws_colors(&self) -> bool {
         match self {
             Self::ColorUniform { .. }
@@ -253,8 +253,8 @@ mod tests {
         );
     }
 
-    /// Three trees of a map that the original's generator made: its template adds one uniform noise to all channels and clips to
-    /// 0..1.
+    /// Three trees of a map that the original's generator made: its template adds one uniform noise to all channels and
+    /// clips to 0..1.
     #[test]
     fn originals_tree_template_is_noise_of_joint_channels() {
         let template = law(r#"{"color_perturb": {"value": [0, 0.5, 0.5], "noise": 0.25, "channels": "together"}}"#);

@@ -9,8 +9,8 @@ impl Distribution<f64> {
     /// Probability of a draw up to `x`; false counts as 0 and true as 1.
     ///
     /// Headings are counted clockwise from the one opposite the mean direction: `x` is first brought into
-    /// `mean − 180° ≤ x < mean + 180°`. Closed forms with an absolute error below 1e-10 (much lower, except for counts of 100,000);
-    /// `von_mises` by quadrature, below 1e-12. `None` if it draws no numbers.
+    /// `mean − 180° ≤ x < mean + 180°`. Closed forms with an absolute error below 1e-10 (much lower, except for counts of
+    /// 100,000); `von_mises` by quadrature, below 1e-12. `None` if it draws no numbers.
     pub fn cdf(&self, x: f64) -> Option<f64> {
         Some(match self {
             Self::Constant { value } => step(x >= value.as_number()?),

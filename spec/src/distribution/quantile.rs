@@ -8,9 +8,9 @@ use crate::value::{ParameterType, Value};
 impl Distribution<f64> {
     /// The least number up to which a draw falls with probability at least `p`, in `0..=1`.
     ///
-    /// The same bits on every platform. Closed forms; `beta`, `von_mises` and mixtures by root finding to the last bits. Infinite
-    /// at 0 or 1 if the distribution is unbounded there; headings lie in `mean − 180..=mean + 180` degrees. `None` if it draws no
-    /// numbers.
+    /// The same bits on every platform. Closed forms; `beta`, `von_mises` and mixtures by root finding to the last bits.
+    /// Infinite at 0 or 1 if the distribution is unbounded there; headings lie in `mean − 180..=mean + 180` degrees. `None` if
+    /// it draws no numbers.
     pub fn quantile(&self, p: f64) -> Option<f64> {
         let p = p.clamp(0.0, 1.0);
         Some(match self {
@@ -130,8 +130,8 @@ impl<N> Distribution<N> {
 }
 
 impl Distribution<f64> {
-    /// Index of the part of a mixture, or of the value of a choice, for a random number `p` in `0..1`; 0 for any other
-    /// distribution.
+    /// Index of the part of a mixture, or of the value of a choice, for a random number `p` in `0..1`; 0 for any
+    /// other distribution.
     pub fn chosen_at(&self, p: f64) -> usize {
         match self {
             Self::Choice { values, weights } => chosen(values.len(), weights.as_deref(), p),

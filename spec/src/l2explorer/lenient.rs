@@ -137,8 +137,8 @@ fn without_decimal_point(value: &mut Json) {
     }
 }
 
-/// Words in any case, alone or in a list. The original's words are ASCII; other letters stay as they are, so that a word keeps
-/// its length.
+/// Words in any case, alone or in a list. The original's words are ASCII; other letters stay as they are, so that a word
+/// keeps its length.
 pub(super) fn word(map: &mut Map<String, Json>, key: &str) {
     let lower = |value: &mut Json| {
         if let Json::String(text) = value {

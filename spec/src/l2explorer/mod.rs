@@ -77,8 +77,8 @@ static PARTS: LazyLock<Parts> = LazyLock::new(|| {
 /// `moving_object`, a fifth of the agent's speed.
 const ASSUMED_SPEED: f64 = 2.0;
 
-/// Whether black is a deliberate colour for this class (in lower case); for all others it is the default and means the asset's
-/// own colours.
+/// Whether black is a deliberate colour for this class (in lower case); for all others it is the default and means the
+/// asset's own colours.
 fn black_is_chosen(class: &str) -> bool {
     matches!(class, "geometric" | "cube" | "icosphere")
 }

@@ -18,8 +18,8 @@ use crate::world::{Enclosure, Object, World, WorldDraft};
 impl World {
     /// Reads a reset file of the original leniently: words in any case, numbers as strings, colours in 0..255, old keys.
     ///
-    /// The original's default colour is (0, 0, 0); on anything but `geometric`, `cube` and `icosphere` it is read as the asset's
-    /// own colours.
+    /// The original's default colour is (0, 0, 0); on anything but `geometric`, `cube` and `icosphere` it is read as the
+    /// asset's own colours.
     ///
     /// Entries of the original's keys that are empty or of another type get their defaults, or their readable part, each with a
     /// warning that says what is assumed: an object without a place is put at (0, 0), a moving object gets 2 m/s unless our own

@@ -1,5 +1,5 @@
-//! [`Grid`]: cells between thin walls, for mazes and rooms; turns the walls into polygons. Walls as thick as cells are in
-//! `text.rs`.
+//! [`Grid`]: cells between thin walls, for mazes and rooms; turns the walls into polygons. Walls as thick as cells
+//! are in `text.rs`.
 
 use super::draws::{Draws, Purpose, share_of};
 use super::plan::{Doorway, EAST, NORTH, Plan, PlanCell, PlanWall, SOUTH, WEST};
@@ -67,8 +67,8 @@ impl Grid {
         })
     }
 
-    /// Opens sides so that exactly one path connects any two cells (a spanning tree, depth first). Each opened side becomes
-    /// `as_what`.
+    /// Opens sides so that exactly one path connects any two cells (a spanning tree, depth first). Each opened side
+    /// becomes `as_what`.
     pub(super) fn open_tree(&mut self, as_what: Side, draws: &mut Draws) {
         let count = self.sides[0].len();
         let mut seen = vec![false; count];

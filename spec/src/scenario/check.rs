@@ -167,8 +167,8 @@ fn phases(scenario: &Scenario) -> Vec<Problem> {
     scenario.blocks.iter().enumerate().filter(late).map(problem).collect()
 }
 
-/// Step budgets where the number of experiences must be known: evaluations are compared, and a drift ends with the last
-/// experience.
+/// Step budgets where the number of experiences must be known: evaluations are compared, and a drift ends with the
+/// last experience.
 fn budgets(scenario: &Scenario) -> impl Iterator<Item = Problem> {
     regimes(scenario).filter_map(|(pointer, block, regime)| {
         let is_fixed = block.kind == BlockKind::Evaluation || regime.drift.is_some();

@@ -50,8 +50,8 @@ pub enum Spacing {
 }
 
 impl Sweep {
-    /// The values in order, rounded to 12 digits, so that 0.1 + 0.2 is 0.3. `None` if a logarithmic sweep has an end at or below
-    /// 0.
+    /// The values in order, rounded to 12 digits, so that 0.1 + 0.2 is 0.3. `None` if a logarithmic sweep has an end
+    /// at or below 0.
     pub fn values(&self) -> Option<Vec<f64>> {
         let last = f64::from(self.steps.max(2) - 1);
         let share = |k: u32| f64::from(k) / last;

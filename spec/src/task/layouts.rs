@@ -51,9 +51,9 @@ impl Layout {
 
     /// The layout at fraction `t`, 0..=1, of the way to another.
     ///
-    /// Two layouts of one kind that differ only in numbers are interpolated linearly, with integers rounded. Otherwise the walls
-    /// of the first are removed one by one up to the halfway point, and then those of the second are added, so that the way stays
-    /// open.
+    /// Two layouts of one kind that differ only in numbers are interpolated linearly, with integers rounded. Otherwise the
+    /// walls of the first are removed one by one up to the halfway point, and then those of the second are added, so that the
+    /// way stays open.
     ///
     /// # Example
     /// ```

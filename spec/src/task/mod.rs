@@ -172,7 +172,7 @@ impl TaskSpec {
         std::ptr::eq(self, other) || self.document == other.document
     }
 
-    /// What each element of the decision process weighs when variants are compared.
+    /// The weight of each element of the decision process in comparisons of variants.
     pub fn element_weights(&self) -> ElementWeights {
         self.document.element_weights
     }
@@ -207,8 +207,8 @@ impl TaskSpec {
         &self.requirements
     }
 
-    /// The names of the declared variants in the order of the document, with families unfolded; only [`DEFAULT_VARIANT`] if there
-    /// are none.
+    /// The names of the declared variants in the order of the document, with families unfolded; only [`DEFAULT_VARIANT`] if
+    /// there are none.
     pub fn variant_names(&self) -> Vec<&str> {
         let declared: Vec<&str> = self.variants.keys().map(String::as_str).collect();
         if declared.is_empty() {
@@ -313,8 +313,8 @@ impl TaskSpec {
         self.faults_of(values)
     }
 
-    /// Reasons, other than requirements, why a variant with these values cannot be drawn: faulty distributions and margins out of
-    /// range.
+    /// Reasons, other than requirements, why a variant with these values cannot be drawn: faulty distributions and
+    /// margins out of range.
     pub(crate) fn faults_of(&self, values: &IndexMap<String, Value>) -> Vec<Problem> {
         let mut problems = Vec::new();
         let scope = Scope::new(&self.document.parameters, values);

@@ -107,8 +107,8 @@ fn any_value(_: &mut SchemaGenerator) -> Schema {
     Schema::from(true)
 }
 
-/// Schema rules of the form `if` this role or type, `then` these keys, so that editors with JSON Schema report errors while the
-/// author types.
+/// Schema rules of the form `if` this role or type, `then` these keys, so that editors with JSON Schema report errors while
+/// the author types.
 fn require_what_the_role_needs(schema: &mut schemars::Schema) {
     let role = |role: &str, needs: serde_json::Value, not: &[&str]| {
         let mut then = needs;

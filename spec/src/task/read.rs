@@ -18,8 +18,8 @@ use crate::value::Value;
 pub struct Readers {
     /// Whether a world, a group or the value of a fixed parameter reads it.
     pub worlds: bool,
-    /// The randomized parameters whose distributions read it, and parameters of type distribution with a choice that does, in the
-    /// task's order.
+    /// The randomized parameters whose distributions read it, and parameters of type distribution with a choice that does, in
+    /// the task's order.
     pub draws: Vec<String>,
 }
 

@@ -1,5 +1,5 @@
-//! [`VariantSpec`]: a variant as declared in a document. Applies its values over those of the variants that it extends, and
-//! checks them.
+//! [`VariantSpec`]: a variant as declared in a document. Applies its values over those of the variants that it extends,
+//! and checks them.
 
 use driftworld_text::IDENTIFIER_PATTERN;
 use indexmap::IndexMap;

@@ -1,4 +1,4 @@
-//! The agent's body, what it can do and what it sees. How it moves is computed in `env`.
+//! The agent's body, abilities and senses.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -120,7 +120,7 @@ fn is_classic(features: &[StateFeature]) -> bool {
 }
 
 impl AgentParams {
-    /// How many rows the table of actions has; `None` for continuous actions.
+    /// Number of rows in the table of actions; `None` for continuous actions.
     pub fn num_actions(&self) -> Option<usize> {
         match &self.actions {
             ActionSpace::Continuous | ActionSpace::Normalized => None,
@@ -131,8 +131,8 @@ impl AgentParams {
 
     /// A row of the table of actions: three numbers in the units of the action model; `None` if there is no such row.
     ///
-    /// The default table is: ahead; ahead and left; ahead and right; left; right; back; and, if the agent can interact,
-    /// interact. It goes and turns as fast as the agent can, and back at half that speed.
+    /// The default table is: forwards; forwards and left; forwards and right; left; right; backwards; and, if the agent can
+    /// interact, interact. It moves and turns at the agent's largest speeds, and backwards at half speed.
     pub fn action_row(&self, number: usize) -> Option<[f64; 3]> {
         let (speed, turn) = (self.max_linear_speed, self.max_angular_speed);
         match &self.actions {
@@ -151,7 +151,7 @@ impl AgentParams {
         }
     }
 
-    /// How many numbers the state vector holds.
+    /// Length of the state vector.
     pub fn state_len(&self) -> usize {
         let features = self.state_features.iter().map(|feature| feature.num_values());
         features.sum::<usize>() + self.instruction.len()

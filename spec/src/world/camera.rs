@@ -1,11 +1,11 @@
-//! The agent's camera: the images that it takes, their size and how wide it sees. Its keys stand in `agent.rs`.
+//! The agent's camera: the kinds of images, their size and the field of view. Its keys are in `agent.rs`.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::AgentParams;
 
-/// Vertical field of view in degrees, unless a world says otherwise.
+/// Default vertical field of view in degrees.
 pub(super) const DEFAULT_FIELD_OF_VIEW: f64 = 60.0;
 
 /// One kind of image.

@@ -1,5 +1,5 @@
-//! What makes a [`World`] of a [`WorldDraft`]: checks of values by the rules of documents. Objects are checked and read without a
-//! world, too. Reading worlds is in `mod.rs`.
+//! Makes a [`World`] from a [`WorldDraft`] by checking its values by the rules of documents. Also reads and checks
+//! single objects.
 
 use std::sync::{Arc, LazyLock};
 
@@ -15,27 +15,27 @@ use crate::maps::MapLibrary;
 use crate::schema::document::DocumentSchema;
 
 impl Object {
-    /// The schema of one object, which a world may be given while it runs.
+    /// The schema of one object, which can be added to a running world.
     pub(crate) fn schema() -> &'static DocumentSchema {
         static SCHEMA: LazyLock<DocumentSchema> =
             LazyLock::new(|| DocumentSchema::of::<Object>("object", "Driftworld object"));
         &SCHEMA
     }
 
-    /// Reads one object, strictly. `name` is what messages call the text.
+    /// Reads one object strictly. `name` is the text's name in messages.
     ///
     /// # Errors
-    /// [`SpecError`] with every problem of the text at once, sorted by place.
+    /// [`SpecError`] with all problems of the text, sorted by place.
     pub fn from_json(name: &str, text: &str) -> Result<Self, SpecError> {
         let document = Document::parse(name, text, MAX_VALUES)?;
         document.fail_on(Object::schema().problems(&document.value))?;
         document.deserialize()
     }
 
-    /// Checks an object that was built in code by the rules that objects of a document obey.
+    /// Checks an object built in code by the rules for objects in documents.
     ///
     /// # Errors
-    /// [`SpecError::Document`] under the name `object`, with every problem.
+    /// [`SpecError::Document`] under the name `object`, with all problems.
     ///
     /// # Example
     /// ```
@@ -52,10 +52,10 @@ impl Object {
 }
 
 impl WorldDraft {
-    /// The world of these fields, if it obeys the rules that documents obey.
+    /// The world with these fields, if they follow the rules of documents.
     ///
     /// # Errors
-    /// [`SpecError::Document`] under the name `world`, with every problem.
+    /// [`SpecError::Document`] under the name `world`, with all problems.
     ///
     /// # Example
     /// ```
@@ -70,31 +70,30 @@ impl WorldDraft {
         Ok(World::planned(self))
     }
 
-    /// As [`WorldDraft::check`] of fields whose values are each known to be in range: only what no field can say by itself is
-    /// checked.
+    /// Like [`WorldDraft::check`], for fields whose values are all known to be in range: checks only the rules across fields.
     ///
     /// # Errors
     /// As [`WorldDraft::check`].
     ///
     /// # Panics
-    /// With debug assertions, where a value is out of its range.
+    /// With debug assertions, if a value is out of range.
     pub fn check_in_range(self) -> Result<World, SpecError> {
         let plan = self.sound_plan();
         self.check_in_range_with(plan)
     }
 
-    /// The plan of its layout, if it has one that can be drawn out.
+    /// The plan of its layout, if there is a valid one.
     pub(super) fn sound_plan(&self) -> Option<Arc<Plan>> {
         self.layout_problems().is_empty().then(|| self.plan()).flatten()
     }
 
-    /// As [`WorldDraft::check_in_range`], with the plan of the layout that was made before, by [`WorldDraft::plan`].
+    /// Like [`WorldDraft::check_in_range`], with the plan of the layout that [`WorldDraft::plan`] has already made.
     ///
     /// # Errors
     /// As [`WorldDraft::check`].
     ///
     /// # Panics
-    /// With debug assertions, where a value is out of its range, or the plan is another.
+    /// With debug assertions, if a value is out of range, or the plan differs.
     pub fn check_in_range_with(self, plan: Option<Arc<Plan>>) -> Result<World, SpecError> {
         let problems = self.problems();
         if !problems.is_empty() {
@@ -107,9 +106,9 @@ impl WorldDraft {
         Ok(World { draft: self, plan })
     }
 
-    /// What the layout comes to, drawn with its own seed or else with that of the world; `None` without one.
+    /// The plan of the layout, made with the layout's own seed or else with the world's; `None` without a layout.
     ///
-    /// The layout must be sound, as [`WorldDraft::layout_problems`] says.
+    /// The layout must be valid, see [`WorldDraft::layout_problems`].
     pub fn plan(&self) -> Option<Arc<Plan>> {
         let environment = &self.environment_params;
         let (layout, seed) = (environment.layout.as_ref()?, self.seed.unwrap_or(0));
@@ -119,7 +118,7 @@ impl WorldDraft {
         }))
     }
 
-    /// What is wrong with the layout, beside values out of their ranges.
+    /// The problems of the layout, except values out of range.
     pub fn layout_problems(&self) -> Vec<Problem> {
         let environment = &self.environment_params;
         let Some(layout) = &environment.layout else {
@@ -134,7 +133,7 @@ impl WorldDraft {
         problems
     }
 
-    /// What the schema cannot say: checks that look at several values at once.
+    /// Checks beyond the schema: rules across several values.
     pub(crate) fn problems(&self) -> Vec<Problem> {
         let mut problems = Vec::new();
         if self.environment_params.sun_direction == [0.0; 3] {
@@ -195,18 +194,18 @@ impl WorldDraft {
 }
 
 impl World {
-    /// The world of sound fields.
+    /// The world with these valid fields.
     pub(super) fn planned(draft: WorldDraft) -> Self {
         let plan = draft.plan();
         Self { draft, plan }
     }
 
-    /// Its fields, to be changed.
+    /// Its fields, for editing.
     pub fn into_draft(self) -> WorldDraft {
         self.draft
     }
 
-    /// The world after a change, if it obeys the rules of documents then.
+    /// The world after a change, if it still follows the rules of documents.
     ///
     /// # Errors
     /// As [`WorldDraft::check`].
@@ -224,20 +223,20 @@ impl World {
         draft.check()
     }
 
-    /// The world with the layout of its predefined map from a library, if there is one: it then needs no library.
+    /// The world with the layout of its predefined map from a library, if it has one; it then needs no library.
     #[must_use]
     pub fn with_maps(mut self, maps: &MapLibrary) -> Self {
-        // Layouts obey the rules of a world's own regions, on which no other rule depends.
+        // Layouts follow the rules of a world's own regions, and no other rule depends on these.
         maps.apply(&mut self.draft);
         self.plan = self.draft.plan();
         self
     }
 
-    /// Puts an object behind the others, if the world may hold it.
+    /// Adds an object after the others, if the world allows it.
     ///
     /// # Errors
-    /// [`SpecError::Document`] under the name `object`: with every problem of the object, and where its `unique_name` is
-    /// taken or the world holds [`MAX_OBJECTS`] already. The world is as before then.
+    /// [`SpecError::Document`] under the name `object`, with all problems of the object; also if its `unique_name` is taken or
+    /// the world already holds [`MAX_OBJECTS`]. The world is then unchanged.
     pub fn push(&mut self, object: Object) -> Result<(), SpecError> {
         let mut more = Vec::new();
         if self.objects.len() >= MAX_OBJECTS {
@@ -272,7 +271,7 @@ fn name_taken(pointer: String, name: &str, first: usize) -> Problem {
     Problem::new("spec/duplicate-name", pointer, found, "a name of its own")
 }
 
-/// Checks a value by its schema; `more` is what is wrong with it besides.
+/// Checks a value by its schema; `more` are its other problems.
 fn check(name: &str, value: &impl Serialize, schema: &DocumentSchema, more: Vec<Problem>) -> Result<(), SpecError> {
     let value = serde_json::to_value(value).expect("parts of a world have string keys only, which always serialise");
     let mut found = schema.problems(&value);
@@ -296,7 +295,7 @@ mod tests {
     }
 
     #[test]
-    fn an_object_is_read_alone_as_in_a_world() {
+    fn single_object_is_read_like_one_in_a_world() {
         let tree = Object::from_json("spawn", r#"{ "class": "tree", "coordinates": [3, 4], "color": "red" }"#)
             .expect("the object is sound");
         assert_eq!(
@@ -317,7 +316,7 @@ mod tests {
     }
 
     #[test]
-    fn an_object_built_in_code_obeys_the_rules_of_documents() {
+    fn object_built_in_code_follows_the_rules_of_documents() {
         check(|object| object.coordinates[0] = 301.0, "(/coordinates/0): found 301");
         check(|object| object.class.clear(), "(/class): found \"\"");
         check(|object| object.reward = f64::NAN, "(/reward): found null");

@@ -1,4 +1,4 @@
-//! [`WorldDraft`]: the fields of a world, and what they are for code that sets them. What makes a [`World`](super::World) of it is in `check.rs`.
+//! [`WorldDraft`]: the fields of a world, open to code that sets them.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -108,14 +108,14 @@ fields! {
 }
 
 impl WorldDraft {
-    /// Time steps until `max_seconds` have passed: the first at whose end they have. `None` without such a limit.
+    /// Time steps until `max_seconds` have passed: the first step that ends at or after that time. `None` without such a limit.
     pub fn max_ticks(&self) -> Option<u64> {
-        // A little less, so that 60 s are 600 time steps of 0.1 s, which is no number of binary digits.
+        // Slightly less, so that 60 s are 600 time steps of 0.1 s, which has no exact binary form.
         let ticks = || (self.max_seconds / self.agent_params.time_step - 1e-6).ceil();
         (self.max_seconds > 0.0).then(|| ticks().max(1.0) as u64)
     }
 
-    /// Steps until the episode is truncated at the latest, by `max_steps` or by `max_seconds`; `None` for never.
+    /// Most steps until the episode is truncated, by `max_steps` or by `max_seconds`; `None` if never.
     ///
     /// # Example
     /// ```
@@ -136,7 +136,7 @@ impl WorldDraft {
         by_steps.into_iter().chain(by_time).min()
     }
 
-    /// Sets a limit of steps, 0 for never, in place of all limits that the world has.
+    /// Replaces all limits of the world by a limit of steps, 0 for none.
     pub fn limit_steps(&mut self, max_steps: u32) {
         (self.max_steps, self.max_seconds) = (max_steps, 0.0);
     }

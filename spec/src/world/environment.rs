@@ -1,4 +1,4 @@
-//! What surrounds the agent: the arena, its walls, the light. What stands in it is in `object.rs`.
+//! The agent's surroundings: the arena, its walls and the light.
 
 use std::fmt;
 
@@ -78,8 +78,7 @@ fields! {
 }
 
 impl EnvironmentParams {
-    /// Side lengths of the arena in metres: those of the layout where it has some, else `map_size`, or 200 × 200 for a
-    /// predefined map.
+    /// Side lengths of the arena in metres: the layout's if it has any, else `map_size`, or 200 × 200 for a predefined map.
     pub fn arena_size(&self) -> [f64; 2] {
         if let Some(size) = self.layout.as_ref().and_then(Layout::size) {
             size
@@ -90,14 +89,14 @@ impl EnvironmentParams {
         }
     }
 
-    /// The number of the predefined map: `predefined_map`, or that of a layout which is one.
+    /// The number of the predefined map: `predefined_map`, or that of a layout that is one.
     pub fn map(&self) -> u8 {
         let own = self.layout.as_ref().and_then(|layout| layout.predefined);
         own.unwrap_or(self.predefined_map)
     }
 
-    /// The regions of the map that cannot be entered: those of a maps file, else of the built-in map. `walls` come on top,
-    /// and the walls of the layout, which the plan of a checked [`World`](crate::World) has.
+    /// The regions of the map that cannot be entered: from a maps file, else from the built-in map. They do not include `walls`,
+    /// nor the walls of the layout, which are in the plan of a checked [`World`](crate::World).
     pub fn regions(&self) -> Vec<&[[f64; 2]]> {
         let regions = match &self.map_regions {
             // A layout that is a map has them in its plan.
@@ -108,14 +107,14 @@ impl EnvironmentParams {
         regions.iter().map(|region| region.0.as_slice()).collect()
     }
 
-    /// Whether a point lies within the outer walls.
+    /// Whether a point is inside the outer walls.
     pub fn contains(&self, [x, y]: [f64; 2]) -> bool {
         let [width, depth] = self.arena_size();
         x.abs() <= width / 2.0 && y.abs() <= depth / 2.0
     }
 
-    /// The wall or region of the map that a point in metres lies in, by the even-odd rule; `None` on free ground.
-    /// `plan` is that of the layout, if there is one: [`World::enclosure`](crate::World::enclosure) knows it.
+    /// The wall or region of the map that contains a point in metres, by the even-odd rule; `None` on free ground. `plan` is the
+    /// layout's, if there is one; [`World::enclosure`](crate::World::enclosure) passes it.
     ///
     /// # Example
     /// ```
@@ -148,7 +147,7 @@ impl EnvironmentParams {
         })
     }
 
-    /// Where a place is that nobody comes to: outside the arena, or inside which wall; `None` on free ground.
+    /// Why a place cannot be reached: it is outside the arena, or inside this wall; `None` on free ground.
     pub(super) fn out_of_reach(&self, at: [f64; 2], plan: Option<&Plan>) -> Option<String> {
         if self.contains(at) {
             return Some(format!("inside {}", self.enclosure(at, plan)?));
@@ -158,7 +157,7 @@ impl EnvironmentParams {
     }
 }
 
-/// Whether a point lies within a polygon, by the even-odd rule.
+/// Whether a point is inside a polygon, by the even-odd rule.
 pub(super) fn encloses(corners: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
     let edges = corners.iter().zip(corners.iter().cycle().skip(1));
     let crossed = edges.filter(|(a, b)| {
@@ -168,19 +167,19 @@ pub(super) fn encloses(corners: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
     crossed.count() % 2 == 1
 }
 
-/// Ground that cannot be entered, as messages name it.
+/// Ground that cannot be entered, for messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Enclosure {
     /// A region of a built-in layout.
     Region {
         /// Its index, from 0.
         index: usize,
-        /// How many the layout has.
+        /// The layout's number of regions.
         count: usize,
         /// The layout's number.
         map: u8,
     },
-    /// A region of a layout that came with the world.
+    /// A region of the layout in the world's document.
     OwnRegion {
         /// Its index in `map_regions`.
         index: usize,
@@ -194,7 +193,7 @@ pub enum Enclosure {
     LayoutWall {
         /// Its index in the walls of the plan.
         index: usize,
-        /// How many the plan has.
+        /// The plan's number of walls.
         count: usize,
     },
 }

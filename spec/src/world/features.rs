@@ -1,4 +1,4 @@
-//! What a state vector may hold beside the pictures. How each feature is computed is in `env`.
+//! The features of the state vector, which accompanies the images.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -45,10 +45,10 @@ pub enum StateFeature {
 }
 
 impl StateFeature {
-    /// What the original's state vector holds: position, heading, velocity.
+    /// The original's state vector: position, heading, velocity.
     pub const CLASSIC: [Self; 3] = [Self::Position, Self::Heading, Self::Velocity];
 
-    /// How many numbers the feature is.
+    /// Number of values of the feature.
     pub fn num_values(self) -> usize {
         match self {
             Self::Heading | Self::LastReward | Self::StepsLeft | Self::Energy => 1,

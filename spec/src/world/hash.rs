@@ -1,5 +1,4 @@
-//! The names of a world: by all of its content, and by where things stand in it, which is what the chance of a world without a
-//! `seed` grows from.
+//! Hashes of a world: of all its content, and of the places in it, which seeds the randomness of a world without `seed`.
 
 use sha2::{Digest, Sha256};
 
@@ -7,15 +6,15 @@ use super::World;
 use crate::describe::hexadecimal;
 
 impl World {
-    /// The world's name by its content: the SHA-256 of [`World::to_json`] in hexadecimal, 64 characters.
+    /// The SHA-256 of [`World::to_json`] in hexadecimal, 64 characters.
     pub fn hash(&self) -> String {
         hexadecimal(&Sha256::digest(self.to_json()))
     }
 
     /// The SHA-256 of the arena and of the places of the agent and of all objects, in hexadecimal, 64 characters.
     ///
-    /// What things look like, pay or are called has no part in it, nor has the order of the objects: worlds that differ in
-    /// nothing else have one hash of places.
+    /// Looks, rewards, names and the order of the objects do not affect it: worlds that differ only in these have the same
+    /// hash of places.
     ///
     /// # Example
     /// ```
@@ -54,7 +53,7 @@ impl World {
     }
 }
 
-/// The bits of a number; 0 has one form.
+/// The bits of a number; 0 and −0 are the same.
 fn bits(metres: f64) -> u64 {
     (metres + 0.0).to_bits()
 }
@@ -64,7 +63,7 @@ mod tests {
     use crate::{Color, Object, WorldDraft};
 
     #[test]
-    fn looks_pay_names_and_order_have_no_part_in_it() {
+    fn looks_rewards_names_and_order_do_not_affect_the_hash_of_places() {
         let world = WorldDraft {
             objects: vec![Object::new("tree", [3.0, 0.0]), Object::new("rock", [-1.0, 2.0])],
             ..WorldDraft::default()

@@ -1,24 +1,23 @@
-//! What is odd about where doors and their keys are: keys that only their own door leads to, doors that stand in each other.
-//! What can never be used wherever it is, is said in `thing_remarks.rs`.
+//! Remarks on the places of doors and keys: keys that are all behind their own door, and doors that overlap.
 
 use std::collections::BTreeSet;
 
 use super::World;
 use crate::layout::Plan;
 
-/// In worlds with more doors than these nothing is looked for, since all of them are looked at together.
+/// Most doors for which worlds are checked, because the check compares all doors with each other.
 const MOST_DOORS: usize = 1000;
 
-/// What a locked door bars in a layout.
+/// The part of a layout that a locked door blocks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Bar {
-    /// The side between two cells, the lower number first.
+    /// The side between two cells, the lower index first.
     Side(usize, usize),
-    /// A cell in which the door stands.
+    /// The cell in which the door stands.
     Cell(usize),
 }
 
-/// What is odd, each with the pointer to it.
+/// The remarks, each after the pointer to its subject.
 pub(super) fn lock_remarks(world: &World) -> Vec<(String, String)> {
     let doors = world.objects.iter().filter(|object| object.door.is_some()).count();
     if doors == 0 || doors > MOST_DOORS {
@@ -29,8 +28,8 @@ pub(super) fn lock_remarks(world: &World) -> Vec<(String, String)> {
     found
 }
 
-/// The locked doors of a layout whose keys all lie where the agent gets only through locked doors that stay shut. Doors without
-/// a lock, and those that a switch or a clock opens, count as open.
+/// The locked doors of a layout whose keys are all behind locked doors that stay shut. Doors without a lock, and those that a
+/// switch or a clock opens, count as open.
 fn behind_their_doors(world: &World) -> Vec<(String, String)> {
     let Some(plan) = world.plan() else { return Vec::new() };
     let Some(start) = plan.cell_at(world.agent_params.coordinates) else {
@@ -81,7 +80,7 @@ fn behind_their_doors(world: &World) -> Vec<(String, String)> {
     locked.into_iter().map(remark).collect()
 }
 
-/// What a door at a place bars.
+/// The part of the layout that a door at a place blocks.
 fn bar(plan: &Plan, place: [f64; 2]) -> Option<Bar> {
     let own = plan.cell_at(place);
     let stands_in = |center: [f64; 2], width: f64| (0..2).all(|axis| (center[axis] - place[axis]).abs() < width / 2.0);
@@ -96,14 +95,14 @@ fn bar(plan: &Plan, place: [f64; 2]) -> Option<Bar> {
             at[axis] += share * plan.cell[axis];
             plan.cell_at(at)
         });
-        // Of a text the doorway is a cell of its own.
+        // In a text layout the doorway is a cell of its own.
         let is_between = plan.cell_at(doorway.center) != before && doorway.depth < plan.cell[axis];
         is_between.then_some((before?, beyond?))
     });
     sides.map(|(a, b)| Bar::Side(a.min(b), a.max(b))).or(own.map(Bar::Cell))
 }
 
-/// For each cell whether it is reached from the first one without what is barred.
+/// For each cell, whether it can be reached from `start` without passing a bar.
 fn reached(plan: &Plan, start: usize, bars: &BTreeSet<Bar>) -> Vec<bool> {
     let mut reached = vec![false; plan.cells.len()];
     plan.reach(start, &mut reached, |cell, next| {
@@ -112,7 +111,7 @@ fn reached(plan: &Plan, start: usize, bars: &BTreeSet<Bar>) -> Vec<bool> {
     reached
 }
 
-/// Doors that stand in another one: nearer to it than half the narrower of the two.
+/// Doors that overlap: nearer to each other than half the narrower one's width.
 fn overlapping(world: &World) -> Vec<(String, String)> {
     let mut doors: Vec<(usize, [f64; 2], f64)> = world
         .objects
@@ -124,7 +123,7 @@ fn overlapping(world: &World) -> Vec<(String, String)> {
     doors.sort_by(|a, b| a.1[0].total_cmp(&b.1[0]).then(a.0.cmp(&b.0)));
     let mut found = Vec::new();
     for (number, (index, place, scale)) in doors.iter().enumerate() {
-        // One for each door is enough, and keeps the search short where all stand in one place.
+        // One report per door is enough, and keeps the search short if all are in one place.
         let near = doors[number + 1..]
             .iter()
             .take_while(|(_, other, _)| other[0] - place[0] < scale / 2.0);
@@ -173,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn keys_that_only_their_own_doors_lead_to_are_said() {
+    fn keys_behind_their_own_doors_get_a_remark() {
         assert_eq!(in_a_row([-3.0, 0.0]), [""; 0]);
         assert_eq!(in_a_row([-3.0, -2.0]), [""; 0]);
         let behind = in_a_row([-3.0, 4.0]);
@@ -190,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn doors_between_cells_bar_their_doorway_and_switches_open_them() {
+    fn doors_between_cells_block_their_doorway_and_switches_open_them() {
         let rooms = r#"{ "rooms": { "grid": [2, 1], "room": [6, 2], "doorway": 1, "wall": 0.2, "seed": 1 } }"#;
         let objects = |key: &str, more: &str| {
             format!(
@@ -207,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn doors_that_stand_in_each_other_are_said() {
+    fn overlapping_doors_get_a_remark() {
         let doors = |x: f64| {
             let objects = format!(
                 r#"[{{ "class": "door", "coordinates": [{x}, 0], "door": {{}} }},

@@ -1,5 +1,5 @@
-//! [`Looks`]: in which style a world is drawn: what covers ground and walls, shadows, a ceiling. Colours, sun and fog are in
-//! `environment.rs`; how all of it is drawn is the renderer's.
+//! [`Looks`]: the style in which a world is rendered: ground and wall textures, shadows, a ceiling. Colours, sun and fog are in
+//! `environment.rs`.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -107,7 +107,7 @@ fields! {
     }
 }
 
-/// The ceiling's colour if none is said.
+/// The default colour of the ceiling.
 const CEILING: Color = Color([0.86, 0.85, 0.82]);
 
 fn is_white_enough(color: &Color) -> bool {
@@ -123,24 +123,24 @@ impl Looks {
         }
     }
 
-    /// Whether there is a ceiling over a layout, or over an arena without one. In the plain style there is none.
+    /// Whether there is a ceiling over a layout, or over an arena without one. Always false in the plain style.
     pub fn has_ceiling(&self, layout: Option<&Layout>) -> bool {
         let is_inside = |layout: &Layout| layout.maze.is_some() || layout.rooms.is_some() || layout.text.is_some();
         self.style == Style::Natural && self.ceiling.unwrap_or_else(|| layout.is_some_and(is_inside))
     }
 
-    /// What covers the ground, by whether there is a ceiling over it.
+    /// The covering of the ground, which depends on whether there is a ceiling.
     pub fn ground(&self, has_ceiling: bool) -> Covering {
         let own = if has_ceiling { Surface::Tile } else { Surface::Noise };
         self.covering(self.ground, own)
     }
 
-    /// What covers walls.
+    /// The covering of walls.
     pub fn walls(&self) -> Covering {
         self.covering(self.walls, Surface::Brick)
     }
 
-    /// The colour of the ceiling; that of one of which nothing is said where there is none.
+    /// The colour of the ceiling; the default colour if there is none.
     pub fn ceiling_color_seen(&self, layout: Option<&Layout>) -> Color {
         if self.has_ceiling(layout) {
             self.ceiling_color
@@ -149,7 +149,7 @@ impl Looks {
         }
     }
 
-    /// Whether shadows fall on the ground.
+    /// Whether objects cast shadows on the ground.
     pub fn has_shadows(&self) -> bool {
         self.style == Style::Natural && self.shadows.unwrap_or(true)
     }
@@ -168,7 +168,7 @@ impl Looks {
 }
 
 impl Covering {
-    /// Its scale; 1 where it has no pattern.
+    /// Its scale; 1 if it has no pattern.
     pub(super) fn scale_seen(self) -> f64 {
         if self.surface == Surface::Plain {
             1.0
@@ -177,13 +177,13 @@ impl Covering {
         }
     }
 
-    /// A surface at its own size.
+    /// A surface at scale 1.
     pub fn of(surface: Surface) -> Self {
         Self { surface, scale: 1.0 }
     }
 }
 
-/// Lets a part of a world be written as a word, which is one of its keys, or with all of them.
+/// Lets a part of a world be written as a single word, which is one of its keys, or with all its keys.
 macro_rules! word_or_parts {
     ($type:ident, $form:ident, $word:ident, $expecting:literal, $of:expr) => {
         impl Serialize for $type {
@@ -261,7 +261,7 @@ mod tests {
     use crate::layout::{Maze, Rooms};
 
     #[test]
-    fn a_word_is_the_object_that_says_it() {
+    fn word_equals_the_object_with_that_key() {
         let read = |text: &str| serde_json::from_str::<Looks>(text).map_err(|error| error.to_string());
         assert_eq!(read(r#""natural""#), read(r#"{ "style": "natural" }"#));
         assert_eq!(read("{}"), Ok(Looks::default()));
@@ -277,7 +277,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_absent_is_as_the_style_has_it() {
+    fn absent_looks_come_from_the_style() {
         let maze = Layout {
             maze: Some(Maze::default()),
             ..Layout::default()

@@ -1,4 +1,4 @@
-//! [`World`]: the reset JSON, one fully concrete world. Its L2Explorer dialect is read in `l2explorer/`.
+//! [`World`]: the reset JSON, which describes one fully concrete world.
 
 mod agent;
 mod camera;
@@ -49,10 +49,10 @@ use crate::limits::MAX_WORLD_VALUES;
 use crate::schema::document::DocumentSchema;
 use crate::version;
 
-/// The largest seed of a world or an object, 2⁵³ − 1: the largest whole number that every reader of JSON keeps.
+/// Largest seed of a world or an object, 2⁵³ − 1: the largest integer that every JSON reader represents exactly.
 pub const MAX_SEED: u64 = (1 << 53) - 1;
 
-/// The most points of one picture: 4096 × 4096 pixels with 2 × 2 points each.
+/// Most sample points of one image: 4096 × 4096 pixels with 2 × 2 points each.
 pub const MAX_POINTS: u64 = 1 << 26;
 
 /// One fully concrete world: what a reset takes.
@@ -76,14 +76,15 @@ pub struct World {
     plan: Option<Arc<Plan>>,
 }
 
-/// The same fields make the same plan.
+/// The plan is not compared: equal fields have equal plans.
 impl PartialEq for World {
     fn eq(&self, other: &Self) -> bool {
         self.draft == other.draft
     }
 }
 
-/// Its fields are read as those of a [`WorldDraft`], and only changed by way of one: whoever holds a world holds a checked one.
+/// Gives read access to the fields of the [`WorldDraft`]; they can be changed only through a draft, so that every world is
+/// a checked one.
 impl Deref for World {
     type Target = WorldDraft;
 
@@ -100,15 +101,15 @@ impl World {
         &SCHEMA
     }
 
-    /// Reads a world, strictly. `name` is what messages call the document, usually its path.
+    /// Reads a world strictly. `name` is the document's name in messages, usually its path.
     ///
     /// # Errors
-    /// [`SpecError::Document`] with every problem of the text at once, sorted by place.
+    /// [`SpecError::Document`] with all problems of the text, sorted by place.
     pub fn from_json(name: &str, text: &str) -> Result<Self, SpecError> {
         Self::from_json_with(name, text, None)
     }
 
-    /// As [`World::from_json`], and refuses objects whose classes or models are none of these, if there are any.
+    /// Like [`World::from_json`]; if classes are given, also refuses objects with other classes or models.
     ///
     /// # Errors
     /// As [`World::from_json`].
@@ -136,12 +137,12 @@ impl World {
         text
     }
 
-    /// What its layout comes to: walls, free cells, doorways. `None` for a world without a layout.
+    /// The plan of its layout: walls, free cells, doorways. `None` for a world without a layout.
     pub fn plan(&self) -> Option<&Plan> {
         self.plan.as_deref()
     }
 
-    /// The ground that cannot be entered: the regions of the map, the walls, and those of the layout, each as a polygon in
+    /// The ground that cannot be entered: the regions of the map, the walls, and the walls of the layout, each as a polygon in
     /// metres, in this order.
     pub fn obstacles(&self) -> impl Iterator<Item = &[[f64; 2]]> {
         let environment = &self.environment_params;
@@ -151,14 +152,14 @@ impl World {
         regions.chain(walls).chain(planned.map(|wall| wall.polygon.as_slice()))
     }
 
-    /// The wall or region that a point in metres lies in, as [`EnvironmentParams::enclosure`].
+    /// The wall or region that contains a point in metres, as [`EnvironmentParams::enclosure`].
     pub fn enclosure(&self, point: [f64; 2]) -> Option<Enclosure> {
         self.environment_params.enclosure(point, self.plan())
     }
 }
 
 impl WorldDraft {
-    /// Every object whose class or model is none of these.
+    /// All objects whose class or model is unknown.
     pub fn unknown_classes(&self, classes: &Classes) -> Vec<Problem> {
         let objects = self.objects.iter().enumerate();
         objects

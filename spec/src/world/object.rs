@@ -1,4 +1,4 @@
-//! One thing that stands in a world, and what touching it does.
+//! [`Object`]: an object of a world, and what touching it does.
 
 use std::borrow::Cow;
 
@@ -11,7 +11,7 @@ use crate::Color;
 use crate::serde_defaults::{half, is_default, is_one, one, yes};
 use crate::value::{ParameterType, Value};
 
-/// What can be written on a sign.
+/// Pattern of the text on a sign.
 pub(crate) const TEXT_PATTERN: &str = "^[A-Z0-9!?<>+ -]*$";
 
 fields! {
@@ -154,7 +154,7 @@ fields! {
 }
 
 impl Object {
-    /// An object of this class at this place in metres; all else is at its default.
+    /// An object of this class at this place in metres, with everything else at its default.
     pub fn new(class: impl Into<String>, coordinates: [f64; 2]) -> Self {
         Self {
             class: class.into(),
@@ -163,23 +163,23 @@ impl Object {
         }
     }
 
-    /// Whether the agent can earn something by this object: a positive reward and a stimulus that pays it.
+    /// Whether the agent can gain from this object: it has a positive reward and a stimulus that pays it.
     pub fn is_target(&self) -> bool {
         self.reward > 0.0 && !(self.reward_stimulus.is_empty() && self.reward_once_stimulus.is_empty())
     }
 
-    /// Whether it is more than a body: a door, a switch, or a thing that is carried.
+    /// Whether it has a function: a door, a switch or a portable object.
     pub fn is_used(&self) -> bool {
         self.door.is_some() || self.switch.is_some() || self.portable.is_some()
     }
 
-    /// Whether chance has a part in what becomes of it: it wanders, pays now and then, or comes back somewhere.
+    /// Whether its behaviour is random: it wanders, pays with a probability, or returns at a random place.
     pub fn takes_chances(&self) -> bool {
         self.motion_model == MotionModel::RandomWaypoint || self.reward_probability < 1.0 || self.respawn.is_some()
     }
 }
 
-/// The model within a class. Documents write `"3"` or `3`; it is kept as text.
+/// A model within a class. Documents write `"3"` or `3`; it is stored as text.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 pub struct Model(pub String);
 
@@ -190,7 +190,7 @@ impl Default for Model {
 }
 
 impl Model {
-    /// The model's number, if it is one.
+    /// The model's number, if it is a number.
     pub fn number(&self) -> Option<u32> {
         self.0.trim().parse().ok()
     }

@@ -1,5 +1,4 @@
-//! How far a running world has come: what a world needs beside its objects' places to go on as if it had never been written
-//! down. Writing and reading it is `env`'s.
+//! [`Progress`]: the state of a running world, without which a saved world could not continue unchanged.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -76,16 +75,16 @@ pub struct Progress {
     pub carried: Vec<u32>,
 }
 
-/// No parameter sets it.
+/// No parameter can set it.
 impl Place for Progress {}
 
-/// The largest whole number that every reader of JSON keeps: 2⁵³ − 1.
+/// The largest integer that every JSON reader represents exactly: 2⁵³ − 1.
 const MOST: u64 = (1 << 53) - 1;
 
-/// The most draws of one kind: leaves room for as many again.
+/// Most draws of one kind: leaves room for as many more.
 const MOST_DRAWN: u64 = 1 << 31;
 
-/// Leaves room for as many again.
+/// Leaves room for as many more.
 const MOST_TICKS: u64 = 1 << 52;
 
 /// An event, as the state vector tells it.
@@ -244,7 +243,7 @@ pub struct RailsProgress {
     pub given_up: Vec<u32>,
 }
 
-/// What of a world's progress does not fit the world.
+/// The parts of a world's progress that do not fit the world.
 pub(super) fn problems(world: &WorldDraft) -> Vec<Problem> {
     let Some(progress) = &world.progress else {
         return Vec::new();
@@ -278,7 +277,7 @@ pub(super) fn problems(world: &WorldDraft) -> Vec<Problem> {
     problems
 }
 
-/// What of the things that a world says are carried does not fit it.
+/// The carried objects that do not fit the world.
 fn carried_problems(world: &WorldDraft, progress: &Progress) -> Vec<Problem> {
     let carried = &progress.carried;
     let mut problems = Vec::new();
@@ -307,7 +306,7 @@ fn wrong(place: &str, found: impl Into<String>, expected: impl Into<String>) -> 
     Problem::new("spec/progress", format!("/progress/{place}"), found, expected)
 }
 
-/// What is wrong with the first of some numbers, counted from 0, that is beyond as many as there are.
+/// The problem of the first index that is out of range.
 fn beyond(place: &str, what: &str, numbers: impl IntoIterator<Item = u32>, count: usize) -> Option<Problem> {
     let number = numbers.into_iter().find(|number| *number as usize >= count)?;
     let expected = format!("one of {count} {what}s, counted from 0");

@@ -1,5 +1,4 @@
-//! What is odd about a sound world: what means to move and stands still, and what stands where nobody comes. What is wrong with
-//! one is said by the schema and in `mod.rs`.
+//! Remarks on a valid world: objects that should move but cannot, and objects that cannot be reached.
 
 use super::lock_remarks::lock_remarks;
 use super::thing_remarks::thing_remarks;
@@ -8,7 +7,7 @@ use crate::layout::{self, Layout};
 use crate::warning::{Remarks, Warning};
 
 impl Object {
-    /// Whether the object means to move by itself, and cannot: it has no speed, or its patrol no waypoints.
+    /// Whether the object should move by itself but cannot: it has no speed, or its patrol has no waypoints.
     pub fn stands_still(&self) -> bool {
         let goes_nowhere = self.motion_model == MotionModel::Patrol && self.waypoints.is_empty();
         self.motion_model != MotionModel::Stationary && (self.speed == 0.0 || goes_nowhere)
@@ -16,8 +15,7 @@ impl Object {
 }
 
 impl World {
-    /// What is odd about this world as the text that it was read from has it, with the places there; `name` is what messages call
-    /// the text.
+    /// The remarks on this world, with their places in the text it was read from; `name` is the text's name in messages.
     ///
     /// # Example
     /// ```
@@ -34,7 +32,7 @@ impl World {
         self.found_odd().in_text(name, text)
     }
 
-    /// What is odd about this world, as [`World::remarks`], of a world that was read from no text: without lines and columns.
+    /// Like [`World::remarks`], for a world that was not read from a text: without lines and columns.
     pub fn remarks_without_text(&self) -> Vec<Warning> {
         self.found_odd().without_text("world")
     }
@@ -109,7 +107,7 @@ impl World {
         remarks
     }
 
-    /// Polygons of walls and zones that enclose nothing or cross themselves.
+    /// Polygons of walls and zones without area, or that cross themselves.
     fn polygon_faults(&self) -> Vec<(String, &'static str)> {
         let arena = &self.environment_params;
         let walls = arena.walls.iter().map(|wall| Some(&wall.polygon));
@@ -136,7 +134,7 @@ impl World {
         faults
     }
 
-    /// Whether the agent is to go to an object: it pays, or touching it or picking it up ends the episode well.
+    /// Whether the agent should go to an object: it pays, or touching it or picking it up is a success.
     fn is_wanted(&self, object: &Object) -> bool {
         let tag = object.tag.as_ref();
         let mut ends = self.rules.success.iter();
@@ -147,7 +145,7 @@ impl World {
         is_end || object.is_target()
     }
 
-    /// Where an object stands that nobody comes to: outside the arena, or inside which wall; `None` on free ground.
+    /// Why an object cannot be reached: it is outside the arena, or inside this wall; `None` on free ground.
     pub(crate) fn out_of_reach(&self, object: &Object) -> Option<String> {
         let place = self.environment_params.out_of_reach(object.coordinates, self.plan())?;
         let ([x, y], class) = (object.coordinates, &object.class);
@@ -157,10 +155,10 @@ impl World {
     }
 }
 
-/// So many pairs of sides of polygons are looked at in a world.
+/// Most pairs of polygon sides to compare in one world.
 const MOST_PAIRS: usize = 2_000_000;
 
-/// What is odd about a polygon; `left` pairs of sides may still be looked at.
+/// The fault of a polygon; `left` is the number of pairs of sides that may still be compared.
 fn polygon_fault(corners: &[[f64; 2]], left: &mut usize) -> Option<&'static str> {
     let turn = |a: [f64; 2], b: [f64; 2], c: [f64; 2]| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
     let first = *corners.first()?;
@@ -187,7 +185,7 @@ mod tests {
     use crate::{Rules, WorldDraft, Zone};
 
     #[test]
-    fn polygons_without_area_and_those_that_cross_themselves_are_said() {
+    fn polygons_without_area_or_with_crossings_get_a_remark() {
         for (polygon, expected) in [
             ("[[0, 0], [2, 2], [4, 4]]", Some("has no area")),
             ("[[0, 0], [2, 2], [2, 0], [0, 2]]", Some("crosses itself")),
@@ -220,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn a_start_and_a_goal_in_a_zone_that_fails_are_said() {
+    fn start_and_goal_in_a_failing_zone_get_remarks() {
         let said = |start: [f64; 2], goal: [f64; 2], ends: Option<ZoneEnd>| {
             let mut world = WorldDraft::default();
             let mut zone = Zone::disc([5.0, 0.0], 2.0);

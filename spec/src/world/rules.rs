@@ -1,4 +1,4 @@
-//! What an episode pays beside the objects, and what ends it before its last step.
+//! [`Rules`]: rewards of an episode besides those of objects, and the conditions that end it early.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -121,16 +121,16 @@ fields! {
 }
 
 impl EndCondition {
-    /// Whether it is that the agent touches this object.
+    /// Whether it is the condition of touching this object.
     pub fn is_touch_of(&self, object: &Object) -> bool {
         matches!(self, Self::Touch(tag) if object.tag.as_ref() == Some(tag))
     }
 }
 
-/// As a whole, or by what it waits for.
+/// As a whole, or through its variant's value.
 impl Place for EndCondition {
     fn find_inside(words: &[&str], steps: &mut Vec<usize>) -> Option<ParameterType> {
-        // There is one thing in it.
+        // It has one part.
         steps.push(0);
         match words {
             ["touch" | "opened" | "carried"] => Some(ParameterType::String),

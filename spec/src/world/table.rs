@@ -1,5 +1,4 @@
-//! The table of fields of a whole world: its places, and the texts of what of it is compared leaf by leaf. The rows stand
-//! beside the fields.
+//! The table of fields of a whole world: its places, and the texts by which fields are compared leaf by leaf.
 
 use std::sync::LazyLock;
 
@@ -10,7 +9,7 @@ use super::{Disc, EnvironmentParams, Looks, Object, Style, Surface, World, World
 use crate::Color;
 
 impl World {
-    /// Every place of a world, in the order of the table; those of its objects once.
+    /// All places of a world, in the order of the table; those of objects appear once.
     ///
     /// # Example
     /// ```
@@ -24,8 +23,8 @@ impl World {
     }
 }
 
-/// The fields of a world or an object that are compared leaf by leaf: for each comparison a text that has, field by field
-/// in the order of the table, a line of JSON. Equal fields have equal texts.
+/// The leaf-by-leaf compared fields of a world or an object: for each comparison a text with one line of JSON per field, in the
+/// order of the table. Equal fields have equal texts.
 #[derive(Debug)]
 pub struct LeafTexts([Vec<u8>; Comparison::ALL.len()]);
 
@@ -36,7 +35,7 @@ impl Default for LeafTexts {
 }
 
 impl LeafTexts {
-    /// The texts of a world, but for its objects, in place of those before.
+    /// Replaces the texts by those of a world, without its objects.
     pub fn read_world(&mut self, world: &World) {
         self.0.iter_mut().for_each(Vec::clear);
         self.add::<WorldDraft>(world);
@@ -50,7 +49,7 @@ impl LeafTexts {
         );
     }
 
-    /// The texts of an object in place of those before.
+    /// Replaces the texts by those of an object.
     pub fn read_object(&mut self, object: &Object) {
         self.0.iter_mut().for_each(Vec::clear);
         self.add(object);
@@ -66,7 +65,7 @@ impl LeafTexts {
         }
     }
 
-    /// Zones as each element of the decision process has them: where those are that are part of it, and by what.
+    /// Adds the zones to each comparison that they belong to, reduced to the relevant properties.
     fn add_zones(&mut self, zones: &[Zone]) {
         fn shape(zone: &Zone) -> Shape<'_> {
             let disc = zone.disc.as_ref();
@@ -115,8 +114,8 @@ impl LeafTexts {
     }
 }
 
-/// How a world is drawn, as far as anything reads it, and whatever its document says in so many words: what is as the style has it
-/// by itself is the same as what is absent.
+/// How a world is rendered, reduced to what has an effect: a property that is written out but equal to the style's own
+/// counts as absent.
 #[derive(Serialize)]
 struct Drawn {
     style: Style,
@@ -134,7 +133,7 @@ impl Drawn {
     fn of(environment: &EnvironmentParams) -> Self {
         let (style, layout) = (environment.looks.style, environment.layout.as_ref());
         let own = Looks::of(Style::Natural);
-        // Nothing reads them in the plain style.
+        // The plain style ignores them.
         let looks = match style {
             Style::Plain => &own,
             Style::Natural => &environment.looks,
@@ -150,21 +149,21 @@ impl Drawn {
             wall_scale: walls.scale_seen(),
             ceiling: (has_ceiling != own.has_ceiling(layout)).then_some(has_ceiling),
             shadows: looks.has_shadows(),
-            // Nobody sees them through a ceiling.
+            // A ceiling hides them.
             clouds: has_ceiling || looks.has_clouds(),
             fog_in_depth: environment.looks.fog_in_depth && environment.fog_distance.is_some(),
         }
     }
 }
 
-/// The ground of a zone: the corners of a polygon, or the middle of a disc.
+/// The ground of a zone: the corners of a polygon, or the centre of a disc.
 #[derive(Serialize)]
 struct Shape<'a> {
     corners: Option<&'a [[f64; 2]]>,
     radius: Option<f64>,
 }
 
-/// A zone that acts on how the agent moves.
+/// A zone that affects movement.
 #[derive(Serialize)]
 struct Moving<'a> {
     shape: Shape<'a>,
@@ -172,7 +171,7 @@ struct Moving<'a> {
     teleport: &'a [[f64; 2]],
 }
 
-/// A zone that pays, or ends an episode.
+/// A zone that pays or ends an episode.
 #[derive(Serialize)]
 struct Paying<'a> {
     shape: Shape<'a>,
@@ -181,7 +180,7 @@ struct Paying<'a> {
     ends: Option<ZoneEnd>,
 }
 
-/// A zone that is seen.
+/// A visible zone.
 #[derive(Serialize)]
 struct Seen<'a> {
     shape: Shape<'a>,

@@ -1,9 +1,8 @@
-//! What is odd about the doors, switches and portable things of a sound world: what can never open, move or be carried. What
-//! else is odd is in `remarks.rs`.
+//! Remarks on the doors, switches and portable objects of a valid world that can never open, move or be carried.
 
 use super::{ActionModel, EndCondition, Object, Stimulus, World};
 
-/// What is odd, each with the pointer to it.
+/// The remarks, each after the pointer to its subject.
 pub(super) fn thing_remarks(world: &World) -> Vec<(String, String)> {
     let mut found = Vec::new();
     for (index, object) in world.objects.iter().enumerate() {
@@ -35,7 +34,7 @@ pub(super) fn thing_remarks(world: &World) -> Vec<(String, String)> {
     found
 }
 
-/// What is odd about a door: what opens it is never there. With the key that it is about.
+/// The remark on a door that nothing can open, after the key that it is about.
 fn door(world: &World, object: &Object) -> Option<(&'static str, String)> {
     let door = object.door.as_ref()?;
     let key = |tag: &String| has(world, tag, |object| object.portable.is_some());
@@ -55,7 +54,7 @@ fn door(world: &World, object: &Object) -> Option<(&'static str, String)> {
     unheard(world, object, &door.opens_on).map(|text| ("door/opens_on", text))
 }
 
-/// Why none of the stimuli of a list can ever be.
+/// Why none of these stimuli can ever occur.
 fn unheard(world: &World, object: &Object, stimuli: &[Stimulus]) -> Option<String> {
     let agent = &world.agent_params;
     let interacts = agent.interact && agent.action_model != ActionModel::ByWaypoint;
@@ -88,7 +87,7 @@ fn ending(world: &World, condition: &EndCondition) -> Option<String> {
     }
 }
 
-/// Whether an object of a tag is one of these.
+/// Whether some object with a tag meets a condition.
 fn has(world: &World, tag: &str, is_one: impl Fn(&Object) -> bool) -> bool {
     let mut tagged = world.objects.iter().filter(|object| object.tag.as_deref() == Some(tag));
     tagged.any(is_one)
@@ -133,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn what_can_never_open_or_be_carried_is_said_with_its_place() {
+    fn doors_and_portables_that_can_never_be_used_get_a_remark() {
         check(|_| {}, &[]);
         let door =
             |change: fn(&mut Door)| move |world: &mut WorldDraft| change(world.objects[0].door.as_mut().unwrap());

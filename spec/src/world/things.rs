@@ -1,5 +1,4 @@
-//! What an object can be beside a body: a door, a switch, a thing that is carried. What each does when is in
-//! `docs/worlds.md`; doing it is `env`'s.
+//! Functions of objects: doors, switches and portable objects. `docs/worlds.md` describes their behaviour.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -8,7 +7,7 @@ use super::Stimulus;
 use super::fields::{fields, word};
 use crate::serde_defaults::is_default;
 
-/// What a person does with a handle.
+/// Default stimulus of objects with a handle: an interaction.
 fn by_interaction() -> Vec<Stimulus> {
     vec![Stimulus::AgentInteract]
 }
@@ -113,7 +112,7 @@ pub enum SwitchAction {
 word!(SwitchAction);
 
 impl Switch {
-    /// A switch that an interaction sets off, and that opens and closes the doors of this tag.
+    /// A switch that an interaction triggers, and that toggles the doors with this tag.
     pub fn of(target: impl Into<String>) -> Self {
         Self {
             on: by_interaction(),

@@ -1,5 +1,4 @@
-//! [`Zone`]: a part of the ground that does something to the agent that is in it. What it does while a world runs is in `env`;
-//! what ends an episode beside it is in `rules.rs`.
+//! [`Zone`]: a part of the ground that affects the agent inside it.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -93,11 +92,11 @@ pub enum ZoneEnd {
 
 word!(ZoneEnd);
 
-/// The largest factor on the agent's speed, of one zone or of several.
+/// Largest factor on the agent's speed, of one zone or of several together.
 const MOST_SPEED_FACTOR: f64 = 100.0;
 
 impl Zone {
-    /// A round zone that does nothing; all else is at its default.
+    /// A round zone without effects, with everything else at its default.
     pub fn disc(center: [f64; 2], radius: f64) -> Self {
         Self {
             disc: Some(Disc { center, radius }),
@@ -105,16 +104,16 @@ impl Zone {
         }
     }
 
-    /// The factor on the agent's speed of zones that overlap.
+    /// The factor on the agent's speed in overlapping zones.
     pub fn speed_factor_of(factors: impl IntoIterator<Item = f64>) -> f64 {
-        // The product itself may leave the numbers that there are, and a factor of 0 behind it would make it none.
+        // The product could overflow to infinity, and a later factor of 0 would then give NaN.
         let product = factors
             .into_iter()
             .fold(1.0, |product: f64, factor| (product * factor).min(1e300));
         product.min(MOST_SPEED_FACTOR)
     }
 
-    /// A zone of these corners that does nothing; all else is at its default.
+    /// A zone with these corners and without effects, with everything else at its default.
     pub fn polygon(corners: Vec<[f64; 2]>) -> Self {
         Self {
             polygon: Some(corners),
@@ -122,7 +121,7 @@ impl Zone {
         }
     }
 
-    /// Whether a point in metres is in it: nearer to the middle than the radius, or within the corners by the even-odd rule.
+    /// Whether it contains a point in metres: nearer to the centre than the radius, or inside the corners by the even-odd rule.
     ///
     /// # Example
     /// ```
@@ -141,19 +140,19 @@ impl Zone {
         }
     }
 
-    /// Whether being in it costs: it pays less than nothing, or ends the episode as a failure.
+    /// Whether being in it is costly: it has a negative reward, or ends the episode as a failure.
     pub fn is_costly(&self) -> bool {
         self.reward_per_second < 0.0 || self.reward_on_entering < 0.0 || self.ends == Some(ZoneEnd::Failure)
     }
 
-    /// Whether being in it is worth while: it pays, or ends the episode as a success, and costs nothing.
+    /// Whether being in it is desirable: it pays or ends the episode as a success, and is not costly.
     pub fn is_wanted(&self) -> bool {
         let pays = self.reward_per_second > 0.0 || self.reward_on_entering > 0.0 || self.ends == Some(ZoneEnd::Success);
         pays && !self.is_costly()
     }
 
-    /// Its colour on the ground: its own, or that of what it does. Red for what fails or costs, green for what succeeds or pays,
-    /// violet for a teleport, brown for what slows, blue for what hastens, grey for the rest.
+    /// Its colour on the ground: its own, or that of its effect. Red for failing or costly, green for success or reward, violet
+    /// for a teleport, brown for slowing, blue for speeding up, grey for anything else.
     pub fn ground_color(&self) -> Color {
         self.color.unwrap_or_else(|| {
             Color(if self.is_costly() {
@@ -172,7 +171,7 @@ impl Zone {
         })
     }
 
-    /// The box around it, least and largest x and y in metres; `None` for one without ground.
+    /// Its bounding box: least and largest x and y in metres; `None` for a zone without ground.
     pub fn bounds(&self) -> Option<[[f64; 2]; 2]> {
         if let Some(Disc { center: [x, y], radius }) = self.disc {
             return Some([[x - radius, y - radius], [x + radius, y + radius]]);
@@ -187,7 +186,7 @@ impl Zone {
         }))
     }
 
-    /// Whether no point of its box is in the arena: nobody comes to it.
+    /// Whether its bounding box is entirely outside the arena, so that it cannot be entered.
     pub(super) fn is_outside(&self, arena: &EnvironmentParams) -> bool {
         let sides = arena.arena_size();
         self.bounds().is_some_and(|[low, high]| {
@@ -196,7 +195,7 @@ impl Zone {
     }
 }
 
-/// What of a world's zones no field can say by itself.
+/// Checks of a world's zones beyond single fields.
 pub(super) fn problems(world: &WorldDraft) -> Vec<Problem> {
     let arena = &world.environment_params;
     let mut problems = Vec::new();
@@ -243,7 +242,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_with_a_zone_is_said_with_its_place() {
+    fn zone_problems_are_reported_with_their_place() {
         let disc = r#""disc": { "center": [0, 0], "radius": 3 }"#;
         check(&format!("{{ {disc} }}"), "");
         check(

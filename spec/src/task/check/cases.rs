@@ -1,5 +1,5 @@
-//! Checks look-ups: the parameters that they read are known and have listable values, every value has a case, and there are no
-//! cycles.
+//! Checks look-ups: the parameters that they read are known and have listable values, every value has a case, and there
+//! are no cycles.
 
 use std::collections::BTreeSet;
 

@@ -100,8 +100,8 @@ fn fail_on(problems: Vec<Problem>) -> Result<(), Vec<Problem>> {
     if problems.is_empty() { Ok(()) } else { Err(problems) }
 }
 
-/// Reports measures of parameters that only draws read: variants are compared by the drawn values, so the measure would not be
-/// used.
+/// Reports measures of parameters that only draws read: variants are compared by the drawn values, so the measure
+/// would not be used.
 fn compared_by_draws(task: &TaskSpec) -> Vec<Problem> {
     let compared = task.parameters().iter().filter(|(_, own)| own.compare.is_some());
     let problem = |(name, parameter): (&String, &Parameter)| {

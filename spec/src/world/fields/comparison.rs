@@ -1,37 +1,36 @@
-//! [`Comparison`]: the parts that the distance of two worlds is made of. Which fields each looks at is said beside the
-//! fields; finding their numbers is `similarity`'s.
+//! [`Comparison`]: the parts of the distance between two worlds. The table of fields assigns each field to its parts.
 
 use crate::element::Element;
 
-/// Declares the parts: for each what it looks at, the element of the decision process that it counts for, what tables
-/// call it, and its unit: what counts 1.
+/// Declares the parts: for each its subject, its element of the decision process, its name in tables, and its unit,
+/// which counts 1.
 macro_rules! comparisons {
     ($($(#[$doc:meta])* $part:ident: $element:ident, $name:literal, $unit:literal,)+) => {
-        /// A part of the distance of two worlds.
+        /// A part of the distance between two worlds.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum Comparison {
             $($(#[$doc])* $part,)+
         }
 
         impl Comparison {
-            /// All of them, in the order in which tables show them.
+            /// All of them, in the order of tables.
             pub const ALL: &[Self] = &[$(Self::$part),+];
 
-            /// What tables call it.
+            /// Its name in tables.
             pub const fn name(self) -> &'static str {
                 match self {
                     $(Self::$part => $name,)+
                 }
             }
 
-            /// The element of the decision process that it counts for.
+            /// Its element of the decision process.
             pub const fn element(self) -> Element {
                 match self {
                     $(Self::$part => Element::$element,)+
                 }
             }
 
-            /// Its unit: what counts 1.
+            /// Its unit, which counts 1.
             pub const fn unit(self) -> &'static str {
                 match self {
                     $(Self::$part => $unit,)+
@@ -42,19 +41,19 @@ macro_rules! comparisons {
 }
 
 comparisons! {
-    /// Where objects stand, those that were matched.
+    /// Places of matched objects.
     PlacesOfObjects: S, "places of objects", "10 m",
-    /// Objects that were matched with none.
+    /// Objects without a match.
     Unmatched: S, "objects without a match", "an object",
-    /// Where objects face.
+    /// Headings of objects.
     HeadingsOfObjects: S, "headings of objects", "180 degrees",
-    /// Where the agent starts.
+    /// The agent's start.
     Start: S, "agent's start", "10 m",
-    /// Where the agent looks at the start.
+    /// The agent's heading at the start.
     Heading: S, "agent's heading", "180 degrees",
     /// What the numbers of an action mean.
     ModelOfActions: A, "action model", "another word",
-    /// How actions are given.
+    /// The action space, and whether the agent can interact and carry.
     SpaceOfActions: A, "action space", "another word",
     /// The agent's largest speed.
     LargestSpeed: A, "largest speed", "the larger one",
@@ -62,9 +61,9 @@ comparisons! {
     LargestTurnRate: A, "largest turn rate", "the larger one",
     /// How objects move by themselves.
     Motion: T, "motion of objects", "the larger one, or another word",
-    /// How solid objects are, what becomes of them, and what energy they give.
+    /// Solidity and functions of objects, and the energy that they give.
     Bodies: T, "bodies of objects", "the larger one, or another word",
-    /// Seconds of a step.
+    /// Length of a time step in seconds.
     TimeStep: T, "time step", "the larger one",
     /// The agent's width.
     Width: T, "agent's width", "the larger one",
@@ -72,40 +71,40 @@ comparisons! {
     EnergyOfAgent: T, "agent's energy", "the larger one, or none",
     /// The map and its walls.
     MapAndWalls: T, "map and walls", "the larger one, or another word",
-    /// What divides the arena: mazes, rooms and walls.
+    /// Mazes, rooms and walls that divide the arena.
     Layouts: T, "layouts", "no wall in common, or ways of no likeness",
     /// The sides of the arena.
     ArenaSize: T, "sides of the arena", "the larger one",
-    /// Where zones are that act on how the agent moves, and how.
+    /// Places and effects of zones that affect movement.
     Zones: T, "zones", "10 m, the larger one, or a zone",
-    /// What objects pay.
+    /// Rewards of objects.
     Rewards: R, "rewards of objects", "100 points",
-    /// For what objects pay.
+    /// Stimuli for which objects pay.
     PaidFor: R, "what is paid for", "the larger one, or another word",
-    /// How probable it is that an object pays.
+    /// Probability that an object pays.
     RewardProbabilities: R, "odds of reward", "from never to always",
-    /// What a second pays.
+    /// Reward per second.
     StepReward: R, "step reward", "1 point a second",
-    /// Shaping, and what ends an episode.
+    /// Shaping rewards, and the conditions that end an episode.
     ShapingAndEndings: R, "shaping and endings", "the larger one, or another word",
-    /// Where zones are that pay or end an episode, and what.
+    /// Places and effects of zones that pay or end an episode.
     ZonePay: R, "pay and endings of zones", "10 m, the larger one, or a zone",
-    /// How long an episode may last.
+    /// The limit on the length of an episode.
     Limit: R, "limit of steps", "the larger one, or none",
     /// The colours of objects.
     ColorsOfObjects: O, "colours of objects", "black to white in Oklab",
-    /// The looks of objects that were matched with none.
+    /// The looks of objects without a match.
     UnmatchedLooks: O, "looks without a match", "an object",
     /// The models of objects.
     ModelsOfObjects: O, "models of objects", "another word",
     /// The sizes of objects.
     SizesOfObjects: O, "sizes of objects", "the larger one",
-    /// How bright the sun is.
+    /// Brightness of the sun.
     Light: O, "light", "the larger one",
     /// The colours of walls, sky, ground and sunlight.
     ColorsOfSurroundings: O, "colours of surroundings", "black to white in Oklab",
-    /// Where zones are that are seen, and their colours.
+    /// Places and colours of visible zones.
     ZoneLooks: O, "looks of zones", "10 m, the larger one, or a zone",
-    /// What else decides what the agent sees.
+    /// Everything else that affects what the agent sees.
     CameraAndWeather: O, "camera and weather", "the larger one, or another word",
 }

@@ -1,7 +1,7 @@
-//! The table of fields: [`fields!`] declares a part of a world once, in `world/` and `layout/`. Beside each field stand its
-//! unit, whether the original has it, how it is compared, and whether it can be a parameter. The setters of templates, the keys
-//! of the L2Explorer dialect, the comparison of worlds and `docs/reference/` come from it. Types, ranges and defaults are read
-//! from the schema of the same declaration.
+//! The table of fields: [`fields!`] declares a part of a world once, in `world/` and `layout/`. Each field has its unit, whether
+//! the original has it, how it is compared, and whether it can be a parameter. The setters of templates, the keys of the
+//! L2Explorer dialect, the comparison of worlds and `docs/reference/` are derived from it. Types, ranges and defaults come from
+//! the schema of the same declaration.
 
 mod comparison;
 mod place;
@@ -13,41 +13,41 @@ use crate::value::ParameterType;
 pub use comparison::Comparison;
 pub(crate) use place::{Place, Setter, word};
 
-/// What the table says of a field.
+/// The properties of a field in the table.
 #[derive(Clone, Copy, Debug)]
 pub struct Field {
     /// Its key.
     pub key: &'static str,
-    /// The unit of its numbers, as people write it; `None` for what has none.
+    /// The unit of its numbers, for people to read; `None` if it has none.
     pub unit: Option<&'static str>,
     /// Whether L2Explorer's reset files have it.
     pub is_original: bool,
-    /// How two worlds are compared in it.
+    /// How it is compared between two worlds.
     pub compared: Compared,
-    /// Why no parameter can set it; `None` if one can, or what is in it.
+    /// Why no parameter can set it; `None` if one can set it or its parts.
     pub fixed: Option<&'static str>,
-    /// Why no parameter can set the whole of it, though one can set what is in it.
+    /// Why no parameter can set the whole of it, although one can set its parts.
     pub in_parts: Option<&'static str>,
-    /// The type of parameter that sets the whole of it, where it has one of its own.
+    /// The type of parameter that sets the whole of it, if that differs from its Rust type's.
     typed: Option<ParameterType>,
     is_heading: bool,
 }
 
-/// How two worlds are compared in a field.
+/// How a field is compared between two worlds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Compared {
-    /// Number by number and word by word, as the JSON of all fields of a comparison has them.
+    /// Number by number and word by word, in the JSON of all fields of a comparison.
     Leaves(Comparison),
-    /// By numbers that `similarity` finds for these.
+    /// By numbers that `similarity` computes for these comparisons.
     Measured(&'static [Comparison]),
-    /// As the field that it stands in, or each of its own fields by itself.
+    /// Like its parent field, or through each of its own fields.
     AsPart,
-    /// Not at all, for this reason.
+    /// Not compared, for this reason.
     Not(&'static str),
 }
 
 impl Compared {
-    /// The comparisons that look at the field.
+    /// The comparisons that use the field.
     pub fn comparisons(&self) -> &[Comparison] {
         match self {
             Self::Leaves(comparison) => std::slice::from_ref(comparison),
@@ -85,25 +85,25 @@ impl Field {
         self
     }
 
-    /// Its numbers are headings in degrees.
+    /// Marks its numbers as headings in degrees.
     pub(crate) const fn heading(mut self) -> Self {
         self.is_heading = true;
         self.unit("degrees")
     }
 
-    /// No parameter can set it, for this reason.
+    /// Excludes it from parameters, for this reason.
     pub(crate) const fn fixed(mut self, reason: &'static str) -> Self {
         self.fixed = Some(reason);
         self
     }
 
-    /// The whole of it is a layout.
+    /// Marks the whole of it as a layout.
     pub(crate) const fn layout(mut self) -> Self {
         self.typed = Some(ParameterType::Layout);
         self
     }
 
-    /// No parameter can set the whole of it, for this reason; what is in it takes some.
+    /// Excludes the whole of it from parameters, for this reason; its parts can be parameters.
     pub(crate) const fn in_parts(mut self, reason: &'static str) -> Self {
         self.in_parts = Some(reason);
         self
@@ -113,17 +113,17 @@ impl Field {
         Self { key, ..self }
     }
 
-    /// The name of the Rust field, unless it was given another.
+    /// Sets the name of the Rust field, unless another was given.
     pub(crate) const fn or_named(self, key: &'static str) -> Self {
         if self.key.is_empty() { self.named(key) } else { self }
     }
 
-    /// The type of parameter that the whole of it takes, given that of its Rust type.
+    /// The type of parameter for the whole of it, given that of its Rust type.
     fn whole_kind(&self, kind: ParameterType) -> ParameterType {
         self.typed.unwrap_or(self.kind(kind))
     }
 
-    /// The type of parameter that a place of the field takes, given that of its Rust type.
+    /// The type of parameter for a place in the field, given that of its Rust type.
     fn kind(&self, kind: ParameterType) -> ParameterType {
         match kind {
             ParameterType::Number if self.is_heading => ParameterType::Heading,
@@ -131,7 +131,7 @@ impl Field {
         }
     }
 
-    /// What is not said of it is as with the whole that it belongs to.
+    /// Takes unset properties from the parent field.
     fn inherit(&self, whole: &Self) -> Self {
         Self {
             compared: match self.compared {
@@ -144,12 +144,12 @@ impl Field {
     }
 }
 
-/// A row of the table: a field, and how it is got at in a `T`.
+/// A row of the table: a field, with its accessors in a `T`.
 pub(crate) struct Row<T> {
     pub(crate) field: Field,
     /// Writes its value as JSON.
     pub(crate) write: fn(&T, &mut Vec<u8>),
-    /// Puts a value at a place in it.
+    /// Sets the value of a place in it.
     pub(crate) set: Setter<T>,
     pub(crate) find: fn(&[&str], &mut Vec<usize>) -> Option<ParameterType>,
     pub(crate) list: fn(String, &Field, bool, &mut Vec<FieldPlace>),
@@ -165,15 +165,15 @@ pub(crate) fn write(value: &impl Serialize, out: &mut Vec<u8>) {
     serde_json::to_writer(out, value).expect("parts of a world always serialise, and memory takes them");
 }
 
-/// What rows of the table are written with.
+/// Names used in the rows of the table.
 pub(crate) mod rows {
     pub(crate) use super::Compared::*;
     pub(crate) use super::Comparison::*;
     pub(crate) use super::{Field, Place, Row, write};
 }
 
-/// Declares a part of a world: a struct with, behind each field, its default and its row of the table. A struct whose
-/// fields have no defaults here has them where it is built.
+/// Declares a part of a world: a struct with, after each field, its default and its row of the table. The defaults may be
+/// omitted; the struct then has no `Default`.
 macro_rules! fields {
     (
         $(#[$meta:meta])*
@@ -215,20 +215,20 @@ macro_rules! fields {
 }
 pub(crate) use fields;
 
-/// A place in a world that has a name: a key, or an item of a list.
+/// A named place in a world: a key, or an item of a list.
 #[derive(Clone, Debug)]
 pub struct FieldPlace {
-    /// JSON pointer from the world; `*` stands for the number of an item.
+    /// JSON pointer from the world; `*` stands for the index of an item.
     pub pointer: String,
     /// The type of parameter that sets the whole of it; `None` if none can.
     pub kind: Option<ParameterType>,
-    /// What the table says of it, or of what it stands in where it says nothing.
+    /// Its row of the table, completed from its parents.
     pub field: Field,
-    /// Whether it is a key; else it is an item of a list.
+    /// Whether it is a key; otherwise it is an item of a list.
     pub is_key: bool,
 }
 
-/// Every place of a part of a world.
+/// All places in a part of a world.
 pub(crate) fn places_of<T: Fields>() -> Vec<FieldPlace> {
     let mut found = Vec::new();
     T::list_inside("", &Field::ours(Compared::AsPart), &mut found);

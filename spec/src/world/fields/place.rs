@@ -1,5 +1,4 @@
-//! [`Place`]: where in a world a value may stand, by the types of its fields. Which fields there are is said beside the
-//! fields themselves.
+//! [`Place`]: the places in a world that values can fill, derived from the types of its fields.
 
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
@@ -9,15 +8,15 @@ use super::{Field, FieldPlace, Fields};
 use crate::color::Color;
 use crate::value::{ParameterType, Value};
 
-/// Puts a value at the place in a `T` that steps lead to. `None` if the value cannot stand there.
+/// Sets the value of the place in a `T` that the steps lead to. `None` if the value is not allowed there.
 pub(crate) type Setter<T> = fn(&mut T, &[usize], &Value) -> Option<()>;
 
-/// What stands at a place of a world: it can be set from the value of a parameter, as a whole or in parts.
+/// A place in a world that can be set from a parameter's value, as a whole or in parts.
 pub(crate) trait Place: DeserializeOwned {
-    /// The type of parameter that the whole of it is; JSON, which fits every place, if there is none for it alone.
+    /// The type of parameter for the whole of it; JSON, which fits every place, if it has no type of its own.
     const KIND: ParameterType = ParameterType::Json;
 
-    /// The whole of it from a value of that type. `None` if the value cannot stand here.
+    /// The whole of it from a value of that type. `None` if the value is not allowed here.
     fn from_value(value: &Value) -> Option<Self> {
         match value.cast(ParameterType::Json)? {
             Value::Json(json) => Self::from_json(&json),
@@ -30,17 +29,17 @@ pub(crate) trait Place: DeserializeOwned {
         Self::deserialize(json).ok()
     }
 
-    /// The type of value that goes to a place in it; adds the steps that lead there. `None` if nothing can vary there.
+    /// The type of value for a place in it; adds the steps that lead there. `None` if the place cannot vary.
     fn find_inside(_words: &[&str], _steps: &mut Vec<usize>) -> Option<ParameterType> {
         None
     }
 
-    /// Puts a value at a place in it.
+    /// Sets the value of a place in it.
     fn set_inside(&mut self, _steps: &[usize], _value: &Value) -> Option<()> {
         None
     }
 
-    /// Adds the places in it; what a field in it does not say is as with `field`, which it belongs to.
+    /// Adds the places in it; they take unset properties from `field`, their parent.
     fn list_inside(_pointer: &str, _field: &Field, _found: &mut Vec<FieldPlace>) {}
 
     fn find(words: &[&str], steps: &mut Vec<usize>) -> Option<ParameterType> {
@@ -63,7 +62,7 @@ pub(crate) trait Place: DeserializeOwned {
         Some(())
     }
 
-    /// What puts values at the place that steps lead to, and the steps that it needs: it takes the first by itself.
+    /// A setter for the place that the steps lead to, with the steps to pass to it: it may handle the first one itself.
     fn setter(steps: Vec<usize>) -> (Setter<Self>, Vec<usize>) {
         (Self::set, steps)
     }
@@ -80,7 +79,7 @@ pub(crate) trait Place: DeserializeOwned {
     }
 }
 
-/// A part of a world whose fields are in the table: whole, as JSON, or key by key.
+/// A part of a world with fields in the table: as a whole, as JSON, or key by key.
 impl<T: Fields> Place for T {
     fn find_inside(words: &[&str], steps: &mut Vec<usize>) -> Option<ParameterType> {
         let (word, rest) = words.split_first()?;
@@ -103,7 +102,7 @@ impl<T: Fields> Place for T {
     }
 
     fn setter(mut steps: Vec<usize>) -> (Setter<Self>, Vec<usize>) {
-        // There is one: a world or an object is no place that a value fills as a whole.
+        // There is always one: no value fills a whole world or object.
         (T::ROWS[steps.remove(0)].set, steps)
     }
 
@@ -115,7 +114,7 @@ impl<T: Fields> Place for T {
     }
 }
 
-/// A list: whole, as JSON, or item by item.
+/// A list: as a whole, as JSON, or item by item.
 impl<T: Place> Place for Vec<T> {
     fn find_inside(words: &[&str], steps: &mut Vec<usize>) -> Option<ParameterType> {
         let (index, rest) = words.split_first()?;
@@ -160,7 +159,7 @@ impl<T: Place> Place for Option<T> {
     }
 }
 
-/// The places in a list of a fixed length: its numbers.
+/// The places in a list of fixed length: its numbers.
 macro_rules! number_by_number {
     ($number:ty) => {
         fn find_inside(words: &[&str], steps: &mut Vec<usize>) -> Option<ParameterType> {
@@ -180,7 +179,7 @@ macro_rules! number_by_number {
     };
 }
 
-/// Points and directions: whole, or number by number.
+/// Points and directions: as a whole, or number by number.
 macro_rules! numbers {
     ($length:literal, $kind:ident, $is_sound:expr) => {
         impl Place for [f64; $length] {
@@ -200,10 +199,10 @@ macro_rules! numbers {
 }
 
 numbers!(2, Point, |_| true);
-// A direction of no length is none.
+// A direction must not have length 0.
 numbers!(3, Vector, |direction| *direction != [0.0; 3]);
 
-/// Counts along x and y: whole, rounded, or number by number.
+/// Counts along x and y: as a whole, rounded, or number by number.
 impl Place for [u32; 2] {
     const KIND: ParameterType = ParameterType::Vector;
 
@@ -216,7 +215,7 @@ impl Place for [u32; 2] {
     number_by_number!(u32);
 }
 
-/// A type that is a value as a whole, and how it is read.
+/// A type that is set as a whole, and how to read it.
 macro_rules! leaf {
     ($type:ty, $kind:ident, $read:expr) => {
         impl Place for $type {
@@ -230,7 +229,7 @@ macro_rules! leaf {
     };
 }
 
-/// Lets a type that documents write as a word be set by a text.
+/// Lets a text set a type that documents write as a word.
 macro_rules! word {
     ($type:ty) => {
         impl $crate::world::fields::Place for $type {
