@@ -1,4 +1,4 @@
-//! All integration tests of this crate, as one program: it is linked once.
+//! All integration tests of this crate in one program, so that only one is linked.
 
 mod builtin_tasks;
 mod command;
@@ -16,7 +16,7 @@ mod recordings;
 mod task_docs;
 mod tier;
 
-/// Whether a case is tried: in the quick tier one of so many, in the full tier all.
+/// Whether a case is tested: in the quick tier one in `of`, in the full tier all.
 fn is_turn(number: usize, of: usize) -> bool {
     tier::quick_or_full(number.is_multiple_of(of), true)
 }

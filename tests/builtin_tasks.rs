@@ -1,5 +1,5 @@
-//! Every variant of every built-in task is playable and solved by an agent that comes with the project, and every task has
-//! variants that differ in one element only. What a spec may say is tested in `spec`.
+//! Every variant of every built-in task is playable and solved by one of the project's agents, and every task has variants that
+//! differ in one element only.
 
 use driftworld::elements::{ElementsRequest, elements};
 use driftworld::env::{Action, Agent, Environment, OnRailsAgent, ScriptedAgent, Step};
@@ -10,14 +10,14 @@ use driftworld::tasks;
 
 use crate::tier::quick_or_full;
 
-/// Worlds of each variant that are lived.
+/// Worlds run per variant.
 const WORLDS: u64 = 3;
 
-/// Variants in which everything costs. Keeping away from it all is what solves them: no episode ends in success, and nothing
-/// is earned but what the steps pay.
+/// Variants in which everything costs. They are solved by avoiding everything: no episode ends in success, and only the reward
+/// per step is earned.
 const COSTLY: [&str; 2] = ["find_objects#penalty", "moving_object#stings"];
 
-/// An episode from the first step to the last: what it earned, its seconds, and its last step.
+/// Runs a whole episode: returns its reward, its seconds, and its last step.
 fn live(variant: &Variant, index: u64, agent: &mut dyn Agent) -> (f64, f64, Step) {
     let name = variant.id();
     let world = Sampler::new(variant, 11).world(index);
@@ -90,7 +90,7 @@ fn blue_red_green_is_solved_in_every_variant() {
 }
 
 #[test]
-fn each_built_in_task_claims_no_less_than_its_variants_change() {
+fn built_in_tasks_claim_every_change_of_their_variants() {
     for (task, _) in tasks::BUILT_IN.into_iter().step_by(quick_or_full(2, 1)) {
         let request = ElementsRequest {
             worlds: quick_or_full(1, 4),
@@ -102,7 +102,7 @@ fn each_built_in_task_claims_no_less_than_its_variants_change() {
     }
 }
 
-/// The element in which two variants differ, if it is one alone.
+/// The element in which two variants differ, if it is the only one.
 fn only_element(a: &Variant, b: &Variant) -> Option<Element> {
     let distance = variant_distance(a, b, &Weights::default()).unwrap_or_else(|error| panic!("{error}"));
     let differs = |element: &Element| distance.element(*element).is_some_and(|d| d > 0.0);
@@ -111,7 +111,7 @@ fn only_element(a: &Variant, b: &Variant) -> Option<Element> {
 }
 
 #[test]
-fn each_task_of_the_paper_has_variants_that_differ_from_its_first_in_one_element_alone() {
+fn each_task_of_the_paper_has_variants_that_change_one_element_alone() {
     for task in [
         "find_objects",
         "get_to_goal",
@@ -135,7 +135,7 @@ fn each_task_of_the_paper_has_variants_that_differ_from_its_first_in_one_element
     }
 }
 
-/// Of each task of the paper, two variants that differ in the reward alone, of which one asks for another behaviour.
+/// For each task of the paper, two variants that differ only in the reward and call for different behaviour.
 const TURNED: [[&str; 3]; 6] = [
     ["find_objects", "blue", "turned"],
     ["get_to_goal", "bags", "traps"],
@@ -145,7 +145,7 @@ const TURNED: [[&str; 3]; 6] = [
     ["scavenger_hunt", "plain", "grove"],
 ];
 
-/// What the steps of an episode paid, and the actions that were taken.
+/// The rewards of an episode's steps, and the actions taken.
 fn replayed(variant: &Variant, index: u64, actions: Option<&[Action]>) -> (Vec<f64>, Vec<Action>) {
     let world = Sampler::new(variant, 11).world(index);
     let mut environment = Environment::new(world.unwrap_or_else(|error| panic!("{error}")));
@@ -161,7 +161,7 @@ fn replayed(variant: &Variant, index: u64, actions: Option<&[Action]>) -> (Vec<f
 }
 
 #[test]
-fn each_task_has_rewards_that_turn_what_is_best_and_show_it_within_an_episode() {
+fn reward_variants_change_the_optimum_and_reveal_it_within_an_episode() {
     for [task, a, b] in TURNED {
         let variant = |name: &str| {
             let all = tasks::variants(task).unwrap_or_else(|error| panic!("{error}"));
@@ -182,7 +182,7 @@ fn each_task_has_rewards_that_turn_what_is_best_and_show_it_within_an_episode() 
             optimum.turned && optimum.regret > 50.0,
             "{task}: {a} and {b}: {optimum:?}"
         );
-        // Who lives in one as an expert of the other is paid otherwise before half of the tour is over.
+        // In one's world, the other's expert gets different rewards before half of its route is done.
         for index in 0..WORLDS {
             let (expected, actions) = replayed(&variant(a), index, None);
             let (paid, _) = replayed(&variant(b), index, Some(&actions));

@@ -1,5 +1,4 @@
-//! The curricula in `examples/curricula/`: they are sound, change what they say and nothing else, and can be lived. How one is
-//! designed is tested in `curriculum`.
+//! The curricula in `examples/curricula/`: they are sound, change only what they claim, and can be run.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -23,7 +22,7 @@ fn scenario(name: &str) -> Scenario {
     Scenario::from_json(name, &text(name)).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The variants that a scenario learns, in its order.
+/// The variants that a scenario learns, in order.
 fn learned(scenario: &Scenario) -> Vec<Variant> {
     let learning = scenario.blocks.iter().filter(|block| block.kind == BlockKind::Learning);
     let regimes = learning.flat_map(|block| &block.regimes);
@@ -34,7 +33,7 @@ fn learned(scenario: &Scenario) -> Vec<Variant> {
     regimes.map(variant).collect()
 }
 
-/// The elements in which two variants differ, by their letters.
+/// The elements in which two variants differ, by letter.
 fn differs(a: &Variant, b: &Variant) -> String {
     let distance = variant_distance(a, b, &Weights::default()).unwrap_or_else(|error| panic!("{error}"));
     let elements = Element::ALL
@@ -54,7 +53,7 @@ fn check(name: &str, element: Element) {
 }
 
 #[test]
-fn each_assessment_curriculum_changes_its_element_and_no_other() {
+fn each_assessment_curriculum_changes_only_its_element() {
     for (name, element) in [
         ("reward", Element::R),
         ("state", Element::S),
@@ -68,7 +67,7 @@ fn each_assessment_curriculum_changes_its_element_and_no_other() {
 }
 
 #[test]
-fn the_example_of_the_paper_changes_what_it_says() {
+fn paper_example_changes_what_it_says() {
     let variants = learned(&scenario("blue_red_green"));
     let names: Vec<&str> = variants.iter().map(Variant::name).collect();
     assert_eq!(names, ["a", "b", "c", "d"]);
@@ -81,7 +80,7 @@ fn the_example_of_the_paper_changes_what_it_says() {
 }
 
 #[test]
-fn the_curriculum_of_maps_changes_states_their_course_and_what_is_seen_of_them() {
+fn map_curriculum_changes_states_transitions_and_observations() {
     let variants = learned(&scenario("map"));
     assert!(variants.len() >= 6, "the open field, four maps and rooms");
     for (index, a) in variants.iter().enumerate() {
@@ -92,14 +91,14 @@ fn the_curriculum_of_maps_changes_states_their_course_and_what_is_seen_of_them()
 }
 
 #[test]
-fn the_curriculum_of_interaction_changes_who_can_interact_and_what_comes_of_it() {
+fn interaction_curriculum_changes_actions_and_their_effects() {
     let variants = learned(&scenario("interaction"));
     let steps: Vec<String> = variants.windows(2).map(|pair| differs(&pair[0], &pair[1])).collect();
     assert_eq!(steps, ["A", "A T", "T"]);
 }
 
 #[test]
-fn the_curriculum_of_drift_drifts_in_every_learning_block() {
+fn drift_curriculum_drifts_in_every_learning_block() {
     let scenario = scenario("drift");
     let learning: Vec<_> = (scenario.blocks.iter())
         .filter(|block| block.kind == BlockKind::Learning)
@@ -109,7 +108,7 @@ fn the_curriculum_of_drift_drifts_in_every_learning_block() {
 }
 
 #[test]
-fn the_curriculum_across_tasks_learns_each_of_them() {
+fn curriculum_across_tasks_learns_each_of_them() {
     let variants = learned(&scenario("across_tasks"));
     let mut names: Vec<&str> = variants.iter().map(|variant| variant.task().name()).collect();
     names.sort_unstable();
@@ -144,7 +143,7 @@ fn training_and_evaluation_share_no_world() {
     }
 }
 
-/// Lives a curriculum with two experiences in each regime.
+/// Runs a curriculum with two experiences in each regime.
 fn live(name: &str, agent: &str) {
     let folder = tempfile::tempdir().expect("the machine has a folder for temporary files");
     let mut document: Value = serde_json::from_str(&text(name)).expect("the curriculum is JSON");
@@ -176,7 +175,7 @@ fn live(name: &str, agent: &str) {
 }
 
 #[test]
-fn the_agent_that_knows_the_map_lives_and_solves_every_curriculum() {
+fn planner_runs_and_solves_every_curriculum() {
     let names = [
         "reward",
         "state",
@@ -196,7 +195,7 @@ fn the_agent_that_knows_the_map_lives_and_solves_every_curriculum() {
 }
 
 #[test]
-fn a_script_lives_a_curriculum() {
+fn script_runs_a_curriculum() {
     let folder = tempfile::tempdir().expect("the machine has a folder for temporary files");
     let script = folder.path().join("tour.txt");
     std::fs::write(&script, "touch goal # wherever it lies\ntour\n").expect("the script can be written");

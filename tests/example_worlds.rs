@@ -1,4 +1,4 @@
-//! The families: each is a sound task with a page and a film of its own, and the agent on rails comes to the end that it asks for.
+//! The task families: each is a sound task with a page and a film, and the planner reaches the required end.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -8,7 +8,7 @@ use driftworld::generator::Sampler;
 use driftworld::spec::TaskSpec;
 use driftworld::tasks;
 
-/// Worlds of each variant that are run.
+/// Worlds run per variant.
 const WORLDS: u64 = 4;
 
 /// The folder of the project.
@@ -29,7 +29,7 @@ fn check(group: &str) {
     }
 }
 
-/// The worlds in which the agent on rails does not succeed.
+/// The worlds in which the planner does not succeed.
 fn unsolved(task: &Arc<TaskSpec>) -> Vec<String> {
     let mut unsolved = Vec::new();
     for variant in task.variant_names() {
@@ -56,12 +56,12 @@ fn unsolved(task: &Arc<TaskSpec>) -> Vec<String> {
 }
 
 #[test]
-fn ways_are_found() {
+fn mazes_are_solved() {
     check("navigation");
 }
 
 #[test]
-fn doors_are_opened_with_their_keys_and_switches() {
+fn doors_are_opened_with_keys_and_switches() {
     check("doors and keys");
 }
 
@@ -76,17 +76,17 @@ fn hazards_are_avoided() {
 }
 
 #[test]
-fn cues_that_are_drawn_are_minded() {
+fn random_cues_are_followed() {
     check("memory");
 }
 
 #[test]
-fn what_pays_is_chosen() {
+fn rewarding_objects_are_chosen() {
     check("choice");
 }
 
 #[test]
-fn what_is_best_turns() {
+fn changed_optima_are_solved() {
     check("conflicts");
 }
 
@@ -95,7 +95,7 @@ fn levels_are_passed() {
     check("levels");
 }
 
-/// Those that the guide to worlds shows.
+/// The worlds shown in the guide.
 const IN_THE_GUIDE: [&str; 11] = [
     "maze",
     "four_rooms",
@@ -111,7 +111,7 @@ const IN_THE_GUIDE: [&str; 11] = [
 ];
 
 #[test]
-fn the_guide_shows_its_worlds() {
+fn guide_shows_its_worlds() {
     let page = std::fs::read_to_string(format!("{ROOT}/docs/worlds.md")).expect("the page can be read");
     for name in IN_THE_GUIDE {
         assert!(
@@ -123,7 +123,7 @@ fn the_guide_shows_its_worlds() {
     }
 }
 
-/// A folder of documents that nobody finds by name would be dead.
+/// A document that no name reaches would be dead.
 #[test]
 fn every_file_of_the_folder_is_a_family() {
     let mut named: Vec<String> = tasks::FAMILIES

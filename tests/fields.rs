@@ -1,5 +1,5 @@
-//! What the table of fields says of each place of a world holds: a parameter can set it, and arrives in the drawn world;
-//! worlds that differ in it alone differ in the comparisons that it names, and in no other.
+//! The table of fields is true for each place of a world: a parameter can set it, and its value arrives in the drawn world;
+//! worlds that differ only there differ in exactly the named comparisons.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -11,7 +11,7 @@ use serde_json::{Value as Json, json};
 
 use crate::is_turn;
 
-/// A world in which there is something at every place, as the documents for the schemas have it.
+/// A world with a value at every place, as in the documents for the schemas.
 fn full() -> Json {
     let read = |name: &str| -> Json {
         let path = format!("{}/tests/documents/good/task/{name}.json", env!("CARGO_MANIFEST_DIR"));
@@ -21,10 +21,10 @@ fn full() -> Json {
     let mut world = read("world_with_every_key");
     world["environment_params"]["walls"] =
         json!([{ "polygon": [[10, 10], [12, 10], [11, 14]], "height": 2, "color": "grey" }]);
-    // Out of the way of what the tests move, and other than the defaults.
+    // Away from everything that the tests move, and different from the defaults.
     world["agent_params"]["coordinates"] = json!([-20, 20]);
     world["agent_params"]["interact"] = json!(true);
-    // The limit that holds is that of steps, on which how long they last has a part.
+    // The effective limit is the step limit, whose duration depends on the step length.
     world["max_steps"] = json!(100);
     world["agent_params"]["modalities"] = json!(["rgb"]);
     world["objects"] = read("fixtures_with_every_key")["objects"].take();
@@ -32,7 +32,7 @@ fn full() -> Json {
     world
 }
 
-/// The same with a layout that has what a place of a layout is in; of each kind there is one.
+/// The same world with a layout of the kind that has this place; there is one of each kind.
 fn full_with(place: &FieldPlace) -> Json {
     let mut world = full();
     if place.pointer.starts_with("/environment_params/zones/*/polygon") {
@@ -68,7 +68,7 @@ fn full_with(place: &FieldPlace) -> Json {
     world
 }
 
-/// Another value than the one that stands at a place.
+/// A value different from the one at a place.
 fn other(place: &FieldPlace, now: &Json) -> Json {
     let words: Vec<&str> = place.pointer.split('/').collect();
     let key = words
@@ -115,7 +115,7 @@ fn other(place: &FieldPlace, now: &Json) -> Json {
     }
 }
 
-/// Another value for a place that takes parameters as JSON alone.
+/// A different value for a place that accepts parameters only as whole JSON values.
 fn other_whole(pointer: &str, now: &Json) -> Json {
     let triangle = json!([[30.0, 30.0], [32.0, 30.0], [31.0, 33.0]]);
     match pointer {
@@ -180,7 +180,7 @@ fn at<'a>(json: &'a mut Json, pointer: &str) -> &'a mut Json {
     })
 }
 
-/// The pointer to the first of a place: of the conditions of an ending, the first that has its key.
+/// The pointer to the first occurrence of a place: among the conditions of an ending, the first with its key.
 fn first(place: &FieldPlace, full: &Json) -> String {
     let pointer = &place.pointer;
     let Some((list, key)) = pointer
@@ -237,7 +237,7 @@ fn task_of_two(place: &FieldPlace, pointer: &str, full: &Json, values: &[Json; 2
         "variants": { "first": {}, "second": { "tried": second } } });
     let read = |text: &str| TaskSpec::from_json(pointer, text).unwrap_or_else(|error| panic!("{error}"));
     let task = read(&task.to_string());
-    // What it is written as is the same task.
+    // Serialising it gives the same task.
     read(&task.to_json())
 }
 
@@ -284,7 +284,7 @@ fn every_place_takes_json_whose_variants_differ_by_its_elements_and_carry_their_
                 element.letter()
             );
         }
-        // Half-way it switches, and nothing lies between.
+        // It switches half-way, and nothing lies in between.
         for (t, expected) in [(0.25, &first), (0.75, &second)] {
             let between = drift(&first, &second, t).unwrap_or_else(|error| panic!("{pointer}: {error}"));
             assert_eq!(between.value("tried"), expected.value("tried"), "{pointer}");
@@ -301,7 +301,7 @@ fn places_in_turn() -> impl Iterator<Item = &'static FieldPlace> {
 }
 
 #[test]
-fn what_may_be_absent_is_absent_where_a_parameter_is_null() {
+fn optional_values_are_absent_if_a_parameter_is_null() {
     let mut count = 0;
     for place in World::places()
         .iter()
@@ -328,7 +328,7 @@ fn what_may_be_absent_is_absent_where_a_parameter_is_null() {
 }
 
 #[test]
-fn every_place_takes_a_draw_from_a_list() {
+fn every_place_takes_a_random_choice_from_a_list() {
     for place in places_in_turn() {
         let full = full_with(place);
         let pointer = first(place, &full);
@@ -358,7 +358,7 @@ fn every_place_takes_a_draw_from_a_list() {
 }
 
 #[test]
-fn every_key_takes_a_parameter_or_holds_what_does_or_says_why_not() {
+fn every_key_takes_a_parameter_or_documents_why_not() {
     let places = World::places();
     let is_silent = |place: &&FieldPlace| {
         let inside = format!("{}/", place.pointer);
@@ -378,7 +378,7 @@ fn every_key_takes_a_parameter_or_holds_what_does_or_says_why_not() {
     );
 }
 
-/// Changes what stands at a place; `false` where a world has but one value there.
+/// Changes the value at a place; `false` if a world can have only one value there.
 fn change(world: &mut Json, place: &FieldPlace, full: &Json) -> bool {
     let pointer = first(place, full);
     match place.pointer.as_str() {
@@ -395,7 +395,7 @@ fn change(world: &mut Json, place: &FieldPlace, full: &Json) -> bool {
             let now = at(world, &pointer);
             *now = other(place, now);
         }
-        // Lists and parts: without them.
+        // Lists and parts are removed.
         _ if place.is_key => {
             let (parent, key) = pointer.rsplit_once('/').expect("a pointer begins with a slash");
             let parent = if parent.is_empty() { world } else { at(world, parent) };
@@ -406,11 +406,11 @@ fn change(world: &mut Json, place: &FieldPlace, full: &Json) -> bool {
     true
 }
 
-/// A world whose object moves in a way in which what stands at a place is read.
+/// A world whose object moves in such a way that the value at a place is read.
 fn read_by(place: &FieldPlace) -> Json {
     let mut full = full_with(place);
     match place.pointer.as_str() {
-        // Nobody sees them through a ceiling.
+        // A ceiling would hide them.
         "/environment_params/looks/clouds" => full["environment_params"]["looks"]["ceiling"] = json!(false),
         "/objects/*/text" => full["objects"][0]["class"] = json!("sign"),
         _ => {}
@@ -426,7 +426,7 @@ fn read_by(place: &FieldPlace) -> Json {
 }
 
 #[test]
-fn what_nothing_reads_of_an_object_is_no_distance() {
+fn unread_fields_of_an_object_make_no_distance() {
     let read = |json: &Json| World::from_json("world", &json.to_string()).unwrap_or_else(|error| panic!("{error}"));
     let with = |motion: &str, changes: &[(&str, Json)]| {
         let mut world = full();
@@ -453,7 +453,7 @@ fn what_nothing_reads_of_an_object_is_no_distance() {
 }
 
 #[test]
-fn worlds_that_differ_in_one_place_differ_in_the_comparisons_that_it_names_and_in_no_other() {
+fn worlds_that_differ_in_one_place_differ_in_exactly_its_comparisons() {
     let read =
         |name: &str, json: &Json| World::from_json(name, &json.to_string()).unwrap_or_else(|error| panic!("{error}"));
     let mut wrong = Vec::new();
@@ -462,7 +462,7 @@ fn worlds_that_differ_in_one_place_differ_in_the_comparisons_that_it_names_and_i
         .filter(|place| place.field.compared != Compared::AsPart)
     {
         let mut full = read_by(place);
-        // Regions of one's own stand in for those of a predefined map; rooms in a row have no loops.
+        // Own regions replace those of a predefined map; rooms in a row have no loops.
         if place.pointer == "/environment_params/layout/predefined" {
             let around = full["environment_params"].as_object_mut();
             around.expect("it is an object").remove("map_regions");
@@ -482,8 +482,8 @@ fn worlds_that_differ_in_one_place_differ_in_the_comparisons_that_it_names_and_i
         let distance = world_distance(&world, &read(&place.pointer, &changed), &Weights::default());
         let differs = distance.parts.iter().filter(|part| part.normalised > 0.0);
         let mut differs: Vec<&str> = differs.map(|part| part.name.as_str()).collect();
-        // A layout says how large the arena is, too; of some keys that is all there is to see, since shapes are compared in shares
-        // of its sides.
+        // A layout also determines the arena's size; for some keys that is the only visible effect, because shapes are compared
+        // in shares of its sides.
         if place.pointer.starts_with("/environment_params/layout") {
             let layouts = Comparison::Layouts.name();
             let sides = Comparison::ArenaSize.name();

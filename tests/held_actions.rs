@@ -1,5 +1,5 @@
-//! How long an action is held changes the transitions and nothing else: the same motion over the same seconds is paid the same
-//! for time, and ends at the same second.
+//! The duration for which an action is held changes only the transitions: the same motion over the same seconds gets the same
+//! reward for time, and ends at the same second.
 
 use driftworld::env::{Action, Environment};
 use driftworld::generator::Sampler;
@@ -7,7 +7,7 @@ use driftworld::similarity::{Weights, world_distance};
 use driftworld::spec::{ActionModel, Element, StateFeature, Variant, WorldDraft};
 use driftworld::tasks;
 
-/// What an episode came to: the agent at its end, its seconds, what it paid, whether a limit cut it off.
+/// The result of an episode: the agent's final state, the seconds, the reward, whether a limit cut it off.
 #[derive(Debug)]
 struct Course {
     end: ([f32; 2], f32),
@@ -16,7 +16,7 @@ struct Course {
     truncated: bool,
 }
 
-/// An episode of one motion from the first step to the last.
+/// Runs a whole episode with one motion.
 fn live(world: &WorldDraft, motion: [f64; 3]) -> Course {
     let mut environment = Environment::new(world.clone().check().expect("the world is sound"));
     let mut truncated = false;
@@ -41,7 +41,7 @@ fn draw(variant: &Variant) -> WorldDraft {
 }
 
 #[test]
-fn a_held_action_is_paid_and_cut_off_by_the_second() {
+fn held_action_is_paid_and_cut_off_by_the_second() {
     let mut cut_off = 0;
     for task in tasks::built_in_names() {
         let variants = tasks::variants(task).expect("built-in tasks are sound");
@@ -66,7 +66,7 @@ fn a_held_action_is_paid_and_cut_off_by_the_second() {
 }
 
 #[test]
-fn a_time_step_of_any_length_is_paid_and_cut_off_by_the_second() {
+fn time_step_of_any_length_is_paid_and_cut_off_by_the_second() {
     for task in tasks::built_in_names() {
         let variants = tasks::variants(task).expect("built-in tasks are sound");
         let mut world = draw(&variants[0]);
@@ -87,7 +87,7 @@ fn a_time_step_of_any_length_is_paid_and_cut_off_by_the_second() {
 }
 
 #[test]
-fn held_variants_differ_from_the_first_in_the_transitions_alone() {
+fn held_variants_change_the_transitions_alone() {
     let mut compared = 0;
     for task in tasks::built_in_names() {
         let variants = tasks::variants(task).expect("built-in tasks are sound");
@@ -106,7 +106,7 @@ fn held_variants_differ_from_the_first_in_the_transitions_alone() {
 }
 
 #[test]
-fn steps_left_count_the_steps_that_a_limit_of_seconds_leaves() {
+fn remaining_steps_follow_from_a_limit_of_seconds() {
     let mut world = WorldDraft {
         max_seconds: 1.0,
         ..WorldDraft::default()

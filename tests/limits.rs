@@ -1,4 +1,4 @@
-//! What checking a document takes of memory, whatever stands in it: at most 40 times its size and a little.
+//! Memory for checking a document, whatever its contents: at most 40 times its size plus a constant.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -9,7 +9,7 @@ use driftworld::tasks;
 
 use crate::is_turn;
 
-/// The system's allocator, counting what each thread holds at a time.
+/// The system's allocator, with a count of each thread's current memory.
 struct Counting;
 
 thread_local! {
@@ -31,11 +31,11 @@ fn give_back(bytes: usize) {
     unsafe_code,
     reason = "an allocator cannot be written without; this one adds to numbers and asks the system"
 )]
-// SAFETY: every call goes to the system's allocator as it came.
+// SAFETY: every call is passed unchanged to the system's allocator.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         take(layout.size());
-        // SAFETY: the caller's promise is the system's.
+        // SAFETY: the caller upholds the system allocator's contract.
         unsafe { System.alloc(layout) }
     }
 
@@ -46,7 +46,7 @@ unsafe impl GlobalAlloc for Counting {
     }
 
     unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        // Large blocks are moved without being copied: the old and the new one are never there together.
+        // Large blocks are moved without being copied: the old and the new one never coexist.
         give_back(layout.size());
         take(size);
         // SAFETY: as above.
@@ -57,13 +57,13 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// Bytes that a check may take for each byte of its document.
+/// Bytes that a check may use per byte of its document.
 const FACTOR: usize = 40;
 
-/// Bytes that it may take beside, however small the document: lists of problems and their words.
+/// Additional bytes for any document, however small: lists of problems and their texts.
 const BASE: usize = 8 << 20;
 
-/// Places of documents of each kind: what goes in for `@` is drawn.
+/// Places in documents of each kind: the filling replaces `@`.
 const PLACES: [&str; 27] = [
     r#"{"name":"t","variants":{"a":{"a":@}}}"#,
     r#"{"name":"t","variants":{"a":@}}"#,
@@ -94,7 +94,7 @@ const PLACES: [&str; 27] = [
     r#"{"scenario":@}"#,
 ];
 
-/// What fills a place: the parts of a list or an object, over and over.
+/// Fillings for a place: the repeated parts of a list or an object.
 const FILLINGS: [(&str, &str, &str); 24] = [
     ("[", "0", "]"),
     ("[", "[]", "]"),
@@ -130,7 +130,7 @@ const FILLINGS: [(&str, &str, &str); 24] = [
     ("{", "\"#\":{\"role\":\"fixed\",\"type\":\"number\",\"value\":1}", "}"),
 ];
 
-/// A filling of about so many bytes; `#` becomes a number.
+/// A filling of about `bytes` bytes; `#` becomes a number.
 fn filled((open, part, close): (&str, &str, &str), bytes: usize) -> String {
     let mut text = open.to_owned();
     let mut number = 0;
@@ -152,7 +152,7 @@ fn filled((open, part, close): (&str, &str, &str), bytes: usize) -> String {
     text + close
 }
 
-/// Fillings that are no repetition.
+/// Fillings without repetition.
 fn others(bytes: usize) -> Vec<String> {
     let deep = |open: &str, inner: &str, close: &str| open.repeat(100) + inner + &close.repeat(100);
     let many = |part: &str| format!("[{}0]", format!("{part},").repeat(bytes / part.len()));
@@ -169,7 +169,7 @@ fn others(bytes: usize) -> Vec<String> {
     ]
 }
 
-/// What a text is taken for: a world may also be one of the original's.
+/// The kinds that a text is checked as: a world may also be one of the original's.
 fn kinds(text: &str) -> Vec<Kind> {
     match Kind::of(text) {
         Kind::World => vec![Kind::World, Kind::L2ExplorerWorld],
@@ -177,20 +177,20 @@ fn kinds(text: &str) -> Vec<Kind> {
     }
 }
 
-/// What a check takes at most, in bytes, and what came of it.
+/// Peak memory of a check in bytes, and its result.
 fn measured(text: &str, kind: Kind, classes: &Classes) -> (usize, Checked) {
     let before = TAKEN.get();
     MOST.set(before);
     let checked = check("d.json", text, kind, &mut tasks::task, classes);
-    // Saying it is part of it.
+    // Formatting the error is part of it.
     drop(checked.error.as_ref().map(ToString::to_string));
     ((MOST.get() - before).unsigned_abs(), checked)
 }
 
-/// Holds every filling at these places against the law.
+/// Checks the law for every filling at these places.
 fn hold(places: &[&str]) {
     let classes = tasks::classes(&driftworld::env::Catalogue::default());
-    // Larger ones by hand: minutes, and the same law.
+    // Larger ones can be tried by hand: they take minutes.
     let bytes = std::env::var("DRIFTWORLD_LIMITS_BYTES");
     let bytes = bytes.ok().and_then(|bytes| bytes.parse().ok()).unwrap_or(60_000);
     let mut wrong = Vec::new();
@@ -200,7 +200,7 @@ fn hold(places: &[&str]) {
         for (_, filling) in fillings.filter(|(turn, _)| is_turn(turn + number, 4)) {
             let text = place.replace('@', &filling);
             for kind in kinds(&text) {
-                // Schemas are made at the first use.
+                // Schemas are built on first use.
                 drop(measured(&place.replace('@', "0"), kind, &classes));
                 let (most, checked) = measured(&text, kind, &classes);
                 let problems = checked.error.as_ref().map_or(0, |error| error.problems().len());
@@ -220,21 +220,21 @@ fn hold(places: &[&str]) {
 }
 
 #[test]
-fn a_check_of_a_task_takes_little_more_than_the_task() {
+fn checking_a_task_takes_bounded_memory() {
     hold(&PLACES[..8]);
 }
 
 #[test]
-fn a_check_of_what_a_task_places_takes_little_more_than_the_task() {
+fn checking_placements_of_a_task_takes_bounded_memory() {
     hold(&PLACES[8..15]);
 }
 
 #[test]
-fn a_check_of_a_world_takes_little_more_than_the_world() {
+fn checking_a_world_takes_bounded_memory() {
     hold(&PLACES[15..21]);
 }
 
 #[test]
-fn a_check_of_scenarios_and_maps_takes_little_more_than_they_do() {
+fn checking_scenarios_and_maps_takes_bounded_memory() {
     hold(&PLACES[21..]);
 }

@@ -1,12 +1,11 @@
-//! `docs/limits.md` against the code: each limit that a table names is the constant, or the key of a schema, that
-//! stands beside it.
+//! `docs/limits.md` matches the code: each limit in a table equals the constant, or the key of a schema, named beside it.
 
 use std::fs;
 use std::path::Path;
 
 use serde_json::Value;
 
-/// A limit as the page has it, and where it comes from.
+/// A limit as documented, and its source.
 struct Row {
     line: String,
     said: f64,
@@ -22,7 +21,7 @@ fn read(path: &str) -> String {
     fs::read_to_string(root().join(path)).unwrap_or_else(|error| panic!("{path}: {error}"))
 }
 
-/// The rows whose last cell names a file and something in it.
+/// The rows whose last cell names a file and an item in it.
 fn rows(page: &str) -> Vec<Row> {
     let row = |line: &str| {
         let cells: Vec<&str> = line.trim_matches('|').split('|').map(str::trim).collect();
@@ -56,7 +55,7 @@ fn number(said: &str) -> f64 {
     })
 }
 
-/// What a constant is in the code: numbers joined by `*` and `<<`.
+/// A constant's value in the code: numbers joined by `*` and `<<`.
 fn constant(text: &str, name: &str) -> Option<f64> {
     let start = text.find(&format!("const {name}: "))?;
     let value = text[start..].split_once('=')?.1.split_once(';')?.0.trim();
@@ -71,7 +70,7 @@ fn constant(text: &str, name: &str) -> Option<f64> {
 }
 
 #[test]
-fn limits_are_those_of_the_code() {
+fn limits_match_the_code() {
     let rows = rows(&read("docs/limits.md"));
     assert!(rows.len() > 50, "{} rows", rows.len());
     for row in rows {
@@ -86,9 +85,9 @@ fn limits_are_those_of_the_code() {
     }
 }
 
-/// So that a new limit of what users hand in gets its line.
+/// New limits of user input must be documented.
 #[test]
-fn limits_of_what_is_read_are_on_the_page() {
+fn limits_of_user_input_are_on_the_page() {
     let page = read("docs/limits.md");
     for file in [
         "spec/src/limits.rs",
@@ -115,7 +114,7 @@ fn limits_of_what_is_read_are_on_the_page() {
 }
 
 #[test]
-fn numbers_are_read_as_people_write_them() {
+fn numbers_are_parsed_as_people_write_them() {
     assert_eq!(number("64 MiB"), 67_108_864.0);
     assert_eq!(number("4,000,000 values"), 4e6);
     assert_eq!(number("4096 × 4096 × 2 pixels"), 33_554_432.0);

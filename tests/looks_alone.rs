@@ -1,6 +1,5 @@
-//! Variants of the built-in tasks that claim to change looks alone leave every way as it is: the same seed and the same
-//! actions lead along the same path, to the last bit, in walks that touch things. The experiment on elements, which steps
-//! from one state, is in `elements`.
+//! Variants of the built-in tasks that claim to change only looks do not affect motion: the same seed and the same actions give
+//! the same path, to the last bit, in walks that touch things.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -13,10 +12,10 @@ use driftworld::tasks;
 
 const STEPS: usize = 300;
 
-/// Worlds of each variant.
+/// Worlds per variant.
 const WORLDS: u64 = 6;
 
-/// A task's text, changed, as a task.
+/// A task with a modified text.
 fn task(name: &str, change: impl Fn(&str) -> String) -> Arc<TaskSpec> {
     let (_, text) = tasks::BUILT_IN
         .iter()
@@ -25,7 +24,7 @@ fn task(name: &str, change: impl Fn(&str) -> String) -> Arc<TaskSpec> {
     TaskSpec::from_json(name, &change(text)).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The task with objects whose bodies are those of their looks.
+/// The task with objects whose bodies match their looks.
 fn with_bodies_of_looks(name: &str) -> Arc<TaskSpec> {
     task(name, |text| {
         let cut = ["1", "2", "3"].map(|model| format!(r#" "body_model": "{model}","#));
@@ -33,7 +32,7 @@ fn with_bodies_of_looks(name: &str) -> Arc<TaskSpec> {
     })
 }
 
-/// The variants that claim to differ from the first in looks alone.
+/// The variants that claim to differ from the first only in looks.
 fn of_looks(task: &Arc<TaskSpec>) -> Vec<Variant> {
     let variants = task.all_variants();
     let claims_looks = |variant: &&Variant| {
@@ -45,8 +44,8 @@ fn of_looks(task: &Arc<TaskSpec>) -> Vec<Variant> {
     variants.iter().filter(claims_looks).cloned().collect()
 }
 
-/// Everything that a walk leads through, as bits: places, headings, presences and rewards, step by step, and how many steps
-/// saw something happen to an object.
+/// Everything along a walk, as bits: places, headings, presences and rewards, step by step, and the number of steps in which
+/// something happened to an object.
 fn path(world: World, actions: &[Action]) -> (Vec<Vec<u64>>, usize) {
     let mut environment = Environment::new(world);
     let mut path = Vec::new();
@@ -72,14 +71,14 @@ fn path(world: World, actions: &[Action]) -> (Vec<Vec<u64>>, usize) {
     (path, touches)
 }
 
-/// Walks in a world: what an agent does in it that touches one thing after the other, with steps at random between.
+/// The actions of an agent that touches one thing after the other, with random steps in between.
 fn walk(world: &World, seed: u64) -> Vec<Action> {
     let tags: BTreeSet<&str> = world
         .objects
         .iter()
         .filter_map(|object| object.tag.as_deref())
         .collect();
-    // Past the side of a thing, not into its middle alone: there bodies differ most.
+    // Past the side of a thing, not only into its centre: there bodies differ most.
     let turn = 40 - (seed as i64 % 5) * 20;
     let visit =
         |tag: &&str| format!("near {tag} 2 90\nstep 2 4 {turn} 0\nstep 6 6 0 0\ntouch {tag} 60\nstep 3 -4 30 0\n");
@@ -102,7 +101,7 @@ fn walk(world: &World, seed: u64) -> Vec<Action> {
     actions
 }
 
-/// For each variant of looks: its name, walks that touched something, and walks whose path differs.
+/// For each variant of looks: its name, the number of walks that touched something, and of those whose path differs.
 fn paths(task: &Arc<TaskSpec>) -> Vec<(String, usize, usize)> {
     let first = &task.all_variants()[0];
     let world = |variant: &Variant, index| {
@@ -137,7 +136,7 @@ const TASKS: [&str; 5] = [
 ];
 
 #[test]
-fn where_looks_alone_differ_the_same_actions_lead_along_the_same_path() {
+fn same_actions_give_the_same_path_if_only_looks_differ() {
     for name in TASKS {
         let found = paths(&task(name, str::to_owned));
         assert!(found.len() >= 3, "{name}: {found:?}");
@@ -152,7 +151,7 @@ fn where_looks_alone_differ_the_same_actions_lead_along_the_same_path() {
 }
 
 #[test]
-fn walks_and_experiment_find_bodies_that_differ_with_looks() {
+fn walks_and_experiment_detect_bodies_that_differ_with_looks() {
     for name in TASKS {
         let task = with_bodies_of_looks(name);
         let forms: Vec<_> = paths(&task).into_iter().filter(|(_, _, differ)| *differ > 0).collect();

@@ -1,5 +1,5 @@
-//! Two variants under one seed share every draw that what differs does not touch: worlds that differ in nothing that bodies
-//! depend on go the same ways, to the last bit.
+//! Two variants under one seed share every random draw that their difference does not affect: worlds that differ in nothing
+//! that affects motion follow the same paths, to the last bit.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -11,24 +11,24 @@ use driftworld::spec::{
 use driftworld::tasks;
 use serde_json::Value;
 
-/// Whether ways depend on what a key says. A verdict holds for all that stands below a key, too.
+/// Whether paths depend on a key. A verdict also covers everything below the key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Verdict {
-    /// Bodies move by it, or come and go.
+    /// Affects motion, or the presence of bodies.
     Moves,
-    /// It decides when an episode ends, and until then nothing.
+    /// Only decides when an episode ends.
     Ends,
-    /// It touches no way at all.
+    /// Affects no path at all.
     Idle,
-    /// It says how the document is written.
+    /// Describes the document's format.
     Form,
-    /// It is what chance grows from.
+    /// Seeds random numbers.
     Chance,
 }
 
 use Verdict::{Chance, Ends, Form, Idle, Moves};
 
-/// Every key of a world. A key that is new is to be judged here.
+/// Every key of a world. A new key needs a verdict here.
 const VERDICTS: &[(&str, Verdict)] = &[
     ("/$schema", Form),
     ("/version", Form),
@@ -93,7 +93,7 @@ const VERDICTS: &[(&str, Verdict)] = &[
     ("/rules/shaping", Ends),
     ("/rules/success", Ends),
     ("/rules/failure", Ends),
-    // The form of the body.
+    // The shape of the body.
     ("/objects/*/class", Moves),
     ("/objects/*/model", Moves),
     ("/objects/*/body_model", Moves),
@@ -106,7 +106,7 @@ const VERDICTS: &[(&str, Verdict)] = &[
     ("/objects/*/solid", Moves),
     ("/objects/*/pushable", Moves),
     ("/objects/*/reward", Ends),
-    // What has paid counts as collected, and then the next of a sequence can be destroyed.
+    // An object that has paid counts as collected, and then the next of a sequence can be destroyed.
     ("/objects/*/reward_probability", Moves),
     ("/objects/*/reward_stimulus", Moves),
     ("/objects/*/reward_once_stimulus", Moves),
@@ -140,7 +140,7 @@ fn verdict(key: &str) -> Option<Verdict> {
         .map(|(_, verdict)| *verdict)
 }
 
-/// Every leaf of a document by its key, list places as `*`, with all that stands in such places.
+/// Every leaf of a document by its key, list indices as `*`, with all values found there.
 fn leaves(value: &Value, key: &str, found: &mut BTreeMap<String, Vec<Value>>) {
     match value {
         Value::Object(map) if !map.is_empty() => {
@@ -157,7 +157,7 @@ fn leaves(value: &Value, key: &str, found: &mut BTreeMap<String, Vec<Value>>) {
     }
 }
 
-/// The worlds of the good documents, in which every key stands somewhere.
+/// The worlds of the valid documents, which together contain every key.
 fn documents() -> Vec<Value> {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/documents/good/world");
     let files = std::fs::read_dir(folder).expect("the folder is part of the tree");
@@ -168,8 +168,8 @@ fn documents() -> Vec<Value> {
     files.map(read).collect()
 }
 
-/// A world of each built-in task, each of another variant, with something of everything that moves, pays by chance, comes back
-/// or is pushed.
+/// A world of each built-in task, each of another variant, with an example of everything that moves, pays randomly, returns or
+/// can be pushed.
 fn worlds() -> Vec<World> {
     let mut worlds = Vec::new();
     for (number, task) in tasks::built_in_names().into_iter().enumerate() {
@@ -196,7 +196,7 @@ fn draw(variant: &Variant, seed: u64, index: u64) -> World {
 
 fn spice(world: &mut WorldDraft) {
     world.agent_params.action_model = ActionModel::ByVelocity;
-    // Endings are judged apart.
+    // Endings are tested separately.
     world.limit_steps(0);
     (world.rules.success, world.rules.failure) = (Vec::new(), Vec::new());
     let [x, y] = world.agent_params.coordinates;
@@ -218,7 +218,7 @@ fn spice(world: &mut WorldDraft) {
     (arm.reward, arm.reward_probability, arm.order) = (2.0, 0.5, Some(1));
     arm.reward_stimulus = vec![Stimulus::AgentInRange, Stimulus::AgentCollide];
     arm.range_stimulus_distance = 3.0;
-    // It goes when the arm has paid.
+    // It disappears once the arm has paid.
     let mut after = near("bag", -2.0, -2.0);
     (after.order, after.range_stimulus_distance) = (Some(2), 3.0);
     after.destroy_stimulus = vec![Stimulus::AgentInRange];
@@ -236,15 +236,15 @@ fn spice(world: &mut WorldDraft) {
         color: None,
     });
     world.objects.extend([box_, coin, arm, after, wanderer, hunter, prey]);
-    // Nobody comes into it: what zones do is judged in `env`.
+    // Nobody enters it: the effects of zones are tested in `env`.
     let [east, north] = world.environment_params.arena_size().map(|side| side / 2.0);
     let zone = serde_json::json!({ "disc": { "center": [east, north], "radius": 0.1 } });
     let zone = serde_json::from_value(zone).expect("it is a zone");
     world.environment_params.zones.push(zone);
 }
 
-/// All ways of an episode, as bits: the agent's and every object's place and heading, and whether it is there, step by step.
-/// The agent acts by chance, by its own count.
+/// All paths of an episode, as bits: the agent's and every object's place, heading and presence, step by step. The agent acts
+/// at random, with its own seed.
 fn ways(world: &World, seed: u64) -> Vec<Vec<u32>> {
     let mut environment = Environment::new(world.clone());
     let mut agent = RandomAgent::new(seed);
@@ -267,12 +267,12 @@ fn ways(world: &World, seed: u64) -> Vec<Vec<u32>> {
     ways
 }
 
-/// The first step in which two courses differ; one may end before the other.
+/// The first step in which two episodes differ; one may end before the other.
 fn parting(a: &[Vec<u32>], b: &[Vec<u32>]) -> Option<usize> {
     a.iter().zip(b).position(|(a, b)| a != b)
 }
 
-/// Another value in place of one.
+/// A different value.
 fn other(value: &Value, examples: &[Value]) -> Option<Value> {
     if let Some(example) = examples.iter().find(|example| *example != value && !example.is_null()) {
         return Some(example.clone());
@@ -285,7 +285,7 @@ fn other(value: &Value, examples: &[Value]) -> Option<Value> {
     }
 }
 
-/// Changes a key wherever it stands or could stand, if the world is sound after it.
+/// Changes a key wherever it is or could be, if the world is valid afterwards.
 fn change(world: &World, key: &str, examples: &[Value]) -> Option<World> {
     let mut document = serde_json::to_value(world).expect("a world serialises");
     let path: Vec<&str> = key.split('/').skip(1).collect();
@@ -323,7 +323,7 @@ fn put(place: &mut Value, path: &[&str], examples: &[Value], number: &mut usize)
 }
 
 #[test]
-fn every_key_of_a_world_is_judged_and_what_moves_nothing_moves_nothing() {
+fn every_key_has_a_verdict_and_idle_keys_change_no_path() {
     let mut found = BTreeMap::new();
     for document in documents() {
         leaves(&document, "", &mut found);
@@ -351,7 +351,7 @@ fn every_key_of_a_world_is_judged_and_what_moves_nothing_moves_nothing() {
     let gone: Vec<&(&str, Verdict)> = gone.collect();
     assert!(gone.is_empty(), "no document has these: {gone:?}");
 
-    // Parts that stand in some documents only are given to all worlds whole.
+    // Parts that only some documents contain are added whole to all worlds.
     let wholes = ["/image_params", "/rules/shaping", "/rules/success", "/rules/failure"];
     let mut keys: BTreeSet<String> = VERDICTS
         .iter()
@@ -375,7 +375,7 @@ fn every_key_of_a_world_is_judged_and_what_moves_nothing_moves_nothing() {
             .zip(before.last())
             .is_some_and(|(first, last)| first[3..] != last[3..]);
         assert!(moved, "things move in world {number}");
-        // All at once; who is to blame is looked for only if there is somebody to be blamed.
+        // All at once; single keys are tried only after a failure.
         let mut changed = world.clone();
         for key in &keys {
             let examples = examples_of(key);
@@ -405,7 +405,7 @@ fn every_key_of_a_world_is_judged_and_what_moves_nothing_moves_nothing() {
 }
 
 #[test]
-fn endings_end_and_change_no_way_before() {
+fn endings_change_no_path_before_the_end() {
     let world = &worlds()[0];
     let before = ways(world, 9);
     for (key, value) in [
@@ -430,7 +430,7 @@ fn endings_end_and_change_no_way_before() {
 }
 
 #[test]
-fn what_pays_and_the_light_leave_wandering_balls_where_they_are() {
+fn pay_and_light_do_not_move_wandering_balls() {
     let task = tasks::variants("moving_object").expect("it is built in");
     let places = |name: &str| {
         let variant = task.iter().find(|variant| variant.name() == name).expect("it is there");

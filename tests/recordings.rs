@@ -1,5 +1,5 @@
-//! A recorded episode comes out once more to the last bit: what is seen, what is paid, and how it ends; in all built-in tasks and example
-//! worlds, whatever acts in them and however they are acted in. That each row of a log has its recording is tested with the command.
+//! A recorded episode replays to the last bit: observations, rewards and ending; in all built-in tasks and example worlds, with
+//! any agent and action space.
 
 use std::io::BufReader;
 use std::path::Path;
@@ -15,7 +15,7 @@ use driftworld::tasks;
 use proptest::prelude::*;
 use proptest::sample::Index;
 
-/// What a step showed, paid and said.
+/// The observation, reward and message of a step.
 #[derive(Debug, PartialEq)]
 struct Seen {
     pixels: Vec<u8>,
@@ -41,7 +41,7 @@ fn seen(environment: &mut Environment, reward: f64, ended_by: Option<EndedBy>) -
     }
 }
 
-/// Lives an episode, and takes it down.
+/// Runs an episode, and records it.
 fn live(world: &World, agent: &mut dyn Agent, seed: u64, most: u32) -> (Vec<Seen>, Recording) {
     let mut environment = Environment::new(world.clone());
     let mut recorder = Recorder::default();
@@ -66,7 +66,7 @@ fn written(recordings: &[Recording]) -> String {
     RecordingLines::header() + &episodes.collect::<String>()
 }
 
-/// All recordings of a text, or the first error.
+/// All recordings in a text, or the first error.
 fn read(text: &str) -> Result<Vec<Recording>, EnvError> {
     let mut reader = RecordingReader::new(BufReader::new(text.as_bytes()))?;
     let mut found = Vec::new();
@@ -86,7 +86,7 @@ fn replayed(recording: &Recording) -> Vec<Seen> {
     course
 }
 
-/// Lives an episode, writes it down, reads it, runs it once more: all is the same.
+/// Runs, writes, reads and replays an episode: all must be the same.
 #[track_caller]
 fn check(name: &str, world: &World, agent: &mut dyn Agent, seed: u64, most: u32) {
     let (course, recording) = live(world, agent, seed, most);
@@ -111,7 +111,7 @@ static ALL_VARIANTS: LazyLock<Vec<Variant>> = LazyLock::new(|| {
     variants.flatten().collect()
 });
 
-/// A world that is acted in in another way, where that is asked for.
+/// A world with another action interface, if requested.
 fn acted_in(world: World, actions: Option<ActionSpace>, frame_skip: u32, interact: bool) -> World {
     let edited = world.edit(|world| {
         let agent = &mut world.agent_params;
@@ -127,11 +127,11 @@ fn acted_in(world: World, actions: Option<ActionSpace>, frame_skip: u32, interac
 }
 
 #[test]
-fn every_task_and_every_example_world_comes_out_once_more() {
+fn every_task_and_every_example_world_replays() {
     let mut names = Vec::new();
     for variant in &*ALL_VARIANTS {
         let task = variant.task().name().to_owned();
-        // The first two variants of each: the others are drawn below.
+        // The first two variants of each: the property test below draws others.
         if names.iter().filter(|name| **name == task).count() >= 2 {
             continue;
         }
@@ -158,7 +158,7 @@ static THREE: LazyLock<Vec<Recording>> = LazyLock::new(|| {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
     #[test]
-    fn whatever_acts_and_however_it_comes_out_once_more(
+    fn any_agent_and_action_space_replays(
         variant in any::<Index>(),
         (seed, index) in (any::<u64>(), 0u64..1000),
         space in 0usize..4,
@@ -179,10 +179,10 @@ proptest! {
         check(&variant.id(), &world, &mut RandomAgent::new(0), seed ^ index, most);
     }
 
-    /// Any byte that changes is noticed, with its line; episodes on other lines are read all the same. A text that is cut off anywhere
-    /// gives the episodes before.
+    /// Any changed byte is detected, with its line; episodes on other lines can still be read. A truncated text gives the
+    /// episodes before.
     #[test]
-    fn damage_is_told_by_its_line_and_hides_no_other_episode(place in any::<Index>(), flip in 1u8..128) {
+    fn damage_is_located_and_other_episodes_are_readable(place in any::<Index>(), flip in 1u8..128) {
         let recordings: &[Recording] = &THREE;
         let text = written(recordings);
         let place = place.index(text.len());
@@ -209,12 +209,12 @@ proptest! {
             other => panic!("{other}"),
         };
         match read_all(&bytes) {
-            // A line that is put in two, or made one with the next, has another number of lines behind it.
+            // Splitting or joining lines changes the numbers of later lines.
             Ok((found, errors)) => {
                 prop_assert!(!errors.is_empty() && found.len() < 3, "a change is noticed");
                 prop_assert_eq!(line_of(&errors[0]), line);
                 prop_assert!(found.iter().all(|recording| recordings.contains(recording)));
-                // Each episode has a world of its own, so that one line costs one episode, a line end two.
+                // Each episode has its own world, so a damaged line costs one episode, a line end two.
                 let lost = if text.as_bytes()[place] == b'\n' { 2 } else { 1 };
                 prop_assert!(found.len() + lost >= 3, "{} are left", found.len());
             }
@@ -235,7 +235,7 @@ proptest! {
 }
 
 #[test]
-fn what_is_changed_from_outside_is_a_part_of_the_episode() {
+fn external_changes_are_part_of_the_episode() {
     let world = Sampler::new(&tasks::variant("find_objects#red").unwrap(), 5)
         .world(2)
         .unwrap();
@@ -265,7 +265,7 @@ fn what_is_changed_from_outside_is_a_part_of_the_episode() {
 }
 
 #[test]
-fn what_comes_out_otherwise_is_told() {
+fn divergent_replay_is_reported() {
     let world = Sampler::new(&tasks::variant("find_objects#red").unwrap(), 5)
         .world(2)
         .unwrap();

@@ -1,5 +1,5 @@
-//! The tables of `docs/tasks.md` and `docs/curricula.md` say what the specs of the built-in tasks and the curricula in
-//! `examples/curricula/` say. `DRIFTWORLD_UPDATE_GOLDEN=1` writes them anew.
+//! The tables of `docs/tasks.md` and `docs/curricula.md` match the specs of the built-in tasks and the curricula in
+//! `examples/curricula/`. `DRIFTWORLD_UPDATE_GOLDEN=1` updates them.
 
 use std::fmt::Write;
 
@@ -10,12 +10,12 @@ use driftworld::generator::Sampler;
 use driftworld::spec::{BlockKind, Domain, Element, Parameter, Role, Scenario, TaskSpec, Value, Variant};
 use driftworld::tasks;
 
-/// Worlds of each variant in which agents are measured.
+/// Worlds per variant in which agents are measured.
 const WORLDS: u64 = 8;
 
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 
-/// The tables of a task: its parameters, and its variants beside the first.
+/// The tables of a task: its parameters, and its variants compared with the first.
 fn tables(task: &std::sync::Arc<TaskSpec>) -> String {
     let mut text = "| parameter | affects | values | default | |\n|---|---|---|---|---|\n".to_owned();
     for (name, parameter) in task.parameters() {
@@ -54,7 +54,7 @@ fn tables(task: &std::sync::Arc<TaskSpec>) -> String {
     text
 }
 
-/// Whether what is best in the first variant is not best in one that changes the reward, and what the first's expert loses there.
+/// Whether a variant that changes the reward also changes the optimum of the first, and the loss of the first's expert there.
 fn turned(first: &Variant, variant: &Variant, elements: &[Element]) -> String {
     if !elements.contains(&Element::R) {
         return String::new();
@@ -68,7 +68,7 @@ fn turned(first: &Variant, variant: &Variant, elements: &[Element]) -> String {
     }
 }
 
-/// What an agent earns in the first worlds of a variant, on average.
+/// The mean reward of an agent in the first worlds of a variant.
 fn earned(variant: &Variant, mut agent: impl Agent) -> f64 {
     let sampler = Sampler::new(variant, 0);
     let each = (0..WORLDS).map(|index| {
@@ -84,7 +84,7 @@ fn earned(variant: &Variant, mut agent: impl Agent) -> f64 {
     each.sum::<f64>() / WORLDS as f64
 }
 
-/// The variants in which standing still earns no less than the on-rails agent, or nearly all that it earns.
+/// The variants in which standing still earns at least as much as the planner, or nearly so.
 fn still() -> String {
     let mut text = "| variant | standing still | `onrails` | |\n|---|---|---|---|\n".to_owned();
     for variant in tasks::built_in_names()
@@ -123,7 +123,7 @@ fn default(parameter: &Parameter) -> String {
     value.map_or_else(String::new, Value::to_string)
 }
 
-/// The parameters that a variant sets otherwise than another, with their values.
+/// The parameters that a variant sets differently from another, with their values.
 fn changed<'a>(first: &Variant, variant: &'a Variant) -> Vec<(&'a String, String)> {
     let values = variant.task().parameters().keys();
     values
@@ -132,7 +132,7 @@ fn changed<'a>(first: &Variant, variant: &'a Variant) -> Vec<(&'a String, String
         .collect()
 }
 
-/// A text with what stands between two marks replaced.
+/// Replaces the text between two marks.
 fn replaced(docs: &mut String, name: &str, text: &str) {
     let (begin, end) = (
         format!("<!-- tables of {name} -->\n"),
@@ -148,7 +148,7 @@ fn replaced(docs: &mut String, name: &str, text: &str) {
     docs.replace_range(from..to, text);
 }
 
-/// Holds a page to what its tables should be, or writes them.
+/// Compares a page with its expected tables, or updates it.
 fn check(page: &str, write: impl Fn(&mut String)) {
     let path = format!("{ROOT}/{page}");
     let found = std::fs::read_to_string(&path).expect("the docs are committed");
@@ -172,7 +172,7 @@ fn check(page: &str, write: impl Fn(&mut String)) {
 }
 
 #[test]
-fn the_tables_of_tasks_are_those_of_the_specs() {
+fn task_tables_match_the_specs() {
     check("docs/tasks.md", |docs| {
         for name in tasks::built_in_names() {
             let task = tasks::task(name).unwrap_or_else(|error| panic!("{error}"));
@@ -182,7 +182,7 @@ fn the_tables_of_tasks_are_those_of_the_specs() {
     });
 }
 
-/// The curricula, one a row: what each learns, and how often.
+/// The curricula, one row each: what each learns, and how often.
 fn curricula() -> String {
     let mut text = "| file | learned, in this order | experiences | |\n|---|---|---|---|\n".to_owned();
     for name in [
@@ -224,6 +224,6 @@ fn curricula() -> String {
 }
 
 #[test]
-fn the_table_of_curricula_is_that_of_the_files() {
+fn curricula_table_matches_the_files() {
     check("docs/curricula.md", |docs| replaced(docs, "curricula", &curricula()));
 }

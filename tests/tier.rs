@@ -1,4 +1,4 @@
-//! How much the tests do: enough for every change, or all of it with `DRIFTWORLD_FULL=1`, as `cargo xtask test --all` sets it.
+//! The amount of testing: quick for every change, or complete with `DRIFTWORLD_FULL=1`, as set by `cargo xtask test --all`.
 //! Each crate includes this file as its module `tier`.
 
 /// The first in the quick tier, the second with `DRIFTWORLD_FULL=1`.

@@ -1,4 +1,4 @@
-//! Models from a file to a world, as users take them there: packed, listed, drawn, bumped into.
+//! A user's path of models from a file to a world: packed, listed, drawn, collided with.
 
 use std::path::{Path, PathBuf};
 
@@ -10,13 +10,13 @@ use super::terminal::{driftworld, fail, output, root, scratch, succeed, text};
 const MODEL: &str = "examples/assets/lighthouse.gltf";
 const WORLD: &str = "examples/assets/harbour.json";
 
-/// What the command says on standard error, however it ends.
+/// Standard error of the command, however it ends.
 fn warnings(arguments: &[&str]) -> String {
     let output = output(&mut driftworld(arguments));
     String::from_utf8(output.stderr).expect("the command prints UTF-8")
 }
 
-/// The lighthouse in a library of its own.
+/// A library that contains only the lighthouse.
 fn packed(folder: &tempfile::TempDir) -> PathBuf {
     let library = folder.path().join("harbour.assets");
     succeed(&["assets", "pack", MODEL, "-o", text(&library)]);
@@ -29,7 +29,7 @@ fn world() -> World {
 }
 
 #[test]
-fn a_model_is_packed_once_and_lives_in_worlds() {
+fn packed_model_can_be_used_in_worlds() {
     let folder = scratch();
     let bytes = std::fs::read(packed(&folder)).expect("the library was written");
     let library = Library::from_bytes(&bytes).expect("what was packed is read again");
@@ -46,7 +46,7 @@ fn a_model_is_packed_once_and_lives_in_worlds() {
     let catalogue = Catalogue::default().with_library(&library);
     let mut environment = Environment::with_catalogue(world(), catalogue);
     assert_eq!(environment.warnings(), [], "its class is known");
-    // Straight ahead stands a tower of 4 m across, 18 m away.
+    // Straight ahead, 18 m away, is a tower 4 m wide.
     for _ in 0..60 {
         environment
             .step(Action::Continuous([10.0, 0.0, 0.0]))
@@ -83,7 +83,7 @@ fn a_model_is_packed_once_and_lives_in_worlds() {
 }
 
 #[test]
-fn packing_twice_gives_the_same_bytes_and_adding_goes_on_counting() {
+fn packing_is_deterministic_and_adding_continues_the_numbers() {
     let folder = scratch();
     let library = packed(&folder);
     let first = std::fs::read(&library).expect("the library was written");
@@ -115,7 +115,7 @@ fn packing_twice_gives_the_same_bytes_and_adding_goes_on_counting() {
 }
 
 #[test]
-fn a_run_is_not_taken_up_with_other_libraries() {
+fn run_with_other_libraries_cannot_be_resumed() {
     let folder = scratch();
     let library = packed(&folder);
     let scenario = folder.path().join("scenario.json");
@@ -167,7 +167,7 @@ fn models_are_listed_and_drawn() {
 }
 
 #[test]
-fn what_cannot_be_packed_says_why_and_leaves_no_library() {
+fn unpackable_files_are_refused_and_leave_no_library() {
     #[track_caller]
     fn check(model: &Path, library: &Path, expected: &str) {
         let error = fail(1, &["assets", "pack", text(model), "-o", text(library)]);
@@ -197,7 +197,7 @@ fn what_cannot_be_packed_says_why_and_leaves_no_library() {
 }
 
 #[test]
-fn only_libraries_are_written_over() {
+fn only_libraries_are_overwritten() {
     let folder = scratch();
     let model = folder.path().join("tower.gltf");
     std::fs::copy(root().join(MODEL), &model).expect("the example is committed");
@@ -219,7 +219,7 @@ fn only_libraries_are_written_over() {
 }
 
 #[test]
-fn what_is_asked_of_a_model_is_read_with_care() {
+fn model_options_are_parsed_strictly() {
     let folder = scratch();
     let library = folder.path().join("town.assets");
     let pack = ["assets", "pack", MODEL, "-o", text(&library)];

@@ -1,11 +1,11 @@
-//! Where whoever reads the output or the messages has gone, as with `| head`, every command ends without a word and without a panic.
+//! If the reader of the output or the messages has gone, as with `| head`, every command ends silently and without a panic.
 
 use std::process::Stdio;
 
 use super::terminal::{driftworld_in, output, root, scratch, subcommands, succeed_in};
 use crate::tier::quick_or_full;
 
-/// Every subcommand, as it prints something: results, messages, or both.
+/// Every subcommand with arguments that make it print results, messages, or both.
 const COMMANDS: [&str; 41] = [
     "--help",
     "run --help",
@@ -50,7 +50,7 @@ const COMMANDS: [&str; 41] = [
     "doctor --json",
 ];
 
-/// Commands of which the exit code is an answer, whoever reads the words.
+/// Commands whose exit code is a result, whoever reads the output.
 const ANSWERS: [&str; 5] = ["validate", "logs validate", "audit", "replay", "doctor"];
 
 /// A pipe whose reading end is closed.
@@ -61,14 +61,14 @@ fn closed() -> Stdio {
 }
 
 #[test]
-fn every_command_ends_quietly_where_nobody_reads() {
+fn every_command_ends_quietly_without_a_reader() {
     let folder = scratch();
     let path = folder.path();
     let design = "curriculum find_objects#red find_objects#blue -o scenario.json --learn 1 --eval-episodes 1";
     succeed_in(path, design);
     succeed_in(path, "run scenario.json --agent random --output log");
     succeed_in(path, "order find_objects#red dusk --matrix matrix.json");
-    // A world of one object, so that its photographs are soon taken.
+    // A world with one object, so that its photographs take little time.
     let world = r#"{ "objects": [{ "class": "cube", "coordinates": [3, 4] }] }"#;
     std::fs::write(path.join("world.json"), world).expect("the folder is ours");
     for command in COMMANDS.into_iter().step_by(quick_or_full(2, 1)) {

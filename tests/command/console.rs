@@ -1,4 +1,4 @@
-//! `driftworld console` as scripts and pipes meet it: whole transcripts, exit codes, and files that stay in their folder.
+//! `driftworld console` in scripts and pipes: whole transcripts, exit codes, and files that stay in their folder.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -10,7 +10,7 @@ use super::terminal::{driftworld, root, scratch};
 
 const WORLD: &str = "examples/console/world.json";
 
-/// Runs the console with lines on its standard input, and `--out` in a folder of the test's own.
+/// Runs the console with lines on its standard input, and `--out` in the test's own folder.
 fn console(arguments: &[&str], out: &Path, lines: impl AsRef<[u8]>) -> Output {
     let mut child = driftworld(&["console"])
         .args(arguments)
@@ -28,12 +28,12 @@ fn console(arguments: &[&str], out: &Path, lines: impl AsRef<[u8]>) -> Output {
     child.wait_with_output().expect("the command ends")
 }
 
-/// What was said, with the folder's own name left out.
+/// The output, without the folder's name.
 fn said(output: &Output, out: &Path) -> String {
     String::from_utf8_lossy(&output.stdout).replace(&out.display().to_string(), "OUT")
 }
 
-/// A transcript without the world's hash, which is another as soon as worlds get another key.
+/// A transcript without the world's hash, which changes as soon as worlds get another key.
 fn without_hash(transcript: &str) -> String {
     let path = root().join(WORLD);
     let text = std::fs::read_to_string(path).expect("the example is there");
@@ -45,7 +45,7 @@ fn without_hash(transcript: &str) -> String {
         .replace(&token, "TOKEN-")
 }
 
-/// A transcript that must end well.
+/// The transcript of a session that must succeed.
 #[track_caller]
 fn transcript(lines: &str) -> String {
     let folder = scratch();
@@ -56,7 +56,7 @@ fn transcript(lines: &str) -> String {
     said(&output, &out)
 }
 
-/// What the console refuses, line by line; nothing is written.
+/// The refusals of the console, line by line; nothing is written.
 #[track_caller]
 fn refused(lines: &str) -> String {
     let folder = scratch();
@@ -71,7 +71,7 @@ fn refused(lines: &str) -> String {
 }
 
 #[test]
-fn the_tour_says_what_it_said_before() {
+fn tour_transcript_is_unchanged() {
     let folder = scratch();
     let out = folder.path().join("out");
     let output = console(&[WORLD, "--script", "examples/console/tour.txt"], &out, "");
@@ -93,7 +93,7 @@ fn the_tour_says_what_it_said_before() {
 }
 
 #[test]
-fn a_pipe_says_the_same_as_a_script() {
+fn pipe_prints_the_same_as_a_script() {
     let folder = scratch();
     let out = folder.path().join("out");
     let script = std::fs::read_to_string("examples/console/tour.txt").expect("the tour is there");
@@ -103,12 +103,12 @@ fn a_pipe_says_the_same_as_a_script() {
 }
 
 #[test]
-fn every_command_is_explained() {
+fn every_command_has_help() {
     insta::assert_snapshot!("help", without_hash(&transcript("help\nhelp spawn\n")));
 }
 
 #[test]
-fn wrong_lines_are_refused_with_what_was_expected() {
+fn wrong_lines_are_refused_with_the_expected_form() {
     let lines = [
         "telport 1 2",
         "xyzzy",
@@ -146,7 +146,7 @@ fn wrong_lines_are_refused_with_what_was_expected() {
 }
 
 #[test]
-fn the_first_error_ends_a_script_with_its_line() {
+fn first_error_ends_a_script_with_its_line() {
     let folder = scratch();
     let script = folder.path().join("bad.txt");
     std::fs::write(&script, "# nothing\n\nstep 3\nstap\nstep 3\n").expect("the scratch folder can be written");
@@ -162,7 +162,7 @@ fn the_first_error_ends_a_script_with_its_line() {
 }
 
 #[test]
-fn an_episode_that_has_ended_wants_a_reset() {
+fn ended_episode_needs_a_reset() {
     let ended = transcript("step 1000\n");
     assert!(
         ended.contains("60 steps, reward 0;") && ended.contains(": its last step"),
@@ -179,7 +179,7 @@ fn an_episode_that_has_ended_wants_a_reset() {
 }
 
 #[test]
-fn a_variant_has_worlds_by_number() {
+fn variant_has_numbered_worlds() {
     let folder = scratch();
     let lines = "reset 5\ninfo\nreset 0\ninfo\nreset\ninfo\nreset examples/console/world.json\ninfo\n";
     let output = console(&["find_objects#red", "--seed", "7"], folder.path(), lines);
@@ -201,7 +201,7 @@ fn a_variant_has_worlds_by_number() {
     );
 }
 
-/// The original's messages, or a visible skip.
+/// The original's messages; prints a notice if they are missing.
 fn original() -> Option<PathBuf> {
     let default = root().join("../shared/reference");
     let root = std::env::var_os("DRIFTWORLD_REFERENCE").map_or(default, PathBuf::from);
@@ -217,7 +217,7 @@ fn original() -> Option<PathBuf> {
 }
 
 #[test]
-fn the_originals_messages_run_through_whole() {
+fn original_messages_run_completely() {
     let Some(messages) = original() else { return };
     let folder = scratch();
     let out = folder.path().join("out");
@@ -236,7 +236,7 @@ fn the_originals_messages_run_through_whole() {
 }
 
 #[test]
-fn lines_that_are_no_text_are_an_error_and_no_panic() {
+fn binary_lines_are_an_error_and_no_panic() {
     let folder = scratch();
     let output = console(&["find_objects"], folder.path(), b"info\n\xff\xfe\n");
     let error = String::from_utf8_lossy(&output.stderr);

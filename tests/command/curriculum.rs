@@ -1,4 +1,4 @@
-//! `driftworld curriculum` as its users meet it: probes with their proof, forms, drifts, even steps, controls, pictures, errors.
+//! `driftworld curriculum`: probes with their proof, forms, drifts, even steps, controls, pictures, errors.
 
 use std::path::Path;
 
@@ -17,7 +17,7 @@ fn with_park() -> tempfile::TempDir {
     folder
 }
 
-/// The scenario that `driftworld curriculum` prints, and what is said beside it.
+/// The scenario printed by `driftworld curriculum`, and the other output.
 #[track_caller]
 fn designed(arguments: &str) -> (Value, String) {
     let folder = with_park();
@@ -37,7 +37,7 @@ fn list(value: &Value) -> &Vec<Value> {
     value.as_array().expect("the document has a list there")
 }
 
-/// The regimes of the learning blocks, or of the others.
+/// The regimes of the learning blocks, or of the evaluation blocks.
 fn regimes<'a>(scenario: &'a Value, kind: &str) -> Vec<&'a Value> {
     let blocks = list(&scenario["blocks"]).iter().filter(|block| block["type"] == kind);
     blocks.flat_map(|block| list(&block["regimes"])).collect()
@@ -62,7 +62,7 @@ fn kinds(scenario: &Value) -> String {
     list(&scenario["blocks"]).iter().map(letter).collect()
 }
 
-/// The cells of the rows of a table below the line that begins with `heading`.
+/// The cells of a table's rows below the line that begins with `heading`.
 fn rows(beside: &str, heading: &str) -> Vec<Vec<String>> {
     let below = beside
         .lines()
@@ -76,7 +76,7 @@ fn rows(beside: &str, heading: &str) -> Vec<Vec<String>> {
 }
 
 #[test]
-fn a_probe_of_each_element_proves_that_nothing_else_differs() {
+fn probe_of_each_element_proves_that_nothing_else_differs() {
     for (element, column) in [("state", 2), ("reward", 5), ("observation", 6)] {
         let (scenario, beside) = designed(&format!("park.json --probe {element}"));
         let rows = rows(&beside, "variant");
@@ -140,7 +140,7 @@ fn every_element_of_the_five_tasks_can_be_probed() {
 }
 
 #[test]
-fn what_a_probe_makes_is_in_the_scenario_and_as_far_as_the_table_says() {
+fn made_variants_are_in_the_scenario_at_the_stated_distances() {
     let folder = with_park();
     let table = succeed_in(
         folder.path(),
@@ -158,7 +158,7 @@ fn what_a_probe_makes_is_in_the_scenario_and_as_far_as_the_table_says() {
 }
 
 #[test]
-fn orders_differ_and_controls_are_matched_in_everything_else() {
+fn orders_differ_and_controls_match_in_everything_else() {
     let folder = with_park();
     let design = |order: &str| {
         let (scenario, _) = designed(&format!("park.json --probe reward --order {order} --seed 4"));
@@ -201,7 +201,7 @@ fn orders_differ_and_controls_are_matched_in_everything_else() {
 }
 
 #[test]
-fn controls_learn_as_often_and_before_deployment_the_same() {
+fn controls_learn_equally_often_with_equal_pre_deployment() {
     let folder = with_park();
     let design = "curriculum park.json#blue red dusk --blocks 5 --pre-deployment 4 --controls controls -o main.json";
     let table = succeed_in(folder.path(), design);
@@ -237,13 +237,13 @@ fn experts_of_two_tasks_are_written_side_by_side() {
 }
 
 #[test]
-fn a_probe_ends_where_it_is_asked_to() {
+fn probe_ends_at_the_requested_variant() {
     let (scenario, _) = designed("park.json --probe observation --end park.json#blue");
     assert_eq!(learned(&scenario).last().map(String::as_str), Some("blue"));
 }
 
 #[test]
-fn evaluation_never_draws_what_is_learned_and_stands_where_it_is_wanted() {
+fn evaluation_worlds_are_separate_and_blocks_are_placed_as_requested() {
     let with = |more: &str| designed(&format!("park.json#blue red green --order given {more}")).0;
     assert_eq!(kinds(&with("")), "ELELELE");
     assert_eq!(kinds(&with("--evaluate ends --pre-deployment 7")), "PELLLE");
@@ -261,7 +261,7 @@ fn evaluation_never_draws_what_is_learned_and_stands_where_it_is_wanted() {
 }
 
 #[test]
-fn the_forms_arrange_the_blocks_and_say_so() {
+fn forms_arrange_the_blocks_and_say_so() {
     let with = |form: &str| designed(&format!("park.json#blue red --order given --form {form}")).0;
     let condensed = with("condensed");
     assert_eq!(
@@ -309,7 +309,7 @@ fn the_forms_arrange_the_blocks_and_say_so() {
 }
 
 #[test]
-fn lifetimes_have_their_own_worlds_and_experts_what_their_lifetime_has() {
+fn lifetimes_have_their_own_worlds_and_matching_experts() {
     let folder = with_park();
     let design = "curriculum park.json#blue red dusk --hold-out dusk --learn 4 --form dispersed --lifetimes 2 \
                   --experts experts -o lifetimes";
@@ -361,7 +361,7 @@ fn drifts_lead_from_variant_to_variant_across_blocks() {
 }
 
 #[test]
-fn even_steps_are_made_and_proven_or_it_is_said_how_far_they_reach() {
+fn even_steps_are_made_and_proven_or_their_reach_is_reported() {
     let steps = "park.json#blue --probe reward --step-distance 0.2 --tolerance 0.01 --steps";
     let (scenario, beside) = designed(&format!("{steps} 5"));
     let rows = rows(&beside, "variant");
@@ -387,7 +387,7 @@ fn even_steps_are_made_and_proven_or_it_is_said_how_far_they_reach() {
 }
 
 #[test]
-fn a_scenario_is_drawn_as_bars_over_its_experiences() {
+fn scenario_is_drawn_as_bars_over_its_experiences() {
     let folder = with_park();
     succeed_in(
         folder.path(),
@@ -402,7 +402,7 @@ fn a_scenario_is_drawn_as_bars_over_its_experiences() {
 }
 
 #[test]
-fn a_scenario_is_validated_against_the_tasks_it_names() {
+fn scenario_is_validated_against_its_tasks() {
     let folder = scratch();
     let validate = |regime: &str| {
         let text = format!(r#"{{ "name": "s", "blocks": [{{ "type": "learning", "regimes": [{regime}] }}] }}"#);
@@ -426,7 +426,7 @@ fn a_scenario_is_validated_against_the_tasks_it_names() {
 }
 
 #[test]
-fn help_states_the_defaults_of_the_library() {
+fn help_shows_the_library_defaults() {
     let help = succeed("curriculum --help");
     for default in [DEFAULT_TOLERANCE.to_string(), DEFAULT_STEPS.to_string()] {
         assert!(
@@ -438,7 +438,7 @@ fn help_states_the_defaults_of_the_library() {
 }
 
 #[test]
-fn lifetimes_have_an_order_each_unless_one_was_chosen() {
+fn lifetimes_have_different_orders_unless_one_was_chosen() {
     let orders = |arguments: &str| -> Vec<String> {
         let folder = with_park();
         let design = "curriculum select_object --learn 2 --eval-episodes 1 --worlds 0 --lifetimes 4 -o lives";
@@ -460,10 +460,10 @@ fn lifetimes_have_an_order_each_unless_one_was_chosen() {
     assert_eq!(distinct(orders("--order named")), 1);
 }
 
-/// The shared library counts what a program asks the disk to keep.
+/// The shared library counts requests to sync to disk.
 #[test]
 #[cfg(target_os = "linux")]
-fn audit_asks_the_disk_to_keep_nothing_and_fails_where_it_cannot_test() {
+fn audit_syncs_nothing_and_fails_if_it_cannot_test() {
     let folder = scratch();
     let source = "#include <fcntl.h>\n#include <stdlib.h>\n#include <unistd.h>\n\
         static int note(void) { int f = open(getenv(\"SYNCED\"), O_WRONLY | O_APPEND | O_CREAT, 0600);\n\

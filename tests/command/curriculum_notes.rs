@@ -1,15 +1,15 @@
-//! What `driftworld curriculum` says of designs that are not what they seem, and what it does not write over.
+//! Notes of `driftworld curriculum` on surprising designs, and files that it does not overwrite.
 
 use std::path::Path;
 
 use super::terminal::{driftworld_in, fail_in, output, scratch, succeed_in};
 
-/// A small design of two variants, with more arguments.
+/// A small design of two variants, with further arguments.
 fn design(more: &str) -> String {
     format!("curriculum find_objects#blue find_objects#red --learn 2 --eval-episodes 1 {more}")
 }
 
-/// What is printed and what is said beside it; the command succeeds.
+/// Standard output and standard error; the command must succeed.
 #[track_caller]
 fn said(folder: &Path, more: &str) -> (String, String) {
     let output = output(&mut driftworld_in(folder, &design(&format!("--worlds 0 {more}"))));
@@ -19,21 +19,21 @@ fn said(folder: &Path, more: &str) -> (String, String) {
 }
 
 #[test]
-fn a_named_variant_that_is_held_out_is_said() {
+fn note_names_held_out_variants() {
     let folder = scratch();
     let (_, beside) = said(folder.path(), "find_objects#dusk --hold-out find_objects#dusk");
     let note = "note: find_objects#dusk is named and held out: it is evaluated and not learned";
     assert!(beside.contains(note), "{beside}");
     let (whole, beside) = said(folder.path(), "--hold-out find_objects#dusk");
     assert!(!beside.contains("note:"), "{beside}");
-    // A bare name is one of a task that is learned.
+    // A bare name belongs to a task that is learned.
     let (bare, _) = said(folder.path(), "--hold-out dusk");
     assert_eq!(bare, whole);
 }
 
 /// Other starts and ends of a random order are refused.
 #[test]
-fn the_start_of_a_probe_says_what_the_others_differ_from() {
+fn start_of_a_probe_is_the_base_of_comparison() {
     let folder = scratch();
     said(
         folder.path(),
@@ -42,7 +42,7 @@ fn the_start_of_a_probe_says_what_the_others_differ_from() {
 }
 
 #[test]
-fn squares_that_are_not_full_are_said() {
+fn note_reports_incomplete_squares() {
     let folder = scratch();
     let three = "find_objects#dusk --form permuted --lifetimes";
     let (_, beside) = said(folder.path(), &format!("{three} 4 -o four"));
@@ -56,7 +56,7 @@ fn squares_that_are_not_full_are_said() {
 }
 
 #[test]
-fn what_stands_in_a_folder_is_not_replaced() {
+fn existing_files_in_a_folder_are_not_replaced() {
     let folder = scratch();
     let lifetimes = "--lifetimes 2 -o lives --experts experts";
     said(folder.path(), lifetimes);
@@ -69,7 +69,7 @@ fn what_stands_in_a_folder_is_not_replaced() {
         "{again}"
     );
     assert_eq!(std::fs::read(&file).expect("a scenario"), before);
-    // Nothing is written where a later folder is in the way.
+    // Nothing is written if a later folder is in the way.
     std::fs::remove_dir_all(folder.path().join("lives")).expect("a folder");
     let again = fail_in(folder.path(), 1, &design(&other));
     assert!(again.contains("experts/curriculum-1-"), "{again}");
@@ -79,7 +79,7 @@ fn what_stands_in_a_folder_is_not_replaced() {
 }
 
 #[test]
-fn a_probe_of_the_reward_says_whether_what_is_best_changes() {
+fn reward_probe_reports_whether_the_optimum_changes() {
     let folder = scratch();
     let probe = |other: &str, worlds: u8| {
         let line = format!("curriculum find_objects#blue {other} --probe reward --worlds {worlds} --force -o x.json");
@@ -99,7 +99,7 @@ fn a_probe_of_the_reward_says_whether_what_is_best_changes() {
 }
 
 #[test]
-fn lists_of_lifetimes_name_both_ends_of_a_drift() {
+fn tables_of_lifetimes_name_both_ends_of_a_drift() {
     let folder = scratch();
     let (shown, _) = said(folder.path(), "--drift linear --lifetimes 2 -o lives");
     assert!(
@@ -112,7 +112,7 @@ fn lists_of_lifetimes_name_both_ends_of_a_drift() {
 }
 
 #[test]
-fn experts_of_a_mixture_are_said_to_learn_other_worlds() {
+fn note_says_that_experts_of_a_mixture_learn_other_worlds() {
     let folder = scratch();
     let mixed = "--drift linear --experts experts -o x.json";
     let (_, beside) = said(folder.path(), &format!("{mixed} --mix=task"));

@@ -1,11 +1,10 @@
-//! What an audit found of distances by the command, each with the answer that there was. What it found of the library
-//! is in `tests/distances/`.
+//! Findings of an audit of distances by the command, each with the former answer.
 
 use serde_json::Value;
 
 use super::terminal::{fail, scratch, succeed, text};
 
-/// The distance of the first two of a list, as `order` measures it.
+/// The distance of the first two variants in a list, as measured by `order`.
 fn first_two(list: &[&str], by: &[&str]) -> f64 {
     let folder = scratch();
     let path = folder.path().join("matrix.json");
@@ -16,10 +15,10 @@ fn first_two(list: &[&str], by: &[&str]) -> f64 {
     matrix["values"][0][1].as_f64().expect("it is a number")
 }
 
-/// blue–penalty was 0.2358 in a list with wide, and 0.0157 with `get_to_goal#plain` beside them: with a second task in
-/// the list all were measured by worlds, and nobody said so.
+/// blue–penalty was 0.2358 in a list with wide, and 0.0157 with `get_to_goal#plain` beside them: with a second task in the
+/// list, all were silently measured by worlds.
 #[test]
-fn the_number_of_a_pair_does_not_hang_on_the_list() {
+fn distance_of_a_pair_does_not_depend_on_the_list() {
     let pair = ["find_objects#blue", "find_objects#penalty"];
     let more = [&pair[..], &["find_objects#wide", "find_objects#near"]].concat();
     let many = [&pair[..], &["get_to_goal#plain", "find_objects#wide"]].concat();
@@ -49,10 +48,10 @@ fn the_number_of_a_pair_does_not_hang_on_the_list() {
     );
 }
 
-/// `vary find_objects#blue --element T --distance 0.5` answered `reach 20, hold 10`; nothing reads `reach` of what is
-/// set off by contact.
+/// `vary find_objects#blue --element T --distance 0.5` answered `reach 20, hold 10`; nothing reads `reach` of objects that are
+/// triggered by contact.
 #[test]
-fn a_variant_at_a_distance_is_not_made_of_what_nothing_reads() {
+fn unread_parameters_make_no_distance() {
     for (variant, element, idle) in [
         ("find_objects#blue", "T", "reach"),
         ("get_to_goal#plain", "R", "hazard_reward"),

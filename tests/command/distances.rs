@@ -4,7 +4,7 @@ use super::run_files::write;
 use super::terminal::{json, json_in, scratch, succeed_in};
 
 #[test]
-fn pictures_tell_apart_what_looks_different_and_nothing_else() {
+fn pictures_distinguish_visible_changes_only() {
     let folder = scratch();
     for (name, ground, reward) in [
         ("green.json", "[0.3, 0.5, 0.2]", "1.0"),
@@ -41,7 +41,7 @@ fn pictures_tell_apart_what_looks_different_and_nothing_else() {
 #[test]
 fn every_measure_has_a_name_for_the_command() {
     for by in driftworld::distances::By::names() {
-        // Whole meadows take seconds by bisimulation; the library's tests have a small one.
+        // Whole meadows take seconds by bisimulation; the library's tests use a small one.
         if *by == "dynamics:bisimulation" {
             continue;
         }
@@ -68,7 +68,7 @@ fn every_measure_has_a_name_for_the_command() {
 }
 
 #[test]
-fn order_and_curriculum_take_the_same_names() {
+fn order_and_curriculum_accept_the_same_names() {
     let order = json("order find_objects#red blue penalty --by behavior --worlds 2 --json");
     assert_eq!(order["by"], "behavior");
     let values = &order["matrix"]["values"][0];
@@ -96,7 +96,7 @@ fn shares_are_of_the_tasks_diameter() {
 }
 
 #[test]
-fn placements_are_measured_as_they_come_out() {
+fn placements_are_measured_after_rejections() {
     let between = |a: &str, b: &str| {
         let found = json(&format!("distance {a} {b} --by placements --json"));
         found["total"].as_f64().expect("a number")

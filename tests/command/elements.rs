@@ -7,7 +7,7 @@ use serde_json::Value;
 use super::terminal::{driftworld_in, fail_in, json, output, scratch, succeed, succeed_in, text};
 use crate::tier::quick_or_full;
 
-/// A task whose light is said to change what its parameter says, and which sets a reach that nothing reads.
+/// A task whose light declares the elements in `affects`, and which sets a reach that nothing reads.
 fn task(affects: &str) -> String {
     format!(
         r#"{{ "name": "lamp", "parameters": {{
@@ -21,7 +21,7 @@ fn task(affects: &str) -> String {
 }
 
 #[test]
-fn what_is_declared_stands_beside_what_is_measured() {
+fn declared_and_measured_elements_are_shown_together() {
     let said = succeed(&["elements", "blue_red_green", "--worlds", "3"]);
     assert!(said.starts_with("blue_red_green, beside a:"), "{said}");
     let row = |name: &str| {
@@ -35,7 +35,7 @@ fn what_is_declared_stands_beside_what_is_measured() {
 }
 
 #[test]
-fn two_variants_are_compared_for_the_images_of_a_learner() {
+fn two_variants_are_compared_for_a_learners_images() {
     let measured = |modalities: &str| {
         let found = json(&format!(
             "elements find_objects red penalty --modalities {modalities} --worlds 2 --json"
@@ -54,7 +54,7 @@ fn two_variants_are_compared_for_the_images_of_a_learner() {
 }
 
 #[test]
-fn a_contradiction_is_told_by_its_first_case() {
+fn contradiction_is_reported_with_its_first_case() {
     let folder = scratch();
     let lamp = |affects: &str| fs::write(folder.path().join("lamp.json"), task(affects)).expect("the folder is ours");
     lamp("R");
@@ -84,7 +84,7 @@ fn a_contradiction_is_told_by_its_first_case() {
         (&report[0]["valid"], &report[0]["problems"][0]["code"]),
         (&false.into(), &"task/elements".into())
     );
-    // The advice is taken.
+    // Follows the advice.
     lamp("phi");
     let said = succeed_in(folder.path(), "validate --elements lamp.json");
     assert!(said.contains("a valid task"), "{said}");
@@ -92,7 +92,7 @@ fn a_contradiction_is_told_by_its_first_case() {
 }
 
 #[test]
-fn a_scenario_is_refused_for_what_its_tasks_claim() {
+fn scenario_is_refused_for_false_claims_of_its_tasks() {
     let folder = scratch();
     let scenario = r#"{ "version": 1, "name": "s", "blocks": [
         { "type": "learning", "regimes": [{ "task": "./lamp.json", "variant": "dusk", "count": 1, "seed": 1, "max_steps": 5 }] }] }"#;
@@ -107,9 +107,9 @@ fn a_scenario_is_refused_for_what_its_tasks_claim() {
     }
 }
 
-/// A lever that opens a door after the agent has walked for some seconds: too late for few steps.
+/// A lever that opens a door after the agent has walked for some seconds: too late for a few steps.
 #[test]
-fn more_steps_see_what_differs_later() {
+fn more_steps_find_later_differences() {
     let folder = scratch();
     let late = r#"{ "name": "late", "parameters": {
         "period": { "role": "variant", "type": "number", "affects": ["T"], "range": [2, 400], "default": 400 } },
@@ -131,7 +131,7 @@ fn more_steps_see_what_differs_later() {
 }
 
 #[test]
-fn what_the_examples_claim_holds() {
+fn claims_of_the_examples_hold() {
     let files = ["worlds", "tasks"].into_iter().flat_map(|folder| {
         fs::read_dir(format!("{}/examples/{folder}", env!("CARGO_MANIFEST_DIR")))
             .unwrap()
@@ -155,7 +155,7 @@ fn what_the_examples_claim_holds() {
 }
 
 #[test]
-fn what_is_odd_about_worlds_is_told_of_the_task_that_draws_them() {
+fn remarks_on_worlds_are_shown_for_the_task_that_draws_them() {
     let folder = scratch();
     let odd = r#"{ "name": "odd", "world": { "environment_params": { "map_size": [20, 20], "zones": [{ "disc": { "center": [90, 0], "radius": 1 }, "name": "far" }] },
         "objects": [{ "class": "switch", "coordinates": [2, 2], "switch": { "target": "nothing" } }] },

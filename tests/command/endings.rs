@@ -1,11 +1,11 @@
-//! How episodes ended: what `driftworld run` counts of it, and how `driftworld render --view episode` shows one.
+//! How episodes ended: the counts of `driftworld run`, and the frames of `driftworld render --view episode`.
 
 use std::collections::BTreeMap;
 
 use super::run_files::{files, is_table, write};
 use super::terminal::{fail, scratch, succeed, text};
 
-/// A field with a river of lava in the way, which some agents go around, and little time.
+/// A field with a river of lava, which some agents avoid, and a short time limit.
 const TASK: &str = r#"{ "name": "river", "world": {
     "max_steps": 60,
     "environment_params": { "map_size": [16, 16], "zones": [{ "polygon": [[-3, 1], [8, 1], [8, 3], [-3, 3]], "ends": "failure" }] },
@@ -14,7 +14,7 @@ const TASK: &str = r#"{ "name": "river", "world": {
   "groups": [{ "name": "goal", "count": 1, "placement": { "box": { "low": [-6, -4], "high": [6, 6] } },
     "object": { "class": "barrel", "tag": "goal", "reward": 1, "reward_stimulus": ["AgentCollide"] } }] }"#;
 
-/// How often each word stands in the column `ended_by` of a log.
+/// The counts of each word in the column `ended_by` of a log.
 fn counted(log: &std::path::Path) -> BTreeMap<String, u64> {
     let mut counts = BTreeMap::new();
     for (_, table) in files(log).into_iter().filter(|(name, _)| is_table(name)) {
@@ -29,7 +29,7 @@ fn counted(log: &std::path::Path) -> BTreeMap<String, u64> {
 }
 
 #[test]
-fn a_run_says_how_many_episodes_were_ended_by_what_also_when_it_was_resumed() {
+fn run_counts_what_ended_episodes_even_when_resumed() {
     let folder = scratch();
     write(&folder.path().join("river.json"), TASK);
     let scenario = folder.path().join("scenario.json");
@@ -53,7 +53,7 @@ fn a_run_says_how_many_episodes_were_ended_by_what_also_when_it_was_resumed() {
         let counts = counted(&log);
         assert_eq!(counts.values().sum::<u64>(), 42);
         assert_eq!(said["ended_by"], serde_json::json!(counts), "{agent}");
-        // All is in the log: nothing is run, and the same is said in words.
+        // The log is complete: nothing is run, and the same counts are printed.
         let again = succeed(&[&arguments[..], &["--resume"]].concat());
         let mut listed: Vec<(&String, &u64)> = counts.iter().collect();
         listed.sort_by_key(|(_, count)| std::cmp::Reverse(**count));
@@ -68,7 +68,7 @@ fn a_run_says_how_many_episodes_were_ended_by_what_also_when_it_was_resumed() {
 }
 
 #[test]
-fn an_episode_is_drawn_frame_by_frame() {
+fn episode_is_drawn_frame_by_frame() {
     let folder = scratch();
     let path = folder.path().join("solved.png");
     let episode = [
@@ -87,7 +87,7 @@ fn an_episode_is_drawn_frame_by_frame() {
         let (width, height) = size.split_once(" × ").expect("it has two sides");
         [width, height].map(|side| side.parse::<u32>().expect("it is a number"))
     };
-    // Rows of two frames, each of two pictures and a head; a map is as oblong as the arena, 13 to 9.
+    // Rows of two frames, each of two pictures and a heading; a map has the arena's aspect ratio, 13 to 9.
     let [eight, three, two] = [
         size(&[]),
         size(&["--frames", "3"]),
@@ -99,9 +99,9 @@ fn an_episode_is_drawn_frame_by_frame() {
     assert!(error.contains("expected --view episode"), "{error}");
 }
 
-/// The same view twice, in three sizes each: what learners see small, and no picture of one style as that of the other.
+/// The same view in both styles, in three sizes each: small as learners see it, and each picture in its own style.
 #[test]
-fn both_looks_are_drawn_side_by_side() {
+fn both_styles_are_drawn_side_by_side() {
     let folder = scratch();
     let path = folder.path().join("looks.svg");
     succeed(&["render", "find_objects", "--view", "looks", "-o", text(&path)]);

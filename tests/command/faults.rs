@@ -1,7 +1,7 @@
-//! Runs that are killed, stopped by signals or out of room at random moments: they continue to the bytes of a run that nothing
-//! happened to. Other commands leave what was there as it was.
+//! Runs that are killed, stopped by signals or out of disk space at random moments continue to the bytes of an undisturbed run.
+//! Other commands leave existing files unchanged.
 //!
-//! `DRIFTWORLD_FAULTS` sets how many faults runs meet, `DRIFTWORLD_FAULTS_SEED` which.
+//! `DRIFTWORLD_FAULTS` sets the number of faults, `DRIFTWORLD_FAULTS_SEED` their seed.
 #![cfg(unix)]
 
 use std::collections::BTreeMap;
@@ -15,10 +15,10 @@ use std::time::{Duration, Instant};
 use super::run_files::{bytes_below, is_table, write};
 use super::terminal::{driftworld_in, output, root, scratch, signals, succeed_in};
 
-/// Most faults in one lifetime: then it is left alone.
+/// Most faults in one lifetime; after that it runs undisturbed.
 const MOST: u64 = 12;
 
-/// All rows get this time, so that logs can be compared to the byte.
+/// The time of all rows, so that logs can be compared byte for byte.
 const CLOCK: (&str, &str) = ("DRIFTWORLD_CLOCK", "2026-01-31T12:00:00Z");
 
 /// Random numbers, by `SplitMix64`.
@@ -41,7 +41,7 @@ fn setting(name: &str, default: u64) -> u64 {
     })
 }
 
-/// The command with files of so many half kilobytes at most. More is an error, as on a full disk, not a signal.
+/// The command with a file size limit in half kilobytes. Exceeding it is an error, as on a full disk, not a signal.
 fn with_room(folder: &Path, half_kilobytes: u64, arguments: &[&str]) -> Command {
     let mut command = Command::new("sh");
     command.args(["-c", "ulimit -f \"$0\"; exec \"$@\""]);
@@ -52,7 +52,7 @@ fn with_room(folder: &Path, half_kilobytes: u64, arguments: &[&str]) -> Command 
     command
 }
 
-/// Whether it ended well, or with exit code 1 and a message.
+/// Whether it succeeded, or failed with exit code 1 and a message.
 fn is_orderly(ended: &Output) -> bool {
     let error = String::from_utf8_lossy(&ended.stderr);
     let code = ended.status.code();
@@ -76,7 +76,7 @@ fn scenario(folder: &Path) {
     write(&folder.join("scenario.json"), &scenario);
 }
 
-/// Starts a run, or continues it, lets one fault happen to it, and says whether it ended before.
+/// Starts or resumes a run and applies one fault; returns whether it ended before.
 fn meet_a_fault(folder: &Path, arguments: &[&str], took: Duration, size: u64, rng: &mut Rng) -> bool {
     let kind = rng.below(4);
     if kind == 0 {
@@ -100,7 +100,7 @@ fn meet_a_fault(folder: &Path, arguments: &[&str], took: Duration, size: u64, rn
     thread::sleep(took.mul_f64(rng.below(1000) as f64 / 800.0));
     let signals: Vec<_> = signals().chain([("-KILL", 9), ("-KILL", 9), ("-KILL", 9)]).collect();
     let (signal, number) = signals[rng.below(signals.len() as u64) as usize];
-    // Fails where the run has ended.
+    // Fails if the run has ended.
     let _ = Command::new("kill")
         .args([signal, &child.id().to_string()])
         .stderr(Stdio::null())
@@ -166,7 +166,7 @@ fn disturbed_runs_continue_to_the_same_bytes() {
 }
 
 #[test]
-fn without_room_files_stay_as_they_were() {
+fn files_are_unchanged_without_disk_space() {
     let folder = scratch();
     let folder = folder.path();
     scenario(folder);
@@ -209,7 +209,7 @@ fn without_room_files_stay_as_they_were() {
 }
 
 #[test]
-fn a_full_device_is_an_error() {
+fn full_device_is_an_error() {
     for line in [
         "sample find_objects#red --count 60 --jsonl -o /dev/full",
         "sheet find_objects#red --size 32 -o /dev/full",

@@ -1,4 +1,4 @@
-//! What a newcomer meets in the first hour: each test is named after what must be true, and was a defect once (docs of issue 24).
+//! A newcomer's first hour: each test was a defect once (docs of issue 24).
 
 use std::io::Write;
 use std::path::Path;
@@ -23,7 +23,7 @@ fn with_berries() -> tempfile::TempDir {
     folder
 }
 
-/// Runs the command with a text as its standard input: code, standard output, standard error.
+/// Runs the command with a text on standard input: returns code, standard output, standard error.
 fn fed(folder: &Path, input: &str, arguments: &[&str]) -> (Option<i32>, String, String) {
     let mut command = driftworld_in(folder, arguments);
     let command = command
@@ -42,7 +42,7 @@ fn fed(folder: &Path, input: &str, arguments: &[&str]) -> (Option<i32>, String, 
 // 5. The commands.
 
 #[test]
-fn commands_are_listed_in_groups_and_none_twice() {
+fn commands_are_listed_in_groups_and_never_twice() {
     let help = succeed("--help");
     for group in ["Author", "Measure", "Teach", "Score", "Watch", "Work with other tools"] {
         assert!(help.lines().any(|line| line.starts_with(group)), "{group}: {help}");
@@ -71,7 +71,7 @@ fn completions_know_every_shell_and_every_command() {
 // 7. Colours.
 
 #[test]
-fn colours_come_where_they_are_asked_for_and_nowhere_else() {
+fn colours_appear_only_on_request() {
     let colored = |arguments: &[&str], variable: Option<&str>| {
         let mut command = driftworld(arguments);
         let done = output(command.envs(variable.map(|name| (name, "1"))));
@@ -110,7 +110,7 @@ fn colours_change_no_word() {
 }
 
 #[test]
-fn tasks_show_has_one_table_of_variants_and_refuses_a_wrong_one() {
+fn tasks_show_has_one_table_of_variants_and_refuses_unknown_ones() {
     let shown = succeed(&["tasks", "show", "find_objects"]);
     let headings = shown.lines().filter(|line| line.starts_with("variant ")).count();
     assert_eq!(headings, 1, "{shown}");
@@ -131,7 +131,7 @@ fn explain_prints_no_rows_of_zeros() {
 // 8. One spelling.
 
 #[test]
-fn an_element_is_called_by_its_letter_or_its_name_in_every_command() {
+fn elements_are_accepted_by_letter_or_name_everywhere() {
     for element in ["R", "reward", "r", "Reward"].into_iter().take(quick_or_full(2, 4)) {
         succeed(&format!("vary find_objects#red --element {element} --distance 0.5"));
         succeed(&format!("distance find_objects#red penalty --weight {element}=2"));
@@ -142,7 +142,7 @@ fn an_element_is_called_by_its_letter_or_its_name_in_every_command() {
 }
 
 #[test]
-fn variants_go_by_bare_names_wherever_their_task_is_known() {
+fn variants_need_no_task_where_it_is_known() {
     let folder = with_berries();
     for (bare, whole) in [
         (
@@ -168,7 +168,7 @@ fn variants_go_by_bare_names_wherever_their_task_is_known() {
 }
 
 #[test]
-fn families_and_patterns_stand_for_their_members_everywhere() {
+fn families_and_patterns_expand_everywhere() {
     let folder = with_berries();
     for named in ["bush.json#all", "bush.json#l*"] {
         let here = |line: String| succeed_in(folder.path(), &line);
@@ -185,7 +185,7 @@ fn families_and_patterns_stand_for_their_members_everywhere() {
 }
 
 #[test]
-fn whatever_is_written_is_told_in_one_line() {
+fn every_written_file_is_reported_in_one_line() {
     let folder = with_berries();
     let path = folder.path();
     for (command, files) in [
@@ -219,7 +219,7 @@ fn whatever_is_written_is_told_in_one_line() {
             assert!(shown.lines().any(told), "{command}: {shown}");
         }
     }
-    // Where standard output holds data, the line is on the other.
+    // If standard output holds data, the line is on standard error.
     let done = output(&mut driftworld_in(path, "order bush.json --matrix m.json --json"));
     let said = String::from_utf8_lossy(&done.stderr).into_owned();
     assert!(said.contains("wrote m.json"), "{said}");
@@ -293,7 +293,7 @@ fn documents_are_read_from_standard_input() {
 // 9. Validate, then die.
 
 #[test]
-fn what_new_and_export_write_validates_samples_and_runs() {
+fn documents_from_new_and_export_validate_sample_and_run() {
     let folder = scratch();
     let path = folder.path();
     let said = succeed_in(path, &["new", "berries"]);
@@ -301,7 +301,7 @@ fn what_new_and_export_write_validates_samples_and_runs() {
         said.contains("wrote berries.json") && said.contains("driftworld validate berries.json"),
         "{said}"
     );
-    // What it says to do is done.
+    // Follows the advice.
     let advised: Vec<Vec<&str>> = said
         .lines()
         .filter_map(|line| line.strip_prefix("  driftworld "))
@@ -328,7 +328,7 @@ fn what_new_and_export_write_validates_samples_and_runs() {
 }
 
 #[test]
-fn all_mistakes_are_reported_in_one_round() {
+fn all_mistakes_are_reported_at_once() {
     let folder = scratch();
     let task = r#"{ "name": "t",
         "parameters": { "light": { "role": "variant", "type": "number", "affects": ["O"], "range": [0.2, 4], "default": "bright" } },
@@ -351,7 +351,7 @@ fn all_mistakes_are_reported_in_one_round() {
 }
 
 #[test]
-fn an_unknown_class_is_told_the_nearest_known() {
+fn unknown_class_error_names_the_nearest() {
     let folder = scratch();
     let world = |class: &str| format!(r#"{{ "objects": [{{ "class": "{class}", "coordinates": [3, 4] }}] }}"#);
     for (class, near) in [
@@ -368,7 +368,7 @@ fn an_unknown_class_is_told_the_nearest_known() {
 }
 
 #[test]
-fn what_can_be_read_is_judged_beside_what_cannot() {
+fn readable_files_are_judged_beside_unreadable_ones() {
     let folder = with_berries();
     let done = output(&mut driftworld_in(folder.path(), "validate missing.json bush.json"));
     let [shown, said] = [done.stdout, done.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
@@ -382,7 +382,7 @@ fn what_can_be_read_is_judged_beside_what_cannot() {
 // 10. Answers that help.
 
 #[test]
-fn a_byte_order_mark_and_three_numbers_are_answered() {
+fn byte_order_mark_and_three_numbers_are_handled() {
     let folder = scratch();
     std::fs::write(folder.path().join("bom.json"), format!("\u{feff}{BERRIES}")).expect("the folder is ours");
     succeed_in(folder.path(), "validate bom.json");
@@ -394,7 +394,7 @@ fn a_byte_order_mark_and_three_numbers_are_answered() {
 // 11. The order of what is named.
 
 #[test]
-fn the_variant_named_first_is_learned_first() {
+fn variant_named_first_is_learned_first() {
     let folder = scratch();
     for names in ["red blue dusk", "dusk red blue", "blue dusk red"] {
         let found = json_in(
@@ -407,7 +407,7 @@ fn the_variant_named_first_is_learned_first() {
 }
 
 #[test]
-fn a_probe_takes_the_variants_that_were_named_and_prints_what_made_ones_set() {
+fn probe_takes_the_named_variants_and_prints_the_values_of_made_ones() {
     let folder = scratch();
     let probe = |line: &str| {
         let line = format!("curriculum find_objects#red {line} --probe O --worlds 0 --force -o s.json");
@@ -427,7 +427,7 @@ fn a_probe_takes_the_variants_that_were_named_and_prints_what_made_ones_set() {
 // 12. One spelling of a variant.
 
 #[test]
-fn a_variant_has_one_spelling_in_all_tables() {
+fn variant_has_one_spelling_in_all_tables() {
     let folder = with_berries();
     let path = folder.path();
     let order = succeed_in(path, "order bush.json#plain bush.json#l2-n3");
@@ -443,13 +443,13 @@ fn a_variant_has_one_spelling_in_all_tables() {
         );
         assert!(!shown.contains("bush.json#") && !shown.contains("berries_"), "{shown}");
     }
-    // The log's own key is in the files alone.
+    // The log's own name occurs only in the files.
     let rows = succeed_in(path, &["logs", "aggregate", "log", "--format", "csv", "-o", "-"]);
     assert!(rows.contains("berries_l2n3"), "{rows}");
 }
 
 #[test]
-fn a_matrix_of_a_task_file_fits_the_log_of_its_variants() {
+fn matrix_of_a_task_file_fits_the_log_of_its_variants() {
     let folder = with_berries();
     let path = folder.path();
     succeed_in(path, "curriculum bush.json#all --learn 1 --eval-episodes 1 -o s.json");

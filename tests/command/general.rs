@@ -1,4 +1,4 @@
-//! The `driftworld` command as its users meet it: output, exit codes, messages, files that are whole or absent.
+//! The `driftworld` command in general: output, exit codes, messages, files that are whole or absent.
 
 use super::terminal::{
     driftworld_in, fail, fail_in, json, json_in, output, reference, scratch, subcommands, succeed, succeed_in, text,
@@ -6,7 +6,7 @@ use super::terminal::{
 
 /// The list itself is a snapshot at two widths in `widths`.
 #[test]
-fn every_subcommand_has_a_page_of_help_with_an_example() {
+fn every_subcommand_has_a_help_page_with_an_example() {
     let names = subcommands();
     assert!(names.len() > 25, "{names:?}");
     for name in names {
@@ -17,7 +17,7 @@ fn every_subcommand_has_a_page_of_help_with_an_example() {
 }
 
 #[test]
-fn the_doctor_says_what_draws_here() {
+fn doctor_lists_the_working_renderers() {
     assert!(succeed(&["doctor"]).contains("cpu   works: processor ("));
     let report = json("doctor --json");
     assert_eq!(report["cpu"]["works"], true);
@@ -65,7 +65,7 @@ fn validate_accepts_the_examples_and_the_maps_of_the_original() {
 }
 
 #[test]
-fn a_file_that_is_no_json_has_a_verdict_in_json() {
+fn verdict_on_invalid_json_is_json() {
     let folder = scratch();
     std::fs::write(folder.path().join("world.json"), "{,}").expect("the scratch folder can be written");
     let said = output(&mut driftworld_in(folder.path(), "validate --json world.json"));
@@ -74,7 +74,7 @@ fn a_file_that_is_no_json_has_a_verdict_in_json() {
 }
 
 #[test]
-fn a_world_has_the_same_bytes_alone_again_and_in_a_stream() {
+fn world_has_the_same_bytes_alone_repeated_and_in_a_stream() {
     let sample = |more: &str| succeed(&format!("sample find_objects#red --seed 7 {more}"));
     let first = sample("--index 1234 -o -");
     assert_eq!(first, sample("--index 1234 -o -"));
@@ -86,7 +86,7 @@ fn a_world_has_the_same_bytes_alone_again_and_in_a_stream() {
 }
 
 #[test]
-fn a_folder_of_worlds_has_a_file_for_each_and_no_other() {
+fn folder_of_worlds_has_exactly_one_file_each() {
     let folder = scratch();
     succeed_in(folder.path(), "sample get_to_goal#soft --count 3 -o worlds");
     let mut names: Vec<_> = std::fs::read_dir(folder.path().join("worlds"))
@@ -114,7 +114,7 @@ fn render_draws_a_map_of_the_original() {
 }
 
 #[test]
-fn a_sheet_shows_variants_or_what_a_scenario_learns() {
+fn sheet_shows_variants_or_a_scenarios_variants() {
     let folder = scratch();
     let path = folder.path().join("sheet.svg");
     let drawn = |what: &str| {
@@ -136,7 +136,7 @@ fn a_sheet_shows_variants_or_what_a_scenario_learns() {
 }
 
 #[test]
-fn photographs_are_where_their_manifest_says() {
+fn photographs_match_their_manifest() {
     let folder = scratch();
     let world = folder.path().join("world.json");
     let text_of_world = r#"{ "image_params": { "yaw_subdivisions": 3, "vertical_subdivisions": 2 },
@@ -166,7 +166,7 @@ fn photographs_are_where_their_manifest_says() {
 }
 
 #[test]
-fn a_matrix_is_the_same_in_every_file_and_gives_the_same_order() {
+fn matrix_is_the_same_in_every_format_and_gives_the_same_order() {
     let folder = scratch();
     let at = |name: &str| folder.path().join(name);
     let ends = ["--start", "find_objects#red", "--end", "find_objects#blue"];
@@ -175,7 +175,7 @@ fn a_matrix_is_the_same_in_every_file_and_gives_the_same_order() {
         let path = at(name);
         succeed(&["order", "find_objects", "--matrix", text(&path)]);
         let again = succeed(&[&["order", "--from-matrix", text(&path)][..], &ends].concat());
-        // Where a matrix came from, nobody knows by what it was measured.
+        // The measure of a matrix from a file is unknown.
         assert_eq!(again, plain.replace(" by parameters", ""), "{name}");
     }
     let picture = at("path.png");
@@ -209,14 +209,14 @@ fn from_variants_to_scores_step_by_step() {
 }
 
 #[test]
-fn shards_put_together_are_what_one_run_gives() {
+fn shards_together_equal_a_single_run() {
     let sample = |more: &str| succeed(&format!("sample get_to_goal#soft --seed 3 --count 100 --jsonl {more}"));
     let parts = ["1/3", "2/3", "3/3"].map(|part| sample(&format!("--shard {part}")));
     assert_eq!(parts.concat(), sample(""));
 }
 
 #[test]
-fn a_drift_leads_from_one_variant_to_the_other() {
+fn drift_leads_from_one_variant_to_the_other() {
     let drift = succeed("sample find_objects#blue --drift-to red --count 11 --schedule cosine --seed 7 --jsonl");
     let worlds: Vec<&str> = drift.lines().collect();
     let alone = |variant: &str, index: &str| {
@@ -232,14 +232,14 @@ fn a_drift_leads_from_one_variant_to_the_other() {
 }
 
 #[test]
-fn a_variant_is_found_at_a_distance_and_what_is_printed_can_be_pasted() {
+fn variant_is_found_at_a_distance_and_can_be_pasted() {
     let found = json("vary find_objects#red --element R --distance 0.5 --json");
     let expected = serde_json::json!({ "extends": "red", "target_reward": 0.0 });
     assert_eq!(found["variant"]["found"], expected);
 }
 
 #[test]
-fn a_found_variant_is_appended_to_its_task() {
+fn found_variant_is_appended_to_its_task() {
     let folder = scratch();
     let path = folder.path();
     let asked = "vary find_objects#red --element O --distance 0.5 -o mine.json";
@@ -256,7 +256,7 @@ fn a_found_variant_is_appended_to_its_task() {
 }
 
 #[test]
-fn a_family_of_variants_is_named_as_one() {
+fn family_of_variants_has_one_name() {
     let order = succeed(&["order", "examples/tasks/settlement.json#looks", "--json"]);
     for member in ["looks-red-annulus0", "looks-gold-gaussian1"] {
         assert!(order.contains(member), "{order}");
@@ -269,7 +269,7 @@ fn a_family_of_variants_is_named_as_one() {
 }
 
 #[test]
-fn maps_of_the_original_go_into_worlds() {
+fn maps_of_the_original_can_be_used_in_worlds() {
     let Some(maps) = reference("l2explorer/predefined_maps.json") else {
         return;
     };
@@ -278,15 +278,15 @@ fn maps_of_the_original_go_into_worlds() {
     succeed(&["validate", text(&maps)]);
 }
 
-/// A result that was renamed over a device would take the device's place; over a link, the link's.
+/// Renaming a result over a device would replace the device; over a link, the link.
 #[cfg(unix)]
 #[test]
-fn devices_and_links_stay_what_they_are() {
+fn devices_and_links_are_kept() {
     use std::os::unix::fs::FileTypeExt;
     let sample = |to: &str| succeed(&format!("sample find_objects#red --seed 7 -o {to}"));
     let printed = sample("-");
 
-    // Under `output()` standard output is a pipe.
+    // With `output()`, standard output is a pipe.
     assert_eq!(sample("/dev/stdout"), printed);
     sample("/dev/null");
     let null = std::fs::metadata("/dev/null").expect("every unix has one");

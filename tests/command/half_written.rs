@@ -1,4 +1,4 @@
-//! What is half written when `sample` fails, is stopped or is killed does not stay. Whole files are tested in `general.rs`.
+//! If `sample` fails, is stopped or is killed, no partial output stays.
 #![cfg(unix)]
 
 use std::path::Path;
@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use super::terminal::{driftworld_in, fail_in, scratch, signals, succeed_in};
 
-/// More worlds than can be drawn before the signal comes.
+/// More worlds than can be drawn before the signal arrives.
 const MANY: [&str; 4] = ["find_objects", "--count", "100000000", "--jsonl"];
 
 fn names(folder: &Path) -> Vec<String> {
@@ -17,7 +17,7 @@ fn names(folder: &Path) -> Vec<String> {
     entries.map(|entry| name(entry).expect("it can be listed")).collect()
 }
 
-/// A `sample` that has begun to write into its folder.
+/// Starts a `sample` and waits until it writes into its folder.
 fn begun(folder: &Path) -> Child {
     let arguments = [&["sample"], &MANY[..], &["-o", "worlds.jsonl"]].concat();
     let child = driftworld_in(folder, &arguments)
@@ -44,7 +44,7 @@ fn signal(child: &Child, signal: &str) {
 }
 
 #[test]
-fn a_stopped_sample_leaves_nothing() {
+fn stopped_sample_leaves_nothing() {
     for (name, number) in signals() {
         let folder = scratch();
         let child = begun(folder.path());
@@ -61,11 +61,11 @@ fn a_stopped_sample_leaves_nothing() {
 }
 
 #[test]
-fn what_a_killed_sample_leaves_is_removed_by_the_next_but_not_while_it_is_written() {
+fn leftovers_of_a_killed_sample_are_removed_but_not_files_in_progress() {
     let folder = scratch();
     let path = folder.path();
     let mut child = begun(path);
-    // Another that writes the same file meanwhile takes nothing away.
+    // Another process writing the same file removes nothing meanwhile.
     succeed_in(path, "sample find_objects --count 3 --jsonl -o worlds.jsonl");
     assert_eq!(names(path).len(), 2, "{:?}", names(path));
     signal(&child, "-KILL");
@@ -76,7 +76,7 @@ fn what_a_killed_sample_leaves_is_removed_by_the_next_but_not_while_it_is_writte
 }
 
 #[test]
-fn a_sample_that_fails_leaves_nothing() {
+fn failed_sample_leaves_nothing() {
     let folder = scratch();
     let text = r#"{ "name": "t", "groups": [{ "name": "a", "count": { "integer_uniform": { "low": 1, "high": 60 } }, "separation": 3,
         "object": { "class": "cube" }, "placement": { "box": { "low": [0, 0], "high": [12, 12] } } }] }"#;

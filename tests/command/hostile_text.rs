@@ -1,7 +1,5 @@
-//! Documents, logs, settings and names of files that try to work the terminal: escape sequences, line ends that fake a
-//! line, text whose direction is turned. Whatever a subcommand says of them, none of it reaches the terminal as it was.
-//!
-//! Not here: which characters those are, which is `driftworld-text`'s.
+//! Documents, logs, settings and file names that try to control the terminal: escape sequences, line ends that fake a line,
+//! text with reversed direction. No subcommand prints them unescaped.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -15,24 +13,24 @@ use super::run_files::write;
 use super::terminal::{driftworld_in, output, root, scratch, subcommands, text};
 use crate::is_turn;
 
-/// What a hostile text says, without what no file name can have.
+/// A hostile text, without characters that file names cannot contain.
 const HOSTILE: &str =
     "\u{1b}]0;owned\u{7}\u{1b}[2J\u{202e}dne\u{2066}\r\nerror: FAKE\u{9b}31m\u{7f}\u{200b}\u{feff}\u{e0041}";
 
-/// With NUL, which a JSON document can hold by an escape, and a slash.
+/// With NUL, which a JSON document can contain as an escape, and a slash.
 fn hostile() -> String {
     format!("{HOSTILE}\0/=1+2")
 }
 
-/// The folder of a test, and which subcommands have been tried in it.
+/// The test's folder, with the subcommands tried so far.
 struct Stage {
     folder: tempfile::TempDir,
     tried: BTreeSet<String>,
-    /// What reached an output, and must not.
+    /// Hostile output found.
     let_through: Vec<String>,
 }
 
-/// Whether a character may not stand in what the command prints.
+/// Whether a character must not appear in the output.
 fn is_hostile(letter: char) -> bool {
     is_unprintable(letter) && letter != '\n' && letter != '\t'
 }
@@ -42,14 +40,13 @@ impl Stage {
         self.folder.path()
     }
 
-    /// Writes a document and hands back its name.
+    /// Writes a document and returns its name.
     fn document(&self, name: &str, json: &Value) -> String {
         write(&self.path().join(name), &json.to_string());
         name.to_owned()
     }
 
-    /// Runs the command. Neither of its outputs may hold what a terminal obeys or hides, nor a line that we did not
-    /// begin: what does is noted.
+    /// Runs the command. Records output with control or invisible characters, and lines that we did not start.
     #[track_caller]
     fn run(&mut self, arguments: &[&str]) -> Output {
         self.tried.insert(arguments[0].to_owned());
@@ -57,7 +54,7 @@ impl Stage {
         for bytes in [&said.stdout, &said.stderr] {
             let shown = String::from_utf8_lossy(bytes);
             let raw = shown.find(is_hostile);
-            // A line end within a cell of a table is the cell's.
+            // A line end within a table's cell belongs to the cell.
             let is_table = arguments.get(1) == Some(&"aggregate");
             let faked = !is_table && shown.lines().any(|line| line.starts_with("error: FAKE"));
             if raw.is_some() || faked || shown.contains("panicked") {
@@ -74,7 +71,7 @@ impl Stage {
         said
     }
 
-    /// The same, and it must end well.
+    /// Runs the command, which must succeed.
     #[track_caller]
     fn succeed(&mut self, arguments: &[&str]) -> String {
         let said = self.run(arguments);
@@ -83,7 +80,7 @@ impl Stage {
         String::from_utf8(said.stdout).expect("the command prints UTF-8")
     }
 
-    /// The same, and it must fail.
+    /// Runs the command, which must fail.
     #[track_caller]
     fn fail(&mut self, arguments: &[&str]) -> String {
         let said = self.run(arguments);
@@ -97,7 +94,7 @@ impl Stage {
     }
 }
 
-/// A task that is sound, and says hostile things wherever it may.
+/// A valid task with hostile text wherever possible.
 fn sound_task() -> Value {
     let word = json!({
         "role": "variant", "type": "string", "affects": ["S"], "choices": ["plain", hostile()], "default": "plain", "description": hostile()
@@ -126,7 +123,7 @@ fn scenario(task: &str, variant: &str, world: Option<&str>) -> Value {
     json!({ "name": "s", "description": hostile(), "blocks": [evaluation, learning, evaluation] })
 }
 
-/// A log that can be read, whose names and words are hostile as far as a table can hold them.
+/// A readable log whose names and texts are as hostile as a table allows.
 fn write_log(folder: &Path, column: &str, task: &str) {
     let info = json!({ "metrics_columns": [column], "log_format_version": "1.1" });
     write(&folder.join("logger_info.json"), &info.to_string());
@@ -151,7 +148,7 @@ fn write_log(folder: &Path, column: &str, task: &str) {
     }
 }
 
-/// Subcommands that say nothing of what others wrote, but for names of files and arguments.
+/// Subcommands that print only file names and arguments from others.
 const OF_ARGUMENTS: [&str; 8] = [
     "bench",
     "completions",
@@ -175,7 +172,7 @@ impl Stage {
         }
     }
 
-    /// Fails with all that came through, and where one of these subcommands was not tried.
+    /// Fails with all hostile output found, and if one of these subcommands was not tried.
     #[track_caller]
     fn close(self, commands: impl IntoIterator<Item = String>) {
         assert!(self.let_through.is_empty(), "{}", self.let_through.join("\n"));
@@ -186,19 +183,19 @@ impl Stage {
 }
 
 #[test]
-fn no_subcommand_lets_a_document_work_the_terminal() {
+fn no_subcommand_prints_hostile_documents_unescaped() {
     let mut stage = Stage::new();
     documents(&mut stage);
     worlds(&mut stage);
     lives(&mut stage);
-    // A subcommand that is added is to be tried here, too.
+    // New subcommands must be tried here, too.
     let mut commands = subcommands();
     commands.retain(|command| !OF_ARGUMENTS.contains(&command.as_str()) && !OF_LOGS.contains(&command.as_str()));
     stage.close(commands);
 }
 
 #[test]
-fn no_subcommand_lets_a_log_or_a_matrix_work_the_terminal() {
+fn no_subcommand_prints_hostile_logs_or_matrices_unescaped() {
     let mut stage = Stage::new();
     logs(&mut stage);
     matrices(&mut stage);
@@ -206,14 +203,14 @@ fn no_subcommand_lets_a_log_or_a_matrix_work_the_terminal() {
 }
 
 #[test]
-fn no_subcommand_lets_a_name_of_a_file_work_the_terminal() {
+fn no_subcommand_prints_hostile_file_names_unescaped() {
     let mut stage = Stage::new();
     names_of_files(&mut stage);
     stage.close(["demo", "schema", "run", "report"].map(str::to_owned));
 }
 
 #[test]
-fn no_subcommand_lets_an_argument_work_the_terminal() {
+fn no_subcommand_prints_hostile_arguments_unescaped() {
     let mut stage = Stage::new();
     arguments(&mut stage);
     stage.close(["bench", "doctor"].map(str::to_owned));
@@ -226,7 +223,7 @@ fn documents(stage: &mut Stage) {
     let shown = stage.succeed(&["tasks", "show", &task]);
     assert!(shown.contains("\\u{202e}dne"), "{shown}");
     stage.succeed(&["tasks", "show", &task, "--json"]);
-    // JSON means what it meant.
+    // JSON keeps its meaning.
     let world = stage.succeed(&["sample", &format!("{task}#a")]);
     let world: Value = serde_json::from_str(&world).expect("worlds are JSON");
     assert!(
@@ -432,7 +429,7 @@ fn logs(stage: &mut Stage) {
         let name = stage.document(name, &settings);
         stage.run(&["metrics", "log0", "--load-settings", &name]);
     }
-    // What a log names is in no way more trusted than what it says.
+    // Names in a log are no more trusted than its texts.
     write(
         &stage.path().join("log0/scenario_info.json"),
         &json!({ "scenario_type": hostile(), "task": hostile(), hostile(): 1 }).to_string(),
@@ -461,7 +458,7 @@ fn matrices(stage: &mut Stage) {
     stage.fail(&["order", "--from-matrix", &bad]);
 }
 
-/// Files and folders may be called anything but NUL and a slash.
+/// Names of files and folders may contain anything but NUL and a slash.
 #[cfg(unix)]
 fn names_of_files(stage: &mut Stage) {
     write_log(&stage.path().join("log1"), "reward", "a_b");
@@ -522,7 +519,7 @@ fn names_of_files(stage: &mut Stage) {
     }
 }
 
-/// What the parser of arguments has to say of them.
+/// Messages of the argument parser.
 fn arguments(stage: &mut Stage) {
     stage.fail(&[HOSTILE]);
     for arguments in [

@@ -1,6 +1,4 @@
-//! `driftworld logs` as its users meet it: what is said of broken logs, and tables that other programs read.
-//!
-//! Not here: each fault by itself, which is the business of `metrics`.
+//! `driftworld logs`: messages about broken logs, and tables for other programs.
 
 use std::fs;
 use std::path::Path;
@@ -10,7 +8,7 @@ use super::terminal::{driftworld_in, output, scratch};
 
 const HEADER: &str = "block_num\texp_num\tworker_id\tblock_type\tblock_subtype\ttask_name\ttask_params\texp_status\ttimestamp\treward\tdebug\n";
 
-/// What is printed, and what is said beside it.
+/// Standard output and standard error.
 #[track_caller]
 fn run(folder: &Path, code: i32, arguments: &str) -> (String, String) {
     let output = output(&mut driftworld_in(folder, arguments));
@@ -36,7 +34,7 @@ fn write_log(dir: &Path) {
 }
 
 #[test]
-fn a_sound_log_is_called_valid_with_what_it_holds() {
+fn valid_log_is_summarised() {
     let base = scratch();
     write_log(&base.path().join("run"));
     let (out, error) = run(base.path(), 0, "logs validate run");
@@ -46,7 +44,7 @@ fn a_sound_log_is_called_valid_with_what_it_holds() {
 }
 
 #[test]
-fn scoring_and_aggregating_refuse_and_warn_as_validating_does() {
+fn scoring_and_aggregating_agree_with_validation() {
     let base = scratch();
     let log = base.path().join("run");
     write_log(&log);
@@ -84,7 +82,7 @@ fn scoring_and_aggregating_refuse_and_warn_as_validating_does() {
 }
 
 #[test]
-fn every_problem_of_every_log_is_named_with_its_place() {
+fn every_problem_of_every_log_is_located() {
     let base = scratch();
     write_log(&base.path().join("logs/good"));
     let bad = base.path().join("logs/bad");
@@ -161,7 +159,7 @@ fn rows_are_written_as_text_under_l2loggers_columns() {
 }
 
 #[test]
-fn several_logs_make_one_table_that_names_them() {
+fn several_logs_make_one_table_with_their_names() {
     let base = scratch();
     write_log(&base.path().join("logs/one"));
     write_log(&base.path().join("logs/two"));
@@ -169,7 +167,7 @@ fn several_logs_make_one_table_that_names_them() {
     let text = fs::read_to_string(base.path().join("all.tsv")).expect("it was written");
     let first: Vec<&str> = text.lines().filter_map(|line| line.split('\t').next()).collect();
     assert_eq!(first, ["run_id", "one", "one", "two", "two"]);
-    // As `driftworld run -o` leaves them: in folders of their own, all of one name.
+    // As `driftworld run -o` leaves them: in separate folders, all with the same name.
     write_log(&base.path().join("runs/x/log"));
     write_log(&base.path().join("runs/y/log"));
     let (out, _) = run(base.path(), 0, "logs aggregate -R runs --format tsv -o -");

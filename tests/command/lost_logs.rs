@@ -1,7 +1,5 @@
-//! A log that is removed, renamed, replaced or cut while `run` writes it: the run ends with exit code 1 and says what
-//! is lost.
-//!
-//! What the writer of logs does by itself is tested in its room; runs are hit at random moments in `faults.rs`.
+//! A log that is removed, renamed, replaced or truncated while `run` writes it: the run ends with exit code 1 and reports the
+//! loss.
 #![cfg(unix)]
 
 use std::fs;
@@ -11,7 +9,7 @@ use std::process::Stdio;
 use super::run_files::{files, write};
 use super::terminal::{driftworld, scratch, succeed, text};
 
-/// Many experiences, more than are lived before a mishap.
+/// Many experiences, more than are run before the damage.
 fn scenario(folder: &Path) -> String {
     let path = folder.join("scenario.json");
     let regime = r#"{ "task": "find_objects", "variant": "red", "count": 2000, "max_steps": 100 }"#;
@@ -22,7 +20,7 @@ fn scenario(folder: &Path) -> String {
     text(&path).to_owned()
 }
 
-/// Lives until there are rows, lets something happen to the log, and returns what the run says at its end.
+/// Runs until there are rows, damages the log, and returns the run's final message.
 fn hit(jobs: &str, log: &Path, scenario: &str, mishap: impl FnOnce(&Path)) -> String {
     let arguments = [
         "run",
@@ -60,13 +58,13 @@ fn hit(jobs: &str, log: &Path, scenario: &str, mishap: impl FnOnce(&Path)) -> St
 }
 
 #[test]
-fn a_folder_that_goes_away_is_an_error_and_is_not_made_anew() {
+fn missing_folder_is_an_error_and_is_not_recreated() {
     let folder = scratch();
     let scenario = scenario(folder.path());
     for jobs in ["1", "3"] {
         let log = folder.path().join(format!("deleted-{jobs}"));
         let error = hit(jobs, &log, &scenario, |_| {
-            // What is written meanwhile may hinder it.
+            // Concurrent writes may interfere with the removal.
             while log.exists() {
                 let _ = fs::remove_dir_all(&log);
             }
@@ -92,7 +90,7 @@ fn a_folder_that_goes_away_is_an_error_and_is_not_made_anew() {
 }
 
 #[test]
-fn a_file_that_is_cut_removed_or_replaced_is_an_error() {
+fn truncated_removed_or_replaced_file_is_an_error() {
     let folder = scratch();
     let scenario = scenario(folder.path());
     for jobs in ["1", "3"] {
@@ -124,7 +122,7 @@ fn a_file_that_is_cut_removed_or_replaced_is_an_error() {
 }
 
 #[test]
-fn after_a_folder_went_away_another_run_has_it_alone() {
+fn new_run_in_a_replaced_folder_is_undisturbed() {
     let folder = scratch();
     let scenario = scenario(folder.path());
     let (log, small) = (folder.path().join("log"), folder.path().join("small.json"));
@@ -141,7 +139,7 @@ fn after_a_folder_went_away_another_run_has_it_alone() {
 }
 
 #[test]
-fn with_a_clock_that_stands_still_two_logs_are_equal_to_the_byte() {
+fn stopped_clock_makes_two_logs_equal_to_the_byte() {
     let folder = scratch();
     let scenario = scenario(folder.path()).replace("scenario.json", "small.json");
     let text_of = fs::read_to_string(folder.path().join("scenario.json")).expect("it was written");

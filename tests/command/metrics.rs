@@ -1,5 +1,4 @@
-//! `driftworld metrics`: one lifetime, many, experts that were stored, settings, two agents. The numbers themselves are tested
-//! in `metrics/tests`.
+//! `driftworld metrics`: one lifetime, many, stored experts, settings, two agents.
 
 use std::path::Path;
 
@@ -7,7 +6,7 @@ use super::terminal::{driftworld_in, fail_in, json_in, output, read, reference, 
 use driftworld::metrics::{BlockType, LogWriter, LoggerInfo, Record, ScenarioInfo, Timestamp};
 use serde_json::{Value, json};
 
-/// A lifetime of two tasks in turn, evaluated around each; `skill` is what it reaches.
+/// A lifetime of two alternating tasks, evaluated around each; `skill` is its final level.
 fn live(folder: &Path, tasks: &[&str], skill: f64) {
     let info = LoggerInfo::new(["reward"]).expect("a column");
     let mut log = LogWriter::create(folder, &info, &ScenarioInfo::default()).expect("the folder is new");
@@ -55,7 +54,7 @@ fn parsed(text: &str) -> Value {
 }
 
 #[test]
-fn the_references_example_gives_its_files() {
+fn references_example_gives_its_files() {
     let Some(dir) = reference("l2metrics") else { return };
     let folder = scratch();
     let of = |name: &str| dir.join(name).display().to_string();
@@ -101,7 +100,7 @@ fn the_references_example_gives_its_files() {
     {
         assert_eq!(&settings[name], value, "{name}");
     }
-    // The settings that were saved give the same again.
+    // The saved settings reproduce the results.
     let settings = folder
         .path()
         .join("results/multi_task_settings.json")
@@ -109,7 +108,7 @@ fn the_references_example_gives_its_files() {
         .to_string();
     let mut again = vec!["metrics", "-c", &settings, "--ste"];
     again.extend(experts.iter().map(String::as_str));
-    // Behind them are the files that were written.
+    // The list of written files follows.
     assert!(shown.starts_with(&succeed_in(folder.path(), &again)), "{shown}");
 }
 
@@ -141,7 +140,7 @@ fn experts_are_stored_replaced_and_found() {
     assert_eq!(relative(), Some(2));
     store("w", "three");
     assert_eq!(relative(), Some(1));
-    // Together they are the runs of one expert, also where they replace others.
+    // Together they are the runs of one expert, even when replacing others.
     store("w", "one two three");
     assert_eq!(relative(), Some(3));
     let error = fail_in(folder.path(), 1, "metrics life -s w --ste-data experts");
@@ -153,7 +152,7 @@ fn experts_are_stored_replaced_and_found() {
 }
 
 #[test]
-fn many_lifetimes_come_with_intervals_and_tables() {
+fn many_lifetimes_have_intervals_and_tables() {
     let folder = two_agents();
     let arguments = "metrics -R mine -O out --resamples 500";
     let shown = succeed_in(folder.path(), arguments);
@@ -171,7 +170,8 @@ fn many_lifetimes_come_with_intervals_and_tables() {
         shown,
         "the same seed, the same intervals"
     );
-    // Four whole runs have so few different draws that their percentiles hardly move with the seed; scores within tasks have more.
+    // Four whole runs have so few different resamples that their percentiles hardly depend on the seed; scores within tasks
+    // have more.
     let by_strata = |seed: u8| {
         let line = format!("metrics -R mine --resamples 500 --resampling strata --bootstrap-seed {seed}");
         succeed_in(folder.path(), &line)
@@ -201,7 +201,7 @@ fn many_lifetimes_come_with_intervals_and_tables() {
 }
 
 #[test]
-fn figures_are_drawn_beside_the_results() {
+fn figures_are_written_beside_the_results() {
     let folder = two_agents();
     succeed_in(folder.path(), "metrics mine/run0 -P -T raw lb");
     let plots = folder.path().join("results/plots");
@@ -221,7 +221,7 @@ fn figures_are_drawn_beside_the_results() {
         ["run0_learning.png", "run0_learning.svg", "run0_raw.png", "run0_raw.svg"]
     );
     assert!(read(plots.join("run0_raw.svg")).contains("find_red"));
-    // Lifetimes of one name do not take each other's place.
+    // Lifetimes with one name do not overwrite each other.
     succeed_in(folder.path(), "metrics mine/run0 theirs/run0 -P -T raw -O both");
     let both = folder.path().join("both/plots");
     assert!(both.join("mine_run0_raw.png").is_file() && both.join("theirs_run0_raw.png").is_file());
@@ -270,7 +270,7 @@ fn two_agents_are_compared() {
 }
 
 #[test]
-fn agents_of_unlike_levels_are_compared_on_one_scale() {
+fn agents_of_different_levels_are_compared_on_one_scale() {
     let folder = scratch();
     for k in 0..3_u8 {
         live(
@@ -315,7 +315,7 @@ fn agents_of_unlike_levels_are_compared_on_one_scale() {
 }
 
 #[test]
-fn lifetimes_of_one_name_are_told_apart() {
+fn lifetimes_with_one_name_are_distinguished() {
     let folder = scratch();
     for seed in ["a", "b"] {
         live(&folder.path().join(seed).join("log"), &TASKS, 1.0);
@@ -327,7 +327,7 @@ fn lifetimes_of_one_name_are_told_apart() {
 }
 
 #[test]
-fn what_is_left_aside_is_told() {
+fn ignored_input_is_reported() {
     let folder = scratch();
     live(&folder.path().join("life"), &TASKS, 1.0);
     live(&folder.path().join("expert"), &["find_green"], 1.0);
@@ -349,7 +349,7 @@ fn what_is_left_aside_is_told() {
 }
 
 #[test]
-fn strict_definitions_and_noise_reach_the_result() {
+fn strict_definitions_and_noise_affect_the_result() {
     let folder = scratch();
     live(&folder.path().join("life"), &TASKS, 5.0);
     let scored = |more: &str| json_in(folder.path(), &format!("metrics life --json {more}"));
@@ -371,7 +371,7 @@ fn strict_definitions_and_noise_reach_the_result() {
 }
 
 #[test]
-fn every_log_that_cannot_be_scored_is_told() {
+fn every_unscorable_log_is_reported() {
     let folder = two_agents();
     for run in ["mine/run1", "mine/run3"] {
         std::fs::remove_file(folder.path().join(run).join("logger_info.json")).expect("it is there");
@@ -407,7 +407,7 @@ fn experts_of_variants_serve_a_task_without_a_variant() {
 }
 
 #[test]
-fn what_was_logged_comes_first_and_negative_transfer_is_told() {
+fn logged_values_come_first_and_negative_transfer_is_noted() {
     let folder = scratch();
     live(&folder.path().join("life"), &TASKS, -5.0);
     let shown = succeed_in(folder.path(), "metrics life -t both -n none");

@@ -13,7 +13,7 @@ fn design(more: &str) -> String {
 }
 
 #[test]
-fn a_mixture_of_two_tasks_is_designed_run_and_logged() {
+fn mixture_of_two_tasks_is_designed_run_and_logged() {
     let folder = scratch();
     let refused = fail(1, &design(""));
     assert!(refused.contains("expected two variants of one task"), "{refused}");

@@ -1,4 +1,4 @@
-//! The `driftworld` command as its users meet it, a file per subcommand. What the libraries under it do is tested in their rooms.
+//! The `driftworld` command, one file per subcommand.
 
 #[cfg(feature = "gltf")]
 mod assets;

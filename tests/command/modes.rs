@@ -1,4 +1,4 @@
-//! Who may read what commands write: whoever the umask lets, and of a file that was there before, those who could.
+//! Permissions of written files: new ones follow the umask, overwritten ones keep their mode.
 #![cfg(unix)]
 
 use std::fs;
@@ -9,7 +9,7 @@ use std::process::Command;
 use super::terminal::{output, scratch, text};
 use crate::tier::quick_or_full;
 
-/// Every command that writes, one after the other: some read what others wrote. All of it goes below the folder `out`.
+/// Every command that writes, one after the other: some read what earlier ones wrote. All output is below the folder `out`.
 const COMMANDS: [&str; 21] = [
     "demo --output out/demo",
     "sample find_objects#red -o out/world.json",
@@ -34,7 +34,7 @@ const COMMANDS: [&str; 21] = [
     "console out/world.json --script screen.txt",
 ];
 
-/// Commands that may fail here: their input is not always there.
+/// Commands that may fail here, because their input does not always exist.
 fn may_fail(command: &str) -> bool {
     ["console", "transfer-report"]
         .iter()
@@ -58,7 +58,7 @@ fn mode(path: &Path) -> u32 {
     fs::metadata(path).expect("it is there").permissions().mode() & 0o777
 }
 
-/// Runs a command under an umask in a folder.
+/// Runs a command with an umask in a folder.
 fn under(umask: &str, folder: &Path, command: &str) {
     let mut shell = Command::new("sh");
     let script = format!("umask {umask}; exec \"$0\" {command}");
@@ -78,24 +78,24 @@ fn prepare(folder: &Path) {
     fs::write(folder.join("expert.json"), expert).expect("the folder is ours");
 }
 
-/// Runs all of them; the modes of what they wrote.
+/// Runs all of them; returns the modes of the written files.
 fn write_all(umask: &str, folder: &Path) {
     for command in COMMANDS {
         if command.contains("out/expert ") {
             under("022", folder, "run expert.json --agent random -o out/expert --resume");
         }
         if command.starts_with("demo") || command.starts_with("run") || command.starts_with("curriculum") {
-            // Logs are never written over.
+            // Logs are never overwritten.
             let _ = fs::remove_dir_all(folder.join("out/log"));
         }
         under(umask, folder, command);
     }
-    // Written under another umask, to see that copies of it do not keep its modes.
+    // Written with another umask, to check that copies do not keep its modes.
     let _ = fs::remove_dir_all(folder.join("out/expert"));
 }
 
 #[test]
-fn new_files_are_as_the_umask_has_them_and_a_file_that_is_written_over_keeps_its_mode() {
+fn new_files_follow_the_umask_and_overwritten_ones_keep_their_mode() {
     let umasks = [("077", 0o600, 0o700), ("022", 0o644, 0o755)];
     for (umask, files, folders) in umasks.into_iter().take(quick_or_full(1, 2)) {
         let folder = scratch();
@@ -120,11 +120,11 @@ fn new_files_are_as_the_umask_has_them_and_a_file_that_is_written_over_keeps_its
     }
 }
 
-/// Writes all of it once more, under other modes than the umask has.
+/// Overwrites everything, with other modes than the umask's.
 fn write_over(folder: &Path, found: &[PathBuf]) {
     let is_kept = |path: &&PathBuf| {
         let inside = text(path.strip_prefix(folder).expect("it lies there")).to_owned();
-        // Logs and stored experts are never written over.
+        // Logs and stored experts are never overwritten.
         let never = ["out/log/", "out/experts/", "out/demo/log/", "out/demo/beside/"];
         path.is_file() && !never.iter().any(|begin| inside.starts_with(begin))
     };

@@ -1,4 +1,4 @@
-//! `driftworld metrics` beside the null: what tasks reached, null bands, and where "good" is said. The numbers are `metrics`'.
+//! `driftworld metrics` with null bands: results of tasks, null bands, and when a metric is called "good".
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ pub(crate) fn parsed(text: &str) -> Value {
     serde_json::from_str(text).expect("JSON")
 }
 
-/// Writes a log: a row for each block, type, task, number of the world and reward.
+/// Writes a log: a row for each block, type, task, world index and reward.
 pub(crate) fn write(folder: &Path, rows: &[(u64, BlockType, &str, u32, f64)]) {
     let info = LoggerInfo::new(["reward", "world_index"]).expect("two columns");
     let mut log = LogWriter::create(folder, &info, &ScenarioInfo::default()).expect("the folder is new");
@@ -42,7 +42,7 @@ fn live(folder: &Path, reward: impl Fn(u64, &str) -> f64) {
 }
 
 #[test]
-fn good_is_said_outside_the_null_band_only() {
+fn good_appears_only_outside_the_null_band() {
     let folder = scratch();
     live(&folder.path().join("still"), |_, _| 0.0);
     live(&folder.path().join("learns"), |block, _| 20.0 * block as f64);
@@ -62,7 +62,7 @@ fn good_is_said_outside_the_null_band_only() {
         .find(|line| line.starts_with("forward_transfer_contrast"));
     assert!(line.is_some_and(|line| line.contains("  helps")), "{learns}");
     let place = |words: &str| learns.find(words).unwrap_or_else(|| panic!("no {words} in {learns}"));
-    // What was reached stands first; contrasts, which nobody asked for, before ratios.
+    // Results of tasks come first; contrasts, although not requested, before ratios.
     assert!(place("last evaluation") < place("mean reward"), "{learns}");
     assert!(
         place("forward_transfer_contrast") < place("forward_transfer_ratio"),
@@ -74,14 +74,14 @@ fn good_is_said_outside_the_null_band_only() {
     );
 
     let json = parsed(&succeed_in(folder.path(), &["metrics", "learns", "--json"]));
-    // Eight worlds cannot show maintenance, but that learning one task helps the other.
+    // Eight worlds cannot show maintenance, but do show that learning one task helps the other.
     let band = &json["null"]["forward_transfer_contrast"];
     assert!(band["high"].as_f64() < band["value"].as_f64(), "{json}");
     assert!(
         band["p"].as_f64().expect("a number") < 0.01 && band["exchanged"] == "worlds",
         "{json}"
     );
-    // The files are l2metrics'.
+    // The files are in l2metrics' format.
     succeed_in(folder.path(), &["metrics", "learns", "-O", "results"]);
     let file = std::fs::read_to_string(folder.path().join("results/learns_metrics.json")).expect("a file");
     for ours in ["readings", "null", "contrasts", "reached", "forward_transfer_contrast"] {
@@ -90,7 +90,7 @@ fn good_is_said_outside_the_null_band_only() {
 }
 
 #[test]
-fn a_task_that_was_never_learned_is_called_so() {
+fn task_that_was_never_learned_is_marked() {
     let folder = scratch();
     live(&folder.path().join("life"), |block, task| {
         if task == "find_red" && block > 0 { 60.0 } else { -3.0 }

@@ -1,4 +1,4 @@
-//! Scenario files of L2Explorer: lived as they stand, and converted to ours.
+//! Scenario files of L2Explorer: run unchanged, and converted to our format.
 
 use std::fs;
 use std::path::Path;
@@ -7,7 +7,7 @@ use super::run_files::{files, num_rows, write};
 use super::terminal::{driftworld, fail, output, reference, scratch, succeed, text};
 
 #[test]
-fn the_originals_scenario_is_lived_as_it_stands() {
+fn original_scenario_runs_unchanged() {
     let Some(original) = reference("l2explorer/scenario_findobjects.json") else {
         return;
     };
@@ -15,7 +15,7 @@ fn the_originals_scenario_is_lived_as_it_stands() {
         return;
     };
     let folder = scratch();
-    // As in the original: the maps lie above the scenario.
+    // As in the original: the maps are above the scenario.
     let scenario = folder.path().join("scenarios/scenario_findobjects.json");
     let copy = |from: &Path, to: &Path| write(to, &fs::read_to_string(from).expect("the reference can be read"));
     copy(&original, &scenario);
@@ -44,7 +44,7 @@ fn the_originals_scenario_is_lived_as_it_stands() {
     let metrics = succeed(&["metrics", text(&log), "--json"]);
     assert!(metrics.contains("task1_mapfindobjects0"), "{metrics}");
 
-    // As it stands beside us: one map lies beside the scenario, the other is nowhere.
+    // As in our checkout: one map is beside the scenario, the other is missing.
     let error = fail(
         1,
         &format!(
@@ -81,7 +81,7 @@ fn the_originals_scenario_is_lived_as_it_stands() {
 }
 
 #[test]
-fn the_originals_scenario_goes_to_ours() {
+fn original_scenario_is_converted() {
     let Some(original) = reference("l2explorer/scenario_findobjects.json") else {
         return;
     };

@@ -1,5 +1,4 @@
-//! Every command that takes a document says of one of another kind what it is, what was wanted, and what to do. What documents are is
-//! seen in `src/contents.rs`.
+//! Every command that takes a document reports one of another kind: what it is, what was expected, and what to do.
 
 use std::fs;
 use std::path::Path;
@@ -7,7 +6,7 @@ use std::path::Path;
 use super::terminal::{driftworld_in, fail_in, output, root, scratch, succeed_in};
 use crate::is_turn;
 
-/// Each kind: a file or folder of it in the scratch folder, and what messages call it.
+/// Each kind: an example in the scratch folder, and its name in messages.
 const KINDS: [(&str, &str); 7] = [
     ("task.json", "a task spec"),
     ("world.json", "a world"),
@@ -18,7 +17,7 @@ const KINDS: [(&str, &str); 7] = [
     ("log", "a log"),
 ];
 
-/// Each command with `DOC` in place of the document, and the kinds that it takes.
+/// Each command with `DOC` in place of the document, and the kinds that it accepts.
 const COMMANDS: [(&str, &[&str]); 27] = [
     ("run DOC -o new", &["scenario.json"]),
     ("render DOC", &["task.json", "world.json"]),
@@ -52,7 +51,7 @@ const COMMANDS: [(&str, &[&str]); 27] = [
     ("transfer-report log --distances DOC", &["matrix.json"]),
 ];
 
-/// A folder with something of every kind, each made by the command that makes such.
+/// A folder with an example of every kind, each made by the appropriate command.
 fn everything() -> tempfile::TempDir {
     let folder = scratch();
     let path = folder.path();
@@ -74,7 +73,7 @@ fn arguments(command: &str, document: &str) -> Vec<String> {
 }
 
 #[test]
-fn a_document_of_another_kind_is_called_what_it_is() {
+fn document_of_another_kind_is_named() {
     let folder = everything();
     for (number, (command, taken)) in COMMANDS.into_iter().enumerate() {
         for (kind, (document, name)) in KINDS.into_iter().enumerate() {
@@ -92,7 +91,7 @@ fn a_document_of_another_kind_is_called_what_it_is() {
                 "{arguments:?}: {error}"
             );
             assert!(line.contains("`driftworld "), "{arguments:?} says what to do: {error}");
-            // `validate` counts, in a line of its own.
+            // `validate` prints counts on a separate line.
             assert!(error.lines().count() <= 2, "{arguments:?}: {error}");
         }
     }
@@ -100,7 +99,7 @@ fn a_document_of_another_kind_is_called_what_it_is() {
 }
 
 #[test]
-fn what_messages_advise_works() {
+fn advice_in_messages_works() {
     let folder = everything();
     let path = folder.path();
     let error = fail_in(path, 1, &["run", "task.json"]);
@@ -110,7 +109,7 @@ fn what_messages_advise_works() {
     assert!(fs::read_to_string(path.join("scenario.json")).is_ok_and(|text| text.contains("\"blocks\"")));
 }
 
-/// Copies of the documents with the byte order mark that some editors put in front.
+/// Copies of the documents with the byte order mark that some editors add.
 fn marked(folder: &Path) {
     for (document, _) in KINDS.into_iter().filter(|(document, _)| *document != "log") {
         let path = folder.join(document);
@@ -120,7 +119,7 @@ fn marked(folder: &Path) {
 }
 
 #[test]
-fn a_byte_order_mark_is_no_part_of_a_document() {
+fn byte_order_mark_is_ignored() {
     let folder = everything();
     let path = folder.path();
     marked(path);
@@ -147,14 +146,14 @@ fn a_byte_order_mark_is_no_part_of_a_document() {
             &arguments(command, "").iter().map(String::as_str).collect::<Vec<_>>(),
         );
     }
-    // Lines and columns are those that an editor shows.
+    // Lines and columns match those in an editor.
     fs::write(path.join("broken.json"), "\u{feff}{ \"name\": \"t\", \"grups\": [] }").expect("the folder is ours");
     let error = fail_in(path, 1, &["validate", "broken.json"]);
     assert!(error.starts_with("broken.json:1:16 (/grups)"), "{error}");
 }
 
 #[test]
-fn every_file_is_judged_whatever_the_others_are() {
+fn every_file_is_judged_independently() {
     let folder = everything();
     let path = folder.path();
     fs::write(path.join("latin.json"), b"{ \"name\": \"caf\xe9\" }").expect("the folder is ours");
@@ -186,7 +185,7 @@ fn every_file_is_judged_whatever_the_others_are() {
         .map(|verdict| verdict["valid"] == true)
         .collect();
     assert_eq!(valid, [true, false, false, false, true]);
-    // One bad file in a folder leaves the others their verdicts.
+    // One bad file in a folder does not suppress the other verdicts.
     let judged = output(&mut driftworld_in(path, &["validate", "."]));
     assert!(String::from_utf8_lossy(&judged.stdout).contains("scenario.json: a valid scenario"));
 }

@@ -1,5 +1,4 @@
-//! Devices and pipes in place of a file: they are written straight and as the work goes on, and no folder for temporary
-//! files is needed.
+//! Devices and pipes as output: they are written directly and continuously, without a folder for temporary files.
 #![cfg(unix)]
 
 use std::fs;
@@ -14,11 +13,11 @@ fn make_pipe(folder: &Path, name: &str) {
     assert!(made.is_ok_and(|made| made.success()));
 }
 
-/// More worlds than can be drawn while this test goes on.
+/// More worlds than can be drawn during this test.
 const MANY: &str = "100000000";
 
 #[test]
-fn who_reads_a_pipe_sees_the_first_world_before_the_last_is_drawn() {
+fn pipe_reader_gets_the_first_world_before_the_last_is_drawn() {
     let folder = scratch();
     make_pipe(folder.path(), "pipe");
     let first = succeed_in(folder.path(), &["sample", "find_objects", "-o", "-"]);
@@ -32,7 +31,7 @@ fn who_reads_a_pipe_sees_the_first_world_before_the_last_is_drawn() {
     reader.read_line(&mut line).expect("a world comes");
     assert_eq!(line, first);
     assert!(child.try_wait().expect("it can be asked").is_none(), "it draws on");
-    // Nobody reads any more: that is said.
+    // The reader is gone: that is reported.
     drop(reader);
     let ended = child.wait_with_output().expect("it ends");
     let error = String::from_utf8_lossy(&ended.stderr).into_owned();
@@ -42,7 +41,7 @@ fn who_reads_a_pipe_sees_the_first_world_before_the_last_is_drawn() {
 }
 
 #[test]
-fn every_format_goes_into_a_pipe_as_into_a_file() {
+fn every_format_works_in_a_pipe() {
     let folder = scratch();
     let path = folder.path();
     let cases = [
@@ -94,7 +93,7 @@ fn no_folder_for_temporary_files_is_needed() {
     assert_eq!(through("/dev/fd/1", ""), expected);
     assert_eq!(through("/dev/fd/3", "3>&1"), expected);
     assert_eq!(through("/dev/stdout", "| cat"), expected);
-    // A file that somebody has open is gone on with at its end, and stays the file that it is.
+    // A file opened by another process is appended to, and stays the same file.
     fs::write(path.join("open"), "before\n").expect("the folder is ours");
     for redirected in [
         "/dev/stdout >>open",

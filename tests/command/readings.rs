@@ -1,5 +1,5 @@
-//! One log has one reading: what the table of `driftworld metrics` says of a metric is what its JSON, the page of
-//! `driftworld report`, and so Python (which reads the JSON) say. Which word it is, is `metrics`'s.
+//! One log has one reading: the table of `driftworld metrics`, its JSON, the page of `driftworld report`, and so Python (which
+//! reads the JSON) agree on each metric.
 
 use std::path::Path;
 
@@ -12,7 +12,7 @@ use super::terminal::{driftworld_in, output, scratch, succeed_in};
 
 const TASKS: [&str; 3] = ["find_red", "find_blue", "find_green"];
 
-/// A lifetime: of each task what it earns after so many tasks were learned; how much worlds differ; how many there are.
+/// A lifetime: the reward of each task after each number of learned tasks; the variation between worlds; the number of worlds.
 #[derive(Clone, Debug)]
 struct Drawn {
     levels: Vec<f64>,
@@ -58,7 +58,7 @@ fn live(folder: &Path, drawn: &Drawn, luck: u32) {
     write(folder, &rows);
 }
 
-/// What a command prints on lines of any length.
+/// The output of a command with unlimited line length.
 fn wide(folder: &Path, arguments: &[&str]) -> String {
     let mut command = driftworld_in(folder, arguments);
     let done = output(command.env("COLUMNS", "1000"));
@@ -66,7 +66,7 @@ fn wide(folder: &Path, arguments: &[&str]) -> String {
     String::from_utf8(done.stdout).expect("the command prints UTF-8")
 }
 
-/// The words under `reading` of the table of metrics, with the metric.
+/// The words under `reading` in the table of metrics, with the metric.
 fn of_table(text: &str) -> Vec<(String, String)> {
     let mut lines = text.lines().skip_while(|line| !line.starts_with("metric "));
     let head = lines.next().expect("a table of metrics");
@@ -86,7 +86,7 @@ fn word(row: &Value) -> String {
     row["word"].as_str().unwrap_or_default().to_owned()
 }
 
-/// The words of the pills in a part of a page, in order.
+/// The words in the pills of a part of a page, in order.
 fn pills(part: &str) -> Vec<String> {
     let pills = part.split("class=\"verdict ").skip(1);
     pills
@@ -98,7 +98,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: crate::tier::quick_or_full(5, 16), ..ProptestConfig::default() })]
 
     #[test]
-    fn table_json_and_page_say_the_same_of_a_lifetime(drawn in drawn(), luck in 0..1000_u32) {
+    fn table_json_and_page_agree_for_a_lifetime(drawn in drawn(), luck in 0..1000_u32) {
         let folder = scratch();
         live(&folder.path().join("life"), &drawn, luck);
         let arguments = [&["metrics", "life"][..], &drawn.options].concat();
@@ -112,7 +112,7 @@ proptest! {
             let place = page.find(&format!("<code>{name}</code>")).expect("each metric is on the page");
             let cells = page[place..].split("</tr>").next().unwrap_or_default();
             prop_assert_eq!(pills(cells).first().cloned().unwrap_or_default(), word(row), "{}", name);
-            // Where a contrast is shown, so are its pairs.
+            // If a contrast is shown, so are its pairs.
             let is_alone = cells.contains("td class=\"marks\"></td>") && name.contains("transfer");
             prop_assert!(!is_alone, "{name}: {cells}");
             let null = &row["null_band"];
@@ -123,7 +123,7 @@ proptest! {
     }
 
     #[test]
-    fn table_json_and_page_say_the_same_of_several_lifetimes(drawn in drawn(), luck in 0..1000_u32, num in 2..4_u32) {
+    fn table_json_and_page_agree_for_several_lifetimes(drawn in drawn(), luck in 0..1000_u32, num in 2..4_u32) {
         let folder = scratch();
         for number in 0..num {
             live(&folder.path().join(format!("runs/{number}")), &drawn, luck + 7919 * number);

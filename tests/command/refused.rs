@@ -1,12 +1,11 @@
-//! What the command says of arguments that it refuses, as one snapshot. Refusals that need a setting of their own are
-//! tested beside what they protect.
+//! Messages about refused arguments, as one snapshot.
 
 use std::fmt::Write;
 
 use super::run_files::{bytes_below, write};
 use super::terminal::{driftworld_in, output, scratch, succeed_in, text};
 
-/// A task that stays as it is when the built-in ones grow.
+/// A task that does not change when the built-in ones do.
 pub(super) const PARK: &str = r#"{ "version": 2, "name": "park", "parameters": {
     "color": { "role": "variant", "type": "color", "affects": ["O"], "choices": ["blue", "red", "green"], "default": "blue" },
     "reward": { "role": "variant", "type": "number", "affects": ["R"], "range": [-100, 100], "default": 100 },

@@ -1,11 +1,11 @@
-//! Words that earlier releases took are refused with what to use instead.
+//! Words that earlier releases accepted are refused with a replacement.
 
 use driftworld_text::{WordKind, removed_words};
 
 use super::terminal::{fail, scratch, text};
 
 #[test]
-fn every_removed_word_names_what_to_use_instead() {
+fn every_removed_word_has_a_replacement() {
     let folder = scratch();
     let refused = |arguments: &str| fail(2, &arguments.split(' ').collect::<Vec<_>>());
     let invalid = |task: &str| {

@@ -1,5 +1,4 @@
-//! `driftworld report`: the page and its figures as files, and where the distances on the timeline come from. What is on a page is
-//! tested in `report/tests`.
+//! `driftworld report`: the page and its figures as files, and the source of the distances on the timeline.
 
 use std::fs;
 use std::path::Path;
@@ -7,7 +6,7 @@ use std::path::Path;
 use super::run_files::write;
 use super::terminal::{driftworld_in, fail_in, json_in, output, read, root, scratch, succeed_in};
 
-/// A lifetime of ours in `log`: three learning blocks of two variants with an evaluation before each.
+/// One of our lifetimes in `log`: three learning blocks of two variants with an evaluation before each.
 fn live(folder: &Path) {
     let regime = |variant: &str, count: u32| {
         format!(r#"{{ "task": "find_objects", "variant": "{variant}", "count": {count}, "max_steps": 20 }}"#)
@@ -24,7 +23,7 @@ fn live(folder: &Path) {
 }
 
 #[test]
-fn a_lifetime_becomes_a_page_and_figures_with_the_distances_of_its_scenario() {
+fn lifetime_becomes_a_page_and_figures_with_its_scenarios_distances() {
     let folder = scratch();
     live(folder.path());
     let said = succeed_in(folder.path(), "report log -o out/page.html --plots figures");
@@ -61,7 +60,7 @@ fn a_lifetime_becomes_a_page_and_figures_with_the_distances_of_its_scenario() {
 }
 
 #[test]
-fn distances_of_a_matrix_win_and_those_of_other_variants_are_said_to_be() {
+fn matrix_distances_take_precedence_and_a_mismatch_is_reported() {
     let folder = scratch();
     live(folder.path());
     write(
@@ -88,7 +87,7 @@ fn tasks_without_their_variants_have_no_distances() {
 }
 
 #[test]
-fn a_drift_is_measured_where_it_begins_and_where_it_ends() {
+fn drift_is_measured_at_both_ends() {
     let folder = scratch();
     let regime = |keys: &str| {
         let keys = format!(r#"{{ "task": "find_objects", "count": 6, "max_steps": 20, {keys} }}"#);
@@ -120,7 +119,7 @@ fn a_drift_is_measured_where_it_begins_and_where_it_ends() {
 }
 
 #[test]
-fn several_lifetimes_have_intervals_and_steps_are_counted_where_asked_for() {
+fn several_lifetimes_have_intervals_and_steps_on_request() {
     let folder = scratch();
     live(folder.path());
     succeed_in(folder.path(), "run scenario.json --agent random --output more/second");
@@ -143,7 +142,7 @@ fn several_lifetimes_have_intervals_and_steps_are_counted_where_asked_for() {
 }
 
 #[test]
-fn warnings_of_the_log_are_told_and_stand_on_the_page() {
+fn log_warnings_are_printed_and_on_the_page() {
     let folder = scratch();
     live(folder.path());
     fs::remove_file(folder.path().join("log/scenario_info.json")).expect("it is there");
@@ -154,7 +153,7 @@ fn warnings_of_the_log_are_told_and_stand_on_the_page() {
 }
 
 #[test]
-fn every_log_that_cannot_be_shown_is_named_and_the_page_may_go_to_standard_output() {
+fn unreadable_logs_are_named_and_the_page_can_go_to_standard_output() {
     let folder = scratch();
     live(folder.path());
     for name in ["bad", "worse"] {
@@ -171,10 +170,10 @@ fn every_log_that_cannot_be_shown_is_named_and_the_page_may_go_to_standard_outpu
     assert!(page.contains("<h1>log</h1>"), "an empty title is none");
 }
 
-/// A log may name any file: none is opened but what the command line names.
+/// A log may name any file: only those on the command line are opened.
 #[cfg(unix)]
 #[test]
-fn files_that_a_log_names_are_not_opened() {
+fn files_named_in_a_log_are_not_opened() {
     let folder = scratch();
     let path = folder.path();
     let regime = |variant: &str| {
@@ -186,7 +185,7 @@ fn files_that_a_log_names_are_not_opened() {
     write(&path.join("scenario.json"), &scenario);
     std::fs::copy(root().join("examples/tasks/find_objects.json"), path.join("mine.json")).expect("the folder is ours");
     succeed_in(path, "run scenario.json --agent random --output log");
-    // Not even one that would be the right one.
+    // Not even the right one.
     succeed_in(path, "report log");
     let page = read(path.join("report.html"));
     assert!(
@@ -196,7 +195,7 @@ fn files_that_a_log_names_are_not_opened() {
     );
     succeed_in(path, "report log --task mine.json");
     assert!(read(path.join("report.html")).contains("as measured by parameters from the scenario in the log"));
-    // From another folder the file's name says which is meant.
+    // From another folder, the file's name identifies the task.
     std::fs::create_dir(path.join("tasks")).expect("the folder is ours");
     std::fs::rename(path.join("mine.json"), path.join("tasks/mine.json")).expect("the folder is ours");
     succeed_in(path, "report log --task tasks/mine.json");

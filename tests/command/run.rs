@@ -1,4 +1,4 @@
-//! `driftworld run` as it is interrupted: killed at any moment, told to stop, out of room.
+//! `driftworld run` when interrupted: killed at any moment, told to stop, out of disk space.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -12,7 +12,7 @@ fn scenario(folder: &Path) -> PathBuf {
     longer_scenario(folder, 80)
 }
 
-/// The same with so many steps at most in each experience.
+/// The same with at most this number of steps per experience.
 fn longer_scenario(folder: &Path, max_steps: u32) -> PathBuf {
     let path = folder.join("scenario.json");
     let regime = |variant: &str, count: u32| {
@@ -38,7 +38,7 @@ fn start(arguments: &[&str]) -> Child {
     command.spawn().expect("the command was built by cargo and starts")
 }
 
-/// Rows of a log that is being written, or is not there yet.
+/// Rows of a log that is being written, or does not exist yet.
 #[cfg(unix)]
 fn num_whole_rows(log: &Path) -> usize {
     let table = log.join("worker-default/0-test/data-log.tsv");
@@ -46,11 +46,11 @@ fn num_whole_rows(log: &Path) -> usize {
     text.matches('\n').count().saturating_sub(1)
 }
 
-/// Sends a signal to a run as soon as there is a row; what it says when it stops. `None` if it was done before.
+/// Sends a signal to a run as soon as there is a row; returns its final message. `None` if it finished before.
 #[cfg(unix)]
 fn told_to_stop(arguments: &[&str], log: &Path, signal: &str) -> Option<String> {
     let mut child = start(arguments);
-    // Experiences that are cut off leave no row: wait for one that is whole.
+    // Interrupted experiences leave no row: waits for a whole one.
     while num_whole_rows(log) == 0 && child.try_wait().expect("the child can be asked").is_none() {
         std::thread::yield_now();
     }
@@ -69,7 +69,7 @@ fn told_to_stop(arguments: &[&str], log: &Path, signal: &str) -> Option<String> 
 
 #[cfg(unix)]
 #[test]
-fn a_run_told_to_stop_finishes_its_row_and_says_how_to_go_on() {
+fn stopped_run_finishes_its_row_and_says_how_to_continue() {
     let folder = scratch();
     let scenario = longer_scenario(folder.path(), 1000);
     let whole = folder.path().join("whole");
@@ -78,7 +78,7 @@ fn a_run_told_to_stop_finishes_its_row_and_says_how_to_go_on() {
     for signal in ["-INT", "-TERM"] {
         let log = folder.path().join(signal);
         let arguments = [&all[..], &["--output", text(&log)]].concat();
-        // The run may be over before the signal reaches it: then it is run again.
+        // The run may finish before the signal arrives: then it is repeated.
         let error = (0..10).find_map(|_| told_to_stop(&arguments, &log, signal));
         let error = error.expect("a signal reaches a run under way");
         assert!(error.contains("interrupted") && error.contains("--resume"), "{error}");
@@ -87,7 +87,7 @@ fn a_run_told_to_stop_finishes_its_row_and_says_how_to_go_on() {
             rows > 0 && error.contains(&format!("holds {rows} of 36 experiences, all complete")),
             "{error}"
         );
-        // Also where nothing is left to go on with.
+        // Also if nothing is left to do.
         for _ in 0..2 {
             assert_eq!(succeed(&[&arguments[..], &["--resume"]].concat()), said, "{signal}");
             assert_eq!(files(&log), files(&whole), "{signal}");
@@ -96,7 +96,7 @@ fn a_run_told_to_stop_finishes_its_row_and_says_how_to_go_on() {
 }
 
 #[test]
-fn a_log_of_another_run_is_refused_and_stays_as_it_is() {
+fn log_of_another_run_is_refused_and_unchanged() {
     let folder = scratch();
     let scenario = scenario(folder.path());
     let log = folder.path().join("log");
@@ -132,7 +132,7 @@ fn a_log_of_another_run_is_refused_and_stays_as_it_is() {
 }
 
 #[test]
-fn a_task_that_was_changed_between_is_noticed() {
+fn task_changed_between_runs_is_detected() {
     let folder = scratch();
     let task = folder.path().join("lamps.json");
     let spec = r#"{ "name": "lamps", "variants": { "dim": {} }, "world": { "max_steps": 5,
@@ -152,7 +152,7 @@ fn a_task_that_was_changed_between_is_noticed() {
 }
 
 #[test]
-fn a_task_whose_first_world_stays_the_same_is_noticed_too() {
+fn task_with_the_same_first_world_is_detected_too() {
     let folder = scratch();
     let task = folder.path().join("lamps.json");
     let spec = r#"{ "name": "lamps", "world": { "max_steps": 5 }, "parameters": {
@@ -181,7 +181,7 @@ fn a_task_whose_first_world_stays_the_same_is_noticed_too() {
 }
 
 #[test]
-fn a_script_that_was_edited_between_is_noticed() {
+fn script_edited_between_runs_is_detected() {
     let folder = scratch();
     let (scenario, log) = (scenario(folder.path()), folder.path().join("log"));
     let script = folder.path().join("way.txt");
@@ -202,7 +202,7 @@ fn a_script_that_was_edited_between_is_noticed() {
 }
 
 #[test]
-fn a_task_beside_the_scenario_is_found_from_any_folder() {
+fn task_beside_the_scenario_is_found_from_any_folder() {
     let folder = scratch();
     let task = r#"{ "name": "lamps", "world": { "max_steps": 5 } }"#;
     write(&folder.path().join("own/tasks/lamps.json"), task);
@@ -217,7 +217,7 @@ fn a_task_beside_the_scenario_is_found_from_any_folder() {
 }
 
 #[test]
-fn a_scenario_converted_away_from_its_worlds_is_warned_about() {
+fn converting_a_scenario_away_from_its_worlds_causes_a_warning() {
     let folder = scratch();
     let scenario = folder.path().join("scenario.json");
     let regime = r#"{ "task": "a", "variant": "v", "world": "yard.json", "count": 1 }"#;
@@ -236,7 +236,7 @@ fn a_scenario_converted_away_from_its_worlds_is_warned_about() {
 }
 
 #[test]
-fn every_variant_that_is_not_there_is_named() {
+fn every_missing_variant_is_named() {
     let folder = scratch();
     let scenario = folder.path().join("scenario.json");
     let regime = |variant: &str| format!(r#"{{ "task": "find_objects", "variant": "{variant}", "count": 1 }}"#);

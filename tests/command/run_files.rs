@@ -1,10 +1,10 @@
-//! What a run left: the files of its log, and what of them is the same when it is run again. How it is run is in `terminal.rs`.
+//! The files that a run leaves, and the parts that repeat when it is run again.
 
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-/// Whether a file's name is that of a table of a log.
+/// Whether this is the name of a log's table.
 pub(crate) fn is_table(name: &str) -> bool {
     Path::new(name).extension().is_some_and(|ending| ending == "tsv")
 }
@@ -14,7 +14,7 @@ pub(crate) fn write(path: &Path, text: &str) {
     fs::write(path, text).expect("the scratch folder can be written");
 }
 
-/// All files of a log by their paths, without the times at which rows were written.
+/// All files of a log by path, without the time stamps of rows.
 pub(crate) fn files(log: &Path) -> BTreeMap<String, String> {
     let mut found = BTreeMap::new();
     let mut folders = vec![log.to_owned()];
@@ -52,13 +52,13 @@ pub(crate) fn timeless(table: &str) -> String {
     table.lines().map(row).collect()
 }
 
-/// How many rows a log has, all of them with a line end.
+/// Number of rows in a log, all with a line end.
 pub(crate) fn num_rows(log: &Path) -> usize {
     let tables = files(log).into_iter().filter(|(name, _)| is_table(name));
     tables.map(|(_, text)| text.lines().count() - 1).sum()
 }
 
-/// All files below a folder; none where there is no folder.
+/// All files below a folder; none if the folder does not exist.
 pub(crate) fn bytes_below(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut found = BTreeMap::new();
     let mut folders = vec![folder.to_owned()];

@@ -1,5 +1,4 @@
-//! `driftworld scales`, and `driftworld metrics` with what it measured, and with `--power`. The numbers are the
-//! libraries'.
+//! `driftworld scales`, and `driftworld metrics` with its results and with `--power`.
 
 use std::path::Path;
 
@@ -7,7 +6,7 @@ use super::null_bands::{parsed, write};
 use super::terminal::{driftworld_in, output, scratch, succeed_in};
 use driftworld::metrics::BlockType;
 
-/// Evaluates two variants before and after each is learned; `level` is earned in the worlds of the first by then.
+/// Evaluates two variants before and after each is learned; the final reward in worlds of the first is `level`.
 fn live(folder: &Path, level: f64) {
     let tasks = ["findobjects_red", "findobjects_penalty"];
     let mut rows = Vec::new();
@@ -26,7 +25,7 @@ fn live(folder: &Path, level: f64) {
 }
 
 #[test]
-fn what_scales_measures_is_what_metrics_scale_by() {
+fn metrics_use_the_measured_scales() {
     let folder = scratch();
     let tasks = ["find_objects#red", "find_objects#penalty"];
     let shown = succeed_in(
@@ -52,7 +51,7 @@ fn what_scales_measures_is_what_metrics_scale_by() {
         red["ceiling"].as_f64().expect("a ceiling"),
     );
 
-    // Half-way from floor to ceiling in the mean of the worlds' 0 to 5.
+    // Half-way from floor to ceiling, averaged over the worlds' 0 to 5.
     live(&folder.path().join("life"), f64::midpoint(floor, ceiling) - 2.5);
     let shown = succeed_in(folder.path(), &["metrics", "life", "--scales", "scales.json"]);
     let red = shown
@@ -79,7 +78,7 @@ fn what_scales_measures_is_what_metrics_scale_by() {
     assert_eq!(json["reached"]["findobjects_penalty"]["scaled_by"], "own", "{json}");
     let curve = &json["curves"]["findobjects_red"];
     assert!(curve["is_scaled"] == true && curve["forgetting"] == 0.0, "{json}");
-    // Points of the metrics are hundredths of the way.
+    // Metrics count in hundredths of the distance from floor to ceiling.
     let range = &json["normalization_data_range"]["findobjects_red"];
     assert_eq!(
         (range["min"].as_f64(), range["max"].as_f64()),
@@ -89,7 +88,7 @@ fn what_scales_measures_is_what_metrics_scale_by() {
 }
 
 #[test]
-fn power_says_what_lifetimes_can_show() {
+fn power_reports_what_lifetimes_can_show() {
     let folder = scratch();
     for (number, level) in [20.0, 60.0, 35.0, 50.0].into_iter().enumerate() {
         live(&folder.path().join(format!("runs/{number}")), level);
@@ -120,7 +119,7 @@ fn power_says_what_lifetimes_can_show() {
 }
 
 #[test]
-fn what_looks_alike_has_a_ceiling_of_its_own() {
+fn lookalike_tasks_have_a_separate_ceiling() {
     let folder = scratch();
     let mut measure = vec!["scales", "select_object#green", "select_object#red", "--worlds", "3"];
     measure.extend(["--unlabelled", "-o", "scales.json"]);
@@ -170,7 +169,7 @@ fn what_looks_alike_has_a_ceiling_of_its_own() {
 }
 
 #[test]
-fn scales_that_fit_no_task_are_said() {
+fn scales_that_fit_no_task_are_reported() {
     let folder = scratch();
     live(&folder.path().join("life"), 20.0);
     let file = folder.path().join("scales.json");

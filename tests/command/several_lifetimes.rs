@@ -1,5 +1,4 @@
-//! What `driftworld metrics` says of several lifetimes together: null bands, what was reached, notes of two agents,
-//! metrics that do not vary. The numbers are the libraries'.
+//! `driftworld metrics` for several lifetimes: null bands, results of tasks, notes on two agents, constant metrics.
 
 use std::path::Path;
 
@@ -11,8 +10,8 @@ use super::terminal::{scratch, succeed_in};
 const SCALES: &str =
     r#"{"scales": {"find_red": {"floor": 0, "ceiling": 100}, "find_held": {"floor": 0, "ceiling": 100}}}"#;
 
-/// Two tasks are evaluated in the same worlds before and after one of them is learned, and once more at the end; what is
-/// earned then is given.
+/// Two tasks are evaluated in the same worlds before and after one of them is learned, and again at the end, with the reward
+/// `kept`.
 fn live(folder: &Path, kept: f64) {
     let mut rows = Vec::new();
     for (block, level) in [(0, 0.0), (2, 80.0), (4, kept)] {
@@ -26,13 +25,13 @@ fn live(folder: &Path, kept: f64) {
             rows.extend((0..8).map(|world| (block + 1, BlockType::Train, task, world, 40.0 + f64::from(world))));
         }
     }
-    // The rows of one task in a block come one after the other.
+    // The rows of one task in a block are consecutive.
     rows.sort_by_key(|row| (row.0, row.2 != "find_red"));
     write(folder, &rows);
 }
 
 #[test]
-fn good_is_said_of_several_lifetimes_outside_the_null_band_only() {
+fn good_needs_several_lifetimes_outside_the_null_band() {
     let folder = scratch();
     for (number, kept) in [30.0, 35.0, 25.0].into_iter().enumerate() {
         live(&folder.path().join(format!("forgets/{number}")), kept);
@@ -81,7 +80,7 @@ fn good_is_said_of_several_lifetimes_outside_the_null_band_only() {
 }
 
 #[test]
-fn what_is_never_learned_is_among_what_was_reached_and_experts_have_its_unit() {
+fn never_learned_tasks_are_listed_and_experts_share_their_unit() {
     let folder = scratch();
     for number in 0..2 {
         live(&folder.path().join(format!("runs/{number}")), 50.0);
@@ -103,7 +102,7 @@ fn what_is_never_learned_is_among_what_was_reached_and_experts_have_its_unit() {
 }
 
 #[test]
-fn notes_of_two_agents_are_told_apart() {
+fn notes_of_two_agents_are_labelled() {
     let folder = scratch();
     for number in 0..2 {
         live(&folder.path().join(format!("mine/{number}")), 50.0);
@@ -119,7 +118,7 @@ fn notes_of_two_agents_are_told_apart() {
 }
 
 #[test]
-fn a_metric_that_does_not_vary_is_among_those_with_power() {
+fn constant_metric_is_listed_with_power() {
     let folder = scratch();
     for number in 0..3 {
         live(&folder.path().join(format!("runs/{number}")), 50.0);

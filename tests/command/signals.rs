@@ -1,5 +1,5 @@
-//! A signal ends a command wherever it is, also where it waits for somebody who never comes, and a shell sees the same exit
-//! code of all: 130 for an interrupt. A command that does not end lets the test run into its limit.
+//! A signal ends a command anywhere, even while it waits for somebody who never comes, and shells see the same exit code for
+//! all: 130 for an interrupt. A command that does not end lets the test reach its time limit.
 #![cfg(unix)]
 
 use std::fs;
@@ -24,7 +24,7 @@ fn signal(child: &Child, signal: &str) {
     assert!(sent.is_ok_and(|sent| sent.success()));
 }
 
-/// Waits until something is so of a command that goes on.
+/// Waits until a condition holds for a running command.
 fn wait_until(child: &mut Child, is_so: impl Fn(&Child) -> bool) {
     while !is_so(child) {
         let ended = child.try_wait().expect("it can be asked");
@@ -33,7 +33,7 @@ fn wait_until(child: &mut Child, is_so: impl Fn(&Child) -> bool) {
     }
 }
 
-/// Whether the command looks for signals by now, as the system sees it.
+/// Whether the command handles signals yet, according to the system.
 #[cfg(target_os = "linux")]
 fn looks_for_signals(child: &Child) -> bool {
     let status = fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap_or_default();
@@ -50,7 +50,7 @@ fn ended(child: Child) -> (Output, String) {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn what_waits_for_a_reader_ends_by_the_signal() {
+fn command_waiting_for_a_reader_ends_by_the_signal() {
     let folder = scratch();
     let made = Command::new("mkfifo").arg(folder.path().join("pipe")).status();
     assert!(made.is_ok_and(|made| made.success()));
@@ -67,10 +67,10 @@ fn what_waits_for_a_reader_ends_by_the_signal() {
 }
 
 #[test]
-fn what_nobody_reads_ends_with_words() {
+fn command_with_a_blocked_reader_ends_with_a_message() {
     let folder = scratch();
     for (name, number) in signals() {
-        // The pipe fills, and the command waits in the middle of a line.
+        // The pipe fills, and the command blocks in the middle of a line.
         let mut child = start(
             folder.path(),
             &["sample", "find_objects", "--count", "100000000", "--jsonl", "-o", "-"],
@@ -86,7 +86,7 @@ fn what_nobody_reads_ends_with_words() {
 }
 
 #[test]
-fn a_long_experience_is_not_waited_for() {
+fn long_experience_does_not_delay_the_end() {
     let folder = scratch();
     let path = folder.path();
     // Nothing in it can end an experience early.
@@ -114,7 +114,7 @@ fn a_long_experience_is_not_waited_for() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn hanging_up_is_passed_over_under_nohup() {
+fn hang_up_is_ignored_under_nohup() {
     let folder = scratch();
     let mut command = Command::new("nohup");
     let mut child = command

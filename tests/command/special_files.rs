@@ -1,5 +1,5 @@
-//! What is no file in place of each file that a command line can name: a device without an end, a link to it, a pipe
-//! that nobody writes to, a socket, a folder. Each ends at once, and says what it found.
+//! Special files in place of every file that a command line can name: an endless device, a link to it, a pipe that nobody
+//! writes to, a socket, a folder. Each command ends at once and reports what it found.
 
 #![cfg(unix)]
 
@@ -13,10 +13,10 @@ use std::time::{Duration, Instant};
 use super::terminal::{output, root, scratch, subcommands, succeed_in, text};
 use crate::is_turn;
 
-/// Where the special file stands in a command line.
+/// The place of the special file in a command line.
 const FILE: &str = "SPECIAL";
 
-/// Every place of a command line that names a file or folder to read.
+/// Every place in a command line that names a file or folder to read.
 fn command_lines() -> Vec<Vec<&'static str>> {
     let lines = [
         "tasks show SPECIAL",
@@ -94,11 +94,11 @@ fn command_lines() -> Vec<Vec<&'static str>> {
     lines.into_iter().map(|line| line.split(' ').collect()).collect()
 }
 
-/// The subcommands that read no file that an argument names.
+/// Subcommands that read no file named by an argument.
 const WITHOUT_FILES: [&str; 6] = ["demo", "bench", "doctor", "new", "export", "completions"];
 
 #[test]
-fn every_subcommand_that_reads_files_is_asked() {
+fn every_subcommand_that_reads_files_is_tested() {
     let asked = command_lines();
     for command in subcommands() {
         let is_asked = asked.iter().any(|line| line[0] == command);
@@ -107,14 +107,14 @@ fn every_subcommand_that_reads_files_is_asked() {
 }
 
 #[test]
-fn a_device_without_an_end_is_not_read() {
+fn endless_device_is_not_read() {
     everywhere(0, "a device", |path| {
         symlink("/dev/zero", path).expect("a link can be made");
     });
 }
 
 #[test]
-fn a_pipe_that_nobody_writes_to_is_not_waited_for() {
+fn pipe_without_a_writer_is_not_waited_for() {
     everywhere(1, "a named pipe", |path| {
         let made = Command::new("mkfifo").arg(path).status();
         assert!(made.expect("every unix has mkfifo").success());
@@ -122,21 +122,22 @@ fn a_pipe_that_nobody_writes_to_is_not_waited_for() {
 }
 
 #[test]
-fn a_socket_is_not_read() {
+fn socket_is_not_read() {
     everywhere(2, "a socket", |path| {
-        // It stays when nobody listens any more.
+        // It remains when nobody listens any more.
         drop(UnixListener::bind(path).expect("a socket can be bound"));
     });
 }
 
 #[test]
-fn a_folder_is_not_read_as_a_file() {
+fn folder_is_not_read_as_a_file() {
     everywhere(3, "folder", |path| {
         fs::create_dir(path).expect("a folder can be made");
     });
 }
 
-/// Runs every command line with such a thing in place of its file; in the quick tier every fourth, others for each `kind`.
+/// Runs every command line with such a thing in place of its file; in the quick tier every fourth, different ones for each
+/// `kind`.
 fn everywhere(kind: usize, found: &str, make: impl Fn(&Path)) {
     let scratch = scratch();
     let folder = scratch.path();
@@ -160,7 +161,7 @@ fn everywhere(kind: usize, found: &str, make: impl Fn(&Path)) {
         assert_eq!(code, Some(1), "{line:?}: {error}");
         assert!(error.contains("error: "), "{line:?}: {error}");
         let names_it = line.iter().any(|argument| argument.contains(FILE));
-        // Of the folders of logs and of maps it is said what is missing from them.
+        // For folders of logs and of maps, the message names what is missing in them.
         let is_folder_in_place = found == "folder" && !error.contains(found);
         if names_it && !is_folder_in_place {
             assert!(error.contains(FILE), "{line:?}: {error}");
@@ -169,7 +170,7 @@ fn everywhere(kind: usize, found: &str, make: impl Fn(&Path)) {
     }
 }
 
-/// What is valid beside the special files.
+/// The valid files beside the special ones.
 fn prepare(folder: &Path) {
     let write = |name: &str, text: &str| {
         let path = folder.join(name);
@@ -212,8 +213,7 @@ fn read_task() -> String {
     super::terminal::read(root().join("examples/tasks/find_objects.json"))
 }
 
-/// The exit code of a command line, and what it said. It may take ten seconds and four gigabytes, then it is a failure
-/// of the test.
+/// The exit code and the output of a command line. More than ten seconds or four gigabytes fail the test.
 fn ended(folder: &Path, line: &[&str]) -> (Option<i32>, String) {
     let said = folder.join("said.txt");
     let mut child = Command::new("sh")
@@ -244,7 +244,7 @@ fn ended(folder: &Path, line: &[&str]) -> (Option<i32>, String) {
 }
 
 #[test]
-fn a_file_that_stands_for_nothing_leaves_the_others_their_verdicts() {
+fn unrecognised_file_does_not_suppress_other_verdicts() {
     let scratch = scratch();
     let folder = scratch.path();
     let all = folder.join("all");

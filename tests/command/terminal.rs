@@ -1,4 +1,4 @@
-//! What tests of the command share: running it, and reading what it says. What it should say is the tests' own.
+//! Helpers for tests of the command: running it, and reading its output.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -10,7 +10,7 @@ pub(crate) fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Arguments of a command: one text, parted at its spaces, or a list.
+/// Arguments of a command: one text, split at spaces, or a list.
 pub(crate) trait Arguments {
     fn words(&self) -> Vec<&str>;
 }
@@ -50,10 +50,10 @@ pub(crate) fn driftworld(arguments: &(impl Arguments + ?Sized)) -> Command {
     driftworld_in(root(), arguments)
 }
 
-/// The same in another folder.
+/// The command in another folder.
 pub(crate) fn driftworld_in(folder: &Path, arguments: &(impl Arguments + ?Sized)) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_driftworld"));
-    // Whoever runs the tests may have a narrow terminal, or want colours.
+    // The developer's terminal may be narrow, or have colours configured.
     command
         .args(arguments.words())
         .current_dir(folder)
@@ -66,13 +66,13 @@ pub(crate) fn output(command: &mut Command) -> Output {
     command.output().expect("the command was built by cargo and starts")
 }
 
-/// What it prints; it must end well.
+/// Its standard output; it must succeed.
 #[track_caller]
 pub(crate) fn succeed(arguments: &(impl Arguments + ?Sized)) -> String {
     succeed_in(root(), arguments)
 }
 
-/// The same in another folder.
+/// Its standard output in another folder; it must succeed.
 #[track_caller]
 pub(crate) fn succeed_in(folder: &Path, arguments: &(impl Arguments + ?Sized)) -> String {
     let output = output(&mut driftworld_in(folder, arguments));
@@ -81,13 +81,13 @@ pub(crate) fn succeed_in(folder: &Path, arguments: &(impl Arguments + ?Sized)) -
     String::from_utf8(output.stdout).expect("the command prints UTF-8")
 }
 
-/// The JSON that it prints; it must end well.
+/// The JSON that it prints; it must succeed.
 #[track_caller]
 pub(crate) fn json(arguments: &(impl Arguments + ?Sized)) -> Value {
     json_in(root(), arguments)
 }
 
-/// The same in another folder.
+/// The JSON that it prints in another folder; it must succeed.
 #[track_caller]
 pub(crate) fn json_in(folder: &Path, arguments: &(impl Arguments + ?Sized)) -> Value {
     serde_json::from_str(&succeed_in(folder, arguments)).expect("--json prints JSON")
@@ -101,13 +101,13 @@ pub(crate) fn subcommands() -> Vec<String> {
     names.filter(|name| *name != "help").map(str::to_owned).collect()
 }
 
-/// What it says on standard error; it must end with this exit code.
+/// Its standard error; it must end with this exit code.
 #[track_caller]
 pub(crate) fn fail(code: i32, arguments: &(impl Arguments + ?Sized)) -> String {
     fail_in(root(), code, arguments)
 }
 
-/// The same in another folder.
+/// Its standard error in another folder; it must end with this exit code.
 #[track_caller]
 pub(crate) fn fail_in(folder: &Path, code: i32, arguments: &(impl Arguments + ?Sized)) -> String {
     let output = output(&mut driftworld_in(folder, arguments));
@@ -117,8 +117,8 @@ pub(crate) fn fail_in(folder: &Path, code: i32, arguments: &(impl Arguments + ?S
     error
 }
 
-/// The signals that stop a command, as `kill` takes them and by their numbers. Without hanging up where the tests were
-/// started under `nohup`: then the command passes it over, as it should.
+/// The signals that stop a command, by name for `kill` and by number. Without the hang-up if the tests run under `nohup`: then
+/// the command ignores it, as it should.
 #[cfg(unix)]
 pub(crate) fn signals() -> impl Iterator<Item = (&'static str, i32)> {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
@@ -129,7 +129,7 @@ pub(crate) fn signals() -> impl Iterator<Item = (&'static str, i32)> {
     all.into_iter().skip(usize::from(!hangs_up))
 }
 
-/// A folder for files that nobody needs afterwards.
+/// A temporary folder.
 pub(crate) fn scratch() -> tempfile::TempDir {
     tempfile::tempdir().expect("the machine has a folder for temporary files")
 }
@@ -139,13 +139,13 @@ pub(crate) fn text(path: &Path) -> &str {
     path.to_str().expect("temporary paths are UTF-8")
 }
 
-/// What a file holds.
+/// The contents of a file.
 pub(crate) fn read(path: impl AsRef<Path>) -> String {
     let path = path.as_ref();
     std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// A file or folder of the reference data; where it is absent nothing, said aloud.
+/// A file or folder of the reference data; if it is missing, prints a notice and returns `None`.
 #[expect(clippy::print_stderr, reason = "a skip must be seen")]
 pub(crate) fn reference(name: &str) -> Option<PathBuf> {
     let default = root().join("../shared/reference");

@@ -1,5 +1,5 @@
-//! `driftworld transfer-report` tells apart a learner whose transfer falls with distance and one whose transfer does not.
-//! The learners are a few lines of arithmetic; what they log is read like anyone's log.
+//! `driftworld transfer-report` distinguishes a learner whose transfer falls with distance from one whose transfer does not.
+//! The learners are simple formulas; their logs are read like any other.
 
 use std::path::Path;
 
@@ -9,7 +9,7 @@ use serde_json::Value;
 
 use super::terminal::{fail_in, succeed_in};
 
-/// Where six variants lie on a line.
+/// Positions of six variants on a line.
 const PLACES: [f64; 6] = [0.0, 0.1, 0.25, 0.5, 0.8, 1.0];
 
 /// Orders in which lifetimes learn them.
@@ -22,7 +22,7 @@ const ORDERS: [[usize; 6]; 6] = [
     [1, 5, 3, 0, 2, 4],
 ];
 
-/// What learning one variant does to another: a share of what it still lacks.
+/// The effect of learning one variant on another: a share of what it still lacks.
 type Kernel = fn(usize, usize) -> f64;
 
 /// The nearer, the more.
@@ -31,7 +31,7 @@ fn by_distance(a: usize, b: usize) -> f64 {
     (-(PLACES[a] - PLACES[b]).abs() / 0.3).exp()
 }
 
-/// Something between a tenth and a half, whatever the distance.
+/// A value between a tenth and a half, independent of the distance.
 fn by_nothing(a: usize, b: usize) -> f64 {
     if a == b {
         1.0
@@ -40,14 +40,14 @@ fn by_nothing(a: usize, b: usize) -> f64 {
     }
 }
 
-/// A number in 0..1 that looks like chance.
+/// A pseudo-random number in 0..1.
 fn noise(k: u64) -> f64 {
     let mixed = k.wrapping_add(1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
     let mixed = (mixed ^ (mixed >> 29)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     (mixed >> 40) as f64 / (1_u64 << 24) as f64
 }
 
-/// A lifetime under way: how good the learner is at each variant, and the log that it writes.
+/// A lifetime in progress: the learner's level in each variant, and its log.
 struct Life {
     skill: [f64; 6],
     log: LogWriter,
@@ -84,7 +84,7 @@ impl Life {
     }
 }
 
-/// Lives all variants in this order, evaluated before and after each unless told otherwise.
+/// Runs all variants in this order, evaluated before and after each unless disabled.
 fn live(folder: &Path, order: &[usize], kernel: Kernel, evaluations: bool) {
     let info = LoggerInfo::new(["reward"]).expect("a column");
     let log = LogWriter::create(folder, &info, &ScenarioInfo::default()).expect("the folder is new");
@@ -143,7 +143,7 @@ fn every_order() -> Vec<&'static [usize]> {
 }
 
 #[test]
-fn a_learner_whose_transfer_falls_with_distance_is_told_from_one_whose_transfer_does_not() {
+fn distance_dependent_transfer_is_distinguished() {
     let near = json(lived(&every_order(), by_distance, true).path());
     let test = &near["forward"]["spearman"];
     assert_eq!(
@@ -161,7 +161,7 @@ fn a_learner_whose_transfer_falls_with_distance_is_told_from_one_whose_transfer_
 }
 
 #[test]
-fn the_report_explains_itself_and_draws_a_picture() {
+fn report_explains_itself_and_draws_a_picture() {
     let folder = lived(&every_order(), by_distance, true);
     let said = reported(folder.path(), &["--plot", "transfer.png"]);
     for words in [
@@ -188,7 +188,7 @@ fn the_report_explains_itself_and_draws_a_picture() {
 }
 
 #[test]
-fn what_cannot_be_reported_says_what_is_needed() {
+fn impossible_reports_say_what_is_needed() {
     let folder = lived(&[&ORDERS[0]], by_distance, false);
     let error = refused(folder.path(), 1, &[]);
     assert!(

@@ -1,5 +1,5 @@
-//! What can be validated can be run: worlds that cannot be drawn, forbidden drifts, names that collide and unknown classes are found by
-//! `validate` and `curriculum`, and `run` leaves them out when it is told to.
+//! Valid documents can be run: undrawable worlds, forbidden drifts, name collisions and unknown classes are found by `validate`
+//! and `curriculum`, and `run` skips them on request.
 
 #[cfg(feature = "gltf")]
 use std::fs;
@@ -29,7 +29,7 @@ fn quarry(folder: &Path) -> PathBuf {
 }
 
 #[test]
-fn validate_draws_worlds_of_every_variant_and_says_what_fails() {
+fn validate_draws_worlds_of_every_variant_and_reports_failures() {
     let folder = scratch();
     let task = quarry(folder.path());
     succeed(&["validate", text(&task)]);
@@ -58,7 +58,7 @@ fn validate_draws_worlds_of_every_variant_and_says_what_fails() {
 }
 
 #[test]
-fn a_drift_across_a_forbidden_value_is_found_before_it_is_run() {
+fn drift_across_a_forbidden_value_is_found_before_the_run() {
     let folder = scratch();
     quarry(folder.path());
     let design = "curriculum quarry.json#low high --drift linear --learn 41 --eval-episodes 5 -o s.json";
@@ -78,7 +78,7 @@ fn a_drift_across_a_forbidden_value_is_found_before_it_is_run() {
     let error = fail_in(folder.path(), 1, "validate s.json --worlds 2");
     assert!(error.contains("worlds cannot be drawn"), "{error}");
 
-    // It stops there, says so, and offers what goes on.
+    // It stops there, says so, and suggests how to continue.
     let run = "run s.json --agent random --output log";
     let error = fail_in(folder.path(), 1, run);
     assert!(
@@ -89,7 +89,7 @@ fn a_drift_across_a_forbidden_value_is_found_before_it_is_run() {
     let again = fail_in(folder.path(), 1, &format!("{run} --resume"));
     assert!(again.contains("--skip-undrawable"), "{again}");
     let told = json_in(folder.path(), &format!("{run} --resume --skip-undrawable --json"));
-    // 0.425 to 0.575 of the way in steps of a fortieth.
+    // Progress 0.425 to 0.575 in steps of a fortieth.
     assert_eq!(
         (told["skipped"].as_u64(), told["experiences"].as_u64()),
         (Some(7), Some(54)),
@@ -104,7 +104,7 @@ fn a_drift_across_a_forbidden_value_is_found_before_it_is_run() {
 }
 
 #[test]
-fn a_first_world_that_cannot_be_drawn_begins_no_log_unless_it_may_be_left_out() {
+fn undrawable_first_world_starts_no_log_unless_skipped() {
     let folder = scratch();
     quarry(folder.path());
     let design = "curriculum quarry.json#full --worlds 0 --learn 12 --eval-episodes 5 -o s.json --seed 1";
@@ -117,7 +117,7 @@ fn a_first_world_that_cannot_be_drawn_begins_no_log_unless_it_may_be_left_out() 
 }
 
 #[test]
-fn names_that_a_log_cannot_tell_apart_are_found_by_validate_and_curriculum() {
+fn name_collisions_in_logs_are_found_by_validate_and_curriculum() {
     let folder = scratch();
     quarry(folder.path());
     let error = fail_in(folder.path(), 1, "curriculum quarry.json#low l-ow -o s.json");
@@ -136,7 +136,7 @@ fn names_that_a_log_cannot_tell_apart_are_found_by_validate_and_curriculum() {
 }
 
 #[test]
-fn a_class_that_nobody_knows_is_an_error_that_says_how_a_library_is_named() {
+fn unknown_class_is_an_error_that_suggests_a_library() {
     let folder = scratch();
     let here = folder.path();
     write(
@@ -156,7 +156,7 @@ fn a_class_that_nobody_knows_is_an_error_that_says_how_a_library_is_named() {
     );
     assert!(error.contains("--assets LIBRARY"), "{error}");
     assert!(fail_in(here, 1, &["curriculum", "t.json", "-o", "s.json"]).contains("bushh"));
-    // A scenario of such a task is refused as `run` refuses it.
+    // A scenario with such a task is refused as by `run`.
     write(
         &here.join("s.json"),
         r#"{ "version": 1, "name": "s", "blocks": [{ "type": "learning", "regimes": [{ "task": "t.json", "variant": "default", "count": 1 }] }] }"#,
@@ -166,7 +166,7 @@ fn a_class_that_nobody_knows_is_an_error_that_says_how_a_library_is_named() {
 }
 
 #[test]
-fn a_model_that_its_class_does_not_have_is_refused_by_everything_that_trains_on_it() {
+fn unknown_model_is_refused_by_every_command_that_trains() {
     let folder = scratch();
     let here = folder.path();
     let check = |class: &str, model: &str, expected: &[&str]| {
@@ -225,7 +225,7 @@ fn a_model_that_its_class_does_not_have_is_refused_by_everything_that_trains_on_
         &["found the unknown model \"foxx\"", advice],
     );
     check("geometric", "\"Sphere\"", &[]);
-    // What the original does not know it draws all the same.
+    // The original draws unknown classes all the same.
     let original = r#"{ "objects": [{ "class": "Tree", "model": "77", "coordinates": ["3", 4] }] }"#;
     write(&here.join("o.json"), original);
     let said = output(&mut driftworld_in(here, "validate --l2explorer o.json"));
@@ -236,7 +236,7 @@ fn a_model_that_its_class_does_not_have_is_refused_by_everything_that_trains_on_
     );
 }
 
-/// What a library has is known where it is named.
+/// The classes of a library are known if it is named.
 #[cfg(feature = "gltf")]
 #[test]
 fn classes_of_a_named_library_are_known() {
@@ -251,7 +251,7 @@ fn classes_of_a_named_library_are_known() {
 }
 
 #[test]
-fn a_curriculum_begins_with_what_is_named_first() {
+fn curriculum_starts_with_the_first_named() {
     let folder = scratch();
     let first = |names: &str| {
         let scenario = json_in(folder.path(), &format!("curriculum {names} --worlds 0"));
@@ -274,7 +274,7 @@ fn a_curriculum_begins_with_what_is_named_first() {
 }
 
 #[test]
-fn a_probe_takes_the_variants_that_are_named_or_says_why_not() {
+fn probe_takes_the_named_variants_or_says_why_not() {
     let folder = scratch();
     let shown = succeed_in(
         folder.path(),
@@ -290,7 +290,7 @@ fn a_probe_takes_the_variants_that_are_named_or_says_why_not() {
 }
 
 #[test]
-fn the_agent_on_rails_tries_what_validate_drew_and_says_where_it_fails() {
+fn planner_tries_the_worlds_of_validate_and_reports_failures() {
     let folder = scratch();
     let task = |name: &str, wall: &str| {
         let text = format!(

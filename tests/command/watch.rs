@@ -1,5 +1,4 @@
-//! Episodes that are watched: `run --record`, `replay`, `film`. That a recorded episode comes out to the bit whatever acts in it is tested
-//! in `tests/recordings.rs`.
+//! Watching episodes: `run --record`, `replay`, `film`.
 
 use std::fs;
 use std::path::Path;
@@ -30,13 +29,13 @@ fn scenario_with(folder: &Path, second: &str) -> std::path::PathBuf {
     path
 }
 
-/// Where a log keeps what was done in a block.
+/// The log's file of recordings for a block.
 fn recordings(log: &Path, block: &str) -> std::path::PathBuf {
     log.join("worker-default").join(block).join("actions.jsonl")
 }
 
 #[test]
-fn a_recorded_run_is_the_same_run_and_each_episode_comes_out_once_more() {
+fn recorded_run_is_unchanged_and_each_episode_can_be_replayed() {
     let folder = scratch();
     let scenario = scenario(folder.path());
     let (plain, kept) = (folder.path().join("plain"), folder.path().join("kept"));
@@ -73,14 +72,14 @@ fn a_recorded_run_is_the_same_run_and_each_episode_comes_out_once_more() {
 }
 
 #[test]
-fn a_recorded_run_that_is_killed_goes_on_and_keeps_every_byte() {
+fn killed_recorded_run_resumes_and_keeps_every_byte() {
     let folder = scratch();
     let scenario = scenario_with(folder.path(), "find_objects");
     let whole = folder.path().join("whole");
     let all = ["run", text(&scenario), "--agent", "random"];
     succeed(&[&all[..], &["--record", "--output", text(&whole)]].concat());
     let expected = files(&whole);
-    // As a killed run leaves it: the recording of the next experience is there, whole or in part, and its row is not.
+    // As a killed run leaves it: the recording of the next experience exists, whole or in part, but its row does not.
     let table = |log: &Path, block: &str| log.join("worker-default").join(block).join("data-log.tsv");
     for (rows, cut) in [(0, 3), (2, 700), (5, 0)] {
         let log = folder.path().join(format!("killed-{rows}-{cut}"));
@@ -93,11 +92,11 @@ fn a_recorded_run_that_is_killed_goes_on_and_keeps_every_byte() {
         fs::write(table(&log, "0-test"), rows_kept).unwrap();
         let done = fs::read(recordings(&log, "0-test")).unwrap();
         fs::write(recordings(&log, "0-test"), &done[..done.len() - cut]).unwrap();
-        // Not told once more to record: a log that was recorded goes on so.
+        // Without `--record`: a log that was started with it keeps recording.
         succeed(&[&all[..], &["--resume", "--output", text(&log)]].concat());
         assert_eq!(files(&log), expected, "{rows} rows, {cut} bytes less");
     }
-    // The next block was just begun.
+    // The next block has just started.
     let log = folder.path().join("begun");
     succeed(&[&all[..], &["--record", "--output", text(&log)]].concat());
     fs::remove_dir_all(log.join("worker-default/2-test")).unwrap();
@@ -108,7 +107,7 @@ fn a_recorded_run_that_is_killed_goes_on_and_keeps_every_byte() {
 }
 
 #[test]
-fn a_log_that_was_begun_without_recordings_gets_them_from_then_on() {
+fn log_without_recordings_gets_them_from_then_on() {
     let folder = scratch();
     let scenario = scenario_with(folder.path(), "find_objects");
     let log = folder.path().join("log");
@@ -130,7 +129,7 @@ fn a_log_that_was_begun_without_recordings_gets_them_from_then_on() {
 }
 
 #[test]
-fn a_damaged_recording_is_told_by_its_place_and_hides_no_other() {
+fn damaged_recording_is_located_and_others_are_readable() {
     let folder = scratch();
     let scenario = scenario_with(folder.path(), "find_objects");
     let log = folder.path().join("log");
@@ -141,7 +140,7 @@ fn a_damaged_recording_is_told_by_its_place_and_hides_no_other() {
     ));
     let path = recordings(&log, "0-test");
     let whole = fs::read_to_string(&path).unwrap();
-    // The line of the first episode: behind the header and its world.
+    // The line of the first episode: after the header and its world.
     let damaged = whole.replacen("\"experience\":0", "\"experience\":7", 1);
     fs::write(&path, damaged).unwrap();
     let said = fail(1, &["replay", text(&log), "--episode", "0"]);
@@ -153,7 +152,7 @@ fn a_damaged_recording_is_told_by_its_place_and_hides_no_other() {
     let said = fail(1, &["replay", text(&log), "--episode", "4"]);
     assert!(said.contains("found the end of the file"), "{said}");
     succeed(&["replay", text(&log), "--episode", "3"]);
-    // Rows that say something else.
+    // Rows that contradict the recording.
     fs::write(&path, &whole).unwrap();
     let table = log.join("worker-default/0-test/data-log.tsv");
     let rows = fs::read_to_string(&table).unwrap();
@@ -185,7 +184,7 @@ fn a_damaged_recording_is_told_by_its_place_and_hides_no_other() {
 }
 
 #[test]
-fn an_episode_becomes_a_film_or_a_sheet() {
+fn episode_becomes_a_film_or_a_sheet() {
     let folder = scratch();
     scenario_with(folder.path(), "find_objects");
     succeed_in(folder.path(), "run scenario.json --agent random --output log --record");
@@ -218,7 +217,7 @@ fn an_episode_becomes_a_film_or_a_sheet() {
     let said = replay("e.png", "--size 48 --view above");
     assert!(said.contains(": 12 frames of 48 × 48 pixels, on a sheet of "), "{said}");
     assert_eq!(&first_bytes("e.png")[1..], b"PNG");
-    // The same bytes when it is drawn once more.
+    // Drawing again gives the same bytes.
     let before = fs::read(at("e.gif")).unwrap();
     replay("e.gif", "--size 48");
     assert!(fs::read(at("e.gif")).unwrap() == before);
@@ -235,9 +234,10 @@ fn an_episode_becomes_a_film_or_a_sheet() {
     );
 }
 
-/// What is drawn of an episode is what was asked for, whatever the file's ending: other options, other pictures; the same, the same.
+/// A drawing of an episode depends on the options, not on the file's extension: different options give different pictures,
+/// equal ones equal pictures.
 #[test]
-fn each_view_and_modality_is_a_picture_of_its_own() {
+fn each_view_and_modality_is_a_different_picture() {
     let folder = scratch();
     let kept = folder.path().join("kept.jsonl");
     let first = folder.path().join("first.png");
@@ -285,7 +285,7 @@ fn each_view_and_modality_is_a_picture_of_its_own() {
 }
 
 #[test]
-fn an_agent_is_filmed_and_kept() {
+fn agent_is_filmed_and_recorded() {
     let folder = scratch();
     let world = root().join("examples/worlds/key_corridor.json");
     let film = "--size 32 --every 20 -o";
@@ -300,9 +300,9 @@ fn an_agent_is_filmed_and_kept() {
     assert!(film == replayed, "the same film");
 }
 
-/// Which world it was is said of every episode, whether its variant was named or not, and of a world of a file.
+/// Every episode names its world, whether its variant was named or not, or the world came from a file.
 #[test]
-fn the_world_of_an_episode_is_named() {
+fn world_of_an_episode_is_named() {
     let folder = scratch();
     let world = folder.path().join("meadow.json");
     write(&world, r#"{ "agent_params": { "observation_size": 8 } }"#);
@@ -322,7 +322,7 @@ fn the_world_of_an_episode_is_named() {
 }
 
 #[test]
-fn the_commands_of_the_page_do_what_it_says() {
+fn commands_of_the_page_work() {
     let page = read(root().join("docs/watch.md"));
     let folder = scratch();
     let commands: Vec<&str> = page
@@ -347,7 +347,7 @@ fn the_commands_of_the_page_do_what_it_says() {
 }
 
 #[test]
-fn a_film_of_a_world_without_a_limit_ends() {
+fn film_of_a_world_without_a_limit_ends() {
     let folder = scratch();
     write(
         &folder.path().join("endless.json"),

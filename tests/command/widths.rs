@@ -1,9 +1,9 @@
-//! Tables at 80 and at 120 columns: every line fits and no word is broken. The pictures of the tables are snapshots.
+//! Tables at 80 and at 120 columns: every line fits and no word is broken. The tables are snapshots.
 
 use super::terminal::{driftworld_in, output, scratch, succeed_in};
 use crate::tier::quick_or_full;
 
-/// What a command prints for people, at a width.
+/// The text output of a command at a width.
 fn at(columns: usize, folder: &std::path::Path, arguments: &str) -> String {
     let arguments: Vec<&str> = arguments.split(' ').collect();
     let mut command = driftworld_in(folder, &arguments);
@@ -13,7 +13,7 @@ fn at(columns: usize, folder: &std::path::Path, arguments: &str) -> String {
     String::from_utf8(done.stdout).expect("the command prints UTF-8")
 }
 
-/// A lifetime that is soon lived, in a folder: `scenario.json`, `log`.
+/// A quick lifetime in a folder: `scenario.json`, `log`.
 fn lifetime(folder: &std::path::Path) {
     let task = include_str!("../../examples/tasks/blue_red_green.json");
     let (four, _) = task
@@ -27,7 +27,7 @@ fn lifetime(folder: &std::path::Path) {
     succeed_in(folder, &run.split(' ').collect::<Vec<_>>());
 }
 
-/// The commands whose tables are looked at, each with the name of its snapshot.
+/// The commands whose tables are checked, each with the name of its snapshot.
 const TABLES: [(&str, &str); 11] = [
     ("help", "--help"),
     ("tasks", "tasks"),
@@ -46,7 +46,7 @@ const TABLES: [(&str, &str); 11] = [
 ];
 
 #[test]
-fn tables_fit_80_and_120_columns_and_break_no_word() {
+fn tables_fit_80_and_120_columns_without_broken_words() {
     let folder = scratch();
     lifetime(folder.path());
     for (name, arguments) in TABLES {
@@ -57,7 +57,7 @@ fn tables_fit_80_and_120_columns_and_break_no_word() {
             for line in shown.lines() {
                 assert!(line.chars().count() <= columns, "{arguments} at {columns}: {line}");
             }
-            // A cell that is broken behind a comma is two words where it was one.
+            // A cell that wraps after a comma is two words instead of one.
             let known = |word: &str| {
                 whole.iter().any(|one| {
                     one == word
@@ -75,9 +75,9 @@ fn tables_fit_80_and_120_columns_and_break_no_word() {
     }
 }
 
-/// Values are said whole at every width: none is cut, none is parted from its unit, and no place is broken.
+/// Values are shown in full at every width: none is cut, separated from its unit, or broken within a place.
 #[test]
-fn values_of_tasks_are_whole() {
+fn values_of_tasks_are_never_broken() {
     let folder = scratch();
     for task in ["find_objects", "moving_object", "select_object"] {
         for columns in [80, 100, 120, 160, 10_000].into_iter().step_by(quick_or_full(2, 1)) {

@@ -1,4 +1,4 @@
-//! The laws of distances by parameters, over every pair of variants of every built-in task.
+//! Laws of distances by parameters, for every pair of variants of every built-in task.
 
 use std::sync::Arc;
 
@@ -23,7 +23,7 @@ fn load(document: &Json) -> Arc<TaskSpec> {
     TaskSpec::from_json("retold", &document.to_string()).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// What a variant sets beside the defaults.
+/// The values that a variant sets beside the defaults.
 fn set_by(variant: &Variant) -> Map<String, Json> {
     let parameters = variant.task().parameters();
     let is_set = |name: &str| parameters[name].role == Role::Variant;
@@ -32,7 +32,7 @@ fn set_by(variant: &Variant) -> Map<String, Json> {
 }
 
 #[test]
-fn every_pair_keeps_the_laws_that_its_task_says_it_keeps() {
+fn every_pair_satisfies_the_laws_that_its_task_declares() {
     for (task, _) in built_in() {
         let (measure, all) = (measure(&task), task.all_variants());
         let d: Vec<Vec<f64>> = all
@@ -66,7 +66,7 @@ fn every_pair_keeps_the_laws_that_its_task_says_it_keeps() {
 }
 
 #[test]
-fn the_distance_of_a_pair_is_its_own() {
+fn distance_depends_on_the_pair_alone() {
     for (task, document) in built_in() {
         let all = task.all_variants();
         let parameters = document["parameters"].as_object().expect("it is an object");
@@ -76,7 +76,7 @@ fn the_distance_of_a_pair_is_its_own() {
             .rev()
             .map(|(name, one)| (name.clone(), one.clone()))
             .collect();
-        // All variants in the reverse order under other names, and between them some at the ends of what is declared.
+        // All variants in reverse order under other names, mixed with others at the ends of the declared ranges.
         let base = task.variant(DEFAULT_VARIANT).expect("defaults can be had");
         let mut variants = Map::new();
         for (name, parameter) in task.parameters() {
@@ -100,7 +100,7 @@ fn the_distance_of_a_pair_is_its_own() {
         let other = load(&other);
         let (first, second) = (measure(&task), measure(&other));
         let named = |task: &Arc<TaskSpec>, name: &str| task.variant(name).unwrap_or_else(|error| panic!("{error}"));
-        // In the quick tier of every third variant.
+        // In the quick tier every third variant.
         for a in all.iter().step_by(quick_or_full(3, 1)) {
             for b in &all {
                 let retold = |variant: &Variant| named(&other, &format!("other_{}", variant.name()));
@@ -114,7 +114,7 @@ fn the_distance_of_a_pair_is_its_own() {
                 );
             }
         }
-        // And with no variant but the two.
+        // And with no variants except the two.
         for pair in all.windows(2).step_by(quick_or_full(5, 1)) {
             let mut alone = document.clone();
             alone["variants"] = json!({ "b": set_by(&pair[1]), "a": set_by(&pair[0]) });
@@ -130,7 +130,7 @@ fn the_distance_of_a_pair_is_its_own() {
 }
 
 #[test]
-fn what_is_equal_on_both_sides_dilutes_nothing() {
+fn equal_parameters_do_not_dilute_the_distance() {
     for (task, mut document) in built_in() {
         let more = [
             (
@@ -163,7 +163,7 @@ fn what_is_equal_on_both_sides_dilutes_nothing() {
 }
 
 #[test]
-fn one_is_a_parameter_moved_over_its_whole_declared_range_and_0_where_nothing_reads_it() {
+fn full_range_of_a_parameter_is_1_and_0_if_unread() {
     let mut idle = 0;
     for (task, _) in built_in() {
         let measure = measure(&task);

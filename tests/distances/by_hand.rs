@@ -1,5 +1,5 @@
-//! The distance of two variants from the JSON of their task alone, by the table of `docs/similarity.md`: nothing here
-//! is `similarity`'s.
+//! Computes the distance of two variants from the JSON of their task alone, by the table in `docs/similarity.md`, without using
+//! `similarity`.
 
 #![expect(
     clippy::disallowed_methods,
@@ -12,14 +12,14 @@ use serde_json::{Map, Value as Json};
 
 use super::drawn_specs::{APART, Spec};
 
-/// A distance: the total, and that of each element.
+/// A distance: the total, and each element's.
 #[derive(Debug)]
 pub(crate) struct ByHand {
     pub(crate) total: f64,
     pub(crate) elements: BTreeMap<String, f64>,
 }
 
-/// The distance of two variants of a drawn spec.
+/// The distance of two variants of a random spec.
 pub(crate) fn distance(spec: &Spec, a: &str, b: &str) -> ByHand {
     let parameters = spec.0["parameters"].as_object().expect("it is an object");
     let [a, b] = [a, b].map(|name| settled(parameters, &spec.set_by(name)));
@@ -45,7 +45,7 @@ pub(crate) fn distance(spec: &Spec, a: &str, b: &str) -> ByHand {
     found
 }
 
-/// The value of each variant parameter as far as it is read.
+/// The value of each variant parameter that is read.
 fn settled(parameters: &Map<String, Json>, set: &Map<String, Json>) -> BTreeMap<String, Json> {
     let is_open = set.get("gate").is_none_or(|gate| gate == true);
     let value = |(name, parameter): (&String, &Json)| {
@@ -76,7 +76,7 @@ fn euclidean(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
 }
 
-/// Two values of a variant parameter, where 1 is the whole declared range.
+/// The distance of two values of a variant parameter, where 1 is the whole declared range.
 fn of_values(parameter: &Json, a: &Json, b: &Json) -> f64 {
     let range = || numbers(&parameter["range"]);
     let width = || range()[1] - range()[0];
@@ -114,7 +114,7 @@ fn of_values(parameter: &Json, a: &Json, b: &Json) -> f64 {
     }
 }
 
-/// Two draws of a randomized parameter, where 1 is the widest pair that the declared ranges allow.
+/// The distance of two distributions of a randomized parameter, where 1 is the widest pair in the declared ranges.
 fn of_draws(
     parameters: &Map<String, Json>,
     distribution: &Json,
@@ -143,8 +143,8 @@ fn of_draws(
     between_uniforms(ends(a), ends(b)) / pairs.map(|(a, b)| between_uniforms(a, b)).fold(0.0, f64::max)
 }
 
-/// Wasserstein-1 of two uniform distributions: the mean over all shares of how far apart their quantiles are, which
-/// goes straight from the distance of the low ends to that of the high ends.
+/// Wasserstein-1 of two uniform distributions: the mean distance of their quantiles, which changes linearly from the distance
+/// of the low ends to that of the high ends.
 fn between_uniforms(a: [f64; 2], b: [f64; 2]) -> f64 {
     let (from, to) = (a[0] - b[0], a[1] - b[1]);
     if from * to >= 0.0 {

@@ -1,5 +1,5 @@
-//! Task specs out of proptest: parameters of all roles and types with ranges, choices, weights, measures, conditions
-//! and distributions whose numbers are parameters, four variants, and a requirement.
+//! Random task specs: parameters of all roles and types with ranges, choices, weights, measures, conditions and distributions
+//! whose numbers are parameters, four variants, and a requirement.
 
 use std::sync::Arc;
 
@@ -7,10 +7,10 @@ use driftworld::spec::{TaskSpec, Variant};
 use proptest::prelude::*;
 use serde_json::{Map, Value as Json, json};
 
-/// The variants of a drawn spec. The last extends the one before.
+/// The variants of a random spec. The last extends the one before.
 pub(crate) const NAMES: [&str; 4] = ["v0", "v1", "v2", "v3"];
 
-/// How near the two ends of a drawn uniform distribution may come, as its requirement says.
+/// Least distance between the two ends of a random uniform distribution, by its requirement.
 pub(crate) const APART: f64 = 0.125;
 
 const COLORS: [[f64; 3]; 6] = [
@@ -22,7 +22,7 @@ const COLORS: [[f64; 3]; 6] = [
     [0.5, 0.5, 0.5],
 ];
 
-/// What a parameter is; some need others to be drawn by.
+/// The kind of a parameter; some need others for their distributions.
 #[derive(Clone, Copy, Debug)]
 enum Kind {
     Number,
@@ -39,10 +39,10 @@ enum Kind {
     Uniform,
     /// Normal, its mean a parameter.
     Normal,
-    /// A distribution out of three.
+    /// A choice of three distributions.
     Distribution,
     Fixed,
-    /// Drawn in the same way in every variant.
+    /// The same distribution in every variant.
     Drawn,
 }
 
@@ -64,13 +64,13 @@ const KINDS: [Kind; 15] = [
     Kind::Drawn,
 ];
 
-/// What a parameter is made of.
+/// The random input of a parameter.
 #[derive(Clone, Debug)]
 struct Seeds {
     kind: Kind,
     low: f64,
     width: f64,
-    /// Where the default and each variant's value lie in the domain, from 0 to 1; two each.
+    /// Positions of the default and each variant's value in the domain, from 0 to 1; two each.
     at: [[f64; 2]; 5],
     /// Which variants set it.
     sets: [bool; 4],
@@ -79,7 +79,7 @@ struct Seeds {
     is_gated: bool,
 }
 
-/// A drawn spec.
+/// A random spec.
 #[derive(Clone, Debug)]
 pub(crate) struct Spec(pub(crate) Json);
 
@@ -90,7 +90,7 @@ impl Spec {
         TaskSpec::from_json("drawn", &text).unwrap_or_else(|error| panic!("{error}\n{text}"))
     }
 
-    /// What a variant sets, with what it extends.
+    /// The values that a variant sets, including those of the variant that it extends.
     pub(crate) fn set_by(&self, name: &str) -> Map<String, Json> {
         let own = self.0["variants"][name].as_object().cloned().unwrap_or_default();
         let mut all = own
@@ -100,7 +100,7 @@ impl Spec {
         all
     }
 
-    /// The same with one parameter more, which stands last.
+    /// The same spec with an additional last parameter.
     pub(crate) fn with_parameter(&self, name: &str, parameter: Json) -> Self {
         let mut more = self.clone();
         more.0["parameters"][name] = parameter;
@@ -108,13 +108,13 @@ impl Spec {
     }
 }
 
-/// All variants of a task under their names.
+/// All variants of a task with their names.
 pub(crate) fn variants(task: &Arc<TaskSpec>) -> Vec<Variant> {
     let variant = |name: &&str| task.variant(name).unwrap_or_else(|error| panic!("{error}"));
     NAMES.iter().map(variant).collect()
 }
 
-/// From 0 to 1. All numbers here are such that sums of them are exact: the ends of ranges are met.
+/// From 0 to 1. All numbers here have exact sums, so that the ends of ranges are reached.
 fn share() -> impl Strategy<Value = f64> {
     prop_oneof![1 => Just(0.0), 1 => Just(1.0), 4 => (0..=64).prop_map(|at| f64::from(at) / 64.0)]
 }
@@ -144,7 +144,7 @@ fn seeds() -> impl Strategy<Value = Seeds> {
         })
 }
 
-/// Drawn specs.
+/// Random specs.
 pub(crate) fn specs() -> impl Strategy<Value = Spec> {
     let gates = prop::array::uniform4(any::<bool>());
     let weights = prop::option::of((0.5..3.0_f64, 0.0..2.0_f64));
@@ -206,7 +206,7 @@ impl Parts {
         self.declare(name, parameter, seeds.sets, &values);
     }
 
-    /// A parameter that no variant sets, and those that it is drawn by.
+    /// Adds a parameter that no variant sets, and those that its distribution needs.
     fn add_drawn(&mut self, name: &str, seeds: &Seeds, mut common: Json) {
         let (low, width) = (seeds.low, seeds.width);
         let (first, second) = (format!("{name}_a"), format!("{name}_b"));
@@ -249,7 +249,7 @@ impl Parts {
 
 type ValueAt = Box<dyn Fn(f64, f64) -> Json>;
 
-/// The type and domain of a parameter that variants set, and its value at a place of the domain.
+/// The type and domain of a parameter that variants set, and its value at a position in the domain.
 fn domain(seeds: &Seeds, common: &mut Json) -> (Json, ValueAt) {
     let (low, width) = (seeds.low, seeds.width);
     let within = |low: f64, high: f64| -> ValueAt { Box::new(move |at, _| json!((low + (high - low) * at).min(high))) };

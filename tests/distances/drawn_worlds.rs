@@ -1,12 +1,12 @@
-//! Worlds out of proptest, small and with something of everything that worlds are compared in.
+//! Random worlds, small but with everything that distances of worlds compare.
 
 use driftworld::spec::{Color, MotionModel, Object, Stimulus, World, WorldDraft};
 use proptest::prelude::*;
 
-/// The most objects of a drawn world.
+/// Most objects in a random world.
 pub(crate) const MOST_OBJECTS: usize = 6;
 
-/// A class of which no drawn world has an object.
+/// A class that no random world contains.
 pub(crate) const OTHER_CLASS: &str = "lamp";
 
 fn stimuli() -> impl Strategy<Value = Vec<Stimulus>> {
@@ -18,7 +18,7 @@ fn place() -> impl Strategy<Value = [f64; 2]> {
     prop::array::uniform2(-20.0..20.0_f64)
 }
 
-/// Drawn objects of two classes.
+/// Random objects of two classes.
 pub(crate) fn objects() -> impl Strategy<Value = Object> {
     let looks = (
         prop::sample::select(vec!["tree", "pot"]),
@@ -44,7 +44,7 @@ pub(crate) fn objects() -> impl Strategy<Value = Object> {
     })
 }
 
-/// Drawn worlds.
+/// Random worlds.
 pub(crate) fn worlds() -> impl Strategy<Value = World> {
     let agent = (
         place(),

@@ -1,6 +1,4 @@
-//! What an audit found of distances by parameters, each with the answer that there was. What it found of worlds is in
-//! `findings_of_worlds.rs`, of lists of variants and of what can be reached from the command in `tests/command/`, of
-//! labels that are opinions in `tests/builtin_tasks.rs` and `src/elements/tests.rs`.
+//! Findings of an audit of distances by parameters, each with the former answer.
 
 use std::sync::Arc;
 
@@ -36,10 +34,10 @@ fn apart(a: &Variant, b: &Variant) -> f64 {
         .total
 }
 
-/// A parameter that is the same in both and used nowhere made 0.1194 into 0.0895, and four randomized ones beside one
-/// change of sign made an R of 1.0 into 0.2.
+/// A parameter that is the same in both and used nowhere changed 0.1194 into 0.0895, and four randomized ones beside one change
+/// of sign changed an R of 1.0 into 0.2.
 #[test]
-fn what_is_the_same_in_both_dilutes_nothing() {
+fn equal_parameters_do_not_dilute_the_distance() {
     let mut task = json!({ "name": "t", "parameters": {
         "pay": { "role": "variant", "type": "number", "affects": ["R"], "range": [-100, 100], "default": 100 } },
         "variants": { "a": {}, "b": { "pay": -100 } } });
@@ -54,9 +52,9 @@ fn what_is_the_same_in_both_dilutes_nothing() {
     }
 }
 
-/// Two normal distributions with means 1 apart were 0.143 apart, and 0.001 as soon as a third variant stood at 1000.
+/// Two normal distributions with means 1 apart were 0.143 apart, and 0.001 as soon as a third variant had a mean of 1000.
 #[test]
-fn the_scale_is_that_of_what_is_declared_and_not_of_what_other_variants_are() {
+fn scale_depends_on_declarations_and_not_on_other_variants() {
     let mut task = json!({ "name": "t", "parameters": {
         "mean": { "role": "variant", "type": "number", "affects": ["S"], "range": [0, 1000], "default": 0 },
         "x": { "role": "randomized", "type": "number", "affects": ["S"],
@@ -68,10 +66,10 @@ fn the_scale_is_that_of_what_is_declared_and_not_of_what_other_variants_are() {
     assert!((between(&load(&task), "a", "far").total - 1.0).abs() < 1e-12);
 }
 
-/// As above, by what the defaults are: where they break a requirement, the ends that can be had were those beside the
-/// first variant that stands in the document, so that the number of a pair hung on which variant that is.
+/// As above, depending on the defaults: if they break a requirement, the feasible ends were those beside the document's first
+/// variant, so that the distance of a pair depended on which variant that is.
 #[test]
-fn the_scale_does_not_hang_on_the_first_variant_where_the_defaults_break_a_requirement() {
+fn scale_does_not_depend_on_the_first_variant_if_defaults_break_a_requirement() {
     let task = |variants: Json| {
         load(&json!({ "name": "t", "parameters": {
             "most": { "role": "variant", "type": "number", "affects": ["S"], "range": [1, 10], "default": 1 },
@@ -92,10 +90,10 @@ fn the_scale_does_not_hang_on_the_first_variant_where_the_defaults_break_a_requi
     assert!((drawn.normalised - 1.0 / 9.0).abs() < 1e-12, "{drawn:#?}");
 }
 
-/// As above, where a number of a vector, or of a choice, is what a distribution is drawn by: the ends of these were
-/// left out, so that 1 was a metre, or the width at the default.
+/// As above, if a distribution depends on a number of a vector, or on a choice: these ends were ignored, so that 1 was a metre,
+/// or the width at the default.
 #[test]
-fn the_scale_is_of_all_that_a_distribution_is_drawn_by() {
+fn scale_covers_everything_that_a_distribution_reads() {
     let uniform = |high: Json| json!({ "uniform": { "low": 0, "high": high } });
     let parts = |task: Json, a: &str, b: &str| {
         let found = between(&load(&task), a, b);
@@ -121,9 +119,9 @@ fn the_scale_is_of_all_that_a_distribution_is_drawn_by() {
     assert_eq!(parts(by_choice, "c", "d"), [("law".to_owned(), 0.0)]);
 }
 
-/// No finding, but it may become one: of more than 24 distributions the widest pair is looked for from the first.
+/// A possible finding: among more than 24 distributions, the search for the widest pair starts at the first.
 #[test]
-fn the_scale_does_not_hang_on_the_order_of_parameters() {
+fn scale_does_not_depend_on_the_order_of_parameters() {
     let task = |is_reversed: bool| {
         let ends = ["a", "b", "c", "d", "e"];
         let mut names = ends.to_vec();
@@ -152,10 +150,10 @@ fn the_scale_does_not_hang_on_the_order_of_parameters() {
     );
 }
 
-/// `vary find_objects#blue --element T --distance 0.5` answered `reach 20, hold 10`, and nothing reads `reach` of what
-/// is set off by contact; 15 of 125 answers for built-in variants were such.
+/// `vary find_objects#blue --element T --distance 0.5` answered `reach 20, hold 10`, and nothing reads `reach` of objects that
+/// are triggered by contact; 15 of 125 answers for built-in variants were of this kind.
 #[test]
-fn no_distance_is_made_of_what_nothing_reads() {
+fn unread_parameters_make_no_distance() {
     let from = built_in("find_objects#blue");
     let measured = measure(from.task());
     let in_transition = |other: &Variant| {
@@ -183,9 +181,9 @@ fn no_distance_is_made_of_what_nothing_reads() {
     assert_eq!(moved("select_object", &[("drift", 4.0)]), 0.0);
 }
 
-/// As above, by way of a draw: a parameter that is said to be idle counted by what the distribution makes of it.
+/// As above, through a distribution: a parameter declared idle counted through its effect on the distribution.
 #[test]
-fn what_nothing_reads_counts_nothing_by_way_of_a_draw() {
+fn unread_parameters_do_not_count_through_distributions() {
     let task = load(&json!({ "name": "t", "parameters": {
         "moves": { "role": "variant", "type": "boolean", "affects": ["T"], "choices": [false, true], "default": false },
         "fastest": { "role": "variant", "type": "number", "affects": ["T"], "range": [1, 9], "default": 1, "read_if": "moves" },
@@ -197,9 +195,9 @@ fn what_nothing_reads_counts_nothing_by_way_of_a_draw() {
     assert!((between(&task, "b", "d").total - 2.0).abs() < 1e-12);
 }
 
-/// `compare.measure` of a placement took five names, and all of them gave planar Wasserstein-2.
+/// `compare.measure` of a placement accepted five names, and all of them gave planar Wasserstein-2.
 #[test]
-fn a_declared_measure_of_a_placement_is_used_or_refused() {
+fn declared_measure_of_a_placement_is_used_or_refused() {
     let text = |name: &str| {
         let disc = |radius: f64| json!({ "disc": { "center": [0, 0], "radius": radius } });
         let gaussian = json!({ "gaussian": { "mean": [3, 0], "std": 1 } });
@@ -225,10 +223,10 @@ fn a_declared_measure_of_a_placement_is_used_or_refused() {
     }
 }
 
-/// Laws that were 0 apart in a measure that is called a metric: places that keep 1 m or 10 m between them, places in
-/// turn or at random, shares that are all or nothing or always alike.
+/// Different distributions were 0 apart in a measure that claims to be a metric: places that keep 1 m or 10 m between them,
+/// places in turn or at random, shares that are all or nothing or always alike.
 #[test]
-fn unlike_laws_are_not_0_apart() {
+fn different_distributions_are_not_0_apart() {
     let poisson =
         |distance: f64| json!({ "poisson_disc": { "low": [-20, -20], "high": [20, 20], "distance": distance } });
     let points = |order: &str| json!({ "points": { "values": [[0, 0], [3, 4], [9, 9]], "order": order } });

@@ -1,4 +1,4 @@
-//! What an audit found of distances by worlds, each with the answer that there was.
+//! Findings of an audit of distances by worlds, each with the former answer.
 
 use driftworld::generator::Sampler;
 use driftworld::similarity::{Distance, Weights, world_distance, world_sets_distance};
@@ -27,10 +27,10 @@ fn drawn(name: &str, index: u64) -> World {
         .unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// A full reversal of all pay was an R of 0.048, since five other parts of the reward were 0; and it was as far as many
-/// lesser changes.
+/// A full reversal of all pay gave an R of 0.048, because five other parts of the reward were 0; many smaller changes were as
+/// far.
 #[test]
-fn the_reverse_of_all_pay_is_not_diluted() {
+fn reversal_of_all_pay_is_not_diluted() {
     let pays = |sign: f64| {
         world(|world| {
             world
@@ -45,10 +45,10 @@ fn the_reverse_of_all_pay_is_not_diluted() {
     assert_eq!(d(&a, &b).total, 6.0);
 }
 
-/// Red in the north that pays and blue in the south that costs, against the two places swapped: 0 in every element, for
-/// places, colours and rewards were compared apart from each other.
+/// Red in the north that pays and blue in the south that costs, against the two places swapped: 0 in every element, because
+/// places, colours and rewards were compared separately.
 #[test]
-fn opposite_worlds_are_apart() {
+fn opposite_worlds_differ() {
     let worlds = |red: f64| {
         world(|world| {
             world
@@ -57,14 +57,14 @@ fn opposite_worlds_are_apart() {
         })
     };
     let found = d(&worlds(10.0), &worlds(-10.0));
-    // Whichever are taken for each other: two that are 20 m apart, or two of other colours and 20 points.
+    // Whichever are matched: two that are 20 m apart, or two of different colours and 20 points.
     assert!(found.total > 0.5, "{found:#?}");
     assert!(found.total >= 2.0 * 20.0 / 100.0);
 }
 
 /// The same objects in another order in the file were up to 0.037 apart.
 #[test]
-fn equal_worlds_in_another_order_are_0_apart() {
+fn reordered_objects_are_0_apart() {
     for (task, _) in tasks::BUILT_IN {
         for variant in tasks::variants(task).unwrap_or_else(|error| panic!("{error}")) {
             let sampler = Sampler::new(&variant, 3);
@@ -80,9 +80,9 @@ fn equal_worlds_in_another_order_are_0_apart() {
     }
 }
 
-/// As above, of walls and of regions of the map, which are compared with each other as they are listed.
+/// As above, for walls and regions of the map, which were compared in listed order.
 #[test]
-fn walls_and_regions_in_another_order_are_0_apart() {
+fn reordered_walls_and_regions_are_0_apart() {
     let polygon = |x: f64| vec![[x, 10.0], [x + 2.0, 10.0], [x + 1.0, 14.0]];
     let listed = |xs: [f64; 3]| {
         world(|world| {
@@ -100,9 +100,9 @@ fn walls_and_regions_in_another_order_are_0_apart() {
     assert!(d(&listed([-20.0, 12.0, 20.0]), &listed([20.0, -20.0, 12.5])).total > 0.0);
 }
 
-/// Eight barrels that cost 100 each: R = 0, and −50 or −5000 alike; from a to b of the paper's Figure 4: R = 0.
+/// Eight barrels that cost 100 each: R = 0, and the same for −50 or −5000; from a to b of the paper's Figure 4: R = 0.
 #[test]
-fn added_costs_are_seen() {
+fn added_costs_count() {
     let park = drawn("find_objects#blue", 0);
     let barrels = |reward: f64| {
         let more = park.clone().edit(|world| {
@@ -131,8 +131,8 @@ fn added_costs_are_seen() {
     );
 }
 
-/// Yes or no where there is a magnitude: speeds of 2 and 2.001 were as far apart as 2 and 20, fog of 60 and 59 m as 60
-/// and 2, sizes of 1 and 1.0001 as 1 and 10; a map of 100 by 50 m was one of 50 by 100.
+/// Magnitudes were compared as equal or not: speeds of 2 and 2.001 were as far apart as 2 and 20, fog of 60 and 59 m as 60 and
+/// 2, sizes of 1 and 1.0001 as 1 and 10; a map of 100 by 50 m equalled one of 50 by 100.
 #[test]
 fn magnitudes_are_graded() {
     type Change = fn(&mut WorldDraft, f64);
@@ -198,7 +198,7 @@ fn magnitudes_are_graded() {
     assert_eq!(d(&sized([100.0, 50.0]), &sized([50.0, 100.0])).total, 1.0);
 }
 
-/// A tree that was moved by 4 mm over a cell's border was as far as one that was moved to another cell.
+/// A tree that was moved by 4 mm over a cell's border was as far as one moved to another cell.
 #[test]
 fn places_have_no_borders() {
     let tree = |x: f64| world(|world| world.objects.push(Object::new("tree", [x, 1.0])));

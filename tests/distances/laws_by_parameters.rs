@@ -1,4 +1,4 @@
-//! The laws of distances by parameters, over drawn specs. Over the built-in tasks they are in `built_in.rs`.
+//! Laws of distances by parameters, for random specs.
 
 use driftworld::similarity::{Distance, VariantMeasure, Weights};
 use driftworld::spec::{DEFAULT_VARIANT, Element, TaskSpec, Variant};
@@ -13,13 +13,13 @@ pub(crate) fn measure(task: &Arc<TaskSpec>) -> VariantMeasure {
     VariantMeasure::new(task, Weights::of_task(task))
 }
 
-/// A distance's numbers, without the parts that are 0: those say which parameters there are.
+/// A distance's numbers, without parts that are 0, which depend on the list of parameters.
 pub(crate) fn numbers(distance: &Distance) -> (f64, Vec<(Element, f64)>) {
     let elements = Element::ALL.map(|element| (element, distance.element(element).unwrap_or(0.0)));
     (distance.total, elements.to_vec())
 }
 
-/// Whether two distances are the same but for the order in which their parts were added.
+/// Whether two distances are equal except for the order in which their parts were added.
 pub(crate) fn are_close(a: &Distance, b: &Distance) -> bool {
     let ((a, mine), (b, theirs)) = (numbers(a), numbers(b));
     let near = |a: f64, b: f64| (a - b).abs() <= 1e-12 * (1.0 + a.abs());
@@ -42,8 +42,8 @@ fn ends(parameter: &Json) -> [Json; 2] {
     [end(0), end(1)]
 }
 
-/// The same task told otherwise: parameters in the reverse order, other variants beside the two, at the ends of
-/// everything that is declared, and other names.
+/// The same task written differently: parameters in reverse order, other variants beside the two, at the ends of all declared
+/// ranges, and other names.
 fn retold(spec: &Spec, a: &str, b: &str) -> Spec {
     let parameters = spec.0["parameters"].as_object().expect("it is an object");
     let mut low = Map::new();
@@ -77,7 +77,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: crate::tier::quick_or_full(24, 128), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn the_number_is_the_sum_that_the_document_gives(spec in specs()) {
+    fn number_is_the_documented_sum(spec in specs()) {
         let task = spec.task();
         let measure = measure(&task);
         for (a, b) in pairs(&variants(&task)) {
@@ -93,7 +93,7 @@ proptest! {
     }
 
     #[test]
-    fn the_distance_of_a_pair_is_its_own(spec in specs(), a in prop::sample::select(NAMES.to_vec()), b in prop::sample::select(NAMES.to_vec())) {
+    fn distance_depends_on_the_pair_alone(spec in specs(), a in prop::sample::select(NAMES.to_vec()), b in prop::sample::select(NAMES.to_vec())) {
         let (task, other) = (spec.task(), retold(&spec, a, b).task());
         let named = |task: &Arc<TaskSpec>, name: &str| task.variant(name).expect("it is declared");
         let first = measure(&task).between(&named(&task, a), &named(&task, b)).expect("they are of one task");
@@ -102,7 +102,7 @@ proptest! {
     }
 
     #[test]
-    fn one_is_a_parameter_moved_over_its_whole_declared_range(spec in specs()) {
+    fn full_range_of_a_parameter_is_1(spec in specs()) {
         let task = spec.task();
         let base = task.variant(DEFAULT_VARIANT).expect("the defaults keep the requirement");
         let measure = measure(&task);
@@ -132,7 +132,7 @@ proptest! {
     }
 
     #[test]
-    fn what_nothing_reads_counts_nothing(spec in specs()) {
+    fn unread_parameters_do_not_count(spec in specs()) {
         let task = spec.task();
         let measure = measure(&task);
         for variant in variants(&task) {
@@ -156,7 +156,7 @@ proptest! {
     }
 
     #[test]
-    fn it_keeps_the_laws_that_it_says_it_keeps(spec in specs()) {
+    fn declared_laws_hold(spec in specs()) {
         let task = spec.task();
         let (measure, all) = (measure(&task), variants(&task));
         let d = |a: &Variant, b: &Variant| measure.between(a, b).expect("they are of one task");
@@ -179,7 +179,7 @@ proptest! {
     }
 
     #[test]
-    fn a_number_that_goes_on_goes_no_less_far(spec in specs(), mut at in prop::array::uniform3(0_u32..=64)) {
+    fn moving_a_number_further_never_reduces_the_distance(spec in specs(), mut at in prop::array::uniform3(0_u32..=64)) {
         at.sort_unstable();
         let task = spec.task();
         let measure = measure(&task);
@@ -196,7 +196,7 @@ proptest! {
             let [Some(a), Some(b), Some(c)] = &moved else { continue };
             let d = |a: &Variant, b: &Variant| measure.between(a, b).expect("they are of one task").total;
             prop_assert!(d(a, b) <= d(a, c) && d(b, c) <= d(a, c), "{name}");
-            // Along a line distances add up.
+            // Distances add up along a line.
             prop_assert!((d(a, b) + d(b, c) - d(a, c)).abs() < 1e-9, "{name}");
         }
     }
@@ -206,7 +206,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: crate::tier::quick_or_full(24, 64), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn what_is_equal_on_both_sides_dilutes_nothing(spec in specs(), affects in prop::sample::subsequence(vec!["S", "A", "T", "R", "O"], 1..=5)) {
+    fn equal_parameters_do_not_dilute_the_distance(spec in specs(), affects in prop::sample::subsequence(vec!["S", "A", "T", "R", "O"], 1..=5)) {
         let plain = spec.task();
         let all_variants = variants(&plain);
         let more = [

@@ -1,4 +1,4 @@
-//! The laws of distances by worlds: over drawn worlds, and over worlds of the built-in tasks.
+//! Laws of distances by worlds: for random worlds, and for worlds of the built-in tasks.
 
 use std::sync::LazyLock;
 
@@ -15,8 +15,7 @@ static VARIANTS: LazyLock<Vec<Variant>> = LazyLock::new(|| {
     tasks::BUILT_IN.iter().flat_map(of).collect()
 });
 
-/// Worlds that the generator draws of the built-in tasks: some variant's, and of the first of its task under the same
-/// seed.
+/// Pairs of worlds of the built-in tasks: one of some variant, and one of its task's first variant under the same seed.
 fn built_in() -> impl Strategy<Value = (World, World)> {
     (0..VARIANTS.len(), 0..4_u64).prop_map(|(index, seed)| {
         let variant = &VARIANTS[index];
@@ -56,7 +55,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: crate::tier::quick_or_full(24, 128), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn the_order_of_objects_and_names_change_no_number((a, b) in any_two(), keys in prop::collection::vec(any::<u32>(), 60)) {
+    fn object_order_and_names_do_not_matter((a, b) in any_two(), keys in prop::collection::vec(any::<u32>(), 60)) {
         let shuffled = with(&b, |objects| {
             let mut keyed: Vec<(u32, Object)> = keys.iter().cycle().copied().zip(objects.drain(..)).collect();
             keyed.sort_by_key(|(key, _)| *key);
@@ -71,7 +70,7 @@ proptest! {
     }
 
     #[test]
-    fn what_is_equal_on_both_sides_changes_no_number((a, b) in any_two(), object in objects(), is_other in any::<bool>()) {
+    fn equal_objects_do_not_matter((a, b) in any_two(), object in objects(), is_other in any::<bool>()) {
         let mut object = object;
         if is_other {
             OTHER_CLASS.clone_into(&mut object.class);
@@ -79,12 +78,12 @@ proptest! {
         let more = |world: &World| with(world, |objects| objects.push(object.clone()));
         let (apart, still) = (d(&a, &b), d(&more(&a), &more(&b)));
         let near = |a: f64, b: f64| (a - b).abs() <= 1e-12 * (1.0 + a);
-        // Of objects at equal costs those are matched that pay alike: a detour by the new one is no cheaper.
+        // At equal costs, objects with equal pay are matched: a detour by the new one is no cheaper.
         prop_assert!(near(apart.total, still.total), "{apart:#?} and {still:#?}");
     }
 
     #[test]
-    fn objects_that_change_what_they_pay_are_apart((world, _) in any_two(), first in any::<prop::sample::Index>(), second in any::<prop::sample::Index>()) {
+    fn swapped_pay_differs((world, _) in any_two(), first in any::<prop::sample::Index>(), second in any::<prop::sample::Index>()) {
         let paid: Vec<usize> = (0..world.objects.len()).filter(|index| is_paid(&world.objects[*index])).collect();
         prop_assume!(paid.len() >= 2);
         let (i, j) = (*first.get(&paid), *second.get(&paid));
@@ -98,7 +97,7 @@ proptest! {
     }
 
     #[test]
-    fn no_change_of_signs_is_more_reward_than_the_reverse_of_all((world, _) in any_two(), signs in prop::collection::vec(any::<bool>(), 60)) {
+    fn partial_sign_change_is_at_most_the_full_reversal((world, _) in any_two(), signs in prop::collection::vec(any::<bool>(), 60)) {
         let signed = |flips: &dyn Fn(usize) -> bool| d(&world, &with(&world, |objects| {
             for (index, object) in objects.iter_mut().enumerate() {
                 object.reward *= if flips(index) { -1.0 } else { 1.0 };
@@ -112,7 +111,7 @@ proptest! {
     }
 
     #[test]
-    fn what_nothing_reads_counts_nothing((world, other) in any_two(), more in 1.0..9.0_f64) {
+    fn unread_fields_do_not_count((world, other) in any_two(), more in 1.0..9.0_f64) {
         let idle = with(&world, |objects| {
             for object in objects {
                 if !is_paid(object) {
@@ -129,7 +128,7 @@ proptest! {
     }
 
     #[test]
-    fn a_change_of_one_number_is_graded((world, _) in any_two(), near in 0.01..0.4_f64, far in 0.6..0.9_f64) {
+    fn changes_of_one_number_are_graded((world, _) in any_two(), near in 0.01..0.4_f64, far in 0.6..0.9_f64) {
         type Change = fn(&mut driftworld::spec::WorldDraft, f64);
         let changes: [Change; 8] = [
             |world, share| world.agent_params.max_linear_speed *= 1.0 - share,

@@ -1,4 +1,5 @@
-//! Distances of tasks with look-ups: by parameters they are those of the cases, and what is coupled to a draw still counts.
+//! Distances of tasks with look-ups: by parameters they equal those of the cases, and what depends on a random draw still
+//! counts.
 
 use driftworld::similarity::{Distance, VariantMeasure, Weights};
 use driftworld::spec::{Element, TaskSpec};
@@ -7,7 +8,7 @@ use serde_json::{Value as Json, json};
 
 use super::laws_by_parameters::numbers;
 
-/// How far `a` and `b` are apart where `pay` is drawn as given and `mode` is declared as given.
+/// The distance of `a` and `b` with these declarations of `pay` and `mode`.
 fn apart(mode: &Json, b: &Json, pay: &Json) -> Distance {
     let text = json!({
         "version": 2, "name": "t",
@@ -39,9 +40,9 @@ fn laws() -> impl Strategy<Value = Json> {
 }
 
 proptest! {
-    /// A look-up over a variant parameter is compared as a parameter of type distribution with the same two values is.
+    /// A look-up over a variant parameter is compared like a parameter of type distribution with the same two values.
     #[test]
-    fn a_look_up_over_a_variant_parameter_is_as_far_as_its_cases(near in laws(), far in laws()) {
+    fn look_up_over_a_variant_parameter_equals_its_cases(near in laws(), far in laws()) {
         prop_assume!(near != far);
         let looked_up = json!({ "case": { "param": "mode" }, "of": { "near": near, "far": far } });
         let law = json!({ "role": "variant", "type": "distribution", "affects": ["T"], "choices": [near, far], "default": near });
@@ -51,9 +52,9 @@ proptest! {
         prop_assert_eq!(one.element(Element::T).unwrap_or(0.0), 0.0);
     }
 
-    /// What a look-up makes of a draw is compared as the mixture of the cases, and the variant parameter by itself.
+    /// A look-up over a random draw is compared as the mixture of the cases, and the variant parameter by itself.
     #[test]
-    fn a_look_up_over_a_draw_is_as_far_as_its_mixtures(numbers in prop::array::uniform4(-9..9i32)) {
+    fn look_up_over_a_draw_equals_its_mixtures(numbers in prop::array::uniform4(-9..9i32)) {
         let [a, b, c, d] = numbers;
         let looked_up = json!({ "case": { "param": "mode" }, "of": {
             "near": { "case": { "param": "cue" }, "of": { "red": a, "blue": b } },
@@ -67,9 +68,9 @@ proptest! {
     }
 }
 
-/// Which cue pays turns round, and each by itself pays as often: the two are apart all the same.
+/// The rewarding cue is reversed, while each cue pays equally often: the two still differ.
 #[test]
-fn what_goes_with_what_counts_by_the_parameter_that_says_it() {
+fn dependence_on_a_draw_counts_by_its_parameter() {
     let either = |red, blue| json!({ "case": { "param": "cue" }, "of": { "red": red, "blue": blue } });
     let pay = json!({ "case": { "param": "mode" }, "of": { "near": either(1, -1), "far": either(-1, 1) } });
     assert!(apart(&mode(), &json!("far"), &pay).total >= 1.0);

@@ -1,5 +1,5 @@
-//! The distance of two drawn worlds by the units of `docs/reference/comparison.md`, with every way to match their
-//! objects tried: nothing here is `similarity`'s.
+//! Computes the distance of two random worlds by the units in `docs/reference/comparison.md`, trying every matching of their
+//! objects, without using `similarity`.
 
 use driftworld::similarity::{Weights, world_distance};
 use driftworld::spec::{MotionModel, Object, Stimulus, World};
@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use super::by_hand::oklab;
 use super::drawn_worlds::worlds;
 
-/// What keeps what is paid from deciding which objects are matched, unless all else is alike.
+/// Weight of pay in the matching: it only breaks ties.
 const TIE_BREAK: f64 = 1e-9;
 
 /// The difference of two numbers over the larger one.
@@ -35,13 +35,13 @@ fn color(a: [f64; 3], b: [f64; 3]) -> f64 {
     a.iter().zip(&b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
 }
 
-/// How many words have to be changed, added or taken away to make one set of the other.
+/// How many words have to be changed, added or removed to turn one set into the other.
 fn words(a: &[Stimulus], b: &[Stimulus]) -> f64 {
     let lacking = |a: &[Stimulus], b: &[Stimulus]| a.iter().filter(|one| !b.contains(one)).count();
     lacking(a, b).max(lacking(b, a)) as f64
 }
 
-/// A key that matters in one of two only counts 1.
+/// A key that matters in only one of the two counts 1.
 fn read(a: Option<f64>, b: Option<f64>) -> f64 {
     a.zip(b).map_or_else(|| word(&a, &b), |(a, b)| relative(a, b))
 }
@@ -54,7 +54,7 @@ fn reward(object: &Object) -> f64 {
     if is_paid(object) { object.reward } else { 0.0 }
 }
 
-/// What two objects that are matched are apart in all but what they pay, and in that.
+/// The difference of two matched objects in everything except pay, and in pay.
 fn apart(a: &Object, b: &Object) -> (f64, f64) {
     let reach = |object: &Object| {
         let is_read = [&object.reward_stimulus, &object.destroy_stimulus]
@@ -96,10 +96,10 @@ fn apart(a: &Object, b: &Object) -> (f64, f64) {
     (all, (reward(a) - reward(b)).abs() / 100.0 + (odds(a) - odds(b)).abs())
 }
 
-/// The cheapest match of the fewer objects with the more: its cost by which it is chosen, and all that it counts.
+/// The cheapest matching of the fewer objects with the more: the cost that selects it, and its total contribution.
 fn matched(fewer: &[&Object], more: &[&Object]) -> (f64, f64) {
     let Some((first, rest)) = fewer.split_first() else {
-        // What is left over: its presence, its looks, its reward.
+        // Unmatched objects: presence, looks, reward.
         let left = more.iter().map(|object| 2.0 + reward(object).abs() / 100.0);
         return (0.0, left.sum());
     };
@@ -158,7 +158,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: crate::tier::quick_or_full(24, 256), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn the_number_is_that_of_the_cheapest_of_all_matches(a in worlds(), b in worlds()) {
+    fn distance_is_that_of_the_cheapest_matching(a in worlds(), b in worlds()) {
         let found = world_distance(&a, &b, &Weights::default());
         let expected = by_hand(&a, &b);
         // A limit is compared to the microsecond.

@@ -1,11 +1,11 @@
-//! A measure that a task declares for a parameter is used, or refused when the task loads, with the measures that fit.
+//! A measure that a task declares for a parameter is used, or refused on loading with a list of suitable ones.
 
 use driftworld::similarity::VariantMeasure;
 use driftworld::similarity::Weights;
 use driftworld::spec::{DEFAULT_VARIANT, TaskSpec};
 use serde_json::{Value as Json, json};
 
-/// Every measure that the schema of tasks names.
+/// Every measure named in the task schema.
 fn names() -> Vec<String> {
     let path = format!("{}/schemas/task.schema.json", env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
@@ -22,8 +22,8 @@ fn names() -> Vec<String> {
     names
 }
 
-/// A parameter of every type and of every kind of draw, and another value of it. Those that are drawn take another
-/// value by the parameter `to`.
+/// A parameter of every type and of every kind of distribution, and another value of it. Random ones change through the
+/// parameter `to`.
 fn parameters() -> Vec<(&'static str, Json, Json)> {
     let variant = |kind: &str, domain: [&str; 1], values: Json, default: Json| {
         let mut one = json!({ "role": "variant", "type": kind, "affects": ["O"], "default": default });
@@ -67,7 +67,7 @@ fn parameters() -> Vec<(&'static str, Json, Json)> {
 }
 
 #[test]
-fn a_declared_measure_is_used_or_refused_with_those_that_fit() {
+fn declared_measure_is_used_or_refused_with_suitable_ones() {
     for (of, parameter, other) in parameters() {
         let mut used = Vec::new();
         for name in names() {

@@ -1,6 +1,5 @@
-//! The laws of distances (`docs/similarity.md`), over the built-in tasks, over drawn specs and over drawn worlds; and
-//! the findings of the audit that the laws come from, a test for each. What single measures are is tested in
-//! `similarity`.
+//! Laws of distances (`docs/similarity.md`), for the built-in tasks, random specs and random worlds; and the audit findings
+//! that led to them, one test each.
 
 mod built_in;
 mod by_hand;

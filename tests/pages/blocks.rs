@@ -1,11 +1,11 @@
-//! The fenced blocks of a page: language, marks, text. What is done with them stands elsewhere.
+//! Parses the fenced blocks of a page: language, marks, text.
 
-/// What stands between two fences.
+/// The contents of a fenced block.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Block {
-    /// The first word behind the fence.
+    /// The first word after the fence.
     pub(crate) language: String,
-    /// The words behind it, such as `output` or `file=my_task.json`.
+    /// The further words, such as `output` or `file=my_task.json`.
     pub(crate) marks: Vec<String>,
     /// With a line end after each line.
     pub(crate) text: String,
@@ -18,14 +18,14 @@ impl Block {
         self.marks.iter().any(|found| found == mark)
     }
 
-    /// The file that the page tells its reader to save it as.
+    /// The file name under which the page tells its reader to save it.
     pub(crate) fn file(&self) -> Option<&str> {
         self.marks.iter().find_map(|mark| mark.strip_prefix("file="))
     }
 }
 
-/// Every block of a page, in order. What stands in a comment `<!-- prepare` is a block as well: commands that make what
-/// the page takes for granted, such as logs of its reader's own.
+/// Every block of a page, in order. A comment `<!-- prepare` is a block as well: commands that make what the page assumes, such
+/// as the reader's own logs.
 pub(crate) fn blocks(page: &str) -> Vec<Block> {
     let mut blocks: Vec<Block> = Vec::new();
     let mut open: Option<Block> = None;

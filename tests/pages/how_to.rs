@@ -1,4 +1,4 @@
-//! The short answers are as many as the book says, each with something that runs.
+//! The short answers are as many as the book says, each with something that can be run.
 
 use super::blocks::blocks;
 use super::{all_pages, read};
@@ -6,7 +6,7 @@ use super::{all_pages, read};
 const FOLDER: &str = "docs/how-to/";
 const FEWEST: usize = 40;
 
-/// What a heading is called in links: small letters, hyphens for spaces, no marks.
+/// The anchor of a heading in links: lower case, hyphens for spaces, no punctuation.
 fn anchor(heading: &str) -> String {
     let kept = heading.to_lowercase();
     let kept: String = kept
@@ -17,7 +17,7 @@ fn anchor(heading: &str) -> String {
 }
 
 #[test]
-fn the_index_has_every_question() {
+fn index_has_every_question() {
     let index = read(&format!("{FOLDER}README.md"));
     let mut listed = index.lines().filter(|line| line.starts_with("- ["));
     for section in index.split("\n## [").skip(1) {
@@ -41,7 +41,7 @@ fn the_index_has_every_question() {
 }
 
 #[test]
-fn every_answer_has_a_block_that_runs() {
+fn every_answer_has_a_runnable_block() {
     let mut answers = 0;
     for page in all_pages()
         .into_iter()

@@ -1,6 +1,6 @@
-//! Every block of the book's pages runs: commands in a shell, with the output that the page shows; documents are read.
-//! Blocks of Rust are tests of documentation, blocks of Python run in `python/tests/test_readme.py`; that they do is
-//! checked here. Links are checked when the book is built.
+//! Every block of the book's pages is tested: commands run in a shell, with the output that the page shows; documents are
+//! parsed. Blocks of Rust are doc tests, blocks of Python run in `python/tests/test_readme.py`; this is checked here. The
+//! book's build checks links.
 #![cfg(unix)]
 #![expect(clippy::unwrap_used, reason = "a test fails where it is wrong")]
 
@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 
 use blocks::{Block, blocks};
 
-/// One test for each page with commands; and the list of them.
+/// One test per page with commands; and the list of them.
 macro_rules! pages {
     ($($test:ident: $page:literal,)*) => {
         $(#[test]
@@ -47,7 +47,7 @@ pages! {
     worlds_run: "docs/worlds.md",
 }
 
-/// Blocks of commands marked `by-hand`: how many a page has, and who runs them if not this test.
+/// Blocks of commands marked `by-hand`: the number on a page, and who else runs them.
 const BY_HAND: &[(&str, usize, &str)] = &[
     ("README.md", 2, ".ci/run, and the stage `wheel`"),
     ("docs/benchmarks.md", 8, "benches: the stage `benches`"),
@@ -64,7 +64,7 @@ const BY_HAND: &[(&str, usize, &str)] = &[
     ("docs/similarity.md", 1, "minutes: six matrices of 38 variants"),
 ];
 
-/// Pages whose Rust is included into a crate, where it is a test of documentation.
+/// Pages whose Rust is included into a crate as doc tests.
 const WITH_RUST: &[(&str, &str)] = &[
     ("docs/rust.md", "src/lib.rs"),
     ("docs/metrics.md", "metrics/src/lib.rs"),
@@ -74,7 +74,7 @@ fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// README.md and every page of `docs/`, from the root, in order.
+/// README.md and every page of `docs/`, relative to the root, in order.
 fn all_pages() -> Vec<String> {
     fn gather(folder: &Path, pages: &mut Vec<String>) {
         for entry in std::fs::read_dir(folder).unwrap() {
@@ -106,7 +106,7 @@ fn names(list: impl IntoIterator<Item = &'static str>) -> BTreeSet<String> {
 }
 
 #[test]
-fn every_page_with_commands_has_its_test() {
+fn every_page_with_commands_has_a_test() {
     let found = pages_with(|block| block.language == "sh" && !block.has("by-hand"));
     assert_eq!(
         found,
@@ -116,7 +116,7 @@ fn every_page_with_commands_has_its_test() {
 }
 
 #[test]
-fn what_is_not_run_here_is_counted() {
+fn blocks_not_run_here_are_counted() {
     let by_hand = |block: &Block| block.language == "sh" && block.has("by-hand");
     for page in all_pages() {
         let count = blocks(&read(&page)).iter().filter(|block| by_hand(block)).count();
@@ -128,9 +128,9 @@ fn what_is_not_run_here_is_counted() {
     }
 }
 
-/// README.md promises two commands and a way to install: these are what CI runs.
+/// README.md promises two commands and an installation: CI runs exactly these.
 #[test]
-fn what_readme_tells_to_run_is_run() {
+fn commands_in_the_readme_are_run() {
     let [first, second] = &blocks(&read("README.md"))[..2] else {
         panic!("README.md has too few blocks")
     };
@@ -146,7 +146,7 @@ fn what_readme_tells_to_run_is_run() {
 }
 
 #[test]
-fn rust_is_a_test_of_documentation() {
+fn rust_blocks_are_doc_tests() {
     let found = pages_with(|block| block.language.starts_with("rust"));
     assert_eq!(
         found,
@@ -163,7 +163,7 @@ fn rust_is_a_test_of_documentation() {
 }
 
 #[test]
-fn blocks_are_of_languages_that_are_run() {
+fn every_block_language_is_tested() {
     for page in all_pages() {
         for block in blocks(&read(&page)) {
             let known = ["sh", "json", "text", "python", "rust", "rust,no_run"].contains(&block.language.as_str());
@@ -172,9 +172,9 @@ fn blocks_are_of_languages_that_are_run() {
     }
 }
 
-/// A document, or a part of one: what stands between the braces of an object.
+/// A document, or a part of one: the contents of an object's braces.
 #[test]
-fn json_can_be_read() {
+fn json_blocks_can_be_parsed() {
     for page in all_pages() {
         for block in blocks(&read(&page)).iter().filter(|block| block.language == "json") {
             let whole = serde_json::from_str::<serde_json::Value>(&block.text);

@@ -1,14 +1,13 @@
-//! The recording of the first hour says what its commands print today: `first_hour_runs` compares them. How it is made is
-//! `book/record.py`'s.
+//! The recording of the first hour matches the commands' current output: `first_hour_runs` compares them.
 
 use super::read;
 
 const CAST: &str = "docs/recordings/first-hour.cast";
 
-/// A command of a recording, and what it left on the screen.
+/// A command of a recording, and its output.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Recorded {
-    /// As a page has it: a line that goes on is indented.
+    /// As on a page: continuation lines are indented.
     pub(crate) command: String,
     /// With a line end after each line.
     pub(crate) output: String,
@@ -19,7 +18,7 @@ pub(crate) fn first_hour() -> Vec<Recorded> {
     commands(&screen(&sent(&read(CAST))))
 }
 
-/// What a terminal was sent, by an asciicast v2.
+/// The output sent to a terminal, from an asciicast v2.
 fn sent(cast: &str) -> String {
     let mut lines = cast.lines();
     let header: serde_json::Value = serde_json::from_str(lines.next().unwrap()).unwrap();
@@ -29,7 +28,7 @@ fn sent(cast: &str) -> String {
     events.into_iter().map(|(_, _, text)| text).collect()
 }
 
-/// The lines of a terminal in the end: letters, line ends, erased lines; colours are left out.
+/// The final lines of a terminal: letters, line ends, erased lines; colours are ignored.
 fn screen(sent: &str) -> Vec<String> {
     let mut lines: Vec<Vec<char>> = vec![Vec::new()];
     let mut column = 0;
@@ -40,7 +39,7 @@ fn screen(sent: &str) -> Vec<String> {
             '\r' => column = 0,
             '\n' => lines.push(Vec::new()),
             '\u{1b}' => {
-                // Colours end with an m.
+                // Colour codes end with an m.
                 if letters.by_ref().find(char::is_ascii_alphabetic) == Some('K') {
                     line.clear();
                 }
@@ -83,7 +82,7 @@ fn commands(screen: &[String]) -> Vec<Recorded> {
 }
 
 #[test]
-fn a_recording_is_read_as_a_terminal_shows_it() {
+fn recording_is_read_as_a_terminal_shows_it() {
     let sent = "(save a: 1 line)\r\n\r\n$ a \\\r\n> -b\r\nbar 1\r\u{1b}[2Kbar 22\r\u{1b}[2K\u{1b}[1mhead\u{1b}[0m\r\n\
                 x\u{1b}[2m\u{1b}[0m\r\n\r\n(save b: 2 lines)\r\n\r\n$ c\r\ny\r\n\r\n";
     let recorded = |command: &str, output: &str| Recorded {

@@ -1,14 +1,15 @@
-//! Runs the commands of a page as its reader would: one block after the other, in a folder of their own in which
-//! `examples/` is the checkout's. A block `sh terminal=KEYS` is run on a terminal on which these keys are pressed, one after each
-//! step that it shows. A block `json file=NAME` or `text file=NAME` is saved; a block `sh fails` must fail; a
-//! block `text output` is what the commands above it print. A block `sh needs=MODULE` is skipped, and what it prints with it,
-//! where `python3`, or the Python that `DRIFTWORLD_PYTHON` names, cannot import the module. A block `sh feature=NAME` wants a build
-//! with that feature: with another it must fail and name the feature; every other block runs in every build.
+//! Runs the commands of a page like a reader: one block after the other, in a separate folder in which `examples/` is the
+//! checkout's. A block `sh terminal=KEYS` runs on a terminal where these keys are pressed, one after each step that it shows. A
+//! block `json file=NAME` or `text file=NAME` is saved; a block `sh fails` must fail; a block `text output` is the output of
+//! the commands above it. A block `sh needs=MODULE` is skipped, together with its output, if `python3`, or the Python in
+//! `DRIFTWORLD_PYTHON`, cannot import the module. A block `sh feature=NAME` needs a build with that feature: without it the
+//! block must fail and name the feature; every other block runs in every build.
 //!
-//! `DRIFTWORLD_COMMAND` names the build that runs them, such as the release build that most readers have; else it is the tests' own.
+//! `DRIFTWORLD_COMMAND` names the build that runs them, such as the release build that most readers have; by default the tests'
+//! own.
 //!
-//! `DRIFTWORLD_UPDATE_PAGES=1` writes what is printed into the page, and copies the pictures that the commands made to where
-//! the page shows them: `sheet.png` is `images/PAGE-sheet.png`. Read the difference before you commit it.
+//! `DRIFTWORLD_UPDATE_PAGES=1` writes the actual output into the page, and copies pictures made by the commands to the place
+//! where the page shows them: `sheet.png` becomes `images/PAGE-sheet.png`. Review the diff before committing.
 
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
@@ -19,10 +20,10 @@ use super::recording::{self, Recorded};
 use super::{read, root};
 use crate::tier::quick_or_full;
 
-/// It stands for whatever was printed there, be it lines or the rest of one.
+/// Stands for any output, either lines or the rest of one.
 const LEFT_OUT: &str = "…";
 
-/// In the quick tier only where the page is to be written anew.
+/// In the quick tier only if the page is to be updated.
 pub(crate) fn run(page: &str) {
     if !quick_or_full(updates(), true) {
         return;
@@ -93,7 +94,7 @@ pub(crate) fn run(page: &str) {
     }
 }
 
-/// Takes the commands of a block off a recording, and compares what they printed.
+/// Takes the commands of a block off a recording, and compares their output.
 fn compare(page: &str, block: &Block, printed: &str, recorded: &mut Vec<Recorded>) {
     let advice = "python book/record.py target/release/driftworld records it anew";
     let (mut commands, mut output) = (String::new(), String::new());
@@ -128,7 +129,7 @@ fn is_skipped(page: &str, block: &Block, folder: &Path) -> bool {
     is_missing
 }
 
-/// The feature that a block wants and the command was built without.
+/// The feature that a block needs but the command lacks.
 fn missing_feature<'a>(block: &'a Block, folder: &Path) -> Option<&'a str> {
     let feature = block.marks.iter().find_map(|mark| mark.strip_prefix("feature="))?;
     let told = command(&["driftworld", "doctor"], folder).output().unwrap().stdout;
@@ -141,17 +142,17 @@ fn updates() -> bool {
     std::env::var_os("DRIFTWORLD_UPDATE_PAGES").is_some()
 }
 
-/// The pictures of a page that its own commands make: the file in their folder, and where the page shows it from.
+/// The pictures of a page that its own commands make: the file in their folder, and its place on the page.
 fn pictures(page: &str, text: &str) -> Vec<(String, String)> {
     let stem = Path::new(page).file_stem().unwrap().to_str().unwrap();
     let prefix = format!("images/{stem}-");
     let places = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
     let own = places.filter_map(|place| Some((place.strip_prefix(&prefix)?.to_owned(), place.to_owned())));
-    // A picture of a page is taken by a browser.
+    // A page's picture is taken by a browser.
     own.filter(|(name, _)| name != "report.png").collect()
 }
 
-/// What a block prints, to both of its outputs; lines have no spaces at their ends.
+/// The output of a block, standard output and error; without trailing spaces.
 fn run_block(page: &str, block: &Block, folder: &Path) -> String {
     let script = format!("exec 2>&1\n{}", block.text);
     let bash = ["bash", "-euo", "pipefail", "-c", &script];
@@ -181,7 +182,7 @@ fn run_block(page: &str, block: &Block, folder: &Path) -> String {
     printed.lines().flat_map(|line| [line.trim_end(), "\n"]).collect()
 }
 
-/// A command that knows ours.
+/// A shell command that finds our binary.
 fn command(words: &[&str], folder: &Path) -> Command {
     let named = std::env::var_os("DRIFTWORLD_COMMAND").map(PathBuf::from);
     let ours = named.unwrap_or_else(|| env!("CARGO_BIN_EXE_driftworld").into());
@@ -201,11 +202,11 @@ fn command(words: &[&str], folder: &Path) -> Command {
     command
 }
 
-/// Runs a command that plays, on a terminal that `script` makes, and presses each key once the step before it is shown.
+/// Runs an interactive command on a terminal made by `script`, and presses each key once the step before it is shown.
 fn on_a_terminal(bash: &[&str], keys: &str, folder: &Path) -> (ExitStatus, String) {
     let sized = format!("stty cols 80 rows 24\n{}", bash[4]);
     let words: Vec<&str> = if cfg!(target_os = "linux") {
-        // It hands its command to a shell as one text.
+        // It passes its command to a shell as one text.
         let names = [
             "script",
             "-qec",
@@ -236,7 +237,7 @@ fn on_a_terminal(bash: &[&str], keys: &str, folder: &Path) -> (ExitStatus, Strin
     }
     let mut rest = Vec::new();
     shown.read_to_end(&mut rest).unwrap();
-    // What the command prints stands behind the picture, which is taken away.
+    // The command's text follows the picture, which is removed.
     let said = String::from_utf8_lossy(&rest).replace('\r', "");
     let said = said
         .rsplit_once("\x1b[?1049l")
@@ -244,7 +245,7 @@ fn on_a_terminal(bash: &[&str], keys: &str, folder: &Path) -> (ExitStatus, Strin
     (child.wait().unwrap(), said)
 }
 
-/// A number with more decimals than anybody reads, such as 100.72999999999999. Lines of JSON are data.
+/// A number with too many decimals to read, such as 100.72999999999999. Lines of JSON are data.
 fn noise(printed: &str) -> Option<&str> {
     let is_part = |letter: char| letter.is_ascii_digit() || letter == '.';
     let lines = printed.lines().filter(|line| !line.contains("\": "));
@@ -254,13 +255,13 @@ fn noise(printed: &str) -> Option<&str> {
 }
 
 #[test]
-fn noise_is_found() {
+fn excessive_decimals_are_found() {
     assert_eq!(noise("reward 100.72999999999999, ended"), Some("100.72999999999999"));
     assert_eq!(noise("reward 100.73 of 5, v1.2.3, 0.12345678."), None);
     assert_eq!(noise("  \"light\": 3.0599365234375\n"), None);
 }
 
-/// Whether a page shows what was printed, apart from what it leaves out. How wide columns are does not matter.
+/// Whether a page matches the output, apart from omissions. Column widths are ignored.
 fn same(shown: &str, printed: &str) -> bool {
     let narrow = |text: &str| {
         let lines = text.lines().map(|line| {
@@ -287,7 +288,7 @@ fn same(shown: &str, printed: &str) -> bool {
 }
 
 #[test]
-fn output_is_what_was_printed_but_for_what_is_left_out() {
+fn output_matches_except_for_omissions() {
     for (shown, is_same) in [
         ("a\nb  b\nc\n", true),
         ("a\n…\nc\n", true),
