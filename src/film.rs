@@ -1,5 +1,4 @@
 //! [`film`]: a recorded episode as a sequence of pictures, and as a file.
-//! once more `env`'s; what a frame shows is decided here.
 
 use std::path::Path;
 

@@ -1,6 +1,4 @@
-//! The choices a user has when a lifetime is scored, with the reference's defaults.
-//!
-//! What each choice does is computed elsewhere: see `preprocess` and `score`.
+//! The options for scoring a lifetime, with the reference's defaults.
 
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
@@ -8,29 +6,29 @@ use serde::{Deserialize, Serialize};
 use crate::MetricsError;
 use crate::choice::choice;
 
-/// Longest smoothing window that may be asked for, in experiences.
+/// Longest smoothing window, in experiences.
 pub const MAX_WINDOW_LENGTH: usize = 10_000;
 
-/// Performances must stay below this magnitude, so that no sum or quotient of them overflows.
+/// Performances must be below this magnitude, so that no sum or quotient of them overflows.
 const MAX_PERFORMANCE: f64 = 1e100;
 
-/// Whether a number is below that in magnitude; NaN is not.
+/// Whether a number is below that in magnitude; false for NaN.
 pub(crate) fn is_bounded(value: f64) -> bool {
     value.abs() < MAX_PERFORMANCE
 }
 
 choice! {
-    /// Whether variants of a task (`find_red`, `find_blue`) are tasks of their own.
+    /// Whether variants of a task (`find_red`, `find_blue`) count as separate tasks.
     VariantMode, "variant mode" {
-        /// Every variant is a task of its own (default).
+        /// Every variant is a separate task (default).
         Aware = "aware",
-        /// Names are cut at their first underscore, so that all variants are one task.
+        /// Names are cut at their first underscore, so all variants are one task.
         Agnostic = "agnostic",
     }
 }
 
 impl VariantMode {
-    /// The name under which a task is scored: lower-case, and without its variant where variants do not count.
+    /// The name under which a task is scored: lower-case, and without its variant if variants do not count.
     pub(crate) fn scored_name(self, task_name: &str) -> String {
         let mut name = task_name.to_lowercase();
         if self == Self::Agnostic {
@@ -41,17 +39,17 @@ impl VariantMode {
 }
 
 choice! {
-    /// How several runs of a single-task expert are brought together.
+    /// How several runs of a single-task expert are combined.
     SteAveragingMethod, "STE averaging" {
         /// Compare with each run and average the results (default).
         Metrics = "metrics",
-        /// Cut the runs to the shortest, average them step by step and compare with that.
+        /// Truncate the runs to the shortest, average them step by step and compare with that.
         Time = "time",
     }
 }
 
 choice! {
-    /// How the values of the tasks become the one value of the lifetime.
+    /// How the values of the tasks are aggregated for the lifetime.
     AggregationMethod, "aggregation" {
         /// Arithmetic mean (default).
         Mean = "mean",
@@ -61,7 +59,7 @@ choice! {
 }
 
 choice! {
-    /// What an evaluation is compared with when maintenance is computed.
+    /// The baseline of an evaluation for maintenance.
     MaintenanceMethod, "maintenance" {
         /// The most recent evaluation right after learning, "most recent learning evaluation performance" (default).
         Mrlep = "mrlep",
@@ -73,19 +71,19 @@ choice! {
 }
 
 impl MaintenanceMethod {
-    /// Whether `perf_maintenance_mrlep` is asked for.
+    /// Whether `perf_maintenance_mrlep` is requested.
     pub const fn has_mrlep(self) -> bool {
         matches!(self, Self::Mrlep | Self::Both)
     }
 
-    /// Whether `perf_maintenance_mrtlp` is asked for.
+    /// Whether `perf_maintenance_mrtlp` is requested.
     pub const fn has_mrtlp(self) -> bool {
         matches!(self, Self::Mrtlp | Self::Both)
     }
 }
 
 choice! {
-    /// How an evaluation before learning another task is compared with the one after.
+    /// How the evaluations before and after learning another task are compared.
     TransferMethod, "transfer" {
         /// after / before; 1 means no effect (default).
         Ratio = "ratio",
@@ -97,23 +95,23 @@ choice! {
 }
 
 impl TransferMethod {
-    /// Whether the ratios are asked for.
+    /// Whether ratios are requested.
     pub const fn has_ratio(self) -> bool {
         matches!(self, Self::Ratio | Self::Both)
     }
 
-    /// Whether the contrasts are asked for.
+    /// Whether contrasts are requested.
     pub const fn has_contrast(self) -> bool {
         matches!(self, Self::Contrast | Self::Both)
     }
 }
 
 choice! {
-    /// Over which data the range 1..=101 is stretched.
+    /// The data whose range is scaled to 1..=101.
     NormalizationMethod, "normalisation" {
-        /// Each task by its own smallest and largest performance (default).
+        /// Each task by its own minimum and maximum (default).
         Task = "task",
-        /// All tasks by the smallest and largest performance of the run.
+        /// All tasks by the minimum and maximum of the run.
         Run = "run",
         /// Not at all.
         Off = "none",
@@ -121,7 +119,7 @@ choice! {
 }
 
 choice! {
-    /// Shape of the window that training data are smoothed with.
+    /// Shape of the smoothing window for training data.
     SmoothingMethod, "smoothing" {
         /// Moving average (default).
         Flat = "flat",
@@ -139,17 +137,17 @@ choice! {
 }
 
 choice! {
-    /// Whose definitions the metrics follow where the reference's program departs from its own documents.
+    /// Which definitions the metrics follow where the reference's program departs from its own documentation.
     ///
-    /// Under `published`, task parameters split regimes; saturation looks at data that were smoothed once; the last
-    /// tenth of a regime is reckoned in whole numbers; of several tasks that were learned between two evaluations of
-    /// another, each is said to have transferred; and files are not rounded.
+    /// Under `published`, task parameters split regimes; saturation uses data that were smoothed once; the last tenth of a
+    /// regime is computed in integers; if several tasks were learned between two evaluations of another, each gets the
+    /// transfer; and files are not rounded.
     #[derive(Default)]
     Definitions, "definitions" {
-        /// What l2metrics 3.1 computes, to its last peculiarity (default).
+        /// The behaviour of l2metrics 3.1, including its peculiarities (default).
         #[default]
         Reference = "reference",
-        /// What its documents define.
+        /// The definitions in its documentation.
         Published = "published",
     }
 }
@@ -162,8 +160,8 @@ impl Definitions {
     }
 }
 
-/// Noise that is added to every performance after it was smoothed, clamped and normalised, as the reference does, to see how far
-/// metrics depend on small differences.
+/// Noise added to every performance after smoothing, clamping and normalisation, as in the reference, to see how sensitive
+/// metrics are to small differences.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Noise {
@@ -171,12 +169,12 @@ pub struct Noise {
     pub mean: f64,
     /// Standard deviation, in the same units; not negative.
     pub std: f64,
-    /// What the noise is drawn from: the same seed, the same noise, on every machine; default 0.
+    /// Seed of the noise: the same seed gives the same noise on every machine; default 0.
     #[serde(default)]
     pub seed: u64,
 }
 
-/// Smallest and largest performance a task can have, in the log's unit.
+/// Minimum and maximum performance of a task, in the log's unit.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DataRange {
@@ -196,71 +194,71 @@ impl DataRange {
 /// Ranges by task, lower-case names.
 pub type DataRanges = IndexMap<String, DataRange>;
 
-/// What agents earn in a task that know nothing of it, and all, in the log's unit.
+/// Rewards in a task of agents that know nothing of it, and of one that knows everything, in the log's unit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Anchors {
-    /// The best of agents that know nothing, such as one that acts at random and one that stands still: scaled to 1.
+    /// The best agent that knows nothing, such as one that acts at random or one that stands still: scaled to 1.
     pub floor: f64,
     /// An expert's: scaled to 101.
     pub ceiling: f64,
-    /// What agents earn that cannot tell the task from others that look alike, for each set of such tasks.
+    /// Rewards of agents that cannot distinguish the task from others that look alike, for each set of such tasks.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub unlabelled: Vec<Unlabelled>,
 }
 
-/// What the best known agents earn in a task that they cannot tell from others, in the log's unit. They are the best in
-/// the mean over all of these tasks, and may be bad in this one.
+/// Rewards in a task of the best known agents that cannot distinguish it from others, in the log's unit. They are the best on
+/// average over all of these tasks, and may be bad in this one.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Unlabelled {
-    /// The tasks that look alike, this one included: lower-case names as logs have them.
+    /// The tasks that look alike, including this one: lower-case names as in logs.
     pub among: Vec<String>,
-    /// One that does the same in all of them.
+    /// An agent that acts alike in all of them.
     pub fixed: f64,
-    /// One that may find out within an episode which it is.
+    /// An agent that may infer the task within an episode.
     pub finds_out: f64,
 }
 
-/// Floors and ceilings by task, lower-case names as logs have them.
+/// Floors and ceilings by task, lower-case names as in logs.
 pub type Scales = IndexMap<String, Anchors>;
 
-/// The choices under which a lifetime is scored. [`Options::default`] is what l2metrics does when asked for nothing.
+/// The options for scoring a lifetime. [`Options::default`] matches l2metrics' defaults.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Options {
     /// Column of the log that holds the performance; default `reward`.
     pub perf_measure: String,
-    /// Whether variants of a task count as tasks; default aware.
+    /// Whether variants count as separate tasks; default aware.
     pub variant_mode: VariantMode,
-    /// How several runs of a single-task expert are averaged; default metrics.
+    /// How several runs of a single-task expert are combined; default metrics.
     pub ste_averaging_method: SteAveragingMethod,
-    /// From tasks to lifetime; default mean.
+    /// How tasks are aggregated for the lifetime; default mean.
     pub aggregation_method: AggregationMethod,
-    /// What maintenance compares with; default mrlep.
+    /// The baseline for maintenance; default mrlep.
     pub maintenance_method: MaintenanceMethod,
-    /// How transfer compares; default ratio.
+    /// The comparison for transfer; default ratio.
     pub transfer_method: TransferMethod,
-    /// How performances are scaled; default per task.
+    /// Scaling of performances; default per task.
     pub normalization_method: NormalizationMethod,
     /// Window shape; default flat.
     pub smoothing_method: SmoothingMethod,
     /// Whether evaluation regimes are smoothed too; default no.
     pub smooth_eval_data: bool,
-    /// Window length in experiences, at most [`MAX_WINDOW_LENGTH`]; default none: a fifth of the data, at most 100.
+    /// Window length in experiences, at most [`MAX_WINDOW_LENGTH`]; by default a fifth of the data, at most 100.
     pub window_length: Option<usize>,
-    /// Whether performances outside the given range, or else the 0.1 and 0.9 quantiles, are clipped; default no.
+    /// Whether performances outside the given range, or by default the 0.1 and 0.9 quantiles, are clipped; default no.
     pub clamp_outliers: bool,
-    /// Known range per task, lower-case name; default none: taken from the data. When given, every task needs one.
+    /// Known range per task, lower-case name; by default taken from the data. If given, every task needs one.
     pub data_range: Option<DataRanges>,
-    /// Floor and ceiling per task, lower-case name; default none. A task without one, or with a ceiling that is not
-    /// above its floor, is scaled by its own range. Ranges in `data_range` come before.
+    /// Floor and ceiling per task, lower-case name; default none. A task without them, or with a ceiling that is not above its
+    /// floor, is scaled by its own range. Ranges in `data_range` take precedence.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub scales: Option<Scales>,
-    /// Normal noise on the lifetime's performances, not on the experts'; default none.
+    /// Normal noise on the lifetime's performances, but not on the experts'; default none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub noise: Option<Noise>,
-    /// Whose definitions count; default the reference's.
+    /// The definitions; default the reference's.
     #[serde(skip_serializing_if = "Definitions::is_reference")]
     pub definitions: Definitions,
 }
@@ -288,7 +286,7 @@ impl Default for Options {
 }
 
 impl Options {
-    /// Checks what the types cannot: window length and data ranges.
+    /// Checks constraints that the types cannot express: window length and data ranges.
     ///
     /// # Errors
     /// [`MetricsError::BadOption`] for a window of 0 or over [`MAX_WINDOW_LENGTH`], or a range that is not finite or
@@ -339,7 +337,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn words_are_read_back_and_strangers_are_told_the_words() {
+    fn words_round_trip_and_unknown_ones_list_the_words() {
         for &method in SmoothingMethod::ALL {
             assert_eq!(method.name().parse::<SmoothingMethod>().unwrap(), method);
         }
@@ -351,7 +349,7 @@ mod tests {
     }
 
     #[test]
-    fn options_survive_json_and_missing_ones_take_their_default() {
+    fn options_round_trip_through_json_with_defaults() {
         let options = Options {
             window_length: Some(7),
             ..Options::default()

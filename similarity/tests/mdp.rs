@@ -26,7 +26,6 @@ impl Rng {
 /// Draws in the order of `drawn` in `oracle/make_mdp.py`: 1 to 6 states, in the second as many (one in two) or 1 to 6; 1 to 3
 /// actions; a discount of 0.3, 0.5 or 0.7; both processes; the reward that counts 1, in quarters up to 1; which states count
 /// beside the first (one in two).
-/// the first (one in two).
 fn drawn(seed: u64) -> Vec<f64> {
     let mut rng = Rng(seed);
     let of_a = 1 + rng.below(6) as usize;

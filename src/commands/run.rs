@@ -46,7 +46,7 @@ const MAX_JOBS: usize = 256;
 pub(crate) struct Run {
     /// The scenario file.
     scenario: PathBuf,
-    // Not by clap: what was not asked for is said.
+    // Without a clap default, so that a default agent can be reported.
     #[arg(long, value_name = "AGENT", help = format!("{} [default: onrails]", AgentArg::HELP))]
     agent: Option<AgentArg>,
     /// Folder for the log. Must be empty, unless --resume is given.

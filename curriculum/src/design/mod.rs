@@ -132,8 +132,8 @@ pub fn design(variants: &[Choice], options: &Design) -> Result<Scenario, Curricu
 /// before deployment, between the same evaluations.
 ///
 /// `order` is the control's order of the variants, by their places in `variants`. Every variant is learned as often as in the
-/// design itself: if the blocks are no whole number of rounds, those learned once more in the design are learned once more
-/// here, before the first round, or after the last if one of them would otherwise occur twice in a row or the control would
+/// design itself: if the blocks are no whole number of rounds, those learned an extra time in the design are learned an extra
+/// time here, before the first round, or after the last if one of them would otherwise occur twice in a row or the control would
 /// equal the design. The reversed order is the design backwards. Two variants in turn, an odd number of times, have only one
 /// order.
 ///

@@ -7,7 +7,7 @@ use std::sync::mpsc;
 use std::sync::{Mutex, PoisonError};
 use std::thread;
 
-/// How far ahead of the oldest unfinished item each thread may work: bounds the number of waiting results.
+/// Most items by which a thread may be ahead of the oldest unfinished one: bounds the number of waiting results.
 const AHEAD: usize = 16;
 
 /// Processes every item of a range, one worker per thread, and delivers the results in order; ends early if `take` says so.

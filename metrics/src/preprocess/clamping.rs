@@ -1,17 +1,15 @@
 //! Clamping: performances outside a task's usual range are moved to its edge.
-//!
-//! Not here: scaling, see `normalization`.
 
 use super::given_range;
 use crate::lifetime::Lifetime;
 use crate::statistics::quantile;
 use crate::{DataRange, MetricsError, Options};
 
-/// Quantiles that bound a task's performances where no range is given.
+/// Default quantiles that bound a task's performances.
 const USUAL: (f64, f64) = (0.1, 0.9);
 
-/// Clips each task's performances, and its experts', to the given range or to the 0.1 and 0.9 quantiles of the
-/// task's data together with its experts' training data. Does nothing unless asked to.
+/// Clips each task's performances, and its experts', to the given range or to the 0.1 and 0.9 quantiles of the task's data
+/// together with its experts' training data. Does nothing unless requested.
 pub(crate) fn clamp(lifetime: &mut Lifetime, options: &Options) -> Result<(), MetricsError> {
     if !options.clamp_outliers {
         return Ok(());

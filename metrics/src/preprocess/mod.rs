@@ -1,7 +1,4 @@
-//! What is done to performances before they are judged: smoothing, clamping of outliers, normalisation, and noise if asked
-//! for, in that order.
-//!
-//! Not here: the metrics.
+//! Preprocessing of performances: smoothing, clamping of outliers, normalisation, and optional noise, in that order.
 
 mod clamping;
 mod noise;
@@ -16,14 +13,13 @@ pub(crate) use smoothing::{smooth, smoothed};
 use crate::lifetime::Lifetime;
 use crate::{Anchors, DataRange, MetricsError, Options, VariantMode};
 
-/// The floor and ceiling of a task, under the name it is scored by; `None` where they are not known, or the ceiling is
-/// not above the floor: then nothing can be learned. Where variants do not count, the lowest floor and the highest
-/// ceiling of its variants.
+/// The floor and ceiling of a task, under the name used for scoring; `None` if unknown, or if the ceiling is not above the
+/// floor: then nothing can be learned. If variants do not count, the lowest floor and the highest ceiling of its variants.
 pub(crate) fn anchors(task: &str, options: &Options) -> Option<Anchors> {
     given_anchors(task, options).filter(|anchors| anchors.ceiling > anchors.floor)
 }
 
-/// What a reader must be told of tasks whose given ceiling is not above the floor: they are not scaled by them.
+/// A caution about tasks whose given ceiling is not above the floor: they are not scaled by them.
 pub(crate) fn caution_of_scales(lifetime: &Lifetime, options: &Options) -> Option<String> {
     let flat = |task: &String| {
         let Anchors { floor, ceiling, .. } = given_anchors(task, options)?;
@@ -49,10 +45,10 @@ fn given_anchors(task: &str, options: &Options) -> Option<Anchors> {
     of_task.map(|(_, anchors)| anchors.clone()).reduce(hull)
 }
 
-/// The range a user gave for a task, under the name it is scored by: its own range, or else its floor and ceiling;
-/// `None` when nothing was given, or no floor and ceiling of this task.
+/// The range given for a task, under the name used for scoring: its own range, or else its floor and ceiling; `None` if nothing
+/// was given, or no floor and ceiling of this task.
 ///
-/// Where variants do not count, the range of a task is the hull of its variants' ranges.
+/// If variants do not count, the range of a task is the hull of its variants' ranges.
 pub(crate) fn given_range(
     task: &str,
     lifetime: &Lifetime,

@@ -1,6 +1,4 @@
-//! Normal noise on the performances of a lifetime, after all else was done to them.
-//!
-//! Not here: other distributions; the reference has this one.
+//! Normal noise on the performances of a lifetime, after all other preprocessing.
 
 use std::f64::consts::PI;
 
@@ -10,10 +8,10 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 use crate::Options;
 use crate::lifetime::Lifetime;
 
-/// Adds noise to every performance of the lifetime as it is scored, in normalised units; what was logged and the experts' stay
-/// as they are.
+/// Adds noise to every performance of the lifetime as scored, in normalised units; logged values and the experts' are
+/// unchanged.
 ///
-/// The same seed gives the same noise on every machine. The reference draws from the generator of `NumPy`, unseeded.
+/// The same seed gives the same noise on every machine. The reference uses `NumPy`'s generator, unseeded.
 pub(crate) fn disturb(lifetime: &mut Lifetime, options: &Options) {
     let Some(noise) = options.noise else { return };
     let mut generator = ChaCha8Rng::seed_from_u64(noise.seed);
@@ -24,9 +22,9 @@ pub(crate) fn disturb(lifetime: &mut Lifetime, options: &Options) {
     }
 }
 
-/// By the method of Box and Muller, one of its two numbers.
+/// The Box–Muller method, using one of its two numbers.
 fn standard_normal(generator: &mut ChaCha8Rng) -> f64 {
-    // 53 bits each; the first in 0 excluded to 1, so that its logarithm is finite.
+    // 53 bits each; the first in 0 (exclusive) to 1, so that its logarithm is finite.
     let mut unit = || (generator.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
     let (radius, turn) = (1.0 - unit(), unit());
     libm::sqrt(-2.0 * libm::log(radius)) * libm::cos(2.0 * PI * turn)
@@ -37,7 +35,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_noise_is_standard_normal_and_the_same_everywhere() {
+    fn noise_is_standard_normal_and_reproducible() {
         let mut generator = ChaCha8Rng::seed_from_u64(0);
         let numbers: Vec<f64> = (0..100_000).map(|_| standard_normal(&mut generator)).collect();
         let moment = |power: i32| numbers.iter().map(|number| number.powi(power)).sum::<f64>() / 1e5;

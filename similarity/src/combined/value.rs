@@ -160,7 +160,7 @@ pub(super) enum LayoutMeasure {
     Walls,
     /// Path lengths.
     Ways,
-    /// How far walls have to be moved.
+    /// Distance by which walls have to be moved.
     Transport,
 }
 

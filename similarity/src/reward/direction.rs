@@ -7,7 +7,7 @@ use crate::sum::sum;
 pub(super) struct Direction {
     /// `None` for a list that is constant within rounding.
     offsets: Option<Vec<f64>>,
-    /// How far rounding may have turned the direction.
+    /// Largest rotation of the direction by rounding.
     rounding: f64,
 }
 
