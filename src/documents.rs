@@ -35,7 +35,7 @@ pub enum DocumentError {
     Spec(#[from] SpecError),
 }
 
-/// Standard input, if the command accepts it: the text read so far.
+/// Standard input, if the command accepts it, with its text once read.
 #[expect(clippy::option_option, reason = "whether it may be read, and whether it was")]
 static STANDARD_INPUT: Mutex<Option<Option<Result<String, String>>>> = Mutex::new(None);
 

@@ -15,7 +15,7 @@ use driftworld::tasks;
 use proptest::prelude::*;
 use proptest::sample::Index;
 
-/// The observation, reward and message of a step.
+/// The observation, state, reward and ending of a step.
 #[derive(Debug, PartialEq)]
 struct Seen {
     pixels: Vec<u8>,

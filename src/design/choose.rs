@@ -36,14 +36,14 @@ pub struct Chosen {
 pub enum Evidence {
     /// Variants that differ from the first in one element only.
     Probe {
-        /// The variants, and what each is.
+        /// The picked variants.
         picked: Vec<Picked>,
         /// The element.
         element: Element,
     },
     /// Variants that are each a step from the one before.
     Steps {
-        /// The variants, and what each is.
+        /// The picked variants.
         picked: Vec<Picked>,
         /// The requested steps.
         wanted: Steps,

@@ -60,7 +60,7 @@ impl DesignOrder {
 /// The options for designing a curriculum.
 #[derive(Clone, Debug)]
 pub struct DesignRequest {
-    /// Variants, or tasks, which mean all their variants.
+    /// Variants, or tasks, which stand for all their variants.
     pub tasks: Vec<String>,
     /// The options of the ordering method.
     pub ordering: OrderRequest,

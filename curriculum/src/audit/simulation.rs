@@ -33,8 +33,8 @@ pub(super) fn simulate(plan: &Plan, agent: &mut Simulated<'_>, folder: &Path) ->
     Ok(read_log(folder)?)
 }
 
-/// Runs an agent like any other, including the check that it is frozen in evaluations. Returns the number of repeated
-/// evaluations.
+/// Runs an agent like any other, including the check that it is frozen in evaluations. Returns the number of evaluation
+/// experiences run.
 pub(super) fn run(plan: &Plan, agent: &mut Simulated<'_>, folder: &Path) -> Result<u64, CurriculumError> {
     let mut journal = Journal::simulated(folder, plan)?;
     let mut simulation = Simulation {

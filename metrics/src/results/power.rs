@@ -13,8 +13,8 @@ pub struct MetricPower {
     /// The metric.
     #[serde(flatten)]
     pub headline: Headline,
-    /// Standard deviation of the metric between the lifetimes of each agent, in its own unit; with a single agent, its own
-    /// twice.
+    /// Standard deviation of the metric between the lifetimes of each agent, in its own unit; the same twice for a
+    /// single agent.
     pub deviations: [f64; 2],
     /// Lifetimes of each agent that have a value.
     pub lifetimes: [usize; 2],

@@ -12,13 +12,13 @@ use crate::distribution::Method;
 
 /// The distance of two worlds: a sum of parts, each in a unit of its own.
 ///
-/// | element | parts, and what counts 1 |
+/// | element | parts, with what counts 1 |
 /// |---|---|
-/// | state | places of objects (10 m), objects without a match (each), their headings (180°), the agent's start (10 m) and heading (180°) |
-/// | action | action model, action space (another word), greatest speeds (something against nothing) |
-/// | transition | how things move, how solid they are, time step, the agent's width, map and walls, sides of the arena |
-/// | reward | what objects pay (100 points), for what, at which odds (never against always); what a second pays (1 point), rules, limit of steps |
-/// | observation | colours of objects and surroundings (black against white, in Oklab), looks without a match (each), models, sizes, light, camera |
+/// | state | places of objects (10 m), unmatched objects (each), their headings (180°), the agent's start (10 m), its heading (180°) |
+/// | action | action model, action space (another word), top speeds (something against nothing) |
+/// | transition | motion and solidity of objects, time step, the agent's width, map and walls, sides of the arena |
+/// | reward | objects' pay (100 points), its triggers and odds (never against always), pay per second (1 point), rules, step limit |
+/// | observation | colours (black against white, in Oklab), looks of unmatched objects (each), models, sizes, light, camera |
 ///
 /// Numbers without a unit count by their difference over the larger one, so that 1 is something against nothing; words count 1
 /// if they differ. `docs/reference/comparison.md` lists all parts, units and keys.

@@ -328,7 +328,7 @@ mod tests {
     }
 
     #[test]
-    fn the_same_seed_gives_the_same_shares_on_any_number_of_threads() {
+    fn same_seed_gives_the_same_shares_on_any_number_of_threads() {
         let at: Vec<f64> = (0..12).map(|k| f64::from(k * k % 17)).collect();
         let pairs: Vec<_> = (0..11)
             .map(|k| pair((k, k + 1, f64::from((k * 7 % 5) as u8))))

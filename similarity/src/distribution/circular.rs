@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn the_shorter_way_round_counts() {
+    fn shorter_way_round_counts() {
         check(&headings(&[350.0]), &headings(&[10.0]), 20.0, 1e-9);
         check(&headings(&[0.0]), &headings(&[180.0]), 180.0, 1e-9);
         check(&headings(&[0.0, 90.0]), &headings(&[350.0, 100.0]), 10.0, 1e-9);

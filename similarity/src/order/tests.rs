@@ -238,7 +238,7 @@ fn golden() -> serde_json::Value {
 
 /// OR-Tools' routing, run for at least half a minute, is the reference; the search must come within 6 % of it.
 #[test]
-fn a_thousand_items_come_within_six_percent_of_a_routing_library() {
+fn thousand_items_come_within_six_percent_of_a_routing_library() {
     let golden = golden()["routing"]["length"].as_f64().unwrap();
     let found = order(&drawn(1, 1000), Method::TwoOpt, &OrderOptions::default()).unwrap();
     assert!(found.length <= 1.06 * golden, "{} for {golden}", found.length);

@@ -247,7 +247,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_compared_is_refused() {
+    fn incomparable_rewards_are_refused() {
         let none = RewardSamples::<(), ()>::new(vec![], vec![((), ())]).unwrap_err();
         assert_eq!(none.code(), "similarity/no-samples");
         let samples = RewardSamples::new(vec![((), (), ())], vec![((), ())]).unwrap();
