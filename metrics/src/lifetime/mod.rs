@@ -82,8 +82,8 @@ impl Lifetime {
         self.runtime_secs
     }
 
-    /// Whether a regime counts for maintenance, transfer and average performance. In lifetimes with sleep blocks the wake
-    /// evaluations do not, because the agent is judged by what it keeps after sleeping.
+    /// Whether a regime counts for maintenance, transfer and average performance: all do, except wake evaluations in lifetimes
+    /// with sleep blocks, because the agent is judged by what it keeps after sleeping.
     pub(crate) fn is_assessed(&self, regime: &Regime) -> bool {
         !(self.sleeps && regime.block_type == BlockType::Test && regime.block_subtype == BlockSubtype::Wake)
     }
