@@ -1,7 +1,7 @@
 """Makes the pages of the Python API: every public name of the package with its signature and its docstring.
 
-The pages come from the sources and the stub alone: nothing is imported, so neither the native module nor NumPy is needed.
-They are not committed: `book/build.py` puts them into the book.
+The pages are made from the sources and the stub: nothing is imported, so neither the native module nor NumPy is needed.
+They are not committed; `book/build.py` adds them to the book.
 
     python python/api_pages.py FOLDER     writes the pages into a folder, to read them without the book
 """
@@ -18,7 +18,7 @@ from typing import NamedTuple
 ROOT = Path(__file__).parents[1]
 PACKAGE = ROOT / "python" / "package" / "driftworld"
 
-#: Which names are on which page, in the order of use. Every name that the package exports is on one.
+#: The names on each page, in the order of use. Every exported name is on one page.
 LAYOUT: dict[str, tuple[str, str, dict[str, list[str]]]] = {
     "environments": (
         "Environments",
@@ -131,7 +131,7 @@ LAYOUT: dict[str, tuple[str, str, dict[str, list[str]]]] = {
     ),
 }
 
-#: Names with no page of their own, and why.
+#: Names without a page, with a description.
 WITHOUT_A_PAGE = {"__version__": "the version of the package, as text"}
 
 WIDTH = 100
@@ -140,14 +140,14 @@ Definition = ast.ClassDef | ast.FunctionDef
 
 
 class Found(NamedTuple):
-    """A definition, and whether it stands in the stub of the native module."""
+    """A definition, and whether it is in the stub of the native module."""
 
     node: Definition
     is_native: bool
 
 
 def module_file(module: str) -> Path:
-    """The source of a module of the package; that of the native one is its stub."""
+    """The source of a module of the package; for the native module, its stub."""
     parts = module.split(".")[1:]
     folder = PACKAGE.joinpath(*parts)
     candidates = [folder / "__init__.py", folder.with_suffix(".py"), folder.with_suffix(".pyi")]
@@ -158,10 +158,10 @@ def module_file(module: str) -> Path:
 
 
 def find(module: str, name: str) -> Found:
-    """The definition of a name, through whatever modules hand it on."""
+    """The definition of a name, followed through re-exports."""
     path = module_file(module)
     tree = ast.parse(path.read_text(encoding="utf-8"))
-    # The last one: what stands before a function of the same name are its overloads.
+    # The last definition: those before a function of the same name are its overloads.
     own = [node for node in tree.body if isinstance(node, Definition) and node.name == name]
     if own:
         return Found(own[-1], path.suffix == ".pyi")
@@ -174,7 +174,7 @@ def find(module: str, name: str) -> Found:
 
 
 def exported() -> set[str]:
-    """What ``from driftworld import *`` brings."""
+    """The names that ``from driftworld import *`` imports."""
     for node in ast.parse((PACKAGE / "__init__.py").read_text(encoding="utf-8")).body:
         if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "__all__":
             return set(ast.literal_eval(node.value))
@@ -182,7 +182,7 @@ def exported() -> set[str]:
 
 
 def plain(text: str) -> str:
-    """Marks of reStructuredText as those of Markdown."""
+    """Converts reStructuredText markup to Markdown."""
     text = re.sub(r":(?:class|func|meth|mod|attr):`~?([^`]+)`", r"`\1`", text)
     return text.replace("``", "`")
 
@@ -247,7 +247,7 @@ def marks(node: ast.FunctionDef) -> set[str]:
 
 
 def members(node: ast.ClassDef, *, is_native: bool) -> Iterator[str]:
-    """The public methods and properties of a class that say what they are; of native ones all."""
+    """The public methods and properties of a class that have docstrings; for native classes all of them."""
     seen = set()
     methods = [each for each in node.body if isinstance(each, ast.FunctionDef) and not each.name.startswith("_")]
     last = {each.name: each for each in methods if not any(mark.endswith(".setter") for mark in marks(each))}
@@ -272,7 +272,7 @@ def members(node: ast.ClassDef, *, is_native: bool) -> Iterator[str]:
 
 
 def entry(module: str, name: str) -> Iterator[str]:
-    """Everything about a name."""
+    """The section of a name."""
     node, is_native = find(module, name)
     prefix = "driftworld" if module == "driftworld" else module
     if isinstance(node, ast.FunctionDef):
@@ -298,7 +298,7 @@ def entry(module: str, name: str) -> Iterator[str]:
 
 
 def is_error(node: ast.ClassDef) -> bool:
-    """Users catch exceptions, and make none."""
+    """Whether a class is an exception, whose constructor is not documented."""
     return node.name.endswith("Error")
 
 

@@ -1,4 +1,4 @@
-"""What the tests share: the ids and variants there are, and one small world file. What must be true stands in the tests."""
+"""Shared fixtures: the ids and variants, and small task and world files."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 import driftworld
 import pytest
 
-#: The checkout that the tests are in.
+#: The checkout of the tests.
 ROOT = Path(__file__).parents[2]
 
 TASKS = {
@@ -23,7 +23,8 @@ TASKS = {
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
-    """``env_id`` is each task's; ``task_variant`` is each variant of each task, as (id, name)."""
+    """Parametrizes ``env_id`` with each task's id, and ``task_variant`` with each variant of each task, as (id, name).
+    """
     if "env_id" in metafunc.fixturenames:
         metafunc.parametrize("env_id", TASKS)
     if "task_variant" in metafunc.fixturenames:
@@ -41,7 +42,7 @@ def small() -> dict[str, Any]:
 
 @pytest.fixture
 def world_file(tmp_path: Path) -> Path:
-    """A world as ``driftworld sample`` writes it."""
+    """A world written by ``driftworld sample``."""
     path = tmp_path / "world.json"
     path.write_text(driftworld.variant("find_objects#red").sample_json(5, 0), encoding="utf-8")
     return path
@@ -49,7 +50,7 @@ def world_file(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def task_file(tmp_path: Path) -> Path:
-    """A task spec of a user's own."""
+    """A user's own task spec."""
     document = json.loads((ROOT / "examples" / "tasks" / "get_to_goal.json").read_text(encoding="utf-8"))
     path = tmp_path / "own_task.json"
     path.write_text(json.dumps({**document, "name": "own_task"}), encoding="utf-8")
@@ -58,5 +59,5 @@ def task_file(tmp_path: Path) -> Path:
 
 @pytest.fixture(scope="session")
 def package() -> Path:
-    """Where the package under test is installed."""
+    """The folder of the installed package under test."""
     return Path(driftworld.__file__).parent

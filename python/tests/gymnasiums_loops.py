@@ -1,4 +1,4 @@
-"""Gymnasium's own vector environments, as tests compare ours with them."""
+"""Gymnasium's own vector environments, for comparison with Driftworld's."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import driftworld
 
 
 def spread(envs: Any) -> Any:
-    """Lets a reset under one seed spread it as ours do; by themselves, Gymnasium's add 0, 1, 2 and so on."""
+    """Makes a reset under one seed spread it like Driftworld; Gymnasium's own environments add 0, 1, 2 and so on."""
     reset = envs.reset
 
     def reset_spread(*, seed: Any = None, options: dict[str, Any] | None = None) -> Any:

@@ -1,7 +1,7 @@
-"""What somebody does who has just read the README, run by an interpreter in which nothing but `pip install ./python` was done.
+"""A new user's first steps after reading the README, run by an interpreter with nothing but `pip install ./python`.
 
-Runs every block of Python in README.md as it stands, each in a folder and an interpreter of its own; then the command. `cargo xtask
-python` starts it; what the blocks print is printed. The guide's blocks are run by `test_readme.py`.
+Runs every Python block of README.md unchanged, each in its own folder and interpreter; then the command. `cargo xtask
+python` starts it and shows its output. The guide's blocks are run by `test_readme.py`.
 """
 
 from __future__ import annotations
@@ -18,13 +18,15 @@ README = Path(__file__).parents[2] / "README.md"
 
 
 def run(arguments: list[str], folder: Path) -> None:
-    """Runs a program in a folder; its failure is ours."""
+    """Runs a program in a folder; exits if it fails."""
     print("$", " ".join("…" if "\n" in argument else argument for argument in arguments), flush=True)
     subprocess.run(arguments, cwd=folder, check=True, timeout=300)
 
 
 def optional(command: str, folder: Path) -> None:
-    """What takes long to build works in wheels that have it, and is refused with the name of its feature by those that lack it."""
+    """Checks that a feature with a long build works in wheels that include it, and is otherwise refused with the name
+    of the feature.
+    """
     report = json.loads(subprocess.run([command, "doctor", "--json"], capture_output=True, check=True, timeout=300).stdout)
     lighthouse = README.parent / "examples" / "assets" / "lighthouse.gltf"
     for feature, arguments in {
@@ -33,7 +35,7 @@ def optional(command: str, folder: Path) -> None:
     }.items():
         done = subprocess.run([command, *arguments], cwd=folder, capture_output=True, text=True, check=False, timeout=300)
         if report["features"][feature]:
-            # Drawing on a graphics card wants one, too.
+            # Drawing on a graphics card also needs a card.
             is_as_expected = done.returncode == 0 or feature == "gpu"
         else:
             is_as_expected = done.returncode == 1 and f"--features {feature}" in done.stderr
@@ -43,7 +45,7 @@ def optional(command: str, folder: Path) -> None:
 
 
 def main() -> None:
-    """Takes the steps."""
+    """Runs all steps."""
     brought = {distribution.metadata["Name"].lower() for distribution in importlib.metadata.distributions()}
     unexpected = brought & {"torch", "pandas", "pygame", "pytest", "scipy", "matplotlib"}
     if "driftworld" not in brought or unexpected:

@@ -1,4 +1,4 @@
-"""What tests of learners share: steps that are made up, a tiny lifetime, and a learner that is quick to make."""
+"""Shared by the learner tests: made-up steps, a tiny lifetime, and small learners."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ import pytest
 from conftest import ROOT
 from driftworld import Curriculum, VectorTransition
 
-#: Ahead, two bends, two turns nearly on the spot.
+#: Straight ahead, two curves, two turns nearly on the spot.
 ACTIONS = [[10, 0, 0], [10, 27, 0], [10, -27, 0], [3, 90, 0], [3, -90, 0]]
 OPTIONS: dict[str, Any] = {"modalities": "rgb", "actions": ACTIONS, "interact": False, "frame_skip": 5}
 T_MAZE = str(ROOT / "examples" / "worlds" / "t_maze.json")
-#: Few and small, for tests that do not look at what is learned.
+#: Few and small, for tests that ignore what is learned.
 TINY: dict[str, Any] = {"size": 8, "max_steps": 6}
 
 
@@ -48,7 +48,7 @@ def curriculum(*order: str, learn: int, evaluate: int = 4, task_label: str = "in
 
 
 def live(learner: Any, log: Path | None, *order: str, learn: int = 24, **options: Any) -> Any:
-    """Runs a learner through a tiny lifetime; the learner."""
+    """Runs a learner through a tiny lifetime; returns the learner."""
     made = {name: options.pop(name) for name in ("evaluate", "task_label") if name in options}
     plan = curriculum(*order, learn=learn, **made)
     plan.run_vector(learner, log, num_envs=learner.num_envs, num_threads=1, **{**OPTIONS, **TINY, **options})
@@ -56,7 +56,7 @@ def live(learner: Any, log: Path | None, *order: str, learn: int = 24, **options
 
 
 class Steps:
-    """Steps of random images and rewards for a learner, from a seed."""
+    """Feeds a learner with seeded random images and rewards."""
 
     def __init__(
         self, learner: Any, seed: int = 0, terminates: float = 0.1, truncates: float = 0.1, idles: float = 0.1, label: str | None = None
@@ -72,7 +72,7 @@ class Steps:
         return self.chance.integers(0, 256, shape, dtype=np.uint8)
 
     def take(self, count: int) -> None:
-        """Lets the learner act and learn so often."""
+        """Lets the learner act and learn ``count`` times."""
         for _ in range(count):
             actions = self.learner.act(self.seen, {})
             draws = self.chance.random((4, self.learner.num_envs))
@@ -91,7 +91,7 @@ class Steps:
                     {},
                 )
             )
-            # An episode that has ended is followed by the first image of another one.
+            # An ended episode is followed by another one's first image.
             ended = (terminated | truncated) & active
             self.seen = np.where(ended[:, None, None, None], self.images(), following)
             for env in np.flatnonzero(ended).tolist():

@@ -1,4 +1,6 @@
-"""What tests of curricula and of lifetimes share: a small curriculum of all kinds of blocks, two agents, and logs as texts."""
+"""Shared by the tests of curricula and lifetimes: a small curriculum with all kinds of blocks, two agents, and logs as
+text.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +13,7 @@ from driftworld import Curriculum, Transition, read_log
 
 
 class Circler:
-    """Goes round in circles, and counts what it gets."""
+    """Walks in circles, and counts its rewards."""
 
     name = "circler"
 
@@ -37,7 +39,7 @@ class Circler:
 
 
 class Pupil(Circler):
-    """One whose every action depends on all that it learned, and that can be kept."""
+    """An agent whose every action depends on all that it has learned, and that can be saved."""
 
     name = "pupil"
 
@@ -66,7 +68,7 @@ class Pupil(Circler):
         self.knowledge = json.loads((path / "knowledge.json").read_text(encoding="utf-8"))
 
 
-#: Small and quick, with a limit of steps.
+#: Small and fast, with a limit of steps.
 SMALL: dict[str, Any] = {"modalities": "rgb", "size": 8, "actions": "continuous"}
 
 
@@ -102,6 +104,6 @@ def small(max_steps: int = 40) -> Curriculum:
 
 
 def rows(log: Path, columns: list[str] | None = None) -> dict[str, list[str]]:
-    """A log's columns as texts, which tell numbers apart to the last bit, and NaN from none."""
+    """A log's columns as text, which distinguishes numbers to the last bit, and NaN from missing values."""
     read = read_log(log).columns
     return {name: [repr(cell) for cell in read[name].tolist()] for name in columns or sorted(set(read) - {"timestamp"})}

@@ -1,4 +1,4 @@
-"""What the adapters hand to other libraries is what those want: tried with the libraries themselves where they can be had."""
+"""Tests of the adapters, with the other libraries themselves where they are installed."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ PACKAGES = {
 def test_a_missing_library_is_named_with_what_to_install(
     name: str, package: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    # Also its parts, which other tests may have imported.
+    # Including its submodules, which other tests may have imported.
     for part in [package, *(each for each in sys.modules if each.startswith(f"{package}."))]:
         monkeypatch.setitem(sys.modules, part, None)
     monkeypatch.delitem(sys.modules, f"driftworld.adapters.{name}", raising=False)
@@ -41,14 +41,14 @@ def in_a_loop(seed: int, num_envs: int, **options: Any) -> Any:
     from stable_baselines3.common.vec_env import DummyVecEnv
 
     envs = DummyVecEnv([lambda: gym.make(FIND, **options)] * num_envs)
-    # Its own seeding adds 0, 1, 2 and so on.
+    # The library's own seeding adds 0, 1, 2 and so on.
     envs._seeds = list(driftworld.spread_seeds(seed, num_envs))
     return envs
 
 
 @pytest.mark.learners
 @pytest.mark.parametrize("modalities", ["rgb", ["rgb", "state"]], ids=str)
-def test_sb3s_vector_environment_lives_as_its_own_loop(modalities: Any) -> None:
+def test_sb3_vector_environment_matches_its_own_loop(modalities: Any) -> None:
     pytest.importorskip("stable_baselines3", reason="the adapter is for it")
     from driftworld.adapters.sb3 import DriftworldVecEnv
 
@@ -62,7 +62,7 @@ def test_sb3s_vector_environment_lives_as_its_own_loop(modalities: Any) -> None:
     for number in range(14):
         actions = chance.integers(0, theirs.action_space.n, 3)
         left, right = ours.step(actions), theirs.step(actions)
-        # Gymnasium's own limit of steps says that it was it; ours is the world's.
+        # Gymnasium's own limit of steps sets this; here the limit is the world's.
         for info in right[3]:
             info.setdefault("TimeLimit.truncated", False)
         assert first_difference(left, right, f"step {number}") is None
@@ -71,7 +71,7 @@ def test_sb3s_vector_environment_lives_as_its_own_loop(modalities: Any) -> None:
 
 
 @pytest.mark.learners
-def test_sb3_keeps_what_it_was_given() -> None:
+def test_sb3_observations_are_copies() -> None:
     pytest.importorskip("stable_baselines3", reason="the adapter is for it")
     from driftworld.adapters.sb3 import DriftworldVecEnv
 
@@ -84,7 +84,7 @@ def test_sb3_keeps_what_it_was_given() -> None:
 
 
 @pytest.mark.learners
-def test_sb3s_options_are_for_all_or_for_each() -> None:
+def test_sb3_options_apply_to_all_or_to_each() -> None:
     pytest.importorskip("stable_baselines3", reason="the adapter is for it")
     from driftworld.adapters.sb3 import DriftworldVecEnv
 
@@ -113,7 +113,9 @@ def test_sb3s_options_are_for_all_or_for_each() -> None:
 
 
 def both(num_envs: int = 3, **options: Any) -> tuple[Any, Any]:
-    """The adapter, and Stable-Baselines3's loop over single environments, after three steps of equal seeds and actions."""
+    """The adapter, and Stable-Baselines3's loop over single environments, after three steps with equal seeds and
+    actions.
+    """
     from driftworld.adapters.sb3 import DriftworldVecEnv
 
     options = {**SMALL, "info": "full", "render_mode": "rgb_array", "render_size": (24, 32), "max_steps": 9, **options}
@@ -126,7 +128,7 @@ def both(num_envs: int = 3, **options: Any) -> tuple[Any, Any]:
     return ours, theirs
 
 
-#: Methods of single environments with their arguments, one after the other.
+#: Methods of single environments with their arguments, to be called in turn.
 CALLS: list[tuple[str, tuple[Any, ...], dict[str, Any]]] = [
     ("state", (), {}),
     ("origin", (), {}),
@@ -151,7 +153,7 @@ ATTRIBUTES = ["action_space", "observation_space", "metadata", "render_mode", "n
 
 
 def answers(envs: Any, method: str, *args: Any, **kwargs: Any) -> Any:
-    """What a method returns; of errors their kind."""
+    """A method's results; for an error, its type."""
     try:
         return envs.env_method(method, *args, **kwargs)
     except (AttributeError, RuntimeError, TypeError, ValueError, gym.error.Error) as error:
@@ -160,7 +162,7 @@ def answers(envs: Any, method: str, *args: Any, **kwargs: Any) -> Any:
 
 @pytest.mark.learners
 @pytest.mark.parametrize("indices", [None, 1, -1, [0], [2, 0], [], range(3), [1, 1]], ids=str)
-def test_sb3s_contract_is_answered_as_over_single_environments(indices: Any) -> None:
+def test_sb3_contract_matches_single_environments(indices: Any) -> None:
     pytest.importorskip("stable_baselines3", reason="the adapter is for it")
     ours, theirs = both()
     for name, args, kwargs in CALLS:
@@ -194,7 +196,7 @@ def test_sb3s_contract_is_answered_as_over_single_environments(indices: Any) -> 
 
 
 @pytest.mark.learners
-def test_sb3_is_refused_what_would_do_nothing_or_cannot_be_done_for_some() -> None:
+def test_sb3_refuses_calls_without_effect_or_for_some_environments_only() -> None:
     pytest.importorskip("stable_baselines3", reason="the adapter is for it")
     ours, _ = both()
     for option in ("frame_skip", "variant", "max_steps", "modalities", "size", "actions", "task", "render_mode", "drift"):
@@ -211,7 +213,7 @@ def test_sb3_is_refused_what_would_do_nothing_or_cannot_be_done_for_some() -> No
 
 
 @pytest.mark.learners
-def test_sb3s_monitor_counts_from_a_reset_of_some() -> None:
+def test_sb3_monitor_counts_from_a_partial_reset() -> None:
     pytest.importorskip("stable_baselines3", reason="the adapter is for it")
     from driftworld.adapters.sb3 import make_vec_env
 
@@ -251,7 +253,7 @@ def test_sb3_learns_on_it(algorithm: str, tmp_path: Path) -> None:
 @pytest.mark.learners
 @pytest.mark.filterwarnings("ignore::DeprecationWarning")
 @pytest.mark.parametrize("actions", ["normalized", "discrete"])
-def test_sb3s_check_passes_without_a_warning(env_id: str, actions: str) -> None:
+def test_sb3_check_passes_without_warnings(env_id: str, actions: str) -> None:
     pytest.importorskip("stable_baselines3", reason="the check is its")
     from stable_baselines3.common.env_checker import check_env
 
@@ -275,7 +277,7 @@ def test_torch_takes_observations_without_another_copy() -> None:
 
 
 @pytest.mark.learners
-# In a checkout that is on the path and not installed, Minari misses the package.
+# In a checkout that is on the path but not installed, Minari does not find the package.
 @pytest.mark.filterwarnings("ignore:Package driftworld is not installed:UserWarning")
 @pytest.mark.parametrize("modalities", ["rgb", ["rgb", "state"]], ids=str)
 def test_minari_reads_back_what_was_lived(modalities: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -308,7 +310,9 @@ def test_minari_reads_back_what_was_lived(modalities: Any, tmp_path: Path, monke
 
 
 class StandIn:
-    """PufferLib's `PufferEnv` as its documentation has it: it checks its class's attributes and brings buffers."""
+    """A stand-in for PufferLib's `PufferEnv`, following its documentation: it checks the class's attributes and
+    provides buffers.
+    """
 
     def __init__(self, buf: Any = None) -> None:
         assert isinstance(self.single_observation_space, gym.spaces.Box)
@@ -329,7 +333,7 @@ class StandIn:
 
 @pytest.fixture
 def puffer(monkeypatch: pytest.MonkeyPatch) -> Any:
-    """The adapter with PufferLib itself where it is installed, else with a stand-in that keeps to its documentation."""
+    """The adapter with PufferLib itself if it is installed, else with a stand-in that follows its documentation."""
     if importlib.util.find_spec("pufferlib") is None:
         library = types.ModuleType("pufferlib")
         library.PufferEnv = StandIn  # type: ignore[attr-defined]
@@ -340,7 +344,7 @@ def puffer(monkeypatch: pytest.MonkeyPatch) -> Any:
     sys.modules.pop("driftworld.adapters.pufferlib", None)
 
 
-def test_puffers_buffers_hold_what_the_environments_say(puffer: Any) -> None:
+def test_puffer_buffers_match_the_environments(puffer: Any) -> None:
     options = {"size": 40, "actions": "discrete", "max_episode_steps": 5}
     ours = puffer(FIND, 3, **options)
     theirs = gym.make_vec(
@@ -369,7 +373,7 @@ def test_puffers_buffers_hold_what_the_environments_say(puffer: Any) -> None:
     assert puffer(FIND, 1, seed=2).reset()[0].shape[0] == 1
 
 
-def test_puffer_writes_into_the_buffers_that_it_is_given(puffer: Any) -> None:
+def test_puffer_writes_into_given_buffers(puffer: Any) -> None:
     space = gym.make(FIND, modalities="rgb", size=40).observation_space
     given = {
         "observations": np.zeros((2, *space.shape), np.uint8),
@@ -384,11 +388,11 @@ def test_puffer_writes_into_the_buffers_that_it_is_given(puffer: Any) -> None:
     assert given["observations"].any() and given["masks"].all()
 
 
-def test_puffer_wants_one_array(puffer: Any) -> None:
+def test_puffer_refuses_more_than_one_array(puffer: Any) -> None:
     with pytest.raises(ValueError, match="expected one for PufferLib"):
         puffer(FIND, 1, modalities=["rgb", "state"])
 
 
-def test_adapters_are_not_imported_with_the_package() -> None:
+def test_importing_the_package_imports_no_adapter() -> None:
     program = "import sys, driftworld; sys.exit(any(name.startswith('driftworld.adapters') for name in sys.modules))"
     assert subprocess.run([sys.executable, "-c", program], check=False).returncode == 0

@@ -1,4 +1,4 @@
-"""The pages of the Python API have every public name with its arguments. How they are made is in ``api_pages.py``."""
+"""The pages of the Python API have every public name with its arguments."""
 
 from __future__ import annotations
 
@@ -33,20 +33,20 @@ def test_every_exported_name_has_its_arguments(api_pages: Any, name: str) -> Non
             assert f"{argument.name}: " in section, f"{name}: {argument}"
 
 
-def test_a_name_without_a_page_is_found(api_pages: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_name_without_a_page_is_reported(api_pages: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(api_pages, "exported", lambda: {"Variant", "Newcomer"})
     with pytest.raises(SystemExit, match="Newcomer"):
         api_pages.pages()
 
 
-def test_pages_are_written_into_a_folder(api_pages: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_pages_are_written_to_a_folder(api_pages: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "argv", ["api_pages.py", str(tmp_path / "pages")])
     api_pages.main()
     written = {path.name: path.read_text(encoding="utf-8") for path in (tmp_path / "pages").iterdir()}
     assert written == api_pages.pages()
 
 
-def test_sections_of_a_docstring_become_lists(api_pages: Any) -> None:
+def test_docstring_sections_become_lists(api_pages: Any) -> None:
     text = 'def f(a, *, b=1):\n    """Says.\n\n    Args:\n        a: One\n            more.\n\n    Returns:\n        ``x``, as :func:`g`.\n    """\n'
     node = ast.parse(text).body[0]
     lines = "\n".join(api_pages.docstring(node))

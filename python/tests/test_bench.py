@@ -1,4 +1,4 @@
-"""`python -m driftworld.bench` measures and prints; how fast things are is for people to judge, not for tests."""
+"""`python -m driftworld.bench` measures and prints; no test depends on speed."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import pytest
 from driftworld import bench
 
 
-def test_a_quick_run_prints_every_figure(capsys: pytest.CaptureFixture[str]) -> None:
+def test_quick_run_prints_every_figure(capsys: pytest.CaptureFixture[str]) -> None:
     assert bench.main(["--quick"]) == 0
     printed = capsys.readouterr().out
     for line in ("64 environments, three modalities, copies", "read-only views (copy=False)", "views, depth in metres"):
@@ -23,7 +23,7 @@ def test_json_has_rates_and_their_ratio(capsys: pytest.CaptureFixture[str]) -> N
     assert figures["vector_ratio"] == pytest.approx(figures["vector"] / figures["vector_rust"])
 
 
-def test_a_peer_that_is_not_there_is_named_with_the_reason() -> None:
+def test_missing_peer_is_listed_with_the_reason() -> None:
     def missing(_seconds: float) -> float:
         raise ModuleNotFoundError("No module named 'vizdoom'")
 
@@ -32,7 +32,7 @@ def test_a_peer_that_is_not_there_is_named_with_the_reason() -> None:
     }
 
 
-def test_no_time_is_refused() -> None:
+def test_zero_seconds_are_refused() -> None:
     with pytest.raises(SystemExit) as ended:
         bench.main(["--seconds", "0"])
     assert ended.value.code == 2

@@ -1,4 +1,6 @@
-"""The runner of benchmarks: cells once each, whoever runs them, to the same digests after kills; tables from the logs alone."""
+"""The benchmark runner: each cell runs once in any process, with the same digests after kills; tables come from the
+logs alone.
+"""
 
 from __future__ import annotations
 
@@ -19,13 +21,13 @@ from driftworld.benchmark import Cell, Results, Sequence, run_cells
 from driftworld.benchmark import runner as running
 from driftworld.benchmark.command import main
 
-#: Seconds long: few decisions in the smoke sequence.
+#: Takes seconds: few decisions in the smoke sequence.
 TINY = {"decisions": 600, "evaluations": 2, "num_envs": 8}
 
 
 @pytest.fixture
 def tiny(tmp_path: Path) -> Path:
-    """A short sequence as a file."""
+    """A short sequence file."""
     sequence = json.loads((Path(running.__file__).parent / "sequences/smoke.json").read_text(encoding="utf-8"))
     del sequence["frozen"]
     path = tmp_path / "tiny.json"
@@ -34,13 +36,13 @@ def tiny(tmp_path: Path) -> Path:
 
 
 @pytest.mark.parametrize("name", Sequence.names())
-def test_a_sequence_is_what_it_was_frozen_as(name: str) -> None:
+def test_frozen_sequences_are_unchanged(name: str) -> None:
     sequence = Sequence.load(name)
     assert set(sequence.frozen) == set(sequence.tasks) == set(sequence.scale)
     assert sequence.check() == []
 
 
-def test_a_sequence_that_changed_says_so(tiny: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_changed_sequence_is_reported(tiny: Path, capsys: pytest.CaptureFixture[str]) -> None:
     document = json.loads(tiny.read_text(encoding="utf-8"))
     document["frozen"] = {"t_maze#left": {**Sequence.load("smoke").frozen["t_maze#left"], "frames": "0"}}
     tiny.write_text(json.dumps(document), encoding="utf-8")
@@ -61,7 +63,7 @@ def test_lifetimes_of_seeds_and_splits_share_no_world() -> None:
     assert not worlds[0] & worlds[1] and not evaluated[0] & evaluated[2]
 
 
-def test_a_claim_is_one_process_s_and_anybody_s_when_it_is_left(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_claim_belongs_to_one_process_until_it_is_stale(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     claim = tmp_path / "claim"
     with running._claim(claim) as first:
         with running._claim(claim) as second:
@@ -88,7 +90,7 @@ def test_a_claim_is_one_process_s_and_anybody_s_when_it_is_left(tmp_path: Path, 
         (["run", "smoke", "--learner", "ewc", "--set", "strength=1", "--set", "strength=2"], "--set: found strength=1, strength=2, expected each name once"),
     ],
 )
-def test_what_is_wrong_is_said(words: list[str], expected: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_invalid_input_is_refused_with_reason(words: list[str], expected: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(words) == 1
     assert expected in capsys.readouterr().err
 
@@ -96,7 +98,7 @@ def test_what_is_wrong_is_said(words: list[str], expected: str, capsys: pytest.C
 ROOT = Path(__file__).parents[2]
 
 
-def test_the_page_of_results_is_made_from_the_logs(tmp_path: Path) -> None:
+def test_results_page_is_made_from_the_logs(tmp_path: Path) -> None:
     results = ROOT / "examples/benchmark/mixed"
     page, figure = tmp_path / "results.md", tmp_path / "images/results.svg"
     figure.parent.mkdir()
@@ -105,7 +107,7 @@ def test_the_page_of_results_is_made_from_the_logs(tmp_path: Path) -> None:
     assert figure.read_text(encoding="utf-8") == (ROOT / "docs/images/results.svg").read_text(encoding="utf-8")
 
 
-def test_all_that_learners_of_the_table_learned_from_is_in_their_logs() -> None:
+def test_table_logs_contain_all_learning_experiences() -> None:
     for name in ("mixed", "memory"):
         for runs in Results(Sequence.load(name), ROOT / "examples/benchmark" / name).runs.values():
             for run in runs:
@@ -113,7 +115,7 @@ def test_all_that_learners_of_the_table_learned_from_is_in_their_logs() -> None:
 
 
 @pytest.mark.parametrize("learner", ["finetuning", "packnet"])
-def test_logs_of_the_table_are_those_of_their_report(learner: str, tmp_path: Path) -> None:
+def test_table_logs_match_their_reports(learner: str, tmp_path: Path) -> None:
     cell = ROOT / "examples/benchmark/mixed" / learner / "0"
     with tarfile.open(cell / "logs.tar.xz") as tar:
         tar.extractall(tmp_path, filter="data")
@@ -136,7 +138,7 @@ def test_a_killed_run_ends_with_the_same_digests(tiny: Path, tmp_path: Path) -> 
         os.killpg(process.pid, signal.SIGKILL)
         process.wait()
         for claim in killed.rglob("claim"):
-            # As when a minute has passed.
+            # As if a minute had passed.
             os.utime(claim, (0, 0))
     found = run_cells(cells, killed)
     for report, before in zip(found, expected, strict=True):
@@ -158,7 +160,7 @@ def test_a_killed_run_ends_with_the_same_digests(tiny: Path, tmp_path: Path) -> 
 
 
 @pytest.mark.learners
-def test_a_cell_that_lost_a_learner_in_a_kill_runs_again_to_the_same_digest(tiny: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_cell_that_lost_a_learner_in_a_kill_reruns_to_the_same_digest(tiny: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     cell = Cell(str(tiny), "finetuning", 0)
     (whole,) = run_cells([cell], tmp_path / "whole")
 
@@ -177,7 +179,7 @@ def test_a_cell_that_lost_a_learner_in_a_kill_runs_again_to_the_same_digest(tiny
 
 
 @pytest.mark.learners
-def test_a_learner_of_one_s_own_is_one_file(
+def test_custom_learner_is_one_file(
     tiny: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -199,7 +201,7 @@ def test_a_learner_of_one_s_own_is_one_file(
 
 
 @pytest.mark.learners
-def test_the_smoke_sequence_is_learned_and_forgotten(tmp_path: Path) -> None:
+def test_smoke_sequence_is_learned_and_forgotten(tmp_path: Path) -> None:
     (report,) = run_cells([Cell("smoke", "finetuning", 0)], tmp_path)
     assert report is not None and report["decisions"] >= 4 * 33_000
     (run,) = Results(Sequence.load("smoke"), tmp_path / "smoke").runs["finetuning"]
@@ -208,12 +210,12 @@ def test_the_smoke_sequence_is_learned_and_forgotten(tmp_path: Path) -> None:
 
 
 @pytest.mark.learners
-def test_a_node_of_ray_that_dies_changes_no_digest(tiny: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_dead_ray_node_changes_no_digest(tiny: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     cluster_utils = pytest.importorskip("ray.cluster_utils")
     ray = pytest.importorskip("ray")
     cells = [Cell(str(tiny), "finetuning", seed) for seed in (0, 1, 2)]
     alone = run_cells(cells, tmp_path / "alone")
-    # Of the nodes, which start their own processes.
+    # For the nodes, which start their own processes.
     monkeypatch.setenv("DRIFTWORLD_STALE_SECONDS", "12")
     cluster = cluster_utils.Cluster(initialize_head=True, head_node_args={"num_cpus": 0})
     try:

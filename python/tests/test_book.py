@@ -1,4 +1,4 @@
-"""How ``book/build.py`` finds links, checks them, and leads them into the book."""
+"""``book/build.py`` finds links, checks them, and adapts them to the book."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def book() -> Any:
     return module
 
 
-def test_every_link_of_the_repository_leads_somewhere(book: Any) -> None:
+def test_every_link_of_the_repository_has_a_target(book: Any) -> None:
     assert book.of_repository(book.ROOT) == []
 
 
@@ -34,12 +34,12 @@ def test_every_link_of_the_repository_leads_somewhere(book: Any) -> None:
         ("`[x](old.md)`\n\n```\n[x](old.md)\n```\n", []),
     ],
 )
-def test_links_of_every_kind_are_found_and_none_in_code(book: Any, page: str, expected: list[str]) -> None:
+def test_links_of_every_kind_are_found_except_in_code(book: Any, page: str, expected: list[str]) -> None:
     assert [link[0] for link in book.links(page)] == expected
 
 
 @pytest.mark.parametrize("link", ["d.html", "a/c.html#z", "#x", "../p.html", "a/b.jpg"])
-def test_a_missing_file_or_heading_is_found(book: Any, tmp_path: Path, link: str) -> None:
+def test_missing_file_or_heading_is_reported(book: Any, tmp_path: Path, link: str) -> None:
     (tmp_path / "a").mkdir()
     (tmp_path / "a" / "b.png").touch()
     page, other = '<h2 id="y">Y</h2><a href="a/c.html#y"><img src="a/b.png"><a href="https://a.b/c">', '<p id="y">'
@@ -50,12 +50,12 @@ def test_a_missing_file_or_heading_is_found(book: Any, tmp_path: Path, link: str
     assert len(book.of_book(tmp_path)) == 1
 
 
-def test_headings_are_named_as_links_say_them(book: Any) -> None:
+def test_heading_anchors_match_links(book: Any) -> None:
     page = "# A `b` (c)\n## [D](e.md): 2 × 3\n## D\n## D\n```sh\n# no heading\n```\n"
     assert book.headings(page) == {"a-b-c", "d-2--3", "d", "d-1"}
 
 
-def test_links_lead_to_where_pages_are_in_the_book(book: Any) -> None:
+def test_links_are_adapted_to_the_book(book: Any) -> None:
     page = "[a](../docs/worlds.md#doors) [b](https://a.org/b.md) [c](#d)"
     assert book.led(page, "examples/README.md", book.place) == "[a](../../worlds.md#doors) [b](https://a.org/b.md) [c](#d)"
     assert book.place("docs/how-to/README.md") == "how-to/index.md"

@@ -1,4 +1,4 @@
-"""Regimes that end after so many decisions: which experiences are run, by another way of computing it, and after a kill."""
+"""Regimes with a budget of decisions: which experiences run, against an independent computation, and after a kill."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from test_vector_lifetimes import Many
 
 
 class Stroller(Circler):
-    """Goes this way and that, by its number."""
+    """Walks a course that depends on its number."""
 
     def begin(self, label: str | None, seed: int) -> None:
         self.random = np.random.default_rng(seed)
@@ -24,7 +24,7 @@ class Stroller(Circler):
 
 
 def scenario(budgets: dict[str, int], **block: Any) -> dict[str, Any]:
-    """Episodes of unlike lengths: lava ends them."""
+    """Episodes of different lengths: lava ends them."""
     regimes = [
         {"task": "lava_crossing", "variant": variant, "count": 50, "steps": steps, "seed": 3, "max_steps": 9 + 8 * place}
         for place, (variant, steps) in enumerate(budgets.items())
@@ -36,7 +36,7 @@ def scenario(budgets: dict[str, int], **block: Any) -> dict[str, Any]:
 
 
 def expected(curriculum: Curriculum, lengths: dict[int, int], num_envs: int) -> set[int]:
-    """The numbers of the experiences that are run, step by step as environments do."""
+    """The numbers of the experiences that run, computed step by step like the environments."""
     run: set[int] = set()
     for block in curriculum:
         waiting, left, spent = list(block), [0] * num_envs, {}
@@ -59,7 +59,7 @@ def expected(curriculum: Curriculum, lengths: dict[int, int], num_envs: int) -> 
 
 @pytest.mark.parametrize("mix", ["in_order", "shuffled"])
 @pytest.mark.parametrize("num_envs", [1, 2, 5])
-def test_a_budget_leaves_the_experiences_that_it_should(tmp_path: Path, num_envs: int, mix: str) -> None:
+def test_budget_runs_the_expected_experiences(tmp_path: Path, num_envs: int, mix: str) -> None:
     budgets = {"lava": 40 + 7 * num_envs, "middle": 61}
     curriculum = Curriculum.from_dict(scenario(budgets, mix=mix))
     summary = curriculum.run_vector(Many(num_envs, Stroller), tmp_path / "log", num_envs=num_envs, **SMALL)
@@ -71,14 +71,14 @@ def test_a_budget_leaves_the_experiences_that_it_should(tmp_path: Path, num_envs
     assert numbers == sorted(numbers) and len(set(steps)) > 1
     for regime, budget in enumerate(budgets.values()):
         learned = [lengths[each.number] for each in curriculum[0] if each.regime == regime and each.number in lengths]
-        # The last that begin, begin before it is spent.
+        # The last experiences start before the budget is spent.
         assert budget <= sum(learned) < budget + num_envs * max(learned)
 
 
 @pytest.mark.parametrize("budget", range(21, 105, 12))
 @pytest.mark.parametrize("num_envs", [2, 3])
 def test_all_that_is_learned_from_is_in_the_log(tmp_path: Path, num_envs: int, budget: int) -> None:
-    """Also where all environments end in one step."""
+    """Also if all environments end in the same step."""
     curriculum = Curriculum.from_dict(scenario({"lava": budget, "middle": budget}))
     agents = Many(num_envs, Stroller)
     assert curriculum.run_vector(agents, tmp_path / "log", num_envs=num_envs, **SMALL).finished
@@ -86,7 +86,7 @@ def test_all_that_is_learned_from_is_in_the_log(tmp_path: Path, num_envs: int, b
     assert agents.steps == columns["episode_step_count"][columns["block_type"] == "train"].astype(int).sum()
 
 
-def test_one_environment_of_many_is_a_single_one(tmp_path: Path) -> None:
+def test_one_vector_environment_equals_a_single_one(tmp_path: Path) -> None:
     curriculum = Curriculum.from_dict(scenario({"lava": 50, "middle": 33}))
     curriculum.run(Pupil(), tmp_path / "one", **SMALL)
     curriculum.run_vector(Many(1, Pupil), tmp_path / "many", num_envs=1, **SMALL)
@@ -94,11 +94,11 @@ def test_one_environment_of_many_is_a_single_one(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("num_envs", [1, 3])
-def test_a_budget_goes_on_after_a_kill(tmp_path: Path, num_envs: int) -> None:
+def test_budget_resumes_after_a_kill(tmp_path: Path, num_envs: int) -> None:
     curriculum = Curriculum.from_dict(scenario({"lava": 70, "middle": 64}))
 
     class Shared(Many):
-        """All its environments share what they know, which goes into every action."""
+        """All its environments share their knowledge, which affects every action."""
 
         def __init__(self) -> None:
             super().__init__(num_envs, Pupil)
@@ -125,7 +125,7 @@ def test_a_budget_goes_on_after_a_kill(tmp_path: Path, num_envs: int) -> None:
         assert rows(log) == whole
 
 
-def test_a_budget_is_for_learning_alone() -> None:
+def test_budget_applies_to_learning_only() -> None:
     wrong = scenario({"lava": 50})
     wrong["blocks"][1]["regimes"][0]["steps"] = 5
     with pytest.raises(SpecError, match="/blocks/1/regimes/0/steps.*: found 5, expected none in an evaluation or a drift"):

@@ -1,4 +1,4 @@
-"""The page of bugs known elsewhere is made from its table, and every test that it names exists."""
+"""The page of known bugs is made from its table, and every test that it names exists."""
 
 import shutil
 import subprocess
@@ -15,13 +15,13 @@ def check(root: Path) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, capture_output=True, text=True, check=False)
 
 
-def test_page_of_bugs_is_that_of_its_table() -> None:
+def test_bugs_page_matches_its_table() -> None:
     done = check(ROOT)
     assert done.returncode == 0, done.stderr
 
 
 @pytest.mark.parametrize("file", ["docs/bugs.json", "docs/bugs-you-know.md"])
-def test_a_test_that_is_gone_or_another_page_is_found(tmp_path: Path, file: str) -> None:
+def test_missing_test_or_changed_page_is_reported(tmp_path: Path, file: str) -> None:
     for each in ["python/tests", "tests", "env", "src", "curriculum", "metrics", "spec", "similarity", "generator", "report"]:
         (tmp_path / each).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / each).symlink_to(ROOT / each)

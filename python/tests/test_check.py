@@ -1,4 +1,4 @@
-"""`python -m driftworld.check` passes what is right, finds what is wrong, and says so in its exit status."""
+"""`python -m driftworld.check` passes correct environments, finds faults, and reports them in its exit status."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def test_each_built_in_task_keeps_the_contract(env_id: str) -> None:
     assert "all rules are kept" in str(report)
 
 
-def test_processes_keep_it_as_well() -> None:
+def test_processes_keep_the_contract() -> None:
     report = checks.check("find_objects#red", steps=20, size=40, modalities=["rgb"])
     assert report.ok, str(report)
     assert [each.outcome for each in report.findings if "AsyncVectorEnv" in each.rule] == ["passed"]
@@ -42,7 +42,7 @@ def test_windows_are_looked_at_where_pygame_is_and_nothing_else_needs_it(monkeyp
     assert [outcome for rule, outcome in outcomes.items() if "window" in rule] == ["skipped"]
 
 
-def test_a_window_that_shows_nothing_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_blank_window_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("pygame", reason="windows are pygame's")
     monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
     render = DriftworldEnv.render
@@ -54,13 +54,13 @@ def test_a_window_that_shows_nothing_is_found(monkeypatch: pytest.MonkeyPatch) -
     )
 
 
-def test_tasks_and_worlds_of_ones_own_are_checked(task_file: Path, world_file: Path) -> None:
+def test_custom_tasks_and_worlds_are_checked(task_file: Path, world_file: Path) -> None:
     for name in (f"{task_file}#landmarks", str(task_file), str(world_file)):
         report = checks.check(name, steps=20, processes=False, size=40)
         assert report.ok, str(report)
 
 
-def test_a_reward_that_differs_in_the_batch_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_reward_that_differs_in_the_batch_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     step = DriftworldVectorEnv.step
 
     def generous(self: Any, actions: Any) -> Any:
@@ -73,7 +73,7 @@ def test_a_reward_that_differs_in_the_batch_is_found(monkeypatch: pytest.MonkeyP
     assert "as SyncVectorEnv, bit for bit" in found
 
 
-def test_a_seed_that_is_not_kept_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_ignored_seed_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     reset = DriftworldEnv.reset
 
     def forgetful(self: Any, *, seed: int | None = None, options: Any = None) -> Any:
@@ -87,7 +87,7 @@ def test_a_seed_that_is_not_kept_is_found(monkeypatch: pytest.MonkeyPatch) -> No
     assert "same seed, same worlds, one after the other" in found
 
 
-def test_a_final_observation_that_is_the_next_first_one_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_final_observation_of_the_next_episode_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     if not hasattr(gymnasium.vector, "AutoresetMode"):
         pytest.skip("Gymnasium 1.0 has no final observations to compare with")
     from driftworld.envs.members import Members
@@ -98,11 +98,11 @@ def test_a_final_observation_that_is_the_next_first_one_is_found(monkeypatch: py
     ]
 
 
-def test_a_state_that_forgets_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_incomplete_state_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     state = DriftworldEnv.state
 
     def forgetful(self: DriftworldEnv) -> dict[str, Any]:
-        # Without both, those that wander have no goal, and draw another.
+        # Without both, wandering objects have no goal, and draw another.
         world = state(self)
         del world["progress"]
         for thing in world["objects"]:
@@ -115,7 +115,7 @@ def test_a_state_that_forgets_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     ]
 
 
-def test_the_command_prints_a_table_or_json_and_ends_with_0(capsys: pytest.CaptureFixture[str]) -> None:
+def test_command_prints_table_or_json_and_exits_with_0(capsys: pytest.CaptureFixture[str]) -> None:
     arguments = [
         "find_objects#red",
         "--no-processes",
@@ -146,7 +146,7 @@ def test_the_command_prints_a_table_or_json_and_ends_with_0(capsys: pytest.Captu
     ],
     ids=str,
 )
-def test_what_cannot_be_made_is_a_failure_with_its_reason(
+def test_impossible_environment_fails_with_reason(
     arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert command.main(arguments) == 1
@@ -160,13 +160,13 @@ def test_what_cannot_be_made_is_a_failure_with_its_reason(
     [[], ["find_objects", "--steps", "0"], ["find_objects", "--option", "size"], ["find_objects", "--nonsense"]],
     ids=str,
 )
-def test_arguments_that_are_none_end_with_2(arguments: list[str]) -> None:
+def test_invalid_arguments_exit_with_2(arguments: list[str]) -> None:
     with pytest.raises(SystemExit) as ended:
         command.main(arguments)
     assert ended.value.code == 2
 
 
-def test_a_measure_below_1_is_refused() -> None:
+def test_counts_below_1_are_refused() -> None:
     with pytest.raises(ValueError, match="num_envs, steps: found 0 and 5"):
         checks.check("find_objects", num_envs=0, steps=5)
 
@@ -187,5 +187,5 @@ def test_a_measure_below_1_is_refused() -> None:
     ],
     ids=str,
 )
-def test_the_first_difference_is_told_with_its_place(left: Any, right: Any, difference: str | None) -> None:
+def test_first_difference_is_reported_with_its_place(left: Any, right: Any, difference: str | None) -> None:
     assert first_difference(left, right, "x") == difference

@@ -1,4 +1,4 @@
-"""The numbers of classes in class segmentation: one table for every world."""
+"""Class numbers of the class segmentation are the same in every world."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ def seen(*classes: str) -> set[int]:
     return {int(number) for number in np.unique(observation)}
 
 
-def test_a_class_has_its_number_in_every_world() -> None:
+def test_class_has_the_same_number_in_every_world() -> None:
     numbers = driftworld.segmentation_classes()
     assert list(numbers.values()) == list(range(1, 30))
     assert seen("barrel", "tree") == {0, numbers["barrel"], numbers["tree"]}
@@ -23,7 +23,7 @@ def test_a_class_has_its_number_in_every_world() -> None:
         seen("dragon")
 
 
-def test_what_is_no_library_is_refused(tmp_path) -> None:  # type: ignore[no-untyped-def]
+def test_file_that_is_not_a_library_is_refused(tmp_path) -> None:  # type: ignore[no-untyped-def]
     path = tmp_path / "town.assets"
     path.write_bytes(b"no library")
     with pytest.raises(driftworld.EnvError):

@@ -1,4 +1,4 @@
-"""The command that the wheel brings: arguments, exit codes, pipes and signals."""
+"""The command installed by the wheel: arguments, exit codes, pipes and signals."""
 
 from __future__ import annotations
 
@@ -20,42 +20,42 @@ def run(*argv: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command(*argv), capture_output=True, text=True, check=False)
 
 
-def test_it_says_its_version() -> None:
+def test_version_is_printed() -> None:
     said = run("--version")
     assert (said.returncode, said.stdout) == (0, f"driftworld {driftworld.__version__}\n")
 
 
-def test_it_prints_what_it_found() -> None:
+def test_output_is_printed() -> None:
     said = run("sample", "find_objects#red", "--seed", "7")
     assert said.returncode == 0 and json.loads(said.stdout) == driftworld.variant("find_objects#red").sample(7)
 
 
-def test_wrong_input_is_exit_code_1() -> None:
+def test_wrong_input_exits_with_1() -> None:
     said = run("sample", "find_object#red")
     assert said.returncode == 1 and said.stdout == ""
     assert said.stderr.startswith("error: found task") and 'did you mean "find_objects"?' in said.stderr
 
 
 @pytest.mark.parametrize("argv", [["sampel"], ["sample", "find_objects", "--sed", "3"], ["order"]])
-def test_wrong_arguments_are_exit_code_2(argv: list[str]) -> None:
+def test_wrong_arguments_exit_with_2(argv: list[str]) -> None:
     said = run(*argv)
     assert said.returncode == 2 and "driftworld" in said.stderr and "__main__" not in said.stderr
 
 
-def test_help_is_no_mistake() -> None:
+def test_help_exits_with_0() -> None:
     said = run("sample", "--help")
     assert said.returncode == 0 and "Usage: driftworld sample" in said.stdout and said.stderr == ""
 
 
-def test_the_errors_of_python_say_what_the_command_says() -> None:
+def test_python_errors_match_the_command() -> None:
     with pytest.raises(driftworld.TaskError) as refused:
         driftworld.variant("find_object#red")
-    # The command breaks lines between words, to fit a terminal.
+    # The command wraps lines at words, to fit a terminal.
     said = run("sample", "find_object#red").stderr
     assert said.split() == f"error: {refused.value}".split()
 
 
-def test_it_ends_quietly_when_its_reader_goes() -> None:
+def test_closed_pipe_ends_it_quietly() -> None:
     child = subprocess.Popen(
         command("sample", "find_objects", "--count", "100000", "--jsonl"),
         stdout=subprocess.PIPE,
@@ -68,7 +68,7 @@ def test_it_ends_quietly_when_its_reader_goes() -> None:
     child.stderr.close()
 
 
-def test_an_interrupt_ends_it_in_words() -> None:
+def test_interrupt_ends_it_with_a_message() -> None:
     child = subprocess.Popen(
         command("sample", "find_objects", "--count", "100000000", "--jsonl"),
         stdout=subprocess.PIPE,
@@ -77,13 +77,13 @@ def test_an_interrupt_ends_it_in_words() -> None:
     assert child.stdout is not None
     child.stdout.readline()
     child.send_signal(signal.SIGINT)
-    # Read to the end: a writer that waits for its reader could not be seen to end.
+    # Reads to the end: a writer that waits for its reader would never end.
     _, said = child.communicate(timeout=60)
-    # Samples ask to be told, so that they can remove what is half written.
+    # `sample` handles interrupts, to remove unfinished files.
     assert child.returncode == 130 and said.startswith(b"error: interrupted after ")
 
 
-def test_an_interrupted_run_leaves_a_log_that_goes_on(tmp_path: Path) -> None:
+def test_interrupted_run_leaves_a_resumable_log(tmp_path: Path) -> None:
     scenario, log = tmp_path / "scenario.json", tmp_path / "log"
     driftworld.Curriculum.design("find_objects#blue", learn=3000, eval_episodes=1).save(scenario)
     argv = command("run", str(scenario), "--agent", "random", "--output", str(log))

@@ -1,4 +1,6 @@
-"""No option of an environment makes variants one without saying so: refused in curricula, warned of in environments."""
+"""Options of an environment that hide differences between variants are refused in curricula, and cause warnings in
+environments.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +25,7 @@ LEARNERS = sorted((ROOT / "examples" / "python").glob("*ppo*.py"))
 
 
 def options_of(program: Path) -> dict[str, Any]:
-    """The options that an example hands to environments, without the task."""
+    """The options that an example passes to environments, without the task."""
     text = program.read_text(encoding="utf-8")
     table = re.search(r"^ACTIONS = (\[.*\])$", text, re.MULTILINE)
     found = re.search(r"^ *(?:OPTIONS|options): dict\[str, Any\] = (\{.*?\n *\})", text, re.MULTILINE | re.DOTALL)
@@ -34,7 +36,7 @@ def options_of(program: Path) -> dict[str, Any]:
     return {name: value for name, value in given.items() if name != "task"}
 
 
-#: Each different set of options that examples have, by the first that has it.
+#: Each distinct set of options in the examples, by the first example that uses it.
 EXAMPLES: dict[str, dict[str, Any]] = {}
 for program in LEARNERS:
     if (options := options_of(program)) and options not in EXAMPLES.values():
@@ -63,7 +65,7 @@ def regimes(*variants: str) -> Curriculum:
 
 
 def world(variant: str, options: dict[str, Any]) -> dict[str, Any]:
-    """What its first world is under options, without what the images of observations leave out."""
+    """Its first world under options, without parts that the images of observations do not show."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         env = DriftworldEnv(variant, **{"size": 8, **options})
@@ -77,7 +79,7 @@ def world(variant: str, options: dict[str, Any]) -> dict[str, Any]:
 
 
 def expect_told_apart(variants: list[str], options: dict[str, Any]) -> None:
-    """Two different variants are refused together, or their first worlds differ with the options as well."""
+    """Two different variants are refused together, or their first worlds also differ under the options."""
     plain = {name: world(name, {"actions": None}) for name in variants}
     under: dict[str, Any] = {}
     for one, other in itertools.combinations(variants, 2):
@@ -91,7 +93,7 @@ def expect_told_apart(variants: list[str], options: dict[str, Any]) -> None:
 
 @pytest.mark.parametrize("example", EXAMPLES)
 @pytest.mark.parametrize("path", CURRICULA, ids=lambda path: path.stem)
-def test_no_option_of_an_example_makes_variants_of_a_curriculum_one(path: Path, example: str) -> None:
+def test_example_options_hide_no_variant_differences(path: Path, example: str) -> None:
     curriculum, options = Curriculum.load(path), EXAMPLES[example]
     variants = sorted({experience.variant for block in curriculum for experience in (block[0], *block[:: max(1, len(block) // 12)])})
     variants = [name for name in variants if ".." not in name]
@@ -103,7 +105,7 @@ def test_no_option_of_an_example_makes_variants_of_a_curriculum_one(path: Path, 
     expect_told_apart(variants, options)
 
 
-def test_shipped_examples_run_where_variants_agree() -> None:
+def test_shipped_examples_run_with_agreeing_variants() -> None:
     refused = set()
     for path in CURRICULA:
         for options in EXAMPLES.values():
@@ -114,7 +116,7 @@ def test_shipped_examples_run_where_variants_agree() -> None:
     assert refused == {"transition", "interaction", "modality", "families_interaction", "families_modality"}
 
 
-def test_drawn_variants_are_never_made_one() -> None:
+def test_drawn_variants_stay_distinct() -> None:
     draw = np.random.default_rng(38)
     names = [f"{task}#{name}" for task in ("find_objects", "moving_object") for name in driftworld.TaskSpec.load(task).variant_names()]
     often = [name for name in names if name.endswith(("held", "no_interact", "rgb_only", "depth_only", "with_class"))]
@@ -147,7 +149,7 @@ def test_drawn_variants_are_never_made_one() -> None:
     ],
     ids=str,
 )
-def test_an_option_over_what_variants_differ_in_is_refused_with_key_and_variants(
+def test_option_hiding_a_difference_is_refused_with_key_and_variants(
     pair: tuple[str, ...], options: dict[str, Any], told: str
 ) -> None:
     names = [f"find_objects#{name}" for name in pair]
@@ -174,7 +176,7 @@ def test_an_option_over_what_variants_differ_in_is_refused_with_key_and_variants
     assert any(str(one.message).startswith(told[1 : told.index(":") + 1]) for one in warned)
 
 
-def test_what_variants_draw_anew_is_refused_and_limits_join_tasks() -> None:
+def test_hidden_random_values_cause_a_warning_and_limits_join_tasks() -> None:
     task = driftworld.TaskSpec.load("get_to_goal")
     document = json.loads(task.to_json())
     document["name"] = "drawn"
@@ -185,7 +187,7 @@ def test_what_variants_draw_anew_is_refused_and_limits_join_tasks() -> None:
     curriculum.environment(**SMALL, max_steps=20).close()
 
 
-def test_options_that_variants_agree_in_are_not_warned_of() -> None:
+def test_options_without_differences_cause_no_warning() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         for options in EXAMPLES.values():
@@ -193,7 +195,7 @@ def test_options_that_variants_agree_in_are_not_warned_of() -> None:
             DriftworldVectorEnv("find_objects", 3, variants=["blue", "red", "dusk"], **options).close()
 
 
-def test_variants_that_no_image_shows_apart_are_refused() -> None:
+def test_variants_that_look_alike_in_all_images_are_refused() -> None:
     told = r"^modalities: found it over target_color, in which find_objects#blue and find_objects#red differ and which only rgb"
     curriculum = regimes("find_objects#blue", "find_objects#red")
     for shown in ("depth", ["depth", "class"], "state"):
@@ -206,7 +208,7 @@ def test_variants_that_no_image_shows_apart_are_refused() -> None:
     regimes("find_objects#blue", "find_objects#huddle").environment(size=8, modalities="depth").close()
 
 
-def test_bounds_of_continuous_actions_hold_every_world_that_is_drawn() -> None:
+def test_continuous_action_bounds_include_every_drawn_world() -> None:
     env = DriftworldEnv("find_objects#any_speed", actions="continuous", size=8)
     assert env.action_space.high.tolist() == [10, 90, 1]  # type: ignore[attr-defined]
     for seed in range(8):

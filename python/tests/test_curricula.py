@@ -1,4 +1,4 @@
-"""Curricula from Python: designed, read, iterated and saved. Running them is in ``test_lifetimes.py``."""
+"""Curricula in Python: designed, read, iterated and saved."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from driftworld import Curriculum, CurriculumError, SpecError, TaskError
 from small_lifetime import Circler, small
 
 
-def test_a_design_is_the_commands(tmp_path: Path) -> None:
+def test_design_matches_the_command(tmp_path: Path) -> None:
     curriculum = Curriculum.design(
         "find_objects#blue", "find_objects#red", "find_objects#dusk", learn=3, eval_episodes=1, evaluate="ends", seed=4
     )
@@ -42,13 +42,13 @@ def test_a_design_is_the_commands(tmp_path: Path) -> None:
         {"form": "permuted", "mix": False, "pre_deployment": 2},
     ],
 )
-def test_every_choice_of_the_command_can_be_made(options: dict[str, Any]) -> None:
+def test_every_option_of_the_command_is_supported(options: dict[str, Any]) -> None:
     tasks = ["find_objects#blue", "find_objects#dusk"] if "form" in options else ["find_objects"]
     curriculum = Curriculum.design(*tasks, learn=2, eval_episodes=1, **options)
     assert sum(len(block) for block in curriculum) == curriculum.num_experiences > 0
 
 
-def test_controls_are_written_beside_the_design(tmp_path: Path) -> None:
+def test_controls_are_written_with_the_design(tmp_path: Path) -> None:
     Curriculum.design(
         "find_objects#blue", "find_objects#red", "find_objects#dusk", controls=tmp_path, plot=tmp_path / "p.png"
     )
@@ -56,7 +56,7 @@ def test_controls_are_written_beside_the_design(tmp_path: Path) -> None:
     assert len([name for name in names if name.endswith(".json")]) == 3 and "p.png" in names
 
 
-def test_experts_and_lifetimes_are_several() -> None:
+def test_experts_and_lifetimes_return_several_curricula() -> None:
     experts = Curriculum.experts("find_objects#blue", "find_objects#red", learn=2)
     assert [expert.name for expert in experts] == ["curriculum-blue", "curriculum-red"]
     assert {experience.variant for block in experts[1] for experience in block if block.kind == "learning"} == {
@@ -67,7 +67,7 @@ def test_experts_and_lifetimes_are_several() -> None:
     assert all(life.num_experiences == lives[0].num_experiences for life in lives)
 
 
-def test_blocks_and_experiences_are_iterated() -> None:
+def test_blocks_and_experiences_can_be_iterated() -> None:
     curriculum = small()
     assert [(block.kind, block.phase, len(block)) for block in curriculum] == [
         ("learning", "pre_deployment", 2),
@@ -90,7 +90,7 @@ def test_blocks_and_experiences_are_iterated() -> None:
         "find_objects", "find_objects#blue", 1, 1, False
     )  # fmt: skip
     expected = driftworld.variant("find_objects#blue").sample(1, 1)
-    # A limit of steps stands in place of the task's limit of seconds.
+    # The limit of steps replaces the task's limit of seconds.
     assert expected.pop("max_seconds") == 30
     assert second.world() == {**expected, "max_steps": 40}
     assert curriculum[1][-1] == curriculum[1][2] == curriculum[1][2:][0]
@@ -99,7 +99,7 @@ def test_blocks_and_experiences_are_iterated() -> None:
 
 
 @pytest.mark.skipif(os.name != "posix", reason="modes are POSIX's")
-def test_files_are_as_the_umask_has_them(tmp_path: Path) -> None:
+def test_file_modes_follow_the_umask(tmp_path: Path) -> None:
     file = tmp_path / "scenario.json"
     before = os.umask(0o027)
     try:
@@ -114,7 +114,7 @@ def test_files_are_as_the_umask_has_them(tmp_path: Path) -> None:
         small().save(tmp_path)
 
 
-def test_tasks_and_worlds_are_found_from_the_scenarios_folder(tmp_path: Path) -> None:
+def test_tasks_and_worlds_are_found_in_the_scenarios_folder(tmp_path: Path) -> None:
     world = driftworld.variant("find_objects#red").sample(3)
     (tmp_path / "yard.json").write_text(json.dumps(world), encoding="utf-8")
     document = {"name": "files", "blocks": [{"type": "evaluation", "regimes": [
@@ -131,12 +131,12 @@ def test_tasks_and_worlds_are_found_from_the_scenarios_folder(tmp_path: Path) ->
         Curriculum(json.dumps(document), tmp_path / "s.json", stand_in=True)
 
 
-def test_a_curriculum_pickles() -> None:
+def test_curriculum_pickles() -> None:
     again = pickle.loads(pickle.dumps(small()))
     assert again.scenario == small().scenario and again[2][4].world() == small()[2][4].world()
 
 
-def test_what_is_no_curriculum_says_where() -> None:
+def test_invalid_curriculum_is_refused_with_its_place() -> None:
     regime = {"task": "find_objects", "variant": "rde", "count": 1}
     with pytest.raises(SpecError, match='did you mean "red"') as refused:
         Curriculum.from_dict({"name": "s", "blocks": [{"type": "learning", "regimes": [regime]}]})
@@ -156,7 +156,7 @@ def test_what_is_no_curriculum_says_where() -> None:
 
 
 @pytest.mark.parametrize("copied", [lambda thing: pickle.loads(pickle.dumps(thing)), copy.deepcopy])
-def test_blocks_and_experiences_survive_being_copied(copied: Any) -> None:
+def test_blocks_and_experiences_can_be_copied(copied: Any) -> None:
     curriculum = small()
     block = copied(curriculum[2])
     assert block == curriculum[2] and list(block) == list(curriculum[2])
@@ -173,7 +173,7 @@ def test_blocks_and_experiences_survive_being_copied(copied: Any) -> None:
         ({"evaluate_after": [1, "2"]}, "evaluate_after: found '2' in it"),
     ],
 )
-def test_a_design_takes_only_what_it_knows(options: dict[str, Any], message: str) -> None:
+def test_unknown_design_options_are_refused(options: dict[str, Any], message: str) -> None:
     with pytest.raises(TypeError, match=message):
         Curriculum.experts("find_objects#red", **options)
     if "lern" not in options:
@@ -181,7 +181,7 @@ def test_a_design_takes_only_what_it_knows(options: dict[str, Any], message: str
             Curriculum.design("find_objects#red", **options)
 
 
-def test_unknown_classes_and_names_that_collide_are_problems(tmp_path: Path) -> None:
+def test_unknown_classes_and_colliding_names_are_reported(tmp_path: Path) -> None:
     world = {"objects": [{"class": "shrb", "coordinates": [3, 4]}]}
     (problem,) = driftworld.validate(world)
     assert problem["code"] == "spec/unknown-class" and "shrub" in problem["message"]
@@ -191,7 +191,7 @@ def test_unknown_classes_and_names_that_collide_are_problems(tmp_path: Path) -> 
     assert problem["code"] == "curriculum/same-log-name"
 
 
-def test_a_model_that_its_class_does_not_have_trains_nobody(tmp_path: Path) -> None:
+def test_model_missing_from_its_class_is_refused(tmp_path: Path) -> None:
     world = {"objects": [{"class": "animal", "model": "foxx", "coordinates": [3, 4]}]}
     task = {
         "name": "t",
@@ -215,7 +215,7 @@ def test_a_model_that_its_class_does_not_have_trains_nobody(tmp_path: Path) -> N
         driftworld.DriftworldEnv(str(path), size=16)
 
 
-def test_a_notebook_shows_a_curriculum_as_its_blocks() -> None:
+def test_notebook_shows_a_curriculum_as_its_blocks() -> None:
     curriculum = Curriculum.design("find_objects#blue", "find_objects#red", learn=3, eval_episodes=2, seed=0)
     told = curriculum._repr_html_()
     assert told.count("<tr>") == len(curriculum) + 1

@@ -1,4 +1,4 @@
-"""Distances, matrices and orders from Python are the command's."""
+"""Distances, matrices and orders in Python match the command's."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ SOME = ["find_objects#blue", "find_objects#red", "find_objects#dusk", "find_obje
 
 
 def commanded(*argv: str) -> Any:
-    """What the command says as JSON."""
+    """The command's output as JSON."""
     command = [sys.executable, "-m", "driftworld", *argv, "--json"]
     return json.loads(subprocess.run(command, capture_output=True, check=True).stdout)
 
@@ -37,7 +37,7 @@ def commanded(*argv: str) -> Any:
         ("find_objects#blue", "get_to_goal#plain", {"worlds": 3, "seed": 4}, ["--worlds", "3", "--seed", "4"]),
     ],
 )
-def test_a_distance_is_the_commands(a: str, b: str, options: dict[str, Any], flags: list[str]) -> None:
+def test_distance_matches_the_command(a: str, b: str, options: dict[str, Any], flags: list[str]) -> None:
     found, expected = distance(a, b, **options), commanded("distance", a, b, *flags)
     assert float(found) == found.total == expected["total"]
     assert list(found.elements.values()) == list(expected["elements"].values())
@@ -47,7 +47,7 @@ def test_a_distance_is_the_commands(a: str, b: str, options: dict[str, Any], fla
     assert shares == sorted(shares, reverse=True) and sum(shares) == pytest.approx(1)
 
 
-def test_worlds_are_compared_as_they_are(tmp_path: Path) -> None:
+def test_worlds_are_compared_directly(tmp_path: Path) -> None:
     variant = driftworld.variant("find_objects#blue")
     paths = [tmp_path / "a.json", tmp_path / "b.json"]
     worlds = variant.sample_many(2)
@@ -76,7 +76,7 @@ def test_every_measure_has_a_name(by: ComparedBy) -> None:
     assert matrix[0, 1] == pytest.approx(found.total, abs=1e-12)
 
 
-def test_shares_are_of_the_diameter() -> None:
+def test_shares_are_relative_to_the_diameter() -> None:
     units = distance("find_objects#red", "find_objects#dusk")
     share = distance("find_objects#red", "find_objects#dusk", scale="share")
     assert 0 < share < units and "a share of the task's diameter" in share.compared
@@ -87,7 +87,7 @@ def test_shares_are_of_the_diameter() -> None:
         distance("find_objects#red", "find_objects#dusk", scale="whole")  # type: ignore[arg-type]
 
 
-def test_a_distance_is_a_number_where_one_is_wanted() -> None:
+def test_distance_behaves_as_a_number() -> None:
     near, far = distance(SOME[0], SOME[1]), distance(SOME[0], SOME[3])
     assert near < far and max(near, far) is far and near < 1.9 and near != far and near == near.total
     assert np.asarray([near, far]).sum() == near + far == near.total + far.total
@@ -98,7 +98,7 @@ def test_a_distance_is_a_number_where_one_is_wanted() -> None:
     )
 
 
-def test_a_distance_explains_itself() -> None:
+def test_distance_explains_its_parts() -> None:
     said = distance("find_objects#blue", "find_objects#dusk").explain()
     lines = said.splitlines()
     assert lines[0] == "1.4474, by parameters"
@@ -106,7 +106,7 @@ def test_a_distance_explains_itself() -> None:
     assert any(line.startswith("light ") and line.endswith("%") for line in lines)
 
 
-def test_what_cannot_be_compared_says_so() -> None:
+def test_incomparable_subjects_are_refused_with_reason() -> None:
     with pytest.raises(SimilarityError) as refused:
         distance(SOME[0], SOME[1], weights={"R": -1})
     assert refused.value.code is not None and refused.value.code.startswith("similarity/")
@@ -120,7 +120,7 @@ def test_what_cannot_be_compared_says_so() -> None:
         distance(3, SOME[1])
 
 
-def test_a_matrix_is_the_commands() -> None:
+def test_matrix_matches_the_command() -> None:
     matrix, expected = distance_matrix(SOME), commanded("order", *SOME)["matrix"]
     assert matrix.labels == expected["labels"] == SOME
     assert np.array_equal(matrix, np.array(expected["values"]))
@@ -131,7 +131,7 @@ def test_a_matrix_is_the_commands() -> None:
         matrix.values[0, 1] = 3
 
 
-def test_a_matrix_takes_tasks_variants_and_names_each_once() -> None:
+def test_matrix_takes_tasks_variants_and_names_each_once() -> None:
     task = driftworld.TaskSpec.load("find_objects")
     whole = distance_matrix("find_objects")
     assert len(whole) == len(task.variants) and np.array_equal(whole, distance_matrix(task))
@@ -152,7 +152,7 @@ def test_variants_of_several_tasks_are_compared_by_worlds() -> None:
 
 
 @pytest.mark.parametrize("ending", ["csv", "json"])
-def test_a_matrix_comes_back_from_its_file(tmp_path: Path, ending: str) -> None:
+def test_matrix_survives_saving_and_loading(tmp_path: Path, ending: str) -> None:
     matrix, path = distance_matrix(SOME), tmp_path / "new" / f"matrix.{ending}"
     matrix.save(path)
     again = DistanceMatrix.load(path)
@@ -160,7 +160,7 @@ def test_a_matrix_comes_back_from_its_file(tmp_path: Path, ending: str) -> None:
     assert commanded("order", "--from-matrix", str(path))["order"] == order(matrix).labels
 
 
-def test_a_matrix_of_numbers_is_checked() -> None:
+def test_matrix_from_numbers_is_validated() -> None:
     assert DistanceMatrix(["a", "b"], [[0, 1], [1, 0]]).values[0, 1] == 1
     for values in ([[0, 1], [2, 0]], [[0, -1], [-1, 0]], [[0, np.nan], [np.nan, 0]], [[0, 1, 2], [1, 0, 2]]):
         with pytest.raises(SimilarityError):
@@ -171,7 +171,7 @@ def test_a_matrix_of_numbers_is_checked() -> None:
         distance_matrix(SOME[:2]).save("matrix.npy")
 
 
-def test_a_matrix_is_an_array_as_numpy_wants_it() -> None:
+def test_matrix_supports_the_numpy_array_protocol() -> None:
     matrix = distance_matrix(SOME[:2])
     assert np.asarray(matrix) is matrix.values
     owned = np.array(matrix)
@@ -181,7 +181,7 @@ def test_a_matrix_is_an_array_as_numpy_wants_it() -> None:
     assert np.array_equal(pickle.loads(pickle.dumps(matrix)), matrix)
 
 
-def test_a_matrix_is_a_container_of_labelled_rows() -> None:
+def test_matrix_is_a_container_of_labelled_rows() -> None:
     matrix = distance_matrix(SOME)
     assert list(matrix) == SOME == [label for label in matrix]
     assert all(label in matrix for label in SOME) and "find_objects#green" not in matrix and 0.0 not in matrix
@@ -190,14 +190,14 @@ def test_a_matrix_is_a_container_of_labelled_rows() -> None:
     assert all(np.array_equal(matrix[label], matrix.values[row]) for row, label in enumerate(matrix))
 
 
-def test_matrices_are_equal_when_they_say_the_same() -> None:
+def test_matrices_are_equal_if_labels_and_distances_are() -> None:
     matrix, again = distance_matrix(SOME), distance_matrix(SOME)
     assert matrix == again == pickle.loads(pickle.dumps(matrix)) and len({matrix, again}) == 1
     assert matrix != distance_matrix(SOME[::-1]) and matrix != distance_matrix(SOME, {"R": 3})
     assert matrix != SOME and (matrix == matrix.values).all()
 
 
-def test_pandas_takes_a_matrix() -> None:
+def test_matrix_converts_to_pandas() -> None:
     pandas = pytest.importorskip("pandas", reason="data frames are pandas'")
     matrix = distance_matrix(SOME)
     frame = matrix.to_pandas()
@@ -209,7 +209,7 @@ def test_pandas_takes_a_matrix() -> None:
     assert np.array_equal(pandas.DataFrame(matrix), matrix)
 
 
-def test_an_order_is_a_sequence_of_labels() -> None:
+def test_order_is_a_sequence_of_labels() -> None:
     found = order(SOME, start=SOME[2])
     assert [found[place] for place in range(len(found))] == list(found) == found.labels
     assert found[0] == SOME[2] and found[-1] == found.labels[-1] and found[1:3] == found.labels[1:3]
@@ -221,7 +221,7 @@ def test_an_order_is_a_sequence_of_labels() -> None:
 
 
 @pytest.mark.parametrize("method", [None, *_native.order_methods()])
-def test_an_order_is_the_commands(method: str | None) -> None:
+def test_order_matches_the_command(method: str | None) -> None:
     options: dict[str, Any] = {"seed": 3} if method == "random" else {}
     flags = ["--seed", "3"] if method == "random" else []
     if method == "target-step":
@@ -233,7 +233,7 @@ def test_an_order_is_the_commands(method: str | None) -> None:
     assert [SOME[index] for index in found.indices] == found.labels == list(found)
 
 
-def test_an_order_keeps_to_its_ends() -> None:
+def test_order_keeps_its_ends() -> None:
     found = order(SOME, start=SOME[2], end=SOME[1])
     assert (found.labels[0], found.labels[-1]) == (SOME[2], SOME[1])
     with pytest.raises(ValueError, match="start: found 'nobody', expected one of find_objects#blue"):
@@ -244,7 +244,7 @@ def test_an_order_keeps_to_its_ends() -> None:
         order(distance_matrix(SOME[:2]), weights={"R": 1})
 
 
-def test_a_map_keeps_distances_in_a_plane() -> None:
+def test_embedding_keeps_distances_in_a_plane() -> None:
     points = np.array([[0.0, 0.0], [3.0, 0.0], [0.0, 4.0]])
     apart = np.linalg.norm(points[:, None] - points[None], axis=-1)
     matrix = DistanceMatrix(["a", "b", "c"], apart)
@@ -256,16 +256,16 @@ def test_a_map_keeps_distances_in_a_plane() -> None:
         matrix.embed(3)
 
 
-def test_a_file_that_is_neither_a_world_nor_a_task_is_refused(tmp_path: Path) -> None:
+def test_file_that_is_neither_world_nor_task_is_refused(tmp_path: Path) -> None:
     (tmp_path / "three.json").write_text("3", encoding="utf-8")
     with pytest.raises(driftworld.SpecError, match="three.json"):
         driftworld.distance(str(tmp_path / "three.json"), "find_objects#red")
 
 
-def test_a_notebook_shows_what_differs_and_how_far() -> None:
+def test_notebook_shows_differences_and_distances() -> None:
     told = distance("find_objects#blue", "find_objects#dusk")._repr_html_()
     assert "<td style=\"text-align: left\">light</td>" in told
-    # What is equal is named below, and has no row of zeros.
+    # Equal parts are named below, without a row of zeros.
     assert "equal: " in told and "<td style=\"text-align: left\">spread</td>" not in told
     matrix = distance_matrix(["find_objects#blue", "find_objects#red", "find_objects#dusk"])
     shown = matrix._repr_html_()

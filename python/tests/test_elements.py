@@ -1,10 +1,10 @@
-"""What variants change, tried out from Python."""
+"""Measuring which elements variants change, from Python."""
 
 import driftworld
 import pytest
 
 
-def test_a_variant_that_pays_otherwise_changes_the_reward_alone():
+def test_variant_with_another_reward_changes_only_the_reward():
     found = driftworld.elements("find_objects", "blue", "modest", worlds=2)
     (variant,) = found["variants"]
     assert (found["base"], variant["variant"], variant["verdict"]) == ("blue", "modest", "sound")
@@ -13,7 +13,7 @@ def test_a_variant_that_pays_otherwise_changes_the_reward_alone():
     assert variant["proof"]["worlds"] == 2
 
 
-def test_a_reward_shows_in_the_segmentation_only_of_those_who_have_it():
+def test_reward_is_visible_only_with_segmentation():
     def letters(modalities):
         found = driftworld.elements("find_objects", "red", "penalty", modalities=modalities, worlds=2, steps=30)
         return [measured["element"] for measured in found["variants"][0]["measured"]]
@@ -22,7 +22,7 @@ def test_a_reward_shows_in_the_segmentation_only_of_those_who_have_it():
     assert letters(["segmentation"]) == ["R", "phi"]
 
 
-def test_a_task_that_claims_what_is_not_so_is_told():
+def test_wrong_declaration_is_reported():
     document = {
         "name": "dim",
         "parameters": {"light": {"role": "variant", "type": "number", "affects": ["R"], "range": [0, 4], "default": 2}},
@@ -35,7 +35,7 @@ def test_a_task_that_claims_what_is_not_so_is_told():
     assert "dim#dusk: found that phi (emission) differs from day" in contradiction["message"]
 
 
-def test_one_variant_alone_is_refused():
+def test_single_variant_is_refused():
     with pytest.raises(TypeError, match="expected none or two"):
         driftworld.elements("find_objects", "blue")
     with pytest.raises(driftworld.TaskError, match="ritch"):

@@ -1,4 +1,6 @@
-"""Infos say why an episode ended, in single and in vector environments; a puzzle goes on from its state to the last bit."""
+"""Infos name what ended an episode, in single and vector environments; a puzzle continues from its state to the last
+bit.
+"""
 
 from __future__ import annotations
 
@@ -29,7 +31,7 @@ GATE = thing("door", "gate", [0.0, 3.0], scale=2.0, door={})
 LAVA = {"disc": {"center": [0.0, 6.0], "radius": 2.0}, "ends": "failure"}
 BOX = thing("barrel", "box", [3.0, 1.0])
 
-#: For each word a world in which an agent that runs ahead and uses its hand comes to that end, and whether it is a success.
+#: For each word, a world in which an agent that runs ahead and interacts ends that way, and whether it is a success.
 WORLDS: dict[str, tuple[dict[str, Any], bool]] = {
     "all_collected": (
         {"objects": [thing("barrel", "coin", [0, 4], **COIN)], "rules": {"success": ["all_collected"]}},
@@ -72,7 +74,7 @@ def vector(num_envs: int, change: dict[str, Any], **options: Any) -> Any:
 
 
 def word_of(name: str) -> str | None:
-    """What infos say: a limit of steps may as well be a wrapper's, and has no word."""
+    """The word in infos: a limit of steps has none, because it may also be a wrapper's."""
     return None if name == "steps" else name
 
 
@@ -95,11 +97,11 @@ def test_an_episode_says_why_it_ended(name: str) -> None:
 
 @pytest.mark.parametrize("mode", AutoresetMode if HAS_MODES else [AutoresetMode.NEXT_STEP], ids=str)
 @pytest.mark.parametrize("name", ["touch", "carried", "zone", "steps", "time"])
-def test_a_vector_says_of_each_environment_why_its_episode_ended(name: str, mode: Any) -> None:
+def test_vector_info_names_what_ended_each_episode(name: str, mode: Any) -> None:
     envs = vector(3, WORLDS[name][0], autoreset_mode=mode)
     info = envs.reset(seed=0)[1]
     assert list(info["ended_by"]) == [None] * 3 and info["_ended_by"].all()
-    # The first runs, the second stands, the third runs but begins later.
+    # The first runs, the second stands still, the third runs but starts later.
     ends: list[set[str | None]] = [set(), set(), set()]
     for number in range(60):
         speeds = [1.0, 0.0, float(number > 3)]
@@ -119,7 +121,7 @@ def test_a_vector_says_of_each_environment_why_its_episode_ended(name: str, mode
     assert ends == [both, waits, both]
 
 
-def test_a_limit_of_gymnasiums_own_has_no_word() -> None:
+def test_gymnasiums_own_limit_has_no_word() -> None:
     env = gym.make(WORLD, disable_env_checker=True, max_episode_steps=3, world=world(WORLDS["touch"][0]), **FAST)
     env.reset(seed=0)
     for _ in range(3):
@@ -128,7 +130,7 @@ def test_a_limit_of_gymnasiums_own_has_no_word() -> None:
 
 
 def puzzle(seconds: float) -> dict[str, Any]:
-    """A locked door, its key before the agent, and energy of which half is used up after so many seconds."""
+    """A locked door, its key in front of the agent, and energy of which half is used up after ``seconds``."""
     leaf = thing("door", "gate", [0.0, 3.0], scale=2.0, door={"key": "key", "closes_after": 2.5})
     walls = [[[-10, 2.85], [-1, 2.85], [-1, 3.15], [-10, 3.15]], [[1, 2.85], [10, 2.85], [10, 3.15], [1, 3.15]]]
     return {
@@ -141,7 +143,7 @@ def puzzle(seconds: float) -> dict[str, Any]:
 
 
 def to_the_open_door(env: Any) -> int:
-    """Walks ahead with its hand out until the door is open; returns how many steps that took."""
+    """Walks ahead, interacting, until the door is open; returns the number of steps."""
     for number in range(1, 40):
         info = env.step(np.array([0.5, 0.0, 1.0], dtype=np.float32))[4]
         if any(event["effect"] == "opened" for event in info["events"]):
@@ -150,7 +152,7 @@ def to_the_open_door(env: Any) -> int:
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_a_puzzle_goes_on_from_its_state_to_the_last_bit(seed: int) -> None:
+def test_puzzle_continues_from_its_state_to_the_last_bit(seed: int) -> None:
     env = single(puzzle(1000.0))
     env.reset(seed=seed)
     steps = to_the_open_door(env)
@@ -168,7 +170,7 @@ def test_a_puzzle_goes_on_from_its_state_to_the_last_bit(seed: int) -> None:
     assert first_difference(env._members.observation(0), again._members.observation(0)) is None
     draw = np.random.default_rng(seed)
     for number in range(400):
-        # The first runs to the goal, the others about.
+        # The first runs to the goal, the others wander.
         action = [1.0, 0.0, 0.0] if seed == 0 else [draw.uniform(-0.5, 1), draw.uniform(-1, 1), draw.integers(2)]
         one, other = (each.step(np.array(action, dtype=np.float32)) for each in (env, again))
         assert first_difference(one, other) is None, number

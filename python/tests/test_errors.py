@@ -1,4 +1,4 @@
-"""Every exception says what the native error says: its text, its code, its place."""
+"""Every exception has the text, code and place of the native error."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ CASES: list[tuple[Callable[[], Any], type[DriftworldError], type[Exception], str
 
 
 @pytest.mark.parametrize(("wrong", "kind", "also", "code"), CASES, ids=[case[0].__name__ for case in CASES])
-def test_a_mistake_is_of_its_class_and_has_a_code(
+def test_error_has_its_class_and_code(
     wrong: Callable[[], Any], kind: type[DriftworldError], also: type[Exception], code: str
 ) -> None:
     with pytest.raises(DriftworldError) as refused:
@@ -92,7 +92,7 @@ def test_a_mistake_is_of_its_class_and_has_a_code(
 
 
 @pytest.mark.parametrize(("wrong", "kind", "also", "code"), CASES, ids=[case[0].__name__ for case in CASES])
-def test_an_error_survives_being_copied(
+def test_error_survives_copying(
     wrong: Callable[[], Any], kind: type[DriftworldError], also: type[Exception], code: str
 ) -> None:
     with pytest.raises(DriftworldError) as refused:
@@ -111,7 +111,7 @@ def test_every_class_has_a_case() -> None:
     assert classes - {DriftworldError} == {kind for _, kind, _, _ in CASES}
 
 
-def test_a_document_is_refused_with_pointer_line_and_column() -> None:
+def test_invalid_document_is_refused_with_pointer_line_and_column() -> None:
     with pytest.raises(driftworld.SpecError) as refused:
         no_key()
     error = refused.value
@@ -123,7 +123,7 @@ def test_a_document_is_refused_with_pointer_line_and_column() -> None:
     assert (refused.value.pointer, refused.value.line, refused.value.column) == (None, 2, 11)
 
 
-def test_all_problems_come_at_once_in_the_order_of_places() -> None:
+def test_all_problems_are_reported_in_order_of_place() -> None:
     with pytest.raises(driftworld.SpecError) as refused:
         TaskSpec.from_json("mine.json", '{ "name": "x", "b": 1,\n "a": 2, "world": { "c": 3 } }')
     assert [(problem["pointer"], problem["line"]) for problem in refused.value.problems] == [
@@ -134,7 +134,7 @@ def test_all_problems_come_at_once_in_the_order_of_places() -> None:
     assert len(str(refused.value).splitlines()) == 3
 
 
-def test_a_message_is_the_commands(tmp_path: Path) -> None:
+def test_message_matches_the_command(tmp_path: Path) -> None:
     path = tmp_path / "wrong.json"
     path.write_text('{ "name": "x", "paramters": {} }', encoding="utf-8")
     for call, argv in [
@@ -149,13 +149,13 @@ def test_a_message_is_the_commands(tmp_path: Path) -> None:
         message = command.stderr.decode()
         assert command.returncode == 1
         if argv[0] != "metrics":
-            # The command breaks lines between words, to fit a terminal.
+            # The command wraps lines at words, to fit a terminal.
             assert message.split() == f"error: {refused.value}".split()
         else:
             assert str(tmp_path / "x") in message and str(tmp_path / "x") in str(refused.value)
 
 
-def test_a_drift_through_what_cannot_be_says_what_is_wrong_there() -> None:
+def test_drift_through_an_invalid_variant_reports_the_problem_there() -> None:
     task = TaskSpec.from_dict(
         {
             "name": "t",
@@ -172,34 +172,34 @@ def test_a_drift_through_what_cannot_be_says_what_is_wrong_there() -> None:
     assert refused.value.code == "generator/between" and len(refused.value.problems) == 1
 
 
-def test_problems_go_into_json() -> None:
+def test_problems_convert_to_json() -> None:
     with pytest.raises(driftworld.SpecError) as refused:
         no_key()
     assert json.loads(json.dumps(refused.value.problems)) == refused.value.problems
 
 
-def test_what_is_no_text_cannot_be_read(tmp_path: Path) -> None:
+def test_file_that_is_not_utf8_is_refused(tmp_path: Path) -> None:
     (tmp_path / "bytes.json").write_bytes(b"\xff\xfe")
     with pytest.raises(driftworld.TaskError, match="byte 0 \\(line 1\\) is not UTF-8") as refused:
         TaskSpec.load(tmp_path / "bytes.json")
     assert refused.value.code == "task/unreadable"
 
 
-def test_what_is_no_task_spec_is_called_what_it_is(tmp_path: Path, world_file: Path) -> None:
+def test_document_of_another_kind_is_named_as_such(tmp_path: Path, world_file: Path) -> None:
     for path, found in ((tmp_path, "a folder"), (world_file, "a world")):
         with pytest.raises(driftworld.TaskError, match=f"found {found}, expected a task spec; ") as refused:
             TaskSpec.load(path)
         assert refused.value.code == "task/document"
 
 
-def test_a_byte_order_mark_is_no_part_of_a_document(tmp_path: Path) -> None:
+def test_byte_order_mark_is_ignored(tmp_path: Path) -> None:
     path = tmp_path / "marked.json"
     path.write_text('\ufeff{ "name": "marked" }', encoding="utf-8")
     assert TaskSpec.load(path).name == "marked"
     assert TaskSpec.from_json("marked", path.read_text(encoding="utf-8")).name == "marked"
 
 
-def test_what_a_command_refuses_has_code_and_place(tmp_path: Path) -> None:
+def test_errors_of_commands_have_code_and_place(tmp_path: Path) -> None:
     with driftworld.LogWriter(tmp_path / "log") as log:
         log.write(block_num=0, exp_num=0, block_type="train", task_name="find_red", reward=1.0)
     (tmp_path / "log" / "logger_info.json").write_text('{\n  "metrics_columns": [\n', encoding="utf-8")
@@ -211,7 +211,7 @@ def test_what_a_command_refuses_has_code_and_place(tmp_path: Path) -> None:
     assert refused_design.value.code == "curriculum/no-such-place"
 
 
-def test_a_broken_task_of_a_scenario_is_told_with_its_place(tmp_path: Path) -> None:
+def test_broken_task_of_a_scenario_is_reported_with_its_place(tmp_path: Path) -> None:
     (tmp_path / "mine.json").write_text('{\n  "name": "mine",\n  "paramters": {}\n}', encoding="utf-8")
     regime = {"task": "mine.json", "variant": "red", "count": 1}
     with pytest.raises(driftworld.CurriculumError) as refused:
@@ -221,7 +221,7 @@ def test_a_broken_task_of_a_scenario_is_told_with_its_place(tmp_path: Path) -> N
     assert len(error.problems) == 1 and "block 0, regime 0" in str(error)
 
 
-def test_what_others_wrote_does_not_work_the_terminal(tmp_path: Path) -> None:
+def test_foreign_text_cannot_control_the_terminal(tmp_path: Path) -> None:
     hostile = "\x1b]0;owned\x07\u202e\x9b2J\r\nValueError: FAKE\u200b\ufeff"
     file = tmp_path / "hostile.json"
     documents = [{"name": "t", hostile: 1}, {"name": hostile, "variants": {hostile: {}}}, {"blocks": [{"type": hostile}]}]

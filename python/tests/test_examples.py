@@ -1,4 +1,4 @@
-"""The examples in Python: they run, what they say holds, and their results can still be had. Learning well is not tested here."""
+"""The Python examples run, keep their claims, and have reproducible results. Learning success is not tested."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ learners = pytest.mark.learners
 
 
 def run(program: Path, *arguments: str, cwd: Path) -> str:
-    """What a program prints; it must end well, without a display."""
+    """A program's output; it must succeed, without a display."""
     environment = {**os.environ, "MPLBACKEND": "Agg", "SDL_VIDEODRIVER": "dummy"}
     done = subprocess.run(
         [sys.executable, str(program), *arguments],
@@ -43,7 +43,7 @@ def run(program: Path, *arguments: str, cwd: Path) -> str:
 
 
 def load(name: str) -> ModuleType:
-    """An example as a module; what it defines can be asked without running it."""
+    """An example as a module, without running it."""
     if str(FOLDER) not in sys.path:
         sys.path.insert(0, str(FOLDER))
     specification = importlib.util.spec_from_file_location(name, FOLDER / f"{name}.py")
@@ -55,13 +55,13 @@ def load(name: str) -> ModuleType:
 
 
 def first_line(path: Path) -> str:
-    """What an example says of itself."""
+    """The first line of an example's docstring."""
     if path.parent.name == "notebooks":
         return next(line for line in path.read_text(encoding="utf-8").splitlines() if line.startswith("# # "))[4:]
     return (ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or "").splitlines()[0]
 
 
-def test_the_index_says_of_each_example_what_it_says_of_itself() -> None:
+def test_index_matches_the_first_line_of_each_example() -> None:
     readme = (FOLDER / "README.md").read_text(encoding="utf-8")
     index = readme.split("<!-- index -->\n")[1].split("<!-- end of index -->")[0]
     paths = [path.relative_to(FOLDER).as_posix() for path in [*EXAMPLES, *NOTEBOOKS]]
@@ -70,7 +70,7 @@ def test_the_index_says_of_each_example_what_it_says_of_itself() -> None:
 
 
 @pytest.mark.parametrize("config", RESULTS, ids=[path.parent.name for path in RESULTS])
-def test_a_result_names_worlds_that_are_still_drawn(config: Path) -> None:
+def test_result_names_worlds_that_are_still_drawn(config: Path) -> None:
     said = json.loads(config.read_text(encoding="utf-8"))
     assert said["command"].startswith("python examples/python/")
     assert said["worlds"]
@@ -85,7 +85,7 @@ def test_a_result_names_worlds_that_are_still_drawn(config: Path) -> None:
                 other.append(f"{name} under seed {seed}")
         env.close()
     if "outdated" in said:
-        # What was measured in other worlds says so, on its page too, until it is measured anew.
+        # Results from older worlds are marked as such, also on their page, until measured again.
         assert other
         assert "Measured before" in (config.parent / "README.md").read_text(encoding="utf-8")
     else:
@@ -93,7 +93,7 @@ def test_a_result_names_worlds_that_are_still_drawn(config: Path) -> None:
 
 
 @pytest.mark.parametrize("config", RESULTS, ids=[path.parent.name for path in RESULTS])
-def test_a_result_has_its_page_its_curve_and_its_picture(config: Path) -> None:
+def test_result_has_page_curve_and_figure(config: Path) -> None:
     page = (config.parent / "README.md").read_text(encoding="utf-8")
     said = json.loads(config.read_text(encoding="utf-8"))
     assert said["command"] in page
@@ -103,7 +103,7 @@ def test_a_result_has_its_page_its_curve_and_its_picture(config: Path) -> None:
 
 @learners
 @pytest.mark.parametrize("notebook", NOTEBOOKS, ids=[path.stem for path in NOTEBOOKS])
-def test_a_notebook_runs_as_a_program(notebook: Path, tmp_path: Path) -> None:
+def test_notebook_runs_as_a_program(notebook: Path, tmp_path: Path) -> None:
     pytest.importorskip("matplotlib", reason="notebooks draw")
     pytest.importorskip("pandas", reason="scores are shown as data frames")
     run(notebook, cwd=tmp_path)
@@ -111,7 +111,7 @@ def test_a_notebook_runs_as_a_program(notebook: Path, tmp_path: Path) -> None:
 
 @learners
 @pytest.mark.parametrize("notebook", NOTEBOOKS, ids=[path.stem for path in NOTEBOOKS])
-def test_a_notebook_is_one_to_jupytext(notebook: Path) -> None:
+def test_notebook_is_valid_jupytext(notebook: Path) -> None:
     jupytext = pytest.importorskip("jupytext", reason="it is what makes notebooks of scripts")
     kinds = [cell.cell_type for cell in jupytext.read(notebook).cells]
     assert kinds.count("code") >= 5
@@ -120,7 +120,7 @@ def test_a_notebook_is_one_to_jupytext(notebook: Path) -> None:
 
 @learners
 @pytest.mark.parametrize("name", ["cleanrl_ppo", "ppo_find_objects", "experts_and_sequential_ppo"])
-def test_a_learner_runs_and_writes_its_result_down(name: str, tmp_path: Path) -> None:
+def test_learner_runs_and_writes_its_result(name: str, tmp_path: Path) -> None:
     pytest.importorskip("torch", reason="the learners are networks")
     pytest.importorskip("matplotlib", reason="results have a figure")
     if name == "ppo_find_objects":
@@ -133,7 +133,7 @@ def test_a_learner_runs_and_writes_its_result_down(name: str, tmp_path: Path) ->
 
 
 @learners
-def test_replay_is_compared_with_the_lifetime_without_and_lives_nothing_twice(tmp_path: Path) -> None:
+def test_replay_is_compared_without_running_anything_twice(tmp_path: Path) -> None:
     pytest.importorskip("torch", reason="the learners are networks")
     first = run(FOLDER / "replay_ppo.py", "--quick", cwd=tmp_path)
     assert "not lived again" not in first
@@ -152,7 +152,7 @@ def test_rllib_learns_on_several_runners(tmp_path: Path) -> None:
 
 
 @learners
-def test_what_ray_measures_does_not_depend_on_the_number_of_workers(tmp_path: Path) -> None:
+def test_ray_results_do_not_depend_on_the_number_of_workers(tmp_path: Path) -> None:
     pytest.importorskip("ray.data", reason="it is what shares the work out")
     answers = []
     for workers in ("1", "2"):
@@ -171,12 +171,14 @@ def one_environment(**columns: list[Any]) -> dict[str, Any]:
 
 
 def arguments_of_a_lifetime(**changes: Any) -> argparse.Namespace:
-    """A few experiences of the examples' curriculum; the second evaluation is of other worlds than the first block."""
+    """Arguments for a few experiences of the examples' curriculum; its second evaluation uses other worlds than the
+    first block.
+    """
     return argparse.Namespace(**{"learn": 12, "evaluate": 4, "num_envs": 4, "again": True, "policy": "sampled", **changes})
 
 
 def lived(folder: Path, learner: Any, order: tuple[str, ...], **changes: Any) -> tuple[Any, dict[str, list[Any]]]:
-    """A learner through the examples' curriculum: itself, and the rewards and kinds of its log."""
+    """Runs a learner through the examples' curriculum; returns the learner, and rewards and kinds from its log."""
     module = load("experts_and_sequential_ppo")
     arguments = arguments_of_a_lifetime(**changes)
     evaluated = changes.get("evaluated", module.VARIANTS)
@@ -187,7 +189,7 @@ def lived(folder: Path, learner: Any, order: tuple[str, ...], **changes: Any) ->
 
 @learners
 @pytest.mark.parametrize("name", ["Learner", "ReplayLearner"])
-def test_how_often_one_evaluates_changes_nothing_that_is_learned(name: str, tmp_path: Path) -> None:
+def test_number_of_evaluations_does_not_change_learning(name: str, tmp_path: Path) -> None:
     torch = pytest.importorskip("torch", reason="the learners are networks")
     torch.set_num_threads(1)
     make = getattr(load("experts_and_sequential_ppo"), name, None) or getattr(load("replay_ppo"), name)
@@ -207,7 +209,7 @@ def test_how_often_one_evaluates_changes_nothing_that_is_learned(name: str, tmp_
 
 
 @learners
-def test_a_lifetime_begins_as_its_expert_does_and_takes_as_many_steps_with_replay(tmp_path: Path) -> None:
+def test_lifetime_starts_like_its_expert_and_replay_takes_as_many_steps(tmp_path: Path) -> None:
     torch = pytest.importorskip("torch", reason="the learners are networks")
     torch.set_num_threads(1)
     sequential, replay = load("experts_and_sequential_ppo").Learner, load("replay_ppo").ReplayLearner
@@ -221,13 +223,13 @@ def test_a_lifetime_begins_as_its_expert_does_and_takes_as_many_steps_with_repla
 
     assert block(first) == block(whole) and len(block(first)) == 12
     assert lifetime.updates == rehearsing.updates > expert.updates > 0
-    # The policy is in the log: it is another run with another one.
+    # The log contains the policy: another policy is another run.
     info = json.loads((tmp_path / "lifetime" / "scenario_info.json").read_text(encoding="utf-8"))
     assert info["made_from"]["policy"] == "sampled"
 
 
 @learners
-def test_a_learner_that_was_kept_goes_on_as_it_was(tmp_path: Path) -> None:
+def test_saved_learner_continues_unchanged(tmp_path: Path) -> None:
     torch = pytest.importorskip("torch", reason="the learners are networks")
     torch.set_num_threads(1)
     load("experts_and_sequential_ppo")
@@ -245,7 +247,7 @@ def test_a_learner_that_was_kept_goes_on_as_it_was(tmp_path: Path) -> None:
 
 @learners
 @pytest.mark.parametrize("name", ["cleanrl_ppo"])
-def test_advantages_bootstrap_what_ran_out_of_time_and_nothing_that_terminated(name: str) -> None:
+def test_advantages_bootstrap_truncated_but_not_terminated_episodes(name: str) -> None:
     torch = pytest.importorskip("torch", reason="the learners are networks")
     module = load(name)
     rollout = module.Rollout(4, 1)
@@ -261,7 +263,7 @@ def test_advantages_bootstrap_what_ran_out_of_time_and_nothing_that_terminated(n
         setattr(rollout, column, values)
     settings = {"discount": 0.5, "trace": 0.5}
     discount = settings["discount"]
-    last = 2.0 + discount * 30.0 - 20.0  # the observation after the end is the episode's last: worth 30
+    last = 2.0 + discount * 30.0 - 20.0  # the observation after the end is the episode's last, with value 30
     first = 1.0 + discount * 20.0 - 10.0 + discount * 0.5 * last
     assert rollout.advantages(**settings)[:2].flatten().tolist() == pytest.approx([first, last])
     rollout.terminated = torch.tensor([[False], [True], [False], [False]])

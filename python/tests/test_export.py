@@ -1,4 +1,4 @@
-"""Networks that learners export: what the built-in agent does with them is what the learner does, and what cannot be exported."""
+"""Exported networks: the built-in agent acts like the learner, and unsupported learners are refused."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ pytestmark = pytest.mark.learners
 EPISODES = 20
 
 
-def test_the_built_in_agent_acts_as_the_learner_in_whole_episodes(tmp_path: Path) -> None:
+def test_built_in_agent_acts_like_the_learner_in_whole_episodes(tmp_path: Path) -> None:
     torch, learners = pytest.importorskip("torch"), package()
     learner = learners.PPO(len(ACTIONS), 1, seed=2, size=32, policy="greedy")
-    # As decided as a policy that has learned; one that has not takes one action for ever.
+    # Makes the policy as decided as a trained one; an untrained policy always takes one action.
     with torch.no_grad():
         learner.network.policy.weight.mul_(300)
     learner.export(tmp_path / "net.safetensors", actions=ACTIONS, frame_skip=5, interact=False)
@@ -36,7 +36,7 @@ def test_the_built_in_agent_acts_as_the_learner_in_whole_episodes(tmp_path: Path
         rows = driftworld.Recording.read(tmp_path / "python", episode).actions
         numbers = driftworld.Recording.read(tmp_path / "rust", episode).actions
         decided = np.array(ACTIONS, dtype=float)[rows]
-        # Limits of steps count the steps of each: the shorter of both episodes has to be the start of the longer.
+        # Limits of steps count each agent's own steps, so the shorter episode must be a prefix of the longer.
         length = min(len(numbers), 5 * len(decided))
         assert length >= 20
         assert np.array_equal(np.repeat(decided, 5, axis=0)[:length], numbers[:length])
@@ -47,14 +47,14 @@ def test_the_built_in_agent_acts_as_the_learner_in_whole_episodes(tmp_path: Path
 
 
 @pytest.mark.parametrize("kind", ["RecurrentPPO", "PackNet"])
-def test_a_learner_that_acts_by_more_than_its_network_is_not_exported(kind: str, tmp_path: Path) -> None:
+def test_learner_that_acts_by_more_than_its_network_is_refused(kind: str, tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="expected a PatchNetwork alone"):
         small(kind).export(tmp_path / "net.safetensors", actions=ACTIONS)
     assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize("actions", [ACTIONS[:4], [[10, 0]] * 5])
-def test_another_table_of_actions_is_refused(actions: Any, tmp_path: Path) -> None:
+def test_another_action_table_is_refused(actions: Any, tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="actions: found .*, expected a table of 5 rows of three numbers"):
         small().export(tmp_path / "net.safetensors", actions=actions)
     assert not list(tmp_path.iterdir())

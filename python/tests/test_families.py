@@ -1,4 +1,4 @@
-"""The pages of the families are what scripts/families.py makes of the measurements, and these hold in a few worlds."""
+"""The families' pages are made by scripts/families.py from the measurements, which a few worlds confirm."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def script(name: str) -> ModuleType:
 
 @pytest.fixture
 def families(capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> ModuleType:
-    """The script, with the command in this process."""
+    """The script, with the command run in this process."""
     module = script("families")
 
     def said(_: str, *words: str) -> Any:
@@ -52,7 +52,7 @@ def test_every_variant_is_measured() -> None:
 
 
 @pytest.mark.parametrize("name", ["pickup", "thin_ice", "color_pays", "unlock"])
-def test_what_was_measured_of_a_family_is_measured_again(families: ModuleType, name: str) -> None:
+def test_measurements_of_a_family_are_reproducible(families: ModuleType, name: str) -> None:
     measured = json.loads((ROOT / "examples/families.json").read_text(encoding="utf-8"))[name]
     first = next(iter(measured))
     scales = families.said("driftworld", "scales", f"{name}#{first}", "--worlds", str(families.WORLDS))["scales"]
@@ -62,7 +62,7 @@ def test_what_was_measured_of_a_family_is_measured_again(families: ModuleType, n
     assert scale["agents"]["onrails"]["success"] == measured[first]["success"]
 
 
-def test_readme_says_what_was_learned_and_measured() -> None:
+def test_readme_matches_learning_and_measurements() -> None:
     readme = " ".join((ROOT / "README.md").read_text(encoding="utf-8").split())
     measured = json.loads((ROOT / "examples/families.json").read_text(encoding="utf-8"))
     assert f"[{len(measured)} families of tasks](docs/families.md)** with {sum(map(len, measured.values()))} variants" in readme

@@ -1,4 +1,4 @@
-"""Long native calls work in processes that were forked after others were made."""
+"""Long native calls work in processes forked after earlier ones."""
 
 from __future__ import annotations
 

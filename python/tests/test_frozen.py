@@ -1,4 +1,6 @@
-"""Evaluations change no agent: one that does something else when they are run once more is refused, whatever it earns."""
+"""Evaluations must not change an agent: one that behaves differently when they are repeated is refused, whatever its
+rewards.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +23,7 @@ LIFETIMES = len(TASKS) * (4 if os.environ.get("DRIFTWORLD_FULL") == "1" else 1)
 
 
 class Uniform:
-    """Draws its actions from the seed of the experience: frozen as it should be."""
+    """Draws its actions from the seed of the experience: correctly frozen."""
 
     def begin(self, label: str | None, seed: int) -> None:
         self.rng = np.random.default_rng(seed)
@@ -51,7 +53,7 @@ class FromTorch(Uniform):
 
 
 class Normaliser(Uniform):
-    """Keeps the running mean of what it sees, in evaluations as well."""
+    """Updates a running mean of its observations, also in evaluations."""
 
     count, mean = 0, 0.0
 
@@ -65,7 +67,7 @@ CALLS = [0]
 
 
 class Counter(Uniform):
-    """Counts outside of itself."""
+    """Counts in state outside the agent."""
 
     def act(self, observation: Any, info: dict[str, Any]) -> Any:
         CALLS[0] += 1
@@ -73,7 +75,7 @@ class Counter(Uniform):
 
 
 class Many:
-    """One such agent for each environment."""
+    """A vector agent with one such agent for each environment."""
 
     def __init__(self, kind: type[Uniform], num_envs: int) -> None:
         self.agents = [kind() for _ in range(num_envs)]
@@ -117,14 +119,14 @@ def test_an_agent_that_is_not_frozen_is_refused_in_every_lifetime(kind: type[Uni
 
 @pytest.mark.parametrize("num_envs", [None, 2], ids=["run", "run_vector"])
 @pytest.mark.parametrize("name", TASKS, ids=lambda name: Path(name).stem)
-def test_a_frozen_agent_is_never_refused(name: str, num_envs: int | None) -> None:
+def test_frozen_agent_is_never_refused(name: str, num_envs: int | None) -> None:
     for seed in range(2):
         assert run(Uniform, name, seed, num_envs).finished
     assert run(FromNumpy, name, 0, num_envs, check_frozen=False).finished
 
 
 @pytest.mark.parametrize("num_envs", [None, 2], ids=["run", "run_vector"])
-def test_a_refused_lifetime_is_refused_again_and_goes_on_with_a_frozen_agent(tmp_path: Path, num_envs: int | None) -> None:
+def test_refused_lifetime_is_refused_again_and_resumes_with_a_frozen_agent(tmp_path: Path, num_envs: int | None) -> None:
     curriculum = Curriculum.design("find_objects#blue", "find_objects#red", learn=1, eval_episodes=2, seed=0)
 
     def live(kind: type[Uniform]) -> Any:

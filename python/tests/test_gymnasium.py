@@ -1,4 +1,4 @@
-"""A single environment keeps Gymnasium's rules, under whatever Gymnasium is installed. Vector environments have a file of their own."""
+"""A single environment keeps Gymnasium's rules, with any supported Gymnasium version."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from gymnasium.utils.env_checker import check_env
 
 FIND = "driftworld/FindObjects-v0"
 TABLE = [[0.0, 0.0, 0.0], [5.0, 0.0, 0.0], [0.0, 90.0, 0.0]]
-#: By waypoints, rows are places to go to.
+#: With waypoint actions, rows are positions to go to.
 PLACES = [[3.0, 4.0, 0.0], [-3.0, 4.0, 0.0], [0.0, 0.0, 1.0]]
 MODALITIES = ["rgb", "depth", "segmentation", "class", "instance", "state"]
 
@@ -33,7 +33,7 @@ def bare(env_id: str, **options: Any) -> Any:
 
 
 def walk(env: Any, seed: int | None, steps: int = 12) -> list[Any]:
-    """An episode's beginning: the reset, and steps with the same random actions for the same seed."""
+    """The start of an episode: the reset, and steps with random actions from the seed."""
     env.action_space.seed(7)
     told = [env.reset(seed=seed)]
     for _ in range(steps):
@@ -44,7 +44,7 @@ def walk(env: Any, seed: int | None, steps: int = 12) -> list[Any]:
 
 
 def run_python(program: str, **environment: str) -> subprocess.CompletedProcess[str]:
-    """A program in an interpreter of its own."""
+    """Runs a program in a separate interpreter."""
     import os
 
     return subprocess.run(
@@ -57,7 +57,7 @@ def run_python(program: str, **environment: str) -> subprocess.CompletedProcess[
     )
 
 
-def test_every_task_has_an_id_of_its_own() -> None:
+def test_every_task_has_its_own_id() -> None:
     named = {
         gym.spec(env_id).kwargs["task"]: env_id
         for env_id in gym.registry
@@ -73,7 +73,7 @@ def test_every_task_has_an_id_of_its_own() -> None:
 @pytest.mark.parametrize(
     ("misspelt", "meant"), [("modalites", "modalities"), ("max_step", "max_steps"), ("framskip", "frame_skip")]
 )
-def test_a_misspelt_option_is_told_the_nearest(misspelt: str, meant: str) -> None:
+def test_misspelt_option_suggests_the_closest(misspelt: str, meant: str) -> None:
     made = [
         lambda: gym.make(FIND, **{misspelt: 3}),
         lambda: gym.make_vec(FIND, num_envs=2, vectorization_mode="vector_entry_point", **{misspelt: 3}),
@@ -87,7 +87,7 @@ def test_a_misspelt_option_is_told_the_nearest(misspelt: str, meant: str) -> Non
         driftworld.DriftworldEnv("find_objects", zzz=1)
 
 
-def test_a_class_made_from_ours_says_what_options_it_has() -> None:
+def test_subclass_shows_its_options() -> None:
     class Own(driftworld.DriftworldEnv):
         def __init__(self, colour: str, **options: Any) -> None:
             super().__init__("find_objects", **options)
@@ -102,7 +102,7 @@ def test_a_class_made_from_ours_says_what_options_it_has() -> None:
 def test_every_variant_of_every_task_passes_gymnasiums_check(task_variant: tuple[str, str], actions: Any) -> None:
     env_id, variant = task_variant
     rows: Any = PLACES if (variant, actions) == ("waypoints", "discrete") else actions
-    # Warnings are errors, by pyproject.toml.
+    # pyproject.toml turns warnings into errors.
     check_env(bare(env_id, variant=variant, actions=rows, size=40, render_mode="rgb_array", render_size=(48, 64)))
 
 
@@ -130,13 +130,13 @@ def test_every_option_passes_gymnasiums_check(options: dict[str, Any]) -> None:
     check_env(bare(FIND, **{"render_mode": "rgb_array", "size": 40, **options}))
 
 
-def test_a_task_and_a_world_of_ones_own_pass_gymnasiums_check(world_file: Path, task_file: Path) -> None:
+def test_custom_task_and_world_pass_gymnasiums_check(world_file: Path, task_file: Path) -> None:
     check_env(bare("driftworld/World-v0", world=str(world_file), render_mode="rgb_array"))
     check_env(bare("driftworld/World-v0", world=json.loads(world_file.read_text()), render_mode="rgb_array"))
     check_env(bare("driftworld/Task-v0", task=f"{task_file}#landmarks", render_mode="rgb_array"))
 
 
-def test_continuous_actions_are_in_units_and_only_that_is_warned_of() -> None:
+def test_continuous_actions_use_units_and_cause_the_only_warning() -> None:
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         check_env(bare(FIND, actions="continuous", size=40, render_mode="rgb_array"))
@@ -160,7 +160,7 @@ def test_spaces_are_as_documented() -> None:
     assert bare(FIND, actions=TABLE).action_space == gym.spaces.Discrete(3)
 
 
-def test_depth_in_metres_millimetres_and_grey_tell_the_same() -> None:
+def test_depth_formats_agree() -> None:
     images = {}
     for depth in ("float32", "uint16", "uint8"):
         images[depth], _ = bare(FIND, modalities="depth", depth=depth).reset(seed=4)
@@ -170,7 +170,7 @@ def test_depth_in_metres_millimetres_and_grey_tell_the_same() -> None:
     np.testing.assert_allclose(images["uint8"], np.clip(metres * 2.55, 0, 255), atol=1.0)
 
 
-def test_a_seed_gives_world_0_and_each_reset_after_it_the_next() -> None:
+def test_seed_starts_at_world_0_and_resets_advance() -> None:
     env = bare(FIND, variant="red", modalities="state", info="full")
     variant = driftworld.variant("find_objects#red")
     places = []
@@ -179,13 +179,13 @@ def test_a_seed_gives_world_0_and_each_reset_after_it_the_next() -> None:
         places.append((info["seed"], info["index"]))
         assert info["variant_id"] == "find_objects#red"
         assert info["task_id"] == "find_objects"
-        # The options of the environment are laid over the world that the command samples.
+        # The environment's options are applied to the sampled world.
         sampled = variant.sample(info["seed"], info["index"])
         assert sampled["objects"] == env.state()["objects"]
     assert places == [(11, 0), (11, 1), (11, 2), (11, 0), (11, 1), (12, 0)]
 
 
-def test_an_environment_that_never_had_a_seed_draws_one_and_keeps_it() -> None:
+def test_unseeded_environment_draws_a_seed_and_keeps_it() -> None:
     env, other = bare(FIND, modalities="state"), bare(FIND, modalities="state")
     first, second = env.reset()[1], env.reset()[1]
     assert (second["seed"], second["index"]) == (first["seed"], 1)
@@ -203,7 +203,7 @@ def test_an_index_is_gone_to_and_gone_on_from() -> None:
     assert again.reset(options={"index": 7})[1]["world_hash"] == info["world_hash"]
 
 
-def test_a_variant_holds_until_another_and_a_queue_goes_round() -> None:
+def test_variant_persists_and_queue_cycles() -> None:
     env = bare(FIND, modalities="state", info="full")
 
     def ids(resets: int, **options: Any) -> list[str]:
@@ -215,7 +215,7 @@ def test_a_variant_holds_until_another_and_a_queue_goes_round() -> None:
     assert ids(2, variant="green") == ["green", "green"]
 
 
-def test_a_given_world_is_for_one_episode(world_file: Path) -> None:
+def test_given_world_lasts_one_episode(world_file: Path) -> None:
     env = bare(FIND, modalities="state", info="full")
     env.reset(seed=1)
     given = env.reset(options={"world": world_file})[1]
@@ -237,8 +237,8 @@ def test_state_goes_on_to_the_last_bit(env_id: str) -> None:
             break
 
 
-def test_steps_tell_of_events_and_success(small: dict[str, Any]) -> None:
-    # In a clearing the agent meets things soon; whatever it meets has to add up with what it is paid.
+def test_steps_report_events_and_success(small: dict[str, Any]) -> None:
+    # In a clearing the agent soon meets objects; the rewards of its events must add up to the reward.
     env = bare(FIND, variant="near", **small)
     seen: list[dict[str, Any]] = []
     env.action_space.seed(0)
@@ -255,7 +255,7 @@ def test_steps_tell_of_events_and_success(small: dict[str, Any]) -> None:
     assert any(event["reward"] > 0 for event in seen)
 
 
-def test_success_is_told_when_the_goal_is_reached() -> None:
+def test_success_is_reported_at_the_goal() -> None:
     env = bare("driftworld/GetToGoal-v0", modalities="state", size=16)
     env.reset(seed=0)
     world = env.state()
@@ -281,13 +281,13 @@ def test_too_many_steps_are_a_truncation() -> None:
 
 
 @pytest.mark.parametrize("label, told", [("none", False), ("info", True)])
-def test_a_label_is_told_only_when_asked_for(label: str, told: bool) -> None:
+def test_label_is_given_only_if_requested(label: str, told: bool) -> None:
     env = bare(FIND, variant="red", modalities="state", task_label=label)
     assert ("task_label" in env.reset(seed=0)[1]) is told
     assert ("task_label" in env.step(env.action_space.sample())[4]) is told
 
 
-def test_a_label_in_the_observation_is_one_hot() -> None:
+def test_label_in_the_observation_is_one_hot() -> None:
     env = bare(FIND, variant="red", modalities=["state"], task_label="observation")
     names = [variant.name for variant in driftworld.TaskSpec.load("find_objects").variants]
     observation, _ = env.reset(seed=0)
@@ -295,7 +295,7 @@ def test_a_label_in_the_observation_is_one_hot() -> None:
     assert observation["task"].argmax() == names.index("red")
 
 
-def test_a_drift_ends_at_its_goal() -> None:
+def test_drift_ends_at_its_target() -> None:
     env = bare(FIND, modalities="state", drift={"to": "dusk", "episodes": 4}, info="full")
     told = [env.reset(seed=0)[1], *(env.reset()[1] for _ in range(5))]
     alone = bare(FIND, variant="dusk", modalities="state", info="full").reset(seed=0, options={"index": 5})[1]
@@ -316,14 +316,14 @@ def test_copies_and_pickles_go_on_as_the_original(env_id: str) -> None:
         assert first_difference(walk(env, 9), walk(other, 9)) is None
 
 
-def test_a_spec_goes_through_json(env_id: str) -> None:
+def test_spec_survives_json(env_id: str) -> None:
     env = gym.make(env_id, variant="default", actions="discrete", size=40, modalities=["rgb"])
     spec = gym.envs.registration.EnvSpec.from_json(env.spec.to_json())
     again = gym.make(spec)
     assert first_difference(walk(env.unwrapped, 3), walk(again.unwrapped, 3)) is None
 
 
-def test_unknown_things_are_named_with_what_is_known() -> None:
+def test_unknown_values_are_refused_with_the_known_ones() -> None:
     with pytest.raises(ValueError, match="modalities: found 'sound', expected one of rgb, depth"):
         bare(FIND, modalities=["sound"])
     with pytest.raises(ValueError, match="actions: found 'jump', expected one of task, normalized"):
@@ -356,7 +356,7 @@ def test_unknown_things_are_named_with_what_is_known() -> None:
     ],
     ids=str,
 )
-def test_wrong_options_of_a_reset_say_so_and_change_nothing(options: dict[str, Any], message: str) -> None:
+def test_invalid_reset_options_are_refused_and_change_nothing(options: dict[str, Any], message: str) -> None:
     env = bare(FIND, modalities="state", info="full")
     before = env.reset(seed=3)[1]
     with pytest.raises((ValueError, TypeError, OSError), match=message):
@@ -375,7 +375,7 @@ def test_a_wrong_action_is_refused_and_changes_nothing(action: Any) -> None:
     assert first_difference(before, env.state()) is None
 
 
-def test_a_wrong_world_is_told_with_its_place(tmp_path: Path) -> None:
+def test_invalid_world_is_refused_with_its_place(tmp_path: Path) -> None:
     path = tmp_path / "wrong.json"
     path.write_text('{\n  "objects": [{"shape": "cube", "colour": "red"}]\n}')
     with pytest.raises(SpecError) as caught:
@@ -385,7 +385,7 @@ def test_a_wrong_world_is_told_with_its_place(tmp_path: Path) -> None:
     assert caught.value.pointer is not None
 
 
-def test_gymnasium_finds_the_module_by_its_name_without_an_import() -> None:
+def test_gymnasium_imports_the_module_by_name() -> None:
     program = (
         "import gymnasium; print(gymnasium.make('driftworld:driftworld/FindObjects-v0').reset(seed=1)[1]['index'])"
     )
@@ -419,18 +419,18 @@ def test_ten_thousand_resets_leak_nothing() -> None:
     pytest.importorskip("resource", reason="memory is measured by a module of Unix")
     done = run_python(LEAK)
     assert done.returncode == 0, done.stderr
-    # One picture of 40 x 40 x 3 bytes kept at each reset would be 47,000 KiB.
+    # One image of 40 x 40 x 3 bytes kept at each reset would be 47,000 KiB.
     assert int(done.stdout) < 12_000, f"{done.stdout} KiB more"
 
 
-def test_a_closed_environment_may_be_closed_again() -> None:
+def test_closed_environment_can_be_closed_again() -> None:
     env = gym.make(FIND, render_mode="rgb_array")
     env.reset(seed=0)
     env.close()
     env.close()
 
 
-def test_a_window_shows_what_is_rendered(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_window_shows_the_rendered_image(monkeypatch: pytest.MonkeyPatch) -> None:
     pygame = pytest.importorskip("pygame", reason="windows are pygame's")
     monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
     env = bare(FIND, render_mode="human", size=40, render_size=(48, 64))
@@ -444,8 +444,8 @@ def test_a_window_shows_what_is_rendered(monkeypatch: pytest.MonkeyPatch) -> Non
     env.close()
 
 
-def test_pictures_are_of_the_size_that_was_asked_for() -> None:
-    # Of both, the picture from above is a square beside the other.
+def test_images_have_the_requested_size() -> None:
+    # With both, the view from above is a square beside the other.
     for camera, width in (("agent", 90), ("above", 90), ("both", 150)):
         env = bare(FIND, render_mode="rgb_array", render_size=(60, 90), camera=camera)
         env.reset(seed=0)
@@ -455,7 +455,7 @@ def test_pictures_are_of_the_size_that_was_asked_for() -> None:
         assert picture.std() > 5
 
 
-def test_keys_are_actions_of_the_space() -> None:
+def test_keyboard_actions_are_in_the_action_space() -> None:
     for options in ({}, {"interact": False}, {"actions": "continuous"}):
         env = bare(FIND, **options)
         keys = env.get_keys_to_action()
@@ -465,7 +465,7 @@ def test_keys_are_actions_of_the_space() -> None:
         bare(FIND, actions="discrete").get_keys_to_action()
 
 
-def test_wrappers_of_gymnasium_work(small: dict[str, Any], tmp_path: Path) -> None:
+def test_gymnasium_wrappers_work(small: dict[str, Any], tmp_path: Path) -> None:
     env = gym.make(FIND, max_episode_steps=5, render_mode="rgb_array", **{**small, "modalities": "rgb"})
     env = gym.wrappers.RecordEpisodeStatistics(gym.wrappers.FrameStackObservation(env, 3))
     observation, _ = env.reset(seed=0)
@@ -477,7 +477,7 @@ def test_wrappers_of_gymnasium_work(small: dict[str, Any], tmp_path: Path) -> No
     env.close()
 
 
-def test_rendering_for_people_wraps_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_human_rendering_wraps_rgb_array(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("pygame", reason="HumanRendering is pygame's")
     monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
     env = gym.wrappers.HumanRendering(gym.make(FIND, render_mode="rgb_array", size=40, render_size=(48, 64)))
@@ -517,7 +517,7 @@ def test_any_whole_number_from_0_is_a_seed(seed: int) -> None:
     unseeded.reset(seed=unseeded.unwrapped.np_random_seed)
 
 
-def test_a_spec_says_the_limit_that_options_say() -> None:
+def test_spec_has_the_step_limit_of_the_options() -> None:
     assert gym.make(FIND, max_steps=9).spec.max_episode_steps == 9
     assert gym.make(FIND, max_steps=9, max_episode_steps=4).spec.max_episode_steps == 4
     assert gym.make(FIND).spec.max_episode_steps is None
@@ -528,7 +528,7 @@ def test_a_spec_says_the_limit_that_options_say() -> None:
     assert [again.step(again.action_space.sample())[3] for _ in range(3)] == [False, False, True]
 
 
-def test_a_vector_answers_for_each_environment() -> None:
+def test_vector_answers_for_each_environment() -> None:
     envs = gym.make_vec(FIND, num_envs=2, size=8, render_mode="rgb_array").unwrapped
     with pytest.raises(gym.error.ResetNeeded, match="render: found environments that had no reset"):
         envs.render()

@@ -1,4 +1,6 @@
-"""What vector environments hand out is the caller's: to keep, to change, to store; or, where asked for, read-only views."""
+"""Arrays returned by vector environments belong to the caller, who may keep, change and store them; on request they are
+read-only views.
+"""
 
 from __future__ import annotations
 
@@ -27,13 +29,13 @@ def sync(num_envs: int, **options: Any) -> Any:
 
 
 def turning(envs: Any, steps: int) -> list[Any]:
-    """Actions in which every step's picture is another."""
+    """Actions that change the image at every step."""
     envs.action_space.seed(3)
     return [envs.action_space.sample() for _ in range(steps)]
 
 
 def stored(envs: Any, steps: int) -> list[tuple[Any, Any]]:
-    """A loop as CleanRL writes it: (observation, next observation), kept as they came."""
+    """A loop in CleanRL's style: (observation, next observation), stored as returned."""
     pairs = []
     actions = turning(envs, steps)
     observation, _ = envs.reset(seed=1)
@@ -60,7 +62,7 @@ def test_a_loop_that_keeps_observations_keeps_those_of_gymnasiums_loop(modalitie
     label=st.sampled_from(["none", "info", "observation"]),
     seed=st.integers(0, 2**40),
 )
-def test_who_writes_into_what_was_handed_out_changes_nothing(
+def test_writing_into_returned_arrays_changes_nothing(
     modalities: list[str], mode: str, label: str, seed: int
 ) -> None:
     options = {"modalities": modalities, "task_label": label, "autoreset_mode": mode, "max_episode_steps": 4}
@@ -80,7 +82,7 @@ def test_who_writes_into_what_was_handed_out_changes_nothing(
         spoil(right)
 
 
-def test_views_are_the_same_numbers_and_cannot_be_written_through() -> None:
+def test_views_are_equal_and_read_only() -> None:
     options = {"modalities": MODALITIES, "task_label": "observation"}
     views, copies = native(3, copy=False, **options), native(3, **options)
     seen, kept = views.reset(seed=0)[0], copies.reset(seed=0)[0]
@@ -101,19 +103,19 @@ def test_views_are_the_same_numbers_and_cannot_be_written_through() -> None:
         one.reset(seed=0)[0][...] = 0
 
 
-def test_copy_is_a_truth_value() -> None:
+def test_copy_must_be_a_boolean() -> None:
     with pytest.raises(ValueError, match="copy: found 'no', expected True or False"):
         native(2, copy="no")
 
 
-def test_a_label_is_what_the_environment_says_whoever_writes_into_it() -> None:
+def test_writing_into_a_returned_label_changes_nothing() -> None:
     envs = native(2, modalities=["state"], task_label="observation")
     observations, _ = envs.reset(seed=0, options={"variants": ["red", "blue"]})
     observations["task"] *= 0.5
     assert envs.step(envs.action_space.sample())[0]["task"].sum(axis=1).tolist() == [1.0, 1.0]
 
 
-def test_a_second_thread_is_refused_in_words() -> None:
+def test_second_thread_is_refused_with_a_message() -> None:
     envs = native(8, modalities="rgb", size=64)
     envs.reset(seed=0)
     action = envs.action_space.sample()
@@ -131,9 +133,9 @@ def test_a_second_thread_is_refused_in_words() -> None:
     assert "found it in use by another thread, expected one thread at a time" in refused.pop()
 
 
-def test_threads_may_write_into_one_log(tmp_path: Any) -> None:
+def test_threads_can_write_into_one_log(tmp_path: Any) -> None:
     class Slow(float):
-        """A number that lets other threads run while it is looked at."""
+        """A number that lets other threads run while it is read."""
 
         def __float__(self) -> float:
             threading.Event().wait(0.0001)
@@ -183,7 +185,7 @@ def test_sb3s_replay_buffer_holds_what_was_seen(modalities: Any) -> None:
 
 @pytest.mark.learners
 @pytest.mark.filterwarnings("ignore")
-def test_rllibs_runner_stores_what_was_seen() -> None:
+def test_rllib_runner_stores_the_observations() -> None:
     pytest.importorskip("ray.rllib", reason="the runner is its")
     from ray.rllib.algorithms.ppo import PPOConfig
     from ray.rllib.core.rl_module.default_model_config import DefaultModelConfig
@@ -218,7 +220,7 @@ def test_rllibs_runner_stores_what_was_seen() -> None:
 
 @pytest.mark.learners
 @pytest.mark.parametrize("mode", ["next_step", "same_step"])
-def test_gymnasiums_wrapper_turns_everything_into_torchs(mode: str) -> None:
+def test_gymnasium_wrapper_converts_everything_to_torch(mode: str) -> None:
     torch = pytest.importorskip("torch", reason="the tensors are its")
     options = {"modalities": ["rgb", "state"], "max_episode_steps": 3, "task_label": "info", "autoreset_mode": mode}
     for copy in (True, False):
@@ -241,12 +243,12 @@ def test_gymnasiums_wrapper_turns_everything_into_torchs(mode: str) -> None:
 
 
 @pytest.mark.parametrize("modalities", ["rgb", ["rgb", "state"]], ids=str)
-def test_a_step_writes_into_the_callers_arrays(modalities: Any) -> None:
+def test_step_writes_into_the_callers_arrays(modalities: Any) -> None:
     options = {"modalities": modalities, "max_episode_steps": 3, "autoreset_mode": "same_step"}
     ours, theirs = native(2, **options), native(2, **options)
     first = theirs.reset(seed=3)[0]
     ours.reset(seed=3)
-    # Rows of a buffer, as a learner keeps them.
+    # Rows of a buffer, as in a learner.
     if isinstance(first, dict):
         rows = [{kind: np.zeros_like(array) for kind, array in first.items()} for _ in range(5)]
     else:

@@ -1,4 +1,4 @@
-"""Ctrl-C ends long native calls, from within them."""
+"""Ctrl-C ends long native calls from within."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-#: Each call would take far longer than anybody waits here.
+#: Each call would run far longer than the test's time limit.
 CALLS = {
     "sample_many": "driftworld.variant('scavenger_hunt').sample_many_json(10**6)",
     "portions_quickly_drawn": "driftworld.TaskSpec.from_dict({'name': 'tiny'}).variant().sample_many_json(10**7)",
@@ -57,6 +57,6 @@ for _ in range(2):
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="signals are seen in /proc")
-def test_signals_stay_pythons() -> None:
+def test_python_keeps_its_signal_handlers() -> None:
     said = subprocess.run([sys.executable, "-c", ASKED], capture_output=True, text=True, timeout=120, check=False)
     assert (said.stdout, said.returncode) == ("interrupted\ninterrupted\n", 0), said.stderr

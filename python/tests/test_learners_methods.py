@@ -1,4 +1,4 @@
-"""Each continual method against what can be computed by hand."""
+"""Each continual method, compared with values computed by hand."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def flat(learner: Any) -> Any:
 
 
 class SoftmaxLinear(torch.nn.Module):  # type: ignore[misc]
-    """log π = log softmax(W x), and a value that is no part of the policy."""
+    """log π = log softmax(W x), and a value that does not belong to the policy."""
 
     def __init__(self, policy: Any) -> None:
         super().__init__()
@@ -46,7 +46,7 @@ STATES = torch.tensor([[1.0, 0.0], [0.5, -2.0], [3.0, 1.0]])
 POLICY = torch.tensor([[0.3, -0.2], [0.1, 0.4], [-0.5, 0.2]])
 
 
-def test_fisher_of_a_softmax_linear_policy_is_that_by_hand() -> None:
+def test_fisher_of_a_softmax_linear_policy_matches_the_formula() -> None:
     network = SoftmaxLinear(POLICY)
     found = module("ewc").fisher(network, STATES, chunk=2)
     # ∂ log π(a|s) / ∂W[k, j] = (1[a = k] − π(k|s)) xⱼ; so Σₐ π(a|s) (…)² = π(k|s) (1 − π(k|s)) xⱼ².
@@ -68,7 +68,7 @@ def test_fisher_is_not_the_square_of_the_mean_gradient() -> None:
     assert found[:, 1].tolist() == [0.0] * 3
 
 
-def test_importances_have_mean_1_over_what_the_policy_depends_on() -> None:
+def test_importances_have_mean_1_over_the_policys_tensors() -> None:
     ewc = module("ewc")
     importance = ewc.normalized(ewc.fisher(SoftmaxLinear(POLICY * 7), STATES))
     assert importance["policy.weight"].mean().item() == pytest.approx(1.0)
@@ -78,7 +78,7 @@ def test_importances_have_mean_1_over_what_the_policy_depends_on() -> None:
 
 
 @pytest.mark.parametrize("kind", ["EWC", "OnlineEWC", "L2"])
-def test_springs_pull_back_to_the_weights_at_the_border(kind: str) -> None:
+def test_springs_pull_towards_the_weights_at_the_border(kind: str) -> None:
     learner = small(kind, strength=3.0)
     Steps(learner, label="a").take(20)
     assert learner.extra_loss() is None
@@ -95,7 +95,7 @@ def test_springs_pull_back_to_the_weights_at_the_border(kind: str) -> None:
     if kind == "L2":
         assert loss.item() == pytest.approx(0.5 * 3.0 * 0.01 * sum(numbers.values()), rel=1e-4)
     else:
-        # Importances have mean 1 over all but the value's head.
+        # Importances have mean 1 over all tensors but the value head.
         policy = sum(number for name, number in numbers.items() if not name.startswith("value."))
         assert loss.item() == pytest.approx(0.5 * 3.0 * 0.01 * policy, rel=1e-3)
         (importance, at), = learner.springs  # fmt: skip
@@ -104,19 +104,19 @@ def test_springs_pull_back_to_the_weights_at_the_border(kind: str) -> None:
         assert torch.allclose(gradient, 3.0 * 0.1 * importance["policy.weight"], atol=1e-6)
 
 
-def test_ewc_has_springs_of_each_task_and_online_ewc_one_set() -> None:
+def test_ewc_has_springs_for_each_task_and_online_ewc_one_set() -> None:
     many, one = small("EWC"), small("OnlineEWC", decay=0.5)
     for learner in (many, one):
         for label in ("a", "b", "c"):
             Steps(learner, label=label).take(20)
     assert len(many.springs) == 2 and len(one.springs) == 1
     assert many.report()["method_bytes"] == 2 * one.report()["method_bytes"]
-    # Importances of mean 1: 1 of the second task, and half of the first's.
+    # Importances have mean 1: the second task contributes 1, and the first a half.
     used = [rows for name, rows in one.springs[0][0].items() if not name.startswith("value.")]
     assert sum(rows.sum() for rows in used).item() / sum(rows.numel() for rows in used) == pytest.approx(1.5, rel=1e-3)
 
 
-def test_fisher_uses_what_was_seen_last_in_the_task_that_ends() -> None:
+def test_fisher_uses_the_last_observations_of_the_ending_task() -> None:
     learner = small("EWC", samples=1000)
     steps = Steps(learner, label="a")
     steps.take(16)
@@ -131,7 +131,7 @@ def test_fisher_uses_what_was_seen_last_in_the_task_that_ends() -> None:
 # --- PackNet ---
 
 
-def test_frozen_weights_do_not_move_to_the_bit_under_adam() -> None:
+def test_frozen_weights_stay_bit_identical_under_adam() -> None:
     learner = small("PackNet", max_tasks=3, task_decisions=100, retraining=0.5)
     Steps(learner, label="a").take(40)
     assert learner.is_pruned and learner.optimizer.state, "Adam has moments"
@@ -145,12 +145,12 @@ def test_frozen_weights_do_not_move_to_the_bit_under_adam() -> None:
         assert torch.equal(before[name][mask], after[name][mask]), name
     moved = {name: not torch.equal(before[name], after[name]) for name in owned if after[name].dim() > 1}
     assert all(moved.values()), "free weights learn in every layer"
-    # Retraining moves the task's own weights alone: pruned ones stay 0.
+    # Retraining changes only the task's own weights: pruned ones stay 0.
     for name, rows in learner.owners.items():
         assert not after[name][rows == 0].any()
 
 
-def test_shares_of_packnet_are_equal_and_the_largest_weights_are_kept() -> None:
+def test_packnet_shares_are_equal_and_the_largest_weights_are_kept() -> None:
     learner = small("PackNet", max_tasks=3)
     for number, label in enumerate(("a", "b", "c"), start=1):
         Steps(learner, label=label).take(3)
@@ -171,7 +171,7 @@ def test_shares_of_packnet_are_equal_and_the_largest_weights_are_kept() -> None:
         learner.begin(0, "d", 0)
 
 
-def test_packnet_acts_in_a_task_as_when_it_ended_whatever_came_later() -> None:
+def test_packnet_acts_in_a_task_as_at_its_end() -> None:
     learner = small("PackNet", max_tasks=2, policy="greedy")
     steps = Steps(learner, label="a")
     steps.take(40)
@@ -196,13 +196,13 @@ def test_packnet_acts_in_a_task_as_when_it_ended_whatever_came_later() -> None:
 
 
 def numbered(number: int) -> Any:
-    """A rollout of one step of one environment that is known by its reward."""
+    """A rollout of one step of one environment, identified by its reward."""
     rollout = package().Rollout(1, 1, 8, 5)
     rollout.rewards[:], rollout.active[:] = float(number), True
     return rollout
 
 
-def test_the_reservoir_is_uniform_by_chi_square() -> None:
+def test_reservoir_is_uniform_by_chi_square() -> None:
     clear, offered, capacity, repeats = module("clear"), 40, 10, 400
     counts = np.zeros(offered)
     rollouts = [numbered(number) for number in range(offered)]
@@ -214,13 +214,13 @@ def test_the_reservoir_is_uniform_by_chi_square() -> None:
             counts[int(stretch["rewards"])] += 1
     assert counts.sum() == capacity * repeats
     expected = capacity * repeats / offered
-    # Drawn without replacement: each count varies by 1 − capacity / offered of what independent draws do.
+    # Without replacement, each count's variance is 1 − capacity / offered times that of independent draws.
     statistic = ((counts - expected) ** 2).sum() / expected / (1 - capacity / offered)
     # Quantiles of chi-square with 39 degrees of freedom at 0.001 and 0.999.
     assert 16.27 < statistic < 72.05
 
 
-def test_the_reservoir_follows_its_seed_and_leaves_out_idle_environments() -> None:
+def test_reservoir_follows_its_seed_and_skips_idle_environments() -> None:
     clear = module("clear")
 
     def kept(seed: int) -> list[float]:
@@ -239,10 +239,10 @@ def test_the_reservoir_follows_its_seed_and_leaves_out_idle_environments() -> No
     assert -1.0 not in kept(1)
 
 
-def test_v_trace_on_a_chain_of_two_states_has_the_value_that_is_known() -> None:
-    """From A the action `go` leads to B, and pays 1; from B it ends the episode, and pays 2. `stay` pays 0 and stays.
+def test_v_trace_on_a_chain_of_two_states_gives_the_known_values() -> None:
+    """In A the action `go` leads to B and pays 1; in B it ends the episode and pays 2. `stay` pays 0 and does nothing.
 
-    The target policy always goes: V(A) = 1 + γ 2, V(B) = 2. The other one goes half of the time.
+    The target policy always goes: V(A) = 1 + γ 2, V(B) = 2. The behaviour policy goes half of the time.
     """
     clear, discount, rollouts = module("clear"), 0.9, 400
     chance = torch.Generator().manual_seed(1)
@@ -256,15 +256,15 @@ def test_v_trace_on_a_chain_of_two_states_has_the_value_that_is_known() -> None:
         rollout.terminated[t] = rollout.ended[t] = goes & (state == 1)
         state = torch.where(goes, 1 - state, state)
     states.append(state)
-    # The target policy never stays: these ratios are 0. That of going is 2, cut off at 1.
+    # The target policy never stays, so those ratios are 0. The ratio of going is 2, truncated at 1.
     log_ratio = torch.where(rollout.actions == 1, torch.tensor(2.0).log(), torch.tensor(-torch.inf))
     known = torch.tensor([1.0 + discount * 2.0, 2.0])
     seen = torch.stack(states)
     targets, advantages = clear.v_trace(rollout, known[seen], log_ratio, discount)
-    # Known values are V-trace's fixed point, from whatever was done.
+    # The known values are V-trace's fixed point, whatever the actions.
     assert torch.allclose(targets, known[seen[:-1]], atol=1e-5)
     assert torch.allclose(advantages, torch.zeros_like(advantages), atol=1e-5)
-    # From wrong values, repeated, the mean targets of each state come to the known ones.
+    # From wrong values, iterating the mean targets of each state converges to the known ones.
     values = torch.zeros(2)
     for _ in range(60):
         targets, _ = clear.v_trace(rollout, values[seen], log_ratio, discount)
@@ -280,13 +280,13 @@ def test_v_trace_bootstraps_truncation_from_its_own_last_image() -> None:
     rollout.last_values[:, 0] = torch.tensor([0.0, 30.0, 70.0, 0.0])
     values = torch.tensor([[3.0], [5.0], [7.0], [9.0], [11.0]])
     targets, advantages = module("clear").v_trace(rollout, values, torch.zeros(4, 1), 0.5)
-    # On the policy itself targets are discounted returns: 30 follows the second step, nothing the third.
+    # On-policy targets are discounted returns: 30 follows the second step, nothing the third.
     returns = [1.0 + 0.5 * (2.0 + 0.5 * 30.0), 2.0 + 0.5 * 30.0, 4.0, 8.0 + 0.5 * 11.0]
     assert targets.flatten().tolist() == pytest.approx(returns)
     assert (targets - values[:-1]).flatten().tolist() == pytest.approx(advantages.flatten().tolist())
 
 
-def test_cloning_is_0_at_the_policy_and_values_of_then_and_pulls_back_to_them() -> None:
+def test_cloning_loss_is_0_at_the_old_policy_and_values_and_pulls_back() -> None:
     learner = small("CLEAR", policy_cloning=1.0, value_cloning=1.0)
     Steps(learner).take(7)
     with torch.no_grad():
@@ -317,7 +317,7 @@ def test_shrink_and_perturb_mixes_with_fresh_weights_and_clears_adam() -> None:
     assert not learner.optimizer.state
 
 
-def test_from_scratch_begins_every_task_with_other_weights_and_the_first_as_ppo() -> None:
+def test_from_scratch_starts_each_task_with_new_weights_and_the_first_like_ppo() -> None:
     learner, ppo = small("FromScratch"), small("PPO")
     Steps(learner, label="a").take(1)
     assert torch.equal(flat(learner), flat(ppo))
@@ -340,7 +340,7 @@ def test_resetting_the_optimiser_clears_moments_and_keeps_weights() -> None:
 # --- recurrent ---
 
 
-def test_sequences_are_run_through_again_as_they_were_acted_in() -> None:
+def test_sequences_are_replayed_as_acted() -> None:
     learner = small("RecurrentPPO")
     found = []
 
@@ -356,7 +356,7 @@ def test_sequences_are_run_through_again_as_they_were_acted_in() -> None:
     assert max(found) < 1e-5
 
 
-def test_memory_is_emptied_where_an_episode_begins_and_nowhere_else() -> None:
+def test_memory_is_reset_only_at_episode_starts() -> None:
     learner = small("RecurrentPPO")
     images = torch.from_numpy(Steps(learner).images())
     learner.freeze(True)

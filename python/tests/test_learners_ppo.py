@@ -1,4 +1,6 @@
-"""PPO: advantages by a direct sum, what is learned from, evaluations that change nothing, saves that go on to the same bits."""
+"""PPO: advantages against a direct sum, what is learned from, evaluations without effect on learning, bit-exact
+resumption.
+"""
 
 from __future__ import annotations
 
@@ -31,7 +33,7 @@ KINDS = [
 ]  # fmt: skip
 
 
-def test_without_torch_the_import_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_import_without_torch_names_the_package_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     real = builtins.__import__
 
     def refuse(name: str, *rest: Any) -> Any:
@@ -47,7 +49,7 @@ def test_without_torch_the_import_says_what_to_install(monkeypatch: pytest.Monke
 
 
 @needs_torch
-def test_advantages_are_the_direct_sum_within_episodes(learners: Any) -> None:
+def test_advantages_equal_the_direct_sum_within_episodes(learners: Any) -> None:
     torch = sys.modules["torch"]
     chance = torch.Generator().manual_seed(1)
     length, envs, discount, trace = 12, 5, 0.9, 0.8
@@ -82,7 +84,7 @@ def test_truncation_is_valued_by_the_episodes_own_last_image(learners: Any, kind
     last = steps.images()
     learner.act(steps.seen, {})
     with torch.no_grad():
-        # Before anything of the next episode is seen, with the memory of this one.
+        # Before the next episode's first image is processed, with this episode's memory.
         expected = learner.values_of(torch.from_numpy(last), torch.arange(4))
     yes, no = np.array([True, False, False, False]), np.zeros(4, dtype=bool)
     learner.learn(driftworld.VectorTransition(steps.seen, None, np.zeros(4), no, yes, last, ~no, {}))
@@ -95,7 +97,7 @@ def test_truncation_is_valued_by_the_episodes_own_last_image(learners: Any, kind
 
 @needs_torch
 @pytest.mark.parametrize("kind", ["PPO", "CLEAR", "RecurrentPPO"])
-def test_what_idle_environments_hold_is_not_learned_from(learners: Any, kind: str) -> None:
+def test_idle_environments_are_not_learned_from(learners: Any, kind: str) -> None:
     torch = sys.modules["torch"]
     digests = []
     for noise in (0, 1):
@@ -119,7 +121,7 @@ def test_what_idle_environments_hold_is_not_learned_from(learners: Any, kind: st
 
 @needs_torch
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_learner_that_was_saved_goes_on_to_the_same_digest(learners: Any, kind: str, tmp_path: Path) -> None:
+def test_saved_learner_continues_to_the_same_digest(learners: Any, kind: str, tmp_path: Path) -> None:
     whole, half = small(kind), small(kind)
     for learner in (whole, half):
         live(learner, None, "left")
@@ -140,14 +142,14 @@ def test_a_learner_that_was_saved_goes_on_to_the_same_digest(learners: Any, kind
 @pytest.mark.parametrize(
     "kind, borders", [("PackNet", "labels"), ("OnlineEWC", "blocks"), ("CLEAR", "none"), ("RecurrentPPO", "none")]
 )
-def test_a_killed_lifetime_goes_on_to_the_same_digest(learners: Any, kind: str, borders: str, tmp_path: Path) -> None:
+def test_killed_lifetime_resumes_to_the_same_digest(learners: Any, kind: str, borders: str, tmp_path: Path) -> None:
     whole = live(small(kind, borders=borders), tmp_path / "whole", "left", "right")
     seen = 0
 
     def kill(experience: Any, reward: float) -> bool:
         nonlocal seen
         seen += 1
-        # Amid the second learning block: the last save is of before the evaluation.
+        # During the second learning block: the last save was made before the evaluation.
         return seen < 45
 
     plan = curriculum("left", "right", learn=24)
@@ -160,7 +162,7 @@ def test_a_killed_lifetime_goes_on_to_the_same_digest(learners: Any, kind: str, 
 
 @needs_torch
 @pytest.mark.parametrize("kind", ["EWC", "PackNet", "CLEAR", "RecurrentPPO"])
-def test_evaluations_change_nothing_that_is_learned(learners: Any, kind: str) -> None:
+def test_evaluations_do_not_change_learning(learners: Any, kind: str) -> None:
     # run_vector refuses a learner that acts differently in a repeated evaluation.
     digests = set()
     for policy, evaluate in (("sampled", 4), ("sampled", 9), ("greedy", 4)):
@@ -184,7 +186,7 @@ def test_global_random_numbers_are_neither_used_nor_changed(learners: Any) -> No
 
 
 @needs_torch
-def test_borders_are_where_they_are_said_to_be(learners: Any) -> None:
+def test_task_borders_follow_the_option(learners: Any) -> None:
     class Noting(learners.PPO):  # type: ignore[misc, name-defined]
         def __init__(self, *arguments: Any, **options: Any) -> None:
             super().__init__(*arguments, **options)
@@ -241,26 +243,26 @@ def test_numbers_out_of_range_are_refused(learners: Any, name: str, value: float
 
 
 @needs_torch
-def test_more_environments_than_it_was_made_for_are_refused(learners: Any) -> None:
+def test_more_environments_than_declared_are_refused(learners: Any) -> None:
     plan = curriculum("left", learn=8, evaluate=8)
     with pytest.raises(ValueError, match="found environment number 4, expected at most 3; pass run_vector num_envs=4"):
         plan.run_vector(small(), num_envs=6, **{**OPTIONS, "size": 8, "max_steps": 6})
 
 
 @needs_torch
-def test_images_of_another_size_are_refused_with_the_options_that_fit(learners: Any) -> None:
+def test_images_of_another_size_are_refused_with_the_matching_options(learners: Any) -> None:
     with pytest.raises(ValueError, match=r'found observations \(4, 16, 16, 3\).*modalities="rgb", size=8'):
         live(small(), None, "left", size=16)
 
 
 @needs_torch
 @pytest.mark.parametrize("steps", [1, 2, 31, 512, 513, 1025, 1535, 4095])
-def test_no_minibatch_is_of_one_step(learners: Any, steps: int) -> None:
+def test_no_minibatch_has_a_single_step(learners: Any, steps: int) -> None:
     torch = sys.modules["torch"]
     learner, rollout = learners.PPO(5, 8, size=8), learners.Rollout(512, 8, 8, 5)
     rollout.active.view(-1)[torch.randperm(4096)[:steps]] = True
     parts = list(learner.parts(rollout))
-    # A deviation takes two; a rollout of one step teaches nothing.
+    # A deviation needs two steps; a rollout of one step teaches nothing.
     assert sum(len(part) for part in parts) == (steps if steps > 1 else 0)
     assert all(2 <= len(part) <= 768 for part in parts)
     assert sorted(torch.cat(parts).tolist() if parts else []) == (
@@ -290,7 +292,7 @@ def test_ppo_learns_a_t_maze_in_20_000_decisions(learners: Any) -> None:
 
 
 @needs_torch
-def test_what_a_decision_costs_is_measured(learners: Any) -> None:
+def test_cost_of_a_decision_is_measured(learners: Any) -> None:
     program = ROOT / "scripts" / "learners.py"
     done = subprocess.run([sys.executable, program, "--quick"], capture_output=True, text=True, check=True)
     assert re.fullmatch(r"\| ppo \| \d+ \| \d+ \| \d+ \|", done.stdout.splitlines()[-1]), done.stdout

@@ -1,4 +1,4 @@
-"""Models of Stable-Baselines3 run through curricula: they learn as by their own ``learn``, and evaluations change nothing."""
+"""Stable-Baselines3 models in curricula learn as with their own ``learn``, and evaluations do not change them."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ NUMBERS: dict[str, Any] = {**OPTIONS, "actions": "normalized", "interact": False
 PPO = {"n_steps": 8, "batch_size": 8, "n_epochs": 2, "learning_rate": lambda left: 1e-3 * left}
 DQN = {"buffer_size": 60, "batch_size": 4, "learning_starts": 16, "train_freq": 4, "target_update_interval": 8, "exploration_fraction": 0.5}
 SAC = {"buffer_size": 60, "batch_size": 4, "learning_starts": 8, "train_freq": 2, "gradient_steps": -1}
-#: Name of the model, its settings, options of the environments.
+#: Name of the model, its settings, and the environment options.
 MODELS = {
     "PPO": (PPO, OPTIONS),
     "PPO dict": (PPO, {**OPTIONS, "modalities": ["rgb", "state"]}),
@@ -33,7 +33,7 @@ TOTAL = 96
 
 
 def curriculum(learn: int, *, evaluate: int = 0, seed: int = 4, task_label: str = "none") -> Curriculum:
-    """One task, or with evaluations two of them, evaluated before, between and after."""
+    """One task, or with evaluations two tasks, evaluated before, between and after."""
 
     def block(kind: str, *variants: str) -> dict[str, Any]:
         count = learn if kind == "learning" else evaluate
@@ -58,7 +58,7 @@ def made(kind: str, env: Any, **settings: Any) -> Any:
 
 
 def shows(plan: Curriculum, num_envs: int, **options: Any) -> Any:
-    """Environments that say a model its spaces."""
+    """Environments that give a model its spaces."""
     from stable_baselines3.common.vec_env import DummyVecEnv
 
     return DummyVecEnv([lambda: plan.environment(**options)] * num_envs)
@@ -77,7 +77,7 @@ def digest(model: Any) -> str:
 
 
 def watched(model: Any) -> list[tuple[int, str]]:
-    """Where updates are noted: after how many decisions, and the weights then."""
+    """Records each update: the number of decisions so far, and the weights."""
     updates: list[tuple[int, str]] = []
     train = model.train
 
@@ -90,7 +90,7 @@ def watched(model: Any) -> list[tuple[int, str]]:
 
 
 class Dealt(gym.Wrapper[Any, Any, Any, Any]):
-    """An environment that begins with the next experience of a plan that several of them share."""
+    """An environment that starts with the next experience of a plan shared by several."""
 
     def __init__(self, env: Any, plan: Curriculum, dealt: list[int]) -> None:
         super().__init__(env)
@@ -102,7 +102,7 @@ class Dealt(gym.Wrapper[Any, Any, Any, Any]):
 
 
 @pytest.mark.parametrize(("kind", "num_envs"), [*((kind, 1) for kind in MODELS), ("PPO", 4), ("PPO numbers", 4), ("A2C", 4), ("DQN", 4), ("TD3", 4)])
-def test_model_learns_the_same_weights_as_by_its_own_learn(kind: str, num_envs: int) -> None:
+def test_model_learns_the_same_weights_as_with_its_own_learn(kind: str, num_envs: int) -> None:
     pytest.importorskip("stable_baselines3", reason="the models are its")
     from stable_baselines3.common.vec_env import DummyVecEnv
 
@@ -159,7 +159,7 @@ def test_killed_run_goes_on_to_the_same_weights(kind: str, num_envs: int, tmp_pa
 
 
 @pytest.mark.parametrize("kind", ["PPO", "PPO dict", "A2C"])
-def test_on_policy_update_leaves_out_environments_without_an_experience(kind: str) -> None:
+def test_on_policy_update_skips_environments_without_an_experience(kind: str) -> None:
     # Four experiences of 7 steps, then the fifth alone.
     plan = curriculum(5)
     agent = agent_of(kind, plan, 4, n_steps=14)
@@ -171,13 +171,13 @@ def test_on_policy_update_leaves_out_environments_without_an_experience(kind: st
     assert np.isfinite(model.policy.predict_values(model.policy.obs_to_tensor(model.observation_space.sample())[0]).item())
 
 
-def test_off_policy_rows_hold_steps_of_experiences_alone() -> None:
+def test_off_policy_rows_contain_only_steps_of_experiences() -> None:
     plan = curriculum(5)
     agent = agent_of("DQN", plan, 4)
     plan.run_vector(agent, num_envs=4, **OPTIONS)
     buffer = agent.model.replay_buffer
     assert (buffer.pos, agent.model.num_timesteps) == (8, 32)
-    # The fifth experience's last steps wait for a row of their own; all that ended were cut off.
+    # The fifth experience's last steps wait for a row of their own; all finished experiences were truncated.
     assert buffer.dones.sum() == buffer.timeouts.sum() == 4
 
 
@@ -189,7 +189,7 @@ def test_model_that_remembers_evaluations_is_refused() -> None:
         plan.run(agent, **OPTIONS)
 
 
-def test_nothing_is_left_among_temporary_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_temporary_files_remain(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
     plan = curriculum(2)
     plan.run_vector(agent_of("PPO", plan, 2), num_envs=2, **OPTIONS)
@@ -207,7 +207,7 @@ def test_label_in_the_observation_reaches_the_model() -> None:
     assert plan.run(Agent(model, total_timesteps=TOTAL), **options).finished
 
 
-def test_what_would_not_learn_as_by_its_own_learn_is_refused() -> None:
+def test_models_that_would_learn_differently_are_refused() -> None:
     sb3 = pytest.importorskip("stable_baselines3", reason="the models are its")
     from driftworld.adapters.sb3 import Agent
     from stable_baselines3.common.vec_env import VecFrameStack, VecNormalize

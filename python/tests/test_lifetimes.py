@@ -1,4 +1,4 @@
-"""Curricula run from Python, with the log that the command would write."""
+"""Curricula run from Python write the same log as the command."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ import pytest
 from driftworld import Agent, Curriculum, CurriculumError, TaskSpec, Transition, read_log, validate_log
 from small_lifetime import SMALL, Circler, Pupil, rows, small
 
-#: Columns of which an agent cannot change a thing.
+#: Columns that do not depend on the agent.
 OF_THE_PLAN = [
     "block_num",
     "exp_num",
@@ -38,7 +38,7 @@ OF_THE_PLAN = [
 ]
 
 
-def test_the_log_is_the_one_that_the_command_writes(tmp_path: Path) -> None:
+def test_log_matches_the_command(tmp_path: Path) -> None:
     curriculum, script = small(), tmp_path / "circle.txt"
     script.write_text("step 1 5 45 0\nrepeat\n", encoding="utf-8")
     curriculum.save(tmp_path / "s.json")
@@ -57,7 +57,7 @@ def test_the_log_is_the_one_that_the_command_writes(tmp_path: Path) -> None:
     assert driftworld.metrics(tmp_path / "mine").lifetime == driftworld.metrics(tmp_path / "theirs").lifetime
 
 
-def test_a_random_agents_log_has_the_form_of_the_commands(tmp_path: Path) -> None:
+def test_random_agents_log_has_the_commands_form(tmp_path: Path) -> None:
     curriculum = small(max_steps=10)
     curriculum.save(tmp_path / "s.json")
     argv = ["run", str(tmp_path / "s.json"), "--agent", "random", "--output", str(tmp_path / "theirs")]
@@ -68,23 +68,23 @@ def test_a_random_agents_log_has_the_form_of_the_commands(tmp_path: Path) -> Non
         def act(self, observation: Any, info: dict[str, Any]) -> Any:
             return space.sample()
 
-    # Its space is seeded by nobody.
+    # Its action space is not seeded.
     curriculum.run(Random(), tmp_path / "mine", check_frozen=False, **SMALL)
     assert rows(tmp_path / "mine", OF_THE_PLAN) == rows(tmp_path / "theirs", OF_THE_PLAN)
 
 
-def test_an_agent_learns_in_learning_blocks_only(tmp_path: Path) -> None:
+def test_agent_learns_in_learning_blocks_only(tmp_path: Path) -> None:
     agent = Circler()
     assert isinstance(agent, Agent)
     small(max_steps=7).run(agent, check_frozen=False, **SMALL)
     assert agent.frozen == [False, True, False, True, False, True]
     assert len(agent.learned) == 7 * (2 + 5 + 3) and len(agent.begun) == 19
     assert {label for label, _ in agent.begun} == {None}
-    # No world is known by its number in another block; variants share that of a world's number under a seed.
+    # No world can be recognised by its seed in another block; variants share that of a world's number under a seed.
     chances = [seed for _, seed in agent.begun]
     assert chances[2] == chances[4] and chances[5:7] == chances[7:9]
     assert len(set(chances)) == 2 + 2 + 3 + 2 + 3 + 2
-    # Where it is asked for, every evaluation of a world has the same, learning another.
+    # With `paired_chance`, every evaluation of a world has the same seed, and learning another.
     paired = Circler()
     small(max_steps=7).run(paired, check_frozen=False, paired_chance=True, **SMALL)
     chances = [seed for _, seed in paired.begun]
@@ -93,25 +93,25 @@ def test_an_agent_learns_in_learning_blocks_only(tmp_path: Path) -> None:
 
 
 class Memoriser(Circler):
-    """Learns nothing where it may, and counts its evaluations."""
+    """Learns nothing in learning blocks, and counts its evaluations."""
 
     def act(self, observation: Any, info: dict[str, Any]) -> Any:
         return np.array([len(self.begun), 20 * (len(self.begun) % 3), 0], dtype=np.float32)
 
 
-def test_an_agent_that_evaluations_change_is_refused(tmp_path: Path) -> None:
+def test_agent_changed_by_evaluations_is_refused(tmp_path: Path) -> None:
     regimes = [{"task": "get_to_goal", "variant": "soft", "count": 6, "seed": 1, "max_steps": 30}]
     curriculum = Curriculum.from_dict({"name": "frozen", "blocks": [{"type": "evaluation", "regimes": regimes}]})
     with pytest.raises(CurriculumError, match="block 0: found another action in step 1 of experience 0 .get_to_goal#soft."):
         curriculum.run(Memoriser(), tmp_path / "log", **SMALL)
     assert curriculum.run(Memoriser(), check_frozen=False, **SMALL).finished
-    # What is the same twice leaves the same log, checked or not.
+    # An agent that repeats itself leaves the same log, checked or not.
     for name, check in [("checked", True), ("unchecked", False)]:
         curriculum.run(Pupil(), tmp_path / name, check_frozen=check, **SMALL)
     assert rows(tmp_path / "checked", ["reward"]) == rows(tmp_path / "unchecked", ["reward"])
 
 
-def test_only_a_change_is_said(tmp_path: Path) -> None:
+def test_freeze_is_called_only_on_a_change(tmp_path: Path) -> None:
     regime = {"task": "find_objects", "variant": "blue", "count": 1, "max_steps": 3}
     kinds = ["learning", "learning", "evaluation", "evaluation", "learning"]
     blocks = [{"type": kind, "regimes": [regime]} for kind in kinds]
@@ -120,7 +120,7 @@ def test_only_a_change_is_said(tmp_path: Path) -> None:
     assert agent.frozen == [False, True, False]
 
 
-def test_a_transition_is_what_a_step_said() -> None:
+def test_transition_matches_the_step() -> None:
     transitions: list[Transition] = []
 
     class Watcher(Circler):
@@ -138,7 +138,7 @@ def test_a_transition_is_what_a_step_said() -> None:
 
 
 @pytest.mark.parametrize("kept", [1, 4, 6, 9, 12, 16])
-def test_a_run_that_stopped_goes_on_as_if_it_had_not(tmp_path: Path, kept: int) -> None:
+def test_stopped_run_resumes_as_if_uninterrupted(tmp_path: Path, kept: int) -> None:
     curriculum, undisturbed = small(), Pupil()
     curriculum.run(undisturbed, tmp_path / "whole", **SMALL)
     first, second = Pupil(), Pupil()
@@ -153,7 +153,7 @@ def test_a_run_that_stopped_goes_on_as_if_it_had_not(tmp_path: Path, kept: int) 
     assert sorted(path.name for path in (tmp_path / "log.agent").iterdir()) == ["00000016", "lifetime.json"]
 
 
-def test_an_interrupt_leaves_a_log_that_goes_on(tmp_path: Path) -> None:
+def test_interrupt_leaves_a_resumable_log(tmp_path: Path) -> None:
     class Tired(Circler):
         def act(self, observation: Any, info: dict[str, Any]) -> Any:
             if len(self.begun) == 6:
@@ -170,7 +170,7 @@ def test_an_interrupt_leaves_a_log_that_goes_on(tmp_path: Path) -> None:
 
 @pytest.mark.skipif(os.name != "posix", reason="directories are held open on POSIX systems")
 @pytest.mark.parametrize("what", ["folder-lost", "file-lost"])
-def test_a_log_that_goes_away_is_an_error(tmp_path: Path, what: str) -> None:
+def test_deleted_log_raises_an_error(tmp_path: Path, what: str) -> None:
     log = tmp_path / "log"
 
     class Careless(Circler):
@@ -187,7 +187,7 @@ def test_a_log_that_goes_away_is_an_error(tmp_path: Path, what: str) -> None:
     assert log.exists() == (what == "file-lost")
 
 
-def test_a_clock_that_stands_still_stamps_every_row(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_stopped_clock_still_stamps_every_row(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("DRIFTWORLD_CLOCK", "2026-01-31T12:00:00Z")
     for name in ["a", "b"]:
         small().run(Circler(), tmp_path / name, **SMALL)
@@ -199,7 +199,7 @@ def test_a_clock_that_stands_still_stamps_every_row(tmp_path: Path, monkeypatch:
         small().run(Circler(), tmp_path / "c", **SMALL)
 
 
-def test_a_log_is_taken_up_only_by_what_it_was_begun_with(tmp_path: Path) -> None:
+def test_log_resumes_only_with_the_same_settings(tmp_path: Path) -> None:
     log = tmp_path / "log"
     small(max_steps=3).run(Circler(), log, **SMALL)
     with pytest.raises(CurriculumError, match="/made_from/environment/size"):
@@ -222,7 +222,7 @@ def test_a_log_is_taken_up_only_by_what_it_was_begun_with(tmp_path: Path) -> Non
 
 
 @pytest.mark.parametrize("told", ["info", "observation"])
-def test_a_label_is_told_where_the_scenario_says_so(told: str) -> None:
+def test_label_is_given_if_the_scenario_has_it(told: str) -> None:
     curriculum = Curriculum.design("find_objects#blue", "find_objects#red", learn=1, eval_episodes=1, task_label=told)
     agent = Circler()
     options = {**SMALL, "modalities": ["rgb"], "max_steps": 2}
@@ -238,13 +238,13 @@ def test_a_label_is_told_where_the_scenario_says_so(told: str) -> None:
         assert [int(observation["task"].argmax()) for observation, _ in agent.seen] == expected
         assert env.observation_space["task"].shape == (2,)
         assert all(env.observation_space.contains(observation) for observation, _ in agent.seen)
-        # A single image has no room for it: the number is in the infos.
+        # A single image has no room for the label: its number is in the infos.
         agent.seen.clear()
         curriculum.run(agent, **{**options, "modalities": "rgb"})
         assert [info["task_label"] for _, info in agent.seen] == expected
 
 
-def test_a_scenario_of_the_originals_is_lived_as_the_command_lives_it(tmp_path: Path) -> None:
+def test_l2explorer_scenario_runs_like_the_command(tmp_path: Path) -> None:
     theirs, maps = tmp_path / "theirs.json", tmp_path / "maps"
     maps.mkdir()
     regimes = []
@@ -254,7 +254,7 @@ def test_a_scenario_of_the_originals_is_lived_as_the_command_lives_it(tmp_path: 
         regimes.append({"task": "trees", "count": count, "params": {"map": f"maps/{name}.json", "maxsteps": 5}})
     blocks = [{"type": "train", "regimes": regimes}, {"type": "test", "regimes": regimes}]
     theirs.write_text(json.dumps({"logging_base_dir": "logs", "scenario": blocks}), encoding="utf-8")
-    # A map that is nowhere: another stands in for it, as the original's own scenario needs it.
+    # A missing map is replaced by another, as the original's own scenario needs it.
     min(maps.iterdir()).unlink()
     with pytest.warns(UserWarning, match="stood in for it"):
         curriculum = Curriculum.load(theirs)
@@ -265,7 +265,7 @@ def test_a_scenario_of_the_originals_is_lived_as_the_command_lives_it(tmp_path: 
 
 
 @pytest.mark.parametrize("log_is", ["deleted", "replaced"])
-def test_what_an_agent_saved_in_another_lifetime_is_not_loaded(tmp_path: Path, log_is: str) -> None:
+def test_agent_saved_in_another_lifetime_is_not_loaded(tmp_path: Path, log_is: str) -> None:
     log, regime = tmp_path / "log", {"task": "find_objects", "variant": "red", "count": 5, "seed": 9, "max_steps": 10}
     other = Curriculum.from_dict({"name": "other", "blocks": [{"type": "learning", "regimes": [regime]}]})
     small().run(Pupil(), log, watch=lambda experience, reward: experience.number < 1, **SMALL)
@@ -280,7 +280,7 @@ def test_what_an_agent_saved_in_another_lifetime_is_not_loaded(tmp_path: Path, l
     assert pupil.knowledge == undisturbed.knowledge != 0
 
 
-def test_time_counts_every_step_that_an_action_is_held_for(tmp_path: Path) -> None:
+def test_time_counts_every_held_step(tmp_path: Path) -> None:
     task = json.loads((Path(__file__).parents[2] / "examples/tasks/get_to_goal.json").read_text(encoding="utf-8"))
     task["world"].setdefault("agent_params", {})["frame_skip"] = 4
     (tmp_path / "mine.json").write_text(json.dumps(task), encoding="utf-8")
@@ -301,7 +301,7 @@ def test_time_counts_every_step_that_an_action_is_held_for(tmp_path: Path) -> No
         assert read["episode_step_count"].tolist() == [20]
 
 
-def test_a_wrong_option_begins_no_log(tmp_path: Path) -> None:
+def test_wrong_option_starts_no_log(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="size: found"):
         small().run(Circler(), tmp_path / "log", size=-1)
     assert not (tmp_path / "log").exists()
@@ -313,14 +313,14 @@ def test_a_wrong_option_begins_no_log(tmp_path: Path) -> None:
         small().run(Circler(), "/", **SMALL)
 
 
-def test_a_log_may_be_where_one_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_log_may_be_the_current_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "here").mkdir()
     monkeypatch.chdir(tmp_path / "here")
     assert small(max_steps=2).run(Pupil(), ".", **SMALL).finished
     assert (tmp_path / "here.agent" / "00000016").is_dir() and len(read_log(tmp_path / "here")) == 19
 
 
-def test_the_same_options_are_the_same_however_they_are_written(tmp_path: Path) -> None:
+def test_equivalent_options_are_noted_equally(tmp_path: Path) -> None:
     curriculum, rows_of_actions = small(max_steps=2), [[3.0, 4.0, 0.0], [-3.0, 4.0, 0.0]]
 
     class First(Circler):
@@ -334,7 +334,7 @@ def test_the_same_options_are_the_same_however_they_are_written(tmp_path: Path) 
         curriculum.run(First(), tmp_path / "log", **{**again, "modalities": "rgb"})
 
 
-#: Rocks that find no place in some worlds, and a number whose middle is forbidden.
+#: Rocks that cannot be placed in some worlds, and a number with a forbidden middle.
 QUARRY = {
     "version": 2,
     "name": "quarry",
@@ -358,7 +358,7 @@ QUARRY = {
 }
 
 
-def test_what_cannot_be_drawn_is_found_and_left_out(tmp_path: Path) -> None:
+def test_undrawable_worlds_are_found_and_skipped(tmp_path: Path) -> None:
     task = tmp_path / "quarry.json"
     task.write_text(json.dumps(QUARRY), encoding="utf-8")
     trial = TaskSpec.load(task).variant("full").try_worlds(30)

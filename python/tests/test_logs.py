@@ -1,4 +1,4 @@
-"""Logs of lifetimes, written, read and checked from Python."""
+"""Writing, reading and checking logs from Python."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def written(folder: Path, rewards: list[float]) -> Path:
     return folder
 
 
-def test_what_is_written_is_read(tmp_path: Path) -> None:
+def test_written_rows_are_read_back(tmp_path: Path) -> None:
     log = read_log(written(tmp_path / "log", [1.0, math.nan, 0.1 + 0.2]))
     assert (log.run_id, len(log), sorted(log.metrics)) == ("log", 3, ["reward", "steps"])
     assert np.array_equal(log["reward"], [1.0, math.nan, 0.1 + 0.2], equal_nan=True)
@@ -45,13 +45,13 @@ def test_what_is_written_is_read(tmp_path: Path) -> None:
     assert log.logger_info["metrics_columns"] == ["reward"]
 
 
-def test_a_log_is_a_data_frame(tmp_path: Path) -> None:
+def test_log_converts_to_a_data_frame(tmp_path: Path) -> None:
     pytest.importorskip("pandas", reason="data frames are pandas'")
     frame = read_log(written(tmp_path / "log", [1.0, 2.0])).to_pandas()
     assert frame["reward"].tolist() == [1.0, 2.0] and frame["task_name"].tolist() == ["find_red"] * 2
 
 
-def test_a_log_is_a_table_of_columns(tmp_path: Path) -> None:
+def test_log_is_a_table_of_columns(tmp_path: Path) -> None:
     log = read_log(written(tmp_path / "log", [1.0, math.nan, 3.0]))
     assert list(log) == list(log.keys()) == list(log.columns) and len(log) == 3
     assert "reward" in log and "rewrd" not in log and 3 not in log
@@ -59,7 +59,7 @@ def test_a_log_is_a_table_of_columns(tmp_path: Path) -> None:
     assert all(len(log[name]) == len(log) for name in log)
 
 
-def test_logs_are_equal_when_they_say_the_same(tmp_path: Path) -> None:
+def test_logs_are_equal_if_their_contents_are(tmp_path: Path) -> None:
     folder = written(tmp_path / "log", [1.0, math.nan, 3.0])
     log = read_log(folder)
     shutil.copytree(folder, tmp_path / "again")
@@ -70,7 +70,7 @@ def test_logs_are_equal_when_they_say_the_same(tmp_path: Path) -> None:
         hash(log)
 
 
-def test_a_log_is_written_as_the_format_says(tmp_path: Path) -> None:
+def test_log_follows_the_format(tmp_path: Path) -> None:
     folder = written(tmp_path / "log", [1.0])
     lines = (folder / "worker-default" / "0-train" / "data-log.tsv").read_text(encoding="utf-8").splitlines()
     assert lines[0].split("\t") == (
@@ -111,7 +111,7 @@ def test_a_log_goes_on_where_it_stopped(tmp_path: Path) -> None:
         ({"more": 1.0}, "as in the first record"),
     ],
 )
-def test_a_row_that_breaks_a_rule_is_not_written(tmp_path: Path, wrong: dict[str, Any], message: str) -> None:
+def test_row_that_breaks_a_rule_is_not_written(tmp_path: Path, wrong: dict[str, Any], message: str) -> None:
     row: dict[str, Any] = {"block_num": 0, "block_type": "train", "task_name": "find_red", "reward": 1.0}
     with LogWriter(tmp_path / "log") as log:
         log.write(exp_num=3, **row)
@@ -121,7 +121,7 @@ def test_a_row_that_breaks_a_rule_is_not_written(tmp_path: Path, wrong: dict[str
     assert read_log(tmp_path / "log")["exp_num"].tolist() == [3, 5]
 
 
-def test_one_column_may_be_a_name_alone(tmp_path: Path) -> None:
+def test_single_column_may_be_a_string(tmp_path: Path) -> None:
     LogWriter(tmp_path / "log", "performance").close()
     with LogWriter(tmp_path / "log", resume=True) as log:
         row: dict[str, Any] = {"block_num": 0, "exp_num": 0, "block_type": "train", "task_name": "find_red"}
@@ -132,7 +132,7 @@ def test_one_column_may_be_a_name_alone(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(os.name != "posix", reason="directories are held open on POSIX systems")
-def test_a_log_that_goes_away_is_an_error(tmp_path: Path) -> None:
+def test_deleted_log_raises_an_error(tmp_path: Path) -> None:
     log = LogWriter(tmp_path / "log", ["reward"])
     row = {"block_num": 0, "block_type": "train", "task_name": "find_red"}
     log.write(exp_num=0, **row, reward=1.0)
@@ -144,7 +144,7 @@ def test_a_log_that_goes_away_is_an_error(tmp_path: Path) -> None:
     assert not (tmp_path / "log").exists()
 
 
-def test_a_closed_log_takes_no_rows(tmp_path: Path) -> None:
+def test_closed_log_takes_no_rows(tmp_path: Path) -> None:
     log = LogWriter(tmp_path / "log")
     log.close()
     log.close()
@@ -152,7 +152,7 @@ def test_a_closed_log_takes_no_rows(tmp_path: Path) -> None:
         log.write(block_num=0, exp_num=0, block_type="train", task_name="find_red", reward=1.0)
 
 
-def test_what_is_wrong_with_a_log_is_named_with_its_line(tmp_path: Path) -> None:
+def test_problems_of_a_log_are_reported_with_their_line(tmp_path: Path) -> None:
     folder = written(tmp_path / "log", [1.0, 2.0])
     file = folder / "worker-default" / "0-train" / "data-log.tsv"
     file.write_text(file.read_text(encoding="utf-8").replace("\t2.0\t", "\tmuch\t"), encoding="utf-8")
@@ -166,13 +166,13 @@ def test_what_is_wrong_with_a_log_is_named_with_its_line(tmp_path: Path) -> None
 
 
 @pytest.mark.parametrize("key", ["complexity", "difficulty", "scenario_type"])
-def test_what_must_be_a_word_is_one(tmp_path: Path, key: str) -> None:
+def test_scenario_info_refuses_numbers_for_words(tmp_path: Path, key: str) -> None:
     with pytest.raises(ValueError, match=f"scenario_info, {key}: found 3, expected a word"):
         LogWriter(tmp_path / "log", scenario_info={key: 3})
     assert not (tmp_path / "log").exists()
 
 
-def test_numbers_may_be_numpys(tmp_path: Path) -> None:
+def test_numpy_numbers_are_accepted(tmp_path: Path) -> None:
     with LogWriter(tmp_path / "log", scenario_info={"seeds": np.arange(2)}) as log:
         params = {"seed": np.int64(7), "light": np.float32(0.5)}
         log.write(block_num=0, exp_num=0, block_type="train", task_name="t_v", task_params=params, reward=1.0)

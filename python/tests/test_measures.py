@@ -1,4 +1,4 @@
-"""The measures of a benchmark against the formulae of their references (scripts/golden_measures.py), and their laws."""
+"""The benchmark's measures against the formulae of their references (scripts/golden_measures.py), and invariants."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def near(expected: Any) -> Any:
 
 
 @EACH_CASE
-def test_pooled_seeds_give_the_numbers_of_continual_world_and_coom(case: dict[str, Any]) -> None:
+def test_pooled_seeds_match_continual_world_and_coom(case: dict[str, Any]) -> None:
     lived, alone = Matrix.pooled(matrices(case, "curves")), Matrix.pooled(matrices(case, "alone"))
     golden = case["golden"]["continual_world"]
     assert lived.performance() == near(golden["performance"])
@@ -40,7 +40,7 @@ def test_pooled_seeds_give_the_numbers_of_continual_world_and_coom(case: dict[st
 
 
 @EACH_CASE
-def test_gem_divides_as_the_paper_and_not_as_its_program(case: dict[str, Any]) -> None:
+def test_gem_divides_as_in_the_paper_not_as_in_its_program(case: dict[str, Any]) -> None:
     for lived, golden in zip(matrices(case, "curves"), case["golden"]["gem"], strict=True):
         found, tasks = gem(lived.values), lived.values.shape[1]
         assert found == near({name: golden[name] for name in ("ACC", "BWT", "FWT")})
@@ -51,7 +51,7 @@ def test_gem_divides_as_the_paper_and_not_as_its_program(case: dict[str, Any]) -
 
 
 @EACH_CASE
-def test_cora_gives_the_entries_and_averages_of_its_tables(case: dict[str, Any]) -> None:
+def test_cora_matches_the_entries_and_averages_of_its_tables(case: dict[str, Any]) -> None:
     found = cora(case["values"])
     for name, table in found.items():
         expected = np.array(case["golden"]["cora"][name], dtype=float)
@@ -60,29 +60,29 @@ def test_cora_gives_the_entries_and_averages_of_its_tables(case: dict[str, Any])
 
 
 @EACH_CASE
-def test_regret_is_bsuites(case: dict[str, Any]) -> None:
+def test_regret_matches_bsuite(case: dict[str, Any]) -> None:
     assert regret(case["curves"][0], case["ceilings"]) == near(case["golden"]["regret"])
 
 
 @EACH_CASE
-def test_interquartile_mean_and_interval_are_rliables(case: dict[str, Any]) -> None:
+def test_interquartile_mean_and_interval_match_rliable(case: dict[str, Any]) -> None:
     ends = np.array(case["values"])[:, -1]
     assert interquartile_mean(ends) == near(case["golden"]["iqm"])
     assert interval(ends, GOLDEN["draws"]) == near(tuple(case["golden"]["interval"]))
 
 
-def test_interval_of_a_list_is_that_of_one_column() -> None:
+def test_interval_of_a_list_equals_that_of_one_column() -> None:
     values = np.random.default_rng(0).random(9)
     assert interval(values) == interval(values[:, None])
 
 
-def test_interval_of_five_seeds_is_that_of_all_draws_of_five() -> None:
+def test_interval_of_five_seeds_uses_all_possible_draws() -> None:
     values = [0.1, 0.2, 0.35, 0.8, 0.9]
     means = [interquartile_mean(drawn) for drawn in itertools.product(values, repeat=5)]
     assert interval(values) == near(tuple(np.quantile(means, [0.025, 0.975])))
 
 
-def test_a_lifetime_that_never_changes_has_no_forgetting_and_no_transfer() -> None:
+def test_unchanged_lifetime_has_no_forgetting_and_no_transfer() -> None:
     still = Matrix(np.tile([0.1, 0.5, 0.9], (4, 1)), tuple(np.full(5, value) for value in (0.1, 0.5, 0.9)))
     assert still.forgetting() == still.backward() == 0
     assert still.coom(still)["forgetting"] == 0
@@ -97,7 +97,7 @@ def test_from_scratch_against_itself_has_no_forward_transfer(case: dict[str, Any
 
 
 @EACH_CASE
-def test_permuted_seeds_change_nothing(case: dict[str, Any]) -> None:
+def test_permuting_seeds_changes_nothing(case: dict[str, Any]) -> None:
     lived, alone, values = matrices(case, "curves"), Matrix.pooled(matrices(case, "alone")), np.array(case["values"])
     pooled, permuted = Matrix.pooled(lived), Matrix.pooled(lived[::-1])
     assert permuted.forward_transfer(alone) == near(pooled.forward_transfer(alone))
@@ -108,7 +108,7 @@ def test_permuted_seeds_change_nothing(case: dict[str, Any]) -> None:
 
 
 @EACH_CASE
-def test_a_longer_scale_scales_all_but_cora(case: dict[str, Any]) -> None:
+def test_longer_scale_scales_everything_but_cora(case: dict[str, Any]) -> None:
     values, ends = np.array(case["values"]), np.array(case["values"])[:, -1]
     once, thrice = Matrix(values[0]), Matrix(3 * values[0])
     assert thrice.performance() == near(3 * once.performance())
@@ -130,6 +130,6 @@ def test_backward_transfer_of_a_single_task_is_undefined() -> None:
     assert np.isnan(Matrix(np.zeros((2, 1))).backward())
 
 
-def test_a_task_that_was_never_rewarded_counts_zero_in_cora() -> None:
+def test_unrewarded_task_counts_zero_in_cora() -> None:
     tables = cora(np.zeros((3, 2)))
     assert (tables["forgetting"][0, 1], tables["transfer"][1, 0]) == (0, 0)

@@ -1,4 +1,6 @@
-"""MiniWorld's ids have MiniWorld's spaces, steps, rewards and limits. What is published stands here once more, as the oracle."""
+"""MiniWorld's ids have MiniWorld's spaces, steps, rewards and limits. The published values are repeated here as the
+oracle.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +15,7 @@ import pytest
 from driftworld.miniworld import Actions, MiniWorldEnv, names, task
 from gymnasium.utils.env_checker import check_env
 
-#: By MiniWorld's names: how many actions the space has, and the limit of steps (MiniWorld 2.1.0).
+#: By MiniWorld's names: the number of actions in the space, and the limit of steps (MiniWorld 2.1.0).
 PUBLISHED = {
     "CollectHealth": (8, 1000),
     "FourRooms": (3, 250),
@@ -39,7 +41,7 @@ PUBLISHED = {
     "YMazeLeft": (3, 280),
     "YMazeRight": (3, 280),
 }
-#: Those that pay for a success by its time, without things to carry.
+#: Environments that pay for a success by its time, without things to carry.
 BOXES = [name for name, (actions, _) in PUBLISHED.items() if actions == 3 and name != "ThreeRooms"]
 FAST = {"MazeS3Fast", "OneRoomS6Fast", "Sign"}
 
@@ -49,7 +51,7 @@ def made(name: str, **options: Any) -> Any:
 
 
 def in_the_open(env: Any, name: str, objects: dict[str, list[tuple[float, float]]] | None = None) -> None:
-    """Begins an episode on open ground: the agent looks north, and of each tag so many objects stand at these places."""
+    """Starts an episode on open ground: the agent faces north, and objects of each tag stand at the given places."""
     world = task(name).variant().sample(seed=0)
     world["environment_params"] = {}
     world["agent_params"].update(coordinates=[0, 0], heading=0)
@@ -75,7 +77,7 @@ def test_every_published_name_has_its_id() -> None:
 
 
 @pytest.mark.parametrize("name", PUBLISHED)
-def test_spaces_and_limits_are_the_published_ones(name: str) -> None:
+def test_spaces_and_limits_match_the_published_ones(name: str) -> None:
     env, (actions, limit) = made(name), PUBLISHED[name]
     image = gym.spaces.Box(0, 255, (60, 80, 3), np.uint8)
     shown = gym.spaces.Dict(obs=image, goal=gym.spaces.Discrete(2)) if name == "Sign" else image
@@ -113,10 +115,10 @@ def test_steps_are_as_long_as_miniworlds(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", BOXES)
-def test_a_box_pays_by_the_steps_that_it_took(name: str) -> None:
+def test_box_pays_by_the_steps_taken(name: str) -> None:
     env, limit = made(name), PUBLISHED[name][1]
     tag = "red" if "YMaze" in name or "TMaze" in name else "goal"
-    # Turns back and forth first: the last one is the last step that is allowed.
+    # Turns back and forth first, so that the success comes in the last step allowed.
     for idle in (0, 12, int(limit) - 4):
         in_the_open(env, name, {tag: [(0, 4 * (0.7 if name in FAST else 0.15) + 0.75)]})
         rewards = [env.step(step % 2)[1] for step in range(idle - idle % 2)]
@@ -130,7 +132,7 @@ def test_a_box_pays_by_the_steps_that_it_took(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", sorted(set(PUBLISHED) - {"CollectHealth", "RoomObjects"}))
-def test_the_limit_truncates_and_pays_nothing(name: str) -> None:
+def test_step_limit_truncates_without_reward(name: str) -> None:
     env = made(name)
     env.reset(seed=0)
     for step in range(1, PUBLISHED[name][1] + 1):
@@ -139,7 +141,7 @@ def test_the_limit_truncates_and_pays_nothing(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["RoomObjects", "ThreeRooms"])
-def test_what_pays_nothing_never_ends_by_itself(name: str) -> None:
+def test_environment_without_rewards_never_terminates(name: str) -> None:
     env = made(name)
     env.reset(seed=1)
     env.action_space.seed(1)
@@ -147,7 +149,7 @@ def test_what_pays_nothing_never_ends_by_itself(name: str) -> None:
     assert set(ends) == {(0.0, False, False)}
 
 
-def test_the_street_ends_an_episode_without_pay() -> None:
+def test_street_ends_an_episode_without_reward() -> None:
     env = made("Sidewalk")
     world = task("Sidewalk").variant().sample(seed=0)
     world["agent_params"].update(coordinates=[1, -6], heading=90)
@@ -156,7 +158,7 @@ def test_the_street_ends_an_episode_without_pay() -> None:
     assert steps == [(0, False, False)] * 3 + [(0, True, False)]
 
 
-def test_each_object_that_is_picked_up_pays_one() -> None:
+def test_each_picked_up_object_pays_one() -> None:
     env = made("PickupObjects")
     in_the_open(env, "PickupObjects", {"gems": [(0, 1.2 + 1.8 * number) for number in range(5)]})
     env.step(Actions.move_forward)
@@ -170,7 +172,7 @@ def test_each_object_that_is_picked_up_pays_one() -> None:
     assert sum(rewards) == 5 and rewards[-1] == 1 and not truncated
 
 
-def test_health_runs_out_in_fifty_steps_and_a_box_gives_it_back() -> None:
+def test_health_runs_out_in_fifty_steps_and_a_box_restores_it() -> None:
     env = made("CollectHealth")
     in_the_open(env, "CollectHealth", {"boxes": [(0, 1.2)]})
     for step in range(1, 31):
@@ -182,7 +184,7 @@ def test_health_runs_out_in_fifty_steps_and_a_box_gives_it_back() -> None:
         assert (reward, terminated, info["health"]) == ((-100, True, 0) if step == 50 else (2, False, 100 - 2 * step))
 
 
-def test_a_thing_is_carried_to_another() -> None:
+def test_thing_is_carried_to_another() -> None:
     env = made("PutNext")
     in_the_open(env, "PutNext", {"ball": [(0, 1)], "barrel_of_balls": [(0, 4)]})
 
@@ -194,7 +196,7 @@ def test_a_thing_is_carried_to_another() -> None:
             [event["effect"] for one in told for event in one[4]["events"] if event["effect"]],
         )
 
-    assert step(Actions.drop) == (0, False, [])  # though a thing is in reach
+    assert step(Actions.drop) == (0, False, [])  # although a thing is in reach
     assert step(Actions.pickup) == (0, False, ["picked_up"])
     assert step(Actions.pickup, Actions.toggle, Actions.done) == (0, False, [])  # keeps it
     assert step(*[Actions.move_forward] * 12) == (0, False, [])
@@ -203,10 +205,10 @@ def test_a_thing_is_carried_to_another() -> None:
 
 
 @pytest.mark.parametrize(("tag", "pays"), [("left", 1), ("right", -1)])
-def test_a_sign_says_which_object_pays(tag: str, pays: int) -> None:
+def test_sign_names_the_object_that_pays(tag: str, pays: int) -> None:
     env = made("Sign")
     seeds = iter(range(100))
-    # OX stands for the left one.
+    # OX means the left one.
     world = next(found for seed in seeds if "OX" in str(found := task("Sign").variant("words").sample(seed=seed)))
     side = next(one for one in world["objects"] if one["tag"] == tag)["coordinates"]
     world["agent_params"].update(coordinates=[side[0], side[1] - 3], heading=0)
@@ -236,7 +238,7 @@ def test_variants_of_the_family_are_options() -> None:
         made("Hallway", variant="nowhere")
 
 
-def test_what_is_unknown_is_told() -> None:
+def test_unknown_names_are_refused() -> None:
     with pytest.raises(ValueError, match="name: found 'Halway', expected one of Hallway"):
         MiniWorldEnv("Halway")
     with pytest.raises(ValueError, match="view: found 'side', expected agent or top"):
@@ -245,12 +247,12 @@ def test_what_is_unknown_is_told() -> None:
         made("Hallway", obs_widht=3)
 
 
-def test_pictures_have_the_sizes_that_are_asked_for() -> None:
+def test_images_have_the_requested_sizes() -> None:
     env = made("Hallway", obs_width=30, obs_height=20, render_mode="rgb_array", view="top")
     assert env.reset(seed=0)[0].shape == (20, 30, 3) and env.render().shape == (600, 800, 3)
 
 
-def test_a_copy_goes_on() -> None:
+def test_copy_continues_like_the_original() -> None:
     env = made("PutNext")
     in_the_open(env, "PutNext", {"ball": [(0, 1)], "barrel_of_balls": [(0, 9)]})
     env.step(Actions.pickup)
@@ -261,7 +263,7 @@ def test_a_copy_goes_on() -> None:
     assert (env.step(Actions.move_forward)[0] == other.step(Actions.move_forward)[0]).all()
 
 
-def test_a_saved_world_goes_on_with_its_count() -> None:
+def test_saved_world_keeps_its_step_count() -> None:
     env, other = made("Hallway"), made("Hallway")
     in_the_open(env, "Hallway", {"goal": [(0, 1.95)]})
     for step in range(10):
@@ -273,7 +275,7 @@ def test_a_saved_world_goes_on_with_its_count() -> None:
     assert other.step_count == 18 and reward == pytest.approx(1 - 0.2 * 18 / 250)
 
 
-def test_many_step_in_gymnasiums_loop() -> None:
+def test_several_step_in_gymnasiums_loop() -> None:
     envs = gym.make_vec("driftworld/MiniWorld-OneRoomS6Fast-v0", num_envs=3)
     envs.reset(seed=0)
     observations, rewards, *_ = envs.step(envs.action_space.sample())

@@ -1,4 +1,4 @@
-"""The stub of the native module names exactly what the module has."""
+"""The stub of the native module declares exactly the module's names."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import driftworld
 import pytest
 from driftworld import _native
 
-#: What Python gives every class, and what PyO3 makes of comparisons.
+#: Attributes that Python gives every class, and that PyO3 adds for comparisons.
 EVERY_CLASS_HAS = set(dir(object)) | {"__module__", "__doc__"}
 
 
@@ -35,7 +35,7 @@ def defined(thing: type | ModuleType) -> set[str]:
     return {name for name in vars(thing) if not name.startswith("_") or name.endswith("__")}
 
 
-def test_the_stub_names_what_the_module_has() -> None:
+def test_stub_has_the_modules_names() -> None:
     beside = {"__name__", "__doc__", "__package__", "__loader__", "__spec__", "__file__", "__all__"}
     assert named(stub().body) == defined(_native) - beside
 
@@ -45,13 +45,13 @@ def classes() -> list[ast.ClassDef]:
 
 
 @pytest.mark.parametrize("described", classes(), ids=lambda node: node.name)
-def test_the_stub_names_what_a_class_has(described: ast.ClassDef) -> None:
+def test_stub_has_each_classs_names(described: ast.ClassDef) -> None:
     real = getattr(_native, described.name)
     assert named(described.body) - EVERY_CLASS_HAS == defined(real) - EVERY_CLASS_HAS
 
 
 def functions() -> list[tuple[str, ast.FunctionDef, Any]]:
-    """Everything that can be called, by its name, as it is described and as it is."""
+    """Every callable: its name, its declaration in the stub, and the object."""
     found: list[tuple[str, ast.FunctionDef, Any]] = []
     for node in stub().body:
         if isinstance(node, ast.FunctionDef):
@@ -72,7 +72,7 @@ def functions() -> list[tuple[str, ast.FunctionDef, Any]]:
 @pytest.mark.parametrize(
     ("name", "described", "real"), functions(), ids=lambda value: value if isinstance(value, str) else ""
 )
-def test_the_stub_has_the_parameters_and_which_of_them_have_defaults(
+def test_stub_has_the_parameters_and_their_defaults(
     name: str, described: ast.FunctionDef, real: Any
 ) -> None:
     arguments = described.args
@@ -89,6 +89,6 @@ def test_the_stub_has_the_parameters_and_which_of_them_have_defaults(
     found = [parameter.name for parameter in plain if parameter.name not in ("self", "cls", "slf")]
     assert found == expected
     assert [p.name for p in plain if p.default is not p.empty] == with_defaults
-    # As `help()` shows them: a default that it cannot show would be `Ellipsis`.
+    # As in `help()`, which shows a default that it cannot represent as `Ellipsis`.
     written = [*arguments.defaults, *(default for default in arguments.kw_defaults if default is not None)]
     assert [p.default for p in plain if p.default is not p.empty] == [ast.literal_eval(default) for default in written]

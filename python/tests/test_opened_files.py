@@ -1,4 +1,4 @@
-"""No device, pipe or folder is read, wherever Python is given a path; the command's opener refuses them."""
+"""Devices, pipes and folders are refused wherever Python takes a path."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def test_only_regular_files_are_read(reader: str, kind: str, tmp_path: Path) -> 
             READERS[reader](path)
 
 
-def test_what_is_too_large_is_refused_before_it_is_read(tmp_path: Path) -> None:
+def test_too_large_file_is_refused_before_reading(tmp_path: Path) -> None:
     path = tmp_path / "large.json"
     with path.open("wb") as file:
         file.truncate((64 << 20) + 1)
@@ -51,7 +51,7 @@ def test_what_is_too_large_is_refused_before_it_is_read(tmp_path: Path) -> None:
             READERS[reader](path)
 
 
-def test_a_missing_file_is_named(tmp_path: Path) -> None:
+def test_missing_file_is_named(tmp_path: Path) -> None:
     for reader in ("assets", "scenario", "matrix", "validate", "world"):
         with pytest.raises(FileNotFoundError, match="nothing.json"):
             READERS[reader](tmp_path / "nothing.json")

@@ -1,4 +1,4 @@
-"""Options of environments and of resets: what they come to, and that wrong ones change nothing."""
+"""Options of environments and resets: their effects, and that invalid ones change nothing."""
 
 from __future__ import annotations
 
@@ -22,19 +22,19 @@ def vector(num_envs: int = 2, env_id: str = FIND, **options: Any) -> Any:
 
 
 @pytest.mark.parametrize("variant", ["red", "find_objects#red", driftworld.variant("find_objects#red")])
-def test_a_drift_begins_with_the_variant_however_it_is_said(variant: Any) -> None:
+def test_drift_starts_with_the_variant_in_every_form(variant: Any) -> None:
     env = env_of(variant=variant, drift={"to": "dusk", "episodes": 3}, info="full")
     ids = [env.reset(seed=0)[1]["variant_id"], env.reset()[1]["variant_id"], env.reset()[1]["variant_id"]]
     assert ids[0] == "find_objects#red" and ids[2] == "find_objects#dusk" and ids[1] not in (ids[0], ids[2])
 
 
-def test_none_among_the_variants_is_that_of_the_task() -> None:
+def test_none_in_variants_means_the_tasks_variant() -> None:
     envs = vector(3, "driftworld/Task-v0", task="find_objects#blue", variants=[None, "red", "find_objects#dusk"], info="full")
     _, infos = envs.reset(seed=0)
     assert list(infos["variant_id"]) == ["find_objects#blue", "find_objects#red", "find_objects#dusk"]
 
 
-def test_every_variant_that_an_environment_begins_with_has_a_label() -> None:
+def test_every_initial_variant_has_a_label() -> None:
     env = env_of(task_label="info")
     assert env.reset(seed=0)[1]["task_label"] >= 0
     seen = env_of(task_label="observation")
@@ -42,7 +42,7 @@ def test_every_variant_that_an_environment_begins_with_has_a_label() -> None:
     assert seen.observation_space.contains(seen.reset()[0])
 
 
-def test_a_reset_that_fails_changes_nothing() -> None:
+def test_failed_reset_changes_nothing() -> None:
     env = env_of(variant="blue", info="full")
     env.reset(seed=5)
     for wrong in (
@@ -63,8 +63,8 @@ def test_a_reset_that_fails_changes_nothing() -> None:
     assert infos["seed"].tolist() == driftworld.spread_seeds(5, 2) and infos["index"].tolist() == [1, 1]
 
 
-def test_a_limit_beside_the_worlds_is_gymnasiums_time_limit() -> None:
-    """It truncates even where the world ends by itself, and the worlds know nothing of it."""
+def test_additional_step_limit_acts_like_gymnasiums_time_limit() -> None:
+    """It truncates even if the world ends in the same step, and is not part of the worlds."""
     options = {"env_id": "driftworld/GetToGoal-v0", "modalities": ["state"]}
     alone = env_of(**options)
     alone.reset(seed=3)
@@ -82,24 +82,24 @@ def test_a_limit_beside_the_worlds_is_gymnasiums_time_limit() -> None:
 
 
 @pytest.mark.parametrize("limit", [0, -2, 1.5, "many"])
-def test_a_limit_that_is_none_is_refused(limit: Any) -> None:
+def test_invalid_step_limit_is_refused(limit: Any) -> None:
     with pytest.raises(ValueError, match="max_episode_steps: found"):
         vector(max_episode_steps=limit)
 
 
-def test_minus_one_is_no_limit() -> None:
+def test_minus_one_means_no_limit() -> None:
     envs = vector(1, max_episode_steps=-1, max_steps=3)
     envs.reset(seed=0)
     ends = [bool(envs.step(envs.action_space.sample())[3][0]) for _ in range(3)]
     assert ends == [False, False, True]
 
 
-def test_variants_whose_actions_are_others_are_refused() -> None:
+def test_variants_with_other_actions_are_refused() -> None:
     env = env_of(actions="continuous")
     for variant in ("slow", "waypoints"):
         with pytest.raises(ValueError, match="found actions of numbers in"):
             env.reset(options={"variant": variant})
-    # Shares of what the agent can do suit them all.
+    # Normalised actions suit all of them.
     env_of().reset(options={"variant": "waypoints"})
 
 
@@ -119,25 +119,25 @@ def test_variants_whose_actions_are_others_are_refused() -> None:
         ({"render_size": 640}, "render_size: found 640"),
     ],
 )
-def test_a_wrong_option_is_named_with_what_was_found(options: dict[str, Any], told: str) -> None:
+def test_wrong_option_is_named_with_its_value(options: dict[str, Any], told: str) -> None:
     with pytest.raises(ValueError) as error:
         env_of(**options)
     assert str(error.value).startswith(told)
 
 
-def test_numbers_of_numpy_are_numbers() -> None:
+def test_numpy_numbers_are_accepted() -> None:
     env = env_of(interact=np.bool_(False), frame_skip=np.int64(2), drift={"to": "dusk", "episodes": np.int64(5)})
     assert env.action_space.shape == (2,)
 
 
-def test_threads_are_no_more_than_environments() -> None:
+def test_threads_are_at_most_the_environments() -> None:
     envs = vector(2, num_threads=100_000)
     envs.reset(seed=0)
     with pytest.raises(ValueError, match="num_threads: found -1"):
         vector(num_threads=-1)
 
 
-def test_one_window_that_closes_leaves_the_others() -> None:
+def test_closing_one_window_leaves_the_others_open() -> None:
     pytest.importorskip("pygame", reason="windows are pygame's")
     first, second = env_of(render_mode="human"), env_of(render_mode="human")
     first.reset(seed=0)
@@ -147,6 +147,6 @@ def test_one_window_that_closes_leaves_the_others() -> None:
     second.close()
 
 
-def test_keys_are_not_for_actions_that_are_places() -> None:
+def test_keyboard_is_refused_for_waypoint_actions() -> None:
     with pytest.raises(ValueError, match="found actions that are rows or places"):
         env_of(variant="waypoints").get_keys_to_action()

@@ -1,4 +1,4 @@
-"""What is in the wheel, as installed: types, stubs, the command, and no need of anything but NumPy and Gymnasium."""
+"""The installed wheel: types, stubs, the command, and no dependencies but NumPy and Gymnasium."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pathlib import Path
 import driftworld
 import pytest
 
-#: At run time these and the standard library; what else is imported stands inside functions, in adapters, or in learners.
+#: Allowed at run time, with the standard library; other imports are inside functions, in adapters, or in learners.
 ALLOWED = {"driftworld", "gymnasium", "numpy"}
 
 
@@ -34,19 +34,19 @@ def test_only_numpy_and_gymnasium_are_needed() -> None:
     assert sorted(re.split(r"[<>=!~ ]", line)[0] for line in needed) == ["gymnasium", "numpy"]
 
 
-def test_the_extras_are_those_of_the_guide() -> None:
+def test_extras_match_the_guide() -> None:
     guide = (Path(__file__).parents[2] / "docs" / "python.md").read_text(encoding="utf-8")
     told = set(re.findall(r"^\| `\./python\[(\w+)\]`", guide, re.MULTILINE))
     assert told == set(distribution().metadata.get_all("Provides-Extra") or [])
 
 
-def test_the_version_is_the_same_everywhere() -> None:
+def test_version_is_the_same_everywhere() -> None:
     assert distribution().version == driftworld.__version__
     done = subprocess.run([sys.executable, "-m", "driftworld", "--version"], capture_output=True, text=True, check=True)
     assert driftworld.__version__ in done.stdout
 
 
-def test_nothing_else_is_imported_where_modules_begin(package: Path) -> None:
+def test_modules_import_nothing_else_at_the_top(package: Path) -> None:
     known = ALLOWED | set(sys.stdlib_module_names)
     found = []
     for path in sorted(package.rglob("*.py")):
@@ -63,7 +63,7 @@ def test_nothing_else_is_imported_where_modules_begin(package: Path) -> None:
     assert found == []
 
 
-def test_every_file_opens_with_what_lives_there(package: Path) -> None:
+def test_every_file_starts_with_a_docstring(package: Path) -> None:
     wrong = [
         path.name
         for path in package.rglob("*.py")
@@ -72,7 +72,7 @@ def test_every_file_opens_with_what_lives_there(package: Path) -> None:
     assert wrong == []
 
 
-def test_every_public_name_is_there_and_explained() -> None:
+def test_every_public_name_exists_and_is_documented() -> None:
     assert sorted(driftworld.__all__) == driftworld.__all__
     for name in driftworld.__all__:
         value = getattr(driftworld, name)

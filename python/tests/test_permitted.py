@@ -1,4 +1,4 @@
-"""What an agent is given beside its observations: nothing that names variant or world, unless it is asked for."""
+"""Infos given to an agent name neither variant nor world, unless requested."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from driftworld import Curriculum
 from small_lifetime import SMALL, Circler
 
 LABELS = ["none", "info", "observation"]
-#: All that names a variant, a world, or what is in it.
+#: Keys that name a variant, a world, or its contents.
 NAMES = ["task_id", "variant_id", "seed", "index", "world_hash", "events"]
 
 
 class Listener(Circler):
-    """Keeps all that it is given beside observations, with whether it was frozen."""
+    """Stores all infos that it gets, and whether it was frozen."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -41,7 +41,7 @@ def curriculum(variants: list[str], seed: int, label: str) -> Curriculum:
 
 
 def given(variants: list[str], seed: int, label: str, **options: Any) -> Listener:
-    """What an agent hears in such a curriculum."""
+    """An agent's infos in such a curriculum."""
     listener = Listener()
     size = {**SMALL, "modalities": ["rgb"]} if label == "observation" else SMALL
     curriculum(variants, seed, label).run(listener, **size, **options)
@@ -49,23 +49,23 @@ def given(variants: list[str], seed: int, label: str, **options: Any) -> Listene
 
 
 @pytest.mark.parametrize("label", LABELS)
-def test_what_is_given_is_a_function_of_what_is_permitted(label: str) -> None:
+def test_infos_depend_only_on_what_is_permitted(label: str) -> None:
     draw = np.random.default_rng(LABELS.index(label))
     names = np.array(["blue", "red", "green", "dusk", "wide", "penalty", "slow"])
     heard = [given(draw.choice(names, 2, replace=False).tolist(), int(draw.integers(2**31)), label) for _ in range(4)]
-    # Whatever the variants and the worlds are, whether it learns or not: the same is given, to the last key.
+    # The same keys and values, whatever the variants and worlds, in learning and evaluation.
     assert all(one.given == heard[0].given for one in heard)
     wanted = {"is_success", "ended_by", "frozen", *(["task_label"] if label == "info" else [])}
     assert {key for info in heard[0].given for key in info} == wanted
     assert {info["frozen"] for info in heard[0].given} == {False, True}
-    # Boundaries between blocks of learning are not given either.
+    # Borders between learning blocks are not revealed either.
     assert heard[0].frozen == [False, True, False]
     if label == "none":
         assert all(begun is None for one in heard for begun, _ in one.begun)
 
 
 @pytest.mark.parametrize("label", LABELS)
-def test_full_infos_name_what_is_lived(label: str) -> None:
+def test_full_infos_name_variant_and_world(label: str) -> None:
     listener = given(["blue", "red"], 5, label, info="full")
     resets = [info for info in listener.given if "variant_id" in info]
     assert all(key in info for info in resets for key in NAMES)
@@ -75,11 +75,11 @@ def test_full_infos_name_what_is_lived(label: str) -> None:
     assert told[: len(lived) // 2] == lived[: len(lived) // 2]
 
 
-def test_no_number_tells_a_world_again() -> None:
+def test_no_seed_identifies_a_world() -> None:
     listener = given(["blue", "red"], 5, "none")
     plan = curriculum(["blue", "red"], 5, "none")
     places = [(one.block, one.index) for block in plan for one in block]
-    places[8:8] = places[4:8]  # the evaluations are run once more
+    places[8:8] = places[4:8]  # the evaluations are repeated
     numbers: dict[int, set[tuple[int, int | None]]] = {}
     for place, (_, number) in zip(places, listener.begun, strict=True):
         numbers.setdefault(number, set()).add(place)
@@ -88,7 +88,7 @@ def test_no_number_tells_a_world_again() -> None:
 
 @pytest.mark.parametrize("where", ["none", "info", "observation"])
 @pytest.mark.parametrize("wanted", ["agent", "full"])
-def test_a_single_environment_names_its_variant_where_it_may(where: str, wanted: str) -> None:
+def test_single_environment_names_its_variant_only_if_permitted(where: str, wanted: str) -> None:
     options: dict[str, Any] = {"modalities": ["rgb"], "size": 8, "task_label": where, "info": wanted, "max_steps": 2}
     names = {"task_id", "variant_id"} if where != "none" or wanted == "full" else set()
     env = gym.make("driftworld/FindObjects-v0", variant="red", **options)
@@ -106,6 +106,6 @@ def test_a_single_environment_names_its_variant_where_it_may(where: str, wanted:
         assert keys & {"task_id", "variant_id"} == names
 
 
-def test_an_unknown_info_is_refused() -> None:
+def test_unknown_info_option_is_refused() -> None:
     with pytest.raises(ValueError, match="info: found 'all', expected one of agent, full"):
         gym.make("driftworld/FindObjects-v0", info="all")

@@ -1,8 +1,8 @@
-"""Every block of Python in README.md and on the pages of `docs/` runs as it stands. Other blocks are run by `tests/pages/`.
+"""Every Python block in README.md and on the pages of `docs/` runs unchanged. `tests/pages/` runs the other blocks.
 
-The blocks of a page run one after the other in one interpreter, as a reader would type them, in an empty folder. One that begins
-with ```` ```python learners ```` needs packages of gigabytes and runs with those, after the blocks above it; one with
-```` ```python by-hand ```` needs a client of ML-Agents, which the stage `unity` has.
+The blocks of a page run one after the other in one interpreter, as a reader would type them, in an empty folder. A
+block that starts with ```` ```python learners ```` needs packages of gigabytes, and runs only with those, after the
+blocks above it; one with ```` ```python by-hand ```` needs an ML-Agents client, which the stage `unity` has.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ def name(page: Path) -> str:
 
 
 @pytest.mark.parametrize("page", PAGES, ids=name)
-def test_the_blocks_of_a_page_run(page: Path, tmp_path: Path) -> None:
+def test_blocks_of_a_page_run(page: Path, tmp_path: Path) -> None:
     blocks = [text for large, text in BLOCK.findall(page.read_text(encoding="utf-8")) if not large]
     assert blocks
     run("\n".join(blocks), tmp_path)
@@ -56,7 +56,7 @@ def test_pages_with_python_are_found() -> None:
 @pytest.mark.parametrize(
     "page", [page for page in PAGES if "```python learners" in page.read_text(encoding="utf-8")], ids=name
 )
-def test_the_blocks_for_learners_run(page: Path, tmp_path: Path) -> None:
+def test_blocks_for_learners_run(page: Path, tmp_path: Path) -> None:
     pytest.importorskip("stable_baselines3", reason="the guide trains with it")
     blocks = [text for large, text in BLOCK.findall(page.read_text(encoding="utf-8")) if large]
     assert blocks

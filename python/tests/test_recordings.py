@@ -1,4 +1,5 @@
-"""Recorded episodes: of curricula lived in one environment and in many, of loops of one's own, taken up after an interruption."""
+"""Recorded episodes: of curricula in one and in many environments, of custom loops, and resumed after an interruption.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +20,7 @@ def kept(log: Path) -> dict[str, str]:
 
 
 class Wanderer:
-    """Does in each environment what chance says, which is drawn from the experience's seed."""
+    """Acts at random in each environment, from the experience's seed."""
 
     name = "wanderer"
 
@@ -38,7 +39,7 @@ class Wanderer:
 
 
 def check(log: Path) -> None:
-    """Every episode of a log comes out once more: reading compares it with its row, drawing runs it."""
+    """Replays every episode of a log: reading compares it with its row, and drawing runs it."""
     rows = read_log(log)
     for number, reward, steps in zip(rows["exp_num"], rows["reward"], rows["episode_step_count"], strict=True):
         recording = Recording.read(log, int(number))
@@ -48,7 +49,7 @@ def check(log: Path) -> None:
         assert frames.dtype == np.uint8
 
 
-def test_a_recorded_lifetime_comes_out_once_more(tmp_path: Path) -> None:
+def test_recorded_lifetime_replays(tmp_path: Path) -> None:
     small().run(Pupil(), tmp_path / "plain", **SMALL)
     small().run(Pupil(), tmp_path / "log", record=True, **SMALL)
     plain, log = read_log(tmp_path / "plain"), read_log(tmp_path / "log")
@@ -58,19 +59,19 @@ def test_a_recorded_lifetime_comes_out_once_more(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("num_envs", [1, 3])
-def test_a_recorded_lifetime_in_many_environments_comes_out_once_more(tmp_path: Path, num_envs: int) -> None:
+def test_recorded_lifetime_in_many_environments_replays(tmp_path: Path, num_envs: int) -> None:
     small().run_vector(Wanderer(num_envs), tmp_path / "log", num_envs=num_envs, record=True, frame_skip=2, **SMALL)
     check(tmp_path / "log")
-    # What an environment's options lay over its worlds is a part of the recording.
+    # The recording includes the overrides of the environment's options.
     assert Recording.read(tmp_path / "log", 0).world()["agent_params"]["frame_skip"] == 2
 
 
-def test_a_recorded_lifetime_that_was_interrupted_goes_on_so(tmp_path: Path) -> None:
+def test_interrupted_recorded_lifetime_keeps_recording(tmp_path: Path) -> None:
     small().run(Pupil(), tmp_path / "whole", record=True, **SMALL)
     for stop in (1, 7, 12):
         log = tmp_path / f"stopped-{stop}"
         small().run(Pupil(), log, record=True, watch=lambda experience, _, stop=stop: experience.number < stop, **SMALL)
-        # As a process leaves it that was killed while it wrote: in a block that is not at its end.
+        # As left by a process killed while writing, in the middle of a block.
         last = max(log.rglob("actions.jsonl"), key=lambda path: path.stat().st_mtime_ns)
         if last.read_text() != (tmp_path / "whole" / last.relative_to(log)).read_text():
             with last.open("a") as file:
@@ -80,7 +81,7 @@ def test_a_recorded_lifetime_that_was_interrupted_goes_on_so(tmp_path: Path) -> 
 
 
 @pytest.mark.parametrize("actions", ["normalized", "discrete"])
-def test_a_loop_of_ones_own_keeps_its_episodes(tmp_path: Path, actions: str) -> None:
+def test_custom_loop_records_its_episodes(tmp_path: Path, actions: str) -> None:
     env = DriftworldEnv("find_objects#red", size=8, actions=actions, max_steps=20)
     env.record()
     env.action_space.seed(3)
@@ -117,7 +118,7 @@ def test_a_loop_of_ones_own_keeps_its_episodes(tmp_path: Path, actions: str) -> 
 
 
 @pytest.mark.parametrize("autoreset", ["next_step", "same_step", "disabled"])
-def test_each_environment_of_many_is_recorded(autoreset: str) -> None:
+def test_each_vector_environment_is_recorded(autoreset: str) -> None:
     envs = DriftworldVectorEnv("find_objects#red", num_envs=2, size=8, max_steps=5, autoreset_mode=autoreset)
     with pytest.raises(RuntimeError, match="record"):
         envs.recording(0)
@@ -132,7 +133,7 @@ def test_each_environment_of_many_is_recorded(autoreset: str) -> None:
         assert recording.frames(size=4).shape == (6, 4, 4, 3)
 
 
-def test_a_recording_begun_after_the_end_of_an_episode_says_no_end() -> None:
+def test_recording_started_after_an_episode_has_no_end() -> None:
     env = DriftworldEnv("find_objects", size=8, max_steps=1)
     env.reset(seed=0)
     assert env.step(env.action_space.sample())[3]
@@ -141,7 +142,7 @@ def test_a_recording_begun_after_the_end_of_an_episode_says_no_end() -> None:
     assert (recording.steps, recording.ended_by) == (0, None)
 
 
-def test_an_episode_is_drawn_at_any_size_and_from_anywhere(tmp_path: Path) -> None:
+def test_episode_is_rendered_in_any_size_and_view(tmp_path: Path) -> None:
     env = DriftworldEnv("find_objects#red", size=8, max_steps=10)
     env.record()
     env.reset(seed=0)
@@ -171,7 +172,7 @@ def test_an_episode_is_drawn_at_any_size_and_from_anywhere(tmp_path: Path) -> No
         recording.save(tmp_path / "e.mp4")
 
 
-def test_what_is_missing_or_damaged_is_told(tmp_path: Path) -> None:
+def test_missing_or_damaged_recording_is_reported(tmp_path: Path) -> None:
     log = tmp_path / "log"
     small().run(Circler(), log, record=True, **SMALL)
     assert replay(log, 1, tmp_path / "e.gif", size=8) is None

@@ -1,4 +1,4 @@
-"""What is refused is refused in Python's words, before anything large is taken, and with the exception that is documented."""
+"""Refusals use Python's names, come before any large allocation, and raise the documented exceptions."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def native(num_envs: int, **options: Any) -> Any:
 # -- steps without a reset ---------------------------------------------------------------------------------------------
 
 
-def test_a_step_without_a_reset_is_refused_as_gymnasium_refuses_it() -> None:
+def test_step_without_reset_is_refused_as_in_gymnasium() -> None:
     theirs = gym.make_vec(FIND, 3, vectorization_mode="sync", modalities="state", size=16)
     ours = native(3, max_steps=2)
     action = ours.action_space.sample()
@@ -43,7 +43,7 @@ def test_a_step_without_a_reset_is_refused_as_gymnasium_refuses_it() -> None:
     assert len(set(seeds)) == 3
 
 
-def test_every_environment_needs_its_reset() -> None:
+def test_every_environment_needs_a_reset() -> None:
     envs = native(3)
     action = envs.action_space.sample()
     envs.reset(seed=0, options={"reset_mask": np.array([True, False, True])})
@@ -57,14 +57,14 @@ def test_every_environment_needs_its_reset() -> None:
 
 
 @pytest.mark.parametrize(("num_envs", "size"), [(65_536, 4096), (400, 4096), (65_536, 300)])
-def test_a_batch_that_takes_too_much_is_refused_in_words(num_envs: int, size: int) -> None:
+def test_too_large_batch_is_refused(num_envs: int, size: int) -> None:
     with pytest.raises(driftworld.EnvError, match="expected at most 16 GiB.*num_envs") as refused:
         driftworld.DriftworldVectorEnv("find_objects", num_envs=num_envs, size=size, modalities="rgb")
     assert refused.value.code == "env/batch-memory"
 
 
 @pytest.mark.parametrize("sample", ["sample_many", "sample_many_json"])
-def test_worlds_that_take_too_much_are_refused_in_words(sample: str) -> None:
+def test_too_large_worlds_are_refused(sample: str) -> None:
     draw = getattr(driftworld.variant("scavenger_hunt"), sample)
     for count in (2**60, 2**64 - 1, 10_000_001):
         with pytest.raises(ValueError, match=f"count: found {count}, expected at most 10000000 worlds at once"):
@@ -74,7 +74,7 @@ def test_worlds_that_take_too_much_are_refused_in_words(sample: str) -> None:
     assert len(draw(3, start=2**60)) == 3
 
 
-def test_threads_are_no_more_than_have_something_to_do() -> None:
+def test_threads_are_limited_by_processors_and_environments() -> None:
     tasks = Path("/proc/self/task")
     if not tasks.is_dir():
         pytest.skip("threads are counted in /proc")
@@ -82,7 +82,7 @@ def test_threads_are_no_more_than_have_something_to_do() -> None:
 
     before = len(list(tasks.iterdir()))
     envs = native(400, num_threads=2000)
-    # Making many starts the threads that all long work shares as well, one for each processor.
+    # Making many environments also starts the shared worker pool, one thread for each processor.
     processors = os.cpu_count() or 1
     assert len(list(tasks.iterdir())) - before <= 6 * processors
     envs.close()
@@ -128,7 +128,7 @@ def test_ctrl_c_ends_a_reset_between_environments() -> None:
     assert (said.stdout, said.returncode) == ("interrupted True False\n", 0), said.stderr
 
 
-def test_ctrl_c_ends_the_making_of_many() -> None:
+def test_ctrl_c_ends_making_many_environments() -> None:
     call = 'soon(); driftworld.DriftworldVectorEnv(num_envs=4096, world=world, modalities="state", size=8)'
     said = subprocess.run(
         [sys.executable, "-c", PROGRAM.format(call=call)], capture_output=True, text=True, timeout=200, check=False
@@ -140,7 +140,7 @@ def test_ctrl_c_ends_the_making_of_many() -> None:
 
 
 @pytest.mark.parametrize("row", [-1, 99, 2**62, -(2**62)])
-def test_the_action_of_an_environment_that_has_ended_is_ignored_whatever_it_is(row: int) -> None:
+def test_action_of_an_ended_environment_is_ignored(row: int) -> None:
     options = {"actions": "discrete", "max_episode_steps": 3}
     ours, other = native(2, **options), native(2, **options)
     ours.reset(seed=0)
@@ -155,7 +155,7 @@ def test_the_action_of_an_environment_that_has_ended_is_ignored_whatever_it_is(r
 
 
 @pytest.mark.parametrize("row", [2**70, -(2**70), 2**63, -1, -(2**63) - 1, 7])
-def test_a_row_that_is_none_is_told_with_the_rows_there_are(row: int) -> None:
+def test_invalid_row_is_refused_with_the_valid_range(row: int) -> None:
     env = driftworld.DriftworldEnv("find_objects", actions="discrete", modalities="state", size=16)
     env.reset(seed=0)
     before = env.state()
@@ -164,7 +164,7 @@ def test_a_row_that_is_none_is_told_with_the_rows_there_are(row: int) -> None:
     assert first_difference(before, env.state()) is None
 
 
-def test_a_row_beyond_64_bits_is_none_of_a_vectors_either() -> None:
+def test_row_beyond_64_bits_is_refused_in_vectors() -> None:
     envs = native(2, actions="discrete")
     envs.reset(seed=0)
     for rows in (np.array([2**63, 0], dtype=np.uint64), [2**70, 0], [0, 2**64 - 1]):
@@ -175,7 +175,7 @@ def test_a_row_beyond_64_bits_is_none_of_a_vectors_either() -> None:
 # -- a long queue ------------------------------------------------------------------------------------------------------
 
 
-def test_a_queue_costs_by_what_is_different_in_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_queue_looks_up_each_distinct_variant_once(monkeypatch: pytest.MonkeyPatch) -> None:
     from driftworld.envs.origin import Home
 
     asked: list[Any] = []
@@ -189,7 +189,7 @@ def test_a_queue_costs_by_what_is_different_in_it(monkeypatch: pytest.MonkeyPatc
 
 @pytest.mark.parametrize("num_envs", [1, 2, 3, 4])
 @pytest.mark.parametrize("length", [1, 2, 3, 4, 6])
-def test_a_queue_is_dealt_out_over_and_over(num_envs: int, length: int) -> None:
+def test_queue_is_dealt_out_repeatedly(num_envs: int, length: int) -> None:
     names = ["red", "blue", "red", "dusk", "near", "blue"][:length]
     envs = native(num_envs, autoreset_mode="disabled", info="full")
     told = [envs.reset(seed=0, options={"queue": np.array(names)})[1]["variant_id"]]
@@ -238,7 +238,7 @@ WRONG: dict[str, tuple[Callable[[Path], Any], str]] = {
 
 
 @pytest.mark.parametrize("name", WRONG)
-def test_what_is_wrong_is_said_in_pythons_words(name: str, tmp_path: Path) -> None:
+def test_invalid_values_are_refused_with_pythons_names(name: str, tmp_path: Path) -> None:
     call, told = WRONG[name]
     with pytest.raises((ValueError, DriftworldError), match=re.escape(told)) as refused:
         call(lived(tmp_path / "log"))
@@ -262,7 +262,7 @@ def test_what_is_wrong_is_said_in_pythons_words(name: str, tmp_path: Path) -> No
         lambda: driftworld.variant("find_object"),
     ],
 )
-def test_a_name_that_stands_for_nothing_is_the_error_that_is_documented(ask: Callable[[], Any]) -> None:
+def test_unknown_name_raises_the_documented_error(ask: Callable[[], Any]) -> None:
     with pytest.raises(driftworld.TaskError, match="did you mean") as refused:
         ask()
     assert isinstance(refused.value, LookupError) and isinstance(refused.value, ValueError)
@@ -273,7 +273,7 @@ def test_a_name_that_stands_for_nothing_is_the_error_that_is_documented(ask: Cal
 
 
 def callables() -> list[tuple[str, Any]]:
-    """Everything that ``help(driftworld)`` shows."""
+    """All callables shown by ``help(driftworld)``."""
     found: list[tuple[str, Any]] = []
     for name in driftworld.__all__:
         value = getattr(driftworld, name)
@@ -295,7 +295,7 @@ def test_help_shows_every_default(name: str, value: Any) -> None:
 
 
 def closed(value: Any, parameter: str) -> set[Any]:
-    """The words of a parameter that its type lists."""
+    """The words listed in a parameter's type."""
     pending, words = [typing.get_type_hints(value)[parameter]], set()
     while pending:
         kind = pending.pop()
@@ -307,7 +307,7 @@ def closed(value: Any, parameter: str) -> set[Any]:
 
 
 def known(call: Callable[[str], Any]) -> set[str]:
-    """The words that a call says it expects."""
+    """The expected words in the error of a call."""
     with pytest.raises((ValueError, DriftworldError)) as refused:
         call("no such word")
     text = str(refused.value).partition("expected ")[2].removeprefix("one of ")
@@ -352,14 +352,13 @@ CLOSED: dict[str, tuple[Any, Callable[[str], Any]]] = {
 
 
 @pytest.mark.parametrize("name", CLOSED)
-def test_the_words_of_a_closed_set_are_its_type(name: str) -> None:
+def test_literal_types_list_the_accepted_words(name: str) -> None:
     (value, parameter), call = CLOSED[name]
-    # Experts are made by a method of their own.
-    # A letter may stand for the name of an element.
+    # Experts have their own method. A letter may stand for the name of an element.
     letters = {word for word in known(call) if len(word) == 1 or word.startswith("or the letter")}
     assert closed(value, parameter) == known(call) - {"expert"} - letters
 
 
-def test_methods_of_ordering_are_the_librarys() -> None:
+def test_order_methods_match_the_library() -> None:
     assert get_args(_literals.ComparedBy) == tuple(_native.compared_by())
     assert get_args(_literals.OrderMethod) == tuple(_native.order_methods())

@@ -1,4 +1,4 @@
-"""Results in the tree are of worlds that there are: what a folder says of variants and worlds still holds."""
+"""The committed results still match: their variants and worlds have the recorded hashes."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ CONFIGS = sorted((ROOT / "examples" / "python" / "results").glob("*/config.json"
 
 
 @pytest.mark.parametrize("config", CONFIGS, ids=lambda path: path.parent.name)
-def test_hashes_hold(config: Path) -> None:
+def test_recorded_hashes_are_current(config: Path) -> None:
     worlds = json.loads(config.read_text(encoding="utf-8"))["worlds"]
     assert worlds
     for name, told in worlds.items():

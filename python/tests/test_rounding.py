@@ -1,4 +1,4 @@
-"""How the calling thread rounds, which other libraries may change, changes nothing here, and stays as it was."""
+"""The caller's rounding mode, which other libraries may change, has no effect and stays unchanged."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def rounding(mode: int) -> Any:
         maths.fesetround(before)
 
 
-#: What users bring is made before: NumPy and Python's own JSON round as the thread does.
+#: Inputs are made beforehand: NumPy and Python's JSON follow the thread's rounding mode.
 ACTION = np.array([0.7, 0.31, 0.0], dtype=np.float32)
 DOCUMENT = json.loads((ROOT / "examples" / "tasks" / "get_to_goal.json").read_text(encoding="utf-8"))
 
@@ -81,7 +81,7 @@ WORK: dict[str, Callable[[], Any]] = {
 
 
 @pytest.mark.parametrize("name", WORK)
-def test_numbers_are_the_same_however_the_caller_rounds(name: str) -> None:
+def test_numbers_do_not_depend_on_the_callers_rounding(name: str) -> None:
     usual = WORK[name]()
     for mode in MODES:
         with rounding(mode):

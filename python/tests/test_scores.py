@@ -1,4 +1,4 @@
-"""Scores and pages of lifetimes from Python are the command's."""
+"""Scores and report pages in Python match the command's."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def commanded(*argv: str | Path) -> Any:
     return json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
 
 
-def test_one_lifetime_has_the_commands_scores(logs: list[Path]) -> None:
+def test_scores_of_one_lifetime_match_the_command(logs: list[Path]) -> None:
     found, expected = metrics(logs[0]), commanded("metrics", logs[0])
     assert found.lifetimes == [expected]
     assert found["avg_train_perf"] == expected["avg_train_perf"] == found.lifetime["avg_train_perf"]
@@ -67,7 +67,7 @@ def test_one_lifetime_has_the_commands_scores(logs: list[Path]) -> None:
     assert all(curve["forgetting"] >= 0 and not curve["is_scaled"] for curve in found.curves.values())
 
 
-def test_a_notebook_shows_the_rows_of_the_commands_table(logs: list[Path]) -> None:
+def test_notebook_shows_the_rows_of_the_commands_table(logs: list[Path]) -> None:
     found = metrics(logs[0])
     assert found.readings == commanded("metrics", logs[0])["readings"]
     command = [sys.executable, "-m", "driftworld", "metrics", str(logs[0])]
@@ -91,7 +91,7 @@ def test_a_notebook_shows_the_rows_of_the_commands_table(logs: list[Path]) -> No
     assert {row["name"] for row in several.repeats} >= {"backward_transfer_contrast"}
 
 
-def test_floor_and_ceiling_are_a_file_or_a_dictionary(logs: list[Path], tmp_path: Path) -> None:
+def test_scales_are_a_file_or_a_dictionary(logs: list[Path], tmp_path: Path) -> None:
     task, other = sorted(TASKS)[:2]
     scales = {task: {"floor": -5.0, "ceiling": 45.0}}
     file = tmp_path / "scales.json"
@@ -108,10 +108,10 @@ def test_floor_and_ceiling_are_a_file_or_a_dictionary(logs: list[Path], tmp_path
         metrics(logs[0], scales=scales, data_range={name: {"min": 0, "max": 1} for name in TASKS})
 
 
-def test_power_is_the_commands(logs: list[Path]) -> None:
+def test_power_matches_the_command(logs: list[Path]) -> None:
     found = metrics(logs, power=10.0)
     assert found.power == commanded("metrics", *logs, "--power", "10")["power"]
-    # Where no lifetimes differ there is nothing to compute it from.
+    # Without differences between lifetimes it cannot be computed.
     powers = [row["power"] for row in found.power if row["power"] is not None]
     assert powers and all(0 <= power <= 1 for power in powers)
     assert all(row["lifetimes"] == [3, 3] for row in found.power)
@@ -119,7 +119,7 @@ def test_power_is_the_commands(logs: list[Path]) -> None:
         metrics(logs[0], power=10.0)
 
 
-def test_options_do_what_they_do_for_the_command(logs: list[Path], tmp_path: Path) -> None:
+def test_options_have_the_commands_effects(logs: list[Path], tmp_path: Path) -> None:
     experts = [expert(tmp_path / f"expert_{task}", task) for task in TASKS]
     ranges = tmp_path / "ranges.json"
     limits = {task: {"min": -1.0, "max": 30.0} for task in TASKS}
@@ -142,7 +142,7 @@ def test_options_do_what_they_do_for_the_command(logs: list[Path], tmp_path: Pat
     assert found.lifetimes != metrics(logs[0]).lifetimes
 
 
-def test_several_lifetimes_have_the_commands_intervals(logs: list[Path]) -> None:
+def test_intervals_of_several_lifetimes_match_the_command(logs: list[Path]) -> None:
     found, expected = metrics(logs, bootstrap_seed=5), commanded("metrics", *logs, "--bootstrap-seed", "5")
     assert found.repeats == expected["repeats"] and found.lifetimes == expected["lifetimes"]
     assert found.intervals == expected["intervals"]
@@ -157,7 +157,7 @@ def test_two_agents_are_compared(logs: list[Path]) -> None:
     assert found.improvement and len(found.lifetimes_against) == 2 and found.repeats_against
 
 
-def test_scores_are_data_frames(logs: list[Path]) -> None:
+def test_scores_convert_to_data_frames(logs: list[Path]) -> None:
     pytest.importorskip("pandas", reason="data frames are pandas'")
     found = metrics(logs)
     frame = found.to_pandas()
@@ -166,7 +166,7 @@ def test_scores_are_data_frames(logs: list[Path]) -> None:
     assert len(found.regimes()) == 3 * (3 * 2 + 2)
 
 
-def test_scores_are_saved_as_the_command_saves_them(logs: list[Path], tmp_path: Path) -> None:
+def test_saved_scores_match_the_command(logs: list[Path], tmp_path: Path) -> None:
     metrics(logs[0]).save(tmp_path / "results")
     names = ["one_metrics.json", "one_regime.tsv", "one_settings.json"]
     assert sorted(path.name for path in (tmp_path / "results").iterdir()) == names
@@ -182,44 +182,44 @@ def test_scores_are_saved_as_the_command_saves_them(logs: list[Path], tmp_path: 
         ({"confidence": 2.0}, "2"),
     ],
 )
-def test_what_cannot_be_scored_says_what_the_command_says(
+def test_errors_match_the_command(
     logs: list[Path], options: dict[str, Any], message: str
 ) -> None:
     with pytest.raises(MetricsError, match=message):
         metrics(logs, **options)
 
 
-def test_a_log_that_is_not_there_is_named(tmp_path: Path) -> None:
+def test_missing_log_is_named(tmp_path: Path) -> None:
     with pytest.raises(MetricsError, match="found nothing, expected the folder of a log"):
         metrics(tmp_path / "nowhere")
 
 
-def test_warnings_are_pythons(logs: list[Path], tmp_path: Path) -> None:
+def test_warnings_are_python_warnings(logs: list[Path], tmp_path: Path) -> None:
     stranger = expert(tmp_path / "stranger", "other_task")
     with pytest.warns(UserWarning, match="is ignored"):
         metrics(logs[0], ste=stranger)
 
 
-def test_the_page_is_the_commands(logs: list[Path], tmp_path: Path) -> None:
+def test_page_matches_the_command(logs: list[Path], tmp_path: Path) -> None:
     path = tmp_path / "pages" / "mine.html"
     page = report(logs, path, title="Mine", unit="exp_num", plot_types=["raw", "timeline"])
     assert path.read_text(encoding="utf-8") == page and "<title>Mine" in page
     other = tmp_path / "theirs.html"
     command = [sys.executable, "-m", "driftworld", "report", *map(str, logs), "-o", str(other), "--title", "Mine"]
     subprocess.run([*command, "-T", "raw", "timeline", "--unit", "exp_num"], check=True, capture_output=True)
-    # The command's page has the command, too.
+    # The command's page also shows the command.
     told = re.sub('<tr><th scope="row">command</th>.*?</tr>', "", other.read_text(encoding="utf-8"))
     assert told == page
     with pytest.raises(MetricsError):
         report(tmp_path / "nowhere")
 
 
-def test_scores_without_a_log_of_their_own_compare_by_what_they_say(logs: list[Path]) -> None:
+def test_scores_compare_by_value(logs: list[Path]) -> None:
     assert metrics(logs[0]) == metrics(str(logs[0])) != metrics(logs[1])
     assert isinstance(metrics(logs[0]), Metrics)
 
 
-def test_scores_at_given_ranges_can_be_asked_again(logs: list[Path], tmp_path: Path) -> None:
+def test_scores_with_given_ranges_can_be_computed_again(logs: list[Path], tmp_path: Path) -> None:
     pytest.importorskip("pandas", reason="data frames are pandas'")
     found = metrics(logs[0], data_range={task: {"min": -1.0, "max": 30.0} for task in TASKS})
     found.save(tmp_path / "results")
@@ -229,7 +229,7 @@ def test_scores_at_given_ranges_can_be_asked_again(logs: list[Path], tmp_path: P
 
 
 @pytest.mark.parametrize("copied", [lambda found: pickle.loads(pickle.dumps(found)), copy.deepcopy], ids=["pickle", "deepcopy"])
-def test_copies_of_scores_say_and_save_the_same(
+def test_copies_of_scores_are_equal_and_save_the_same(
     logs: list[Path], tmp_path: Path, copied: Callable[[Metrics], Metrics]
 ) -> None:
     pytest.importorskip("pandas", reason="data frames are pandas'")
@@ -242,7 +242,7 @@ def test_copies_of_scores_say_and_save_the_same(
     assert texts[0] == texts[1]
 
 
-def test_regimes_are_those_that_are_saved(logs: list[Path], tmp_path: Path) -> None:
+def test_regimes_match_the_saved_ones(logs: list[Path], tmp_path: Path) -> None:
     pandas = pytest.importorskip("pandas", reason="data frames are pandas'")
     found = metrics(logs)
     found.save(tmp_path, name="all")
@@ -254,11 +254,11 @@ def test_regimes_are_those_that_are_saved(logs: list[Path], tmp_path: Path) -> N
             pandas.testing.assert_series_equal(frame[column], saved[column], check_dtype=False)
 
 
-def test_a_tiny_number_below_zero_is_a_number(logs: list[Path]) -> None:
+def test_tiny_number_below_zero_is_accepted(logs: list[Path]) -> None:
     assert metrics(logs[0], noise=(-1e-9, 1e-9), noise_seed=1).lifetimes
 
 
-def test_options_are_called_as_in_python(logs: list[Path]) -> None:
+def test_errors_use_pythons_option_names(logs: list[Path]) -> None:
     with pytest.raises(MetricsError, match="transfer_method") as refused:
         metrics(logs[0], transfer_method="ratoi")
     assert "--" not in str(refused.value)

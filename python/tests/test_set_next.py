@@ -1,4 +1,6 @@
-"""What comes next can be said while episodes run: it holds from the next episode on, in one environment as in many."""
+"""The next episode can be set while episodes run: it takes effect from the next episode on, in one environment as in
+many.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +30,7 @@ def many(num_envs: int, mode: str, **options: Any) -> Any:
 
 
 def drawn(chance: np.random.Generator) -> dict[str, Any]:
-    """Something to ask of one environment."""
+    """A random request for one environment."""
     match chance.integers(4):
         case 0:
             return {"variant": str(chance.choice(VARIANTS))}
@@ -74,7 +76,7 @@ def test_many_are_told_what_one_is_told(mode: str, seed: int) -> None:
             assert envs.origin(env) == one.unwrapped.origin()  # type: ignore[attr-defined]
 
 
-def test_what_runs_goes_on_and_nothing_is_forgotten() -> None:
+def test_current_episodes_continue_and_requests_persist() -> None:
     envs, plain = many(4, "same_step"), many(4, "same_step")
     envs.reset(seed=1)
     plain.reset(seed=1)
@@ -110,7 +112,7 @@ def test_what_runs_goes_on_and_nothing_is_forgotten() -> None:
     ],
     ids=str,
 )
-def test_what_is_wrong_changes_nothing(asked: dict[str, Any]) -> None:
+def test_invalid_requests_change_nothing(asked: dict[str, Any]) -> None:
     envs = many(2, "same_step")
     envs.reset(seed=5)
     with pytest.raises((ValueError, TypeError, Error, driftworld.TaskError)):
@@ -120,7 +122,7 @@ def test_what_is_wrong_changes_nothing(asked: dict[str, Any]) -> None:
     assert [envs.origin(env)["index"] for env in range(2)] == [1, 1]
 
 
-def test_labels_count_what_a_batch_begins_with() -> None:
+def test_labels_include_the_initial_variants() -> None:
     task = driftworld.TaskSpec.load("get_to_goal")
     own = [variant.id for variant in driftworld.TaskSpec.load("find_objects").variants]
     options: dict[str, Any] = {"modalities": "rgb", "size": 8, "actions": "discrete", "interact": False}
@@ -128,7 +130,7 @@ def test_labels_count_what_a_batch_begins_with() -> None:
     for modalities, label in (("rgb", "observation"), ("rgb", "info"), (["rgb"], "observation")):
         envs = many(4, "same_step", variants=others, **{**options, "modalities": modalities, "task_label": label})
         observations, infos = envs.reset(seed=0)
-        # After the task's own comes the one that it begins with, which has no name there.
+        # The labels of initial variants from elsewhere follow the task's own.
         expected = [len(own) + 1, len(own) + 2, len(own), len(own) + 1]
         if isinstance(modalities, list):
             assert observations["task"].argmax(axis=1).tolist() == expected
@@ -137,12 +139,12 @@ def test_labels_count_what_a_batch_begins_with() -> None:
             assert infos["task_label"].tolist() == expected
 
 
-def test_the_old_word_is_refused_with_the_new_one() -> None:
+def test_removed_word_is_refused_with_its_replacement() -> None:
     with pytest.raises(ValueError, match='task_label: found "obs": removed in 0.3; use "observation"'):
         gym.make(FIND, task_label="obs")
 
 
-def test_with_a_mask_each_takes_a_queue_for_itself() -> None:
+def test_with_a_mask_each_environment_gets_its_own_queue() -> None:
     envs, alone = many(4, "next_step"), gym.make(FIND, max_episode_steps=4, **OPTIONS)
     envs.reset(seed=0)
     queue = ["red", "dusk", "near"]
@@ -154,7 +156,7 @@ def test_with_a_mask_each_takes_a_queue_for_itself() -> None:
             envs.step(np.zeros(4, dtype=np.int64))
 
 
-def test_the_first_observation_of_one_carries_its_label() -> None:
+def test_first_observation_of_one_environment_has_its_label() -> None:
     envs = many(2, "next_step", variant="near", task_label="observation")
     envs.reset(seed=0)
     first, told = envs.reset_one(1, options={"variant": "red"})
@@ -183,13 +185,13 @@ def test_sb3_learns_another_variant_without_a_reset() -> None:
     assert [set(names) for names in begun] == [{"find_objects#red"}, {"find_objects#blue"}]
     with pytest.raises(ValueError, match="set_options: found 'varaint'"):
         envs.set_options({"varaint": "red"})
-    # A wrong one among several changes none, and is not asked for again.
+    # One invalid request among several changes nothing, and is not applied again.
     envs.set_options({"variant": "near"})
     with pytest.raises(driftworld.errors.TaskError, match="nope"):
         envs.set_options([{"variant": "red"}, {"variant": "nope"}])
     envs.reset()
     assert envs.env_method("origin")[0]["variant_id"] == "find_objects#near"
-    # As an environment alone has it, each takes a queue from its start.
+    # Like a single environment, each gets the queue from its start.
     envs.set_options([{"queue": ["red", "dusk"]}] * 2)
     envs.reset()
     assert [origin["variant_id"] for origin in envs.env_method("origin")] == ["find_objects#red"] * 2
@@ -197,8 +199,8 @@ def test_sb3_learns_another_variant_without_a_reset() -> None:
 
 @pytest.mark.learners
 def test_sb3_issue_1790_options_reach_the_reset_that_ends_an_episode() -> None:
-    # https://github.com/DLR-RM/stable-baselines3/issues/1790: in an environment whose episodes end at each step, options that were
-    # set reach an explicit reset alone; the reset within `step` drops them.
+    # https://github.com/DLR-RM/stable-baselines3/issues/1790: if episodes end at each step, options only reach an
+    # explicit reset; the reset within `step` drops them.
     pytest.importorskip("stable_baselines3", reason="the thread is about it")
     from driftworld.adapters.sb3 import make_vec_env
 
@@ -212,7 +214,7 @@ def test_sb3_issue_1790_options_reach_the_reset_that_ends_an_episode() -> None:
     assert begun() == [("default", 0)] * 2
     envs.set_options({"variant": "dusk", "index": 7})
     assert envs.step(actions)[2].all() and begun() == [("dusk", 7)] * 2
-    # A variant holds until another is asked for; an index is of one episode.
+    # A variant persists until replaced; an index is for one episode.
     assert envs.step(actions)[2].all() and begun() == [("dusk", 8)] * 2
     envs.set_options([{"variant": "red"}, {}])
     assert envs.step(actions)[2].all() and begun() == [("red", 9), ("dusk", 9)]
@@ -223,7 +225,7 @@ def test_sb3_issue_1790_options_reach_the_reset_that_ends_an_episode() -> None:
 
 @pytest.mark.learners
 @pytest.mark.filterwarnings("ignore")
-def test_rllibs_runner_goes_on_with_another_variant() -> None:
+def test_rllib_runner_continues_with_another_variant() -> None:
     pytest.importorskip("ray.rllib", reason="the runner is its")
     from ray.rllib.algorithms.ppo import PPOConfig
     from ray.rllib.core.rl_module.default_model_config import DefaultModelConfig

@@ -1,4 +1,4 @@
-"""What an observation holds and an action is: as the task asks, also where its variants differ in that."""
+"""Contents of observations and forms of actions follow the task, also if its variants differ in them."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ ALL = ("rgb", "depth", "segmentation", "class", "instance")
 
 
 def _task(**agent: Any) -> dict[str, Any]:
-    """A task whose parameter says what is shown, with a variant for each choice."""
+    """A task whose parameter selects the modalities, with a variant for each choice."""
     choices = [["rgb"], ["depth"], ["class", "rgb"], ["instance", "segmentation"], []]
     shown = {"role": "variant", "type": "json", "affects": ["O"], "choices": choices, "default": ["rgb"]}
     may = {"role": "variant", "type": "boolean", "affects": ["A"], "choices": [True, False], "default": True}
@@ -44,7 +44,7 @@ def task(tmp_path: Path) -> str:
     ("variant", "expected"),
     [("blue", ["rgb", "depth"]), ("rgb_only", ["rgb"]), ("depth_only", ["depth"]), ("with_class", ["rgb", "class"])],
 )
-def test_an_observation_holds_what_the_variant_asks_for(variant: str, expected: list[str]) -> None:
+def test_observation_has_the_variants_modalities(variant: str, expected: list[str]) -> None:
     env = DriftworldEnv("find_objects", variant=variant, size=SIZE)
     observation, _ = env.reset(seed=3)
     assert set(observation) == {*expected, "state"}
@@ -54,7 +54,7 @@ def test_an_observation_holds_what_the_variant_asks_for(variant: str, expected: 
         assert observation[kind].any()
 
 
-def test_a_batch_holds_what_its_variants_ask_for_together_and_each_shows_its_own(task: str) -> None:
+def test_batch_has_all_variants_modalities_and_each_fills_its_own(task: str) -> None:
     names = [f"v{number}" for number in range(5)]
     own = _task()["parameters"]["shown"]["choices"]
     envs = DriftworldVectorEnv(task, num_envs=5, variants=names, actions="normalized")
@@ -71,7 +71,7 @@ def test_a_batch_holds_what_its_variants_ask_for_together_and_each_shows_its_own
     assert all(full[kind].any() for kind in ("rgb", "depth"))
 
 
-def test_blank_lets_one_space_serve_all_variants(task: str) -> None:
+def test_blank_gives_all_variants_one_space(task: str) -> None:
     env = DriftworldEnv(task, modalities=["rgb", "depth", "class", "instance", "segmentation"], blank=True)
     for name, asked in [("v0", {"rgb"}), ("v1", {"depth"}), ("v2", {"class", "rgb"}), ("v4", set[str]())]:
         observation, _ = env.reset(seed=2, options={"variant": name})
@@ -79,7 +79,7 @@ def test_blank_lets_one_space_serve_all_variants(task: str) -> None:
         assert env.observation_space.contains(observation)
 
 
-def test_a_variant_that_shows_what_has_no_place_is_refused_with_the_way_out(task: str) -> None:
+def test_variant_with_other_modalities_is_refused_with_advice(task: str) -> None:
     env = DriftworldEnv(task)
     with pytest.raises(ValueError, match="found images of depth, expected some of rgb, state .*blank=True"):
         env.reset(seed=0, options={"variant": "v1"})
@@ -87,17 +87,17 @@ def test_a_variant_that_shows_what_has_no_place_is_refused_with_the_way_out(task
         DriftworldEnv(task, blank=True)
 
 
-def test_worlds_that_show_nothing_are_refused(tmp_path: Path) -> None:
+def test_worlds_without_modalities_are_refused(tmp_path: Path) -> None:
     path = tmp_path / "shows.json"
     path.write_text(json.dumps(_task(state_features=[])))
     with pytest.raises(ValueError, match="modalities: found worlds that show nothing, expected some of rgb"):
         DriftworldEnv(str(path), variant="v4")
 
 
-def test_actions_are_the_rows_of_the_task_or_numbers_of_one_width(task: str, tmp_path: Path) -> None:
+def test_actions_are_the_tasks_rows_or_numbers_of_one_width(task: str, tmp_path: Path) -> None:
     assert DriftworldEnv(task).action_space == gymnasium.spaces.Box(-1.0, 1.0, (3,), np.float32)
     assert DriftworldEnv(task, variant="no_hand").action_space == gymnasium.spaces.Box(-1.0, 1.0, (2,), np.float32)
-    # The third number counts where the agent may interact.
+    # The third number has an effect only if the agent may interact.
     env = DriftworldEnv(task)
     env.reset(seed=0, options={"variant": "no_hand"})
     env.step(np.array([1.0, 0.0, 1.0], dtype=np.float32))
@@ -110,7 +110,7 @@ def test_actions_are_the_rows_of_the_task_or_numbers_of_one_width(task: str, tmp
 
 
 class _Watcher:
-    """Acts at random and keeps which images it was shown, and in which variants."""
+    """Acts at random and records its images and their variants."""
 
     def __init__(self, space: gymnasium.Space[Any]) -> None:
         self.space = space
@@ -131,7 +131,7 @@ class _Watcher:
 
 
 class _Watchers(_Watcher):
-    """The same for many environments, whatever their variants are called."""
+    """The same for many environments."""
 
     def act(self, observations: Any, infos: dict[str, Any]) -> Any:
         num_envs = len(observations["state"])
@@ -150,7 +150,7 @@ def _curriculum(*variants: str) -> Curriculum:
 MODALITIES = {"blue": {"rgb", "depth"}, "rgb_only": {"rgb"}, "depth_only": {"depth"}, "with_class": {"rgb", "class"}}
 
 
-def test_a_lifetime_by_modality_shows_each_variant_its_own() -> None:
+def test_lifetime_over_modalities_shows_each_variant_its_own() -> None:
     curriculum = _curriculum("rgb_only", "blue", "depth_only", "with_class")
     env = curriculum.environment(size=SIZE)
     assert set(env.observation_space.spaces) == {"rgb", "depth", "class", "state"}  # type: ignore[attr-defined]
@@ -162,7 +162,7 @@ def test_a_lifetime_by_modality_shows_each_variant_its_own() -> None:
 
 
 @pytest.mark.parametrize("first", ["no_interact", "blue"])
-def test_a_lifetime_by_interaction_has_the_numbers_of_those_that_may(first: str) -> None:
+def test_lifetime_with_and_without_interaction_uses_the_wider_actions(first: str) -> None:
     curriculum = _curriculum(first, "no_interact", "blue", "interact", "waypoints", "slow")
     space = curriculum.environment(size=SIZE).action_space
     assert space.shape == (3,)
@@ -170,7 +170,7 @@ def test_a_lifetime_by_interaction_has_the_numbers_of_those_that_may(first: str)
     assert summary.finished and summary.experiences == 12
 
 
-def test_warnings_hold_what_is_odd_about_the_world_at_hand() -> None:
+def test_warnings_are_about_the_current_world() -> None:
     world = {
         "environment_params": {"map_size": [20, 20]},
         "objects": [{"class": "switch", "coordinates": [2, 2], "switch": {"target": "nothing"}}],
@@ -182,7 +182,7 @@ def test_warnings_hold_what_is_odd_about_the_world_at_hand() -> None:
     assert DriftworldEnv(world=world).warnings() == []
 
 
-def test_what_a_state_holds_does_not_matter_where_it_is_not_shown() -> None:
+def test_state_features_do_not_matter_without_the_state() -> None:
     foraging = TaskSpec.load("foraging").variant("plenty")
     envs = DriftworldVectorEnv("find_objects#red", 2, modalities="rgb", size=16)
     envs.reset(seed=0)
@@ -194,7 +194,7 @@ def test_what_a_state_holds_does_not_matter_where_it_is_not_shown() -> None:
         envs.reset(options={"variants": [foraging] * 2})
 
 
-def test_an_instruction_ends_the_state_and_says_what_is_drawn() -> None:
+def test_instruction_is_last_in_the_state_and_matches_the_drawn_values() -> None:
     env = DriftworldEnv("fetch#four", modalities=["rgb", "state"], size=16)
     colors = {"red": (1, 0, 0), "blue": (0, 0, 1), "gold": (1, 215 / 255, 0), "limegreen": (50 / 255, 205 / 255, 50 / 255)}
     told = set()

@@ -40,7 +40,7 @@ def lamps_task() -> TaskSpec:
     return TaskSpec.from_dict(LAMPS)
 
 
-def test_a_task_says_what_its_document_says(lamps: TaskSpec) -> None:
+def test_task_has_its_documents_content(lamps: TaskSpec) -> None:
     assert (lamps.name, lamps.description) == ("lamps", "Light and dark.")
     assert lamps.parameters["light"]["range"] == [0.2, 4]
     assert list(lamps.parameters) == ["light", "far"]
@@ -51,7 +51,7 @@ def test_a_task_says_what_its_document_says(lamps: TaskSpec) -> None:
     assert lamps.to_dict()["world"] == LAMPS["world"]
 
 
-def test_a_task_is_loaded_by_its_name_or_its_path(tmp_path: Path, lamps: TaskSpec) -> None:
+def test_task_is_loaded_by_name_or_path(tmp_path: Path, lamps: TaskSpec) -> None:
     path = tmp_path / "lamps.json"
     path.write_text(json.dumps(LAMPS), encoding="utf-8")
     assert TaskSpec.load(path) == TaskSpec.load(str(path)) == lamps
@@ -62,7 +62,7 @@ def test_a_task_is_loaded_by_its_name_or_its_path(tmp_path: Path, lamps: TaskSpe
     assert {TaskSpec.load(name).name for name in driftworld.built_in_tasks()} >= {"find_objects", "scavenger_hunt"}
 
 
-def test_a_task_that_is_not_there_is_told_the_ones_that_are() -> None:
+def test_missing_task_is_refused_with_the_known_ones() -> None:
     with pytest.raises(TaskError, match='did you mean "find_objects"'):
         TaskSpec.load("find_object")
     with pytest.raises(TaskError, match='did you mean "red"') as refused:
@@ -70,7 +70,7 @@ def test_a_task_that_is_not_there_is_told_the_ones_that_are() -> None:
     assert refused.value.code == "spec/unknown-variant"
 
 
-def test_a_variant_says_what_it_is(lamps: TaskSpec) -> None:
+def test_variant_has_its_values(lamps: TaskSpec) -> None:
     dusk = lamps.variant("dusk")
     assert (dusk.id, dusk.name, dusk.task) == ("lamps#dusk", "dusk", lamps)
     assert dusk.values == {"light": 0.5, "far": 5.0}
@@ -78,7 +78,7 @@ def test_a_variant_says_what_it_is(lamps: TaskSpec) -> None:
     assert lamps.variant().values == {"light": 2.0, "far": 5.0}
 
 
-def test_notebooks_show_what_variants_change(lamps: TaskSpec) -> None:
+def test_notebooks_show_the_changes_of_variants(lamps: TaskSpec) -> None:
     told = lamps.variant("dusk")._repr_html_()
     assert ">lamps#dusk<" in told and "<td style=\"text-align: left\">light</td>" in told
     assert ">0.5<" in told and ">2<" in told and "at their defaults: far 5" in told
@@ -90,7 +90,7 @@ def test_notebooks_show_what_variants_change(lamps: TaskSpec) -> None:
     assert "&lt;b&gt;" in named._repr_html_()
 
 
-def test_a_variant_is_changed_into_another(lamps: TaskSpec) -> None:
+def test_variant_can_be_changed_into_another(lamps: TaskSpec) -> None:
     made = lamps.variant("dusk").with_values("made", far=7)
     assert (made.id, made.values) == ("lamps#made", {"light": 0.5, "far": 7.0})
     with pytest.raises(SpecError) as refused:
@@ -102,7 +102,7 @@ def test_a_variant_is_changed_into_another(lamps: TaskSpec) -> None:
 
 @pytest.mark.parametrize("copied", [pickle.loads, copy.deepcopy], ids=["pickle", "deepcopy"])
 @pytest.mark.parametrize("name", ["day", "dusk", "made", "between"])
-def test_a_variant_survives_being_copied(lamps: TaskSpec, name: str, copied: Any) -> None:
+def test_variant_survives_copying(lamps: TaskSpec, name: str, copied: Any) -> None:
     variant = {
         "made": lambda: lamps.variant("day").with_values("made", light=3.25),
         "between": lambda: Drift(lamps.variant("day"), lamps.variant("dusk")).at(0.3),
@@ -119,7 +119,7 @@ def test_every_variant_of_every_built_in_task_pickles(task: str) -> None:
     assert pickle.loads(pickle.dumps(spec.variants)) == spec.variants
 
 
-def test_worlds_are_those_of_the_command() -> None:
+def test_worlds_match_the_command() -> None:
     variant = driftworld.variant("find_objects#red")
     command = [sys.executable, "-m", "driftworld", "sample", "find_objects#red", "--seed", "7", "--index", "123"]
     text = subprocess.run(command, capture_output=True, check=True).stdout.decode()
@@ -129,7 +129,7 @@ def test_worlds_are_those_of_the_command() -> None:
 
 
 @pytest.mark.parametrize("threads", [0, 1, 3])
-def test_many_worlds_are_the_single_ones(lamps: TaskSpec, threads: int) -> None:
+def test_sample_many_equals_single_samples(lamps: TaskSpec, threads: int) -> None:
     variant = lamps.variant("dusk")
     many = variant.sample_many(600, seed=2, start=10, threads=threads)
     assert many == [variant.sample(2, index) for index in range(10, 610)]
@@ -139,13 +139,13 @@ def test_many_worlds_are_the_single_ones(lamps: TaskSpec, threads: int) -> None:
     assert variant.sample_many(0) == []
 
 
-def test_a_number_of_worlds_that_there_are_not_is_refused(lamps: TaskSpec) -> None:
+def test_impossible_number_of_worlds_is_refused(lamps: TaskSpec) -> None:
     with pytest.raises(ValueError, match="room for 2 worlds"):
         lamps.variant("day").sample_many(2, start=2**64 - 1)
 
 
 @pytest.mark.parametrize("seed", [-1, 2**64])
-def test_a_seed_is_a_whole_number(lamps: TaskSpec, seed: int) -> None:
+def test_seed_must_be_a_whole_number(lamps: TaskSpec, seed: int) -> None:
     with pytest.raises(ValueError, match=f"found {seed}, expected a whole number in 0..18446744073709551615"):
         lamps.variant("day").sample(seed)
     with pytest.raises(TypeError, match="seed"):
@@ -153,7 +153,7 @@ def test_a_seed_is_a_whole_number(lamps: TaskSpec, seed: int) -> None:
     assert lamps.variant("day").sample(np.int64(3)) == lamps.variant("day").sample(3)  # type: ignore[arg-type]
 
 
-def test_a_drift_leads_from_one_variant_to_the_other(lamps: TaskSpec) -> None:
+def test_drift_leads_from_one_variant_to_another(lamps: TaskSpec) -> None:
     day, dusk = lamps.variant("day"), lamps.variant("dusk")
     drift = Drift(day, dusk)
     assert (drift.at(0.0), drift.at(1.0)) == (day, dusk)
@@ -171,14 +171,14 @@ def test_a_drift_leads_from_one_variant_to_the_other(lamps: TaskSpec) -> None:
         ({"switch": "sudden"}, 'found "sudden", expected "at_point", "mixture" or "task"'),
     ],
 )
-def test_a_drift_that_is_none_says_what_there_is(lamps: TaskSpec, options: dict[str, Any], message: str) -> None:
+def test_unknown_schedule_or_switch_is_refused_with_the_known_ones(lamps: TaskSpec, options: dict[str, Any], message: str) -> None:
     with pytest.raises(ValueError, match=message):
         Drift(lamps.variant("day"), lamps.variant("dusk"), **options)
     with pytest.raises(ValueError, match="in 0..1"):
         Drift(lamps.variant("day"), lamps.variant("dusk")).at(1.5)
 
 
-def test_a_variant_at_a_distance_is_at_that_distance(lamps: TaskSpec) -> None:
+def test_variant_at_a_distance_has_that_distance(lamps: TaskSpec) -> None:
     day = lamps.variant("day")
     found, distance = day.at_distance(0.25, "observation", name="dimmer")
     assert found.id == "lamps#dimmer" and distance == pytest.approx(0.25, abs=1e-3)
@@ -191,14 +191,14 @@ def test_a_variant_at_a_distance_is_at_that_distance(lamps: TaskSpec) -> None:
         day.at_distance(0.5, "rewards")
 
 
-def test_what_is_valid_has_no_problems(lamps: TaskSpec) -> None:
+def test_valid_document_has_no_problems(lamps: TaskSpec) -> None:
     world = lamps.variant("day").sample()
     for document in (LAMPS, json.dumps(LAMPS), world, "find_objects"):
         assert validate(document) == []
     assert validate(world, kind="world", check=True) == []
 
 
-def test_what_is_wrong_comes_with_every_place(tmp_path: Path) -> None:
+def test_problems_have_their_places(tmp_path: Path) -> None:
     path = tmp_path / "wrong.json"
     path.write_text('{ "name": "x",\n  "paramters": {},\n  "world": { "max_stepps": 3 } }', encoding="utf-8")
     problems = validate(path)
@@ -214,7 +214,7 @@ def test_what_is_wrong_comes_with_every_place(tmp_path: Path) -> None:
     assert str(error).splitlines()[0] == f"{path}:{problems[0]['message']}"
 
 
-def test_what_is_no_json_is_one_problem() -> None:
+def test_text_that_is_not_json_is_one_problem() -> None:
     (problem,) = validate('{ "name": ', kind="task")
     assert (problem["code"], problem["line"]) == ("spec/syntax", 1)
     with pytest.raises(SpecError) as refused:
@@ -222,13 +222,13 @@ def test_what_is_no_json_is_one_problem() -> None:
     assert (refused.value.code, refused.value.line) == ("spec/syntax", 1)
 
 
-def test_a_scenario_is_checked_against_its_tasks() -> None:
+def test_scenario_is_checked_against_its_tasks() -> None:
     regime = {"task": "find_objects", "variant": "rde", "count": 1}
     (problem,) = validate({"name": "s", "blocks": [{"type": "learning", "regimes": [regime]}]})
     assert problem["pointer"] == "/blocks/0/regimes/0/variant" and '"red"' in problem["message"]
 
 
-def test_a_document_that_is_none_is_refused() -> None:
+def test_unknown_document_is_refused() -> None:
     with pytest.raises(FileNotFoundError, match="expected the path of a document"):
         validate("nowhere.json")
     with pytest.raises(TypeError, match="found int"):
@@ -237,7 +237,7 @@ def test_a_document_that_is_none_is_refused() -> None:
         validate("{}", kind="scenrio")
 
 
-def test_variants_and_tasks_are_compared_by_what_they_are(lamps: TaskSpec) -> None:
+def test_variants_and_tasks_compare_by_value(lamps: TaskSpec) -> None:
     other = TaskSpec.from_dict({**LAMPS, "name": "candles"})
     assert lamps != other and lamps.variant("day") != other.variant("day")
     assert lamps.variant("day") == TaskSpec.from_dict(LAMPS).variant("day") != "lamps#day"
@@ -245,7 +245,7 @@ def test_variants_and_tasks_are_compared_by_what_they_are(lamps: TaskSpec) -> No
     assert isinstance(lamps.variant("day"), Variant)
 
 
-def test_two_that_differ_cannot_be_called_the_same(lamps: TaskSpec) -> None:
+def test_different_variants_with_the_same_name_are_refused(lamps: TaskSpec) -> None:
     day = lamps.variant("day")
     near, _ = day.at_distance(0.1, "observation")
     far, _ = day.at_distance(0.2, "observation")
@@ -258,14 +258,14 @@ def test_two_that_differ_cannot_be_called_the_same(lamps: TaskSpec) -> None:
 
 
 @pytest.mark.parametrize("name", ["", "a#b"])
-def test_a_variant_that_is_made_has_a_name(lamps: TaskSpec, name: str) -> None:
+def test_new_variant_needs_a_valid_name(lamps: TaskSpec, name: str) -> None:
     with pytest.raises(ValueError, match="name: found"):
         lamps.variant("day").with_values(name, light=1)
     with pytest.raises(ValueError, match="name: found"):
         lamps.variant("day").at_distance(0.1, "O", name=name)
 
 
-def test_a_value_may_be_numpys_and_must_be_finite(lamps: TaskSpec) -> None:
+def test_value_may_be_numpys_and_must_be_finite(lamps: TaskSpec) -> None:
     day = lamps.variant("day")
     made = day.with_values("made", light=np.float32(0.5), far=np.int64(3))
     assert made == day.with_values("made", light=0.5, far=3)
@@ -275,20 +275,20 @@ def test_a_value_may_be_numpys_and_must_be_finite(lamps: TaskSpec) -> None:
         day.with_values("wrong", light=object())
 
 
-def test_more_threads_than_there_are_to_be_had_are_refused(lamps: TaskSpec) -> None:
+def test_too_many_threads_are_refused(lamps: TaskSpec) -> None:
     with pytest.raises(ValueError, match="threads: found 5000, expected at most 1024"):
         lamps.variant("day").sample_many(4, threads=5000)
 
 
 @pytest.mark.parametrize("copied", [lambda thing: pickle.loads(pickle.dumps(thing)), copy.deepcopy])
 @pytest.mark.parametrize("schedule", [None, "cosine", {"steps": 3}])
-def test_a_drift_survives_being_copied(lamps: TaskSpec, copied: Any, schedule: Any) -> None:
+def test_drift_survives_copying(lamps: TaskSpec, copied: Any, schedule: Any) -> None:
     drift = Drift(lamps.variant("day"), lamps.variant("dusk"), schedule=schedule, switch="mixture", seed=4)
     again = copied(drift)
     assert [again.at(progress, 3) for progress in (0.0, 0.4, 1.0)] == [drift.at(x, 3) for x in (0.0, 0.4, 1.0)]
 
 
-def test_what_is_odd_about_a_document_is_warned_of() -> None:
+def test_suspicious_document_causes_warnings() -> None:
     with pytest.warns(UserWarning, match='the key "oddity" has no meaning here'):
         assert validate({"environment_params": {}, "oddity": 1}, kind="l2explorer-world") == []
 
@@ -302,7 +302,7 @@ LAWS = {
 
 
 @pytest.mark.parametrize("family", LAWS)
-def test_laws_of_colours_go_out_and_in_again(family: str) -> None:
+def test_colour_distributions_round_trip(family: str) -> None:
     law = {family: LAWS[family]}
     document = {
         "version": 2,
@@ -330,7 +330,7 @@ def test_laws_of_colours_go_out_and_in_again(family: str) -> None:
     assert (colors[0] == colors[1]) == (family == "color_normal")
 
 
-def test_parameters_that_affect_nothing_are_warned_of() -> None:
+def test_parameters_without_effect_cause_warnings() -> None:
     idle = {"role": "variant", "type": "number", "affects": [], "range": [0, 1], "default": 0}
     with pytest.warns(UserWarning, match="parameter idle affects no element, expected some"):
         assert driftworld.validate({"version": 2, "name": "t", "parameters": {"idle": idle}}) == []

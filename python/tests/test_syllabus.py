@@ -1,4 +1,4 @@
-"""Syllabus' curricula choose the variants of our environments, unchanged."""
+"""Syllabus's own curricula choose variants of Driftworld's environments, unchanged."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ CEILINGS = {"red": 100.0, "blue": 50.0, "dusk": 200.0}
 
 @pytest.fixture(autouse=True)
 def syllabus() -> Any:
-    """The library; it changes for which numbers NumPy raises errors."""
+    """The library; it changes which NumPy conditions raise errors."""
     before = np.geterr()
     yield pytest.importorskip("syllabus.curricula", reason="the curricula are its: pip install syllabus-rl matplotlib scipy")
     np.seterr(**before)
@@ -42,7 +42,7 @@ def test_task_is_a_variant_and_its_completion_a_share_of_the_ceiling(monkeypatch
 
     monkeypatch.setattr(env.env, "step", paid)
     assert [env.step(0)[4]["task_completion"] for _ in range(4)] == [0.0, 0.25, 0.5, 1.0]
-    # A change is of the next episode.
+    # A change takes effect in the next episode.
     env.change_task(1)
     assert env.task == 2
     assert env.reset()[1]["variant_id"] == "find_objects#blue"
@@ -55,7 +55,7 @@ def test_task_is_a_variant_and_its_completion_a_share_of_the_ceiling(monkeypatch
 
 
 def live(curriculum: Any, episodes: int, update: Any = None) -> list[str]:
-    """The variants of so many episodes that a curriculum chose, in its own wrapper."""
+    """The variants of ``episodes`` episodes chosen by a curriculum, in its own wrapper."""
     from syllabus.core import GymnasiumSyncWrapper, make_multiprocessing_curriculum
 
     shared = make_multiprocessing_curriculum(curriculum, timeout=20)
@@ -86,7 +86,7 @@ def test_prioritized_level_replay_runs_unchanged() -> None:
     )
 
     def update(reward: float, ended: bool, task: int) -> None:
-        # What is worth most is surprising in "blue".
+        # Values are more surprising in "blue".
         value = torch.full((1, 1), 100.0 * (task == 1))
         told = {"value": value, "next_value": value, "rew": [reward], "dones": [ended], "tasks": [task]}
         curriculum.update(told)
@@ -102,7 +102,7 @@ def test_learning_progress_runs_with_its_distribution_as_a_list() -> None:
     from syllabus.curricula import LearningProgress
 
     class Listed(LearningProgress):  # type: ignore[misc, unused-ignore]
-        """Since NumPy 1.25 the sampling of syllabus-rl 0.7 cannot compare an array with an empty list."""
+        """A workaround: since NumPy 1.25 the sampling of syllabus-rl 0.7 cannot compare an array with an empty list."""
 
         def _sample_distribution(self) -> list[float]:
             return list(super()._sample_distribution())

@@ -1,4 +1,6 @@
-"""The example that reads maps of letters: walls, things, doors and lava stand where their letters stand, and the world is one."""
+"""The example that reads letter maps: walls, things, doors and lava are where their letters are, and the world is
+valid.
+"""
 
 from __future__ import annotations
 
@@ -44,7 +46,7 @@ def maps() -> ModuleType:
 
 
 def problems(world: dict[str, Any]) -> list[dict[str, Any]]:
-    """What is wrong with a world. Warnings are left out: drawn maps have cells that nobody can reach."""
+    """The problems of a world. Warnings are ignored: drawn maps have unreachable cells."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         return validate(world)
@@ -54,7 +56,7 @@ def tagged(world: dict[str, Any], tag: str) -> list[dict[str, Any]]:
     return [thing for thing in world["objects"] if thing["tag"] == tag]
 
 
-def test_a_text_level_of_dmlab_has_its_walls_things_and_warnings(maps: ModuleType, capsys: Any) -> None:
+def test_dmlab_level_has_its_walls_things_and_warnings(maps: ModuleType, capsys: Any) -> None:
     world = maps.dmlab("level.txt", LEVEL)
     assert problems(world) == []
     layout = world["environment_params"]["layout"]
@@ -72,20 +74,20 @@ def test_a_text_level_of_dmlab_has_its_walls_things_and_warnings(maps: ModuleTyp
     ]
 
 
-def test_a_grid_of_minigrid_has_its_rooms_things_and_lava(maps: ModuleType, capsys: Any) -> None:
+def test_minigrid_grid_has_its_rooms_things_and_lava(maps: ModuleType, capsys: Any) -> None:
     grid = "WGWGWGWGWGWG\nWG>>  DY  WG\nWG  KYWGGGWG\nWGVRARWGXXWG\nWGWGWGWGWGWG\n"
     world = maps.minigrid("grid.txt", grid)
     assert problems(world) == []
     assert world["agent_params"] == {"agent_width": 2 / 3, "coordinates": [-3.0, 2.0], "heading": 90.0, "carry_limit": 1}
     assert [thing["tag"] for thing in world["objects"]] == ["yellow_key", "goal", "ball", "door"]
     (zone,) = world["environment_params"]["zones"]
-    # Its cell, whole: the second of the fourth row.
+    # Its whole cell: the second of the fourth row.
     assert zone["polygon"] == [[-4.0, -3.0], [-2.0, -3.0], [-2.0, -1.0], [-4.0, -1.0]]
     assert zone["ends"] == "failure"
     assert '"XX" is not known' in capsys.readouterr().err
 
 
-def test_doors_of_minigrid_stand_across_their_doorways_with_the_key_of_their_colour(maps: ModuleType) -> None:
+def test_minigrid_doors_span_their_doorways_and_need_keys_of_their_colour(maps: ModuleType) -> None:
     grid = "WGWGWGWGWG\nWG>>DRKBWG\nWGLBWGWGWG\nWG__WGGGWG\nWG      WG\nWGWGWGWGWG\n"
     world = maps.minigrid("grid.txt", grid)
     assert problems(world) == []
@@ -99,26 +101,26 @@ def test_doors_of_minigrid_stand_across_their_doorways_with_the_key_of_their_col
     assert [key["class"] for key in tagged(world, "blue_key")] == ["key"]
 
 
-def test_keys_of_several_colours_have_a_letter_each(maps: ModuleType) -> None:
+def test_keys_of_several_colours_have_different_letters(maps: ModuleType) -> None:
     world = maps.minigrid("grid.txt", "WGWGWGWGWGWG\nWG>>KRKBKR  WG\nWGWGWGWGWGWG\n")
     layout = world["environment_params"]["layout"]
     assert layout["text"][1] == "#AKkK #"
     assert layout["legend"] == {"K": {"group": "red_key"}, "k": {"group": "blue_key"}}
 
 
-def test_a_name_above_a_grid_is_passed_over(maps: ModuleType) -> None:
+def test_name_above_a_grid_is_skipped(maps: ModuleType) -> None:
     for name in ["<DoorKeyEnv<MiniGrid-DoorKey-5x5-v0>>", "<GoToLocal<BabyAI-GoToLocal-v0>>"]:
         world = maps.minigrid("grid.txt", f"{name}\nWGWGWG\nWG>>WG\nWGWGWG\n")
         assert world["environment_params"]["layout"]["text"] == ["###", "#A#", "###"]
 
 
 @pytest.mark.parametrize("text", ["", "\n\n", "***\n***\n", "Dear all,\nhere is the map that I promised.\n"])
-def test_a_text_that_is_no_map_is_refused(maps: ModuleType, text: str) -> None:
+def test_text_that_is_not_a_map_is_refused(maps: ModuleType, text: str) -> None:
     with pytest.raises(SystemExit, match="expected a letter"):
         maps.dmlab("letter.txt", text)
 
 
-def test_things_stand_at_their_letters(maps: ModuleType) -> None:
+def test_things_are_at_their_letters(maps: ModuleType) -> None:
     chance, read = random.Random(3), 0
     for _ in range(100):
         rows = ["".join(chance.choices("*PGA IH?", k=chance.randint(1, 12))) for _ in range(chance.randint(1, 9))]
@@ -137,7 +139,7 @@ def test_things_stand_at_their_letters(maps: ModuleType) -> None:
     assert read > 50
 
 
-def test_the_script_writes_a_world(tmp_path: Path) -> None:
+def test_script_writes_a_world(tmp_path: Path) -> None:
     (tmp_path / "level.txt").write_text("*****\n*P G*\n*****\n", encoding="utf-8")
     command = [sys.executable, str(SCRIPT), "level.txt", "--of", "dmlab", "-o", "world.json"]
     subprocess.run(command, cwd=tmp_path, check=True)

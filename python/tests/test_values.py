@@ -1,4 +1,4 @@
-"""Copies and pickles hold values: what a caller changes afterwards, or a file that goes, changes nothing in them."""
+"""Copies and pickles contain values: later changes by the caller, or to files, do not affect them."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ EACH_WAY = pytest.mark.parametrize("way", WAYS.values(), ids=WAYS)
 
 
 class Own(DriftworldEnv):
-    """An environment with arguments of its own."""
+    """A subclass with its own constructor arguments."""
 
     def __init__(self, scale: float, *, name: str) -> None:
         super().__init__("find_objects#red", **SMALL)
@@ -38,7 +38,7 @@ class Own(DriftworldEnv):
 
 
 class OwnVector(DriftworldVectorEnv):
-    """Environments with arguments of their own."""
+    """A vector subclass with its own constructor arguments."""
 
     def __init__(self, names: list[str]) -> None:
         super().__init__("find_objects", len(names), variants=names, **SMALL)
@@ -55,7 +55,7 @@ def same_life(one: Any, other: Any, steps: int = 6) -> None:
 
 
 @EACH_WAY
-def test_a_subclass_with_arguments_of_its_own_goes_on(way: Callable[[Any], Any]) -> None:
+def test_subclass_with_its_own_arguments_continues(way: Callable[[Any], Any]) -> None:
     env = Own(2.0, name="mine")
     env.reset(seed=3)
     other = way(env)
@@ -69,7 +69,7 @@ def test_a_subclass_with_arguments_of_its_own_goes_on(way: Callable[[Any], Any])
 
 
 @EACH_WAY
-def test_a_world_that_is_changed_afterwards_changes_no_copy(way: Callable[[Any], Any]) -> None:
+def test_changing_a_world_later_changes_no_copy(way: Callable[[Any], Any]) -> None:
     world = driftworld.variant("find_objects#red").sample(seed=1)
     env = DriftworldEnv(world=world, **SMALL)
     env.reset(seed=0)
@@ -81,7 +81,7 @@ def test_a_world_that_is_changed_afterwards_changes_no_copy(way: Callable[[Any],
 
 
 @EACH_WAY
-def test_files_that_are_changed_or_gone_change_no_copy(way: Callable[[Any], Any], task_file: Path, world_file: Path) -> None:
+def test_changed_or_missing_files_change_no_copy(way: Callable[[Any], Any], task_file: Path, world_file: Path) -> None:
     task = DriftworldEnv(f"{task_file}#landmarks", **SMALL)
     world = DriftworldVectorEnv(num_envs=2, world=world_file, **SMALL)
     for env in (task, world):
@@ -94,7 +94,7 @@ def test_files_that_are_changed_or_gone_change_no_copy(way: Callable[[Any], Any]
 
 
 @EACH_WAY
-def test_options_that_are_changed_afterwards_change_no_copy(way: Callable[[Any], Any]) -> None:
+def test_changing_options_later_changes_no_copy(way: Callable[[Any], Any]) -> None:
     drift = {"to": "dusk", "episodes": 3}
     table = [[10.0, 0.0, 0.0], [0.0, 90.0, 0.0]]
     env = DriftworldEnv("find_objects#red", drift=drift, actions=table, modalities=["state"], size=16)
@@ -107,18 +107,18 @@ def test_options_that_are_changed_afterwards_change_no_copy(way: Callable[[Any],
 
 
 @EACH_WAY
-def test_copies_have_chance_of_their_own(way: Callable[[Any], Any]) -> None:
+def test_copies_have_their_own_random_generators(way: Callable[[Any], Any]) -> None:
     envs = DriftworldVectorEnv("find_objects", 2, modalities="state", size=16)
     envs.reset()
     expected = way(envs)
     other = way(envs)
-    # What the original draws in the meantime moves nothing.
+    # Draws of the original meanwhile have no effect on it.
     [generator.integers(9) for generator in envs.np_random]
     envs.reset(seed=77)
     same_life(other, expected)
 
 
-def test_a_copy_of_what_never_began_has_not_begun() -> None:
+def test_copy_of_an_unstarted_environment_is_unstarted() -> None:
     import gymnasium
 
     env = copy.deepcopy(DriftworldVectorEnv("find_objects", 2, modalities="state", size=16))
@@ -129,7 +129,7 @@ def test_a_copy_of_what_never_began_has_not_begun() -> None:
 
 
 @EACH_WAY
-def test_a_long_queue_is_copied_where_it_stands(way: Callable[[Any], Any]) -> None:
+def test_long_queue_is_copied_with_its_position(way: Callable[[Any], Any]) -> None:
     envs = DriftworldVectorEnv("find_objects", 3, modalities="state", size=16, max_episode_steps=1)
     queue = ["red", "blue", "green", "dusk", "near"] * 1000
     envs.reset(seed=0, options={"queue": queue})
@@ -155,7 +155,7 @@ def worlds(curriculum: Curriculum) -> list[Any]:
     return [experience.world() for block in curriculum for experience in block]
 
 
-def test_a_curriculum_holds_its_tasks_and_worlds(task_file: Path, world_file: Path) -> None:
+def test_curriculum_keeps_its_tasks_and_worlds(task_file: Path, world_file: Path) -> None:
     mine, again = scenario(task_file.parent), scenario(task_file.parent)
     assert mine == again and hash(mine) == hash(again) and mine != mine.scenario
     lived = worlds(mine)
@@ -171,7 +171,7 @@ def test_a_curriculum_holds_its_tasks_and_worlds(task_file: Path, world_file: Pa
         assert other.blocks == mine.blocks
 
 
-def test_curricula_are_equal_when_they_say_the_same() -> None:
+def test_curricula_are_equal_if_their_contents_are() -> None:
     one, other = (Curriculum.design("find_objects#blue", "find_objects#red", seed=0) for _ in range(2))
     assert one == other and len({one, other}) == 1
     assert one != Curriculum.design("find_objects#blue", "find_objects#red", seed=1)
@@ -179,9 +179,9 @@ def test_curricula_are_equal_when_they_say_the_same() -> None:
     assert one[0] in one and one.index(one[1]) == 1
 
 
-def test_a_curriculum_runs_as_it_was_read(task_file: Path, world_file: Path) -> None:
+def test_curriculum_runs_as_loaded(task_file: Path, world_file: Path) -> None:
     class Still:
-        """Who does nothing."""
+        """Does nothing."""
 
         def act(self, observation: Any, info: Any) -> Any:
             return np.zeros(3, dtype=np.float32)

@@ -1,4 +1,4 @@
-"""The native vector environment is what Gymnasium's own vector environments are, bit for bit, in every mode of autoreset."""
+"""The native vector environment matches Gymnasium's own bit for bit, in every autoreset mode."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 FIND = "driftworld/FindObjects-v0"
-#: Gymnasium 1.0 knows one mode only, and no masks.
+#: Gymnasium 1.0 has only one mode, and no masks.
 HAS_MODES = hasattr(gym.vector, "AutoresetMode")
 ANY_MODE = pytest.mark.parametrize("mode", AutoresetMode if HAS_MODES else [AutoresetMode.NEXT_STEP], ids=str)
 NEEDS_MASKS = pytest.mark.skipif(not HAS_MODES, reason="Gymnasium 1.0 has no masks to compare with")
@@ -42,7 +42,7 @@ def expect_same(left: Any, right: Any, place: str) -> None:
 
 
 def live_side_by_side(ours: Any, theirs: Any, steps: int, *, by_mask: bool = False) -> int:
-    """Steps both with the same actions; returns how many episodes ended."""
+    """Steps both with the same actions; returns the number of ended episodes."""
     ends = 0
     theirs.action_space.seed(0)
     for number in range(steps):
@@ -61,7 +61,7 @@ def live_side_by_side(ours: Any, theirs: Any, steps: int, *, by_mask: bool = Fal
 
 
 @pytest.mark.parametrize("actions", ["normalized", "discrete"])
-def test_each_task_lives_as_in_gymnasiums_loop(env_id: str, actions: str) -> None:
+def test_each_task_matches_gymnasiums_loop(env_id: str, actions: str) -> None:
     options = {"size": 40, "actions": actions, "max_episode_steps": 7}
     ours, theirs = native(env_id, 3, **options), sync(env_id, 3, **options)
     expect_same(ours.reset(seed=4), theirs.reset(seed=4), "reset")
@@ -72,7 +72,7 @@ def test_each_task_lives_as_in_gymnasiums_loop(env_id: str, actions: str) -> Non
 
 @ANY_MODE
 def test_each_mode_of_autoreset_is_gymnasiums(mode: Any) -> None:
-    # Episodes end by themselves as well: a goal that is near, and a limit.
+    # Episodes also end by themselves: the goal is near, and there is a limit.
     options = {"variant": "near", "size": 40, "modalities": ["rgb", "state"], "max_episode_steps": 6}
     ours, theirs = native(FIND, 4, autoreset_mode=mode, **options), sync(FIND, 4, mode, **options)
     assert ours.metadata["autoreset_mode"] is mode
@@ -82,8 +82,8 @@ def test_each_mode_of_autoreset_is_gymnasiums(mode: Any) -> None:
 
 @NEEDS_MASKS
 @ANY_MODE
-def test_episodes_that_end_apart_are_told_apart(mode: Any) -> None:
-    # The goal is where the agent runs: episodes end when it is met, each at its own time.
+def test_episodes_that_end_at_different_times_are_handled(mode: Any) -> None:
+    # The goal is in the agent's way: each episode ends at its own time, when the goal is reached.
     options = {"variant": "plain", "modalities": "state", "size": 16, "max_episode_steps": 60}
     ours, theirs = (
         native("driftworld/GetToGoal-v0", 3, autoreset_mode=mode, **options),
@@ -132,7 +132,7 @@ def test_the_final_observation_is_the_last_and_not_the_next() -> None:
     assert infos["index"].tolist() == [1, 1]
 
 
-def test_without_autoreset_an_ended_episode_refuses_to_go_on() -> None:
+def test_without_autoreset_an_ended_episode_cannot_continue() -> None:
     ours = native(FIND, 2, autoreset_mode="disabled", modalities="state", max_episode_steps=1)
     ours.reset(seed=0)
     ours.step(ours.action_space.sample())
@@ -154,7 +154,7 @@ def test_processes_of_gymnasiums_live_the_same(context: str) -> None:
 
 
 @pytest.mark.filterwarnings("ignore:This process.*multi-threaded:DeprecationWarning")
-def test_an_error_in_a_worker_comes_across_with_its_fields() -> None:
+def test_error_in_a_worker_keeps_its_fields() -> None:
     from driftworld import SpecError
 
     def make() -> Any:
@@ -165,7 +165,7 @@ def test_an_error_in_a_worker_comes_across_with_its_fields() -> None:
     again = pickle.loads(pickle.dumps(caught.value))
     assert (type(again), str(again), vars(again)) == (SpecError, str(caught.value), vars(caught.value))
     with warnings.catch_warnings():
-        # Gymnasium warns of each worker that it shuts down.
+        # Gymnasium warns about each worker that it shuts down.
         warnings.simplefilter("ignore")
         envs = AsyncVectorEnv([lambda: gym.make(FIND, modalities="state")] * 2, context="fork")
         with pytest.raises(ValueError, match="colour"):
@@ -173,7 +173,7 @@ def test_an_error_in_a_worker_comes_across_with_its_fields() -> None:
         envs.close(terminate=True)
 
 
-def test_observations_are_copies_unless_views_are_asked_for() -> None:
+def test_observations_are_copies_unless_views_are_requested() -> None:
     views, copies = native(FIND, 2, size=40, copy=False), native(FIND, 2, size=40)
     kept = {}
     for name, env in (("views", views), ("copies", copies)):
@@ -196,7 +196,7 @@ def test_views_outlive_their_environment() -> None:
     assert np.array_equal(observations, before)
 
 
-def test_threads_and_files_go_with_their_environment() -> None:
+def test_threads_and_files_are_released_with_the_environment() -> None:
     tasks, files = Path("/proc/self/task"), Path("/proc/self/fd")
     if not tasks.is_dir():
         pytest.skip("threads are counted in /proc")
@@ -214,20 +214,20 @@ def test_threads_and_files_go_with_their_environment() -> None:
     assert held() == before
 
 
-def test_observations_go_to_other_libraries_without_a_copy() -> None:
+def test_observations_convert_to_other_libraries_without_a_copy() -> None:
     observations, _ = native(FIND, 2, size=40).reset(seed=0)
     for name, array in observations.items():
         assert np.shares_memory(np.from_dlpack(array), array), name
 
 
 @pytest.mark.parametrize("num_threads", [1, 2, 8])
-def test_the_number_of_threads_changes_nothing(num_threads: int) -> None:
+def test_number_of_threads_changes_nothing(num_threads: int) -> None:
     one, other = (native(FIND, 5, size=40, num_threads=threads, max_episode_steps=6) for threads in (1, num_threads))
     expect_same(one.reset(seed=0), other.reset(seed=0), "reset")
     live_side_by_side(one, other, 15)
 
 
-def test_each_environment_may_have_a_variant_of_its_own() -> None:
+def test_each_environment_may_have_its_own_variant() -> None:
     names = ["red", "dusk", "near"]
     ours = native(FIND, 3, modalities="state", size=40, info="full")
     infos = ours.reset(seed=0, options={"variants": names})[1]
@@ -243,7 +243,7 @@ def test_each_environment_may_have_a_variant_of_its_own() -> None:
     assert [each.partition("#")[2] for each in ours.reset()[1]["variant_id"]] == names
 
 
-def test_a_queue_is_dealt_out_like_cards() -> None:
+def test_queue_is_dealt_out_like_cards() -> None:
     ours = native(FIND, 2, modalities="state", size=16, max_episode_steps=1, info="full")
     told = [ours.reset(seed=0, options={"queue": ["red", "blue", "green"]})[1]]
     for _ in range(6):
@@ -254,7 +254,7 @@ def test_a_queue_is_dealt_out_like_cards() -> None:
     assert names == ["red", "blue", "green", "red", "blue", "green", "red", "blue"]
 
 
-def test_a_mask_begins_some_and_leaves_the_others() -> None:
+def test_mask_resets_some_environments_only() -> None:
     ours = native(FIND, 3, modalities="state", size=40, autoreset_mode="disabled", info="full")
     ours.reset(seed=0)
     ours.step(np.ones(ours.action_space.shape, dtype=np.float32))
@@ -277,14 +277,14 @@ def test_a_mask_begins_some_and_leaves_the_others() -> None:
     ],
     ids=str,
 )
-def test_wrong_options_of_a_reset_say_so(options: dict[str, Any], message: str) -> None:
+def test_invalid_reset_options_are_refused(options: dict[str, Any], message: str) -> None:
     ours = native(FIND, 2, modalities="state", size=16)
     ours.reset(seed=0)
     with pytest.raises(ValueError, match=message):
         ours.reset(options=options)
 
 
-def test_wrong_actions_and_seeds_say_so_and_change_nothing() -> None:
+def test_invalid_actions_and_seeds_are_refused_and_change_nothing() -> None:
     ours = native(FIND, 2, modalities="state", size=16)
     ours.reset(seed=0)
     before = ours.state(0)
@@ -302,7 +302,7 @@ def test_wrong_actions_and_seeds_say_so_and_change_nothing() -> None:
 
 
 @pytest.mark.parametrize("num_envs", [0, -1, 1 << 20])
-def test_a_number_of_environments_out_of_range_is_refused(num_envs: int) -> None:
+def test_number_of_environments_out_of_range_is_refused(num_envs: int) -> None:
     with pytest.raises(Exception, match="num_envs|environments|65"):
         native(FIND, num_envs, size=16, modalities="state")
 
@@ -320,7 +320,7 @@ def test_copies_and_pickles_go_on_as_the_original() -> None:
             expect_same(expected, other.step(action), f"step {number}")
 
 
-def test_vector_wrappers_of_gymnasium_work() -> None:
+def test_gymnasium_vector_wrappers_work() -> None:
     envs = native(FIND, 3, modalities="state", size=16, max_episode_steps=4)
     envs = gym.wrappers.vector.RecordEpisodeStatistics(gym.wrappers.vector.NormalizeObservation(envs))
     envs.reset(seed=0)
@@ -333,7 +333,7 @@ def test_vector_wrappers_of_gymnasium_work() -> None:
     assert lengths == [4] * len(lengths) and len(lengths) >= 6
 
 
-def test_pictures_are_one_for_each() -> None:
+def test_render_returns_an_image_for_each() -> None:
     envs = native(FIND, 2, size=16, render_mode="rgb_array", render_size=(48, 64))
     envs.reset(seed=0)
     pictures = envs.render()
@@ -369,13 +369,14 @@ def test_neighbouring_seeds_share_no_world(seed: int) -> None:
             hashes |= set(ours.step(ours.action_space.sample())[4]["world_hash"])
         seen.append(hashes)
     assert [len(hashes) for hashes in seen] == [128, 128] and not seen[0] & seen[1]
-    # The first is the seed itself, as of a single environment, and how many there are changes none of the others.
+    # The first is the seed itself, as for a single environment, and the others do not depend on the number.
     assert driftworld.spread_seeds(seed, 1) == [seed]
     assert driftworld.spread_seeds(seed, 5) == driftworld.spread_seeds(seed, 32)[:5]
 
 
-def test_a_limit_and_a_size_move_no_object() -> None:
-    # Wanderers have chance of their own, which belongs to the world and not to how it is looked at.
+def test_step_limit_and_image_size_do_not_affect_objects() -> None:
+    # Wandering objects have their own random numbers, which belong to the world and do not depend on how it is
+    # observed.
     places = []
     for options in ({}, {"size": 16}, {"max_episode_steps": 9}, {"max_steps": 30}):
         envs = native("driftworld/MovingObject-v0", 2, modalities="state", **options)
@@ -389,7 +390,7 @@ def test_a_limit_and_a_size_move_no_object() -> None:
 
 @settings(max_examples=40, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
 @given(options=OPTIONS, seed=st.integers(0, 2**40), num_envs=st.integers(1, 4))
-def test_whatever_the_options_many_live_as_one_by_one(options: dict[str, Any], seed: int, num_envs: int) -> None:
+def test_vector_matches_single_environments_for_all_options(options: dict[str, Any], seed: int, num_envs: int) -> None:
     ours, theirs = native(FIND, num_envs, **options), sync(FIND, num_envs, **options)
     expect_same(ours.reset(seed=seed), theirs.reset(seed=seed), "reset")
     live_side_by_side(ours, theirs, 12)
@@ -397,7 +398,7 @@ def test_whatever_the_options_many_live_as_one_by_one(options: dict[str, Any], s
 
 @pytest.mark.parametrize("mode", ["next_step", "same_step", "disabled"])
 @pytest.mark.parametrize("modalities", ["rgb", ["rgb", "state"]], ids=str)
-def test_without_infos_all_else_is_the_same(mode: str, modalities: Any) -> None:
+def test_info_none_changes_nothing_else(mode: str, modalities: Any) -> None:
     options: dict[str, Any] = {"modalities": modalities, "size": 8, "actions": "discrete", "max_episode_steps": 3}
     label = {} if modalities == "rgb" else {"task_label": "observation"}
     with_infos, without = (
@@ -426,7 +427,7 @@ def test_without_infos_all_else_is_the_same(mode: str, modalities: Any) -> None:
     assert alone.reset(seed=2)[1] == alone.step(0)[-1] == {}
 
 
-def test_no_infos_are_refused_where_something_needs_them() -> None:
+def test_info_none_is_refused_if_something_needs_infos() -> None:
     for label in ("info", "observation"):
         with pytest.raises(ValueError, match='info: found "none" with task_label'):
             gym.make(FIND, info="none", task_label=label, modalities="rgb")

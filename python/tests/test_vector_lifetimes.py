@@ -1,4 +1,4 @@
-"""Curricula lived in many environments at the same time: what one environment would log."""
+"""Curricula run in many environments at the same time log the same as in one."""
 
 from __future__ import annotations
 
@@ -14,7 +14,8 @@ from test_lifetimes import QUARRY
 
 
 class Looker:
-    """Turns by what it sees and by its number; learns nothing. One for each environment does what one alone does."""
+    """Turns depending on its observations and its number; learns nothing. One per environment acts like a single one.
+    """
 
     name = "looker"
 
@@ -36,7 +37,7 @@ class Looker:
 
 
 class Many:
-    """A single environment's agent in each of many: those of one share all that they know, if ``shared``."""
+    """A single environment's agent in each of many; with ``shared``, they share all their knowledge."""
 
     def __init__(self, num_envs: int, make: Any) -> None:
         self.agents = [make() for _ in range(num_envs)]
@@ -80,7 +81,7 @@ class Many:
         self.agents[0].load(path)
 
 
-def test_one_environment_logs_what_a_run_logs(tmp_path: Path) -> None:
+def test_one_vector_environment_logs_the_same_as_run(tmp_path: Path) -> None:
     curriculum, alone, many = small(), Pupil(), Many(1, Pupil)
     assert isinstance(many, VectorAgent)
     summary = curriculum.run(alone, tmp_path / "run", **SMALL)
@@ -102,7 +103,8 @@ def test_evaluations_do_not_depend_on_how_many_environments_there_are(tmp_path: 
     curriculum.run(Looker(), tmp_path / "run", **SMALL)
     many = Many(num_envs, Looker)
     curriculum.run_vector(many, tmp_path / "vector", num_envs=num_envs, **SMALL)
-    # One that learns nothing earns the same in learning, too; and the log has the same rows in the same order.
+    # Without learning, the rewards are also the same in learning blocks; and the log has the same rows in the same
+    # order.
     assert rows(tmp_path / "vector") == rows(tmp_path / "run")
     log = read_log(tmp_path / "vector")
     assert len({str(reward) for reward in log["reward"]}) >= 3
@@ -111,9 +113,9 @@ def test_evaluations_do_not_depend_on_how_many_environments_there_are(tmp_path: 
 
 
 @pytest.mark.parametrize("kept", [1, 4, 6, 9, 12, 16])
-def test_a_run_that_stopped_goes_on_as_if_it_had_not(tmp_path: Path, kept: int) -> None:
+def test_stopped_run_resumes_as_if_uninterrupted(tmp_path: Path, kept: int) -> None:
     class Class:
-        """One pupil for three environments."""
+        """One learner for three environments."""
 
         name = "class"
 
@@ -154,7 +156,7 @@ def test_a_run_that_stopped_goes_on_as_if_it_had_not(tmp_path: Path, kept: int) 
         curriculum.run_vector(Class(), tmp_path / "log", num_envs=4, **SMALL)
 
 
-def test_an_agent_that_evaluations_change_is_refused() -> None:
+def test_agent_changed_by_evaluations_is_refused() -> None:
     class Counter(Looker):
         begun = 0
 
@@ -172,7 +174,7 @@ def test_an_agent_that_evaluations_change_is_refused() -> None:
 
 
 @pytest.mark.parametrize("label", ["none", "info", "observation"])
-def test_what_is_permitted_is_what_a_run_permits(label: str) -> None:
+def test_infos_match_those_of_run(label: str) -> None:
     curriculum = Curriculum.design("find_objects#blue", "find_objects#red", learn=3, eval_episodes=3, task_label=label)
     options = {**SMALL, "modalities": ["rgb"], "max_steps": 2}
 
@@ -205,13 +207,13 @@ def test_what_is_permitted_is_what_a_run_permits(label: str) -> None:
         if label == "observation":
             assert seen["task"].argmax(axis=1)[infos["active"]].tolist() == named
     if label == "observation":
-        # Single images have no room for it: the numbers are in the infos.
+        # Single images have no room for the label: its numbers are in the infos.
         many.infos.clear()
         curriculum.run_vector(many, num_envs=2, **{**options, "modalities": "rgb"})
         assert all("task_label" in infos for infos in many.infos)
 
 
-def test_what_cannot_be_drawn_is_left_out(tmp_path: Path) -> None:
+def test_undrawable_worlds_are_skipped(tmp_path: Path) -> None:
     task = tmp_path / "quarry.json"
     task.write_text(json.dumps(QUARRY), encoding="utf-8")
     curriculum = Curriculum.design(f"{task}#low", f"{task}#high", drift="linear", learn=21, eval_episodes=1, worlds=0)
@@ -224,7 +226,7 @@ def test_what_cannot_be_drawn_is_left_out(tmp_path: Path) -> None:
     assert rows(tmp_path / "vector") == rows(tmp_path / "run")
 
 
-def test_what_is_no_agent_is_refused() -> None:
+def test_invalid_agent_is_refused() -> None:
     with pytest.raises(TypeError, match="without act, learn, freeze"):
         small().run_vector(object(), num_envs=2, **SMALL)  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="num_envs: found 0"):
