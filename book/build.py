@@ -1,10 +1,11 @@
-"""Builds the book: the pages of docs/ in the order of docs/SUMMARY.md, every name in Python, and the files that pages link to.
+"""Builds the book: the pages of docs/ in the order of docs/SUMMARY.md, the Python API, and the files that pages link
+to.
 
-    python book/build.py --check           checks every link of every page of the repository, and that SUMMARY.md has all of docs/
-    python book/build.py target/book       the same, then builds the book into a folder, and checks every link of it
+    python book/build.py --check           checks all links in the repository's pages, and that SUMMARY.md has all of docs/
+    python book/build.py target/book       the same, then builds the book into a folder, and checks all its links
 
-mdBook makes the HTML: `cargo install mdbook --version 0.5.4 --locked --no-default-features --features search`, or its path in
-DRIFTWORLD_MDBOOK. Links to other sites are not checked: that would need the network.
+mdBook makes the HTML: `cargo install mdbook --version 0.5.4 --locked --no-default-features --features search`, or its
+path in DRIFTWORLD_MDBOOK. Links to other sites are not checked, because that needs the network.
 """
 
 from __future__ import annotations
@@ -22,22 +23,22 @@ ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / "python"))
 import api_pages
 
-#: The page of the summary behind which the pages of the Python API come.
+#: The summary's line after which the pages of the Python API are inserted.
 BEFORE_THE_API = "- [Driftworld from Python](python.md)\n"
 CODE = re.compile(r"^```.*?^```|`[^`\n]*`|^    .*?$", re.DOTALL | re.MULTILINE)
 LINK = re.compile(r"(?<=\]\()[^)\s]+(?=[)\s])|(?<=\]: )\S+")
 LINK_OF_HTML = re.compile(r'\s(?:href|src)="([^"]*)"')
-#: What no page of HTML is read for: its scripts and comments.
+#: Parts of an HTML page without links: scripts and comments.
 UNREAD = re.compile(r"<script.*?</script>|<!--.*?-->", re.DOTALL)
 
 
 def links(page: str) -> Iterator[re.Match[str]]:
-    """The targets of links and pictures in Markdown; code has none."""
+    """The targets of links and images in Markdown, ignoring code."""
     yield from LINK.finditer(CODE.sub(lambda code: " " * len(code[0]), page))
 
 
 def headings(page: str) -> set[str]:
-    """What links can lead to within a page of Markdown."""
+    """The anchors of a Markdown page."""
     found: list[str] = []
     fences = re.compile(r"^```.*?^```", re.DOTALL | re.MULTILINE)
     for line in re.findall(r"^#+ (.*)$", fences.sub("", page), re.MULTILINE):
@@ -48,7 +49,7 @@ def headings(page: str) -> set[str]:
 
 
 def broken(root: Path, pages: dict[str, tuple[list[str], set[str]]]) -> list[str]:
-    """Links that lead to no file below `root`, or to no place on a page; `pages` are links and places by path."""
+    """Links to missing files below `root`, or to missing anchors; `pages` are links and anchors by path."""
     findings = []
     for path, (targets, _) in pages.items():
         for target in targets:
@@ -64,7 +65,7 @@ def broken(root: Path, pages: dict[str, tuple[list[str], set[str]]]) -> list[str
 
 
 def of_repository(root: Path) -> list[str]:
-    """Broken links of all Markdown that git does not ignore, and pages of docs/ that are no chapter."""
+    """Broken links of all Markdown that git does not ignore, and pages of docs/ that are not chapters."""
     listed = subprocess.run(
         ["git", "ls-files", "-co", "--exclude-standard", "*.md"], cwd=root, check=True, capture_output=True, text=True
     )
@@ -85,18 +86,18 @@ def of_book(book: Path) -> list[str]:
 
 
 def chapters_of(summary: str) -> list[str]:
-    """The pages of the summary, from the root."""
+    """The pages of the summary, relative to the root."""
     return [os.path.normpath(f"docs/{link[0]}") for link in links(summary)]
 
 
 def place(path: str) -> str:
-    """Where a page from the root stands in the book: pages of docs/ at their names, others under project/."""
+    """The path of a page in the book: pages of docs/ keep their names, others go under project/."""
     out = path.removeprefix("docs/") if path.startswith("docs/") or path == "README.md" else f"project/{path}"
     return re.sub(r"README\.md$", "index.md", out)
 
 
 def led(page: str, path: str, target: Callable[[str], str]) -> str:
-    """A page with links to where their targets are in the book; `target` says it of a path from the root."""
+    """A page with its links adapted to the book; `target` maps a path from the root."""
     for link in reversed(list(links(page))):
         file, mark, anchor = link[0].partition("#")
         if file and not re.match(r"[a-z]+:", file):
@@ -107,7 +108,7 @@ def led(page: str, path: str, target: Callable[[str], str]) -> str:
 
 
 def write_sources(folder: Path) -> None:
-    """What mdBook reads: docs/ with the pages from elsewhere, and each file that is linked as a text that browsers show."""
+    """Writes mdBook's input: docs/ with the pages from elsewhere, and each linked file as text that browsers show."""
     pages = {f"docs/python-api/{name}": text for name, text in api_pages.pages().items()}
     summary = (ROOT / "docs/SUMMARY.md").read_text(encoding="utf-8")
     names = [("Every name", "README"), *((title, slug) for slug, (title, *_) in api_pages.LAYOUT.items())]

@@ -1,15 +1,16 @@
-"""Records the first hour as a stranger would type it: the commands of `docs/first-hour.md`, in a terminal of 80 columns.
+"""Records the first hour as a new user would type it: the commands of `docs/first-hour.md`, in a terminal of 80
+columns.
 
     python book/record.py target/release/driftworld      writes the three files below
-    python book/record.py --check                        fails if they disagree, or a command of the tutorial is not in them
+    python book/record.py --check                        fails if they disagree, or lack a command of the tutorial
 
-`docs/recordings/first-hour.cast` is what the terminal was sent, with the times (asciicast v2, which asciinema plays);
-`docs/images/first-hour.svg` is the same as a moving picture (`terminal_picture.py`); `docs/first-hour-recording.md` is what stands
-on the screen in the end. The last two are made of the first. That the commands print the same today is a test of
-`tests/pages/`.
+`docs/recordings/first-hour.cast` is the timed terminal output (asciicast v2, for asciinema);
+`docs/images/first-hour.svg` is the same as an animation (`terminal_picture.py`); `docs/first-hour-recording.md` is the
+final screen. The last two are made from the first. Tests in `tests/pages/` check that the commands still print the
+same.
 
-The commands run in a folder of their own, in a pseudo-terminal. Their times are recorded; those of typing and reading are made up.
-Needs Python on a Unix, and nothing else.
+The commands run in a temporary folder, in a pseudo-terminal. Their timing is recorded; that of typing and reading is
+simulated. Needs only Python on a Unix.
 """
 
 from __future__ import annotations
@@ -48,14 +49,14 @@ The recording itself is [first-hour.cast](recordings/first-hour.cast), for `asci
 the commands print. `python book/record.py target/release/driftworld` records it anew. All of it:
 
 """
-# Seconds that a word takes to type, and a line to be read; the least and the most for all lines of a command.
+# Seconds to type a word and to read a line; the minimum and maximum for all lines of a command.
 TYPING, READING, SHORTEST, LONGEST = 0.12, 0.15, 1.0, 5.0
 
 Events = list[tuple[float, str]]
 
 
 def steps() -> list[tuple[str, str]]:
-    """What a reader does: files to save, by name, and commands to type, under the name `$`."""
+    """The tutorial's steps: files to save, by name, and commands to type, under the name `$`."""
     found = []
     for language, marks, text in BLOCK.findall(TUTORIAL.read_text(encoding="utf-8")):
         name = re.search(r"file=(\S+)", marks)
@@ -67,7 +68,7 @@ def steps() -> list[tuple[str, str]]:
 
 
 def typed(command: str) -> list[str]:
-    """A command as it is typed, word by word: a line that goes on has `>` before it."""
+    """A command as typed, word by word; continuation lines start with `>`."""
     lines = [("$ " if number == 0 else "> ") + line.strip() for number, line in enumerate(command.split("\n"))]
     words = re.findall(r"\S+ ?", "\n".join(lines).replace("\n", " \n"))
     text = "\r\n".join(lines)
@@ -80,7 +81,7 @@ def typed(command: str) -> list[str]:
 
 
 def run(command: str, folder: Path, program: Path) -> Events:
-    """What a command draws on a terminal, with the seconds since it began."""
+    """A command's terminal output, with the seconds since its start."""
     ours, theirs = pty.openpty()
     fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", ROWS, COLUMNS, 0, 0))
     environment = {name: value for name, value in os.environ.items() if name not in ("COLUMNS", "NO_COLOR")}
@@ -92,12 +93,12 @@ def run(command: str, folder: Path, program: Path) -> Events:
     while True:
         try:
             piece = os.read(ours, 65536)
-        except OSError:  # Linux says so when the other end is closed.
+        except OSError:  # On Linux, when the other end is closed.
             break
         if not piece:
             break
         pending += piece
-        # A letter may be in two pieces.
+        # A character may be split between two reads.
         whole = pending.decode(errors="ignore")
         pending = pending[len(whole.encode()) :]
         events.append((time.monotonic() - begun, whole))
@@ -108,7 +109,7 @@ def run(command: str, folder: Path, program: Path) -> Events:
 
 
 def record(program: Path) -> str:
-    """The recording."""
+    """Makes the recording."""
     events: Events = []
     now = 0.0
 
@@ -147,7 +148,7 @@ def read(cast: str) -> Events:
 
 
 def page(events: Events) -> str:
-    """The page: what stands on the screen in the end."""
+    """The page with the final screen."""
     lines = ["".join(letter for letter, _ in line).rstrip() for line in screen("".join(text for _, text in events), COLUMNS)]
     return HEAD + "```text\n" + "\n".join(lines).strip() + "\n```\n"
 

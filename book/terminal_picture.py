@@ -1,7 +1,7 @@
-"""What a terminal shows, as a moving picture in SVG: `screen` is its lines after everything was drawn, `picture` the film.
+"""A terminal's output as an animated SVG: `screen` is its final lines, `picture` the animation.
 
-Only what our commands send is known: letters, line ends, carriage returns, erased lines, and colours. The picture needs no script
-and no network; where nobody wants motion it stands still.
+Supports only what Driftworld's commands send: text, line ends, carriage returns, erased lines, and colours. The SVG
+needs no script and no network; it stands still for readers who prefer reduced motion.
 """
 
 from __future__ import annotations
@@ -9,24 +9,24 @@ from __future__ import annotations
 import re
 from html import escape
 
-# Pixels of a letter, of a line, around all, and of the bar above.
+# Pixels of a character, of a line, around the whole, and of the title bar.
 LETTER, LINE, RIM, BAR = 7.8, 17, 14, 26
-# The shortest time between two pictures in seconds: progress bars are drawn more often than they are seen.
+# The shortest time between two frames in seconds: progress bars are redrawn more often than anyone can see.
 SHORTEST = 0.2
-# How long the end stays.
+# Seconds that the last frame stays.
 END = 6.0
 CLASSES = {"1": "b", "2": "d", "31": "r", "32": "g", "33": "y", "34": "u", "36": "c"}
 STYLE = """text{font:13px ui-monospace,SFMono-Regular,Menlo,Consolas,"DejaVu Sans Mono",monospace;fill:#d8dee9;white-space:pre}
 .b{font-weight:700;fill:#fff}.d{fill:#8b95a5}.r{fill:#ff8a80}.g{fill:#a5d6a7}.y{fill:#ffe082}.u{fill:#90caf9}.c{fill:#80deea}
 .p{fill:#80cbc4}"""
 
-# A letter and its classes; lines of them.
+# A character and its classes; a line is a list of them.
 Line = list[tuple[str, str]]
 Events = list[tuple[float, str]]
 
 
 def screen(text: str, columns: int) -> list[Line]:
-    """The lines after everything was drawn, however many: letters with the names of their styles."""
+    """The final lines, without a limit on their number: characters with the names of their styles."""
     lines: list[Line] = [[]]
     row, column, style = 0, 0, ""
     for part in re.findall(r"\x1b\[[0-9;?]*[A-Za-z]|[\r\n]|[^\x1b\r\n]+", text):
@@ -58,7 +58,7 @@ def screen(text: str, columns: int) -> list[Line]:
 
 
 def runs(line: Line) -> list[tuple[int, str, str]]:
-    """Pieces of one style: where they begin, their letters, their style. Blanks at the end are left out."""
+    """Pieces of one style: start, characters, style. Trailing blanks are left out."""
     text = "".join(letter for letter, _ in line).rstrip()
     found: list[tuple[int, str, str]] = []
     for column, (letter, style) in enumerate(line[: len(text)]):
@@ -70,7 +70,7 @@ def runs(line: Line) -> list[tuple[int, str, str]]:
 
 
 def drawn(line: Line, row: int) -> str:
-    """A line in its row: each piece takes as much room as its letters do on a terminal, whatever the font is."""
+    """A line in its row: each piece is as wide as its characters are on a terminal, whatever the font."""
     y = row * LINE + 13
     parts = []
     for column, letters, style in runs(line):
@@ -87,7 +87,7 @@ def drawn(line: Line, row: int) -> str:
 
 
 def moments(events: Events, columns: int) -> list[tuple[float, list[Line]]]:
-    """What is on the screen when: one moment for everything that is drawn within the shortest time."""
+    """The screen over time, with one frame for everything drawn within the shortest time."""
     found = []
     text = ""
     for number, (at, piece) in enumerate(events):
@@ -99,12 +99,12 @@ def moments(events: Events, columns: int) -> list[tuple[float, list[Line]]]:
 
 
 def picture(events: Events, columns: int, rows: int) -> str:
-    """The film."""
-    # It begins with something to see.
+    """The animation."""
+    # Starts when there is something to see.
     begin = events[0][0]
     shown = moments([(at - begin, text) for at, text in events], columns)
     length = shown[-1][0] + END
-    # Each content of each row, from when to when.
+    # The time spans of each content of each row.
     lives: dict[tuple[float, float], list[str]] = {}
     scrolls: list[tuple[float, int]] = [(0.0, 0)]
     since: dict[int, tuple[float, Line]] = {}

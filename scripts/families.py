@@ -1,4 +1,5 @@
-"""Measures the families of tasks, and writes a page of each: docs/families/NAME.md with its film, and docs/families.md, the list.
+"""Measures the task families, and writes a page for each: docs/families/NAME.md with its film, and docs/families.md,
+the list.
 
     python scripts/families.py target/release/driftworld measure [NAME]...    into examples/families.json
     python scripts/families.py target/release/driftworld film [NAME]...       into docs/images/families/, with a picture of all variants
@@ -7,8 +8,8 @@
 
 scripts/learn_families.py makes the last one. Pictures need Pillow.
 
-Of each variant: what a random agent and the planner earn in 1,000 worlds, how often the planner succeeds, which elements differ from
-the first variant in 32 pairs of worlds, and how far it is from it.
+For each variant: the rewards of a random agent and of the planner in 1,000 worlds, the planner's success rate, the
+elements that differ from the first variant in 32 pairs of worlds, and the distance from it.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ FILMS = ROOT / "docs/images/families"
 WORLDS = 1000
 MOST_BYTES = 160_000
 
-#: What others call it.
+#: Names of the same tasks elsewhere.
 ELSEWHERE = {
     "collect_health": "MiniWorld-CollectHealth, ViZDoom's health_gathering",
     "contextual_bandit": "the contextual bandit",
@@ -69,7 +70,7 @@ ELSEWHERE = {
 }
 
 
-#: Why the planner does not succeed in 99 % of the worlds.
+#: Reasons why the planner succeeds in less than 99 % of the worlds.
 REASONS = {
     "find_objects#penalty": "The cubes cost, so that it is best to touch none: nobody succeeds.",
     "find_objects#long_held": "Each action is held for half a second, in which the planner passes cubes by.",
@@ -79,7 +80,7 @@ REASONS = {
 
 
 def said(command: str, *words: str) -> Any:
-    """What a command prints as JSON."""
+    """A command's JSON output."""
     done = subprocess.run([command, *words, "--json"], check=False, capture_output=True, text=True)
     if done.returncode not in (0, 1) or not done.stdout:
         raise SystemExit(f"{' '.join(words)}: {done.stderr}")
@@ -87,12 +88,12 @@ def said(command: str, *words: str) -> Any:
 
 
 def families(command: str) -> dict[str, dict[str, Any]]:
-    """All that come with the command, in its order."""
+    """All families that come with the command, in its order."""
     return {task["task"]: task for task in said(command, "tasks")}
 
 
 def measure(command: str, name: str, variants: list[str]) -> dict[str, Any]:
-    """The variants of a family, in its order."""
+    """Measures the variants of a family, in its order."""
     scales = said(command, "scales", name, "--worlds", str(WORLDS))["scales"]
     by_name = {scale["variant"].partition("#")[2]: scale for scale in scales.values()}
     elements = {each["variant"]: each for each in said(command, "elements", name)["variants"]}
@@ -111,7 +112,9 @@ def measure(command: str, name: str, variants: list[str]) -> dict[str, Any]:
 
 
 def film(command: str, name: str, variants: list[str]) -> None:
-    """The planner in a world of the first variant, in at most 160 kB, and all variants in one picture, the first 16 of many."""
+    """Films the planner in a world of the first variant, in at most 160 kB, and draws all variants in one image, the
+    first 16 if there are more.
+    """
     variant = variants[0]
     FILMS.mkdir(parents=True, exist_ok=True)
     path = FILMS / f"{name}.gif"
@@ -124,7 +127,7 @@ def film(command: str, name: str, variants: list[str]) -> None:
 
 
 def sheet(command: str, variants: list[str], path: Path, columns: int) -> None:
-    """Variants in one picture of few colours."""
+    """Draws variants in one image with few colours."""
     from PIL import Image
 
     words = ["sheet", *variants, "--size", "84", "--columns", str(columns), "-o", str(path)]
@@ -134,7 +137,9 @@ def sheet(command: str, variants: list[str], path: Path, columns: int) -> None:
 
 
 def curve(name: str, runs: dict[str, list[dict[str, Any]]], scale: dict[str, float]) -> str:
-    """An SVG of what learners earn while they learn: bold the mean of the seeds, thin each; grey the random agent and the planner."""
+    """An SVG of learning curves: bold for the mean of the seeds, thin for each; grey for the random agent and the
+    planner.
+    """
     width, height, left = 300, 120, 60
     shown = [each for seeds in runs.values() for run in seeds for each in run["curve"]] + [scale["random"], scale["planner"]]
     low, high = min(shown), max(shown)
@@ -161,12 +166,12 @@ def curve(name: str, runs: dict[str, list[dict[str, Any]]], scale: dict[str, flo
 
 
 def share(reward: float, scale: dict[str, float]) -> float:
-    """Where a reward lies from the random agent's to the planner's, in per cent."""
+    """A reward as a percentage of the range from the random agent's to the planner's."""
     return 100 * (reward - scale["random"]) / (scale["planner"] - scale["random"])
 
 
 def learned_of(runs: dict[str, list[dict[str, Any]]], scale: dict[str, float]) -> str:
-    """What each learner came to, in a sentence each."""
+    """The results of each learner, one sentence each."""
     told = {"ppo": "PPO", "recurrent_ppo": "Recurrent PPO"}
     lines = []
     for learner, seeds in runs.items():
@@ -242,7 +247,7 @@ def pages(command: str, docs: Path = ROOT / "docs") -> None:
 
 
 def main() -> None:
-    """Does what is asked."""
+    """Runs the requested action."""
     command, what, *names = sys.argv[1:]
     tasks = families(command)
     if what == "pages":

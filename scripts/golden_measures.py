@@ -1,9 +1,9 @@
-"""Writes python/tests/golden_measures.json: random lifetimes, and their measures by the formulae of the references.
+"""Writes python/tests/golden_measures.json: random lifetimes, and their measures by the references' formulae.
 
     python scripts/golden_measures.py
 
-Transcribes what the programs named below compute, number by number in plain loops, and shares no code with
-driftworld.benchmark.measures. NumPy draws the lifetimes and the resamples; the measures use Python's arithmetic alone.
+Transcribes the computations of the programs named below as plain loops, and shares no code with
+driftworld.benchmark.measures. NumPy draws the lifetimes and the resamples; the measures use only Python's arithmetic.
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ List = list[Any]
 
 
 def mean(values: List) -> float:
-    """The sum, exactly rounded, over the count."""
+    """The exactly rounded sum divided by the count."""
     return math.fsum(values) / len(values)
 
 
 def over_steps(curve: List, steps: List | None) -> List:
-    """The curve with one point for each step: the even grid that the references evaluate on."""
+    """The curve with one point for each step: the references evaluate on an even grid."""
     points: List = []
     for place, value in enumerate(curve):
         points += [value] * (1 if steps is None else int(steps[place]))
@@ -37,7 +37,7 @@ def over_steps(curve: List, steps: List | None) -> List:
 # awarelab/continual_world, continualworld/results_processing/tables.py at 73f63bb4: calculate_data_at_the_end,
 # calculate_forgetting_individual, normalized_ft, BootstrapCI._apply_statistics. An evaluation stands for its last five.
 def continual_world(values: List, curves: List, alone: List, steps: List | None) -> dict[str, float]:
-    """Performance and forgetting: means over tasks, then over seeds. Transfer: AUCs are averaged over seeds first."""
+    """Performance and forgetting: means over tasks, then over seeds. Transfer: AUCs are first averaged over seeds."""
     tasks, performance, forgetting, transfer = len(values[0][0]), [], [], []
     for matrix in values:
         performance.append(mean([matrix[tasks][i] for i in range(tasks)]))
@@ -53,7 +53,8 @@ def continual_world(values: List, curves: List, alone: List, steps: List | None)
 # TTomilin/COOM, results/common.py at 79298011: calculate_performance, calculate_forgetting, calculate_transfer.
 # The mean over seeds comes first there (load_cl_data). An evaluation stands for all of a task's time.
 def coom(values: List, curves: List, alone: List, steps: List | None) -> dict[str, float]:
-    """Performance: tasks from their own time on. Forgetting: all but the last task. Transfer: one curve for all."""
+    """Performance: each task from its own learning on. Forgetting: all but the last task. Transfer: one curve for all.
+    """
     tasks, seen, lost = len(values[0][0]), [], []
     for i in range(tasks):
         ends = [mean([matrix[k + 1][i] for matrix in values]) for k in range(tasks)]
@@ -93,7 +94,7 @@ def cora(values: List) -> dict[str, Any]:
         scale = max(abs(row[i]) for matrix in values for row in matrix)
         found: dict[tuple[str, int], List] = {}
         for seed, matrix in enumerate(values):
-            # The evaluation after k tasks comes just before the time k.
+            # The evaluation after k tasks comes just before time k.
             points = [(max(k - 0.25, 0.0), row[i] / scale) for k, row in enumerate(matrix)]
 
             def last(low: float, high: float, points: List = points) -> float:
@@ -115,7 +116,7 @@ def cora(values: List) -> dict[str, Any]:
 
 # google-deepmind/bsuite, bsuite/environments/bandit.py and bsuite/utils/plotting.py (ave_regret_score) at effafc01.
 def regret(rewards: List, ceilings: List) -> float:
-    """The running total, after the last episode, over the number of episodes."""
+    """The total after the last episode divided by the number of episodes."""
     total, episodes = 0.0, 0
     for earned, ceiling in zip(rewards, ceilings, strict=True):
         for reward in earned:
@@ -149,7 +150,7 @@ def interval(table: List) -> List:
 
 
 def draw(number: int) -> dict[str, Any]:
-    """Several seeds of a lifetime; every other one with episodes of several lengths."""
+    """Draws several seeds of a lifetime; every other lifetime has episodes of several lengths."""
     rng = np.random.default_rng([2105, number])
     tasks, seeds = 2 + number % 7, 1 + number % 5
     steps = None

@@ -1,6 +1,7 @@
-"""Writes the network and its log-probabilities that env/src/agents/network/tests.rs compares with: python scripts/golden_network.py.
+"""Writes the network and its log-probabilities that env/src/agents/network/tests.rs compares with: python
+scripts/golden_network.py.
 
-Needs driftworld.learners and torch; another version of it may change the last digits.
+Needs driftworld.learners and torch; another version of torch may change the last digits.
 """
 
 from __future__ import annotations
@@ -18,10 +19,10 @@ GOLDEN = Path(__file__).parents[1] / "env" / "tests" / "golden"
 
 
 class Small(PPO):
-    """PPO with a network of few weights, which are large."""
+    """PPO with a network of few, large weights."""
 
     def make_network(self) -> PatchNetwork:
-        """A network of which no layer is almost without effect."""
+        """A network in which every layer matters."""
         network = PatchNetwork(self.num_actions, self.size, width=4, hidden=8)
         for parameter in network.parameters():
             torch.nn.init.normal_(parameter, std=0.4)
@@ -29,7 +30,7 @@ class Small(PPO):
 
 
 def image(number: int) -> list[int]:
-    """Bytes of an image; the test makes the same."""
+    """Bytes of an image, made like the test's."""
     return [(k * (7 + 2 * number) + k // 5) % 256 for k in range(SIZE * SIZE * 3)]
 
 

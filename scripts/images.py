@@ -1,10 +1,10 @@
-"""Draws pictures of docs/images anew, each by the command that makes it.
+"""Redraws the images of docs/images, each with its command.
 
-    python scripts/images.py target/release/driftworld [WORD]...     all of them, or those whose names hold a WORD
+    python scripts/images.py target/release/driftworld [WORD]...     all of them, or those whose names contain a WORD
 
-Other pictures: first-hour-*.png come from docs/first-hour.md (`DRIFTWORLD_UPDATE_PAGES=1 cargo test --test all pages`), except
-first-hour-report.png and report.png, a browser's pictures of reports; first-hour.svg from book/record.py; speed.svg from
-scripts/speed.py.
+Other images: first-hour-*.png come from docs/first-hour.md (`DRIFTWORLD_UPDATE_PAGES=1 cargo test --test all pages`),
+except first-hour-report.png and report.png, which are browser screenshots of reports; first-hour.svg comes from
+book/record.py, and speed.svg from scripts/speed.py.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 
-#: The sheet of a curriculum, a world or a task has the name of its document.
+#: The sheet of a curriculum, world or task is named after its document.
 CURRICULA = ["reward", "state", "transition", "observation", "action", "blue_red_green"]
 WORLDS = [
     "maze",
@@ -47,7 +47,7 @@ def of(task: str, variants: str) -> str:
     return " ".join(f"{task}#{variant}" for variant in variants.split())
 
 
-#: Each picture with the commands that make it, without `driftworld`: `{}` is its path, `{tmp}` an empty folder.
+#: Each image and its commands, without `driftworld`: `{}` is its path, `{tmp}` an empty folder.
 IMAGES: dict[str, list[str]] = {
     "looks-sizes.png": ["render find_objects --view looks -o {}"],
     "models.png": ["assets show -o {}"],
@@ -92,7 +92,7 @@ IMAGES: dict[str, list[str]] = {
 
 
 def main() -> None:
-    """Draws what the arguments ask for."""
+    """Draws the requested images."""
     if len(sys.argv) < 2:
         sys.exit(__doc__)
     driftworld, *words = sys.argv[1:]

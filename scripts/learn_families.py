@@ -1,10 +1,11 @@
-"""What PPO learns in the first variant of each family: examples/families_learned.json, from which scripts/families.py draws curves.
+"""Trains PPO in the first variant of each family: writes examples/families_learned.json, from which scripts/families.py
+draws curves.
 
     nice python scripts/learn_families.py [NAME]... [--seeds 3] [--jobs 2]
 
-Of each seed: the mean reward of a decision's episode in ten equal parts of the learning, and the mean reward and the share of
-successes in 100 other worlds afterwards, actions sampled. Families of memory are learned by recurrent PPO, too. What is in the
-file already is not run again. Needs PyTorch.
+For each seed: the mean reward of a decision's episode in ten equal parts of the training, and afterwards the mean
+reward and the success rate in 100 other worlds, with sampled actions. Memory families are also learned by recurrent
+PPO. Entries already in the file are not run again. Needs PyTorch.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ LEARNED, MEASURED = ROOT / "examples/families_learned.json", ROOT / "examples/fa
 DECISIONS, NUM_ENVS, WORLDS, PARTS = 100_000, 64, 100, 10
 ACTIONS = [[10, 0, 0], [10, 27, 0], [10, -27, 0], [3, 90, 0], [3, -90, 0]]
 OPTIONS: dict[str, Any] = {"modalities": "rgb", "size": 32, "actions": ACTIONS, "interact": False, "frame_skip": 5}
-#: Numbers of PPO that differ from its defaults; rewards are scaled so that the planner earns about 2.
+#: Settings of PPO that differ from its defaults; rewards are scaled so that the planner earns about 2.
 SETTINGS: dict[str, dict[str, Any]] = {
     "ppo": {"annealing": DECISIONS},
     "recurrent_ppo": {"annealing": DECISIONS, "entropy": 0.02, "epochs": 3},
@@ -63,7 +64,7 @@ def learn(name: str, variant: str, learner: str, seed: int, scale: float) -> tup
 
 
 def main() -> None:
-    """Learns what is not in the file."""
+    """Runs everything that is missing from the file."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("names", nargs="*", metavar="NAME")
     parser.add_argument("--seeds", type=int, default=3)

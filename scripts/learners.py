@@ -1,11 +1,12 @@
-"""Prints what a decision of the learners costs: processor microseconds, with 64 environments of 32 × 32 pixels and one thread.
+"""Prints the cost of a learner's decision: processor microseconds, with 64 environments of 32 × 32 pixels and one
+thread.
 
     nice python scripts/learners.py                    # PPO
     nice python scripts/learners.py PPO EWC CLEAR      # some learners, one after the other
     nice python scripts/learners.py --quick            # does it run?
 
-A row has the whole of `Curriculum.run_vector` on find_objects#huddle, the learner's part of that, and what is left: the environments
-and the loop. Only learning counts. Needs PyTorch.
+A row has the total of `Curriculum.run_vector` on find_objects#huddle, the learner's share, and the rest: the
+environments and the loop. Only learning is measured. Needs PyTorch.
 """
 
 from __future__ import annotations
@@ -22,12 +23,12 @@ NUM_ENVS, EXPERIENCES = 64, 512
 OPTIONS: dict[str, Any] = {
     "modalities": "rgb", "size": 32, "actions": ACTIONS, "interact": False, "frame_skip": 5, "max_steps": 60,
 }  # fmt: skip
-#: What a learner cannot do without.
+#: Required arguments of learners.
 NEEDED: dict[str, dict[str, Any]] = {"PackNet": {"max_tasks": 2, "task_decisions": 10_000}}
 
 
 def main() -> None:
-    """Runs each learner through two learning blocks; the first one warms up, the second is measured."""
+    """Runs each learner through two learning blocks: the first warms up, and the second is measured."""
     torch.set_num_threads(1)
     names = [name for name in sys.argv[1:] if name != "--quick"]
     count = EXPERIENCES if "--quick" not in sys.argv else NUM_ENVS

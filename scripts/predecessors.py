@@ -1,7 +1,7 @@
-"""Which tasks of a sequence can be learned after which: each after each other one, by fine-tuning.
+"""Measures which tasks of a sequence can be learned after which others: each pair, by fine-tuning.
 
-A task after which a learner is at the random agent's rewards, or at the planner's, tells no learners apart. Each is
-evaluated in 100 worlds. What is finished is not run again; the table is printed:
+A pair that ends at the random agent's rewards, or at the planner's, does not distinguish learners. Each task is
+evaluated in 100 worlds. Finished pairs are not run again; the table is printed:
 
     python scripts/predecessors.py SEQUENCE RESULTS [--seed S] [--jobs N]
 """
@@ -22,12 +22,12 @@ from driftworld.benchmark.runner import Cell, make_learner
 from driftworld.curricula import Curriculum
 from driftworld.logs import read_log
 
-#: In which a task is evaluated.
+#: Number of worlds in which a task is evaluated.
 WORLDS = 100
 
 
 def measure(sequence: Sequence, results: Path, seed: int, before: str | None) -> None:
-    """Writes what each task comes to after the one before it; or all from nothing."""
+    """Writes the result of each task after the task before it, or of all tasks learned from scratch."""
     import torch
 
     torch.set_num_threads(1)
@@ -50,7 +50,7 @@ def measure(sequence: Sequence, results: Path, seed: int, before: str | None) ->
 
 
 def live(sequence: Sequence, seed: int, tasks: list[str], log: Path, begin: Path | None = None):
-    """Learns the last of the tasks; the others only choose its worlds."""
+    """Learns the last of the tasks; the others only determine its worlds."""
     short = dataclasses.replace(sequence, tasks=tasks)
     scenario = short.curriculum(seed).scenario
     learning = [block for block in scenario["blocks"] if block["type"] == "learning"][-1]

@@ -4,12 +4,12 @@
     scripts/same_bits.py record target/release/driftworld before.json     # with the build before a change
     scripts/same_bits.py compare target/release/driftworld before.json    # with the build after it
 
-Runs a fixed set of commands and keeps the SHA-256 of everything each one prints or writes. `compare` exits with 1 and
-names the commands whose bytes differ. A command that the newer build refuses with "removed in 0.3" is listed apart.
-`--only GROUP` runs one group: worlds, distances, frames, logs, scores or tools. `--full` compares 20 worlds by every
-measure; without it the slow measures get 2. `--variants N` takes the first N variants of each task in place of 20: with
-2 it runs for some minutes, with 20 for an hour. Logs of others are scored too if the folder that DRIFTWORLD_REFERENCE
-names (default ../shared/reference) is there.
+Runs a fixed set of commands and stores the SHA-256 of everything each one prints or writes. `compare` exits with 1 and
+names the commands whose bytes differ. A command that the newer build refuses with "removed in 0.3" is listed
+separately. `--only GROUP` runs one group: worlds, distances, frames, logs, scores or tools. `--full` compares 20 worlds
+by every measure; without it the slow measures get 2. `--variants N` takes the first N variants of each task instead of
+20: with 2 it runs for some minutes, with 20 for an hour. Logs of other programs are also scored if the folder named by
+DRIFTWORLD_REFERENCE (default ../shared/reference) exists.
 """
 
 import argparse
@@ -60,7 +60,7 @@ def variants(binary: str, most: int) -> list[str]:
 
 
 def commands(binary: str, most: int, full: bool) -> list[tuple[str, str, list[list[str]]]]:
-    """What is run: (group, name, commands that run one after the other in one empty folder)."""
+    """The commands to run: (group, name, commands that run one after the other in one empty folder)."""
     jobs = []
 
     def add(group: str, name: str, *steps: list[str]) -> None:
@@ -170,7 +170,7 @@ def commands(binary: str, most: int, full: bool) -> list[tuple[str, str, list[li
 
 
 def digests(binary: str, steps: list[list[str]]) -> dict[str, str]:
-    """SHA-256 of what the commands print and write, by name; and the exit codes."""
+    """SHA-256 of everything that the commands print and write, by name; and the exit codes."""
     found = {}
     environment = os.environ | {"DRIFTWORLD_CLOCK": "2026-01-31T12:00:00Z", "COLUMNS": "100", "NO_COLOR": "1"}
     with tempfile.TemporaryDirectory() as folder:

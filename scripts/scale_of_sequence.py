@@ -1,10 +1,10 @@
-"""Measures the scale of a sequence of driftworld.benchmark, and what it is frozen with: what its JSON file has as "scale" and "frozen".
+"""Measures a sequence of driftworld.benchmark, for "scale" and "frozen" in its JSON file.
 
     python scripts/scale_of_sequence.py mixed target/release/driftworld
 
-0 is what drawing rows of the table of actions at random earns, 1 what the planner earns, which knows the map and acts in every
-time step: 500 worlds each, that no lifetime has. A planner that holds its actions as long as the learners do is no ceiling: they
-got 113 % of it in moving_object#fast.
+0 is the reward of random rows of the action table, 1 that of the planner, which knows the map and acts in every time
+step: 500 worlds each, which no lifetime uses. A planner that holds its actions as long as the learners do is not a
+ceiling: they reached 113 % of it in moving_object#fast.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ WORLDS, SEED = 500, 77
 
 
 def random(task: str, sequence: Sequence) -> float:
-    """Mean reward of random rows of the table."""
+    """Mean reward of random rows of the action table."""
     envs = driftworld.DriftworldVectorEnv(task, WORLDS, **sequence.options)
     rng, earned, running = np.random.default_rng(SEED), np.zeros(WORLDS), np.ones(WORLDS, dtype=bool)
     envs.reset(seed=SEED)

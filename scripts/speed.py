@@ -1,8 +1,9 @@
-"""Draws docs/images/speed.svg, and prints its table: steps a second of Driftworld and of its peers, measured in one run.
+"""Draws docs/images/speed.svg, and prints its table: steps per second of Driftworld and of its peers, measured in one
+run.
 
     taskset -c 0 target/release/driftworld bench env --json | python scripts/speed.py PEERS
 
-PEERS is a file with a line for each peer: its name, what it observes and its steps a second, between tabs.
+PEERS is a file with a line for each peer: its name, its observations and its steps per second, separated by tabs.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ import sys
 from pathlib import Path
 
 IMAGE = Path(__file__).parents[1] / "docs/images/speed.svg"
-#: Ours: keys of `driftworld bench env --json`.
+#: Driftworld's rows: keys of `driftworld bench env --json`.
 OURS = {
     "steps_per_second_per_core_160x120_natural": "160 × 120, colour, depth, classes",
     "steps_per_second_per_core_160x120": "the same, plain",
@@ -25,7 +26,7 @@ LEFT, WIDTH, ROW = 330, 860, 30
 
 
 def main() -> None:
-    """Reads both, prints and draws."""
+    """Reads both, prints the table, and draws the figure."""
     if len(sys.argv) != 2:
         sys.exit(__doc__)
     peers = [line.split("\t") for line in Path(sys.argv[1]).read_text(encoding="utf-8").splitlines() if line]

@@ -1,9 +1,9 @@
-"""Trains PPO and films it: the film at the top of the README, and its network.
+"""Trains PPO and films it, for the film at the top of the README.
 
     python scripts/trained_film.py target/release/driftworld
 
-Writes examples/networks/obstacle_course.safetensors, unless it is there, and docs/images/trained.gif. The training takes half a
-minute of one core; it needs PyTorch.
+Writes examples/networks/obstacle_course.safetensors, unless it exists, and docs/images/trained.gif. Training takes half
+a minute on one core, and needs PyTorch.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ NETWORK, FILM = ROOT / f"examples/networks/{TASK}.safetensors", ROOT / "docs/ima
 
 
 def train() -> None:
-    """Learns the crowded course, and exports the network."""
+    """Learns the crowded obstacle course, and exports the network."""
     import torch
     from driftworld import Curriculum
     from driftworld.learners import PPO, Settings

@@ -1,13 +1,13 @@
 """PPO in one file, on the native vector environment: nothing between the learner and the loop.
 
-In the manner of CleanRL: the whole algorithm stands below, from the network to the update, with PyTorch and nothing else.
-What it shows beside PPO is how autoreset NEXT_STEP is handled right:
+In the style of CleanRL: the whole algorithm is in this file, from the network to the update, and uses only PyTorch.
+Apart from PPO, it shows the correct handling of autoreset NEXT_STEP:
 
-- The observation that comes with the end of an episode *is* its true last one. An episode that ran out of time is therefore
-  bootstrapped from it; an episode that terminated is not bootstrapped at all.
-- The step after an end ignores its action and pays nothing. It is not experience, and is kept out of the loss.
+- The observation returned at the end of an episode *is* its true last one. A truncated episode is therefore
+  bootstrapped from it; a terminated one is not bootstrapped.
+- The step after an end ignores its action and has reward 0. It is not experience, and is excluded from the loss.
 
-Then it is evaluated in worlds that it never learned from, by `Curriculum.run_vector`.
+Afterwards `Curriculum.run_vector` evaluates it in worlds that it never learned from.
 
     python examples/python/cleanrl_ppo.py              # a few minutes on two cores
     python examples/python/cleanrl_ppo.py --results    # what can be written down in results/
@@ -28,12 +28,12 @@ import torch
 from record import EVALUATION_SEED, Record, Watch, evaluated, folder_of, held_out
 from torch import nn
 
-# Speed in m/s, turn rate in degrees per second, interact: ahead, two bends, two turns nearly on the spot.
+# Speed in m/s, turn rate in degrees per second, interact: straight ahead, two curves, two turns nearly on the spot.
 ACTIONS = [[10, 0, 0], [10, 27, 0], [10, -27, 0], [3, 90, 0], [3, -90, 0]]
 
 
 def parse_arguments() -> argparse.Namespace:
-    """What may be said on the command line."""
+    """Parses the command line."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--variant", default="blue", help="variant of find_objects (default: blue)")
     parser.add_argument("--seed", type=int, default=1, help="of the network, the actions and the worlds (default: 1)")
@@ -60,14 +60,14 @@ def parse_arguments() -> argparse.Namespace:
 
 
 def layer(module: nn.Module, gain: float = 2**0.5) -> nn.Module:
-    """A layer that begins orthogonal, as PPO likes it."""
+    """Initialises a layer orthogonally, as is usual for PPO."""
     nn.init.orthogonal_(module.weight, gain)  # type: ignore[arg-type]
     nn.init.zeros_(module.bias)  # type: ignore[arg-type]
     return module
 
 
 class Agent(nn.Module):
-    """A small convolutional network with two heads: what to do, and what it will be worth."""
+    """A small convolutional network with two heads: policy and value."""
 
     def __init__(self, num_actions: int) -> None:
         super().__init__()
@@ -81,7 +81,7 @@ class Agent(nn.Module):
         self.value = layer(nn.Linear(128, 1), 1.0)
 
     def forward(self, images: torch.Tensor) -> tuple[torch.distributions.Categorical, torch.Tensor]:
-        """Policy and value of images, `(n, 64, 64, 3)` bytes as the environment hands them out."""
+        """Policy and value of images, `(n, 64, 64, 3)` bytes as the environment returns them."""
         features = self.trunk(images.permute(0, 3, 1, 2).float() / 255.0)
         return torch.distributions.Categorical(logits=self.policy(features)), self.value(features).squeeze(-1)
 
@@ -90,7 +90,7 @@ class Agent(nn.Module):
 
 
 class Rollout:
-    """What a batch of environments lived through in `length` steps: `(length, num_envs, …)`."""
+    """`length` steps of a batch of environments: `(length, num_envs, …)`."""
 
     def __init__(self, length: int, num_envs: int) -> None:
         self.images = torch.zeros((length, num_envs, 64, 64, 3), dtype=torch.uint8)
@@ -105,8 +105,8 @@ class Rollout:
     def advantages(self, discount: float, trace: float) -> torch.Tensor:
         """Generalised advantages (Schulman et al. 2016), `(length, num_envs)`.
 
-        `values[t + 1]` is the value of what came out of step t. Under NEXT_STEP that is the last observation of an episode that
-        ended there, never the first of the next, so that running out of time needs no special case.
+        `values[t + 1]` is the value of the observation after step t. Under NEXT_STEP, if an episode ended there, that
+        is its last observation, never the first of the next, so truncation needs no special case.
         """
         advantages = torch.zeros_like(self.rewards)
         later = torch.zeros_like(self.rewards[0])
@@ -119,7 +119,7 @@ class Rollout:
 
 
 class Learner:
-    """Lives in the environments and learns from it."""
+    """Collects experience in the environments and learns from it."""
 
     def __init__(self, envs: gym.vector.VectorEnv, arguments: argparse.Namespace) -> None:
         self.envs, self.arguments = envs, arguments
@@ -127,14 +127,14 @@ class Learner:
         self.optimizer = torch.optim.Adam(self.agent.parameters(), lr=5e-4, eps=1e-5)
         self.rollout = Rollout(arguments.rollout, envs.num_envs)
         observation, _ = envs.reset(seed=arguments.seed)
-        # The environment hands out views on buffers that its next step writes into: what is kept must be copied.
+        # The environment returns views of buffers that its next step overwrites, so they must be copied.
         self.image = torch.tensor(observation)
         self.just_ended = torch.zeros(envs.num_envs, dtype=torch.bool)
         self.returns = np.zeros(envs.num_envs)
 
     @torch.no_grad()
     def live(self) -> list[float]:
-        """Fills the rollout; the returns of the episodes that ended meanwhile."""
+        """Fills the rollout; returns the returns of the episodes that ended meanwhile."""
         rollout, finished = self.rollout, []
         for t in range(len(rollout.rewards)):
             policy, value = self.agent(self.image)
@@ -155,7 +155,7 @@ class Learner:
         return finished
 
     def learn(self, progress: float, epochs: int = 3, minibatch: int = 512, clip: float = 0.2) -> None:
-        """One update of PPO from the rollout; `progress` (0 to 1) lets the learning rate fall."""
+        """One update of PPO from the rollout; the learning rate falls with `progress` (0 to 1)."""
         for group in self.optimizer.param_groups:
             group["lr"] = 5e-4 * (1.0 - progress)
         rollout = self.rollout
@@ -166,7 +166,7 @@ class Learner:
         images, actions = rollout.images.flatten(0, 1), rollout.actions.flatten()
         log_probs = rollout.log_probs.flatten()
         for _ in range(epochs):
-            # Of one size, as nearly as can be: a single step that is left over has no deviation of its advantage.
+            # Parts of about equal size: a single leftover step would have an advantage without deviation.
             for part in counts[torch.randperm(len(counts))].tensor_split(max(1, round(len(counts) / minibatch))):
                 policy, value = self.agent(images[part])
                 advantage = advantages[part]
@@ -185,7 +185,7 @@ class Learner:
 
 
 def main() -> None:
-    """Learns, and prints how it went."""
+    """Learns, and prints its progress."""
     arguments = parse_arguments()
     watch = Watch()
     torch.manual_seed(arguments.seed)

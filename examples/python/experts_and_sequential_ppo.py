@@ -1,15 +1,16 @@
 """Single-task experts, and one PPO that meets their tasks one after the other: what does it keep, what carries over?
 
-The task is `two_skies.json` beside this file: by day blue cubes pay and red ones cost, in the evening it is the other way round.
-The sky shows which it is, and nothing else tells the learner; one policy could do both. It lives day, evening, day, evening, and
-is frozen and evaluated in both before and after each block.
+The task is `two_skies.json` beside this file: by day blue cubes pay and red ones cost, in the evening it is the other
+way round. The sky is the learner's only cue; one policy could solve both. The learner meets day, evening, day, evening,
+and is frozen and evaluated in both before and after each block.
 
     python examples/python/experts_and_sequential_ppo.py               # experts, lifetime, scores and the report
     python examples/python/experts_and_sequential_ppo.py --seeds 1 2 3 4 5 --results   # what can be written down in results/
     python examples/python/experts_and_sequential_ppo.py --quick       # does it run?
 
-The loop is `Curriculum.run_vector`: it lives the blocks, freezes the learner, checks that evaluations change nothing, and logs.
-The learner is `driftworld.learners.PPO`; `replay_ppo.py` takes `CLEAR` in its place. Needs PyTorch (`pip install torch`).
+The loop is `Curriculum.run_vector`: it runs the blocks, freezes the learner, checks that evaluations do not change it,
+and writes the log. The learner is `driftworld.learners.PPO`; `replay_ppo.py` uses `CLEAR` instead. Needs PyTorch (`pip
+install torch`).
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ from torch import nn
 TASK = os.path.relpath(Path(__file__).with_name("two_skies.json"))
 VARIANTS = ("day", "evening")
 ORDER = ("day", "evening", "day", "evening")
-# Speed in m/s, turn rate in degrees per second, interact: ahead, two bends, two turns nearly on the spot.
+# Speed in m/s, turn rate in degrees per second, interact: straight ahead, two curves, two turns nearly on the spot.
 ACTIONS = [[10, 0, 0], [10, 27, 0], [10, -27, 0], [3, 90, 0], [3, -90, 0]]
 OPTIONS: dict[str, Any] = {
     "modalities": "rgb", "size": 64, "actions": ACTIONS, "interact": False, "frame_skip": 5, "max_steps": 60,
@@ -40,7 +41,7 @@ OPTIONS: dict[str, Any] = {
 
 
 class Network(nn.Module):
-    """Two convolutions, a layer of 128, and two heads: logits of the actions, and the value."""
+    """Two convolutions, a layer of 128, and two heads: action logits and value."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -63,33 +64,33 @@ class Network(nn.Module):
 
 
 class Learner(PPO):
-    """PPO of `driftworld.learners` with the network above, as it goes on from block to block.
+    """PPO of `driftworld.learners` with the network above, carried over from block to block.
 
     Args:
-        seed: Of the network, the actions and the minibatches.
-        num_envs: How many environments it lives in.
-        policy: How it acts in evaluations: `"sampled"` from its policy, or `"greedy"`, the likeliest action.
+        seed: The seed of network, actions and minibatches.
+        num_envs: Number of environments.
+        policy: Actions in evaluations: `"sampled"` from its policy, or `"greedy"`, the likeliest.
         length: Steps of each environment between updates.
-        **options: Of the method.
+        **options: Options of the method.
     """
 
-    #: Passes of PPO over a rollout, about four steps of the optimiser each.
+    #: PPO's passes over a rollout, about four optimiser steps each.
     epochs = 4
 
     def __init__(self, seed: int, num_envs: int, policy: str = "sampled", length: int = 64, **options: Any) -> None:
-        # An object pays 100, or costs as much.
+        # An object pays or costs 100.
         settings = Settings(rollout=length, epochs=self.epochs, learning_rate=5e-4, entropy=0.01, reward_scale=0.01)
         super().__init__(len(ACTIONS), num_envs, seed=seed, size=64, policy=policy, settings=settings, **options)
 
     def make_network(self) -> nn.Module:
-        """Two convolutions in place of patches."""
+        """Two convolutions instead of patches."""
         return Network()
 
 
 def scenario(
     order: tuple[str, ...], seed: int, arguments: argparse.Namespace, evaluated: tuple[str, ...] = VARIANTS
 ) -> dict[str, Any]:
-    """Learning blocks in an order; evaluations around each, on worlds that are not learned from."""
+    """Learning blocks in an order, with evaluations around each in worlds that are not learned from."""
 
     def regime(variant: str, count: int, seed: int, first: int = 0) -> dict[str, Any]:
         return {"task": TASK, "variant": variant, "count": count, "seed": seed, "first_index": first}
@@ -100,7 +101,7 @@ def scenario(
     }
     blocks: list[dict[str, Any]] = [evaluation] if evaluated else []
     for place, variant in enumerate(order):
-        # The worlds of a variant go on where its last block left off.
+        # A variant's worlds continue where its last block ended.
         first = order[:place].count(variant) * arguments.learn
         blocks.append({"type": "learning", "regimes": [regime(variant, arguments.learn, seed, first)]})
         blocks += [evaluation] if evaluated else []
@@ -110,7 +111,9 @@ def scenario(
 
 
 def lifetime(learner: Learner, plan: dict[str, Any], folder: Path, arguments: argparse.Namespace) -> dict[str, Any]:
-    """Lives a scenario and logs every experience, or finds it lived; what its blocks came to, and how long they took."""
+    """Runs a scenario and logs every experience, or finds the finished log; returns the results and durations of its
+    blocks.
+    """
     agent, kept = folder.name, folder.with_suffix(".json")
     made_with = {"scenario": plan, "policy": learner.policy, "num_envs": arguments.num_envs}
     if kept.exists() and not arguments.again:
@@ -135,7 +138,9 @@ def lifetime(learner: Learner, plan: dict[str, Any], folder: Path, arguments: ar
 
 
 def blocks_of(summary: driftworld.Summary, folder: Path) -> list[dict[str, Any]]:
-    """What each regime came to: its mean reward, of learning that of its last 200 experiences, and how many were learned from."""
+    """The results of each regime: mean reward, for learning that of its last 200 experiences, and the number of
+    experiences learned from.
+    """
     log = driftworld.read_log(folder)
     told, learned, first = [], 0, 0
     for regime in summary.regimes:
@@ -151,7 +156,7 @@ def blocks_of(summary: driftworld.Summary, folder: Path) -> list[dict[str, Any]]
 
 
 def parse_arguments(program: str, text: str) -> argparse.Namespace:
-    """What this example and `replay_ppo.py` may be told."""
+    """Parses the command line of this example and of `replay_ppo.py`."""
     parser = argparse.ArgumentParser(description=text.splitlines()[0])
     parser.add_argument("--seeds", type=int, nargs="+", default=[1], help="a lifetime each (default: 1)")
     parser.add_argument("--learn", type=int, default=1536, help="experiences of a learning block (default: 1536)")
@@ -180,9 +185,10 @@ MakeLearner = Callable[[int, int, str], Learner]
 
 
 def live_experts(name: str, make: MakeLearner, arguments: argparse.Namespace) -> dict[Path, dict[str, Any]]:
-    """Experts of the same learner, one for each variant and seed, with as much experience as the lifetime's blocks of it.
+    """Trains experts with the same learner, one for each variant and seed, with as much experience as the lifetime's
+    blocks of the variant.
 
-    They are evaluated where the lifetime is. Returns where they are logged.
+    They are evaluated in the same worlds as the lifetime. Returns their logs.
     """
     lived = {}
     for seed in arguments.seeds:
@@ -195,7 +201,7 @@ def live_experts(name: str, make: MakeLearner, arguments: argparse.Namespace) ->
 
 
 def live_lifetimes(name: str, make: MakeLearner, arguments: argparse.Namespace) -> dict[Path, dict[str, Any]]:
-    """A lifetime over all variants for each seed; where they are logged."""
+    """Runs a lifetime over all variants for each seed; returns their logs."""
     lived = {}
     for seed in arguments.seeds:
         folder, plan = arguments.logs / f"{name}_{seed}", scenario(ORDER, seed, arguments)
@@ -204,7 +210,7 @@ def live_lifetimes(name: str, make: MakeLearner, arguments: argparse.Namespace) 
 
 
 def evaluations(lived: Mapping[Path, dict[str, Any]], label: str = "") -> list[dict[str, Any]]:
-    """A row for each lifetime, variant and evaluation: none is averaged away."""
+    """A row for each lifetime, variant and evaluation, without averaging."""
     return [
         {
             "run": f"{row['variant']}{label}" + ("" if len(lived) == 1 else f", {folder.name.rpartition('_')[2]}"),
@@ -219,7 +225,7 @@ def evaluations(lived: Mapping[Path, dict[str, Any]], label: str = "") -> list[d
 
 
 def levels(experts: Mapping[Path, dict[str, Any]]) -> dict[str, float]:
-    """What the experts earned when they were last evaluated, mean over seeds."""
+    """The experts' rewards in their last evaluation, averaged over seeds."""
     earned: dict[str, list[float]] = {}
     for done in experts.values():
         earned.setdefault(f"expert, {done['told'][-1]['variant']}", []).append(done["told"][-1]["reward"])
@@ -227,7 +233,9 @@ def levels(experts: Mapping[Path, dict[str, Any]]) -> dict[str, float]:
 
 
 def scores_table(**agents: driftworld.Metrics) -> list[dict[str, Any]]:
-    """A row for each metric, a column for each agent: the mean over its lifetimes, of several with an interval of 95 %."""
+    """A row for each metric, a column for each agent: the mean over its lifetimes, with a 95 % interval if there are
+    several.
+    """
     names = list(next(iter(agents.values())).lifetime)
 
     def value(scores: driftworld.Metrics, name: str) -> str:
@@ -250,7 +258,7 @@ def show(rows: list[dict[str, Any]]) -> None:
 
 
 def main() -> None:
-    """Experts first, then the lifetimes, then the scores."""
+    """Runs the experts, then the lifetimes, then scores them."""
     arguments = parse_arguments(__file__, __doc__ or "")
     experts = live_experts("sequential", Learner, arguments)
     lived = live_lifetimes("sequential_ppo", Learner, arguments)
@@ -278,7 +286,7 @@ def main() -> None:
 
 
 def said_of(seeds: list[int]) -> str:
-    """How many lifetimes there are, and what that carries."""
+    """The number of lifetimes, and what it allows to conclude."""
     if len(seeds) == 1:
         return "One lifetime (n = 1): what it shows of this seed need not hold for another, and no difference can be told from luck."
     return f"n = {len(seeds)} lifetimes, each with worlds and a network of its own."

@@ -19,7 +19,7 @@ KEYS = "W forward, S back, A left, D right, space acts, Esc ends"
 
 
 def main() -> None:
-    """Opens the window and lets a person play until they end it."""
+    """Opens the window, and returns when the player quits."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument(
         "--task",
@@ -51,7 +51,7 @@ def main() -> None:
 
 
 def play(task: str, variant: str | None, *, seed: int, camera: str, most_steps: int | None) -> None:
-    """Lets a person play; returns when they end it, or after so many steps."""
+    """Lets a person play; returns when they quit, or after `most_steps` steps."""
     import pygame
     from gymnasium.utils.play import play as gymnasiums_play
 
@@ -76,7 +76,8 @@ def play(task: str, variant: str | None, *, seed: int, camera: str, most_steps: 
 
 
 class Episodes(gymnasium.Wrapper[Any, Any, Any, Any]):
-    """Prints what happens, goes on to the next world after an episode, and asks the window to close after so many steps."""
+    """Prints events, continues with the next world after an episode, and asks the window to close after the last step.
+    """
 
     def __init__(self, env: gymnasium.Env[Any, Any], most_steps: int | None) -> None:
         super().__init__(env)
@@ -88,7 +89,7 @@ class Episodes(gymnasium.Wrapper[Any, Any, Any, Any]):
         self._length = 0
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
-        """Begins an episode. Gymnasium's `play` resets twice before the first step, and gives the same seed every time."""
+        """Starts an episode. Gymnasium's `play` resets twice before the first step, with the same seed every time."""
         if self._index is None:
             observation, info = self.env.reset(seed=seed, options=options)
         else:
@@ -103,7 +104,7 @@ class Episodes(gymnasium.Wrapper[Any, Any, Any, Any]):
         return observation, info
 
     def step(self, action: Any) -> tuple[Any, Any, bool, bool, dict[str, Any]]:
-        """Passes the step on."""
+        """Forwards the step."""
         observation, reward, terminated, truncated, info = self.env.step(action)
         self.num_steps += 1
         self._length += 1

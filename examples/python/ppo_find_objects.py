@@ -1,7 +1,7 @@
 """Stable-Baselines3's PPO learns to find objects from 64 × 64 colour pictures, in minutes on two cores.
 
-The learner sees what the agent sees and nothing else; beside it stand an agent that acts at random and the planner,
-which knows the map and walks from cube to cube, both in the same environment.
+The learner only gets the agent's view. It is compared with a random agent and with the planner, which knows the map and
+walks from cube to cube, both in the same environment.
 
     python examples/python/ppo_find_objects.py                               # one seed
     python examples/python/ppo_find_objects.py --seeds 1 2 3 4 5 --results   # what can be written down in results/
@@ -32,7 +32,7 @@ from stable_baselines3.common.vec_env import VecNormalize
 from torch import nn
 
 ID = "driftworld/FindObjects-v0"
-# Speed in m/s, turn rate in degrees per second, interact: ahead, two bends, two turns nearly on the spot.
+# Speed in m/s, turn rate in degrees per second, interact: straight ahead, two curves, two turns nearly on the spot.
 ACTIONS = [[10, 0, 0], [10, 27, 0], [10, -27, 0], [3, 90, 0], [3, -90, 0]]
 # Each action is held for half a second of simulated time, so that 60 of them make the task's 300 time steps.
 OPTIONS: dict[str, Any] = {
@@ -41,7 +41,7 @@ OPTIONS: dict[str, Any] = {
 
 
 class SmallCnn(BaseFeaturesExtractor):
-    """Two convolutions and a layer of 128: enough for coloured cubes, and quick without a graphics card."""
+    """Two convolutions and a layer of 128: enough for coloured cubes, and fast without a graphics card."""
 
     def __init__(self, observation_space: gym.spaces.Box) -> None:
         super().__init__(observation_space, features_dim=128)
@@ -53,12 +53,12 @@ class SmallCnn(BaseFeaturesExtractor):
         )  # fmt: skip
 
     def forward(self, images: torch.Tensor) -> torch.Tensor:
-        """Features of pictures in 0 to 1, `(n, 3, 64, 64)`."""
+        """Features of images in 0 to 1, `(n, 3, 64, 64)`."""
         return self.layers(images)  # type: ignore[no-any-return]
 
 
 class Curve(BaseCallback):
-    """Notes the mean reward of the last 100 episodes after each rollout."""
+    """Records the mean reward of the last 100 episodes after each rollout."""
 
     def __init__(self, seed: int) -> None:
         super().__init__()
@@ -89,9 +89,9 @@ class Curve(BaseCallback):
 
 
 def learn(seed: int, arguments: argparse.Namespace) -> tuple[PPO, list[dict[str, Any]]]:
-    """Learns from nothing; the learner and its curve."""
+    """Learns from scratch; returns the learner and its curve."""
     envs = make_vec_env(ID, arguments.num_envs, seed=seed, variant=arguments.variant, **OPTIONS)
-    # The curve is of rewards as the task pays them; the learner gets them on a scale of about 1.
+    # The curve has the task's rewards; the learner gets them scaled to about 1.
     envs = VecNormalize(envs, norm_obs=False, gamma=0.98)
     model = PPO(
         "CnnPolicy", envs, seed=seed, device="cpu",
@@ -106,7 +106,7 @@ def learn(seed: int, arguments: argparse.Namespace) -> tuple[PPO, list[dict[str,
 
 
 def evaluate(arguments: argparse.Namespace, model: PPO | None, policy: str, seed: int = 0) -> dict[str, float]:
-    """Reward and success in worlds that were never learned from; without a model of an agent that acts at random."""
+    """Reward and success in worlds that were never learned from; without a model, those of a random agent."""
 
     @torch.no_grad()
     def probabilities(observations: Any) -> Any:
@@ -120,7 +120,9 @@ def evaluate(arguments: argparse.Namespace, model: PPO | None, policy: str, seed
 
 
 def expert(arguments: argparse.Namespace, **changes: Any) -> dict[str, float]:
-    """What the agent on rails earns, which knows the map; its actions are held as long as the learner's, unless changed."""
+    """The reward of the agent on rails, which knows the map; it holds actions as long as the learner does, unless
+    changed.
+    """
     env = gym.make(ID, variant=arguments.variant, **(OPTIONS | changes))
     variant = driftworld.TaskSpec.load("find_objects").variant(arguments.variant)
     rewards, successes = [], []
@@ -130,7 +132,7 @@ def expert(arguments: argparse.Namespace, **changes: Any) -> dict[str, float]:
         env.reset(options={"world": world})
         reward, over = 0.0, False
         while not over:
-            _, pay, terminated, truncated, info = env.step(0)  # it goes its own way, whatever it is told
+            _, pay, terminated, truncated, info = env.step(0)  # it ignores the action
             reward, over = reward + float(pay), terminated or truncated
         rewards.append(reward)
         successes.append(info["is_success"])
@@ -139,7 +141,7 @@ def expert(arguments: argparse.Namespace, **changes: Any) -> dict[str, float]:
 
 
 def parse_arguments() -> argparse.Namespace:
-    """What may be said on the command line."""
+    """Parses the command line."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--variant", default="blue", help="variant of find_objects (default: blue)")
     parser.add_argument("--seeds", type=int, nargs="+", default=[1], help="one run each (default: 1)")
@@ -160,7 +162,7 @@ def parse_arguments() -> argparse.Namespace:
 
 
 def main() -> None:
-    """Learns with every seed, compares, and writes down what came of it if asked to."""
+    """Learns with every seed, compares, and writes the result if requested."""
     arguments = parse_arguments()
     torch.set_num_threads(arguments.threads)
     watch = Watch()
@@ -192,12 +194,12 @@ def main() -> None:
                 "of them with all cubes found": scored["success"],
             })  # fmt: skip
         if arguments.results:
-            # What there is so far: a run that is broken off leaves the seeds that were done.
+            # Writes the results so far: an interrupted run keeps its finished seeds.
             write_down(arguments, curve, table, lines, watch)
 
 
 def over_seeds(table: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """The table, and below it the means of 2 to 10 seeds with their 95 % intervals."""
+    """The table, followed by the means of 2 to 10 seeds with their 95 % intervals."""
     rows = list(table)
     for policy in ("sampled", "greedy"):
         own = [row for row in table if row["policy"] == policy]
@@ -220,7 +222,7 @@ def write_down(
     lines: dict[str, float],
     watch: Watch,
 ) -> None:
-    """Writes the result down, with the seeds that are done."""
+    """Writes the result, with the finished seeds."""
     done = list(dict.fromkeys(row["seed"] for row in table))
     Record(
         title="PPO finds objects",

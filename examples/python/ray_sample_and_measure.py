@@ -1,14 +1,14 @@
 """Ray Data draws a million variants by shard, measures how far each is from the first, and samples a world of each.
 
-Variant number i is a pure function of the seed and i, and so is its world. Shards are of fixed size whoever works on them, and
-are brought together in their own order: the numbers and the digest are the same on one worker and on a thousand.
+Variant number i is a pure function of the seed and i, and so is its world. Shards have a fixed size whichever worker
+runs them, and are merged in order: the numbers and the digest are the same on one worker and on a thousand.
 
     python examples/python/ray_sample_and_measure.py --variants 1000000            # on this machine's processors
     python examples/python/ray_sample_and_measure.py --variants 1000000 --address auto    # on the cluster that this machine is in
     python examples/python/ray_sample_and_measure.py --quick                       # does it run?
 
-Needs `pip install "./python[ray]"`, on every machine of the cluster. A cluster that asks for a token (Ray's documentation says
-how it is handed out) asks for it here, too.
+Needs `pip install "./python[ray]"`, on every machine of the cluster. A cluster with token authentication (see Ray's
+documentation) also needs the token here.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ import ray.data
 from record import Record, Watch, folder_of
 
 TASK = "find_objects"
-# What varies: the parameters' whole ranges. The rest stays as the first variant has it.
+# The varied parameters, with their whole ranges. The others keep the first variant's values.
 RANGES = {
     "light": (0.2, 4.0),
     "spread": (2.0, 40.0),
@@ -40,7 +40,7 @@ RANGES = {
 COLOURS = ("blue", "red", "green")
 ELEMENTS = ("S", "A", "T", "R", "O")
 BINS = 20
-# A distance is a sum: a parameter over its whole range counts 1, and there are the ranges and the colour.
+# The largest distance: each parameter over its whole range counts 1, and so does the colour.
 MOST = float(len(RANGES) + 1)
 
 
@@ -53,7 +53,7 @@ def variant_of(task: driftworld.TaskSpec, seed: int, number: int) -> driftworld.
 
 
 def measure(batch: dict[str, np.ndarray], seed: int, shard_size: int, variants: int) -> dict[str, list[Any]]:
-    """Everything about some shards: a row of sums, counts and a digest for each."""
+    """Measures some shards: a row of sums, counts and a digest for each."""
     task = driftworld.TaskSpec.load(TASK)
     first = task.variant("blue")
     rows = []
@@ -83,7 +83,7 @@ def measure(batch: dict[str, np.ndarray], seed: int, shard_size: int, variants: 
 
 
 def brought_together(rows: list[dict[str, Any]]) -> dict[str, Any]:
-    """One answer out of all shards, in the order of their numbers."""
+    """Merges all shards, in the order of their numbers."""
     rows = sorted(rows, key=lambda row: row["shard"])
     count = sum(int(row["count"]) for row in rows)
     elements = np.sum([row["elements"] for row in rows], axis=0) / count
@@ -102,7 +102,7 @@ def brought_together(rows: list[dict[str, Any]]) -> dict[str, Any]:
 
 
 def measure_all(variants: int, seed: int, shard_size: int, workers: int) -> dict[str, Any]:
-    """Shares the shards out among workers of the Ray cluster that is there, and brings what they say together."""
+    """Distributes the shards among the Ray cluster's workers, and merges their results."""
     shards = -(-variants // shard_size)
     work = partial(measure, seed=seed, shard_size=shard_size, variants=variants)
     dataset = ray.data.range(shards, override_num_blocks=min(shards, 4 * workers)).map_batches(
@@ -112,7 +112,7 @@ def measure_all(variants: int, seed: int, shard_size: int, workers: int) -> dict
 
 
 def connect(address: str | None, workers: int) -> None:
-    """Begins a cluster on this machine, or joins one."""
+    """Starts a cluster on this machine, or joins one."""
     logging.getLogger("ray.data").setLevel(logging.ERROR)
     if address is not None:
         ray.init(address=address, log_to_driver=False, logging_level=logging.ERROR)
@@ -121,7 +121,7 @@ def connect(address: str | None, workers: int) -> None:
 
 
 def parse_arguments() -> argparse.Namespace:
-    """What may be said on the command line."""
+    """Parses the command line."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--variants", type=int, default=20_000, help="how many are drawn (default: 20000)")
     parser.add_argument("--seed", type=int, default=1)
@@ -141,7 +141,7 @@ def parse_arguments() -> argparse.Namespace:
 
 
 def main() -> None:
-    """Measures, and prints the answer as JSON."""
+    """Measures, and prints the result as JSON."""
     arguments = parse_arguments()
     watch = Watch()
     connect(arguments.address, arguments.workers)
@@ -160,7 +160,7 @@ def main() -> None:
             f"of each. The digest, `{answer['digest']}`, is the same whatever the number of workers.",
             settings={**vars(arguments), "ranges": RANGES, "answer": answer},
             variants=[f"{TASK}#blue"], seeds=[arguments.seed],
-            # Beyond the farthest there is nothing to draw.
+            # Nothing to draw beyond the largest distance.
             curve=[{"distance": MOST * (bin + 0.5) / BINS, "variants": count} for bin, count in enumerate(histogram) if count],
             seconds=watch.seconds, load_before=watch.load, axes=("distance", "variants"), labels=("distance from blue", f"variants in {MOST / BINS:.1f} of distance"),
             table=[{

@@ -1,8 +1,7 @@
 """Not an example: how the examples write a result down, so that it can be had again.
 
-A result is a folder: `config.json` (command, seeds, options, versions, machine, and the hashes of variants and first worlds),
-`curve.csv`, `curve.png`, and a `README.md` made from them, in which no number was typed by hand. Running and scoring is the
-examples' own work.
+A result is a folder: `config.json` (command, seeds, options, versions, machine, and the hashes of variants and first
+worlds), `curve.csv`, `curve.png`, and a `README.md` generated from them.
 """
 
 from __future__ import annotations
@@ -22,23 +21,23 @@ from typing import Any
 
 import numpy as np
 
-# The worlds that nobody learns from.
+# The seed of the held-out worlds.
 EVALUATION_SEED = 1_000_000
 # Student's t for intervals of 95 %, for means of 2, 3, … 10 numbers.
 T_95 = (12.71, 4.30, 3.18, 2.78, 2.57, 2.45, 2.36, 2.31, 2.26)
 FOLDER = Path(__file__).parent / "results"
-# Settings that say where and whether things are kept: each reader's own.
+# Settings of where and whether to store results; they differ between readers.
 _WHERE = ("logs", "results", "quick", "again", "threads", "address")
 PACKAGES = ("driftworld", "gymnasium", "numpy", "torch", "stable-baselines3", "ray")
 
 
 def folder_of(program: str) -> str:
-    """Where the result of an example is kept."""
+    """The name of an example's result folder."""
     return str(FOLDER / Path(program).stem)
 
 
 class Watch:
-    """When a run began, and how busy the machine was then."""
+    """The start of a run, and the machine's load at that time."""
 
     def __init__(self) -> None:
         self._began = time.perf_counter()
@@ -46,18 +45,18 @@ class Watch:
 
     @property
     def seconds(self) -> float:
-        """Seconds since."""
+        """Seconds since the start."""
         return time.perf_counter() - self._began
 
 
 class Evaluated:
-    """A policy that is evaluated: a `driftworld.VectorAgent` that learns nothing.
+    """A policy under evaluation: a `driftworld.VectorAgent` that does not learn.
 
     Args:
-        probabilities: The probabilities of the actions, `(num_envs, actions)`, for observations.
+        probabilities: Maps observations to action probabilities, `(num_envs, actions)`.
         policy: `"sampled"` from them, or `"greedy"`, the likeliest.
-        seed: Of its actions, beside the number that each experience begins with.
-        num_envs: How many environments it acts in.
+        seed: Seeds its actions, together with the seed of each experience.
+        num_envs: Number of environments.
     """
 
     def __init__(self, probabilities: Callable[[Any], Any], policy: str, seed: int, num_envs: int) -> None:
@@ -65,7 +64,7 @@ class Evaluated:
         self.chances = [np.random.default_rng(seed) for _ in range(num_envs)]
 
     def begin(self, env: int, label: str | None, seed: int) -> None:
-        """Before an experience: its actions are drawn from its own number, and from nothing that learning draws from."""
+        """Called before an experience: its actions depend on its own seed, and on no generator used for learning."""
         self.chances[env] = np.random.default_rng([seed, self.seed])
 
     def act(self, observations: Any, infos: dict[str, Any]) -> Any:
@@ -77,14 +76,14 @@ class Evaluated:
         return np.minimum((probabilities.cumsum(axis=1) < drawn[:, None]).sum(axis=1), probabilities.shape[1] - 1)
 
     def learn(self, transition: Any) -> None:
-        """Nothing is learned."""
+        """Does nothing: the policy does not learn."""
 
     def freeze(self, frozen: bool) -> None:
-        """It always is."""
+        """Does nothing: the policy is always frozen."""
 
 
 def held_out(variant: str, episodes: int) -> Any:
-    """A curriculum of one evaluation, in worlds 0 to `episodes` - 1 under the seed that nobody learns from."""
+    """A curriculum of one evaluation, in worlds 0 to `episodes` - 1 under the held-out seed."""
     import driftworld
 
     task, _, name = variant.partition("#")
@@ -96,7 +95,7 @@ def held_out(variant: str, episodes: int) -> Any:
 def evaluated(
     curriculum: Any, probabilities: Callable[[Any], Any], policy: str, seed: int, num_envs: int, options: dict[str, Any]
 ) -> dict[str, float]:
-    """Reward, its standard deviation over episodes, and the share of episodes that were solved."""
+    """Mean reward, its standard deviation over episodes, and the share of solved episodes."""
     rewards: list[float] = []
     summary = curriculum.run_vector(
         Evaluated(probabilities, policy, seed, num_envs),
@@ -114,21 +113,21 @@ def evaluated(
 
 @dataclass
 class Record:
-    """What is to be written down of one run of an example.
+    """The result of one run of an example.
 
     Attributes:
         title: The heading of its page.
-        text: What was done, in a few sentences.
-        settings: Everything that was set: the environment's options, the learner's, the seeds.
-        variants: The variants that were lived in, `task#variant`.
-        seeds: The seeds whose first worlds are named by their hashes.
-        curve: Rows of numbers; those with the same `seed` (or `run`) make one line of the figure.
-        seconds: How long it took.
-        load_before: How busy the machine was before.
+        text: A description of the run, in a few sentences.
+        settings: All settings: the environment's options, the learner's, the seeds.
+        variants: The variants that were used, `task#variant`.
+        seeds: The seeds whose first worlds are recorded by hash.
+        curve: Rows of numbers; those with the same `seed` (or `run`) form one line of the figure.
+        seconds: Duration of the run.
+        load_before: The machine's load before the run.
         lines: Levels to compare with, by name, drawn across the figure.
         table: Rows of the page's table.
-        files: What else is kept: texts and documents by the names of their files.
-        axes: Which columns of the curve are drawn: across and up.
+        files: Additional files: texts and documents by file name.
+        axes: The columns of the curve to draw: horizontal and vertical.
     """
 
     title: str
@@ -146,7 +145,7 @@ class Record:
     labels: tuple[str, str] = ("steps of learning", "reward of an episode, mean of the last 100")
 
     def write(self, folder: str | Path) -> None:
-        """Writes the folder; what stood there under the same names is written over."""
+        """Writes the folder, overwriting files with the same names."""
         folder = Path(folder)
         folder.mkdir(parents=True, exist_ok=True)
         config = self._config()
@@ -208,7 +207,7 @@ class Record:
         key = next((name for name in ("run", "seed") if name in self.curve[0]), None)
         figure, axes = pyplot.subplots(figsize=(7.2, 4.2), dpi=120, layout="constrained")
         names = dict.fromkeys(row[key] for row in self.curve) if key else {None: None}
-        # Runs called "day, replay" and "day, sequential" share a colour; the second of them is dashed.
+        # Runs named "day, replay" and "day, sequential" share a colour; the second is dashed.
         parts = [str(name).partition(", ") for name in names]
         colours = list(dict.fromkeys(first for first, _, _ in parts))
         styles = list(dict.fromkeys(second for _, _, second in parts))
@@ -239,7 +238,7 @@ class Record:
 
 
 def _spoken(arguments: Iterable[str]) -> list[str]:
-    """The arguments without the folder of the result, which is each reader's own."""
+    """The arguments without the result folder, which differs between readers."""
     words = list(arguments)
     if "--results" in words:
         place = words.index("--results")

@@ -45,8 +45,8 @@ def main() -> None:
 
 
 def record(dataset_id: str, *, episodes: int, seed: int, max_steps: int) -> None:
-    """Writes a data set of random actions and prints what it says of its episodes."""
-    # Minari looks for its folder when it is imported.
+    """Writes a data set of random actions and prints the metadata of its episodes."""
+    # Minari reads its folder setting on import.
     import minari
     from driftworld.adapters.minari import collect
 

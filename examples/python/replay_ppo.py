@@ -1,10 +1,11 @@
 """PPO that rehearses: the sequential learner with experience replay in the manner of CLEAR, beside the one without.
 
-After Rolnick et al. 2019 (arXiv:1811.11682): a reservoir keeps a fair sample of everything that was ever lived; beside each
-update from new experience stands one from as much of the old, by V-trace, and *cloning* holds policy and values near what they
-were at that time. Nothing tells the learner where one task ends and another begins. Network, worlds, curriculum, counts and
-steps of the optimiser are those of `experts_and_sequential_ppo.py`, whose logs this one is compared with; what is not there yet is
-lived first. Its experts rehearse as well: a comparison with them is about the order of tasks, not about the learner.
+After Rolnick et al. 2019 (arXiv:1811.11682): a reservoir keeps a uniform sample of all past experience; each update
+from new experience is paired with one from the same amount of old experience, by V-trace, and *cloning* keeps policy
+and values close to those at that time. The learner does not know where one task ends and another begins. Network,
+worlds, curriculum, counts and optimiser steps are those of `experts_and_sequential_ppo.py`, with whose logs this one is
+compared; missing logs are made first. Its experts rehearse as well, so that a comparison with them shows the effect of
+the order of tasks, not of the learner.
 
     python examples/python/replay_ppo.py               # lifetimes, scores and the report that compares
     python examples/python/replay_ppo.py --seeds 1 2 3 4 5 --results     # what can be written down in results/
@@ -35,7 +36,9 @@ from record import Record
 
 
 class ReplayLearner(Learner, CLEAR):
-    """PPO on what is new, V-trace and cloning on what is old: three passes over the one, and as many steps as a fourth on the other."""
+    """PPO on new experience, V-trace and cloning on old: three passes over the new, and as many steps as in a fourth
+    pass on the old.
+    """
 
     epochs = 3
 
@@ -44,7 +47,7 @@ class ReplayLearner(Learner, CLEAR):
 
 
 def main() -> None:
-    """The lifetimes with replay, and what they are compared with."""
+    """Runs the lifetimes with replay, and those to compare them with."""
     arguments = parse_arguments(__file__, __doc__ or "")
     ordinary, experts = live_experts("sequential", Learner, arguments), live_experts("replay", ReplayLearner, arguments)
     without = live_lifetimes("sequential_ppo", Learner, arguments)

@@ -1,11 +1,12 @@
-"""RLlib's PPO on Find Objects, several env runners stepping native vector environments; needs only an address to run on a cluster.
+"""RLlib's PPO on Find Objects, several env runners stepping native vector environments; needs only an address to run on
+a cluster.
 
     python examples/python/rllib_ppo.py                    # a cluster of this machine's own
     python examples/python/rllib_ppo.py --address auto     # the Ray cluster that this machine is in
     python examples/python/rllib_ppo.py --quick            # does it run?
 
-Unlike sampling and measuring (`ray_sample_and_measure.py`), learning is not the same on another number of runners: what is
-learned from then comes from other worlds, in another order. Needs `pip install "./python[ray]" torch`.
+Unlike sampling and measuring (`ray_sample_and_measure.py`), learning depends on the number of runners: the experience
+comes from other worlds, in another order. Needs `pip install "./python[ray]" torch`.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from ray.rllib.algorithms.ppo import PPOConfig
 from ray.rllib.core.rl_module.default_model_config import DefaultModelConfig
 from ray.tune.registry import register_env
 
-# Speed in m/s, turn rate in degrees per second, interact: ahead, two bends, two turns nearly on the spot.
+# Speed in m/s, turn rate in degrees per second, interact: straight ahead, two curves, two turns nearly on the spot.
 ACTIONS = [[10, 0, 0], [10, 27, 0], [10, -27, 0], [3, 90, 0], [3, -90, 0]]
 OPTIONS: dict[str, Any] = {
     "task": "find_objects#blue", "modalities": "rgb", "size": 64, "actions": ACTIONS, "interact": False,
@@ -31,10 +32,10 @@ OPTIONS: dict[str, Any] = {
 
 
 class ForRllib(gym.vector.VectorWrapper):
-    """Native environments as RLlib's networks want them.
+    """Native environments in the form that RLlib's networks expect.
 
-    Pictures are in 0 to 1, rewards on a scale of about 1. RLlib hands runner *w* the seed *s* + *w*; the environments of a runner
-    draw their worlds under seeds that are spread from it, so that no two runners live in the same worlds.
+    Images are scaled to 0 to 1, rewards to about 1. RLlib gives runner *w* the seed *s* + *w*; the environments of a
+    runner draw their worlds under seeds spread from it, so that no two runners share worlds.
     """
 
     def __init__(self, env: gym.vector.VectorEnv) -> None:
@@ -52,7 +53,7 @@ class ForRllib(gym.vector.VectorWrapper):
 
 
 def make_environments(config: dict[str, Any]) -> gym.vector.VectorEnv:
-    """What each env runner calls, on whichever machine it is."""
+    """Makes the environments of an env runner, on whichever machine it runs."""
     return ForRllib(DriftworldVectorEnv(**config))
 
 
@@ -85,7 +86,7 @@ def configuration(arguments: argparse.Namespace) -> PPOConfig:
 
 
 def parse_arguments() -> argparse.Namespace:
-    """What may be said on the command line."""
+    """Parses the command line."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--address", help="of a Ray cluster that is there, such as auto or ray://HOST:10001")
     parser.add_argument("--runners", type=int, default=2, help="env runners, a processor each (default: 2)")
@@ -101,12 +102,12 @@ def parse_arguments() -> argparse.Namespace:
 
 
 def main() -> None:
-    """Learns, and prints how it goes."""
+    """Learns, and prints its progress."""
     arguments = parse_arguments()
     if arguments.address is not None:
         ray.init(address=arguments.address, log_to_driver=False, logging_level=logging.ERROR)
     else:
-        # Runners and the learner take turns: a processor for each runner is enough, though Ray asks for one more.
+        # Runners and the learner take turns: one processor for each runner is enough, though Ray asks for one more.
         ray.init(
             "local",
             num_cpus=arguments.runners + 1,

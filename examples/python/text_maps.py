@@ -3,16 +3,16 @@
     python examples/python/text_maps.py level.txt --of dmlab -o world.json
     python examples/python/text_maps.py grid.txt --of minigrid -o world.json
 
-DeepMind Lab: the entity layer of a text level. `*` is a wall, `P` where an agent may start, `G` a goal of 10 points that ends
-the episode, `A` an apple of 1 point, `I` and `H` doors, which open when the agent comes to them. Cells are 3.125 m wide, as
-there. A variations layer behind an empty line is left out: it says how rooms look.
+DeepMind Lab: the entity layer of a text level. `*` is a wall, `P` where an agent may start, `G` a goal of 10 points
+that ends the episode, `A` an apple of 1 point, `I` and `H` doors, which open when the agent comes to them. Cells are
+3.125 m wide, as there. A variations layer after an empty line is ignored: it only affects the look of rooms.
 
-MiniGrid: what `env.unwrapped.pprint_grid()` gives, two characters a cell, the second its colour. `W` is a wall, `F` and two
-spaces are floor, `G` a goal of 1 point that ends the episode, `V` lava, which ends it as a failure, `K` a key, `A` a ball, `B` a
-box, `D` a closed door, `L` one that a key of its colour unlocks, `__` an open one; `>>`, `VV`, `<<` and `^^` are the agent. It
-carries one thing at a time. Cells are 2 m wide.
+MiniGrid: what `env.unwrapped.pprint_grid()` gives, two characters a cell, the second its colour. `W` is a wall, `F` and
+two spaces are floor, `G` a goal of 1 point that ends the episode, `V` lava, which ends it as a failure, `K` a key, `A`
+a ball, `B` a box, `D` a closed door, `L` one that a key of its colour unlocks, `__` an open one; `>>`, `VV`, `<<` and
+`^^` are the agent. It carries one thing at a time. Cells are 2 m wide.
 
-What is not known is read as floor, and named on standard error with its line and column. Needs no package.
+Unknown characters are read as floor, and reported on standard error with line and column. Needs no package.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ HEADINGS = {">>": 90.0, "VV": 180.0, "<<": 270.0, "^^": 0.0}
 
 
 class Map:
-    """Letters of a layout as they are read, and what stands on them."""
+    """The letters of a layout read so far, and the things on them."""
 
     def __init__(self, name: str, cell: float) -> None:
         self.name, self.cell = name, cell
@@ -43,11 +43,11 @@ class Map:
         self.unknown: dict[str, list[tuple[int, int]]] = {}
 
     def warn(self, place: str, text: str) -> None:
-        """Says what did not pass as it stands."""
+        """Reports something that could not be converted unchanged."""
         print(f"warning: {self.name}{place}: {text}", file=sys.stderr)
 
     def put(self, letter: str, thing: dict[str, Any], at: tuple[int, int]) -> str:
-        """Adds a thing; returns the letter of its group, another than the given one if that stands for another group."""
+        """Adds a thing; returns the letter of its group, a new one if the given letter is taken by another group."""
         group = {"group": thing["tag"]}
         self.objects.append((thing, at))
         letters = [letter, letter.lower(), *"123456789"]
@@ -63,7 +63,7 @@ class Map:
         return letter
 
     def floor_for_unknown(self, what: str, place: tuple[int, int]) -> str:
-        """Remembers a sign that is not known."""
+        """Records an unknown character, and returns floor."""
         self.unknown.setdefault(what, []).append(place)
         return FLOOR
 
@@ -77,7 +77,7 @@ class Map:
         return 0 <= row < len(self.rows) and 0 <= column < len(self.rows[0]) and self.rows[row][column] not in "#*"
 
     def start(self) -> tuple[tuple[int, int], float] | None:
-        """Where the agent starts: the first place said, else the first free cell."""
+        """Where the agent starts: the first place marked, else the first free cell."""
         if self.starts:
             if len(self.starts) > 1:
                 self.warn("", f"of {len(self.starts)} places where the agent may start, it starts in the first")
@@ -88,7 +88,7 @@ class Map:
         return next(((at, 0.0) for at in cells if self.is_open(*at) and at not in taken), None)
 
     def zones(self) -> list[dict[str, Any]]:
-        """Lava: a zone for each stretch of cells in a row."""
+        """Lava: a zone for each run of cells in a row."""
         stretches: list[list[tuple[int, int]]] = []
         for column, row in self.lava:
             if stretches and stretches[-1][-1] == (column - 1, row):
@@ -104,14 +104,14 @@ class Map:
         return zones
 
     def door(self, door: dict[str, Any], at: tuple[int, int]) -> dict[str, Any]:
-        """A door across its doorway, which is passed along the axis on which more of its neighbours are open."""
+        """A door across its doorway; the passage runs along the axis with more open neighbours."""
         column, row = at
         along_x = self.is_open(column - 1, row) + self.is_open(column + 1, row)
         along_y = self.is_open(column, row - 1) + self.is_open(column, row + 1)
         return {**door, "coordinates": self.place(at), "heading": 90.0 if along_x > along_y else 0.0}
 
     def world(self, expected: str) -> dict[str, Any]:
-        """The world; lines that are too short are filled up with walls."""
+        """The world; short lines are padded with walls."""
         for what, places in sorted(self.unknown.items(), key=lambda item: item[1][0]):
             times = f" ({len(places)} of it, this one first)" if len(places) > 1 else ""
             self.warn(f":{places[0][0]}:{places[0][1]}", f"{what} is not known{times}; it is read as floor")
@@ -130,7 +130,7 @@ class Map:
             "height": min(self.cell, 4.0),
             "legend": {letter: meaning for letter, meaning in sorted(self.legend.items()) if letter in used},
         }
-        # What fits through a cell in the other program fits here.
+        # Whatever fits through a cell in the other program fits here.
         agent: dict[str, Any] = {"agent_width": min(self.cell / 3, 1.0)}
         if start := self.start():
             agent |= {"coordinates": self.place(start[0]), "heading": start[1]}
@@ -151,12 +151,12 @@ def thing(kind: str, color: str, group: str) -> dict[str, Any]:
 
 
 def pays(reward: float) -> dict[str, Any]:
-    """What an object has that pays once when the agent comes to it, and is gone then."""
+    """Properties of an object that pays once on contact and then disappears."""
     return {"reward": reward, "reward_once_stimulus": ["AgentCollide"], "destroy_stimulus": ["AgentCollide"]}
 
 
 def variations(lines: list[str]) -> int:
-    """The line in which a variations layer begins: behind an empty line, as many lines as before it, without walls."""
+    """The line where a variations layer starts: after an empty line, as many lines as before it, without walls."""
     texts = [number for number, line in enumerate(lines) if line]
     first = texts[0] if texts else 0
     empty = next((number for number in range(first, len(lines)) if not lines[number]), len(lines))
@@ -198,10 +198,10 @@ def minigrid(name: str, text: str) -> dict[str, Any]:
     found = Map(name, 2.0)
     for number, line in enumerate(text.splitlines()):
         shown = line.strip()
-        # What an environment is called may stand above its grid, which has no small letters.
+        # The environment's name may stand above its grid, which has no lower-case letters.
         if not line or (shown.startswith("<") and shown.endswith(">") and shown != shown.upper()):
             continue
-        # Spaces at the end of a line get lost.
+        # Trailing spaces of a line may be lost.
         pairs = [line[column : column + 2].ljust(2) for column in range(0, len(line), 2)]
         row = len(found.rows)
         cells = [cell_of_minigrid(found, pair, (column, row), (number + 1, 2 * column + 1)) for column, pair in enumerate(pairs)]
@@ -210,7 +210,7 @@ def minigrid(name: str, text: str) -> dict[str, Any]:
 
 
 def cell_of_minigrid(found: Map, pair: str, at: tuple[int, int], place: tuple[int, int]) -> str:
-    """The letter of the layout for two characters, with what stands there."""
+    """The layout letter for two characters; also adds the thing there."""
     what, color = pair[0], COLORS.get(pair[1])
     toggled = {"closes_on": ["AgentInteract"]}
     if pair in HEADINGS:

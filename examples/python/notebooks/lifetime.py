@@ -11,15 +11,15 @@
 # ---
 
 # %% [markdown]
-# # A lifetime, lived and scored
+# # A lifetime, run and scored
 #
-# Two small learners live the same curriculum: by day blue cubes pay and red ones cost, in the evening it is the other way round.
-# One remembers what each colour is worth; the other remembers it for each sky. What does each keep, and what do the metrics of
-# lifelong learning say of it? It shows the mechanics: with one lifetime each, 12 experiences a block and 6 evaluations, a
-# difference between the two numbers of a row is not told from luck.
+# Two small learners go through the same curriculum: by day blue cubes pay and red ones cost, in the evening it is the
+# other way round. One remembers what each colour is worth; the other remembers it for each sky. What does each retain,
+# and what do the metrics of lifelong learning show? This notebook shows the mechanics: with one lifetime each, 12
+# experiences a block and 6 evaluations, a difference between the two numbers of a row may be due to chance.
 #
-# Needs `pip install "./python[pandas]" matplotlib`, and runs in seconds: these learners look for coloured pixels and have no
-# network. `../experts_and_sequential_ppo.py` does the same with one.
+# Needs `pip install "./python[pandas]" matplotlib`, and runs in seconds: these learners search for coloured pixels and
+# have no network. `../experts_and_sequential_ppo.py` does the same with a network.
 
 # %%
 import tempfile
@@ -39,7 +39,8 @@ LOGS = Path(tempfile.mkdtemp())
 
 # %%
 class Seeker:
-    """Walks to the colour that it thinks pays most, away from one that costs, and learns from what touching pays."""
+    """Walks towards the colour that it values most, away from one that costs, and learns values from touching objects.
+    """
 
     def __init__(self, name: str, by_sky: bool) -> None:
         self.name, self.by_sky = name, by_sky
@@ -47,7 +48,7 @@ class Seeker:
         self.sought: tuple[str, str] | None = None
 
     def key(self, picture, colour):
-        """What a worth is remembered under."""
+        """The key under which a value is remembered."""
         red, _, blue = picture[0].mean(axis=0)
         sky = ("evening" if red > blue else "day") if self.by_sky else "any"
         return (sky, colour)
@@ -57,7 +58,7 @@ class Seeker:
         seen = {"blue": (blue > 60) & (red < 40) & (green < 40), "red": (red > 60) & (green < 40) & (blue < 40)}
         worths = {
             colour: self.worth.get(self.key(picture, colour), 30.0) for colour in seen
-        }  # the unknown is worth a try
+        }  # unknown colours are worth a try
         self.sought, turn = None, 0.6
         best = min(0.0, max(worths.values()) - 1.0)  # if all seem to cost, the least bad
         for colour, pixels in seen.items():
@@ -80,10 +81,10 @@ class Seeker:
 
 
 # %% [markdown]
-# ## A curriculum, lived by both
+# ## A curriculum for both
 #
-# Two variants in turn, twice; all of it is logged in the l2logger format, as `driftworld run` does. Experts have one variant each,
-# and as many experiences of it as both blocks of the lifetime together.
+# Two variants in turn, twice; everything is logged in the l2logger format, as by `driftworld run`. Each expert has one
+# variant, with as many experiences of it as both blocks of the lifetime together.
 
 # %%
 VARIANTS = [f"{SPEC}#day", f"{SPEC}#evening"]
@@ -100,10 +101,11 @@ for name, by_sky in (("one_memory", False), ("memory_by_sky", True)):
     print(name, summary, sep="\n", end="\n\n")
 
 # %% [markdown]
-# ## What was kept
+# ## What was retained
 #
-# Performance maintenance below 0 is forgetting; forward and backward transfer above 1 is one task helping another. Whether a
-# number can be luck, `driftworld.metrics(log).null` says: what the same log gives if the agent never changed.
+# Performance maintenance below 0 is forgetting; forward and backward transfer above 1 is one task helping another.
+# `driftworld.metrics(log).null` shows whether a number may be due to chance: the values of the same log if the agent
+# had never changed.
 
 # %%
 scores = driftworld.metrics([LOGS / "one_memory", LOGS / "memory_by_sky"], ste=experts)
@@ -127,7 +129,7 @@ axes[1].legend(ncols=2, loc="lower right")
 plt.show()
 
 # %% [markdown]
-# ## One page of it all
+# ## Everything on one page
 
 # %%
 page = driftworld.report(

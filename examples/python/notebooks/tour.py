@@ -13,8 +13,9 @@
 # %% [markdown]
 # # From a task spec to a curriculum
 #
-# The whole way once: a spec with its variants, worlds drawn from them, what an agent sees there, how far apart variants are, and a
-# curriculum that is ordered by it. `jupytext --to notebook tour.py` makes a notebook of this file; as it stands it is a program.
+# An overview: a spec with its variants, worlds drawn from them, an agent's view, distances between variants, and a
+# curriculum ordered by distance. `jupytext --to notebook tour.py` turns this file into a notebook; it also runs as a
+# program.
 #
 # Needs `pip install driftworld matplotlib`.
 
@@ -43,8 +44,8 @@ variants = [task.variant(name) for name in NAMES]
 # %% [markdown]
 # ## Worlds
 #
-# World number i under a seed is a pure function of the variant, the seed and i. Under one seed variants share their chance: what
-# is alike in their specs is alike in their worlds.
+# World number i under a seed is a pure function of the variant, the seed and i. Under one seed variants share their
+# random numbers: equal parts of their specs are equal in their worlds.
 
 # %%
 world = task.variant("blue").sample(seed=3, index=0)
@@ -58,7 +59,7 @@ for name, drawn in (("blue", world), ("wide", wide)):
 # %% [markdown]
 # ## What an agent sees
 #
-# Colour, distance, and what things are worth: the modalities of one observation.
+# Colour, distance, and the value of things: the modalities of one observation.
 
 # %%
 env = gym.make(
@@ -80,9 +81,9 @@ env.close()
 plt.show()
 
 # %% [markdown]
-# ## How far apart they are
+# ## Distances between variants
 #
-# Parameter by parameter, in units of each parameter's range, and for each element apart.
+# Parameter by parameter, in units of each parameter's range, and separately for each element.
 
 # %%
 print(driftworld.distance("find_objects#blue", "find_objects#dusk").explain())
@@ -99,7 +100,7 @@ figure.colorbar(picture, ax=left, shrink=0.85)
 order = driftworld.order(matrix)
 print("a short way through all of them:", " > ".join(label.split("#")[-1] for label in order.labels))
 
-# Two numbers for each variant whose distances come as near as they can: classical scaling.
+# Two coordinates for each variant that preserve the distances as well as possible: classical scaling.
 places = matrix.embed(2)
 right.plot(*places[order.indices].T, color="0.6", linewidth=1)
 right.scatter(*places.T, zorder=2)
@@ -136,10 +137,10 @@ for block in curriculum:
 
 # %%
 class Wanderer:
-    """Walks ahead and turns as it pleases; learns nothing."""
+    """Walks ahead with random turns; learns nothing."""
 
     def begin(self, label, seed):
-        # Its own in each experience, so that a frozen agent does the same when an evaluation is run once more.
+        # Seeded in each experience, so that a frozen agent acts identically when an evaluation is repeated.
         self.chance = np.random.default_rng(seed)
 
     def act(self, observation, info):
