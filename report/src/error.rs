@@ -1,26 +1,24 @@
-//! The one error type of this crate: what can keep a report from being made.
-//!
-//! Not here: what is wrong with a log, see `driftworld_metrics::MetricsError`.
+//! Errors of this crate.
 
 use driftworld_text::one_line;
 
-/// Everything that can stop a figure or a page.
+/// Errors raised while making a figure or a page.
 ///
-/// Every message reads: where, what was found, what was expected, and what to do where that is not plain.
+/// Every message names the place, what was found, what was expected, and what to do if that is not obvious.
 #[derive(Debug, thiserror::Error, strum::IntoStaticStr, strum::VariantNames)]
 #[strum(prefix = "report/", serialize_all = "kebab-case")]
 #[non_exhaustive]
 pub enum ReportError {
-    /// The plotting library could not draw.
+    /// The plotting library failed.
     #[error("figure {figure}: drawing failed: {source}")]
     Drawing {
         /// The figure, by its name in files.
         figure: &'static str,
-        /// What the plotting library said.
+        /// The plotting library's error.
         source: Box<dyn std::error::Error + Send + Sync>,
     },
 
-    /// A picture has no pixels, or others than its size says.
+    /// An image has no pixels, or a number of them that does not match its size.
     #[error("picture: cannot be written as PNG: {0}")]
     Png(#[from] png::EncodingError),
 
@@ -28,7 +26,7 @@ pub enum ReportError {
     #[error("film: cannot be written as GIF: {0}")]
     Gif(#[from] gif::EncodingError),
 
-    /// A film of no pictures, or of some that do not fit.
+    /// A film without images, or with images of different sizes.
     #[error("film: found {found}, expected {expected}")]
     FilmSize {
         /// What was found.
@@ -37,17 +35,17 @@ pub enum ReportError {
         expected: String,
     },
 
-    /// A name of a figure that is none.
+    /// An unknown figure.
     #[error("plot type: found {found:?}, expected one of all, raw, lb, eb, ste, timeline")]
     UnknownFigure {
-        /// What was asked for.
+        /// The requested name.
         found: String,
     },
 
-    /// A name of a unit that is none.
+    /// An unknown unit.
     #[error("unit: found {found:?}, expected exp_num or steps")]
     UnknownUnit {
-        /// What was asked for.
+        /// The requested name.
         found: String,
     },
 
@@ -62,7 +60,7 @@ pub enum ReportError {
         run_id: String,
     },
 
-    /// Distances that do not belong to the lifetime.
+    /// Distances that do not match the lifetime.
     #[error(
         "log {run_id}: found {found} distances, expected {expected}: one for each two neighbouring learning blocks, as \
          neighbours() lists them",
@@ -71,24 +69,24 @@ pub enum ReportError {
     Distances {
         /// The log.
         run_id: String,
-        /// How many were given.
+        /// Number of distances given.
         found: usize,
-        /// How many there must be.
+        /// Number of distances expected.
         expected: usize,
     },
 
-    /// More lifetimes than one page can show.
+    /// More lifetimes than one page supports.
     #[error("found {found} lifetimes, expected at most {limit} on one page; make several reports")]
     TooManyLifetimes {
-        /// How many there are.
+        /// Number of lifetimes given.
         found: usize,
-        /// How many there may be.
+        /// Largest number of lifetimes.
         limit: usize,
     },
 }
 
 impl ReportError {
-    /// A name for the kind of error that stays the same between versions.
+    /// A name for the kind of error, stable between versions.
     pub fn code(&self) -> &'static str {
         self.into()
     }

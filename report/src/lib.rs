@@ -1,5 +1,4 @@
-//! Reports of lifetimes that people want to look at: figures as SVG and PNG, and one self-contained page; and pictures of
-//! worlds, distances and curricula.
+//! Reports of lifetimes: figures as SVG and PNG, and one self-contained page. Also images of worlds, distances and curricula.
 //!
 //! A [`Chapter`] draws and writes one lifetime, a [`Report`] puts chapters on a page; [`Figures`] gives each figure as a file.
 //!
@@ -25,7 +24,7 @@
 //! # }
 //! ```
 //!
-//! Not here: scoring, which is `driftworld_metrics`'; distances and clocks, which are handed in; files, which are the command's.
+//! The caller passes in scores, distances and the date, and writes the files.
 
 mod drawing;
 mod error;
@@ -44,7 +43,7 @@ pub use page::{Chapter, ChapterOptions, Comparison, MAX_LIFETIMES, Report};
 
 use driftworld_metrics::Lifetime;
 
-/// The names of each two neighbouring learning blocks of a lifetime, in order: between them a distance can be given.
+/// The names of each pair of neighbouring learning blocks of a lifetime, in order, as required for distances.
 pub fn neighbours(lifetime: &Lifetime) -> Vec<[&str; 2]> {
     let learned: Vec<&str> = (lifetime.regimes().iter())
         .filter(|regime| regime.is_wake_training())
@@ -53,7 +52,7 @@ pub fn neighbours(lifetime: &Lifetime) -> Vec<[&str; 2]> {
     learned.windows(2).map(|pair| [pair[0], pair[1]]).collect()
 }
 
-/// The smallest and the largest of some numbers.
+/// The minimum and maximum of some numbers.
 fn extent(values: impl Iterator<Item = f64>) -> (f64, f64) {
     values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
         (low.min(value), high.max(value))

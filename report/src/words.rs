@@ -1,25 +1,25 @@
-//! Words that come from outside, made fit to be shown. Escaping them is left to what writes them.
+//! Makes text from outside fit for display. Writers escape it for their own formats.
 
 use driftworld_text::printable;
 
-/// Letters of a name that are shown.
+/// Most characters shown of a name.
 const LONGEST: usize = 48;
 
-/// Letters of a sentence that are shown.
+/// Most characters shown of a sentence.
 const LONGEST_SENTENCE: usize = 1000;
 
-/// A name as it is shown: in one line, cut to a readable length, with characters escaped that break a page, hide in it
-/// or turn its direction around.
+/// A name for display: in one line, cut to a readable length, with characters escaped that break a page, are invisible or reverse
+/// the text direction.
 pub(crate) fn shown(name: &str) -> String {
     cut(name, LONGEST)
 }
 
-/// A sentence with names in it as it is shown: the same, but longer.
+/// Like [`shown`], for a sentence with names in it, which may be longer.
 pub(crate) fn note_shown(text: &str) -> String {
     cut(text.trim_end_matches('.'), LONGEST_SENTENCE)
 }
 
-/// A number with at most so many digits, one or more, behind its point.
+/// A number with at most `digits` decimals, at least one.
 pub(crate) fn short(number: f64, digits: usize) -> String {
     let text = format!("{number:.digits$}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
@@ -27,7 +27,7 @@ pub(crate) fn short(number: f64, digits: usize) -> String {
 }
 
 fn cut(name: &str, longest: usize) -> String {
-    // What XML has no character for.
+    // Not allowed in XML.
     let calm = |letter: char| match letter {
         '\u{fffe}' | '\u{ffff}' => '\u{fffd}',
         letter => letter,
@@ -46,7 +46,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn hostile_names_are_tamed_and_others_stay() {
+    fn hostile_names_are_escaped_and_others_unchanged() {
         let check = |name: &str, expected: &str| assert_eq!(shown(name), expected);
         check("find_red", "find_red");
         check("größe 大", "größe 大");

@@ -1,13 +1,13 @@
-//! Polygons, lines and circles as smooth pixels: which share of each pixel is covered.
+//! Rasterises polygons, lines and circles with antialiasing, by the covered share of each pixel.
 
 #![expect(clippy::disallowed_methods, reason = "corners of shapes, rounded to what is drawn")]
 
 use super::{Picture, Rgb};
 
-/// Lines of samples in a row of pixels; along a line, what is covered is exact.
+/// Sample lines in a row of pixels; coverage along a line is exact.
 const LINES: usize = 8;
 
-/// The most dashes that a line is cut into.
+/// Largest number of dashes in a line.
 const MOST_DASHES: usize = 20_000;
 
 /// Fills an upright rectangle: left, top, right, bottom.
@@ -39,7 +39,7 @@ fn as_rectangle(points: &[[f32; 2]]) -> Option<[f32; 4]> {
         .then(|| [a[0].min(c[0]), a[1].min(c[1]), a[0].max(c[0]), a[1].max(c[1])])
 }
 
-/// Fills what lies inside any of the polygons, once: where they overlap it is no darker.
+/// Fills the union of the polygons once: overlaps are no darker.
 pub(super) fn fill(picture: &mut Picture, polygons: &[Vec<[f32; 2]>], color: Rgb, alpha: f32) {
     if let [polygon] = polygons
         && let Some(bounds) = as_rectangle(polygon)
@@ -58,7 +58,7 @@ pub(super) fn fill(picture: &mut Picture, polygons: &[Vec<[f32; 2]>], color: Rgb
     if top >= bottom {
         return;
     }
-    // Where each line of samples meets an edge, and which way the edge goes.
+    // The crossings of each sample line with the edges, with the direction of each edge.
     let mut crossings: Vec<Vec<(f32, i32)>> = vec![Vec::new(); (bottom - top) * LINES];
     let height = |line: usize| top as f32 + (line as f32 + 0.5) / LINES as f32;
     for polygon in polygons {
@@ -80,7 +80,7 @@ pub(super) fn fill(picture: &mut Picture, polygons: &[Vec<[f32; 2]>], color: Rgb
     let (left, right) = corners().fold((f32::INFINITY, f32::NEG_INFINITY), |(left, right), point| {
         (left.min(point[0]), right.max(point[0]))
     });
-    // The columns that are reached, of which there are few in most shapes.
+    // The columns touched, which are few for most shapes.
     let first = (left.max(0.0) as usize).min(picture.width as usize);
     let last = (right.ceil().max(0.0) as usize).min(picture.width as usize);
     let mut covered = vec![0.0_f32; last.saturating_sub(first)];
@@ -110,7 +110,7 @@ fn edges(polygon: &[[f32; 2]]) -> impl Iterator<Item = [[f32; 2]; 2]> + '_ {
     polygon.iter().zip(next).map(|(a, b)| [*a, *b])
 }
 
-/// Adds to each pixel of a row which share of it lies between two places.
+/// Adds to each pixel of a row its share of a span.
 fn add_span(covered: &mut [f32], from: f32, to: f32) {
     let most = covered.len() as f32;
     let (from, to) = (from.clamp(0.0, most), to.clamp(0.0, most));
@@ -120,7 +120,7 @@ fn add_span(covered: &mut [f32], from: f32, to: f32) {
     }
 }
 
-/// The corners of a circle, so many that none is seen.
+/// The corners of a circle, enough of them that none is visible.
 pub(super) fn circle([x, y]: [f32; 2], radius: f32) -> Vec<[f32; 2]> {
     let count = (8.0 + radius.max(0.0).sqrt() * 8.0).min(256.0) as usize;
     let corner = |k: usize| {
@@ -130,7 +130,7 @@ pub(super) fn circle([x, y]: [f32; 2], radius: f32) -> Vec<[f32; 2]> {
     (0..count).map(corner).collect()
 }
 
-/// A line of this thickness as polygons, with round corners where it is thick enough for them to be seen.
+/// A line of this width as polygons, with round joins if it is thick enough to show them.
 pub(super) fn stroke(points: &[[f32; 2]], width: f32) -> Vec<Vec<[f32; 2]>> {
     let half = width / 2.0;
     let mut pieces = Vec::new();
@@ -193,7 +193,7 @@ pub(super) fn dashes(points: &[[f32; 2]], dash: Option<f32>) -> Vec<Vec<[f32; 2]
 mod tests {
     use super::*;
 
-    /// How much ink there is, in pixels.
+    /// The total ink, in pixels.
     fn ink(picture: &Picture) -> f32 {
         let pixels = picture.rgb.chunks_exact(3);
         pixels.map(|rgb| f32::from(255 - rgb[0]) / 255.0).sum()
@@ -206,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn there_is_as_much_ink_as_the_shape_is_large() {
+    fn total_ink_equals_the_shapes_area() {
         for (polygon, area) in [
             (vec![[3.25, 4.5], [13.75, 4.5], [13.75, 9.0], [3.25, 9.0]], 10.5 * 4.5),
             (vec![[5.0, 5.0], [45.0, 5.0], [5.0, 35.0]], 600.0),
@@ -220,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn what_overlaps_is_filled_once_and_what_lies_outside_not_at_all() {
+    fn overlaps_are_filled_once_and_outside_is_clipped() {
         let square = |x: f32| vec![[x, 10.0], [x + 10.0, 10.0], [x + 10.0, 20.0], [x, 20.0]];
         let turned: Vec<[f32; 2]> = square(15.0).into_iter().rev().collect();
         assert!((drawn(&[square(10.0), turned]) - 150.0).abs() < 0.5);

@@ -1,6 +1,4 @@
-//! [`Drawing`]s: shapes, words and pixels in one list, of which both kinds of file are made: PNG and SVG.
-//!
-//! Not here: what is drawn, see `picture` and `figure`.
+//! [`Drawing`]s: lists of shapes, texts and pixels, which become PNG or SVG files.
 
 mod fill;
 mod pixels;
@@ -17,23 +15,23 @@ use crate::ReportError;
 /// A colour of a drawing, sRGB.
 pub type Rgb = [u8; 3];
 
-/// Where a text's anchor lies along its line.
+/// Position of a text's anchor along its line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// At its first letter.
+    /// At the first letter.
     Left,
     /// In the middle.
     Middle,
-    /// Behind its last letter.
+    /// After the last letter.
     Right,
 }
 
-/// Where a text's anchor lies across its line.
+/// Position of a text's anchor across its line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Level {
     /// At the top of capital letters.
     Top,
-    /// In the middle of small letters.
+    /// In the middle of lower-case letters.
     Middle,
     /// Below the line.
     Bottom,
@@ -42,11 +40,11 @@ pub enum Level {
 /// A text in a drawing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TextLine {
-    /// What it says, in one line.
+    /// Its content, in one line.
     pub text: String,
-    /// Where its anchor is, in pixels from the left and from the top.
+    /// Position of its anchor, in pixels from the left and from the top.
     pub at: [f32; 2],
-    /// Size of the letters in pixels, as pages count it.
+    /// Size of the letters in pixels, as in CSS.
     pub size: f32,
     /// Its colour.
     pub color: Rgb,
@@ -54,14 +52,14 @@ pub struct TextLine {
     pub side: Side,
     /// The anchor across the line.
     pub level: Level,
-    /// A rim around the letters in this colour, so that they can be read on a picture.
+    /// Colour of an outline around the letters, to make them readable on an image.
     pub rim: Option<Rgb>,
     /// Quarter turns clockwise around the anchor.
     pub turns: u8,
 }
 
 impl TextLine {
-    /// A text with its anchor at its upper left.
+    /// A text with its anchor at the top left.
     pub fn new(text: impl Into<String>, at: [f32; 2], size: f32, color: Rgb) -> Self {
         Self {
             text: text.into(),
@@ -75,13 +73,13 @@ impl TextLine {
         }
     }
 
-    /// The same with another anchor.
+    /// Moves the anchor.
     #[must_use]
     pub fn anchored(self, side: Side, level: Level) -> Self {
         Self { side, level, ..self }
     }
 
-    /// The same with a rim.
+    /// Adds an outline.
     #[must_use]
     pub fn rimmed(self, color: Rgb) -> Self {
         Self {
@@ -90,12 +88,12 @@ impl TextLine {
         }
     }
 
-    /// Its width in pixels, as the font has it.
+    /// Its width in pixels, by the font.
     pub fn width(&self) -> f32 {
         text_width(&self.text, self.size)
     }
 
-    /// How far the beginning of the line lies from the anchor: to the right, and downwards to the line that letters stand on.
+    /// Offset of the start of the line from the anchor: to the right, and down to the baseline.
     fn offset(&self) -> [f32; 2] {
         let along = match self.side {
             Side::Left => 0.0,
@@ -111,7 +109,7 @@ impl TextLine {
     }
 }
 
-/// What a drawing is made of. Lengths are in pixels, alphas in 0..=1.
+/// A shape of a drawing. Lengths are in pixels, alphas in 0..=1.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
     /// A filled polygon.
@@ -120,40 +118,40 @@ pub enum Shape {
         points: Vec<[f32; 2]>,
         /// Its colour.
         color: Rgb,
-        /// How much of what is below it hides.
+        /// Its opacity.
         alpha: f32,
     },
     /// A line through points.
     Line {
-        /// Where it goes.
+        /// Its points.
         points: Vec<[f32; 2]>,
-        /// How thick it is.
+        /// Its width.
         width: f32,
         /// Its colour.
         color: Rgb,
-        /// How much of what is below it hides.
+        /// Its opacity.
         alpha: f32,
-        /// Length of its dashes and of the gaps between; none is a whole line.
+        /// Length of its dashes and of the gaps between; `None` for a solid line.
         dash: Option<f32>,
     },
     /// A filled circle.
     Disc {
-        /// Its middle.
+        /// Its centre.
         middle: [f32; 2],
         /// Its radius.
         radius: f32,
         /// Its colour.
         color: Rgb,
-        /// How much of what is below it hides.
+        /// Its opacity.
         alpha: f32,
     },
     /// A text.
     Text(TextLine),
-    /// Another drawing, with its top left corner here; what lies outside it is cut off.
+    /// Another drawing, with its top left corner at `at`; parts outside it are cut off.
     Inner {
         /// Pixels from the left and from the top.
         at: [u32; 2],
-        /// What is drawn there.
+        /// The drawing.
         drawing: Drawing,
     },
     /// Pixels, with their top left corner at the drawing's.
@@ -167,7 +165,7 @@ pub struct Drawing {
     pub width: u32,
     /// Pixels down.
     pub height: u32,
-    /// What is drawn, the lowest first.
+    /// Its shapes, the lowest first.
     pub shapes: Vec<Shape>,
 }
 
@@ -182,7 +180,7 @@ impl From<Picture> for Drawing {
 }
 
 impl Drawing {
-    /// White paper.
+    /// An empty white drawing.
     pub fn blank(width: u32, height: u32) -> Self {
         Self {
             width,
@@ -196,7 +194,7 @@ impl Drawing {
         self.tint(points, color, 1.0);
     }
 
-    /// Adds a polygon through which the ground is seen where alpha is below 1.
+    /// Adds a polygon with this alpha.
     pub fn tint(&mut self, points: impl Into<Vec<[f32; 2]>>, color: Rgb, alpha: f32) {
         let points = points.into();
         self.shapes.push(Shape::Area { points, color, alpha });
@@ -224,7 +222,7 @@ impl Drawing {
         self.tint_disc(middle, radius, color, 1.0);
     }
 
-    /// Adds a circle through which the ground is seen where alpha is below 1.
+    /// Adds a circle with this alpha.
     pub fn tint_disc(&mut self, middle: [f32; 2], radius: f32, color: Rgb, alpha: f32) {
         self.shapes.push(Shape::Disc {
             middle,
@@ -234,7 +232,7 @@ impl Drawing {
         });
     }
 
-    /// Adds a text; what cannot be printed is escaped.
+    /// Adds a text, with unprintable characters escaped.
     #[expect(
         clippy::needless_pass_by_value,
         reason = "a line of text is handed over, as every other shape"
@@ -244,7 +242,7 @@ impl Drawing {
         self.shapes.push(Shape::Text(TextLine { text, ..words }));
     }
 
-    /// Adds another drawing, cut off where it ends.
+    /// Adds another drawing, clipped to its bounds.
     pub fn put(&mut self, drawing: impl Into<Self>, at: [u32; 2]) {
         let drawing = drawing.into();
         self.shapes.push(Shape::Inner { at, drawing });
@@ -291,15 +289,15 @@ impl Drawing {
         self.to_picture().to_png()
     }
 
-    /// The drawing as an SVG file: shapes as vectors, words as text, pixels as embedded PNG.
+    /// The drawing as an SVG file: shapes as vectors, texts as text, pixels as embedded PNG.
     ///
     /// # Errors
-    /// [`ReportError::Png`] for pixels that are none.
+    /// [`ReportError::Png`] for invalid pixels.
     pub fn to_svg(&self) -> Result<String, ReportError> {
         svg::file(self)
     }
 
-    /// All texts that are written on it, those of inner drawings among them.
+    /// All texts in the drawing, including those of inner drawings.
     pub fn texts(&self) -> Vec<&str> {
         let mut texts = Vec::new();
         for shape in &self.shapes {
@@ -313,17 +311,17 @@ impl Drawing {
     }
 }
 
-/// The middle of a pixel.
+/// The centre of a pixel.
 pub(crate) fn middle((x, y): (i32, i32)) -> [f32; 2] {
     [x, y].map(|pixel| pixel as f32 + 0.5)
 }
 
-/// The upper left of a pixel.
+/// The top left corner of a pixel.
 pub(crate) fn corner((x, y): (i32, i32)) -> [f32; 2] {
     [x, y].map(|pixel| pixel as f32)
 }
 
-/// A closed line around a middle, for rings.
+/// A closed line around a centre, for rings.
 pub fn ring(middle: [f32; 2], radius: f32) -> Vec<[f32; 2]> {
     let mut points = fill::circle(middle, radius);
     points.extend(points.first().copied());

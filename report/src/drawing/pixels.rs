@@ -1,8 +1,8 @@
-//! Pictures of pixels, and their files.
+//! Images of pixels, and their PNG files.
 
 use crate::ReportError;
 
-/// A picture in memory: 8-bit RGB, row 0 on top.
+/// An RGB image in memory: 8 bits per channel, row 0 at the top.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Picture {
     /// Pixels across.
@@ -13,7 +13,7 @@ pub struct Picture {
     pub rgb: Vec<u8>,
 }
 
-/// A picture of numbers in memory: 16 bits each, row 0 on top.
+/// A greyscale image in memory: 16 bits per pixel, row 0 at the top.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Gray {
     /// Pixels across.
@@ -25,10 +25,10 @@ pub struct Gray {
 }
 
 impl Gray {
-    /// The picture as a PNG file's bytes.
+    /// The image as a PNG file's bytes.
     ///
     /// # Errors
-    /// [`ReportError::Png`] for a picture without pixels, or with others than its size says.
+    /// [`ReportError::Png`] for an image without pixels, or with a number of them that does not match its size.
     pub fn to_png(&self) -> Result<Vec<u8>, ReportError> {
         let bytes: Vec<u8> = self.levels.iter().flat_map(|level| level.to_be_bytes()).collect();
         let size = [self.width, self.height];
@@ -49,12 +49,12 @@ fn png_of(size: [u32; 2], color: png::ColorType, depth: png::BitDepth, data: &[u
 }
 
 impl Picture {
-    /// A picture of these pixels.
+    /// An image with these pixels.
     pub fn new(width: u32, height: u32, rgb: Vec<u8>) -> Self {
         Self { width, height, rgb }
     }
 
-    /// A white picture.
+    /// A white image.
     pub fn blank(width: u32, height: u32) -> Self {
         Self {
             width,
@@ -63,7 +63,7 @@ impl Picture {
         }
     }
 
-    /// Puts a picture into this one with its top left corner at `(x, y)`; what does not fit is cut off.
+    /// Copies an image into this one with its top left corner at `(x, y)`, clipped.
     pub fn paste(&mut self, other: &Self, x: u32, y: u32) {
         let columns = other.width.min(self.width.saturating_sub(x)) as usize * 3;
         if columns == 0 {
@@ -76,7 +76,7 @@ impl Picture {
         }
     }
 
-    /// The picture at half the size, each pixel the mean of four: smooth edges for what was drawn too large.
+    /// The image at half the size, averaging 2 × 2 pixels, which antialiases an image drawn at double size.
     #[must_use]
     pub fn halved(&self) -> Self {
         let (width, height) = (self.width / 2, self.height / 2);
@@ -95,16 +95,16 @@ impl Picture {
         half
     }
 
-    /// The picture as a PNG file's bytes.
+    /// The image as a PNG file's bytes.
     ///
     /// # Errors
-    /// [`ReportError::Png`] for a picture without pixels, or with others than its size says.
+    /// [`ReportError::Png`] for an image without pixels, or with a number of them that does not match its size.
     pub fn to_png(&self) -> Result<Vec<u8>, ReportError> {
         let size = [self.width, self.height];
         png_of(size, png::ColorType::Rgb, png::BitDepth::Eight, &self.rgb)
     }
 
-    /// Mixes a colour into a pixel, with this share.
+    /// Blends a colour into a pixel, with this share.
     pub(crate) fn blend(&mut self, x: usize, y: usize, color: [u8; 3], share: f32) {
         let start = (y * self.width as usize + x) * 3;
         if share >= 1.0 {

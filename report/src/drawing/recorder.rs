@@ -1,4 +1,4 @@
-//! What the plotting library draws, as shapes of a [`Drawing`].
+//! A backend for the plotting library that records shapes of a [`Drawing`].
 
 use std::convert::Infallible;
 
@@ -9,10 +9,10 @@ use plotters_backend::{
 
 use super::{Drawing, Level, Shape, Side, TextLine, corner, middle};
 
-/// The plotting library counts a font's size from its lowest to its highest line; writers of pages count less.
+/// The plotting library measures a font's size from its lowest to its highest line, more than the font size in CSS.
 const LIBRARY_SIZE: f64 = 1.24;
 
-/// A backend of the plotting library that writes down what is drawn.
+/// The backend, which appends to a drawing.
 pub(crate) struct Recorder<'a> {
     drawing: &'a mut Drawing,
 }
@@ -45,7 +45,7 @@ impl<'a> Recorder<'a> {
     }
 }
 
-/// Lines of an even width and polygons have sharp sides between pixels, other lines within them.
+/// Lines of even width and polygons have sharp edges between pixels, other lines at pixel centres.
 fn on_line(place: BackendCoord, style: &impl BackendStyle) -> [f32; 2] {
     if style.stroke_width().is_multiple_of(2) {
         corner(place)
@@ -81,7 +81,7 @@ impl DrawingBackend for Recorder<'_> {
         Ok(())
     }
 
-    /// Filled rectangles hold the pixels of both corners.
+    /// Filled rectangles include the pixels of both corners.
     fn draw_rect<S: BackendStyle>(
         &mut self,
         (left, top): BackendCoord,

@@ -5,7 +5,7 @@ use base64::prelude::{BASE64_STANDARD, Engine as _};
 use super::{Drawing, Rgb, Shape, Side, TextLine};
 use crate::ReportError;
 
-/// A whole file.
+/// The whole file.
 pub(super) fn file(drawing: &Drawing) -> Result<String, ReportError> {
     let (width, height) = (drawing.width, drawing.height);
     let mut text = format!(
@@ -73,7 +73,7 @@ fn shapes(text: &mut String, drawing: &Drawing) -> Result<(), ReportError> {
     Ok(())
 }
 
-/// A text that takes the room that was measured, whatever font its reader has.
+/// A text with its measured width, whatever the reader's font.
 fn text_element(words: &TextLine) -> String {
     let width = words.width();
     if width <= 0.0 {
@@ -141,7 +141,7 @@ mod tests {
     use crate::drawing::Picture;
 
     #[test]
-    fn words_are_text_and_cannot_break_out_of_it() {
+    fn texts_are_escaped() {
         let mut drawing = Drawing::blank(90, 20);
         drawing.write(TextLine::new("a<b>&\u{0}\"c\"", [1.0, 2.0], 12.0, [1, 2, 3]));
         drawing.put(Picture::blank(2, 2), [3, 4]);

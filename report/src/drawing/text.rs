@@ -1,7 +1,7 @@
-//! Texts as pixels: every letter where the font puts it, to a fraction of a pixel.
+//! Renders texts with subpixel letter positions, as in the font.
 //!
-//! The plotting library draws each letter at a whole pixel and leaves out the room that the font has to its left: words
-//! fell apart ("ob jects").
+//! The plotting library draws each letter at a whole pixel and ignores its left side bearing, so that words fell apart ("ob
+//! jects").
 
 use std::sync::LazyLock;
 
@@ -13,16 +13,16 @@ static FONT: LazyLock<FontRef<'static>> = LazyLock::new(|| {
     FontRef::try_from_slice(epaint_default_fonts::UBUNTU_LIGHT).expect("the embedded font is a valid one")
 });
 
-/// Thickness of a rim around letters, as a share of their size.
+/// Width of the outline around letters, as a share of their size.
 const RIM: f32 = 0.11;
 
-/// The library counts a font's size from its lowest line to its highest.
+/// The library measures a font's size from its lowest to its highest line.
 fn scale(size: f32) -> PxScale {
     let em = FONT.units_per_em().unwrap_or(1000.0);
     PxScale::from(size * FONT.height_unscaled() / em)
 }
 
-/// The letters of a text, each with its place on the line that begins at 0.
+/// The letters of a text, each with its position on a line that starts at 0.
 fn letters(text: &str, size: f32) -> (Vec<(GlyphId, f32)>, f32) {
     let font = FONT.as_scaled(scale(size));
     let (mut letters, mut x) = (Vec::new(), 0.0);
@@ -37,7 +37,7 @@ fn letters(text: &str, size: f32) -> (Vec<(GlyphId, f32)>, f32) {
     (letters, x)
 }
 
-/// The width of a text in pixels, in letters of `size` pixels, as the font has it.
+/// The width of a text in pixels at letter size `size`, by the font.
 pub fn text_width(text: &str, size: f32) -> f32 {
     letters(text, size).1
 }
@@ -72,7 +72,7 @@ pub(super) fn draw(picture: &mut Picture, words: &TextLine) {
 fn draw_once(picture: &mut Picture, words: &TextLine) {
     let [along, down] = words.offset();
     let turned = !words.turns.is_multiple_of(4);
-    // A turned text is drawn at 0 and its pixels are turned.
+    // A turned text is drawn at 0, and its pixels are turned.
     let origin = if turned { [0.0, 0.0] } else { words.at };
     for (id, x) in letters(&words.text, words.size).0 {
         let glyph: Glyph =
@@ -92,7 +92,7 @@ fn draw_once(picture: &mut Picture, words: &TextLine) {
                 _ => (x, y),
             };
             if let (Ok(x), Ok(y)) = (usize::try_from(x), usize::try_from(y)) {
-                // A light font on white looks lighter than it is.
+                // Light fonts look too light on white, so this darkens them.
                 let share = share.clamp(0.0, 1.0);
                 let share = share + 0.4 * share * (1.0 - share);
                 if x < picture.width as usize && y < picture.height as usize {
@@ -107,7 +107,7 @@ fn draw_once(picture: &mut Picture, words: &TextLine) {
 mod tests {
     use super::*;
 
-    /// First and last column with ink of each run of columns with ink.
+    /// First and last column of each run of columns with ink.
     fn runs(picture: &Picture) -> Vec<[usize; 2]> {
         let width = picture.width as usize;
         let inked = |x: usize| (0..picture.height as usize).any(|y| picture.rgb[(y * width + x) * 3] < 240);
@@ -121,7 +121,7 @@ mod tests {
         runs
     }
 
-    /// Each letter's outline from left to right, as the font has it, in pixels.
+    /// Each letter's outline by the font, as left and right edge in pixels.
     fn outlines(text: &str, size: f32) -> Vec<[f32; 2]> {
         let placed = letters(text, size).0.into_iter();
         let outline = |(id, x): (GlyphId, f32)| {
@@ -132,7 +132,7 @@ mod tests {
         placed.filter_map(outline).collect()
     }
 
-    /// No gap between letters is wider than the font's, by more than the pixel that ink may fall short of at each side.
+    /// No gap between letters is wider than the font's, except by a pixel on each side where ink may fall short.
     #[test]
     fn words_do_not_fall_apart() {
         for text in [
@@ -146,7 +146,7 @@ mod tests {
                 let mut picture = Picture::blank(500, 60);
                 draw(&mut picture, &TextLine::new(text, [4.3, 10.0], size, [0, 0, 0]));
                 let (runs, outlines) = (runs(&picture), outlines(text, size));
-                // The font's own gap in which the middle of the empty columns lies; below 0 where letters reach over another.
+                // The font's own gap that contains the middle of the empty columns; below 0 where letters overlap.
                 let fonts_gap = |middle: f32| {
                     let gaps = outlines.windows(2).map(|pair| [pair[0][1], pair[1][0]]);
                     let here = gaps.filter(|[end, start]| *end - 1.5 < middle && middle < *start + 1.5);
@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn a_text_is_as_wide_as_its_letters_and_grows_with_its_size() {
+    fn text_width_grows_with_letters_and_size() {
         let one = text_width("objects", 10.0);
         assert!((text_width("objects", 30.0) - 3.0 * one).abs() < 1e-3);
         assert!(one > 25.0 && one < 45.0, "{one}");
@@ -176,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn a_text_stays_where_its_anchor_is() {
+    fn text_stays_at_its_anchor() {
         for turns in 0..4 {
             let mut picture = Picture::blank(120, 120);
             let words = TextLine::new("anchored", [60.0, 60.0], 14.0, [0, 0, 0]);

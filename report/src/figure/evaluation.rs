@@ -1,6 +1,4 @@
-//! The mean of each evaluation with its 95 % interval, a panel per task with all its variants, and when the task was learned.
-//!
-//! Not here: the interval itself, see `interval`.
+//! The mean of each evaluation with its 95 % interval, a panel per task with all its variants, and the times of learning.
 
 use indexmap::IndexMap;
 use plotters::prelude::*;
@@ -11,18 +9,18 @@ use super::panels::{Grid, MOST_PANELS};
 use super::paper::{Area, Axes, Drawn, Entry, Paper, Sample, chart, draw_mark};
 use super::scene::{Scene, Stretch, joined, roomy, task_entry};
 
-/// Variants of a task that share a panel; of more, each has its own: there, they would hide each other.
+/// Largest number of variants that share a panel; with more, each gets its own, because they would hide each other.
 const MOST_VARIANTS: usize = 5;
-/// Points of all panels together; with more, what is near is one point.
+/// Largest number of points in all panels together; with more, neighbouring points are merged.
 const MOST_POINTS: usize = 3000;
 
-/// Tasks of which the evaluations are in one panel.
+/// Tasks whose evaluations share a panel.
 struct Cluster {
     name: String,
     tasks: Vec<usize>,
 }
 
-/// The evaluated tasks, variants of one together.
+/// The evaluated tasks, with variants of the same task together.
 fn clusters(scene: &Scene) -> Vec<Cluster> {
     let mut evaluated = vec![false; scene.names.len()];
     for stretch in scene.stretches.iter().filter(|stretch| !stretch.learns()) {
@@ -52,7 +50,7 @@ fn clusters(scene: &Scene) -> Vec<Cluster> {
 }
 
 fn entries(scene: &Scene, clusters: &[Cluster]) -> Vec<Entry> {
-    // A panel with one task has its name already.
+    // A panel with a single task is already named.
     let drawn = clusters.iter().take(MOST_PANELS);
     let drawn = drawn.filter(|cluster| cluster.tasks.len() > 1);
     let mut entries: Vec<Entry> = drawn
@@ -134,7 +132,7 @@ struct Point {
     reach: f64,
 }
 
-/// The evaluations of a cluster's tasks; what falls into one column of pixels is one evaluation.
+/// The evaluations of a cluster's tasks; those in one pixel column are merged.
 fn points(scene: &Scene, cluster: &Cluster, columns: i32) -> Vec<Point> {
     let column = scene.column(columns);
     let of_task = |task: usize| -> Vec<Point> {

@@ -1,6 +1,4 @@
-//! The learning of each task, its blocks end to end, against each run of its single-task expert.
-//!
-//! Not here: the numbers of the comparison, which are the metrics'.
+//! Learning curves of each task, its blocks joined end to end, against each run of its single-task expert.
 
 use plotters::prelude::*;
 
@@ -10,11 +8,11 @@ use super::paper::{Area, Axes, Drawn, Entry, Paper, Sample, chart, curve};
 use super::scene::{Scene, roomy};
 use super::thinning;
 
-/// Runs of an expert beyond these are left out.
+/// Further runs of an expert are left out.
 const MOST_RUNS: usize = 12;
-/// Columns of pixels of all curves together; with more curves, each has fewer.
+/// Pixel columns of all curves together; with more curves, each has fewer.
 const MOST_COLUMNS: usize = 16_000;
-/// Borders between blocks beyond these are left out.
+/// Further borders between blocks are left out.
 const MOST_BORDERS: usize = 60;
 
 /// One task with its curves.
@@ -25,13 +23,13 @@ struct Panel {
     runs: Vec<Vec<f64>>,
 }
 
-/// Whether any task that was learned has an expert.
+/// Whether any learned task has an expert.
 pub(super) fn any(scene: &Scene) -> bool {
     let mut tasks = scene.lifetime.tasks().iter();
     tasks.any(|task| scene.lifetime.expert_curves(task).next().is_some())
 }
 
-/// The tasks that were learned and have an expert.
+/// The learned tasks with an expert.
 fn panels(scene: &Scene) -> Vec<Panel> {
     let tasks = scene.lifetime.tasks().iter().enumerate();
     let panel = |(task, name): (usize, &String)| {

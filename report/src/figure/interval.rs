@@ -1,4 +1,4 @@
-//! Where the mean of a handful of samples may lie. Whose samples they are is the figure's business.
+//! Confidence intervals of the mean of a few samples.
 
 /// Quantiles of Student's t at 0.975, for 1 to 30 degrees of freedom.
 const STUDENT: [f64; 30] = [
@@ -6,7 +6,8 @@ const STUDENT: [f64; 30] = [
     2.110, 2.101, 2.093, 2.086, 2.080, 2.074, 2.069, 2.064, 2.060, 2.056, 2.052, 2.048, 2.045, 2.042,
 ];
 
-/// Student's quantile at 0.975: of the table, and beyond it by the normal one's expansion (Cornish and Fisher), right to four digits.
+/// Student's quantile at 0.975: from the table, and beyond it by the expansion of the normal quantile (Cornish and Fisher),
+/// accurate to four digits.
 fn student(freedom: usize) -> f64 {
     const Z: f64 = 1.959_964;
     let of_table = freedom.checked_sub(1).and_then(|index| STUDENT.get(index));
@@ -17,7 +18,7 @@ fn student(freedom: usize) -> f64 {
     })
 }
 
-/// Mean, and how far the 95 % interval of Student's t reaches to either side: 0 for a single sample, of which nothing is known.
+/// Mean, and half-width of Student's 95 % interval: 0 for a single sample, which has no interval.
 pub(super) fn mean_and_reach(samples: &[f64]) -> (f64, f64) {
     let n = samples.len() as f64;
     let mean = samples.iter().sum::<f64>() / n;
@@ -33,7 +34,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn quantiles_go_on_where_the_table_ends() {
+    fn quantiles_continue_beyond_the_table() {
         // scipy.stats.t.ppf(0.975, freedom).
         let check = |freedom: usize, expected: f64| {
             let found = student(freedom);
@@ -49,7 +50,7 @@ mod tests {
     }
 
     #[test]
-    fn intervals_are_those_of_student() {
+    fn intervals_match_student() {
         let check = |samples: &[f64], expected: (f64, f64)| {
             let found = mean_and_reach(samples);
             assert!((found.0 - expected.0).abs() < 1e-12, "{samples:?}");

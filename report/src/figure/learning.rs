@@ -1,6 +1,4 @@
-//! Learning curves over the lifetime, evaluations shaded, and the means of each task's evaluations joined by dotted lines.
-//!
-//! Not here: intervals of evaluations, see `evaluation`.
+//! Learning curves over the lifetime, with shaded evaluations and dotted lines between the means of each task's evaluations.
 
 use std::ops::Range;
 
@@ -12,9 +10,9 @@ use super::paper::{Area, Axes, Chart, Drawn, Paper, chart, curve, draw_mark};
 use super::scene::{MOST_TASKS, Scene, Stretch, joined, roomy};
 use super::thinning;
 
-/// Columns of pixels between the axes, on wide and on narrow paper.
+/// Pixel columns between the axes, on wide and on narrow paper.
 pub(super) const COLUMNS: [i32; 2] = [900, 300];
-/// Evaluations that are joined by dots, each of which is a line of its own; more are joined by whole, thin lines.
+/// Largest number of evaluations joined by dotted lines, each a line of its own; more are joined by thin solid lines.
 const MOST_DOTTED: usize = 90;
 
 pub(super) fn height(scene: &Scene, paper: &Paper) -> i32 {
@@ -32,7 +30,7 @@ pub(super) fn axes<'a>(scene: &Scene, paper: &Paper, y: Range<f64>, name: &'a st
     }
 }
 
-/// Greys the parts of the lifetime in which the agent is evaluated.
+/// Shades the evaluations in grey.
 pub(super) fn shade<DB: DrawingBackend>(
     scene: &Scene,
     chart: &mut Chart<DB>,

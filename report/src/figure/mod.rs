@@ -1,6 +1,4 @@
-//! Figures of a lifetime, each drawn by one function onto vectors or pixels: which there are, and their files' bytes.
-//!
-//! Not here: what a figure shows, see the file of each; the page that holds them, see `page`.
+//! Figures of a lifetime, each drawn by one function as vectors or pixels.
 
 mod evaluation;
 mod experts;
@@ -30,7 +28,7 @@ use crate::words::shown;
 use paper::{Area, Drawn, Paper};
 use scene::Scene;
 
-/// What can be drawn of a lifetime.
+/// The figures of a lifetime.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, strum::IntoStaticStr)]
 #[strum(serialize_all = "lowercase")]
 pub enum Figure {
@@ -43,12 +41,12 @@ pub enum Figure {
     /// The learning of each task, end to end, against its single-task expert.
     #[strum(serialize = "ste")]
     Experts,
-    /// The blocks of the lifetime, a row per task, and how far apart neighbours are.
+    /// The blocks of the lifetime, a row per task, and the distances between neighbours.
     Timeline,
 }
 
 impl Figure {
-    /// All of them, in the order of a report.
+    /// All figures, in the order of a report.
     pub const ALL: [Self; 5] = [
         Self::Timeline,
         Self::Learning,
@@ -57,12 +55,12 @@ impl Figure {
         Self::Raw,
     ];
 
-    /// As in names of files, `NAME_raw.png`; those of the reference where it has the figure.
+    /// The name used in files, `NAME_raw.png`; the reference's name if it has the figure.
     pub fn name(self) -> &'static str {
         self.into()
     }
 
-    /// The figures that a word of the reference's option asks for: `all`, or one of `raw`, `lb`, `eb`, `ste`; `timeline` is ours.
+    /// The figures for a word of the reference's option: `all`, or one of `raw`, `lb`, `eb`, `ste`; `timeline` is an addition.
     ///
     /// # Errors
     /// [`ReportError::UnknownFigure`].
@@ -81,7 +79,7 @@ impl Figure {
     }
 }
 
-/// For which width a figure is drawn.
+/// The width that a figure is drawn for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Layout {
     /// 960 pixels, for screens and paper.
@@ -90,20 +88,20 @@ pub enum Layout {
     Narrow,
 }
 
-/// What the horizontal axis counts.
+/// The unit of the horizontal axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Unit {
     /// Experiences, by their numbers (default).
     #[default]
     Experiences,
-    /// Steps of the environment, summed up over the experiences before.
+    /// Steps of the environment, summed over the experiences before.
     Steps,
 }
 
 impl FromStr for Unit {
     type Err = ReportError;
 
-    /// As the reference calls them: `exp_num` or `steps`.
+    /// Parses the reference's names: `exp_num` or `steps`.
     fn from_str(word: &str) -> Result<Self, ReportError> {
         match word {
             "exp_num" => Ok(Self::Experiences),
@@ -113,18 +111,18 @@ impl FromStr for Unit {
     }
 }
 
-/// How figures are drawn.
+/// Options of figures.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FigureOptions {
-    /// What the horizontal axis counts; default experiences.
+    /// The unit of the horizontal axis; by default experiences.
     pub unit: Unit,
     /// Whether the means of evaluations are joined across learning; default yes.
     pub show_eval_lines: bool,
-    /// How far apart each two neighbouring learning blocks are, as [`neighbours`](crate::neighbours) lists them; `None` within
-    /// where a distance is not known. Default none: the timeline stands alone.
+    /// Distances between neighbouring learning blocks, in the order of [`neighbours`](crate::neighbours); `None` in the list for
+    /// an unknown distance. Default none: the timeline has no distances.
     pub distances: Option<Vec<Option<f64>>>,
-    /// What tasks are called in legends and in tables of the page, by their names in the log, which hold letters and digits
-    /// alone; others keep theirs.
+    /// Display names of tasks in legends and tables, by their log names, which only have letters and digits; other tasks keep
+    /// theirs.
     pub names: BTreeMap<String, String>,
 }
 
@@ -145,11 +143,11 @@ pub struct Figures<'a> {
 }
 
 impl<'a> Figures<'a> {
-    /// Looks at a lifetime. `column` is what its performances are called.
+    /// Prepares a lifetime's figures. `column` names its performance.
     ///
     /// # Errors
-    /// [`ReportError::NoSteps`] where steps are asked for and the log has none, [`ReportError::Distances`] where their number
-    /// is another than that of [`neighbours`](crate::neighbours).
+    /// [`ReportError::NoSteps`] if the unit is steps and the log has none, [`ReportError::Distances`] if their number differs
+    /// from that of [`neighbours`](crate::neighbours).
     pub fn of(lifetime: &'a Lifetime, column: &'a str, options: &'a FigureOptions) -> Result<Self, ReportError> {
         Ok(Self {
             scene: Scene::new(lifetime, column, options)?,
@@ -179,7 +177,7 @@ impl<'a> Figures<'a> {
         })
     }
 
-    /// The figure as a PNG file on white, with a title, at two dots per pixel of the SVG.
+    /// The figure as a PNG file on white, with a title, at two dots per SVG pixel.
     ///
     /// # Errors
     /// [`ReportError::Drawing`].
@@ -192,7 +190,7 @@ impl<'a> Figures<'a> {
         })
     }
 
-    /// The figure for a page: without a title, nothing behind it.
+    /// The figure for a page: without a title or a background.
     pub(crate) fn inline(&self, figure: Figure, layout: Layout) -> Result<String, ReportError> {
         let paper = Paper { layout, title: None };
         let size = (paper.width(), self.height(figure, &paper));
@@ -234,7 +232,7 @@ impl<'a> Figures<'a> {
     }
 }
 
-/// Draws vectors, in pixels of the layout.
+/// Draws as vectors, in pixels of the layout.
 fn vectors(
     figure: &'static str,
     (width, height): (i32, i32),
@@ -250,7 +248,7 @@ fn vectors(
     ))
 }
 
-/// Draws pixels, two for each of the layout along a side.
+/// Draws as pixels, two per layout pixel along each side.
 fn pixels(
     figure: &'static str,
     (width, height): (i32, i32),
@@ -261,7 +259,7 @@ fn pixels(
     drawing.to_png()
 }
 
-/// Draws with a backend, which a figure takes for its own.
+/// Draws with a backend, which the figure consumes.
 fn drawn<DB: DrawingBackend<ErrorType: 'static>>(
     figure: &'static str,
     backend: DB,
@@ -276,7 +274,7 @@ fn drawn<DB: DrawingBackend<ErrorType: 'static>>(
     })
 }
 
-/// Without what the library writes although it changes nothing; texts hold no quotation marks, so that none can be hit.
+/// Removes the library's redundant output; texts have no quotation marks, so they cannot be affected.
 fn compact(svg: String) -> String {
     [
         (" opacity=\"1\"", ""),

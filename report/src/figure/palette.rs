@@ -1,6 +1,4 @@
-//! The colours of figures, each task's among them, and what becomes of them where the page is dark.
-//!
-//! Not here: the colours of the page around the figures, see `page/style.css`.
+//! The colours of figures, including each task's, and their replacements on dark pages.
 
 use std::fmt::Write;
 
@@ -8,7 +6,7 @@ use plotters::style::RGBColor;
 
 use crate::drawing::Rgb;
 
-/// A colour of figures: as drawn, and as a page shows it where its reader prefers dark.
+/// A colour of figures: as drawn, and as shown on a page in dark mode.
 pub(super) struct Tone {
     pub(super) light: RGBColor,
     dark: &'static str,
@@ -20,18 +18,19 @@ impl Tone {
     }
 }
 
-/// Words, and the curves of experts.
+/// Text, and the curves of experts.
 pub(super) const INK: Tone = Tone::new(RGBColor(38, 42, 48), "#e6e8eb");
-/// Words that matter less, axes.
+/// Secondary text, and axes.
 pub(super) const FAINT: Tone = Tone::new(RGBColor(95, 101, 109), "#a3a9b1");
-/// Lines of a grid.
+/// Grid lines.
 pub(super) const RIM: Tone = Tone::new(RGBColor(221, 224, 229), "#363c44");
-/// Behind evaluations.
+/// The background of evaluations.
 pub(super) const SHADE: Tone = Tone::new(RGBColor(238, 240, 243), "#262b31");
 /// Evaluations on the timeline.
 pub(super) const FROZEN: Tone = Tone::new(RGBColor(150, 154, 160), "#7c838c");
 
-/// Told apart by most colour-blind eyes too (Okabe and Ito); their black is the ink's, and their yellow is too faint on white.
+/// Distinguishable for most colour-blind readers (Okabe and Ito); their black is used as ink, and their yellow is too faint on
+/// white.
 pub(super) const TASKS: [Tone; 7] = [
     Tone::new(RGBColor(0, 114, 178), "#4a9fe0"),
     Tone::new(RGBColor(230, 159, 0), "#f0b429"),
@@ -42,9 +41,9 @@ pub(super) const TASKS: [Tone; 7] = [
     Tone::new(RGBColor(148, 132, 20), "#c3b23c"),
 ];
 
-/// The rules by which a page in the dark shows what was drawn for the light.
+/// CSS rules that adapt figures to dark mode.
 ///
-/// The plotting library writes a colour as an attribute; a style sheet's rule is stronger than that.
+/// The plotting library writes colours as attributes, which rules of a style sheet override.
 pub(crate) fn dark_rules() -> String {
     let mut rules = String::new();
     for tone in [&INK, &FAINT, &RIM, &SHADE, &FROZEN].into_iter().chain(&TASKS) {
@@ -56,13 +55,13 @@ pub(crate) fn dark_rules() -> String {
     rules
 }
 
-/// The colour of a task with this place in a list.
+/// The colour of the task at this index of a list.
 pub(crate) fn task_color(task: usize) -> Rgb {
     let RGBColor(r, g, b) = TASKS[task % TASKS.len()].light;
     [r, g, b]
 }
 
-/// The form of a task's marks: colours return after seven tasks, forms after five times seven.
+/// The shape of a task's marks: colours repeat after seven tasks, shapes after five times seven.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Mark {
     Disc,
@@ -72,7 +71,7 @@ pub(super) enum Mark {
     Cross,
 }
 
-/// How a task looks in every figure.
+/// A task's look in every figure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Look {
     pub(super) color: RGBColor,
@@ -80,7 +79,7 @@ pub(super) struct Look {
 }
 
 impl Look {
-    /// Of the task with this place in the lifetime's list.
+    /// The look of the task at this index of the lifetime's list.
     pub(super) fn of(task: usize) -> Self {
         const MARKS: [Mark; 5] = [Mark::Disc, Mark::Square, Mark::Diamond, Mark::Triangle, Mark::Cross];
         Self {

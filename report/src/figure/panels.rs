@@ -1,12 +1,10 @@
-//! Small charts side by side: where each is, and how high they are together.
-//!
-//! Not here: what a chart shows, see `evaluation` and `experts`.
+//! Lays out small charts in a grid.
 
 use plotters::prelude::*;
 
 use super::paper::{Area, Paper};
 
-/// Panels beyond these are left out of a figure.
+/// Further panels of a figure are left out.
 pub(super) const MOST_PANELS: usize = 24;
 
 /// A grid of panels.
@@ -17,7 +15,7 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    /// For this many panels, of which at most [`MOST_PANELS`] are drawn.
+    /// A grid for this many panels, of which at most [`MOST_PANELS`] are drawn.
     pub(super) fn of(panels: usize, paper: &Paper) -> Self {
         let panels = panels.clamp(1, MOST_PANELS);
         let columns = match panels {
@@ -31,24 +29,24 @@ impl Grid {
             rows: panels.div_ceil(columns),
             height: match panels {
                 1 if !paper.is_narrow() => 280,
-                // Many panels are for an overview.
+                // Many panels only give an overview.
                 10.. => 170,
                 _ => 210,
             },
         }
     }
 
-    /// In pixels of the layout.
+    /// Its height in pixels of the layout.
     pub(super) fn height(&self) -> i32 {
         self.height * self.rows as i32
     }
 
-    /// Columns of pixels between the axes of a panel.
+    /// Pixel columns between the axes of a panel.
     pub(super) fn pixel_columns(&self, paper: &Paper) -> i32 {
         paper.width() / self.columns as i32 - 60
     }
 
-    /// How many numbers the axes of a panel have room for.
+    /// Number of labels that fit on the axes of a panel.
     pub(super) fn labels(&self) -> [usize; 2] {
         if self.columns == 1 { [6, 5] } else { [4, 5] }
     }

@@ -1,6 +1,4 @@
-//! What a figure is drawn on: its sizes, its words, its axes, and the line of names on top.
-//!
-//! Not here: what is drawn, see the file of each figure.
+//! The paper of a figure: its sizes, texts, axes, and legend.
 
 #![expect(
     clippy::disallowed_methods,
@@ -24,21 +22,21 @@ pub(super) type Area<DB> = DrawingArea<DB, Shift>;
 pub(super) type Chart<'a, DB> = ChartContext<'a, DB, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 pub(super) type Drawn<DB, T = ()> = Result<T, DrawingAreaErrorKind<<DB as DrawingBackend>::ErrorType>>;
 
-/// Dots of the drawing in each pixel of the layout, along one side: whole numbers are all that the library draws at.
+/// Dots of the drawing per layout pixel along one side: the library only draws at whole numbers.
 const DOTS: i32 = 2;
 /// Heights, in pixels of the layout.
 const TITLE: i32 = 34;
 const ENTRY: i32 = 21;
 
-/// A layout with its measures.
+/// A layout with its measurements.
 #[derive(Debug, Clone)]
 pub(super) struct Paper {
     pub(super) layout: Layout,
-    /// Written on top where the figure stands alone.
+    /// The title, if the figure stands alone.
     pub(super) title: Option<String>,
 }
 
-/// A name in the line on top, with its mark.
+/// A name in the legend, with its mark.
 pub(super) struct Entry {
     name: String,
     sample: Sample,
@@ -50,20 +48,20 @@ impl Entry {
         Self { name, sample }
     }
 
-    /// For those of `all` that are not drawn, if any; `what` they are follows their number.
+    /// The entry for those of `all` that are not drawn, if any; `what` follows their number.
     pub(super) fn rest(all: usize, drawn: usize, what: &str) -> Option<Self> {
         let rest = || Self::new(format!("and {}{what} more, not drawn", all - drawn), Sample::Nothing);
         (all > drawn).then(rest)
     }
 }
 
-/// What is drawn before a name.
+/// The sample before a name in the legend.
 #[derive(Clone, Copy)]
 pub(super) enum Sample {
     Task(Look),
     Line(RGBColor),
     Area(RGBColor),
-    /// An area through which the grid is seen.
+    /// A translucent area.
     Tint(RGBColor),
     Nothing,
 }
@@ -91,7 +89,7 @@ impl Paper {
         color.stroke_width((width * f64::from(DOTS)).round() as u32)
     }
 
-    /// Words of this size in pixels, anchored at a side.
+    /// A text style of this size in pixels, anchored at a side.
     pub(super) fn words(size: i32, color: RGBColor, side: HPos, height: VPos) -> TextStyle<'static> {
         ("sans-serif", font_size(size))
             .into_font()
@@ -99,7 +97,7 @@ impl Paper {
             .pos(Pos::new(side, height))
     }
 
-    /// Where the names go, as left edge and line, and how many lines there are.
+    /// Positions of the legend's names, as left edge and line, and the number of lines.
     fn places(&self, entries: &[Entry]) -> (Vec<(i32, i32)>, i32) {
         let (mut left, mut line) = (0, 0);
         let mut places = Vec::new();
@@ -114,13 +112,13 @@ impl Paper {
         (places, if entries.is_empty() { 0 } else { line + 1 })
     }
 
-    /// How high the title and the names are together.
+    /// Height of the title and the legend together.
     pub(super) fn head_height(&self, entries: &[Entry]) -> i32 {
         let title = if self.title.is_some() { TITLE } else { 0 };
         title + self.places(entries).1 * ENTRY + 6
     }
 
-    /// Draws the title and the names; returns the area below.
+    /// Draws the title and the legend; returns the area below.
     pub(super) fn head<DB: DrawingBackend>(&self, area: &Area<DB>, entries: &[Entry]) -> Drawn<DB, Area<DB>> {
         let mut top = 0;
         if let Some(title) = &self.title {
@@ -138,7 +136,7 @@ impl Paper {
     }
 }
 
-/// The sample before a name; returns how many dots it takes.
+/// Draws the sample before a name; returns its width in dots.
 fn sample<DB: DrawingBackend>(area: &Area<DB>, sample: Sample, (x, y): (i32, i32)) -> Drawn<DB, i32> {
     let d = Paper::dots;
     let (half, style) = match sample {
@@ -181,18 +179,18 @@ pub(super) fn draw_mark<DB: DrawingBackend>(area: &Area<DB>, look: Look, (x, y):
     }
 }
 
-/// What a pair of axes shows.
+/// A pair of axes.
 pub(super) struct Axes<'a> {
     pub(super) x: Range<f64>,
     pub(super) y: Range<f64>,
     pub(super) x_name: &'a str,
-    /// Written flat above the upright axis, in a colour: the axis's name, or the panel's.
+    /// Horizontal text above the vertical axis, with its colour: the axis's name, or the panel's.
     pub(super) y_name: (&'a str, RGBColor),
-    /// How many numbers there are along each, about.
+    /// Approximate number of labels along each axis.
     pub(super) labels: [usize; 2],
 }
 
-/// A pair of axes with a faint grid and no rim.
+/// A pair of axes with a faint grid and no border.
 pub(super) fn chart<'a, DB: DrawingBackend + 'a>(area: &'a Area<DB>, axes: &Axes) -> Drawn<DB, Chart<'a, DB>> {
     let d = Paper::dots;
     let name = Paper::words(12, axes.y_name.1, HPos::Left, VPos::Center);
@@ -227,7 +225,7 @@ pub(super) fn chart<'a, DB: DrawingBackend + 'a>(area: &'a Area<DB>, axes: &Axes
     Ok(chart)
 }
 
-/// A curve through points; a single one is a dot, as a line through it could not be seen.
+/// A curve through points; a single point is drawn as a dot, because its line would be invisible.
 pub(super) fn curve<DB: DrawingBackend>(chart: &mut Chart<DB>, points: Vec<(f64, f64)>, color: RGBColor) -> Drawn<DB> {
     if let [only] = points[..] {
         chart.draw_series([Circle::new(only, Paper::dots(2), color.filled())])?;
@@ -237,17 +235,17 @@ pub(super) fn curve<DB: DrawingBackend>(chart: &mut Chart<DB>, points: Vec<(f64,
     Ok(())
 }
 
-/// A number on an axis of this range: with the digits that tell it from its neighbours.
+/// A label on an axis of this range, with enough digits to differ from its neighbours.
 pub(super) fn label(value: f64, range: &Range<f64>) -> String {
     let (largest, span) = (range.start.abs().max(range.end.abs()), range.end - range.start);
-    // Short words as they are, as long as a twentieth of the axis is seen in them.
+    // Keeps the short form as long as it resolves a twentieth of the axis.
     let seen = match largest {
         size if size >= 1e9 => 1e7,
         size if size >= 1e6 => 1e4,
         size if size >= 1e4 => 100.0,
         _ => 1e-4,
     };
-    // What is left of a sum that should be 0.
+    // Removes the rounding error of a sum that should be 0.
     let value = if value.abs() < span * 1e-9 { 0.0 } else { value };
     if span / 20.0 >= seen || span.is_nan() || span <= 0.0 {
         return number(value);
@@ -259,7 +257,7 @@ pub(super) fn label(value: f64, range: &Range<f64>) -> String {
     } else if span < 1e-8 && largest < 1e-7 {
         format!("{value:.1e}")
     } else if span < 1e-8 {
-        // As many digits as a number has.
+        // The digits of an f64.
         short(value, 15)
     } else {
         format!("{value:.digits$}")
@@ -267,7 +265,7 @@ pub(super) fn label(value: f64, range: &Range<f64>) -> String {
     text.replace('-', "−")
 }
 
-/// A number that stands alone: round ones stay short.
+/// A number on its own: round numbers stay short.
 pub(crate) fn number(value: f64) -> String {
     let trimmed = |value: f64, digits: usize| short(value, digits).replace('-', "−");
     match value.abs() {
@@ -280,21 +278,21 @@ pub(crate) fn number(value: f64) -> String {
     }
 }
 
-/// The library counts a font's size from its lowest to its highest line; writers of pages count less.
+/// The library measures a font's size from its lowest to its highest line, more than the font size in CSS.
 fn font_size(pixels: i32) -> f64 {
     f64::from(pixels * DOTS) * 1.24
 }
 
-/// How wide a text will be in pixels of the layout, about: readers of a page may have another font.
+/// Approximate width of a text in pixels of the layout: readers may have another font.
 pub(super) fn text_width(text: &str, size: i32) -> i32 {
     load_font();
     let font = ("sans-serif", f64::from(size) * 1.24).into_font();
     let wide = font.box_size(text).map_or(0, |(wide, _)| wide as i32);
-    // Letters the font lacks have no width there.
+    // Letters missing from the font have no width there.
     wide.max(text.chars().count() as i32 * size * 2 / 5) * 11 / 10
 }
 
-/// The font is part of the program, so that figures look alike on machines with and without fonts.
+/// The font is embedded in the program, so figures look the same on machines with and without fonts.
 pub(super) fn load_font() {
     static LOADED: Once = Once::new();
     LOADED.call_once(|| {
@@ -308,7 +306,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_on_axes_are_short() {
+    fn axis_labels_are_short() {
         let check = |value: f64, expected: &str| assert_eq!(number(value), expected);
         check(0.0, "0");
         check(-0.5, "−0.5");
@@ -321,7 +319,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_far_from_zero_and_near_one_another_are_told_apart() {
+    fn close_axis_labels_far_from_zero_differ() {
         let check = |range: Range<f64>, values: [f64; 2], expected: [&str; 2]| {
             assert_eq!(values.map(|value| label(value, &range)), expected);
         };
@@ -336,7 +334,7 @@ mod tests {
     }
 
     #[test]
-    fn names_that_do_not_fit_go_to_the_next_line() {
+    fn names_that_do_not_fit_move_to_the_next_line() {
         let paper = Paper {
             layout: Layout::Narrow,
             title: None,

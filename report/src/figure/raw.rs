@@ -1,5 +1,4 @@
-//! Raw values over the lifetime, as points where there is room and as the area they fill where there is none, with the smoothed
-//! curve. Smoothing itself is the metrics'.
+//! Raw values over the lifetime with the smoothed curve: as points if there is room, otherwise as the area that they cover.
 
 use driftworld_metrics::Lifetime;
 use plotters::prelude::*;
@@ -11,7 +10,7 @@ use super::scene::{Scene, Stretch, roomy};
 use super::thinning;
 use crate::words::shown;
 
-/// Points that are drawn as such, on wide and on narrow paper.
+/// Largest number of points drawn individually, on wide and on narrow paper.
 const MOST_POINTS: [usize; 2] = [2400, 700];
 
 pub(super) fn height(scene: &Scene, paper: &Paper) -> i32 {
@@ -32,7 +31,7 @@ pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &P
     let num_points: usize = scene.stretches.iter().map(|stretch| stretch.regime.len()).sum();
     let as_points = num_points <= MOST_POINTS[usize::from(paper.is_narrow())];
     let column = scene.column(columns);
-    // About one and a half pixels either way: what is drawn smaller cannot be seen.
+    // About one and a half pixels in each direction: anything smaller is invisible.
     let least = (
         (axes.x.end - axes.x.start) / f64::from(columns) * 1.5,
         (axes.y.end - axes.y.start) / 120.0,
@@ -58,7 +57,7 @@ pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &P
     Ok(())
 }
 
-/// A stretch's performances after smoothing and clamping, back in the log's unit.
+/// The smoothed and clamped performances of a stretch, converted back to the log's unit.
 fn smoothed(lifetime: &Lifetime, stretch: &Stretch) -> Vec<f64> {
     let range = lifetime
         .normalization_data_range()

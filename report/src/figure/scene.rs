@@ -1,6 +1,4 @@
-//! A lifetime as figures see it: stretches of rows with a place on the horizontal axis, tasks with their looks.
-//!
-//! Not here: drawing, see the file of each figure.
+//! A lifetime prepared for figures: stretches of rows with positions on the horizontal axis, and tasks with their looks.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
@@ -13,9 +11,9 @@ use super::{FigureOptions, Unit};
 use crate::words::shown;
 use crate::{ReportError, extent};
 
-/// Tasks beyond these are left out of curves: more cannot be told apart.
+/// Further tasks are left out of curves, because more cannot be told apart.
 pub(super) const MOST_TASKS: usize = 28;
-/// Stretches beyond these are thinned out: each is a line of its own.
+/// Further stretches are thinned out: each is a line of its own.
 const MOST_STRETCHES: usize = 1200;
 
 /// A lifetime, ready to be drawn.
@@ -23,7 +21,7 @@ pub(super) struct Scene<'a> {
     pub(super) lifetime: &'a Lifetime,
     pub(super) column: &'a str,
     pub(super) options: &'a FigureOptions,
-    /// As shown, in the lifetime's order.
+    /// Display names, in the lifetime's order.
     pub(super) names: Vec<String>,
     pub(super) stretches: Vec<Stretch<'a>>,
     /// From the first experience to the end of the last.
@@ -42,7 +40,7 @@ impl Stretch<'_> {
         self.regime.block_type == BlockType::Train
     }
 
-    /// From its first row to one after its last.
+    /// From its first row to one past its last.
     pub(super) fn range(&self) -> Range<f64> {
         let first = self.xs.first().copied().unwrap_or(0.0);
         first..self.xs.last().map_or(first, |last| last + 1.0)
@@ -57,7 +55,7 @@ impl Stretch<'_> {
         self.regime.performance.iter().sum::<f64>() / self.regime.len().max(1) as f64
     }
 
-    /// Points of the curve through values of its rows.
+    /// Curve points for values of its rows.
     pub(super) fn points(&self, values: &[f64]) -> Vec<(f64, f64)> {
         self.xs.iter().copied().zip(values.iter().copied()).collect()
     }
@@ -102,7 +100,7 @@ impl<'a> Scene<'a> {
         })
     }
 
-    /// What the horizontal axis counts.
+    /// Name of the horizontal axis.
     pub(super) fn x_name(&self) -> &'static str {
         match self.options.unit {
             Unit::Experiences => "experience",
@@ -110,7 +108,7 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// What the upright axis shows where performances are as they are judged.
+    /// Name of the vertical axis for normalised performances.
     pub(super) fn performance_name(&self) -> String {
         if self.lifetime.normalization_data_range().is_some() {
             format!("{}, scaled to 1…101", shown(self.column))
@@ -119,7 +117,7 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// The names of the tasks that are drawn, how many are not, and the shade of evaluations where there are some.
+    /// Legend entries: the drawn tasks, the number of others, and the shade of evaluations if there are any.
     pub(super) fn entries(&self) -> Vec<Entry> {
         let mut entries: Vec<Entry> = self.names.iter().take(MOST_TASKS).enumerate().map(task_entry).collect();
         entries.extend(Entry::rest(self.names.len(), MOST_TASKS, ""));
@@ -129,13 +127,13 @@ impl<'a> Scene<'a> {
         entries
     }
 
-    /// In which of `columns` columns of pixels a place is.
+    /// Maps a position to one of `columns` pixel columns.
     pub(super) fn column(&self, columns: i32) -> impl Fn(f64) -> i64 + '_ {
         let per_x = f64::from(columns) / (self.span.end - self.span.start);
         move |x| ((x - self.span.start) * per_x).floor() as i64
     }
 
-    /// The stretches of a kind, of the tasks that are drawn; where there are too many, those that the pixels can show.
+    /// The stretches of a kind, for the drawn tasks; if there are too many, those that the pixels can show.
     pub(super) fn drawn(&self, learning: bool, columns: i32) -> Vec<&Stretch<'a>> {
         let all = || {
             self.stretches
@@ -155,7 +153,7 @@ impl<'a> Scene<'a> {
         kept
     }
 
-    /// How wide a column is, but at least one experience: blocks that follow each other are one.
+    /// Width of a column, at least one experience, so that adjacent blocks are joined.
     pub(super) fn gap(&self, columns: i32) -> f64 {
         ((self.span.end - self.span.start) / f64::from(columns)).max(0.5)
     }
@@ -166,7 +164,7 @@ pub(super) fn task_entry((task, name): (usize, &String)) -> Entry {
     Entry::new(name, Sample::Task(Look::of(task)))
 }
 
-/// The ranges of stretches in order, those joined that lie within the gap.
+/// The ranges of ordered stretches, joining those within the gap.
 pub(super) fn joined<'a, 'b: 'a>(stretches: impl Iterator<Item = &'a Stretch<'b>>, gap: f64) -> Vec<Range<f64>> {
     let mut ranges: Vec<Range<f64>> = Vec::new();
     for range in stretches.map(Stretch::range) {
@@ -178,7 +176,7 @@ pub(super) fn joined<'a, 'b: 'a>(stretches: impl Iterator<Item = &'a Stretch<'b>
     ranges
 }
 
-/// Where the rows of a regime are on the horizontal axis.
+/// Positions of a regime's rows on the horizontal axis.
 fn positions(lifetime: &Lifetime, regime: &Regime, unit: Unit) -> Result<Vec<f64>, ReportError> {
     match unit {
         Unit::Experiences => Ok(regime.exp_nums.iter().map(|number| *number as f64).collect()),
@@ -188,7 +186,7 @@ fn positions(lifetime: &Lifetime, regime: &Regime, unit: Unit) -> Result<Vec<f64
     }
 }
 
-/// A range with a little room at both ends; one of its own where all values are equal.
+/// A range with some padding at both ends; never empty, even if all values are equal.
 pub(super) fn roomy(values: impl Iterator<Item = f64>) -> Range<f64> {
     let (low, high) = extent(values);
     match high - low {

@@ -1,6 +1,4 @@
-//! The values of a metric, one mark per task on a line, with the lifetime's value and the one that means no effect.
-//!
-//! Not here: the table the strips stand in, see `page`.
+//! The values of a metric as one mark per task on a line, with the lifetime's value and the value of no effect.
 
 use plotters::prelude::*;
 
@@ -10,21 +8,21 @@ use super::vectors;
 use crate::{ReportError, extent};
 
 const SIZE: (i32, i32) = (220, 30);
-/// More marks than these are thinned out evenly.
+/// Further marks are thinned out evenly.
 const MOST_MARKS: usize = 60;
 
-/// Which of so many marks are drawn: all, or some from everywhere, the first and the last among them.
+/// Indices of the marks to draw: all, or an even selection that includes the first and the last.
 fn drawn(marks: usize) -> impl Iterator<Item = usize> {
     let kept = marks.min(MOST_MARKS);
     (0..kept).map(move |index| index * marks.saturating_sub(1) / kept.saturating_sub(1).max(1))
 }
 
-/// How many marks are drawn, where not all are.
+/// The number of marks drawn, if not all are.
 pub(crate) fn thinned_count(marks: usize) -> Option<String> {
     (marks > MOST_MARKS).then(|| format!("{MOST_MARKS} of {marks}"))
 }
 
-/// Marks for `tasks` (place in the lifetime's list, value), a stroke for the lifetime's value, a dashed one for no effect.
+/// Marks for `tasks` (index in the lifetime's list, value), a stroke for the lifetime's value, a dashed one for no effect.
 pub(crate) fn strip(tasks: &[(usize, f64)], value: Option<f64>, neutral: Option<f64>) -> Result<String, ReportError> {
     let all = || tasks.iter().map(|task| task.1).chain(value).chain(neutral);
     let (low, high) = extent(all());
@@ -54,7 +52,7 @@ pub(crate) fn strip(tasks: &[(usize, f64)], value: Option<f64>, neutral: Option<
                     .iter()
                     .all(|other| other.1 != place.1 || (other.0 - place.0).abs() >= d(9))
             };
-            // Equal values would hide each other: they stand above and below.
+            // Equal values are drawn above and below each other, so that none is hidden.
             let place = [0, -d(9), d(9)]
                 .map(|aside| (at.0, at.1 + aside))
                 .into_iter()

@@ -1,11 +1,8 @@
-//! Makes lines and clouds of points as small as what the pixels can show: at most four points in each column of pixels.
-//!
-//! Not here: which columns there are, see `paper`.
+//! Reduces lines and point clouds to at most four points per pixel column.
 
 use crate::extent;
 
-/// The first, the lowest, the highest and the last point of each column, in their order: a line through them looks as the
-/// whole line does.
+/// The first, lowest, highest and last point of each column, in order: a line through them looks like the whole line.
 pub(super) fn line(points: &[(f64, f64)], column: impl Fn(f64) -> i64) -> Vec<(f64, f64)> {
     let mut thin = Vec::new();
     for group in points.chunk_by(|a, b| column(a.0) == column(b.0)) {
@@ -20,8 +17,8 @@ pub(super) fn line(points: &[(f64, f64)], column: impl Fn(f64) -> i64) -> Vec<(f
     thin
 }
 
-/// The outline of a cloud of points: along the highest of each column, and back along the lowest. It is nowhere lower than
-/// the least height, and never narrower than the least width: one column is an upright stroke.
+/// The outline of a point cloud: along the highest point of each column, and back along the lowest. It is at least `least` high
+/// and wide, so that a single column becomes a vertical stroke.
 pub(super) fn outline(
     points: &[(f64, f64)],
     column: impl Fn(f64) -> i64,
@@ -51,7 +48,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_column_keeps_its_first_lowest_highest_and_last() {
+    fn column_keeps_its_first_lowest_highest_and_last_point() {
         let check = |heights: &[f64], expected: &[f64]| {
             let points: Vec<(f64, f64)> = heights.iter().enumerate().map(|(x, y)| (x as f64, *y)).collect();
             let found: Vec<f64> = line(&points, |_| 0).into_iter().map(|point| point.1).collect();
@@ -64,7 +61,7 @@ mod tests {
     }
 
     #[test]
-    fn an_outline_has_an_area_however_short_or_flat_it_is() {
+    fn outline_has_an_area_even_if_short_or_flat() {
         let check = |points: &[(f64, f64)], expected: &[(f64, f64)]| {
             assert_eq!(outline(points, |x| x as i64, (1.5, 2.0)), expected);
         };
@@ -81,7 +78,7 @@ mod tests {
     }
 
     #[test]
-    fn a_million_points_become_four_in_each_column() {
+    fn million_points_become_four_per_column() {
         let points: Vec<(f64, f64)> = (0..1_000_000)
             .map(|x| (f64::from(x), f64::from(x % 1009 * 7 % 1000)))
             .collect();

@@ -1,6 +1,4 @@
-//! The lifetime's blocks, a row per task, and above them how far apart neighbouring learning blocks are.
-//!
-//! Not here: where distances come from; they are handed in.
+//! The lifetime's blocks, a row per task, with the distances between neighbouring learning blocks above.
 
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
@@ -9,14 +7,14 @@ use super::palette::{FAINT, FROZEN, INK, Look, RIM, TASKS};
 use super::paper::{Area, Drawn, Entry, Paper, Sample, draw_mark, line, number, text_width};
 use super::scene::{Scene, Stretch};
 
-/// Rows beyond these are left out.
+/// Further rows are left out.
 const MOST_ROWS: usize = super::scene::MOST_TASKS;
-/// Heights, in pixels of the layout: the strip of distances, a bar that learns, the axis.
+/// Heights, in pixels of the layout: the strip of distances, a learning bar, the axis.
 const STRIP: i32 = 76;
 const BAR: i32 = 18;
 const AXIS: i32 = 44;
 
-/// Where things are, in pixels of the layout below the head.
+/// Positions, in pixels of the layout below the legend.
 struct Plan {
     left: i32,
     right: i32,
@@ -39,7 +37,7 @@ impl Plan {
             left: if paper.is_narrow() { 12 } else { (longest + 32).min(300) },
             right: paper.width() - 16,
             strip: if scene.options.distances.is_some() { STRIP } else { 0 },
-            // Narrow paper has no room beside the bars: names stand above them.
+            // Narrow paper has no room beside the bars, so names are above them.
             row: if paper.is_narrow() { 42 } else { 30 },
             rows,
         }
@@ -97,7 +95,7 @@ pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &P
         } else {
             (d(3), FROZEN.light)
         };
-        // A stretch too short to be seen is drawn a pixel wide.
+        // Stretches too short to see are drawn one pixel wide.
         let (start, end) = (x(range.start), x(range.end).max(x(range.start) + d(1)));
         below.draw(&Rectangle::new([(start, y - half), (end, y + half)], color.filled()))?;
     }
@@ -144,7 +142,7 @@ fn axis<DB: DrawingBackend>(
     )
 }
 
-/// A stem at each change from one learning block to the next, as high as the two are apart, with the number where it has room.
+/// A stem at each change between learning blocks, as high as their distance, with the number if it fits.
 fn draw_distances<DB: DrawingBackend>(
     area: &Area<DB>,
     scene: &Scene,

@@ -1,5 +1,4 @@
-//! The pictures of a film as a GIF. Each picture holds what changed since the one before, in colours of its own; which colours is said in
-//! `palette.rs`. A GIF is written by the crate `gif`.
+//! Encodes the images of a film as a GIF. Each image stores the changes since the one before, with a palette of its own.
 
 use std::io::Write;
 
@@ -9,10 +8,10 @@ use super::palette::Palette;
 use crate::ReportError;
 use crate::picture::Picture;
 
-/// Colours of a picture; one more stands for what stays as it was.
+/// Colours of an image; one more is transparent, for unchanged pixels.
 const COLORS: usize = 255;
 
-/// A GIF, picture by picture.
+/// A GIF encoder, fed image by image.
 pub(super) struct GifFrames<W: Write> {
     encoder: Encoder<W>,
     last: Option<Picture>,
@@ -20,14 +19,14 @@ pub(super) struct GifFrames<W: Write> {
 
 impl<W: Write> GifFrames<W> {
     pub(super) fn new(to: W, size: [u32; 2]) -> Result<Self, ReportError> {
-        // Films have sides that fit.
+        // `Film::new` has checked that the sides fit.
         let [width, height] = size.map(|side| side as u16);
         let mut encoder = Encoder::new(to, width, height, &[])?;
         encoder.set_repeat(Repeat::Infinite)?;
         Ok(Self { encoder, last: None })
     }
 
-    /// Adds a picture of the film's size, shown for so many hundredths of a second.
+    /// Adds an image of the film's size, shown for `delay` hundredths of a second.
     pub(super) fn add(&mut self, picture: &Picture, delay: u16) -> Result<(), ReportError> {
         let last = self.last.as_ref();
         let [left, top, right, bottom] =
@@ -37,7 +36,7 @@ impl<W: Write> GifFrames<W> {
             [picture.rgb[place], picture.rgb[place + 1], picture.rgb[place + 2]]
         };
         let places = (top..bottom).flat_map(|y| (left..right).map(move |x| (x, y)));
-        // What stays as it was has no colour.
+        // Unchanged pixels have no colour.
         let pixels: Vec<Option<[u8; 3]>> = places
             .map(|(x, y)| {
                 let now = at(picture, x, y);
@@ -75,7 +74,7 @@ impl<W: Write> GifFrames<W> {
     }
 }
 
-/// The smallest rectangle that holds every pixel which differs: left, top, and behind them right and bottom; one pixel if none does.
+/// The smallest rectangle around all changed pixels: left, top, and exclusive right and bottom; one pixel if nothing changed.
 fn changed(last: &Picture, now: &Picture) -> [u32; 4] {
     let row = 3 * now.width as usize;
     let mut bounds: Option<[u32; 4]> = None;

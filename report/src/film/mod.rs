@@ -1,4 +1,4 @@
-//! Films: pictures one after the other, as GIF or animated PNG. Which pictures, and files, are the callers'.
+//! Films: sequences of images, as GIF or animated PNG.
 
 mod gif;
 mod palette;
@@ -12,53 +12,53 @@ use crate::picture::Picture;
 /// The kinds of films.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FilmKind {
-    /// At most 256 colours in what changes from one picture to the next; times in hundredths of a second. Shown everywhere.
+    /// At most 256 colours in the changes from one image to the next; times in hundredths of a second. Works everywhere.
     Gif,
-    /// Animated PNG: every colour as it is, times in milliseconds. Shown by browsers; larger.
+    /// Animated PNG: exact colours, times in milliseconds. Works in browsers; larger.
     Apng,
 }
 
 impl FilmKind {
-    /// The kind of film that a file's ending stands for: `gif`, `apng`.
+    /// The kind of film with a file extension: `gif`, `apng`.
     pub fn of_ending(ending: &str) -> Option<Self> {
         [("gif", Self::Gif), ("apng", Self::Apng)]
             .into_iter()
             .find_map(|(known, kind)| ending.eq_ignore_ascii_case(known).then_some(kind))
     }
 
-    /// The shortest time in seconds that viewers show a picture for.
+    /// The shortest time in seconds for which viewers show an image.
     pub fn shortest(self) -> f64 {
         match self {
-            // Of a shorter time browsers make a tenth of a second.
+            // Browsers turn shorter times into a tenth of a second.
             Self::Gif => 0.02,
             Self::Apng => 0.01,
         }
     }
 }
 
-/// Parts of a second that times of an animated PNG are counted in.
+/// Time units per second in an animated PNG.
 const APNG_UNITS: u16 = 1000;
 
-/// A film that is written, picture by picture.
+/// A film being written, image by image.
 pub struct Film<W: Write> {
     frames: Frames<W>,
     size: [u32; 2],
     delays: Delays,
 }
 
-/// Where pictures go, by the kind of film.
+/// The encoder, by the kind of film.
 enum Frames<W: Write> {
     Gif(GifFrames<W>),
-    /// A PNG is written by the crate `png`.
+    /// Written by the crate `png`.
     Apng(png::Writer<W>),
 }
 
 impl<W: Write> Film<W> {
-    /// Begins a film of pictures of this size, which is shown over and over.
+    /// Starts an endlessly looping film of images of this size.
     ///
     /// # Errors
-    /// [`ReportError::FilmSize`] for a size that a film cannot have, or no pictures; [`ReportError::Gif`], [`ReportError::Png`] if
-    /// it cannot be written.
+    /// [`ReportError::FilmSize`] for an unsupported size, or no images; [`ReportError::Gif`], [`ReportError::Png`] if it cannot
+    /// be written.
     pub fn new(kind: FilmKind, to: W, [width, height]: [u32; 2], num_pictures: u32) -> Result<Self, ReportError> {
         let sides = 1..=u32::from(u16::MAX);
         if !sides.contains(&width) || !sides.contains(&height) || num_pictures == 0 {
@@ -83,10 +83,10 @@ impl<W: Write> Film<W> {
         Ok(Self { frames, size, delays })
     }
 
-    /// Adds a picture that is shown for so many seconds.
+    /// Adds an image that is shown for `seconds`.
     ///
     /// # Errors
-    /// [`ReportError::FilmSize`] for a picture of another size; as [`Film::new`].
+    /// [`ReportError::FilmSize`] for an image of another size; otherwise as for [`Film::new`].
     pub fn add(&mut self, picture: &Picture, seconds: f64) -> Result<(), ReportError> {
         expect_size(picture, self.size)?;
         let delay = self.delays.next(seconds);
@@ -99,10 +99,10 @@ impl<W: Write> Film<W> {
         }
     }
 
-    /// Ends the film; hands back what it was written to.
+    /// Finishes the film.
     ///
     /// # Errors
-    /// As [`Film::new`]; also where fewer pictures were added than it was to have.
+    /// As for [`Film::new`]; also if fewer images were added than announced.
     pub fn finish(self) -> Result<(), ReportError> {
         match self.frames {
             Frames::Gif(frames) => frames.finish(),
@@ -111,7 +111,7 @@ impl<W: Write> Film<W> {
     }
 }
 
-/// Refuses a picture of another size than the film's.
+/// Refuses an image of another size than the film's.
 fn expect_size(picture: &Picture, [width, height]: [u32; 2]) -> Result<(), ReportError> {
     let pixels = width as usize * height as usize;
     if [picture.width, picture.height] == [width, height] && picture.rgb.len() == 3 * pixels {
@@ -123,11 +123,11 @@ fn expect_size(picture: &Picture, [width, height]: [u32; 2]) -> Result<(), Repor
     })
 }
 
-/// How long pictures are shown, in whole units.
+/// Display times in whole units, without accumulating rounding errors.
 #[derive(Debug)]
 struct Delays {
     units_per_second: f64,
-    /// Seconds, and units that were given out.
+    /// Total seconds, and units used so far.
     seconds: f64,
     units: u64,
 }
@@ -141,7 +141,7 @@ impl Delays {
         }
     }
 
-    /// The units of the next picture.
+    /// The units of the next image.
     fn next(&mut self, seconds: f64) -> u16 {
         self.seconds += seconds.max(0.0);
         let units = (self.seconds * self.units_per_second).round() as u64;
@@ -158,7 +158,7 @@ mod tests {
 
     const SIZE: [u32; 2] = [12, 9];
 
-    /// Pictures of which each changes the one before in some of its pixels, and how long each is shown.
+    /// Images that each change some pixels of the one before, with display times.
     fn film() -> impl Strategy<Value = Vec<(Picture, f64)>> {
         let pixels = (SIZE[0] * SIZE[1]) as usize;
         let change = (0..pixels, 1..pixels, prop::array::uniform3(any::<u8>()), 1u8..9);
@@ -191,7 +191,7 @@ mod tests {
         bytes
     }
 
-    /// The pictures of a GIF as a viewer composes them, and their hundredths of a second.
+    /// The images of a GIF as composed by a viewer, with their hundredths of a second.
     fn seen_in_gif(bytes: &[u8]) -> Vec<(Vec<u8>, u16)> {
         let mut options = ::gif::DecodeOptions::new();
         options.set_color_output(::gif::ColorOutput::RGBA);
@@ -216,7 +216,7 @@ mod tests {
         seen
     }
 
-    /// The same of an animated PNG, in milliseconds.
+    /// The same for an animated PNG, in milliseconds.
     fn seen_in_apng(bytes: &[u8]) -> Vec<(Vec<u8>, u16)> {
         let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().unwrap();
         let frames = reader
@@ -243,9 +243,9 @@ mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig { cases: crate::tier::quick_or_full(24, 48), ..ProptestConfig::default() })]
-        /// As many pictures as there were, each shown so long that no sum of times is off by more than half a unit.
+        /// The number of images is unchanged, and no cumulative time is off by more than half a unit.
         #[test]
-        fn films_show_what_was_put_into_them(pictures in film()) {
+        fn films_show_the_images_that_were_added(pictures in film()) {
             for kind in [FilmKind::Gif, FilmKind::Apng] {
                 let bytes = written(kind, &pictures);
                 let (seen, unit) = match kind {
@@ -255,7 +255,7 @@ mod tests {
                 prop_assert_eq!(seen.len(), pictures.len());
                 let (mut shown, mut wanted) = (0.0, 0.0);
                 for (place, ((rgb, delay), (picture, seconds))) in seen.iter().zip(&pictures).enumerate() {
-                    // So few pixels have no more colours than a palette has.
+                    // So few pixels have no more colours than a palette.
                     prop_assert_eq!(error(rgb, &picture.rgb), 0, "{:?}, picture {}", kind, place);
                     shown += f64::from(*delay) * unit;
                     wanted += seconds;
@@ -268,7 +268,7 @@ mod tests {
     }
 
     #[test]
-    fn many_colors_are_near_what_they_were_in_a_gif_and_the_same_in_a_png() {
+    fn many_colors_are_close_in_a_gif_and_exact_in_a_png() {
         let (width, height) = (96, 96);
         let picture = |shift: u32| Picture {
             width,
@@ -300,7 +300,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_film_is_refused() {
+    fn invalid_films_are_refused() {
         let code = |size, count| {
             let film = Film::new(FilmKind::Gif, Vec::new(), size, count);
             film.err().map(|error| error.code())

@@ -1,32 +1,32 @@
-//! [`Palette`]: the few colours that stand for many. Boxes of colours are cut in two where that takes away most of the error, until there
-//! are as many as colours are wanted.
+//! [`Palette`]: reduces many colours to a few. Boxes of colours are split in two where that removes most of the error, until
+//! there are as many as wanted.
 //!
 //! Source: Wan, Wong and Prusinkiewicz 1988, variance-based cuts, each at the mean.
 
-/// A few colours, and which of them stands for each of many.
+/// A few colours, and a mapping from many colours to them.
 #[derive(Debug, Default)]
 pub(super) struct Palette {
     colors: Vec<[u8; 3]>,
-    /// Every colour with its place in the palette, rising.
+    /// Every colour with its palette index, sorted.
     places: Vec<([u8; 3], u8)>,
 }
 
-/// Colours that one will stand for: a range of a list.
+/// A range of a list of colours, which one palette colour will represent.
 #[derive(Clone, Copy, Debug)]
 struct Cell {
     start: usize,
     end: usize,
-    /// The channel in which they differ most, where it is cut, and the sum of squared differences from the mean in it.
+    /// The channel with the largest variation, where it is cut, and its sum of squared differences from the mean.
     channel: usize,
     mean: f64,
     error: f64,
 }
 
-/// A colour, and how many pixels have it.
+/// A colour, and its number of pixels.
 type Counted = ([u8; 3], u32);
 
 impl Palette {
-    /// At most `most` colours, 1 to 256, for pixels of these; the very same where there are no more.
+    /// At most `most` colours, 1 to 256, for these pixels; the exact colours if there are no more.
     pub(super) fn new(pixels: impl Iterator<Item = [u8; 3]>, most: usize) -> Self {
         let mut sorted: Vec<[u8; 3]> = pixels.collect();
         sorted.sort_unstable();
@@ -56,7 +56,7 @@ impl Palette {
             } = cells[worst];
             let within = &mut counted[start..end];
             within.sort_by_key(|(color, _)| (color[channel], *color));
-            // Some lie above the mean and some below, since they differ.
+            // The colours differ, so some lie above the mean and some below.
             let middle = start + within.partition_point(|(color, _)| f64::from(color[channel]) <= mean);
             cells[worst] = Cell::of(&counted, start, middle);
             cells.push(Cell::of(&counted, middle, end));
@@ -78,7 +78,7 @@ impl Palette {
         &self.colors
     }
 
-    /// The place of the colour that stands for one of those that the palette was made for.
+    /// The palette index for one of the colours that the palette was made for.
     pub(super) fn place(&self, color: [u8; 3]) -> u8 {
         let found = self.places.binary_search_by_key(&color, |(known, _)| *known);
         found.map_or(0, |place| self.places[place].1)
@@ -102,7 +102,7 @@ impl Cell {
                 within.iter().map(value).sum()
             };
             let mean = moment(1) / weight;
-            // All of one value: the sums may leave a little.
+            // All values are equal, but the sums may leave a small rest.
             let is_one = within.iter().all(|(color, _)| color[channel] == within[0].0[channel]);
             let error = if is_one { 0.0 } else { moment(2) - mean * mean * weight };
             if error > cell.error {
@@ -130,10 +130,10 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// No more colours than are wanted; the very same where they are enough; and each colour stands nearer to its own, on the whole,
-        /// than to the mean of all.
+        /// There are no more colours than wanted; they are exact if that is enough; and in total, colours are closer to their
+        /// palette colours than to the overall mean.
         #[test]
-        fn few_colors_stand_for_many(
+        fn few_colors_represent_many(
             pixels in prop::collection::vec(prop::array::uniform3(any::<u8>()), 0..300),
             most in 1usize..256,
         ) {

@@ -1,6 +1,4 @@
 //! One lifetime on the page: facts, metrics, the curriculum, its figures, its tasks.
-//!
-//! Not here: what stands around the lifetimes, see the folder's `mod.rs`.
 
 use driftworld_metrics::{BlockSubtype, BlockType, Lifetime, LifetimeMetrics};
 use driftworld_text::when;
@@ -11,27 +9,27 @@ use crate::ReportError;
 use crate::figure::{Figure, FigureOptions, Figures, Layout};
 use crate::words::shown;
 
-/// One lifetime, drawn and written.
+/// A lifetime rendered as HTML.
 #[derive(Debug, Clone, Default)]
 pub struct Chapter {
     pub(super) name: String,
     pub(super) body: Markup,
 }
 
-/// How a lifetime is drawn, and what its reader should know.
+/// Options of a chapter, and information for its readers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ChapterOptions {
-    /// How figures are drawn.
+    /// Options of the figures.
     pub figures: FigureOptions,
-    /// Which figures are on the page; default all.
+    /// The figures on the page; default all.
     pub shown: Vec<Figure>,
-    /// Whether learning was smoothed before it was judged; default yes.
+    /// Whether learning was smoothed before scoring; default yes.
     pub smoothed: bool,
-    /// What else the log says of itself, by name: agent, scenario, policy.
+    /// Further entries of the log, by name: agent, scenario, policy.
     pub facts: Vec<(String, String)>,
-    /// Warnings of the log's reader, and the like.
+    /// Warnings, such as those of the log's reader.
     pub warnings: Vec<String>,
-    /// A sentence under the timeline: where its distances come from, or why there are none.
+    /// A sentence under the timeline: the source of its distances, or why there are none.
     pub distance_note: String,
 }
 
@@ -49,7 +47,7 @@ impl Default for ChapterOptions {
 }
 
 impl Chapter {
-    /// Draws and writes a lifetime. The metrics are those that were computed of it.
+    /// Renders a lifetime with its metrics.
     ///
     /// # Errors
     /// Those of [`Figures::of`], and [`ReportError::Drawing`].
@@ -133,7 +131,7 @@ impl Chapter {
     }
 }
 
-/// How many blocks of learning or of evaluation there are, and how many of them are asleep.
+/// Numbers of blocks of a kind: all, and sleeping ones.
 fn blocks_of(lifetime: &Lifetime, kind: BlockType) -> (usize, usize) {
     let regimes = lifetime.regimes().iter();
     let of_kind = regimes.filter(|regime| regime.block_type == kind);
@@ -145,7 +143,7 @@ fn blocks_of(lifetime: &Lifetime, kind: BlockType) -> (usize, usize) {
     })
 }
 
-/// How much of what is drawn is sleep, where there is any.
+/// The amount of sleep in the figures, if there is any.
 fn asleep_blocks(lifetime: &Lifetime) -> String {
     let [learning, evaluation] = [BlockType::Train, BlockType::Test].map(|kind| blocks_of(lifetime, kind).1);
     when(learning + evaluation > 0, || {
@@ -154,7 +152,7 @@ fn asleep_blocks(lifetime: &Lifetime) -> String {
     })
 }
 
-/// Why a figure is not there.
+/// The reason why a figure is missing.
 fn absent(figure: Figure) -> &'static str {
     match figure {
         Figure::Experts => "No single-task expert was given for any task learned, so there is nothing to compare with.",
@@ -163,7 +161,7 @@ fn absent(figure: Figure) -> &'static str {
     }
 }
 
-/// What is in a figure, for those who cannot see it.
+/// Alternative text of a figure.
 fn alternative(lifetime: &Lifetime, figure: Figure) -> String {
     let tasks = lifetime.tasks().len();
     let blocks = lifetime.regimes().len();
@@ -176,14 +174,14 @@ fn alternative(lifetime: &Lifetime, figure: Figure) -> String {
     }
 }
 
-/// How much was lived, and by what it is judged.
+/// The extent of the lifetime, and the basis of its scores.
 fn facts(lifetime: &Lifetime, metrics: &LifetimeMetrics, said: &[(String, String)]) -> Markup {
     let blocks = match blocks_of(lifetime, BlockType::Train) {
         (all, 0) => count(all),
         (all, asleep) => format!("{} ({} asleep)", count(all), count(asleep)),
     };
     let mut facts: Vec<(String, String)> = said.iter().map(|(name, value)| (shown(name), shown(value))).collect();
-    // How good the agent is comes first: the metrics, scaled by the lifetime's own range, do not say it.
+    // The agent's performance comes first: the metrics, scaled by the lifetime's own range, do not show it.
     for (column, means) in &metrics.as_logged {
         for (mean, when) in [(means.learning, "learning"), (means.evaluation, "evaluations")] {
             if let Some(mean) = mean {

@@ -1,4 +1,4 @@
-//! The table of metrics: each value, what it says, whether that is good, and how the tasks differ in it.
+//! The table of metrics: each value, its meaning, whether it is good, and its spread over tasks.
 
 use std::collections::BTreeMap;
 
@@ -88,7 +88,7 @@ pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics) -> Result<Ma
     })
 }
 
-/// The contrast that answers the same question as a ratio, better.
+/// The contrast that answers the same question better than a ratio.
 fn contrast_of(name: &str) -> Option<&'static str> {
     match name {
         "forward_transfer_ratio" => Some("forward_transfer_contrast"),
@@ -107,7 +107,7 @@ fn sentence(words: &str) -> String {
     first + letters.as_str()
 }
 
-/// Where the value would lie if the agent had never changed.
+/// The range of the value if the agent had never changed.
 pub(super) fn null_band(band: Option<NullBand>) -> Markup {
     html! {
         @if let Some(band) = band {
@@ -117,12 +117,12 @@ pub(super) fn null_band(band: Option<NullBand>) -> Markup {
     }
 }
 
-/// The standard error of a value over worlds, where it is known.
+/// The standard error of a value over worlds, if known.
 fn standard_error(band: Option<NullBand>) -> Option<String> {
     Some(number(band?.standard_error?))
 }
 
-/// How words are chosen, for those who read the table.
+/// Explains to readers how the words are chosen.
 fn reading_rule() -> String {
     format!(
         "Words like “helps” need a value outside its null band, with p at most {LARGEST_P}, that differs from no effect by two \
@@ -132,7 +132,7 @@ fn reading_rule() -> String {
     )
 }
 
-/// The values of a metric for each task, by the task's place; of pairs, the first value of each, by the learned task's place.
+/// A metric's values for each task, by the task's index; for pairs, the first value of each, by the learned task's index.
 fn per_task(lifetime: &Lifetime, metrics: &LifetimeMetrics, name: &str) -> Vec<(usize, f64)> {
     let places: BTreeMap<&str, usize> = lifetime.tasks().iter().map(String::as_str).zip(0..).collect();
     let parts = metrics.parts(name).into_iter();

@@ -1,4 +1,4 @@
-//! Values over all lifetimes with their intervals, and comparisons of two agents. They are estimated elsewhere, by `driftworld_metrics`.
+//! Values over all lifetimes with their intervals, and comparisons of two agents.
 
 use driftworld_metrics::{
     BootstrapOptions, ComparedMetric, Estimate, Improvement, Interval, LARGEST_P, RepeatedMetric,
@@ -10,18 +10,18 @@ use super::verdict::{self, Verdict, pill};
 use super::{calm, count, metric_table, number};
 use crate::words::{short, shown};
 
-/// How likely one agent is to be better than another.
+/// The probabilities that one agent is better than another.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Comparison {
     /// The agent that may be better.
     pub agent: String,
-    /// The one it is held against.
+    /// The agent that it is compared with.
     pub other: String,
-    /// Metric by metric.
+    /// The comparison of each metric.
     pub metrics: Vec<ComparedMetric>,
 }
 
-/// Both, where there are any.
+/// Both parts, if there are any.
 pub(super) fn section(overall: &[RepeatedMetric], comparisons: &[Comparison], intervals: &BootstrapOptions) -> Markup {
     let percent = format!("{} %", short(intervals.confidence * 100.0, 2));
     html! {
@@ -80,7 +80,7 @@ fn values(rows: &[RepeatedMetric], percent: &str) -> Markup {
     }
 }
 
-/// Each caution once, with the metrics it is about, in the order of the table.
+/// Each caution once, with its metrics, in the order of the table.
 fn cautions(rows: &[RepeatedMetric]) -> Vec<(&str, Vec<String>)> {
     let mut found: IndexMap<&str, Vec<String>> = IndexMap::new();
     for row in rows {
@@ -158,9 +158,9 @@ fn improvement(comparison: &Comparison, percent: &str, confidence: f64) -> Marku
     }
 }
 
-/// Whether two agents are told apart, with a chance of at most `alpha` that equal ones are.
+/// Whether two agents differ, with a chance of at most `alpha` that equal ones appear to.
 fn better(improvement: &Improvement, alpha: f64) -> Option<Verdict> {
-    // What 1 - 0.95 rounds to must not make a difference.
+    // The rounding error of 1 - 0.95 must not matter.
     let alpha = alpha + 1e-12;
     let (class, sign, word) = match improvement.p_value? {
         p if p <= alpha && improvement.probability.value > 0.5 => ("good", "▲", "better"),

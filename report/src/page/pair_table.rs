@@ -1,4 +1,4 @@
-//! The tables of transfer: from each task that was learned to each other one, coloured like a map of heat.
+//! The tables of transfer: from each learned task to each other one, coloured like a heat map.
 
 use std::collections::BTreeMap;
 
@@ -9,10 +9,10 @@ use super::number;
 use super::verdict::{self, Verdict};
 use crate::words::shown;
 
-/// Tasks beyond these are in the files of metrics only.
+/// Further tasks are only in the metrics files.
 const MOST_TASKS: usize = 24;
 
-/// A table for each metric of pairs that has any. `called` are the tasks' names by those that the log has.
+/// A table for each pair metric with values. `called` maps a task's log name to its display name.
 pub(super) fn tables(metrics: &LifetimeMetrics, called: &BTreeMap<String, String>) -> Markup {
     let whole = |task: &String| called.get(task).unwrap_or(task).clone();
     let summary = metrics.summary();
@@ -24,7 +24,7 @@ pub(super) fn tables(metrics: &LifetimeMetrics, called: &BTreeMap<String, String
             .any(|task| metrics.pairs(task, name).is_some_and(|pairs| !pairs.is_empty()))
     };
     let found: Vec<&SummaryRow> = summary.iter().filter(|row| has(&row.name)).collect();
-    // A task that all variants have in common is said once.
+    // A task shared by all variants is named once.
     let task_of = |name: &&String| whole(name).split_once('#').map(|(task, _)| task.to_owned());
     let common = names.first().and_then(task_of);
     let common = common.filter(|task| names.iter().all(|name| task_of(name).as_ref() == Some(task)));

@@ -1,4 +1,4 @@
-//! What each task came to, which leads a lifetime: before it was learned, at its best, and at the end.
+//! The performance reached in each task, at the top of a lifetime: before learning, at its best, and at the end.
 
 use std::collections::BTreeMap;
 
@@ -9,13 +9,13 @@ use super::number;
 use super::verdict::{Verdict, pill};
 use crate::words::shown;
 
-/// Standard errors by which an evaluation after learning is above the first one of a task that gained something.
+/// Standard errors by which an evaluation after learning must exceed the first one to count as a gain.
 const CLEAR: f64 = 2.0;
 
-/// Tasks beyond these are in the files of metrics only.
+/// Further tasks are only in the metrics files.
 const MOST_ROWS: usize = 200;
 
-/// `called` are the tasks' names by those that the log has.
+/// `called` maps a task's log name to its display name.
 pub(super) fn section(metrics: &LifetimeMetrics, called: &BTreeMap<String, String>) -> Markup {
     let tasks = || metrics.reached.iter().filter(|(_, task)| !task.evaluations.is_empty());
     let verdicts: Vec<Verdict> = tasks().filter_map(|(_, task)| verdict(task)).collect();
@@ -64,7 +64,7 @@ pub(super) fn section(metrics: &LifetimeMetrics, called: &BTreeMap<String, Strin
     }
 }
 
-/// Whether a task was learned; `None` where it was not evaluated after it was learned.
+/// Whether a task was learned; `None` if it was not evaluated after learning.
 fn verdict(task: &Reached) -> Option<Verdict> {
     let (first, best) = (task.evaluations.first()?, task.best()?);
     let [before, after] = [first, best].map(|cell| cell.standard_error.unwrap_or(0.0));
@@ -78,7 +78,7 @@ fn verdict(task: &Reached) -> Option<Verdict> {
     Some(Verdict { class, sign, word })
 }
 
-/// The mean of an evaluation, as the part of the way from floor to ceiling where these are known.
+/// The mean of an evaluation, as a fraction of the range from floor to ceiling if these are known.
 fn level(found: Option<&EvaluationCell>) -> String {
     let Some(found) = found else {
         return "–".to_owned();

@@ -1,5 +1,4 @@
-//! How a reading looks, and what metrics are called: the colour and the sign only repeat the word. What the word is, and which
-//! way is good, is the metrics' to say.
+//! Display of readings, and names of metrics. Colour and sign only repeat the word, which comes from the metrics.
 
 use driftworld_metrics::{Direction, Reading};
 use maud::{Markup, html};
@@ -14,7 +13,7 @@ pub(super) struct Verdict {
 }
 
 impl Verdict {
-    /// A reading of a metric, in the metric's own words.
+    /// The verdict for a reading, in the metric's own words.
     pub(super) fn of(reading: Reading, metric: &str) -> Self {
         let (class, sign) = match reading {
             Reading::Good => ("good", "▲"),
@@ -26,15 +25,15 @@ impl Verdict {
     }
 }
 
-/// A judgement as it stands in a table.
+/// A verdict for a table.
 pub(super) fn pill(verdict: Verdict) -> Markup {
     html! { span class={ "verdict " (verdict.class) } { span aria-hidden="true" { (verdict.sign) " " } (verdict.word) } }
 }
 
-/// The least difference from no effect that the table of pairs tints.
+/// The smallest difference from no effect that is tinted in the table of pairs.
 const LEAST_OF_PAIRS: f64 = 0.05;
 
-/// The side of no effect on which a pair of tasks is, where the metric of all pairs has an effect at all.
+/// The side of no effect on which a pair of tasks lies, if the metric over all pairs has an effect.
 pub(super) fn of_pair(value: f64, good: Direction, whole: Option<Reading>) -> Reading {
     let is_named = matches!(whole, Some(Reading::Good | Reading::Bad | Reading::Mixed));
     let is_far = good
@@ -47,7 +46,7 @@ pub(super) fn of_pair(value: f64, good: Direction, whole: Option<Reading>) -> Re
     }
 }
 
-/// Which way is good, in a few words.
+/// The good direction, in a few words.
 pub(super) fn good_from(name: &str, direction: Direction) -> String {
     let neutral_is = if name.starts_with("ste_rel_perf") || name.starts_with("sample_efficiency") {
         "equal to the expert"
@@ -62,7 +61,7 @@ pub(super) fn good_from(name: &str, direction: Direction) -> String {
     }
 }
 
-/// The name of a metric in words; those of users are taken apart at their underscores.
+/// The name of a metric in words; user-defined names are split at underscores.
 pub(super) fn title(name: &str) -> String {
     let known = match name {
         "perf_recovery" => "Performance recovery",
@@ -92,7 +91,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_reading_has_its_word_and_its_sign() {
+    fn reading_has_its_word_and_sign() {
         let check = |reading: Reading, metric: &str, expected: &str| {
             let found = Verdict::of(reading, metric);
             assert_eq!(format!("{} {}", found.sign, found.word), expected);
@@ -106,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pair_is_tinted_where_all_pairs_show_an_effect_and_it_is_clearly_on_a_side() {
+    fn pair_is_tinted_if_all_pairs_show_an_effect_and_it_is_clearly_on_one_side() {
         let check = |value: f64, whole: Option<Reading>, expected: Reading| {
             assert_eq!(of_pair(value, Direction::HigherThan(1.0), whole), expected, "{value}");
         };
@@ -123,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_good_is_said_in_the_words_of_the_metric() {
+    fn good_direction_is_in_the_metrics_words() {
         let above = Direction::HigherThan(1.0);
         assert_eq!(
             good_from("sample_efficiency", above),

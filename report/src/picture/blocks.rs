@@ -1,4 +1,4 @@
-//! The picture of a curriculum: a row for each variant, a bar for each stretch of experiences.
+//! The image of a curriculum: a row for each variant, a bar for each stretch of experiences.
 
 use super::{Drawing, FAINT, INK, Level, Rgb, Side, WHITE, corner, middle, round_step, text_width, words};
 use crate::figure::task_color;
@@ -8,18 +8,18 @@ const ROW: i32 = 40;
 const BAR: i32 = 24;
 const TOP: i32 = 84;
 const WIDTH: i32 = 1200;
-/// Size of the rows' names, see `letters`.
+/// Size of the row names; see `letters`.
 const NAME: f32 = 17.5;
-/// How much of what is below it a bar before deployment hides.
+/// Opacity of a bar before deployment.
 const EARLY: f32 = 0.3;
 const EVALUATION: Rgb = [150, 154, 160];
-/// The most rows that are drawn; the variants beyond share the last.
+/// Largest number of rows; further variants share the last.
 const MOST_ROWS: usize = 60;
 
 /// One stretch of experiences of a variant.
 struct Stretch {
     row: usize,
-    /// The row that its drift leads to, and the progress at its ends.
+    /// The row of its drift's target, and the progress at its ends.
     drift: Option<(usize, [f64; 2])>,
     from: f64,
     to: f64,
@@ -27,8 +27,7 @@ struct Stretch {
     phase: Phase,
 }
 
-/// The blocks over the experiences: filled where the agent learns, grey where it is frozen, outlined before deployment, slanted
-/// where the variant drifts.
+/// The blocks over the experiences: filled in learning, grey in evaluation, outlined before deployment, slanted in a drift.
 pub fn blocks(scenario: &Scenario) -> Drawing {
     let (rows, stretches) = stretches(scenario);
     let total = scenario.num_experiences().max(1) as f64;
@@ -52,7 +51,7 @@ pub fn blocks(scenario: &Scenario) -> Drawing {
         picture.write(name.anchored(Side::Right, Level::Middle));
     }
     for stretch in &stretches {
-        // A stretch too short to be seen is drawn a pixel wide.
+        // Stretches too short to see are drawn one pixel wide.
         let (start, end) = (x(stretch.from), x(stretch.to).max(x(stretch.from) + 1));
         let color = task_color(stretch.row);
         let along = |progress: f64| match stretch.drift {
@@ -96,7 +95,7 @@ fn fill(picture: &mut Drawing, corners: &[(i32, i32)], color: Rgb, alpha: f32) {
     picture.tint(points, color, alpha);
 }
 
-/// The kinds of bars that a scenario has: name, colour, alpha, height. A sample of each stands under the title.
+/// The kinds of bars in a scenario: name, colour, alpha, height. Samples are shown under the title.
 fn kinds(scenario: &Scenario) -> Vec<(&'static str, Rgb, f32, i32)> {
     let has = |kind: BlockKind, phase: Option<Phase>| {
         let is = |block: &Block| block.kind == kind && phase.is_none_or(|phase| block.phase == phase);
@@ -115,7 +114,7 @@ fn kinds(scenario: &Scenario) -> Vec<(&'static str, Rgb, f32, i32)> {
     kinds
 }
 
-/// The names of the rows, and every stretch.
+/// The names of the rows, and all stretches.
 fn stretches(scenario: &Scenario) -> (Vec<String>, Vec<Stretch>) {
     let mut rows: Vec<String> = Vec::new();
     let mut row_of = |name: String| {
@@ -129,7 +128,7 @@ fn stretches(scenario: &Scenario) -> (Vec<String>, Vec<Stretch>) {
             rows.len() - 1
         })
     };
-    // Learned variants first, in the order in which they are met: what evaluation adds comes below.
+    // Learned variants first, in order of appearance, then those that are only evaluated.
     let regimes = |kind: BlockKind| {
         let blocks = scenario.blocks.iter().filter(move |block| block.kind == kind);
         blocks.flat_map(|block| &block.regimes)
@@ -164,7 +163,7 @@ fn id(regime: &Regime) -> String {
     format!("{}#{}", regime.task, regime.variant_name())
 }
 
-/// Round numbers from 0 to the last experience, at most a dozen.
+/// Round numbers from 0 to the last experience, at most twelve.
 fn ticks(total: f64) -> Vec<f64> {
     let step = round_step(total / 10.0).max(1.0);
     let count = (total / step).floor() as u32;
@@ -184,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn the_legend_names_what_is_drawn_alone() {
+    fn legend_names_only_what_is_drawn() {
         let names = |text: &str| {
             let found = kinds(&Scenario::from_json("s", text).unwrap()).into_iter();
             found.map(|kind| kind.0).collect::<Vec<_>>()
@@ -201,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn a_drift_leads_to_the_row_of_the_variant_at_its_end() {
+    fn drift_leads_to_the_row_of_its_last_variant() {
         let text = r#"{ "name": "s", "blocks": [
             { "type": "learning", "regimes": [{ "task": "t", "variant": "a", "count": 4, "drift": { "to": "a", "values": { "x": 1 }, "name": "b" } }] },
             { "type": "evaluation", "regimes": [{ "task": "t", "variant": "a", "values": { "x": 1 }, "name": "b", "count": 1 }] } ] }"#;

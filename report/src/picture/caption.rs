@@ -1,29 +1,29 @@
-//! Captions: a few facts above a picture, in as many lines as they need at its width. Which facts, the caller knows.
+//! Captions: a few facts above an image, in as many lines as they need at its width.
 
 use super::lines::cut;
 use super::{Drawing, INK, Picture, TextLine, text_lines, text_width};
 
-/// The size of the letters, and of those above pictures narrower than [`NARROW`].
+/// Letter sizes, normal and above images narrower than [`NARROW`].
 const LETTERS: f32 = 15.0;
 const SMALL_LETTERS: f32 = 11.0;
 const NARROW: u32 = 200;
 
-/// Left of the words, and right of them.
+/// To the left and right of the text.
 const MARGIN: f32 = 6.0;
-/// Above the words.
+/// Above the text.
 const ABOVE: u32 = 5;
-/// Between two facts in a line.
+/// Separator of two facts in a line.
 const PARTED: &str = " · ";
 
-/// The most lines of a caption; what needs more is cut off.
+/// Largest number of lines of a caption; the rest is cut off.
 pub const MAX_CAPTION_LINES: usize = 6;
 
 fn letters(width: u32) -> f32 {
     if width < NARROW { SMALL_LETTERS } else { LETTERS }
 }
 
-/// Facts in lines above a picture of this width: facts stay whole where they fit, else they are broken between words.
-/// At most [`MAX_CAPTION_LINES`].
+/// Breaks facts into lines for an image of this width: facts stay whole if they fit, otherwise they are broken between words. At
+/// most [`MAX_CAPTION_LINES`].
 pub fn caption_lines(facts: &[String], width: u32) -> Vec<String> {
     let size = letters(width);
     let room = (width as f32 - 2.0 * MARGIN).max(0.0);
@@ -46,8 +46,8 @@ pub fn caption_lines(facts: &[String], width: u32) -> Vec<String> {
 }
 
 impl Picture {
-    /// The picture with facts above it, in room for so many lines ([`caption_lines`]): pictures of a film have the same
-    /// room, however much is said of each.
+    /// The image with facts above it, in room for `num_lines` lines ([`caption_lines`]): all images of a film have the same room,
+    /// however long their captions.
     #[must_use]
     pub fn captioned(&self, facts: &[String], num_lines: usize) -> Self {
         let size = letters(self.width);
@@ -76,7 +76,7 @@ mod tests {
     }
 
     #[test]
-    fn facts_go_on_in_further_lines_where_a_picture_is_narrow() {
+    fn facts_continue_on_further_lines_above_narrow_images() {
         let facts = facts(&["12.3 s", "return −100.7", "touches the red things: +100.0"]);
         assert_eq!(
             caption_lines(&facts, 480),
@@ -93,7 +93,7 @@ mod tests {
     }
 
     proptest! {
-        /// No line is wider than its picture, and above all but the narrowest every word is there, in order.
+        /// No line is wider than its image, and except above the narrowest every word is there, in order.
         #[test]
         fn no_line_is_too_wide_and_no_word_is_lost(
             facts in prop::collection::vec("[a-z0-9+−.]{1,9}( [a-z0-9]{1,9}){0,3}", 1..5),
@@ -110,9 +110,9 @@ mod tests {
             }
         }
 
-        /// Pictures of one size and one number of lines stay of one size, whatever is said of them.
+        /// Images of one size and one number of lines stay the same size, whatever their captions.
         #[test]
-        fn pictures_of_a_film_have_one_size(width in 1u32..300, num_lines in 0usize..6, said in "[a-z ]{0,80}") {
+        fn captioned_images_of_a_film_have_one_size(width in 1u32..300, num_lines in 0usize..6, said in "[a-z ]{0,80}") {
             let picture = Picture::blank(width, 20);
             let (one, other) = (picture.captioned(&[said], num_lines), picture.captioned(&[], num_lines));
             prop_assert_eq!((one.width, one.height), (other.width, other.height));

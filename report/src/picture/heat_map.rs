@@ -2,7 +2,7 @@
 
 use super::{Drawing, INK, Level, Rgb, Side, TextLine, WHITE, corner, letters, text_width};
 
-/// Sizes of the letters of names and of the title, in pixels.
+/// Letter sizes of names and title, in pixels.
 const LABEL: f32 = 14.0;
 const TITLE: f32 = 20.0;
 
@@ -15,7 +15,7 @@ pub fn heat_map(title: &str, labels: &[String], value: impl Fn(usize, usize) -> 
         .max()
         .unwrap_or(0);
     let cell = (640 / n.max(1)).clamp(16, 92);
-    // Names that are wider than a column stand upright.
+    // Names wider than a column are written vertically.
     let upright = longest > cell - 6;
     let (left, top) = (26 + longest, if upright { 64 + longest } else { 88 });
     let width = (left + cell * n).max(16 + text_width(title, TITLE).ceil() as i32) + 24;

@@ -1,12 +1,12 @@
-//! Texts in lines of a width: broken at blanks, and only where need be inside what belongs together. How many lines there is
-//! room for, the callers know.
+//! Breaks texts into lines of a width: at spaces, and inside units such as numbers only if necessary.
 
 use driftworld_text::{NO_BREAK, with_blanks};
 
 use super::text_width;
 
-/// A text in lines of this width at most, in letters of `size` pixels: broken at blanks; inside what is [whole](driftworld_text::whole) behind commas and
-/// before brackets, and between words without numbers, if it is wider than a line. What is still too wide is cut.
+/// Breaks a text into lines of at most this width, at letter size `size` in pixels. Lines break at spaces;
+/// [whole](driftworld_text::whole) parts wider than a line break after commas and before brackets, and between words without
+/// numbers. Anything still too wide is cut.
 ///
 /// # Example
 /// ```
@@ -28,10 +28,10 @@ pub fn text_lines(text: &str, size: f32, width: f32) -> Vec<String> {
     lines
 }
 
-/// The pieces of a text between which lines may be broken.
+/// The pieces of a text between which lines may break.
 fn pieces(text: &str, fits: &dyn Fn(&str) -> bool) -> Vec<String> {
     let mut pieces = vec![text.to_owned()];
-    // From where it is best broken to where it is worst.
+    // From the best break to the worst.
     let ways: [fn(&str, char, &str) -> bool; 4] = [
         |_, blank, _| blank == ' ',
         |before, _, behind| before.ends_with([',', ';', ':']) || behind.starts_with('('),
@@ -52,7 +52,7 @@ fn pieces(text: &str, fits: &dyn Fn(&str) -> bool) -> Vec<String> {
     pieces.filter(|piece| !piece.is_empty()).collect()
 }
 
-/// A text broken at the blanks of one kind and of the other that may.
+/// Splits a text at ordinary spaces, or at no-break spaces that `may` break.
 fn broken(text: &str, may: fn(&str, char, &str) -> bool) -> Vec<String> {
     let mut pieces = Vec::new();
     let mut begin = 0;
@@ -68,12 +68,12 @@ fn broken(text: &str, may: fn(&str, char, &str) -> bool) -> Vec<String> {
     pieces
 }
 
-/// Whether a letter at the border of a word is one of a number or its unit.
+/// Whether a letter at the edge of a word belongs to a number or its unit.
 fn is_of_number(letter: char) -> bool {
     letter.is_ascii_digit() || "×%−-+".contains(letter)
 }
 
-/// A text that is cut where it is too wide.
+/// A text, cut off if it is too wide.
 pub(super) fn cut(text: &str, size: f32, width: f32) -> String {
     if text_width(text, size) <= width {
         return text.to_owned();
@@ -95,9 +95,9 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// Every word is there, in order; no line is too wide; and what is whole and fits into a line stands in one.
+        /// Every word is there, in order; no line is too wide; and whole parts that fit into a line are not broken.
         #[test]
-        fn what_belongs_together_stays_together(
+        fn whole_parts_stay_together(
             facts in prop::collection::vec("[a-z_]{1,12} [0-9]{1,4} (m|s|× [0-9]{1,2} m)( \\([0-9]{1,3}\\))?", 1..8),
             width in 40_u16..500,
         ) {
@@ -116,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_too_wide_is_broken_behind_commas_first_and_in_no_number() {
+    fn too_wide_parts_break_after_commas_first_and_never_in_numbers() {
         let text = whole("layout maze 8 × 8, 50 % of dead ends open (maze 8 × 8)");
         let lines = |width| text_lines(&text, 13.0, width);
         assert_eq!(lines(400.0), ["layout maze 8 × 8, 50 % of dead ends open (maze 8 × 8)"]);

@@ -1,7 +1,5 @@
-//! Pictures with words in them: sheets of views, heat maps, maps of paths, blocks of curricula, points on axes. Each is a
-//! [`Drawing`], of which PNG and SVG are made.
-//!
-//! Not here: the views themselves, which `env` renders; figures of lifetimes, see `figure`; files, which are the caller's.
+//! Images with text: sheets of views, heat maps, maps of paths, blocks of curricula, scatter plots. Each is a [`Drawing`], which
+//! becomes PNG or SVG.
 
 mod blocks;
 mod caption;
@@ -27,17 +25,17 @@ const INK: Rgb = [38, 42, 48];
 const FAINT: Rgb = [110, 116, 124];
 const WHITE: Rgb = [255; 3];
 
-/// Words from a corner on, or from where they are anchored then, in letters of a height.
+/// Text at a corner, or at its anchor if one is set, with letters of a height.
 fn words(text: impl Into<String>, at: (i32, i32), height: f64, color: Rgb) -> TextLine {
     TextLine::new(text, corner(at), letters(height), color)
 }
 
-/// The size of letters whose font is so high from its lowest to its highest line.
+/// The letter size of a font with this height from its lowest to its highest line.
 fn letters(height: f64) -> f32 {
     (height / 1.24) as f32
 }
 
-/// The least of 1, 2, 5 and 10 times a power of ten that is not below a number.
+/// The smallest of 1, 2, 5 and 10 times a power of ten that is at least the given number.
 #[expect(clippy::disallowed_methods, reason = "ticks of a figure, rounded to what is drawn")]
 fn round_step(least: f64) -> f64 {
     let power = 10_f64.powf(least.log10().floor());

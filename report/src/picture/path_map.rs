@@ -1,4 +1,4 @@
-//! A picture of a path: the items on a map of their distances, joined in their order. Where they stand is `similarity`'s.
+//! The image of a path: the items on a map of their distances, joined in order.
 
 #![expect(
     clippy::disallowed_methods,
@@ -10,17 +10,17 @@ use driftworld_similarity::{DistanceMatrix, Method, Ordering, classical_map};
 use super::{Drawing, FAINT, INK, Level, Rgb, Side, TextLine, WHITE, text_width};
 use crate::extent;
 
-/// Twice the size of the picture: places are rounded to half a pixel.
+/// Twice the size of the image, so that positions are rounded to half a pixel.
 const SIZE: (i32, i32) = (2000, 1600);
-/// Free of items at the left and right, above, and below.
+/// Margins without items: left and right, above, and below.
 const MARGINS: [i32; 3] = [220, 240, 120];
-/// The size of the items' names, and below which height they stand, in pixels of the picture.
+/// The size of the items' names, and the height above which they may not be, in pixels of the image.
 const TEXT: f32 = 13.0;
 const TITLES: f32 = 66.0;
-/// With more items than this only the ends are named.
+/// With more items only the ends are named.
 const MAX_NAMED: usize = 60;
 
-/// Draws an order of items as a path over a map of their distances, by classical scaling.
+/// Draws an order of items as a path on a map of their distances, by classical scaling.
 pub fn path_map(matrix: &DistanceMatrix, method: Method, ordering: &Ordering) -> Drawing {
     let map = classical_map(matrix);
     let places = on_paper(&map.points);
@@ -72,17 +72,17 @@ pub fn path_map(matrix: &DistanceMatrix, method: Method, ordering: &Ordering) ->
     picture
 }
 
-/// The middle of a pixel of the doubled paper in pixels of the picture.
+/// The centre of a pixel at double size, in pixels of the image.
 fn middle((x, y): (i32, i32)) -> [f32; 2] {
     [x, y].map(|pixel| (pixel as f32 + 0.5) * 0.5)
 }
 
-/// A place on the doubled paper in pixels of the picture.
+/// A position at double size, in pixels of the image.
 fn halved((x, y): (i32, i32)) -> [f32; 2] {
     [x as f32 / 2.0, y as f32 / 2.0]
 }
 
-/// What all labels begin with, up to the `#` behind a task's name; nothing if they are of several tasks.
+/// The common prefix of all labels, up to the `#` after the task's name; empty for several tasks.
 fn common_task(labels: &[String]) -> &str {
     let task = |label: &str| label.rfind('#').map_or(0, |at| at + 1);
     let Some(first) = labels.first() else { return "" };
@@ -94,7 +94,7 @@ fn common_task(labels: &[String]) -> &str {
     }
 }
 
-/// The map's points as pixels: as large as fits, not distorted, the second axis upwards.
+/// The map's points as pixels: as large as possible, undistorted, with the second axis upwards.
 fn on_paper(points: &[[f64; 2]]) -> Vec<(i32, i32)> {
     let bounds = |axis: usize| extent(points.iter().map(|point| point[axis]));
     let [x, y] = [bounds(0), bounds(1)];
@@ -115,14 +115,14 @@ fn on_paper(points: &[[f64; 2]]) -> Vec<(i32, i32)> {
     points.iter().map(pixel).collect()
 }
 
-/// From orange at the first to blue at the last.
+/// Interpolates from orange at the first item to blue at the last.
 fn along(place: usize, last: usize) -> Rgb {
     let share = if last == 0 { 0.0 } else { place as f64 / last as f64 };
     let mix = |from: f64, to: f64| (from + (to - from) * share) as u8;
     [mix(236.0, 22.0), mix(140.0, 82.0), mix(44.0, 170.0)]
 }
 
-/// A triangle in the middle of a step that points along it; none where it would be longer than the step.
+/// A triangle in the middle of a step, pointing along it; `None` if it would be longer than the step.
 fn arrow(from: (i32, i32), to: (i32, i32), size: i32) -> Option<[(i32, i32); 3]> {
     let (dx, dy) = (f64::from(to.0 - from.0), f64::from(to.1 - from.1));
     let length = dx.hypot(dy);
@@ -139,15 +139,15 @@ fn arrow(from: (i32, i32), to: (i32, i32), size: i32) -> Option<[(i32, i32); 3]>
     Some([at(1.0, 0.0), at(-0.7, 0.8), at(-0.7, -0.8)])
 }
 
-/// A name in the picture: its box (left, top, right, bottom), and where a line leads from it to its point if it is far off.
+/// A name in the image: its box (left, top, right, bottom), and the line to its point if it is far away.
 struct Name {
     text: String,
     place: [f32; 4],
     leader: Option<[[f32; 2]; 2]>,
 }
 
-/// Each item's place in the order and its name, beside its point where they cover nothing else; all items, or the two ends.
-/// What finds no room beside its point stands farther off, with a line to it.
+/// The position in the order and the name of each item, beside its point where nothing is covered; for all items, or the two
+/// ends. Names without room beside their points stand farther away, with a line.
 fn names(matrix: &DistanceMatrix, ordering: &Ordering, path: &[[f32; 2]], ends_only: bool) -> Vec<Name> {
     let last = path.len().saturating_sub(1);
     let task = common_task(matrix.labels());
@@ -203,7 +203,7 @@ fn names(matrix: &DistanceMatrix, ordering: &Ordering, path: &[[f32; 2]], ends_o
     names
 }
 
-/// Where a name of this size may stand: at each side of its point, then in rings around it.
+/// Candidate positions for a name of this size: on each side of its point, then in rings around it.
 fn spots([x, y]: [f32; 2], [wide, high]: [f32; 2]) -> impl Iterator<Item = ([f32; 4], Option<[[f32; 2]; 2]>)> {
     const DIRECTIONS: u16 = 24;
     let ring = move |number: u16| {
@@ -211,7 +211,7 @@ fn spots([x, y]: [f32; 2], [wide, high]: [f32; 2]) -> impl Iterator<Item = ([f32
         (0..DIRECTIONS).map(move |direction| {
             let angle = std::f32::consts::TAU * f32::from(direction) / f32::from(DIRECTIONS);
             let (dx, dy) = (angle.cos(), angle.sin());
-            // The box touches the ring with the side or the corner that is next to the point.
+            // The box touches the ring with the side or corner nearest to the point.
             let (near_x, near_y) = (x + dx * off, y + dy * off);
             let left = near_x - wide * (0.5 - 0.5 * (2.0 * dx).clamp(-1.0, 1.0));
             let top = near_y - high * (0.5 - 0.5 * dy);
@@ -225,7 +225,7 @@ fn spots([x, y]: [f32; 2], [wide, high]: [f32; 2]) -> impl Iterator<Item = ([f32
     (0..24).flat_map(ring)
 }
 
-/// Small squares along a line, which names had better not cover.
+/// Small squares along a line, which names should not cover.
 fn along_line(from: [f32; 2], to: [f32; 2], half: f32) -> impl Iterator<Item = [f32; 4]> {
     let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
     let parts = ((dx.abs().max(dy.abs()) / 6.0) as u16).max(1);
@@ -236,7 +236,7 @@ fn along_line(from: [f32; 2], to: [f32; 2], half: f32) -> impl Iterator<Item = [
     })
 }
 
-/// How many pixels two rectangles share.
+/// The area shared by two rectangles, in pixels.
 fn overlap(a: &[f32; 4], b: &[f32; 4]) -> f32 {
     let wide = a[2].min(b[2]) - a[0].max(b[0]);
     let high = a[3].min(b[3]) - a[1].max(b[1]);
@@ -248,7 +248,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_map_fills_the_paper_and_stands_upright() {
+    fn map_fills_the_paper_upright() {
         let [side, top, bottom] = MARGINS;
         let at = on_paper(&[[0.0, 0.0], [4.0, 0.0], [2.0, 1.0]]);
         assert_eq!((at[0].0, at[1].0), (side, SIZE.0 - side));
@@ -257,15 +257,15 @@ mod tests {
     }
 
     #[test]
-    fn rectangles_share_what_lies_in_both() {
+    fn overlap_is_the_shared_area() {
         let shared = |b: [f32; 4]| overlap(&[0.0, 0.0, 10.0, 10.0], &b);
         assert!((shared([5.0, 8.0, 20.0, 20.0]) - 10.0).abs() < 1e-6);
         assert!(shared([10.0, 0.0, 20.0, 10.0]) < 1e-6);
     }
 
-    /// Twenty items of which most lie in one place: no name covers another, and all are on the paper.
+    /// Twenty items, most of them in one place: no name covers another, and all are inside the image.
     #[test]
-    fn names_of_a_crowd_do_not_pile_up() {
+    fn names_of_a_crowd_do_not_overlap() {
         let labels: Vec<String> = (0..20).map(|index| format!("task#a_variant_{index}")).collect();
         let far = |a: usize, b: usize| {
             if a == b {

@@ -1,4 +1,4 @@
-//! Points on axes with their names beside them. What the points are is the caller's.
+//! Scatter plots with named points.
 
 #![expect(
     clippy::disallowed_methods,
@@ -8,31 +8,31 @@
 use super::{Drawing, FAINT, INK, Level, Rgb, Side, corner, letters, middle, round_step, text_width, words};
 use crate::extent;
 
-/// A point with a name.
+/// A named point.
 #[derive(Clone, Debug)]
 pub struct Point {
-    /// To the right.
+    /// Horizontal value.
     pub x: f64,
-    /// Upwards.
+    /// Vertical value.
     pub y: f64,
     /// Its name.
     pub label: String,
 }
 
-/// One pair of axes and what is on them.
+/// One pair of axes with its points.
 #[derive(Clone, Debug)]
 pub struct Panel {
-    /// What stands on top.
+    /// The title.
     pub title: String,
     /// A line below the title.
     pub words: String,
-    /// What the axis to the right shows.
+    /// Name of the horizontal axis.
     pub across: String,
-    /// What the upright axis shows.
+    /// Name of the vertical axis.
     pub up: String,
-    /// The value of `y` at which a line says: no change.
+    /// The value of `y` that means no change, marked by a line.
     pub neutral: f64,
-    /// What is on them.
+    /// The points.
     pub points: Vec<Point>,
 }
 
@@ -44,7 +44,7 @@ const LABEL: f64 = 16.0;
 const DOT: Rgb = [22, 72, 130];
 const RIM: Rgb = [205, 209, 214];
 
-/// Panels side by side, each with its points. Names that find no free place are left out, and their number is written.
+/// Panels side by side, each with its points. Names without room are left out and counted.
 pub fn scatter(panels: &[Panel]) -> Drawing {
     let mut picture = Drawing::blank(WIDTH * panels.len().max(1) as u32, HEIGHT);
     for (index, panel) in panels.iter().enumerate() {
@@ -64,7 +64,7 @@ struct Axis {
 }
 
 impl Axis {
-    /// As far as the numbers reach, with a mark at every round number.
+    /// A range that includes the values, with a mark at every round number.
     fn around(values: impl Iterator<Item = f64>) -> Self {
         let (least, most) = extent(values);
         let (least, most) = if most > least {
@@ -82,12 +82,12 @@ impl Axis {
         (value - self.from) / (self.step * self.ticks as f64)
     }
 
-    /// The marks with their words.
+    /// The marks with their labels.
     fn marks(&self) -> impl Iterator<Item = (f64, String)> + '_ {
         let digits = (-self.step.log10().floor()).max(0.0) as usize;
         (0..=self.ticks).map(move |tick| {
             let value = self.from + self.step * tick as f64;
-            // No minus before a zero that is one but for rounding.
+            // Avoids a minus sign before a zero with a rounding error.
             let value = if value.abs() < self.step * 1e-9 { 0.0 } else { value };
             (value, format!("{value:.digits$}"))
         })
@@ -130,7 +130,7 @@ impl Panel {
         }
     }
 
-    /// Writes each name at the first free place around its dot, off the line; returns how many found none.
+    /// Writes each name at the first free place around its dot, off the line; returns the number of names left out.
     fn name(&self, picture: &mut Drawing, dots: &[(i32, i32)], line: Box4, rim: Box4) -> usize {
         let boxes = dots.iter().map(|(x, y)| [x - 5, y - 5, x + 5, y + 5]);
         let mut taken: Vec<Box4> = boxes.chain([line]).collect();
@@ -150,7 +150,7 @@ impl Panel {
     }
 }
 
-/// The first place around a dot, to the right first, that overlaps nothing and lies within the rim.
+/// The first place around a dot, starting at the right, that overlaps nothing and lies inside the border.
 fn free_place((x, y): (i32, i32), [wide, high]: [i32; 2], taken: &[Box4], rim: Box4) -> Option<Box4> {
     let (right, left, middle) = (x + 7, x - 7 - wide, x - wide / 2);
     let (level, above, below) = (y - high / 2, y - high - 6, y + 7);
@@ -177,7 +177,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn marks_are_round_and_hold_every_number() {
+    fn marks_are_round_and_include_every_number() {
         for (values, words) in [
             (vec![0.0, 1.0], vec!["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]),
             (vec![0.03, 0.11], vec!["0.02", "0.04", "0.06", "0.08", "0.10", "0.12"]),

@@ -1,4 +1,4 @@
-//! Sheets of views: rows of pictures under their titles.
+//! Sheets of views: rows of images under their titles.
 
 use super::lines::cut;
 use super::{Drawing, FAINT, INK, Rgb, TextLine, text_lines, text_width};
@@ -6,39 +6,39 @@ use super::{Drawing, FAINT, INK, Rgb, TextLine, text_lines, text_width};
 /// One row of a [`sheet`].
 #[derive(Clone, Debug)]
 pub struct SheetRow {
-    /// What it shows.
+    /// Its title.
     pub title: String,
-    /// A few words below, which go on in further lines where one is too short.
+    /// A few words below, continued on further lines if needed.
     pub words: String,
-    /// Its pictures, all of one height.
+    /// Its images, all of one height.
     pub pictures: Vec<Drawing>,
 }
 
 impl SheetRow {
-    /// A row.
+    /// Makes a row.
     pub fn new(title: impl Into<String>, words: impl Into<String>, pictures: Vec<Drawing>) -> Self {
         let (title, words) = (title.into(), words.into());
         Self { title, words, pictures }
     }
 }
 
-/// Between pictures, in pixels.
+/// Gap between images, in pixels.
 const GAP: u32 = 12;
-/// Sizes of the letters, and heights of the lines that they stand in.
+/// Letter sizes, and line heights.
 const TITLE: (f32, u32) = (19.0, 26);
 const WORDS: (f32, u32) = (13.0, 17);
-/// The most lines below a title.
+/// Largest number of lines below a title.
 const MOST_LINES: usize = 5;
-/// The rim of a picture, so that white ones end somewhere.
+/// The border of an image, so that white ones have visible edges.
 const RIM: Rgb = [150, 154, 160];
 
-/// Rows of pictures, each under its title. `columns` rows stand side by side.
+/// Rows of images, each under its title, with `columns` rows side by side.
 pub fn sheet(rows: &[SheetRow], columns: usize) -> Drawing {
     let width_of = |row: &SheetRow| row.pictures.iter().map(|picture| picture.width + GAP).sum::<u32>();
     let cell_width = rows.iter().map(width_of).max().unwrap_or(0);
     let columns = columns.clamp(1, rows.len().max(1));
     let cells: Vec<Cell> = rows.iter().map(|row| Cell::of(row, cell_width - GAP)).collect();
-    // What stands side by side begins and ends at one height.
+    // Cells side by side start and end at the same height.
     let heads = |line: &[Cell]| line.iter().map(Cell::head).max().unwrap_or(0);
     let bodies = |line: &[Cell]| line.iter().map(Cell::body).max().unwrap_or(0);
     let height: u32 = cells.chunks(columns).map(|line| heads(line) + bodies(line) + GAP).sum();
@@ -54,7 +54,7 @@ pub fn sheet(rows: &[SheetRow], columns: usize) -> Drawing {
     sheet
 }
 
-/// A row with its words in lines.
+/// A row with its text broken into lines.
 struct Cell<'a> {
     title: String,
     lines: Vec<String>,
@@ -62,14 +62,14 @@ struct Cell<'a> {
 }
 
 impl<'a> Cell<'a> {
-    /// A title too long for its picture gives what stands behind its colon to the words below.
+    /// A title too wide for its image moves the part after its colon into the words below.
     fn of(row: &'a SheetRow, width: u32) -> Self {
         let title = driftworld_text::printable(&row.title).into_owned();
         let mut words = driftworld_text::printable(&row.words).into_owned();
         let width = width as f32;
         let title = match title.split_once(": ") {
             Some((first, rest)) if text_width(&title, TITLE.0) > width => {
-                // A line is broken behind the dot.
+                // Lines break after the dot.
                 words = [rest, words.as_str()].map(str::trim).join("\u{a0}· ");
                 first
             }
@@ -90,7 +90,7 @@ impl<'a> Cell<'a> {
         self.pictures.iter().map(|picture| picture.height).max().unwrap_or(0)
     }
 
-    /// Puts it down with its top left corner at `(left, top)`, its pictures `head` lower.
+    /// Draws the cell with its top left corner at `(left, top)`, and its images `head` lower.
     fn put(&self, sheet: &mut Drawing, [left, top]: [u32; 2], head: u32) {
         let at = |line: u32| [left as f32, (top + line) as f32];
         sheet.write(TextLine::new(&self.title, at(2), TITLE.0, INK));
@@ -109,7 +109,7 @@ impl<'a> Cell<'a> {
     }
 }
 
-/// A text in lines of this width at most, as many as are allowed. What stands between two facts stands at no line's end.
+/// A text in lines of at most this width, up to the largest number of lines. A separator never ends a line.
 fn lines(text: &str, size: f32, width: f32) -> Vec<String> {
     let mut lines = text_lines(text, size, width);
     for line in &mut lines {
@@ -128,7 +128,7 @@ mod tests {
     use crate::picture::Picture;
 
     #[test]
-    fn words_go_on_in_the_next_line_and_none_is_too_wide() {
+    fn words_continue_on_the_next_line_and_none_is_too_wide() {
         let text = "Red cubes at dusk; the light is 0.3 instead of 1, and everything else is as in the first variant. "
             .repeat(4);
         for width in [40.0, 120.0, 333.0] {
@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn a_title_too_long_for_its_picture_goes_on_in_the_words() {
+    fn title_too_wide_for_its_image_continues_in_the_words() {
         let row = SheetRow {
             title: "Step 120: touches the red berries: +100.0".to_owned(),
             words: "12.0 s · return 98.8".to_owned(),
@@ -151,7 +151,7 @@ mod tests {
             (cell.title, cell.lines.join(" "))
         };
         assert_eq!(shown(500), (row.title.clone(), row.words.clone()));
-        // The dot is left out where a line ends.
+        // The dot is dropped at the end of a line.
         let below = "touches the red berries: +100.0 12.0 s · return 98.8";
         assert_eq!(shown(200), ("Step 120".to_owned(), below.to_owned()));
         let silent = SheetRow {
@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_of_a_sheet_lies_outside_it() {
+    fn everything_is_inside_the_sheet() {
         let row = |words: &str, wide: u32| SheetRow {
             title: "a title that is much too long for the little room that it has here".to_owned(),
             words: words.to_owned(),
