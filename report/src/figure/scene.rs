@@ -108,7 +108,7 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// Name of the vertical axis for normalised performances.
+    /// Name of the vertical axis, with the scale if performances are normalised.
     pub(super) fn performance_name(&self) -> String {
         if self.lifetime.normalization_data_range().is_some() {
             format!("{}, scaled to 1…101", shown(self.column))

@@ -1,4 +1,4 @@
-//! Breaks texts into lines of a width: at spaces, and inside units such as numbers only if necessary.
+//! Breaks texts into lines of a width: at spaces, and inside unbreakable parts only if necessary.
 
 use driftworld_text::{NO_BREAK, with_blanks};
 
@@ -52,7 +52,7 @@ fn pieces(text: &str, fits: &dyn Fn(&str) -> bool) -> Vec<String> {
     pieces.filter(|piece| !piece.is_empty()).collect()
 }
 
-/// Splits a text at ordinary spaces, or at no-break spaces that `may` break.
+/// Splits a text at the spaces and no-break spaces where `may` allows it.
 fn broken(text: &str, may: fn(&str, char, &str) -> bool) -> Vec<String> {
     let mut pieces = Vec::new();
     let mut begin = 0;
