@@ -290,10 +290,7 @@ mod tests {
     }
 
     fn world(side: f64, objects: Vec<Object>) -> World {
-        let mut world = WorldDraft {
-            objects,
-            ..WorldDraft::default()
-        };
+        let mut world = WorldDraft::with_objects(objects);
         world.environment_params.map_size = [side, side];
         world.agent_params.coordinates = [side / 3.0, side / 3.0];
         world.check().expect("the world is sound")

@@ -326,10 +326,7 @@ mod tests {
             object("tree", [-5.0, 0.0], 0.0),
             gone,
         ];
-        let mut draft = WorldDraft {
-            objects,
-            ..WorldDraft::default()
-        };
+        let mut draft = WorldDraft::with_objects(objects);
         draft.environment_params.map_size = [30.0, 30.0];
         draft.agent_params.coordinates = [10.0, 10.0];
         let world = draft.check().expect("the world is sound");
@@ -358,10 +355,7 @@ mod tests {
         };
         let mut thorn = object("shrub", [4.0, 4.0], 0.0);
         thorn.tag = Some("thorn".to_owned());
-        let mut draft = WorldDraft {
-            objects: vec![thorn],
-            ..WorldDraft::default()
-        };
+        let mut draft = WorldDraft::with_objects(vec![thorn]);
         draft.rules.failure = vec![EndCondition::Touch("thorn".to_owned())];
         draft.environment_params.map_size = [30.0, 30.0];
         draft.environment_params.zones = vec![

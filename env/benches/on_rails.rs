@@ -32,10 +32,7 @@ fn crowd() -> World {
         cube.destroy_stimulus = vec![Stimulus::AgentCollide];
         cube
     };
-    let world = WorldDraft {
-        objects: (1..=200).map(cube).collect(),
-        ..WorldDraft::default()
-    };
+    let world = WorldDraft::with_objects((1..=200).map(cube).collect());
     world.check().expect("the scene is sound")
 }
 

@@ -93,10 +93,7 @@ fn default_table_has_six_moves_and_interact() {
 #[test]
 fn third_number_has_no_effect_without_interact() {
     let paid = |interact: bool| {
-        let mut world = WorldDraft {
-            objects: vec![button()],
-            ..WorldDraft::default()
-        };
+        let mut world = WorldDraft::with_objects(vec![button()]);
         world.agent_params.interact = interact;
         start(world)
             .step(Action::Continuous([0.0, 0.0, 1.0]))
@@ -140,10 +137,7 @@ fn held_action_lasts_several_time_steps_of_one_step() {
 
 #[test]
 fn held_action_interacts_once() {
-    let mut world = WorldDraft {
-        objects: vec![button()],
-        ..WorldDraft::default()
-    };
+    let mut world = WorldDraft::with_objects(vec![button()]);
     world.agent_params.frame_skip = 5;
     let step = start(world)
         .step(Action::Continuous([0.0, 0.0, 1.0]))
@@ -157,10 +151,7 @@ fn touching_out_of_turn_costs_the_penalty() {
     second.order = Some(2);
     let mut first = coin([0.0, -2.0], 5.0);
     first.order = Some(1);
-    let mut world = WorldDraft {
-        objects: vec![first, second],
-        ..WorldDraft::default()
-    };
+    let mut world = WorldDraft::with_objects(vec![first, second]);
     world.rules.order_penalty = -3.0;
     let mut environment = start(world);
     assert_eq!(drive(&mut environment, 10.0, 3), -3.0, "the second before the first");
@@ -171,10 +162,7 @@ fn touching_out_of_turn_costs_the_penalty() {
 #[test]
 fn total_shaping_does_not_depend_on_how_an_episode_terminates() {
     let total = |turn: f64, conditions: Vec<EndCondition>| {
-        let mut world = WorldDraft {
-            objects: vec![coin([0.0, 4.0], 1.0)],
-            ..WorldDraft::default()
-        };
+        let mut world = WorldDraft::with_objects(vec![coin([0.0, 4.0], 1.0)]);
         world.objects[0].tag = Some("goal".to_owned());
         world.rules.shaping = Some(Shaping {
             toward: None,
@@ -302,10 +290,7 @@ fn destroyed_key_opens_its_door_and_a_door_out_of_turn_stays_shut() {
     (key.order, key.destroy_stimulus) = (Some(1), vec![Stimulus::AgentCollide]);
     let mut door = coin([0.0, -2.0], 5.0);
     (door.order, door.destroy_stimulus) = (Some(2), vec![Stimulus::AgentCollide]);
-    let mut environment = start(WorldDraft {
-        objects: vec![key, door],
-        ..WorldDraft::default()
-    });
+    let mut environment = start(WorldDraft::with_objects(vec![key, door]));
     assert_eq!(
         drive(&mut environment, -10.0, 3),
         0.0,
@@ -319,10 +304,7 @@ fn destroyed_key_opens_its_door_and_a_door_out_of_turn_stays_shut() {
 fn arm_that_did_not_pay_may_pay_later() {
     let mut arm = coin([0.0, 2.0], 1.0);
     arm.reward_probability = 0.3;
-    let mut environment = start(WorldDraft {
-        objects: vec![arm],
-        ..WorldDraft::default()
-    });
+    let mut environment = start(WorldDraft::with_objects(vec![arm]));
     let mut paid = 0.0;
     for step in 0..120 {
         let speed = if step % 6 < 3 { 10.0 } else { -10.0 };

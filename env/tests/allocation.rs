@@ -122,10 +122,7 @@ fn world_with_things() -> World {
         ..Switch::of("gate")
     });
     objects.push(lever);
-    let mut world = WorldDraft {
-        objects,
-        ..WorldDraft::default()
-    };
+    let mut world = WorldDraft::with_objects(objects);
     world.environment_params.map_size = [7.0, 7.0];
     (world.agent_params.agent_width, world.agent_params.carry_limit) = (0.4, 3);
     world.agent_params.modalities = Vec::new();
@@ -194,10 +191,7 @@ fn heaps_take_memory_in_proportion() {
             });
             body
         };
-        let world = WorldDraft {
-            objects: (0..count).map(body).collect(),
-            ..WorldDraft::default()
-        };
+        let world = WorldDraft::with_objects((0..count).map(body).collect());
         let mut environment = Environment::new(world.check().expect("the world is sound"));
         let before = LIVE.load(Ordering::Relaxed);
         PEAK.store(before, Ordering::Relaxed);

@@ -12,10 +12,7 @@ const NOW: &str = "2026-01-01T00:00:00";
 fn start() -> (Environment, Channels) {
     let mut tree = Object::new("tree", [3.0, 4.0]);
     tree.unique_name = Some("oak".to_owned());
-    let world = WorldDraft {
-        objects: vec![tree],
-        ..WorldDraft::default()
-    };
+    let world = WorldDraft::with_objects(vec![tree]);
     let world = world.check().expect("the world is sound");
     let channels = Channels::new(&world);
     (Environment::new(world), channels)

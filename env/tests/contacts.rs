@@ -74,7 +74,7 @@ proptest! {
     ) {
         let mut object = touchable(class, [0.0, 0.0]);
         (object.scale, object.heading, object.solid) = (scale, heading, solid);
-        let mut world = WorldDraft { objects: vec![object], ..WorldDraft::default() };
+        let mut world = WorldDraft::with_objects(vec![object]);
         let reach = f64::from(start(world.clone()).scene().items[0].asset.collider.radius()) * scale;
         // Walked into off-centre, and held until past it.
         let room = if class == "cube" { reach / 1.5 } else { reach };
@@ -97,7 +97,7 @@ proptest! {
             object.range_stimulus_distance = range;
             object
         });
-        let world = WorldDraft { objects: objects.collect(), ..WorldDraft::default() };
+        let world = WorldDraft::with_objects(objects.collect());
         let slow = count(world.clone(), &legs, 0.2, 0.05);
         for (speed, seconds) in PACES {
             let found = count(world.clone(), &legs, speed, seconds);
@@ -112,10 +112,7 @@ proptest! {
 fn range_crossed_within_a_step_is_entered() {
     let mut object = touchable("ball", [3.0, 5.0]);
     object.range_stimulus_distance = 3.5;
-    let world = WorldDraft {
-        objects: vec![object],
-        ..WorldDraft::default()
-    };
+    let world = WorldDraft::with_objects(vec![object]);
     for (speed, seconds) in PACES {
         assert_eq!(
             count(world.clone(), &[(0.0, 20.0)], speed, seconds)[1],
@@ -130,10 +127,7 @@ fn range_crossed_within_a_step_is_entered() {
 fn stimuli_at_the_start_occur_once_in_the_first_step() {
     let mut zone = touchable("ball", [0.5, 0.0]);
     (zone.solid, zone.range_stimulus_distance) = (false, 4.0);
-    let mut environment = start(WorldDraft {
-        objects: vec![zone],
-        ..WorldDraft::default()
-    });
+    let mut environment = start(WorldDraft::with_objects(vec![zone]));
     let mut step = || {
         let step = environment.step(Action::Continuous([0.0; 3])).expect("it goes on");
         step.events.iter().map(|event| event.stimulus).collect::<Vec<_>>()
@@ -144,10 +138,7 @@ fn stimuli_at_the_start_occur_once_in_the_first_step() {
 
 #[test]
 fn contact_ends_at_a_gap_of_a_quarter_metre() {
-    let world = WorldDraft {
-        objects: vec![touchable("cube", [0.0, 3.0])],
-        ..WorldDraft::default()
-    };
+    let world = WorldDraft::with_objects(vec![touchable("cube", [0.0, 3.0])]);
     // There, back by this much, and there again.
     for (back, expected) in [(0.1, 1), (0.2, 1), (0.3, 2), (1.0, 2)] {
         for (speed, seconds) in [(1.0, 0.1), (10.0, 0.1), (5.0, 0.02)] {
@@ -174,10 +165,7 @@ fn fast_mover_touches_and_comes_near_once() {
         ghost.speed = speed;
         ghost.heading = 90.0;
         ghost.waypoints = vec![[40.0, 0.2]];
-        let mut environment = start(WorldDraft {
-            objects: vec![ghost],
-            ..WorldDraft::default()
-        });
+        let mut environment = start(WorldDraft::with_objects(vec![ghost]));
         let mut counts = [0; 2];
         for _ in 0..(700.0 / speed) as usize + 10 {
             let step = environment.step(Action::Continuous([0.0; 3])).expect("it goes on");
@@ -200,10 +188,7 @@ fn fast_mover_touches_and_comes_near_once() {
 fn meeting(mut object: Object, agent: ([f64; 2], f64, f64), seconds: f64, total: f64) -> [usize; 2] {
     let (at, heading, speed) = agent;
     object.motion_model = driftworld_spec::MotionModel::Patrol;
-    let mut world = WorldDraft {
-        objects: vec![object],
-        ..WorldDraft::default()
-    };
+    let mut world = WorldDraft::with_objects(vec![object]);
     world.agent_params.coordinates = at;
     world.agent_params.heading = heading;
     world.agent_params.time_step = seconds;
@@ -244,7 +229,7 @@ proptest! {
             let y = off + 15.0 - cosine * own * time;
             x.hypot(y)
         }).fold(f64::INFINITY, f64::min);
-        let environment = start(WorldDraft { objects: vec![ghost.clone()], ..WorldDraft::default() });
+        let environment = start(WorldDraft::with_objects(vec![ghost.clone()]));
         let item = &environment.scene().items[0];
         let radius = f64::from(item.asset.collider.radius() * item.scale);
         let height = (f64::from(item.asset.height * item.scale) - 1.0) / 2.0;

@@ -7,10 +7,7 @@ const AHEAD: Action = Action::Continuous([10.0, 0.0, 0.0]);
 const STAY: Action = Action::Continuous([0.0; 3]);
 
 fn start(objects: Vec<Object>) -> Environment {
-    let world = WorldDraft {
-        objects,
-        ..WorldDraft::default()
-    };
+    let world = WorldDraft::with_objects(objects);
     Environment::new(world.check().expect("the world is sound"))
 }
 

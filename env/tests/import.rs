@@ -347,10 +347,7 @@ fn libraries_override_built_in_models() {
 #[test]
 fn batches_and_spawned_objects_use_the_library() {
     let (_, catalogue) = catalogue("screen");
-    let world = WorldDraft {
-        objects: vec![Object::new("screen", [0.0, 5.0])],
-        ..WorldDraft::default()
-    };
+    let world = WorldDraft::with_objects(vec![Object::new("screen", [0.0, 5.0])]);
     let world = world.check().expect("the world is sound");
     let mut alone = Environment::with_catalogue(world.clone(), catalogue.clone());
     let index = alone.spawn(Object::new("screen", [3.0, 3.0])).expect("there is room");

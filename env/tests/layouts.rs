@@ -61,10 +61,7 @@ fn world(layout: Layout, start: usize, goal: usize, change: impl FnOnce(&mut Wor
     (target.reward, target.scale) = (1.0, 0.4);
     target.reward_once_stimulus = vec![Stimulus::AgentCollide];
     target.destroy_stimulus = vec![Stimulus::AgentCollide];
-    let mut world = WorldDraft {
-        objects: vec![target],
-        ..WorldDraft::default()
-    };
+    let mut world = WorldDraft::with_objects(vec![target]);
     world.environment_params.layout = Some(layout);
     world.agent_params.coordinates = cell(start);
     world.agent_params.observation_size = 24;

@@ -109,10 +109,7 @@ fn door_is_a_bar_along_its_leaf() {
             open,
             ..Door::default()
         });
-        let mut world = WorldDraft {
-            objects: vec![door],
-            ..WorldDraft::default()
-        };
+        let mut world = WorldDraft::with_objects(vec![door]);
         world.environment_params.map_size = [12.0, 12.0];
         world.agent_params.coordinates = [-4.0, -4.0];
         let environment = Environment::new(world.check().expect("the world is sound"));

@@ -13,10 +13,7 @@ fn mover(model: MotionModel, at: [f64; 2], speed: f64) -> Object {
 }
 
 fn start(objects: Vec<Object>) -> Environment {
-    let mut world = WorldDraft {
-        objects,
-        ..WorldDraft::default()
-    };
+    let mut world = WorldDraft::with_objects(objects);
     world.environment_params.map_size = [40.0, 40.0];
     begin(&world)
 }
@@ -121,10 +118,7 @@ fn turn_rate_limits_the_bend() {
 
 #[test]
 fn wanderers_cover_the_arena_stay_in_it_and_out_of_walls() {
-    let mut world = WorldDraft {
-        objects: vec![mover(MotionModel::RandomWaypoint, [10.0, 10.0], 8.0)],
-        ..WorldDraft::default()
-    };
+    let mut world = WorldDraft::with_objects(vec![mover(MotionModel::RandomWaypoint, [10.0, 10.0], 8.0)]);
     world.environment_params.map_size = [40.0, 40.0];
     let block = vec![[-3.0, -15.0], [3.0, -15.0], [3.0, -5.0], [-3.0, -5.0]];
     world.environment_params.walls.push(Wall {
@@ -217,10 +211,7 @@ fn movers_never_leave_the_arena_or_pass_walls() {
     {
         let mut moving = mover(model, [-9.0 + number as f64 * 0.7, 6.0], 4.0 + 2.0 * number as f64);
         moving.class = if number % 2 == 0 { "barrel" } else { "rock" }.to_owned();
-        let mut world = WorldDraft {
-            objects: vec![moving],
-            ..WorldDraft::default()
-        };
+        let mut world = WorldDraft::with_objects(vec![moving]);
         world.environment_params.map_size = [24.0, 24.0];
         world.environment_params.walls = vec![Wall {
             polygon: vec![[-12.0, 0.0], [12.0, 0.0], [12.0, 0.4], [-12.0, 0.4]],

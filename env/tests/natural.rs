@@ -5,10 +5,7 @@ use driftworld_env::{Action, Camera, CpuRenderer, Environment, Frame, Scene, ass
 use driftworld_spec::{Layout, Looks, Maze, Model, Object, Style, World, WorldDraft};
 
 fn world(objects: Vec<Object>, style: Style) -> World {
-    let mut world = WorldDraft {
-        objects,
-        ..WorldDraft::default()
-    };
+    let mut world = WorldDraft::with_objects(objects);
     world.environment_params.looks = Looks::of(style);
     world.environment_params.wall_height = 0.0;
     world.check().expect("the world is sound")

@@ -28,10 +28,7 @@ fn centre<T: Copy>(values: &[T]) -> T {
 fn box_has_its_actual_depth() {
     let mut object = Object::new("cube", [0.0, 10.0]);
     object.scale = 4.0;
-    let frame = ahead(&WorldDraft {
-        objects: vec![object],
-        ..WorldDraft::default()
-    });
+    let frame = ahead(&WorldDraft::with_objects(vec![object]));
     // Its front face is half of 4 × 0.9 m in front of its centre.
     assert!((centre(&frame.depth) - 8.2).abs() < 1e-3, "{}", centre(&frame.depth));
     assert_eq!((centre(&frame.instance), centre(&frame.class)), (1, 9));
@@ -48,10 +45,7 @@ fn categories_follow_rewards() {
         let mut object = Object::new(class, [0.0, 30.0]);
         object.scale = 8.0;
         object.reward = reward;
-        let frame = ahead(&WorldDraft {
-            objects: vec![object],
-            ..WorldDraft::default()
-        });
+        let frame = ahead(&WorldDraft::with_objects(vec![object]));
         assert_eq!(centre(&frame.category), category, "{class} worth {reward}");
     }
     assert_eq!(category_color(CATEGORY_POSITIVE), [0, 255, 255]);
@@ -73,10 +67,7 @@ fn sky_is_above_walls_and_ground_below() {
 
 #[test]
 fn wall_hides_objects_behind_it() {
-    let mut world = WorldDraft {
-        objects: vec![Object::new("cube", [0.0, 20.0])],
-        ..WorldDraft::default()
-    };
+    let mut world = WorldDraft::with_objects(vec![Object::new("cube", [0.0, 20.0])]);
     assert!(ahead(&world).instance.contains(&1));
     let polygon = vec![[-5.0, 10.0], [5.0, 10.0], [5.0, 11.0], [-5.0, 11.0]];
     world.environment_params.walls = vec![driftworld_spec::Wall {
@@ -101,10 +92,7 @@ fn dusk_is_darker_than_day() {
 
 #[test]
 fn odd_sizes_and_places_never_panic() {
-    let mut world = WorldDraft {
-        objects: vec![Object::new("building", [0.0, 0.0]); 3],
-        ..WorldDraft::default()
-    };
+    let mut world = WorldDraft::with_objects(vec![Object::new("building", [0.0, 0.0]); 3]);
     world.objects[1].scale = 100.0;
     world.objects[2].scale = 0.01;
     for (width, height) in [(1, 1), (4096, 1), (1, 300), (7, 5)] {
@@ -181,11 +169,7 @@ fn models_of_a_class_look_different() {
         let mut object = Object::new(class, [0.0, 8.0]);
         object.scale = if class == "fence" { 2.5 } else { 1.0 };
         object.model = Model(number.to_string());
-        ahead(&WorldDraft {
-            objects: vec![object],
-            ..WorldDraft::default()
-        })
-        .rgb
+        ahead(&WorldDraft::with_objects(vec![object])).rgb
     };
     for (class, models) in [
         ("tree", 49),
@@ -216,10 +200,7 @@ fn golden_image_is_unchanged() {
         object.model = Model(model.to_string());
         object
     };
-    let mut world = WorldDraft {
-        objects: places.map(object).to_vec(),
-        ..WorldDraft::default()
-    };
+    let mut world = WorldDraft::with_objects(places.map(object).to_vec());
     world.objects[2].color = Color::from_name("blue");
     world.objects[2].reward = 1.0;
     let frame = draw(&world, &Camera::first_person([0.0, 0.0], 5.0, 1.0, 60.0), 84, 84);
@@ -287,10 +268,7 @@ fn crowded() -> Scene {
         object.color = (k % 2 == 0).then(|| Color([0.9, 0.2, k as f64 / 69.0]));
         object
     });
-    let mut world = WorldDraft {
-        objects: objects.collect(),
-        ..WorldDraft::default()
-    };
+    let mut world = WorldDraft::with_objects(objects.collect());
     world.environment_params.predefined_map = 2;
     Scene::from_world(&world.check().expect("the world is sound"))
 }

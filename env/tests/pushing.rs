@@ -14,10 +14,7 @@ fn body(at: [f64; 2], mass: f64, friction: f64) -> Object {
 }
 
 fn start(objects: Vec<Object>) -> Environment {
-    let mut world = WorldDraft {
-        objects,
-        ..WorldDraft::default()
-    };
+    let mut world = WorldDraft::with_objects(objects);
     world.environment_params.map_size = [20.0, 20.0];
     Environment::new(world.check().expect("the world is sound"))
 }
@@ -127,7 +124,7 @@ proptest! {
         side in -0.6f64..0.6,
         turns in proptest::collection::vec(-40.0f64..40.0, 60),
     ) {
-        let mut world = WorldDraft { objects: vec![body([side, 2.0], mass, friction), body([side, 3.5], mass, friction)], ..WorldDraft::default() };
+        let mut world = WorldDraft::with_objects(vec![body([side, 2.0], mass, friction), body([side, 3.5], mass, friction)]);
         world.environment_params.map_size = [12.0, 12.0];
         world.agent_params.max_linear_speed = 40.0;
         let mut environment = Environment::new(world.check().expect("the world is sound"));
@@ -158,10 +155,7 @@ fn pushed_distance_does_not_depend_on_the_time_step() {
                 mass: 5.0,
                 friction: 0.5,
             });
-            let mut world = WorldDraft {
-                objects: vec![body],
-                ..WorldDraft::default()
-            };
+            let mut world = WorldDraft::with_objects(vec![body]);
             world.agent_params.coordinates = [0.0, -1.2];
             world.agent_params.time_step = seconds;
             let mut environment = Environment::new(world.check().expect("the world is sound"));

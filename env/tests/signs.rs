@@ -17,10 +17,7 @@ fn world(text: &str, metres: f64, turn: f64, color: Option<&str>) -> World {
     sign.text = Some(text.to_owned());
     sign.heading = 180.0 + turn;
     sign.color = color.map(|name| Color::from_name(name).expect("it is a colour"));
-    let mut world = WorldDraft {
-        objects: vec![sign],
-        ..WorldDraft::default()
-    };
+    let mut world = WorldDraft::with_objects(vec![sign]);
     world.environment_params.wall_height = 0.0;
     world.check().expect("the world is sound")
 }
@@ -154,10 +151,7 @@ fn signs_have_text_only_in_front_and_other_classes_have_none() {
     let of_class = |text: Option<&str>| {
         let mut object = Object::new("furniture", [0.0, 3.0]);
         object.text = text.map(str::to_owned);
-        let world = WorldDraft {
-            objects: vec![object],
-            ..WorldDraft::default()
-        };
+        let world = WorldDraft::with_objects(vec![object]);
         picture(&world.check().expect("the world is sound"), 0.0, SIDE).rgb
     };
     assert_eq!(of_class(Some("SOFA")), of_class(None));

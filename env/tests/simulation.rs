@@ -20,10 +20,7 @@ fn cube(metres: f64) -> Object {
 }
 
 fn environment(objects: Vec<Object>) -> Environment {
-    start(WorldDraft {
-        objects,
-        ..WorldDraft::default()
-    })
+    start(WorldDraft::with_objects(objects))
 }
 
 fn start(world: WorldDraft) -> Environment {
@@ -124,10 +121,7 @@ fn ghost_is_touched_in_passing_at_any_speed() {
     let mut object = cube(5.0);
     object.solid = false;
     object.reward_stimulus = vec![Stimulus::AgentCollide];
-    let mut world = WorldDraft {
-        objects: vec![object],
-        ..WorldDraft::default()
-    };
+    let mut world = WorldDraft::with_objects(vec![object]);
     world.agent_params.max_linear_speed = 100.0;
     let mut environment = start(world);
     let passed = step(&mut environment, Action::Continuous([100.0, 0.0, 0.0]));
@@ -167,10 +161,7 @@ fn bandit_arm_pays_at_its_odds_and_reproducibly() {
 
 #[test]
 fn shaping_pays_progress_and_nothing_over_a_round_trip() {
-    let mut world = WorldDraft {
-        objects: vec![cube(10.0)],
-        ..WorldDraft::default()
-    };
+    let mut world = WorldDraft::with_objects(vec![cube(10.0)]);
     world.rules.shaping = Some(Shaping {
         toward: Some("cube".to_owned()),
         scale: 2.0,
@@ -187,11 +178,8 @@ fn ends_have_distinct_causes() {
     let touch = |success: Vec<EndCondition>, failure: Vec<EndCondition>| {
         let mut object = cube(2.2);
         object.reward_once_stimulus = vec![Stimulus::AgentCollide];
-        let mut world = WorldDraft {
-            objects: vec![object],
-            max_steps: 2,
-            ..WorldDraft::default()
-        };
+        let mut world = WorldDraft::with_objects(vec![object]);
+        world.max_steps = 2;
         world.rules.success = success;
         world.rules.failure = failure;
         let mut environment = start(world);
@@ -273,10 +261,7 @@ fn every_action_model_moves_as_documented() {
 fn agent_on_rails_tours_by_itself() {
     let mut object = cube(6.0);
     object.reward_once_stimulus = vec![Stimulus::AgentCollide];
-    let mut world = WorldDraft {
-        objects: vec![object],
-        ..WorldDraft::default()
-    };
+    let mut world = WorldDraft::with_objects(vec![object]);
     world.agent_params.action_model = ActionModel::OnRails;
     let mut environment = start(world);
     let total: f64 = rewards(&mut environment, &[STAY; 20]).iter().sum();
@@ -315,10 +300,7 @@ fn agent_slides_along_a_wall() {
 #[test]
 fn start_inside_a_body_or_outside_the_arena_does_not_panic() {
     for coordinates in [[0.0, 0.0], [300.0, 300.0], [49.9, 49.9]] {
-        let mut world = WorldDraft {
-            objects: vec![Object::new("building", [0.0, 0.0])],
-            ..WorldDraft::default()
-        };
+        let mut world = WorldDraft::with_objects(vec![Object::new("building", [0.0, 0.0])]);
         world.agent_params.coordinates = coordinates;
         let mut environment = start(world);
         let mut agent = RandomAgent::new(3);
@@ -410,10 +392,7 @@ fn arena() -> WorldDraft {
     barrel.reward = -2.0;
     barrel.reward_stimulus = vec![Stimulus::AgentCollide];
     objects.push(barrel);
-    let mut world = WorldDraft {
-        objects,
-        ..WorldDraft::default()
-    };
+    let mut world = WorldDraft::with_objects(objects);
     world.environment_params.map_size = [14.0, 14.0];
     world.agent_params.observation_size = 32;
     world

@@ -244,10 +244,7 @@ fn ended_episode_stays_ended() {
 fn objects_far_outside_round_trip_through_a_state() {
     let mut prey = Object::new("barrel", [290.0, 0.0]);
     (prey.motion_model, prey.speed) = (MotionModel::Prey, 50.0);
-    let mut outside = WorldDraft {
-        objects: vec![prey],
-        ..WorldDraft::default()
-    };
+    let mut outside = WorldDraft::with_objects(vec![prey]);
     outside.agent_params.coordinates = [280.0, 0.0];
     outside.agent_params.heading = 90.0;
     let mut environment = start(outside.check().expect("the world is sound"));
@@ -314,10 +311,7 @@ fn world_with_only_a_seed_as_progress_is_at_its_start() {
         barrel.reward_stimulus = vec![Stimulus::AgentCollide];
         let mut wanderer = Object::new("rock", [5.0, 5.0]);
         (wanderer.motion_model, wanderer.speed) = (MotionModel::RandomWaypoint, 2.0);
-        let world = WorldDraft {
-            objects: vec![barrel, wanderer],
-            ..WorldDraft::default()
-        };
+        let world = WorldDraft::with_objects(vec![barrel, wanderer]);
         world.check().expect("the world is sound")
     };
     let with_seed = |seed: String| {

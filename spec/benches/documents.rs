@@ -13,10 +13,7 @@ fn world_of(objects: u32) -> String {
         object
     });
     let objects = objects.collect();
-    let draft = WorldDraft {
-        objects,
-        ..WorldDraft::default()
-    };
+    let draft = WorldDraft::with_objects(objects);
     draft.check().expect("the world is sound").to_json()
 }
 

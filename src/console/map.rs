@@ -142,14 +142,11 @@ mod tests {
         let mut coin = Object::new("barrel", [2.8, 2.8]);
         coin.reward = 1.0;
         coin.reward_stimulus = vec![Stimulus::AgentCollide];
-        let mut world = WorldDraft {
-            objects: vec![
-                coin,
-                Object::new("tree", [-2.8, -2.8]),
-                Object::new("rock", [300.0, 0.0]),
-            ],
-            ..WorldDraft::default()
-        };
+        let mut world = WorldDraft::with_objects(vec![
+            coin,
+            Object::new("tree", [-2.8, -2.8]),
+            Object::new("rock", [300.0, 0.0]),
+        ]);
         world.environment_params.map_size = [10.0, 10.0];
         world.agent_params.heading = 90.0;
         let environment = Environment::new(world.check().expect("the world is sound"));
@@ -183,10 +180,7 @@ mod tests {
             });
             gate
         };
-        let mut world = WorldDraft {
-            objects: vec![gate(-2.0, false), gate(2.0, true)],
-            ..WorldDraft::default()
-        };
+        let mut world = WorldDraft::with_objects(vec![gate(-2.0, false), gate(2.0, true)]);
         world.environment_params.layout = Some(Layout {
             text: Some(
                 [

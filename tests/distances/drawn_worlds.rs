@@ -69,10 +69,7 @@ pub(crate) fn worlds() -> impl Strategy<Value = World> {
     );
     (prop::collection::vec(objects(), 0..=MOST_OBJECTS), agent, rules, around).prop_map(
         |(objects, agent, rules, around)| {
-            let mut world = WorldDraft {
-                objects,
-                ..WorldDraft::default()
-            };
+            let mut world = WorldDraft::with_objects(objects);
             let body = &mut world.agent_params;
             (body.coordinates, body.heading, body.max_linear_speed) = (agent.0, agent.1, agent.2);
             (body.max_angular_speed, body.frame_skip, body.agent_width) = (agent.3, agent.4, agent.5);

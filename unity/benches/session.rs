@@ -21,10 +21,7 @@ fn ring() -> World {
             [12.0 * angle.cos(), 12.0 * angle.sin()],
         )
     };
-    let world = WorldDraft {
-        objects: (0..20).map(object).collect(),
-        ..WorldDraft::default()
-    };
+    let world = WorldDraft::with_objects((0..20).map(object).collect());
     world.check().expect("the world is sound")
 }
 

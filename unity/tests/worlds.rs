@@ -234,13 +234,10 @@ fn library_models_are_drawn_and_unknown_ones_give_a_remark() {
         .expect("the example is a sound model");
     let mut library = Library::default();
     library.insert(imported.model).expect("there is room");
-    let mut world = WorldDraft {
-        objects: vec![
-            Object::new("lighthouse", [0.0, 12.0]),
-            Object::new("dragon", [5.0, 9.0]),
-        ],
-        ..WorldDraft::default()
-    };
+    let mut world = WorldDraft::with_objects(vec![
+        Object::new("lighthouse", [0.0, 12.0]),
+        Object::new("dragon", [5.0, 9.0]),
+    ]);
     world.agent_params.observation_size = 32;
     let seen = |catalogue: Catalogue| {
         let mut session = session(world.clone(), catalogue, false);

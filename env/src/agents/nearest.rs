@@ -310,10 +310,7 @@ mod tests {
             0.2..=2.0f64,
         )
             .prop_map(|(size, walls, objects, width)| {
-                let mut world = WorldDraft {
-                    objects,
-                    ..WorldDraft::default()
-                };
+                let mut world = WorldDraft::with_objects(objects);
                 world.environment_params.map_size = size;
                 world.environment_params.walls = walls;
                 world.agent_params.agent_width = width;

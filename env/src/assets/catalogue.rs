@@ -241,10 +241,7 @@ mod tests {
             let objects = classes.iter().enumerate();
             let at =
                 |(place, class): (usize, &&str)| driftworld_spec::Object::new(*class, [3.0 * place as f64 - 3.0, 8.0]);
-            let mut world = driftworld_spec::WorldDraft {
-                objects: objects.map(at).collect(),
-                ..driftworld_spec::WorldDraft::default()
-            };
+            let mut world = driftworld_spec::WorldDraft::with_objects(objects.map(at).collect());
             world.agent_params.modalities = vec![driftworld_spec::Modality::Class];
             let world = world.check().expect("the world is sound");
             let mut environment = crate::Environment::with_catalogue(world, catalogue.clone());

@@ -73,7 +73,7 @@ impl Expertise {
     /// let mut cube = Object::new("geometric", [0.0, 8.0]);
     /// cube.reward = 10.0;
     /// cube.reward_once_stimulus = vec![Stimulus::AgentCollide];
-    /// let home = WorldDraft { objects: vec![cube], ..WorldDraft::default() }.check().expect("it is sound");
+    /// let home = WorldDraft::with_objects(vec![cube]).check().expect("it is sound");
     /// let trap = home.clone().edit(|world| world.objects[0].reward = -10.0).expect("it is sound");
     /// let expertise = Expertise { steps: 50, ..Expertise::default() };
     /// assert_eq!(expertise.abroad(&home, &trap)?.earned, -10.0);

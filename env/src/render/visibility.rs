@@ -86,10 +86,7 @@ mod tests {
     #[test]
     fn objects_ahead_are_sorted_near_to_far_and_those_behind_left_out() {
         let objects = [[0.0, 30.0], [0.0, -10.0], [0.0, 10.0]].map(|place| Object::new("cube", place));
-        let world = WorldDraft {
-            objects: objects.to_vec(),
-            ..WorldDraft::default()
-        };
+        let world = WorldDraft::with_objects(objects.to_vec());
         let scene = Scene::from_world(&world.check().expect("the world is sound"));
         let view = View::new(&Camera::first_person([0.0, 0.0], 0.0, 1.0, 60.0), 84, 84);
         let mut found = Vec::new();

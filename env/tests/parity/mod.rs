@@ -291,10 +291,7 @@ fn carrying(shown: bool) -> World {
     let mut thing = Object::new("cube", [0.0, 1.0]);
     (thing.scale, thing.color) = (0.3, Some(Color([0.9, 0.1, 0.1])));
     thing.portable = Some(Portable::default());
-    let mut world = WorldDraft {
-        objects: vec![thing, Object::new("tree", [1.0, 7.0])],
-        ..WorldDraft::default()
-    };
+    let mut world = WorldDraft::with_objects(vec![thing, Object::new("tree", [1.0, 7.0])]);
     (world.agent_params.carry_limit, world.agent_params.show_carried) = (1, shown);
     world.agent_params.modalities = vec![Modality::Rgb, Modality::Depth, Modality::Instance];
     world.check().expect("the world is sound")

@@ -166,10 +166,7 @@ mod tests {
         let mut object = Object::new("cube", [3.0, 4.0]);
         object.color = Color::from_name(color);
         (object.reward, object.reward_stimulus) = (reward, vec![Stimulus::AgentCollide]);
-        let world = WorldDraft {
-            objects: vec![object, Object::new("tree", [-5.0, 1.0])],
-            ..WorldDraft::default()
-        };
+        let world = WorldDraft::with_objects(vec![object, Object::new("tree", [-5.0, 1.0])]);
         world.check().unwrap()
     }
 

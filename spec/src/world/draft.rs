@@ -14,7 +14,7 @@ fields! {
     /// # Example
     /// ```
     /// use driftworld_spec::{Object, WorldDraft};
-    /// let world = WorldDraft { objects: vec![Object::new("tree", [3.0, 4.0])], ..WorldDraft::default() }.check()?;
+    /// let world = WorldDraft::with_objects(vec![Object::new("tree", [3.0, 4.0])]).check()?;
     /// assert_eq!(world.objects[0].coordinates, [3.0, 4.0]);
     /// # Ok::<(), driftworld_spec::SpecError>(())
     /// ```
@@ -108,6 +108,14 @@ fields! {
 }
 
 impl WorldDraft {
+    /// A world with these objects; all else is at its default.
+    pub fn with_objects(objects: Vec<Object>) -> Self {
+        Self {
+            objects,
+            ..Self::default()
+        }
+    }
+
     /// Time steps until `max_seconds` have passed: the first step that ends at or after that time. `None` without such a limit.
     pub fn max_ticks(&self) -> Option<u64> {
         // Slightly less, so that 60 s are 600 time steps of 0.1 s, which has no exact binary form.

@@ -64,10 +64,7 @@ mod tests {
 
     #[test]
     fn looks_rewards_names_and_order_do_not_affect_the_hash_of_places() {
-        let world = WorldDraft {
-            objects: vec![Object::new("tree", [3.0, 0.0]), Object::new("rock", [-1.0, 2.0])],
-            ..WorldDraft::default()
-        };
+        let world = WorldDraft::with_objects(vec![Object::new("tree", [3.0, 0.0]), Object::new("rock", [-1.0, 2.0])]);
         let mut other = world.clone();
         other.objects.swap(0, 1);
         other.objects[0].coordinates[1] = 2.0;

@@ -177,10 +177,7 @@ impl Show {
 
     /// A model that fills a picture, turned to a heading in degrees, seen from the south.
     fn picture(&self, asset: &Arc<Asset>, heading_deg: f32) -> Picture {
-        let mut world = WorldDraft {
-            objects: vec![Object::new("cube", [0.0, 0.0])],
-            ..WorldDraft::default()
-        };
+        let mut world = WorldDraft::with_objects(vec![Object::new("cube", [0.0, 0.0])]);
         world.environment_params.wall_height = 0.0;
         let mut scene = Scene::from_world(&world.check().expect("a cube on open ground is sound"));
         let item = &mut scene.items[0];
@@ -209,10 +206,7 @@ fn cut_out(class: &str, name: &str, size: u32) -> Picture {
     let mut object = Object::new(class, [0.0, 0.0]);
     object.model = Model(name.to_owned());
     object.text = (class == "sign").then(|| "ABC".to_owned());
-    let mut world = WorldDraft {
-        objects: vec![object],
-        ..WorldDraft::default()
-    };
+    let mut world = WorldDraft::with_objects(vec![object]);
     world.environment_params.wall_height = 0.0;
     world.environment_params.looks.style = Style::Natural;
     // From behind the camera, to its left.

@@ -36,10 +36,7 @@ fn report(adapter: &wgpu::Adapter) -> AdapterReport {
 fn prove(adapter: &wgpu::Adapter) -> Result<(), String> {
     let device = Device::open(adapter, Clipping::IfPossible)?;
     let mut renderer = GpuRenderer::proven(device).map_err(|error| error.to_string())?;
-    let world = WorldDraft {
-        objects: vec![Object::new("tree", [0.0, 8.0]), Object::new("cube", [2.0, 5.0])],
-        ..WorldDraft::default()
-    };
+    let world = WorldDraft::with_objects(vec![Object::new("tree", [0.0, 8.0]), Object::new("cube", [2.0, 5.0])]);
     let scene = Scene::from_world(&world.check().map_err(|error| error.to_string())?);
     let camera = Camera::first_person([0.0, 0.0], 0.0, 1.0, 60.0);
     let (mut drawn, mut expected) = (Frame::new(SIDE, SIDE), Frame::new(SIDE, SIDE));
