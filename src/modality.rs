@@ -1,6 +1,6 @@
 //! The kinds of images, and their PNG formats.
 
-use crate::env::{Frame, Target, category_color, depth_to_gray};
+use crate::env::{Frame, category_color, depth_to_gray};
 use crate::spec::Modality;
 
 use crate::report::ReportError;
@@ -66,21 +66,6 @@ pub(crate) fn to_png(kind: Modality, frame: &Frame, metres_per_level: f32) -> Re
         Modality::Class => gray(frame.class.clone()),
         Modality::Instance => gray(frame.instance.iter().map(cut).collect()),
     }
-}
-
-/// The requested images of a frame.
-pub(crate) fn target<'a>(frame: &'a mut Frame, kinds: &[Modality], supersampling: u32) -> Target<'a> {
-    let mut target = Target {
-        supersampling,
-        ..frame.target()
-    };
-    let wanted = |kind: Modality| kinds.contains(&kind);
-    target.rgb = target.rgb.filter(|_| wanted(Modality::Rgb));
-    target.depth = target.depth.filter(|_| wanted(Modality::Depth));
-    target.category = target.category.filter(|_| wanted(Modality::Segmentation));
-    target.class = target.class.filter(|_| wanted(Modality::Class));
-    target.instance = target.instance.filter(|_| wanted(Modality::Instance));
-    target
 }
 
 /// The finest of millimetres, centimetres and decimetres that can represent twice a distance.

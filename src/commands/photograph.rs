@@ -5,14 +5,14 @@ use std::path::PathBuf;
 
 use crate::env::{
     CATEGORY_BUILDING, CATEGORY_MAP, CATEGORY_NEGATIVE, CATEGORY_NEUTRAL, CATEGORY_POSITIVE, CATEGORY_SKY, Catalogue,
-    Environment, Frame, Photograph as View, Studio, Warning, category_color,
+    Environment, Frame, Photograph as View, Studio, Target, Warning, category_color,
 };
 use crate::spec::{Modality, Object, World};
 use clap::Args;
 use serde::Serialize;
 
 use super::{Failure, output};
-use crate::modality::{self, metres_per_level, target};
+use crate::modality::{self, metres_per_level};
 use crate::numbers::documented;
 use crate::worlds::WorldRequest;
 
@@ -100,7 +100,14 @@ impl Photograph {
         let mut entries = Vec::with_capacity(views.len() * kinds.len());
         let bar = output::progress(views.len() as u64, "photographs");
         for view in &views {
-            studio.take(view, &mut target(&mut frame, &kinds, supersampling))?;
+            let target = frame.target().only(&kinds);
+            studio.take(
+                view,
+                &mut Target {
+                    supersampling,
+                    ..target
+                },
+            )?;
             for kind in &kinds {
                 entries.push(self.keep(&world, view, *kind, &frame)?);
             }

@@ -1,6 +1,6 @@
 //! Pictures of a running world: shown in the terminal, or saved as files.
 
-use crate::env::{Frame, Image, top_down};
+use crate::env::{Frame, Image, Target, top_down};
 use driftworld_text::ShownPath;
 
 use super::arguments::Picture;
@@ -8,7 +8,7 @@ use super::map;
 use super::screen::{color_of, half_blocks, letters};
 use super::session::{Session, plain};
 use crate::map_drawing::{self, Moves};
-use crate::modality::{self, target, to_rgb};
+use crate::modality::{self, to_rgb};
 use crate::report::picture;
 use crate::spec::Modality;
 
@@ -22,7 +22,10 @@ impl Session<'_> {
         // Reduces the smoothing if the picture would have too many samples.
         let samples = (1..=wanted).rev().find(|samples| width.max(height) * samples <= 8192);
         let mut frame = Frame::new(width, height);
-        let mut target = target(&mut frame, &[kind], samples.unwrap_or(1));
+        let mut target = Target {
+            supersampling: samples.unwrap_or(1),
+            ..frame.target().only(&[kind])
+        };
         let camera = self.environment.camera();
         self.renderer
             .draw(self.environment.scene(), &camera, &mut target)

@@ -67,12 +67,7 @@ fn processor(c: &mut Criterion) {
     group.bench_function("64 pictures of 84 × 84", |bench| {
         bench.iter(|| {
             for camera in (0..64).map(|k| &cameras[k * cameras.len() / 64]) {
-                let mut target = Target {
-                    width: SIZE,
-                    height: SIZE,
-                    rgb: Some(&mut rgb),
-                    ..Target::default()
-                };
+                let mut target = Target::of_colors([SIZE, SIZE], &mut rgb);
                 renderer
                     .draw(environment.scene(), camera, &mut target)
                     .expect("the sizes are sound");

@@ -8,7 +8,7 @@ use super::findings::{Findings, Witness};
 use super::matching::Paired;
 use super::policy::Policy;
 use crate::EnvError;
-use crate::render::{Frame, Target};
+use crate::render::Frame;
 use crate::sim::{Action, Environment, Event, Snapshot, Step, Unlike};
 
 /// Both worlds of a pair, one of which leads, with reused buffers.
@@ -145,8 +145,8 @@ impl<'a> Run<'a> {
         }
         if unlike.is_none() && !self.modalities.is_empty() {
             let [own, other] = &mut self.frames;
-            self.lead.draw_into(wanted(own, &self.modalities))?;
-            self.follow.draw_into(wanted(other, &self.modalities))?;
+            self.lead.draw_into(own.target().only(&self.modalities))?;
+            self.follow.draw_into(other.target().only(&self.modalities))?;
             unlike = pictures_unlike(&self.frames, &self.modalities);
         }
         if let Some(unlike) = unlike {
@@ -206,17 +206,6 @@ fn paid_unlike(own: &Step, other: &Step) -> Option<Unlike> {
     let ends = |step: &Step| (step.terminated, step.truncated, step.success);
     Unlike::of("the reward", &own.reward, &other.reward)
         .or_else(|| Unlike::of("the end (terminated, truncated, success)", &ends(own), &ends(other)))
-}
-
-fn wanted<'a>(frame: &'a mut Frame, modalities: &[Modality]) -> Target<'a> {
-    let mut target = frame.target();
-    let has = |modality: Modality| modalities.contains(&modality);
-    target.rgb = target.rgb.filter(|_| has(Modality::Rgb));
-    target.depth = target.depth.filter(|_| has(Modality::Depth));
-    target.category = target.category.filter(|_| has(Modality::Segmentation));
-    target.class = target.class.filter(|_| has(Modality::Class));
-    target.instance = target.instance.filter(|_| has(Modality::Instance));
-    target
 }
 
 /// The first differing pixel, in the first image that has one.

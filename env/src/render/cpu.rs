@@ -113,12 +113,7 @@ impl CpuRenderer {
             let mut points = std::mem::take(&mut self.points);
             let (width, height) = (target.width * samples, target.height * samples);
             points.resize(3 * width as usize * height as usize, 0);
-            let mut fine = Target {
-                width,
-                height,
-                rgb: Some(&mut points),
-                ..Target::default()
-            };
+            let mut fine = Target::of_colors([width, height], &mut points);
             self.run(scene, camera, &mut fine);
             average(&points, rgb, target.width as usize, samples as usize);
             self.points = points;

@@ -99,11 +99,8 @@ impl Studio {
         self.rgb.resize(3 * pixels, 0);
         self.instance.resize(pixels, 0);
         let mut target = Target {
-            width: side,
-            height: side,
-            rgb: Some(&mut self.rgb),
             instance: Some(&mut self.instance),
-            ..Target::default()
+            ..Target::of_colors([side, side], &mut self.rgb)
         };
         self.renderer
             .draw(&self.scene, &camera, &mut target)

@@ -1,6 +1,6 @@
 //! [`Target`]: the caller's buffers for images, one slice per requested modality.
 
-use driftworld_spec::MAX_POINTS;
+use driftworld_spec::{MAX_POINTS, Modality};
 
 use super::frame::Frame;
 use crate::EnvError;
@@ -27,7 +27,17 @@ pub struct Target<'a> {
     pub instance: Option<&'a mut [u32]>,
 }
 
-impl Target<'_> {
+impl<'a> Target<'a> {
+    /// A target for colours alone.
+    pub fn of_colors([width, height]: [u32; 2], rgb: &'a mut [u8]) -> Self {
+        Self {
+            width,
+            height,
+            rgb: Some(rgb),
+            ..Self::default()
+        }
+    }
+
     /// The same images, reborrowed.
     pub fn reborrow(&mut self) -> Target<'_> {
         Target {
@@ -40,6 +50,18 @@ impl Target<'_> {
             class: self.class.as_deref_mut(),
             instance: self.instance.as_deref_mut(),
         }
+    }
+
+    /// The same, with the images of these modalities only.
+    #[must_use]
+    pub fn only(mut self, modalities: &[Modality]) -> Self {
+        let wanted = |modality: Modality| modalities.contains(&modality);
+        self.rgb = self.rgb.filter(|_| wanted(Modality::Rgb));
+        self.depth = self.depth.filter(|_| wanted(Modality::Depth));
+        self.category = self.category.filter(|_| wanted(Modality::Segmentation));
+        self.class = self.class.filter(|_| wanted(Modality::Class));
+        self.instance = self.instance.filter(|_| wanted(Modality::Instance));
+        self
     }
 
     /// # Errors

@@ -226,11 +226,8 @@ fn cut_out(class: &str, name: &str, size: u32) -> Picture {
     let side = 4 * size;
     let (mut rgb, mut instances) = (vec![0; 3 * (side * side) as usize], vec![0; (side * side) as usize]);
     let mut target = Target {
-        width: side,
-        height: side,
-        rgb: Some(&mut rgb),
         instance: Some(&mut instances),
-        ..Target::default()
+        ..Target::of_colors([side, side], &mut rgb)
     };
     let drawn = CpuRenderer::new().draw(&scene, &camera, &mut target);
     drawn.expect("the picture is as large as its target");

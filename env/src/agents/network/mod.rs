@@ -68,11 +68,8 @@ impl NetworkAgent {
         let side = self.trained.network.side as u32;
         self.image.resize((side * side * 3) as usize, 0);
         let mut target = Target {
-            width: side,
-            height: side,
             supersampling: environment.world().agent_params.supersampling,
-            rgb: Some(&mut self.image),
-            ..Target::default()
+            ..Target::of_colors([side, side], &mut self.image)
         };
         let camera = environment.camera();
         let drawn = self.renderer.draw(environment.scene(), &camera, &mut target);

@@ -37,12 +37,7 @@ impl Eye {
             agent.field_of_view as f32,
         );
         self.rgb.resize(SIDE * SIDE * 3, 0);
-        let mut target = Target {
-            width: SIDE as u32,
-            height: SIDE as u32,
-            rgb: Some(&mut self.rgb),
-            ..Target::default()
-        };
+        let mut target = Target::of_colors([SIDE as u32, SIDE as u32], &mut self.rgb);
         let drawn = self.renderer.draw(environment.scene(), &camera, &mut target);
         drawn.expect("the picture has a size that can be drawn");
         shares(&self.rgb)

@@ -242,12 +242,7 @@ impl GpuRenderer {
                         unpack::unpack(bytes, layout, corner, scene, job.labels, target);
                     } else if let Some(rgb) = &mut target.rgb {
                         let mut points = vec![0; 3 * job.size[0] as usize * job.size[1] as usize];
-                        let mut fine = Target {
-                            width: job.size[0],
-                            height: job.size[1],
-                            rgb: Some(&mut points),
-                            ..Target::default()
-                        };
+                        let mut fine = Target::of_colors([job.size[0], job.size[1]], &mut points);
                         unpack::unpack(bytes, layout, corner, scene, job.labels, &mut fine);
                         average(&points, rgb, target.width as usize, job.samples as usize);
                     }
