@@ -112,10 +112,8 @@ impl PyVariant {
             let measured = VariantMeasure::new(from.task(), Weights::of_task(from.task()));
             let measure = |other: &Variant| {
                 // Unbounded distributions have no finite distance: they are farther away than any that is requested.
-                let Ok(distance) = measured.between(&from, other) else {
-                    return f64::INFINITY;
-                };
-                element.map_or(distance.total, |element| distance.element(element).unwrap_or(0.0))
+                let distance = measured.between(&from, other);
+                distance.map_or(f64::INFINITY, |distance| distance.within(element))
             };
             at_distance(&from, &subject, distance, tolerance, measure)
         })??;

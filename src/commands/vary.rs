@@ -74,13 +74,8 @@ impl Vary {
         let measured = VariantMeasure::new(from.task(), Weights::of_task(from.task()));
         let measure = |other: &Variant| {
             // Distributions of unboundedly large numbers have no finite distance: farther than any requested.
-            let Ok(distance) = measured.between(&from, other) else {
-                return f64::INFINITY;
-            };
-            match self.element {
-                Some(element) => distance.element(element).unwrap_or(0.0),
-                None => distance.total,
-            }
+            let distance = measured.between(&from, other);
+            distance.map_or(f64::INFINITY, |distance| distance.within(self.element))
         };
         let found = at_distance(&from, &subject, self.distance, self.tolerance, measure)?;
         let changed = found

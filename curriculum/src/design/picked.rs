@@ -76,7 +76,7 @@ pub(super) fn apart(
     b: &Variant,
     element: Option<Element>,
 ) -> Result<f64, CurriculumError> {
-    Ok(in_element(&measure.between(a, b)?, element))
+    Ok(measure.between(a, b)?.within(element))
 }
 
 /// The distance of the farthest variant that the generator finds by changing a subject, in one element or in total.
@@ -93,14 +93,6 @@ pub(super) fn farthest(
         Err(GeneratorError::NoneBetween { nearest, .. }) => Ok(nearest),
         Err(other) => Err(other),
         Ok(found) => Ok(found.distance),
-    }
-}
-
-/// The distance in an element, 0 if nothing could differ, or the total.
-pub(super) fn in_element(distance: &Distance, element: Option<Element>) -> f64 {
-    match element {
-        Some(element) => distance.element(element).unwrap_or(0.0),
-        None => distance.total,
     }
 }
 

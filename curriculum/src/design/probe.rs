@@ -6,7 +6,7 @@ use driftworld_spec::{Domain, Element, Role, Value, Variant};
 use driftworld_similarity::{Method, OrderOptions, VariantMeasure, order};
 
 use super::choice::changes;
-use super::picked::{Picked, apart, distances, farthest, in_element, is_alone, measure_of};
+use super::picked::{Picked, apart, distances, farthest, is_alone, measure_of};
 use crate::CurriculumError;
 
 /// Most variants of a probe: all pairs are compared.
@@ -100,10 +100,8 @@ pub fn probe_named(
         }
         for before in &met {
             let apart = measure.between(before, variant)?;
-            if in_element(&apart, Some(element)) <= ALIKE || !is_alone(&apart, element) {
-                let differs = Element::ALL
-                    .into_iter()
-                    .filter(|one| in_element(&apart, Some(*one)) > ALIKE);
+            if apart.within(Some(element)) <= ALIKE || !is_alone(&apart, element) {
+                let differs = Element::ALL.into_iter().filter(|one| apart.within(Some(*one)) > ALIKE);
                 let differs: Vec<&str> = differs.map(Element::name).collect();
                 return Err(CurriculumError::NotAlone {
                     a: before.id(),
@@ -146,7 +144,7 @@ impl Search<'_> {
     fn is_new(&self, variant: &Variant) -> Result<bool, CurriculumError> {
         for picked in &self.found {
             let apart = self.measure.between(&picked.variant, variant)?;
-            if in_element(&apart, Some(self.element)) <= ALIKE || !is_alone(&apart, self.element) {
+            if apart.within(Some(self.element)) <= ALIKE || !is_alone(&apart, self.element) {
                 return Ok(false);
             }
         }

@@ -7,7 +7,7 @@ use driftworld_similarity::VariantMeasure;
 use driftworld_spec::{Domain, Parameter, ParameterType, Role, Value, Variant};
 
 use super::choice::changes;
-use super::picked::{Picked, apart, farthest, in_element, is_alone, measure_of};
+use super::picked::{Picked, apart, farthest, is_alone, measure_of};
 use super::steps::Steps;
 use crate::CurriculumError;
 
@@ -151,7 +151,7 @@ impl<'a> Walk<'a> {
         self.comparisons.set(self.comparisons.get() + 1);
         let apart = self.measure.between(a, b)?;
         let alone = self.wanted.element.is_none_or(|element| is_alone(&apart, element));
-        Ok((in_element(&apart, self.wanted.element), alone))
+        Ok((apart.within(self.wanted.element), alone))
     }
 
     /// The distance to the nearest variant of the path.

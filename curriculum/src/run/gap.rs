@@ -21,10 +21,7 @@ pub(super) const UNKNOWN: Gap = [f64::NAN; 6];
 
 /// An element in which nothing could differ counts as equal.
 fn gap_of(distance: &Distance) -> Gap {
-    std::array::from_fn(|place| match place.checked_sub(1) {
-        None => distance.total,
-        Some(element) => distance.element(Element::ALL[element]).unwrap_or(0.0),
-    })
+    std::array::from_fn(|place| distance.within(place.checked_sub(1).map(|element| Element::ALL[element])))
 }
 
 /// What gaps are measured between: variants, or single worlds.

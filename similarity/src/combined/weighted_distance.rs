@@ -113,6 +113,11 @@ impl Distance {
         self.elements[position(element)]
     }
 
+    /// The part of one element, 0 where nothing of it could differ; without an element the whole.
+    pub fn within(&self, element: Option<Element>) -> f64 {
+        element.map_or(self.total, |element| self.element(element).unwrap_or(0.0))
+    }
+
     /// The elements with a distance above 0.
     pub fn differs_in(&self) -> Vec<Element> {
         let differs = |element: &Element| self.element(*element).is_some_and(|distance| distance > 0.0);
