@@ -1,5 +1,7 @@
 //! An episode as a few frames: chooses the steps, their captions, and their pictures.
 
+use std::convert::Infallible;
+
 use driftworld_env::{
     Agent, Catalogue, Effect, EndedBy, Environment, Event, Recorder, Recording, Renderer, Replay, Step,
     top_down_with_way,
@@ -236,25 +238,14 @@ pub(crate) fn facts(environment: &Environment, end: Option<&Step>) -> Vec<String
     parts
 }
 
-/// Factor of oversampling along each side, for smooth edges, if allowed.
-fn oversize(size: u32) -> u32 {
-    if size <= 2048 { 2 } else { 1 }
-}
-
-/// Scales an oversampled picture down.
-fn finished(width: u32, height: u32, rgb: Vec<u8>, size: u32) -> Picture {
-    let picture = Picture { width, height, rgb };
-    if oversize(size) == 2 { picture.halved() } else { picture }
-}
-
 /// The agent's view: in colours with smooth edges, otherwise pixel by pixel.
 pub(crate) fn seen_by(environment: &mut Environment, options: &FilmOptions) -> Result<Picture, Failure> {
     let size = options.size;
     let kind = match options.modality {
         FilmModality::Rgb => {
-            let side = size * oversize(size);
-            let frame = environment.observe_at(side, side)?;
-            return Ok(finished(frame.width, frame.height, frame.rgb, size));
+            return Picture::smooth([size; 2], |[width, height]| {
+                Ok(environment.observe_at(width, height)?.rgb)
+            });
         }
         FilmModality::Segmentation => Modality::Segmentation,
         FilmModality::Depth => Modality::Depth,
@@ -264,13 +255,13 @@ pub(crate) fn seen_by(environment: &mut Environment, options: &FilmOptions) -> R
 }
 
 /// The map with the agent, and its path.
-pub(crate) fn map_of(environment: &Environment, [width, height]: [u32; 2], way: &[[f32; 2]]) -> Picture {
-    let size = width.max(height);
+pub(crate) fn map_of(environment: &Environment, size: [u32; 2], way: &[[f32; 2]]) -> Picture {
     let agent = environment.agent();
     let agent = Some((agent.position, agent.heading_deg));
-    let [wide, high] = [width, height].map(|side| side * oversize(size));
-    let map = top_down_with_way(environment.scene(), wide, high, agent, way);
-    finished(map.width, map.height, map.rgb, size)
+    let Ok(picture) = Picture::smooth(size, |[width, height]| {
+        Ok::<_, Infallible>(top_down_with_way(environment.scene(), width, height, agent, way).rgb)
+    });
+    picture
 }
 
 #[cfg(test)]

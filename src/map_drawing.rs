@@ -3,6 +3,8 @@
 
 #![expect(clippy::disallowed_methods, reason = "where lines and words stand on a map")]
 
+use std::convert::Infallible;
+
 use driftworld_env::{Scene, top_down};
 use driftworld_report::picture::{Drawing, Level, Picture, Rgb, Shape, Side, TextLine, ring};
 use driftworld_spec::{MotionModel, Object, Stimulus, World};
@@ -80,11 +82,12 @@ pub(crate) fn map_size(scene: &Scene, height: u32) -> [u32; 2] {
 }
 
 /// The ground from above with everything on it, in neutral light, with smooth edges if allowed.
-pub(crate) fn ground(scene: &Scene, [width, height]: [u32; 2]) -> Picture {
-    let twice = if width.max(height) <= 2048 { 2 } else { 1 };
-    let image = top_down(&scene.clone().in_neutral_light(), width * twice, height * twice, None);
-    let picture = Picture::new(image.width, image.height, image.rgb);
-    if twice == 2 { picture.halved() } else { picture }
+pub(crate) fn ground(scene: &Scene, size: [u32; 2]) -> Picture {
+    let scene = scene.clone().in_neutral_light();
+    let Ok(picture) = Picture::smooth(size, |[width, height]| {
+        Ok::<_, Infallible>(top_down(&scene, width, height, None).rgb)
+    });
+    picture
 }
 
 /// The reward or loss that the agent can get from an object.

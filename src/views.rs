@@ -332,11 +332,11 @@ impl<'a> Views<'a> {
     }
 
     /// The agent's view at the start in colour, with smooth edges.
-    pub(crate) fn smoothly(&self, [width, height]: [u32; 2]) -> Result<Picture, Failure> {
+    pub(crate) fn smoothly(&self, size: [u32; 2]) -> Result<Picture, Failure> {
         let camera = agent_camera(self.world, self.turn);
-        let frame = self.frame(&self.scene, &camera, 2 * width, 2 * height)?;
-        let picture = Picture::new(frame.width, frame.height, frame.rgb);
-        Ok(picture.halved())
+        Picture::smooth(size, |[width, height]| {
+            Ok(self.frame(&self.scene, &camera, width, height)?.rgb)
+        })
     }
 
     /// The agent's views ahead, to its right, behind and to its left.
@@ -432,10 +432,9 @@ impl<'a> Views<'a> {
 
     /// A colour picture with smooth edges: rendered at twice the size if allowed.
     fn smooth(&self, scene: &Scene, camera: &Camera, width: u32) -> Result<Picture, Failure> {
-        let twice = if self.size.max(width) <= 2048 { 2 } else { 1 };
-        let frame = self.frame(scene, camera, width * twice, self.size * twice)?;
-        let picture = Picture::new(frame.width, frame.height, frame.rgb);
-        Ok(if twice == 2 { picture.halved() } else { picture })
+        Picture::smooth([width, self.size], |[width, height]| {
+            Ok(self.frame(scene, camera, width, height)?.rgb)
+        })
     }
 
     fn frame(&self, scene: &Scene, camera: &Camera, width: u32, height: u32) -> Result<Frame, Failure> {

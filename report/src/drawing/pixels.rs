@@ -95,6 +95,18 @@ impl Picture {
         half
     }
 
+    /// A picture of this width and height with smooth edges: `draw` renders it at twice the size, and the result is halved. Pictures
+    /// over 2048 pixels are rendered at their own size.
+    ///
+    /// # Errors
+    /// Those of `draw`.
+    pub fn smooth<E>(size: [u32; 2], draw: impl FnOnce([u32; 2]) -> Result<Vec<u8>, E>) -> Result<Self, E> {
+        let is_large = size.iter().any(|side| *side > 2048);
+        let [width, height] = if is_large { size } else { size.map(|side| 2 * side) };
+        let drawn = Self::new(width, height, draw([width, height])?);
+        Ok(if is_large { drawn } else { drawn.halved() })
+    }
+
     /// The image as a PNG file's bytes.
     ///
     /// # Errors

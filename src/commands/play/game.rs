@@ -141,10 +141,9 @@ impl Game {
     }
 
     fn seen(&mut self, width: u32, height: u32) -> Result<Picture, Failure> {
-        let frame = self.environment.observe_at(2 * width, 2 * height)?;
-        let (width, height) = (frame.width, frame.height);
-        let rgb = frame.rgb;
-        Ok(Picture { width, height, rgb }.halved())
+        Picture::smooth([width, height], |[width, height]| {
+            Ok(self.environment.observe_at(width, height)?.rgb)
+        })
     }
 
     /// The status line: steps, time, return, carried objects, the last event.
