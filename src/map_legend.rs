@@ -4,7 +4,7 @@
 use driftworld_env::Scene;
 use driftworld_report::picture::{Drawing, Level, Picture, Rgb, Side, TextLine, ring, text_width};
 use driftworld_spec::{MotionModel, Object, World, Zone, ZoneEnd};
-use driftworld_text::when;
+use driftworld_text::{short, when};
 
 use crate::map_colors::MapColors;
 use crate::map_drawing::{INK, Moves, RING, TRAIL, WHITE, annotated, arrow, ground, map_size, pay, trigger_radius};
@@ -180,8 +180,7 @@ pub(crate) fn named(object: &Object) -> String {
 
 fn signed(pay: f64) -> String {
     let sign = if pay < 0.0 { "−" } else { "+" };
-    let number = format!("{:.2}", pay.abs());
-    format!("{sign}{}", number.trim_end_matches('0').trim_end_matches('.'))
+    format!("{sign}{}", short(pay.abs(), 2))
 }
 
 fn at(picture: &Picture, [x, y]: [f32; 2]) -> Rgb {

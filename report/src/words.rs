@@ -19,13 +19,6 @@ pub(crate) fn note_shown(text: &str) -> String {
     cut(text.trim_end_matches('.'), LONGEST_SENTENCE)
 }
 
-/// A number with at most `digits` decimals and no trailing zeros; `digits` must be at least 1.
-pub(crate) fn short(number: f64, digits: usize) -> String {
-    let text = format!("{number:.digits$}");
-    let text = text.trim_end_matches('0').trim_end_matches('.');
-    if text == "-0" { "0".to_owned() } else { text.to_owned() }
-}
-
 fn cut(name: &str, longest: usize) -> String {
     // Not allowed in XML.
     let calm = |letter: char| match letter {

@@ -95,9 +95,7 @@ impl Session<'_> {
 
 /// A number with at most two decimals, without trailing zeros.
 pub(super) fn short(number: f32) -> String {
-    let text = format!("{number:.2}");
-    let text = text.trim_end_matches('0').trim_end_matches('.');
-    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+    driftworld_text::short(f64::from(number), 2)
 }
 /// What divides the arena, and the number of zones, if any.
 fn ground(environment: &EnvironmentParams) -> String {

@@ -22,12 +22,24 @@ pub fn amount(number: f64) -> String {
     let places = (0..=PLACES)
         .rev()
         .find(|places| size < 10_f64.powi((DIGITS - places) as i32));
-    let text = format!("{number:.*}", places.unwrap_or(0));
+    short(number, places.unwrap_or(0))
+}
+
+/// A number with at most `places` decimals, without trailing zeros and without a sign before zero.
+pub fn short(number: f64, places: usize) -> String {
+    let text = format!("{number:.places$}");
     let text = match text.split_once('.') {
         Some(_) => text.trim_end_matches('0').trim_end_matches('.'),
         None => &text,
     };
     if text == "-0" { "0".to_owned() } else { text.to_owned() }
+}
+
+/// A number with `places` decimals, without a sign if it rounds to zero.
+pub fn rounded(number: f64, places: usize) -> String {
+    let text = format!("{number:.places$}");
+    let is_nothing = text.chars().all(|letter| matches!(letter, '-' | '0' | '.'));
+    text[usize::from(is_nothing && text.starts_with('-'))..].to_owned()
 }
 
 #[cfg(test)]

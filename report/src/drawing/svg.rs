@@ -132,7 +132,7 @@ fn hex([red, green, blue]: Rgb) -> String {
 
 /// A number with at most two decimals.
 fn short(number: f32) -> String {
-    crate::words::short(f64::from(number), 2)
+    driftworld_text::short(f64::from(number), 2)
 }
 
 #[cfg(test)]

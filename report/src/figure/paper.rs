@@ -8,6 +8,7 @@
 use std::ops::Range;
 use std::sync::Once;
 
+use driftworld_text::short;
 use plotters::coord::Shift;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
@@ -16,7 +17,6 @@ use plotters::style::{FontStyle, register_font};
 
 use super::Layout;
 use super::palette::{FAINT, INK, Look, Mark, RIM};
-use crate::words::short;
 
 pub(super) type Area<DB> = DrawingArea<DB, Shift>;
 pub(super) type Chart<'a, DB> = ChartContext<'a, DB, Cartesian2d<RangedCoordf64, RangedCoordf64>>;

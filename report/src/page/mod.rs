@@ -10,6 +10,7 @@ mod task_table;
 mod verdict;
 
 use driftworld_metrics::{BootstrapOptions, RepeatedMetric};
+use driftworld_text::rounded;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use serde_json::Value;
 
@@ -236,16 +237,7 @@ fn number(value: f64) -> String {
         size if size >= 10.0 => 2,
         _ => 3,
     };
-    let text = format!("{value:.digits$}");
-    let zero = text
-        .trim_start_matches('-')
-        .chars()
-        .all(|letter| matches!(letter, '0' | '.'));
-    if zero {
-        text.trim_start_matches('-').to_owned()
-    } else {
-        text.replace('-', "−")
-    }
+    rounded(value, digits).replace('-', "−")
 }
 
 /// A count with its thousands separated by narrow spaces.

@@ -3,12 +3,13 @@
 use driftworld_metrics::{
     BootstrapOptions, ComparedMetric, Estimate, Improvement, Interval, LARGEST_P, RepeatedMetric,
 };
+use driftworld_text::short;
 use indexmap::IndexMap;
 use maud::{Markup, html};
 
 use super::verdict::{self, Verdict, pill};
 use super::{calm, count, metric_table, number};
-use crate::words::{short, shown};
+use crate::words::shown;
 
 /// The probabilities that one agent is better than another.
 #[derive(Debug, Clone, PartialEq)]

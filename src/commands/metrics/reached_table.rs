@@ -4,9 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::metrics::{EvaluationCell, LEARNED_SHARE, LifetimeMetrics, Reached, Unlabelled};
 
-use driftworld_text::{when, whole};
+use driftworld_text::{rounded, when, whole};
 
-use super::tables::{mean, number, rounded, with_error};
+use super::tables::{mean, number, with_error};
 use crate::table::without_empty;
 use crate::variant_names::VariantNames;
 

@@ -7,7 +7,7 @@ use crate::metrics::{
     NULL_PERMUTATIONS, NullBand, RepeatedMetric, ScaledBy,
 };
 
-use driftworld_text::{counted, one_line, printable, whole};
+use driftworld_text::{counted, one_line, printable, rounded, whole};
 
 use super::reached_table::{curves, reached, reached_by_several};
 use crate::scoring::{Comparison, Scores, Varied, own_scale};
@@ -329,17 +329,6 @@ fn decimals(value: f64) -> usize {
         size if size >= 100.0 => 1,
         size if size >= 10.0 => 2,
         _ => 3,
-    }
-}
-
-/// With this number of decimals; zero has no sign.
-pub(super) fn rounded(value: f64, decimals: usize) -> String {
-    let shown = format!("{value:.decimals$}");
-    let is_nothing = shown.chars().all(|letter| matches!(letter, '-' | '0' | '.'));
-    if is_nothing {
-        shown.trim_start_matches('-').to_owned()
-    } else {
-        shown
     }
 }
 
