@@ -1,16 +1,13 @@
 //! Text columns and notes in our logs: how each experience ended, and the scenario's own description.
 
-use std::num::NonZeroUsize;
-use std::ops::ControlFlow;
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
 
-use driftworld_curriculum::{
-    CurriculumError, ENDED_BY, ENDING, Experience, FoundWorld, Journal, Plan, RunContext, Sources, run,
-};
-use driftworld_env::{Catalogue, ScriptedAgent};
-use driftworld_metrics::{Complexity, Difficulty, Timestamp, read_log, validate_log};
+use driftworld_curriculum::{CurriculumError, ENDED_BY, ENDING, Experience, REPEATED_EVALUATIONS};
+use driftworld_env::ScriptedAgent;
+use driftworld_metrics::{Complexity, Difficulty, read_log, validate_log};
 use driftworld_spec::{Block, BlockKind, Regime, Scenario, ScenarioComplexity, ScenarioDifficulty, World};
+
+use crate::living::{Living, plan_of_worlds};
 
 /// Three worlds: a target ahead that ends the episode as a success, one that ends it as a failure, and none at all.
 fn world(path: &str) -> World {
@@ -24,19 +21,6 @@ fn world(path: &str) -> World {
             "reward_stimulus": ["AgentCollide"] }}] }}"#
     );
     World::from_json(path, &text).unwrap_or_else(|error| panic!("{error}"))
-}
-
-fn plan(scenario: &Scenario) -> Plan {
-    let mut sources = Sources {
-        task: &mut |_| Err("no task".to_owned()),
-        world: &mut |path| {
-            Ok(FoundWorld {
-                world: world(path),
-                note: None,
-            })
-        },
-    };
-    Plan::new(scenario, &mut sources).unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn scenario() -> Scenario {
@@ -53,30 +37,16 @@ fn scenario() -> Scenario {
 }
 
 fn live(log: &Path, most: u64, resume: bool) -> Result<(), CurriculumError> {
-    let plan = plan(&scenario());
-    let mut journal = if resume {
-        Journal::resume(log, &plan, "scripted")?
-    } else {
-        Journal::create(log, &plan, "scripted")?
-    };
-    let mut around = RunContext {
-        now: &mut || Timestamp::from_unix_micros(1_600_000_000_000_000).expect("a year from 1 to 9999"),
-        watch: &mut |progress| {
-            if progress.done < most {
-                ControlFlow::Continue(())
-            } else {
-                ControlFlow::Break(())
-            }
-        },
-        stop: &AtomicBool::new(false),
-        catalogue: Catalogue::default(),
-        jobs: NonZeroUsize::MIN,
-        repeated_evaluations: driftworld_curriculum::REPEATED_EVALUATIONS,
-    };
     // The built-in planner would avoid the failing target.
     let mut agent = ScriptedAgent::parse("touch", "touch goal 60\nrepeat\n").expect("it is a script");
-    run(&plan, &mut agent, &mut journal, &mut around)?;
-    journal.finish()
+    let living = Living {
+        most,
+        resume,
+        repeated: REPEATED_EVALUATIONS,
+        ..Living::default()
+    };
+    living.live(&plan_of_worlds(&scenario(), world), &mut agent, log)?;
+    Ok(())
 }
 
 /// The texts in a column; `None` without such a column.

@@ -1,16 +1,15 @@
 //! A run that is stopped ends at the next step: the experience in progress leaves no row, and the log can be resumed.
 
-use std::collections::BTreeMap;
-use std::num::NonZeroUsize;
-use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-use driftworld_curriculum::{FoundWorld, Journal, Plan, RunContext, Sources, Summary, run};
-use driftworld_env::{Action, Agent, Catalogue, Environment, RandomAgent};
-use driftworld_metrics::Timestamp;
+use driftworld_curriculum::{Plan, REPEATED_EVALUATIONS, Summary};
+use driftworld_env::{Action, Agent, Environment, RandomAgent};
 use driftworld_spec::{Block, BlockKind, Regime, Scenario, World};
+
+use crate::files_below::files_below;
+use crate::living::{Living, plan_of_worlds};
 
 /// 12 experiences of 30 steps each.
 const STEPS: u64 = 12 * 30;
@@ -26,16 +25,7 @@ fn plan() -> Plan {
         vec![block(BlockKind::Evaluation, 5), block(BlockKind::Learning, 7)],
     );
     let world = World::from_json("yard.json", r#"{ "max_steps": 30 }"#).expect("it is a world");
-    let mut sources = Sources {
-        task: &mut |_| Err("no tasks here".to_owned()),
-        world: &mut |_| {
-            Ok(FoundWorld {
-                world: world.clone(),
-                note: None,
-            })
-        },
-    };
-    Plan::new(&scenario, &mut sources).expect("the plan is sound")
+    plan_of_worlds(&scenario, |_| world.clone())
 }
 
 /// Acts at random, and sets a flag before a step, counted over all its copies.
@@ -81,35 +71,16 @@ fn live(log: &Path, jobs: usize, before: u64) -> (Summary, u64) {
         before: before.min(u64::MAX - 64),
         stop: Arc::clone(&stop),
     };
-    let mut journal = Journal::resume(log, &plan, "test").expect("the log can be written");
-    let mut around = RunContext {
-        now: &mut || Timestamp::from_unix_micros(1_600_000_000_000_000).expect("the year is 2020"),
-        watch: &mut |_| ControlFlow::Continue(()),
-        stop: &stop,
-        catalogue: Catalogue::default(),
-        jobs: NonZeroUsize::new(jobs).expect("somebody has to live it"),
-        repeated_evaluations: driftworld_curriculum::REPEATED_EVALUATIONS,
+    let living = Living {
+        jobs,
+        resume: true,
+        repeated: REPEATED_EVALUATIONS,
+        stop,
+        ..Living::default()
     };
-    let summary = run(&plan, &mut agent, &mut journal, &mut around).expect("it is lived");
-    journal.finish().expect("the log is whole");
+    let summary = living.live(&plan, &mut agent, log).expect("it is lived");
     let steps = agent.steps.load(Ordering::SeqCst);
     (summary, steps)
-}
-
-/// The contents of all files of a log.
-fn bytes(log: &Path) -> BTreeMap<String, Vec<u8>> {
-    let mut found = BTreeMap::new();
-    let mut folders = vec![log.to_owned()];
-    while let Some(folder) = folders.pop() {
-        for entry in std::fs::read_dir(folder).expect("the log can be listed").flatten() {
-            let path = entry.path();
-            match std::fs::read(&path) {
-                Ok(bytes) => drop(found.insert(path.strip_prefix(log).expect("inside").display().to_string(), bytes)),
-                Err(_) => folders.push(path),
-            }
-        }
-    }
-    found
 }
 
 #[test]
@@ -119,7 +90,7 @@ fn a_run_stops_at_any_step_and_goes_on_to_the_same_log() {
     let (summary, steps) = live(&whole, 1, u64::MAX);
     assert!(summary.finished && summary.experiences == 12);
     assert_eq!(steps, STEPS);
-    let expected = bytes(&whole);
+    let expected = files_below(&whole);
     for (jobs, before) in (0..STEPS).step_by(23).map(|before| (1 + before as usize % 3, before)) {
         let log = folder.path().join(format!("{before}"));
         let (summary, taken) = live(&log, jobs, before);
@@ -138,6 +109,6 @@ fn a_run_stops_at_any_step_and_goes_on_to_the_same_log() {
         }
         let (summary, _) = live(&log, jobs, u64::MAX);
         assert!(summary.finished);
-        assert_eq!(bytes(&log), expected, "{jobs} jobs, stopped before step {before}");
+        assert_eq!(files_below(&log), expected, "{jobs} jobs, stopped before step {before}");
     }
 }

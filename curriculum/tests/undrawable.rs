@@ -1,21 +1,20 @@
 //! Worlds that cannot be drawn: they stop a run or are skipped, consistently for any number of jobs, and are found before the
 //! run.
 
-use std::fs;
-use std::num::NonZeroUsize;
-use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 
 use driftworld_curriculum::{
-    Choice, CurriculumError, Design, Drifting, Journal, Plan, Progress, RunContext, Sources, Summary, Tried,
-    Undrawable, design, run, try_worlds,
+    Choice, CurriculumError, Design, Drifting, Journal, Plan, REPEATED_EVALUATIONS, Sources, Summary, Tried,
+    Undrawable, design, try_worlds,
 };
-use driftworld_env::{Catalogue, RandomAgent};
+use driftworld_env::RandomAgent;
 use driftworld_generator::sample;
-use driftworld_metrics::{Options, Timestamp, read_log, score, validate_log};
+use driftworld_metrics::{Options, read_log, score, validate_log};
 use driftworld_spec::{DriftSchedule, DriftSwitch, Scenario, TaskSpec};
+
+use crate::files_below::files_below;
+use crate::living::Living;
 
 /// Rocks that find no place in some worlds, and a number whose middle is forbidden.
 fn task() -> Arc<TaskSpec> {
@@ -51,50 +50,17 @@ fn plan(scenario: &Scenario, undrawable: Undrawable) -> Result<Plan, CurriculumE
     Plan::with_undrawable(scenario, &mut sources, undrawable)
 }
 
-/// Runs at most `most` further experiences, with a stopped clock.
-fn live(plan: &Plan, folder: &Path, jobs: usize, most: u64) -> Result<Summary, CurriculumError> {
-    let mut journal = Journal::resume(folder, plan, "test")?;
-    let end = journal.num_experiences().saturating_add(most);
-    let mut around = RunContext {
-        now: &mut || Timestamp::from_unix_micros(1_600_000_000_000_000).expect("the year is 2020"),
-        watch: &mut |progress: &Progress| {
-            if progress.done < end {
-                ControlFlow::Continue(())
-            } else {
-                ControlFlow::Break(())
-            }
-        },
-        stop: &AtomicBool::new(false),
-        catalogue: Catalogue::default(),
-        jobs: NonZeroUsize::new(jobs).expect("somebody has to live it"),
-        repeated_evaluations: driftworld_curriculum::REPEATED_EVALUATIONS,
+/// Runs at most `more` further experiences.
+fn live(plan: &Plan, log: &Path, jobs: usize, more: u64) -> Result<Summary, CurriculumError> {
+    let done = Journal::resume(log, plan, "test")?.num_experiences();
+    let living = Living {
+        most: done.saturating_add(more),
+        jobs,
+        resume: true,
+        repeated: REPEATED_EVALUATIONS,
+        ..Living::default()
     };
-    let summary = run(plan, &mut RandomAgent::new(0), &mut journal, &mut around)?;
-    journal.finish()?;
-    Ok(summary)
-}
-
-/// Every byte of a log, by file.
-fn bytes(folder: &Path) -> Vec<(String, Vec<u8>)> {
-    let mut files = Vec::new();
-    let mut folders = vec![folder.to_owned()];
-    while let Some(next) = folders.pop() {
-        for entry in fs::read_dir(next).expect("it is a folder").flatten() {
-            let path = entry.path();
-            if path.is_dir() {
-                folders.push(path);
-            } else {
-                let name = path
-                    .strip_prefix(folder)
-                    .expect("it lies in the folder")
-                    .display()
-                    .to_string();
-                files.push((name, fs::read(&path).expect("it can be read")));
-            }
-        }
-    }
-    files.sort();
-    files
+    living.live(plan, &mut RandomAgent::new(0), log)
 }
 
 /// The numbers of the experiences that cannot be run, from drawing each world separately.
@@ -153,8 +119,8 @@ fn log_is_the_same_however_it_is_run() {
     live(&skipping, &whole, 1, u64::MAX).expect("it is lived");
     live(&skipping, &jobs, 3, u64::MAX).expect("it is lived");
     while !live(&skipping, &pieces, 1, 4).expect("it is lived").finished {}
-    assert!(bytes(&whole) == bytes(&jobs), "lived by three at a time");
-    assert!(bytes(&whole) == bytes(&pieces), "lived in pieces");
+    assert!(files_below(&whole) == files_below(&jobs), "lived by three at a time");
+    assert!(files_below(&whole) == files_below(&pieces), "lived in pieces");
     // A run that refuses stops there, says where, and continues once it may skip.
     if let Ok(refusing) = plan(&scenario, Undrawable::Refused) {
         let error = live(&refusing, &stopped, 1, u64::MAX).expect_err("some worlds cannot be drawn");
@@ -166,7 +132,7 @@ fn log_is_the_same_however_it_is_run() {
         assert_eq!(again.to_string(), error.to_string());
     }
     live(&skipping, &stopped, 1, u64::MAX).expect("it is lived");
-    assert!(bytes(&whole) == bytes(&stopped), "stopped and gone on with");
+    assert!(files_below(&whole) == files_below(&stopped), "stopped and gone on with");
 }
 
 #[test]

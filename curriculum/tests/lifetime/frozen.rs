@@ -1,6 +1,9 @@
 //! Agents that change during evaluations although they promise to be frozen.
 
-use driftworld_curriculum::{Experience, REPEATED_EVALUATIONS, Repeats, Rollout, run_rollout};
+use std::ops::ControlFlow;
+
+use driftworld_curriculum::{Experience, Progress, REPEATED_EVALUATIONS, Repeats, Rollout, run_rollout};
+use driftworld_metrics::Timestamp;
 
 use super::*;
 
@@ -67,7 +70,7 @@ fn agent_that_evaluations_change_is_refused_with_one_or_several_jobs() {
         let living = Living {
             jobs,
             repeated: REPEATED_EVALUATIONS,
-            ..WHOLE
+            ..Living::default()
         };
         let refused =
             live_by(&shaped("hill.json"), &mut agent, &folder.path().join(name), &living).expect_err("it changes");
@@ -103,7 +106,7 @@ fn changed_actions_are_detected_without_rewards() {
     let scenario = Scenario::new("idle", vec![Block::new(BlockKind::Evaluation, vec![regime])]);
     let living = Living {
         repeated: REPEATED_EVALUATIONS,
-        ..WHOLE
+        ..Living::default()
     };
     for step in [0, 17, 39] {
         let mut agent = Fidgety { episodes: 0, step };
@@ -194,7 +197,7 @@ fn checking_a_sound_learner_does_not_change_its_log() {
             Living {
                 jobs,
                 repeated,
-                ..WHOLE
+                ..Living::default()
             },
         );
         let summary =

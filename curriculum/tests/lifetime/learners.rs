@@ -35,7 +35,16 @@ fn learner_learns_in_order_and_is_evaluated_by_several_copies() {
     let folder = scratch();
     let lived = |jobs: usize| {
         let (log, mut pupil) = (folder.path().join(format!("{jobs}")), Pupil::default());
-        live_by(&varied(), &mut pupil, &log, &Living { jobs, ..WHOLE }).unwrap_or_else(|error| panic!("{error}"));
+        live_by(
+            &varied(),
+            &mut pupil,
+            &log,
+            &Living {
+                jobs,
+                ..Living::default()
+            },
+        )
+        .unwrap_or_else(|error| panic!("{error}"));
         (everything(&log), pupil.learned)
     };
     let (log, learned) = lived(1);
@@ -80,7 +89,10 @@ fn evaluations_repeat_their_random_numbers_and_learning_does_not() {
     let (folder, scenario) = (scratch(), scenario(&["blue", "red"]));
     for jobs in [1, 3] {
         let log = folder.path().join(format!("{jobs}"));
-        let living = Living { jobs, ..WHOLE };
+        let living = Living {
+            jobs,
+            ..Living::default()
+        };
         live_by(&scenario, &mut RandomAgent::new(0), &log, &living).unwrap_or_else(|error| panic!("{error}"));
         let rows = rows(&log);
         for name in ["findobjects_blue", "findobjects_red"] {
@@ -124,7 +136,14 @@ fn relearning_the_log_continues_as_if_never_stopped() {
     let gone_on = |relearns: bool| {
         let log = folder.path().join(format!("{relearns}"));
         for (most, resume) in [(8, false), (12, true), (u64::MAX, true)] {
-            let (mut agent, living) = (SarsaAgent::new(), Living { most, resume, ..WHOLE });
+            let (mut agent, living) = (
+                SarsaAgent::new(),
+                Living {
+                    most,
+                    resume,
+                    ..Living::default()
+                },
+            );
             if resume && relearns {
                 let plan = plan(&scenario).unwrap_or_else(|error| panic!("{error}"));
                 let done = Journal::resume(&log, &plan, "test").unwrap_or_else(|error| panic!("{error}"));

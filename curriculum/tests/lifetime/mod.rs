@@ -5,23 +5,22 @@ mod learners;
 mod resume;
 mod rollout;
 
-use std::num::NonZeroUsize;
-use std::ops::ControlFlow;
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex};
 
 use driftworld_curriculum::{
-    Choice, CurriculumError, Design, Drifting, FoundWorld, Journal, Plan, Progress, RunContext, Sources, Summary,
-    design, relearn, run,
+    Choice, CurriculumError, Design, Drifting, FoundWorld, Journal, Plan, Sources, Summary, design, relearn,
 };
-use driftworld_env::{Action, Agent, Catalogue, Environment, Label, OnRailsAgent, RandomAgent, SarsaAgent, Step};
-use driftworld_metrics::{MaintenanceMethod, Options, Record, Row, Timestamp, read_log, score};
+use driftworld_env::{Action, Agent, Environment, Label, OnRailsAgent, RandomAgent, SarsaAgent, Step};
+use driftworld_metrics::{MaintenanceMethod, Options, Record, Row, read_log, score};
 use driftworld_similarity::{Weights, variant_distance};
 use driftworld_spec::{
     Block, BlockKind, BlockMix, Element, Phase, Regime, RegimeDrift, Scenario, ScenarioForm, TaskLabel, TaskSpec,
     Value, World,
 };
+
+use crate::files_below::files_below;
+use crate::living::Living;
 
 fn task() -> Arc<TaskSpec> {
     let path = format!("{}/../examples/tasks/find_objects.json", env!("CARGO_MANIFEST_DIR"));
@@ -69,42 +68,6 @@ fn yard() -> World {
     World::from_json("yard.json", text).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Options of a run: the most experiences, the number of jobs, and whether it starts or resumes.
-struct Living {
-    most: u64,
-    jobs: usize,
-    resume: bool,
-    /// How many evaluations of each block are repeated.
-    repeated: usize,
-}
-
-const WHOLE: Living = Living {
-    most: u64::MAX,
-    jobs: 1,
-    resume: false,
-    repeated: 0,
-};
-
-impl Living {
-    /// A context with a stopped clock, so that logs can be compared byte for byte.
-    fn context<T>(&self, act: &mut dyn FnMut(&mut RunContext) -> T) -> T {
-        act(&mut RunContext {
-            now: &mut || Timestamp::from_unix_micros(1_600_000_000_000_000).expect("the year is 2020"),
-            watch: &mut |progress: &Progress| {
-                if progress.done < self.most {
-                    ControlFlow::Continue(())
-                } else {
-                    ControlFlow::Break(())
-                }
-            },
-            stop: &AtomicBool::new(false),
-            catalogue: Catalogue::default(),
-            jobs: NonZeroUsize::new(self.jobs).expect("somebody has to live it"),
-            repeated_evaluations: self.repeated,
-        })
-    }
-}
-
 /// Runs a scenario.
 fn live_by(
     scenario: &Scenario,
@@ -112,43 +75,30 @@ fn live_by(
     folder: &Path,
     living: &Living,
 ) -> Result<Summary, CurriculumError> {
-    let plan = plan(scenario)?;
-    let mut journal = if living.resume {
-        Journal::resume(folder, &plan, "test")?
-    } else {
-        Journal::create(folder, &plan, "test")?
-    };
-    let summary = living.context(&mut |context| run(&plan, agent, &mut journal, context))?;
-    journal.finish()?;
-    Ok(summary)
+    living.live(&plan(scenario)?, agent, folder)
 }
 
 fn live(scenario: &Scenario, agent: &mut dyn Agent, folder: &Path, most: u64) -> Result<Summary, CurriculumError> {
-    live_by(scenario, agent, folder, &Living { most, ..WHOLE })
+    live_by(
+        scenario,
+        agent,
+        folder,
+        &Living {
+            most,
+            ..Living::default()
+        },
+    )
 }
 
 fn scratch() -> tempfile::TempDir {
     tempfile::tempdir().expect("the machine has a folder for temporary files")
 }
 
-/// All data files of a log with their paths, as one text.
+/// All files of a log, as one text.
 fn everything(folder: &Path) -> String {
-    let mut files = Vec::new();
-    let mut folders = vec![folder.to_owned()];
-    while let Some(next) = folders.pop() {
-        for entry in std::fs::read_dir(next).expect("the log can be listed") {
-            let path = entry.expect("the log can be listed").path();
-            if path.is_dir() {
-                folders.push(path);
-            } else {
-                files.push(path);
-            }
-        }
-    }
-    files.sort();
-    let texts = files
-        .iter()
-        .map(|path| std::fs::read_to_string(path).expect("logs are text"));
+    assert!(folder.is_dir(), "{}: there is no log", folder.display());
+    let files = files_below(folder).into_values();
+    let texts = files.map(|bytes| String::from_utf8(bytes).expect("logs are text"));
     texts.collect::<Vec<_>>().join("\n")
 }
 
@@ -260,7 +210,10 @@ fn joint_block_interleaves_every_world_once_as_one_regime_per_task() {
     let (whole, cut) = (whole.path().join("log"), cut.path().join("log"));
     live(&scenario, &mut RandomAgent::new(0), &whole, u64::MAX).unwrap_or_else(|error| panic!("{error}"));
     live(&scenario, &mut RandomAgent::new(0), &cut, 11).unwrap_or_else(|error| panic!("{error}"));
-    let again = Living { resume: true, ..WHOLE };
+    let again = Living {
+        resume: true,
+        ..Living::default()
+    };
     let summary = live_by(&scenario, &mut RandomAgent::new(0), &cut, &again).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(everything(&whole), everything(&cut));
     assert_eq!(summary.regimes.len(), 6);
@@ -350,7 +303,15 @@ fn log_is_the_same_for_any_number_of_jobs() {
     let folder = scratch();
     let lived = |jobs: usize, agent: &mut dyn Agent| {
         let log = folder.path().join(format!("{jobs}"));
-        let summary = live_by(&varied(), agent, &log, &Living { jobs, ..WHOLE });
+        let summary = live_by(
+            &varied(),
+            agent,
+            &log,
+            &Living {
+                jobs,
+                ..Living::default()
+            },
+        );
         (everything(&log), summary.unwrap_or_else(|error| panic!("{error}")))
     };
     let one = lived(1, &mut RandomAgent::new(0));

@@ -55,7 +55,7 @@ fn log_cut_at_any_byte_is_completed_identically() {
         let again = Living {
             resume: true,
             jobs: 2,
-            ..WHOLE
+            ..Living::default()
         };
         let resumed = live_by(&scenario, &mut RandomAgent::new(0), &log, &again);
         assert_eq!(resumed.unwrap_or_else(|error| panic!("cut at {cut}: {error}")), summary);

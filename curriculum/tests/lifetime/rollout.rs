@@ -5,8 +5,10 @@ use std::path::Path;
 
 use driftworld_curriculum::{CurriculumError, ENDED_BY, Experience, Journal, Plan, Progress, Rollout, run_rollout};
 use driftworld_env::RandomAgent;
-use driftworld_metrics::{Record, Timestamp};
+use driftworld_metrics::Record;
 use driftworld_spec::{BlockKind, World};
+
+use crate::living::now;
 
 use super::{everything, live, plan, rows, scratch, varied};
 
@@ -54,7 +56,6 @@ fn experiences_run_elsewhere_are_logged_identically() {
     let (here, there) = (folder.path().join("here"), folder.path().join("there"));
     let lived = live(&scenario, &mut RandomAgent::new(0), &here, u64::MAX).unwrap_or_else(|error| panic!("{error}"));
     let plan = plan(&scenario).unwrap_or_else(|error| panic!("{error}"));
-    let mut now = || Timestamp::from_unix_micros(1_600_000_000_000_000).expect("the year is 2020");
     // Interrupted once, and resumed.
     for (most, begin) in [
         (8, Journal::create as fn(&Path, &Plan, &str) -> _),
@@ -100,11 +101,10 @@ fn agent_learns_again_what_it_had_not_saved() {
     live(&scenario, &mut RandomAgent::new(0), &log, 9).unwrap_or_else(|error| panic!("{error}"));
     let before = everything(&log);
     let plan = plan(&scenario).unwrap_or_else(|error| panic!("{error}"));
-    let now = &mut || Timestamp::from_unix_micros(1_600_000_000_000_000).expect("the year is 2020");
     for learned in [0, 4, 9] {
         let mut journal = Journal::resume(&log, &plan, "test").unwrap_or_else(|error| panic!("{error}"));
         let mut counting = Counting::default();
-        run_rollout(&plan, &mut counting, &mut journal, learned, now).unwrap_or_else(|error| panic!("{error}"));
+        run_rollout(&plan, &mut counting, &mut journal, learned, &mut now).unwrap_or_else(|error| panic!("{error}"));
         let is_learning = |number: &u64| {
             plan.experience_spec(*number)
                 .is_ok_and(|spec| spec.kind == BlockKind::Learning)
