@@ -6,6 +6,7 @@ mod curricula;
 mod distances;
 mod example_worlds;
 mod fields;
+mod files_below;
 mod held_actions;
 mod limits;
 mod limits_docs;
@@ -13,6 +14,7 @@ mod looks_alone;
 mod pages;
 mod paired_chance;
 mod recordings;
+mod reference_data;
 mod task_docs;
 mod tier;
 

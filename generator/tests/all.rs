@@ -11,6 +11,8 @@ mod fewest_changes;
 mod groups;
 mod layouts;
 mod mixtures;
+#[path = "../../tests/reference_data.rs"]
+mod reference_data;
 mod statistics;
 mod statistics_of_places;
 #[path = "../../tests/tier.rs"]

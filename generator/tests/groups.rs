@@ -9,6 +9,8 @@ use driftworld_generator::{GeneratorError, Sampler, Sequence, sample};
 use driftworld_spec::maps::MapLibrary;
 use driftworld_spec::{Object, TaskSpec, Value, World};
 
+use crate::reference_data::reference;
+
 fn load(text: &str) -> Arc<TaskSpec> {
     TaskSpec::from_json("task.json", text).unwrap_or_else(|error| panic!("{error}"))
 }
@@ -226,13 +228,10 @@ fn turns(polygon: &[[f64; 2]], [x, y]: [f64; 2]) -> f64 {
 
 #[test]
 fn maps_file_replaces_built_in_layouts_and_keeps_its_regions_free() {
-    let default = concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/reference");
-    let root = std::env::var("DRIFTWORLD_REFERENCE").unwrap_or_else(|_| default.to_owned());
-    let path = format!("{root}/l2explorer/predefined_maps.json");
-    let Ok(text) = std::fs::read_to_string(&path) else {
-        println!("skipped: {path} is not there; set DRIFTWORLD_REFERENCE");
+    let Some(path) = reference("l2explorer/predefined_maps.json") else {
         return;
     };
+    let text = std::fs::read_to_string(path).expect("the original's maps are text");
     let maps = Arc::new(MapLibrary::from_json("maps.json", &text).unwrap_or_else(|error| panic!("{error}")));
     let task = load(
         r#"{ "version": 2, "name": "maps",

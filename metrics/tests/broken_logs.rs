@@ -1,7 +1,5 @@
 //! Unreadable logs, each with the exact message that a user sees.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
-
 use std::fs;
 use std::path::Path;
 

@@ -1,7 +1,5 @@
 //! `docs/metrics.md` describes the metrics exactly as the code does.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
-
 use driftworld_metrics::{
     BlockType, Direction, LifetimeMetrics, LogWriter, LoggerInfo, MaintenanceMethod, Options, Record, ScenarioInfo,
     Timestamp, TransferMethod, read_log, score,

@@ -1,7 +1,5 @@
 //! Lifetimes with drifting variants: which drifts count as learning of which tasks, and measures that need no task boundaries.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
-
 use driftworld_metrics::BlockType::{Test, Train};
 use driftworld_metrics::{
     Anchors, BlockType, EvaluationCurve, LifetimeMetrics, Log, LogWriter, LoggerInfo, MaintenanceMethod,

@@ -1,7 +1,5 @@
 //! Compares the table of a log with `python -m l2logger.aggregate`: `tests/oracles/l2logger_aggregate.py` made both.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
-
 use std::path::Path;
 
 use driftworld_metrics::{Delimiter, KeptRows, LogTable, read_log_with_texts, validate_log};

@@ -1,7 +1,5 @@
 //! Whether experts are like for like: budgets, worlds and agents compared with the lifetime's.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
-
 use std::collections::BTreeSet;
 
 use driftworld_metrics::BlockType::{Test, Train};

@@ -1,7 +1,5 @@
 //! Logs are read back as written: awkward texts and numbers, several workers, interrupted runs.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
-
 use std::fs;
 use std::path::Path;
 

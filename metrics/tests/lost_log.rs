@@ -1,6 +1,5 @@
 //! A log that is removed, renamed, replaced or truncated while it is written: the writer reports it and recreates nothing.
 #![cfg(unix)]
-#![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
 
 use std::fs::{self, OpenOptions};
 use std::path::{Path, PathBuf};

@@ -1,7 +1,5 @@
 //! User-defined metrics computed beside the crate's own, and definitions other than the reference's.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
-
 use driftworld_metrics::{
     Assessment, BlockType, Definitions, Direction, Headline, LifetimeMetrics, Log, LogWriter, LoggerInfo, Metric,
     MetricsError, Noise, NormalizationMethod, Options, Record, ScenarioInfo, Scorer, Timestamp, read_log, score,

@@ -1,8 +1,6 @@
 //! Null bands: values of agents that never change lie inside, those of agents that forget outside; one band is checked against
 //! all permutations.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
-
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::fs;

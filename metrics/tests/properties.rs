@@ -1,7 +1,5 @@
 //! Properties of every log and of every score, for any lifetime.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
-
 use std::path::Path;
 
 use driftworld_metrics::{

@@ -1,31 +1,15 @@
 //! Oracle: the example lifetime published with l2metrics, scored with its example experts, against its own results.
 //!
-//! The files are read from `DRIFTWORLD_REFERENCE`, by default beside the repository; without them the tests say so and return.
-
-#![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
-
-use std::path::PathBuf;
+//! Without the files the tests are skipped, see `reference_data`.
 
 use driftworld_metrics::{LifetimeMetrics, Options, SteLog, read_log, read_log_with_texts, read_ste_log, score};
 use serde_json::Value;
 
+use crate::agreement::compare_above;
+use crate::reference_data::reference;
+
 /// The reference adds in another order; its published lifetime values have ten decimals.
 const TOLERANCE: f64 = 1e-9;
-
-#[expect(clippy::print_stderr, reason = "a skipped oracle must be seen")]
-fn reference() -> Option<PathBuf> {
-    let default = concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/reference");
-    let base = std::env::var_os("DRIFTWORLD_REFERENCE").map_or_else(|| PathBuf::from(default), PathBuf::from);
-    let dir = base.join("l2metrics");
-    if dir.is_dir() {
-        return Some(dir);
-    }
-    eprintln!(
-        "SKIPPED: no reference logs at {}; set DRIFTWORLD_REFERENCE",
-        dir.display()
-    );
-    None
-}
 
 fn experts(dir: &std::path::Path, runs: &[&str]) -> Vec<SteLog> {
     runs.iter()
@@ -52,46 +36,16 @@ fn scored(dir: &std::path::Path, options: &Options) -> LifetimeMetrics {
     score(&log, &experts(dir, &runs), options).unwrap()
 }
 
-/// Compares two documents, numbers within the tolerance; returns the number of numbers.
-fn compare(path: &str, found: &Value, expected: &Value) -> usize {
-    match (found, expected) {
-        (Value::Number(found), Value::Number(expected)) => {
-            let (found, expected) = (found.as_f64().unwrap(), expected.as_f64().unwrap());
-            let near = (found - expected).abs() <= TOLERANCE * expected.abs().max(f64::MIN_POSITIVE);
-            assert!(
-                near || found == expected,
-                "{path}: found {found}, the reference has {expected}"
-            );
-            1
-        }
-        (Value::Array(found), Value::Array(expected)) => {
-            assert_eq!(found.len(), expected.len(), "{path}: length");
-            let pairs = found.iter().zip(expected).enumerate();
-            pairs
-                .map(|(index, (found, expected))| compare(&format!("{path}/{index}"), found, expected))
-                .sum()
-        }
-        (Value::Object(found), Value::Object(expected)) => {
-            let mut names: [Vec<&String>; 2] = [found.keys().collect(), expected.keys().collect()];
-            for names in &mut names {
-                names.sort();
-            }
-            assert_eq!(names[0], names[1], "{path}: fields");
-            expected
-                .iter()
-                .map(|(name, expected)| compare(&format!("{path}/{name}"), &found[name], expected))
-                .sum()
-        }
-        (found, expected) => {
-            assert_eq!(found, expected, "{path}");
-            0
-        }
-    }
+/// Compares two documents with equal fields, numbers by relative tolerance; returns the number of numbers.
+fn compare(place: &str, found: &Value, expected: &Value) -> usize {
+    // Swapped, it finds fields that only the reference has.
+    compare_above(f64::MIN_POSITIVE, place, expected, found);
+    compare_above(f64::MIN_POSITIVE, place, found, expected)
 }
 
 #[test]
 fn every_published_number_is_reproduced() {
-    let Some(dir) = reference() else { return };
+    let Some(dir) = reference("l2metrics") else { return };
     let expected = std::fs::read(dir.join("expected/multi_task_metrics.json")).unwrap();
     let expected: Value = serde_json::from_slice(&expected).unwrap();
     let mut found = serde_json::to_value(scored(&dir, &options())).unwrap();
@@ -103,7 +57,7 @@ fn every_published_number_is_reproduced() {
 
 #[test]
 fn every_published_regime_is_reproduced() {
-    let Some(dir) = reference() else { return };
+    let Some(dir) = reference("l2metrics") else { return };
     let expected = std::fs::read_to_string(dir.join("expected/multi_task_regime.tsv")).unwrap();
     let found = scored(&dir, &options()).regime_tsv();
     let (found, expected): (Vec<&str>, Vec<&str>) = (found.lines().collect(), expected.lines().collect());
@@ -122,7 +76,7 @@ fn every_published_regime_is_reproduced() {
 
 #[test]
 fn settings_have_every_field_of_the_published_ones() {
-    let Some(dir) = reference() else { return };
+    let Some(dir) = reference("l2metrics") else { return };
     let expected = std::fs::read(dir.join("expected/multi_task_settings.json")).unwrap();
     let expected: Value = serde_json::from_slice(&expected).unwrap();
     let log_dir = "ll_logs\\multi_task".to_owned();
@@ -139,7 +93,7 @@ fn settings_have_every_field_of_the_published_ones() {
 /// `oracles/l2metrics_options.py` made the numbers, with the reference itself.
 #[test]
 fn every_option_matches_the_reference() {
-    let Some(dir) = reference() else { return };
+    let Some(dir) = reference("l2metrics") else { return };
     let cases: Value = serde_json::from_str(include_str!("oracles/l2metrics_options.json")).unwrap();
     let mut num_numbers = 0;
     for case in cases["cases"].as_array().unwrap() {
@@ -153,7 +107,7 @@ fn every_option_matches_the_reference() {
 
 #[test]
 fn loggers_example_with_a_text_column_is_read() {
-    let Some(dir) = reference() else { return };
+    let Some(dir) = reference("l2metrics") else { return };
     let log_dir = tempfile::tempdir().unwrap();
     let block = log_dir.path().join("driver.py_0/0-train");
     std::fs::create_dir_all(&block).unwrap();

@@ -1,13 +1,11 @@
 //! Oracle: random lifetimes, generated and scored with l2metrics by `oracles/l2metrics_lifetimes.py`.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
-
 use driftworld_metrics::{
     LifetimeMetrics, Log, LogWriter, LoggerInfo, Options, Record, ScenarioInfo, SteLog, Timestamp, read_log, score,
 };
 use serde_json::Value;
 
-use crate::agreement::compare;
+use crate::agreement::{compare, compare_regimes};
 
 fn text(value: &Value) -> &str {
     value.as_str().unwrap()
@@ -61,25 +59,7 @@ fn random_lifetimes_match_the_reference() {
     for case in oracle["cases"].as_array().unwrap() {
         let place = format!("seed {}", case["seed"]);
         let found = scored(case);
-        for (regime, expected) in found.regimes.iter().zip(case["regimes"].as_array().unwrap()) {
-            let value = |name: &str| serde_json::to_value(regime.values.get(name)).unwrap();
-            let row = Value::Array(vec![
-                regime.regime_num.into(),
-                regime.block_num.into(),
-                regime.task_name.clone().into(),
-                value("saturation"),
-                value("exp_to_sat"),
-                value("term_perf"),
-                value("exp_to_term_perf"),
-                value("avg_perf"),
-            ]);
-            num_numbers += compare(&format!("{place}, regime {}", regime.regime_num), &row, expected);
-        }
-        assert_eq!(
-            found.regimes.len(),
-            case["regimes"].as_array().unwrap().len(),
-            "{place}"
-        );
+        num_numbers += compare_regimes(&place, &found, &case["regimes"]);
         let tasks = serde_json::to_value(&found.task_metrics).unwrap();
         num_numbers += compare(&format!("{place}, tasks"), &tasks, &case["tasks"]);
         let lifetime = serde_json::to_value(&found.lifetime).unwrap();

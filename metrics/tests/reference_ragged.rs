@@ -1,7 +1,5 @@
 //! Oracle: random ragged lifetimes, generated and scored with l2metrics by `oracles/l2metrics_ragged.py`.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
-
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::fs;
@@ -12,7 +10,7 @@ use driftworld_metrics::{LifetimeMetrics, Options, SteLog, read_log, read_ste_lo
 use flate2::read::GzDecoder;
 use serde_json::Value;
 
-use crate::agreement::compare;
+use crate::agreement::{compare, compare_regimes};
 
 /// Lists with one value per expert: the reference takes experts in file system order.
 const PER_EXPERT: [&str; 6] = [
@@ -104,23 +102,7 @@ fn as_sets(tasks: &Value) -> Value {
 
 /// Compares all values of one lifetime with the reference's.
 fn agree(place: &str, found: &LifetimeMetrics, expected: &Value) -> usize {
-    let regimes = list(&expected["regimes"]);
-    assert_eq!(found.regimes.len(), regimes.len(), "{place}: regimes");
-    let mut num_numbers = 0;
-    for (regime, expected) in found.regimes.iter().zip(regimes) {
-        let value = |name: &str| serde_json::to_value(regime.values.get(name)).unwrap();
-        let row = Value::Array(vec![
-            regime.regime_num.into(),
-            regime.block_num.into(),
-            regime.task_name.clone().into(),
-            value("saturation"),
-            value("exp_to_sat"),
-            value("term_perf"),
-            value("exp_to_term_perf"),
-            value("avg_perf"),
-        ]);
-        num_numbers += compare(&format!("{place}, regime {}", regime.regime_num), &row, expected);
-    }
+    let mut num_numbers = compare_regimes(place, found, &expected["regimes"]);
     let tasks = serde_json::to_value(&found.task_metrics).unwrap();
     num_numbers += compare(
         &format!("{place}, tasks"),

@@ -1,8 +1,6 @@
 //! Simulated studies: whether intervals have their nominal coverage, and how often equal agents are called different.
 
 #![expect(clippy::disallowed_methods, reason = "compared within a tolerance")]
-#![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
-
 use driftworld_metrics::{
     Aggregate, BootstrapOptions, Interval, Resampling, ScoreTable, estimate, probability_of_improvement,
 };

@@ -1,7 +1,5 @@
 //! Laws of the statistics over repeats, for any scores.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
-
 use driftworld_metrics::{
     Aggregate, BootstrapOptions, Estimate, Resampling, ScoreTable, estimate, probability_of_improvement,
 };

@@ -1,7 +1,5 @@
 //! Compares statistics over repeats with rliable: `tests/oracles/repeats_rliable.py` describes how its numbers were made.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
-
 use driftworld_metrics::{
     Aggregate, BootstrapOptions, Estimate, Resampling, ScoreTable, estimate, probability_of_improvement,
 };

@@ -1,8 +1,6 @@
 //! Compares the probability of improvement with whole-run resampling against numpy: `tests/oracles/repeats_whole_runs.py`
 //! describes how its numbers were made.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
-
 use driftworld_metrics::{BootstrapOptions, Improvement, Interval, Resampling, ScoreTable, probability_of_improvement};
 use serde::Deserialize;
 

@@ -1,7 +1,5 @@
 //! Lifetimes small enough to be scored by hand; the comments show the calculations.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
-
 use driftworld_metrics::{
     BlockSubtype, BlockType, DataRange, Definitions, LifetimeMetrics, Log, LogWriter, LoggerInfo, MaintenanceMethod,
     NormalizationMethod, Options, PairValues, Record, ScenarioInfo, SteAveragingMethod, SteLog, Timestamp,

@@ -1,19 +1,18 @@
 //! A log may be torn at any byte: every state that a killed run can leave is resumed, and only the torn row is lost.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
-
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use driftworld_metrics::{
     BlockType, ExpStatus, LogWriter, LoggerInfo, Record, ScenarioInfo, Timestamp, read_log, validate_log,
 };
 
+use crate::files_below::files_below;
 use crate::tier::quick_or_full;
 
 /// Bytes of every file by its path within the log.
-type Files = BTreeMap<PathBuf, Vec<u8>>;
+type Files = BTreeMap<String, Vec<u8>>;
 
 /// Records whose cells hold everything that makes tables hard: line breaks, tabs and quotes within quotes, multi-byte letters.
 fn records() -> Vec<Record> {
@@ -44,22 +43,6 @@ fn records() -> Vec<Record> {
     ]
 }
 
-fn files(dir: &Path) -> Files {
-    let mut found = Files::new();
-    let mut to_search = vec![dir.to_owned()];
-    while let Some(current) = to_search.pop() {
-        for entry in fs::read_dir(&current).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                to_search.push(path);
-            } else {
-                found.insert(path.strip_prefix(dir).unwrap().to_owned(), fs::read(&path).unwrap());
-            }
-        }
-    }
-    found
-}
-
 fn lay_out(dir: &Path, files: &Files) {
     for (path, bytes) in files {
         let path = dir.join(path);
@@ -73,10 +56,10 @@ fn stages(records: &[Record]) -> Vec<Files> {
     let base = tempfile::tempdir().unwrap();
     let info = LoggerInfo::new(["reward"]).unwrap();
     let mut writer = LogWriter::create(base.path(), &info, &ScenarioInfo::default()).unwrap();
-    let mut stages = vec![files(base.path())];
+    let mut stages = vec![files_below(base.path())];
     for record in records {
         writer.write(record).unwrap();
-        stages.push(files(base.path()));
+        stages.push(files_below(base.path()));
     }
     stages
 }
@@ -114,7 +97,10 @@ fn a_log_cut_at_any_byte_goes_on_as_if_it_never_had_been() {
                 writer.write(record).unwrap();
             }
             writer.finish().unwrap();
-            assert!(files(base.path()) == *whole, "after {done} records and a cut: {cut:?}");
+            assert!(
+                files_below(base.path()) == *whole,
+                "after {done} records and a cut: {cut:?}"
+            );
             num_cuts += 1;
         }
     }
@@ -163,7 +149,7 @@ fn quote_that_swallowed_rows_is_no_torn_row_and_nothing_is_removed() {
     }
     records.dedup_by_key(|record| record.exp_num);
     let mut log = stages(&records).pop().unwrap();
-    let path = Path::new("w/0-train/data-log.tsv");
+    let path = "w/0-train/data-log.tsv";
     let text = String::from_utf8(log[path].clone())
         .unwrap()
         .replacen("a_b", "\"a_b", 1);
@@ -172,16 +158,16 @@ fn quote_that_swallowed_rows_is_no_torn_row_and_nothing_is_removed() {
     lay_out(base.path(), &log);
     // The quotes of the parameters close the cell again and again; the rest is no table, but all of it is kept.
     LogWriter::resume(base.path()).unwrap_err();
-    assert!(files(base.path()) == log);
+    assert!(files_below(base.path()) == log);
 }
 
 #[test]
 fn truncated_info_files_are_reported_and_rows_are_kept() {
     let log = stages(&records()).pop().unwrap();
     for name in ["logger_info.json", "scenario_info.json"] {
-        for end in 0..log[Path::new(name)].len() - 1 {
+        for end in 0..log[name].len() - 1 {
             let mut cut = log.clone();
-            cut.get_mut(Path::new(name)).unwrap().truncate(end);
+            cut.get_mut(name).unwrap().truncate(end);
             let base = tempfile::tempdir().unwrap();
             lay_out(base.path(), &cut);
             assert_eq!(
@@ -192,7 +178,7 @@ fn truncated_info_files_are_reported_and_rows_are_kept() {
             if name == "logger_info.json" {
                 assert_eq!(LogWriter::resume(base.path()).unwrap_err().code(), "metrics/json");
             }
-            assert!(files(base.path()) == cut);
+            assert!(files_below(base.path()) == cut);
         }
     }
 }

@@ -1,7 +1,5 @@
 //! All faults of a log at once, as listed by `validate_log`.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
-
 use std::fs;
 use std::path::Path;
 

@@ -4,3 +4,5 @@ mod browser;
 mod lifetimes;
 mod page;
 mod reference;
+#[path = "../../tests/reference_data.rs"]
+mod reference_data;

@@ -1,31 +1,17 @@
 //! The example lifetime that l2metrics publishes, as a page: every figure is there, and the page is small.
 //!
-//! The logs are read where `DRIFTWORLD_REFERENCE` says, by default beside the repository; without them the test says so and
-//! returns.
-
-use std::path::PathBuf;
+//! Without the logs the test is skipped, see `reference_data`.
 
 use driftworld_metrics::{Lifetime, Options, Scorer, SteLog, read_log, read_ste_log};
 use driftworld_report::{Chapter, ChapterOptions, Report};
 
-#[expect(clippy::print_stderr, reason = "a skipped oracle must be seen")]
-fn reference() -> Option<PathBuf> {
-    let default = concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/reference");
-    let base = std::env::var_os("DRIFTWORLD_REFERENCE").map_or_else(|| PathBuf::from(default), PathBuf::from);
-    let dir = base.join("l2metrics");
-    if dir.is_dir() {
-        return Some(dir);
-    }
-    eprintln!(
-        "SKIPPED: no reference logs at {}; set DRIFTWORLD_REFERENCE",
-        dir.display()
-    );
-    None
-}
+use crate::reference_data::reference;
 
 #[test]
 fn the_reference_example_is_a_small_page_with_every_figure() -> Result<(), Box<dyn std::error::Error>> {
-    let Some(dir) = reference() else { return Ok(()) };
+    let Some(dir) = reference("l2metrics") else {
+        return Ok(());
+    };
     let log = read_log(dir.join("ll_logs/multi_task"))?;
     let runs = [
         "ste_task1_1_run1",

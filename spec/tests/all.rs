@@ -13,6 +13,8 @@ mod layouts;
 mod models;
 mod mutations;
 mod names;
+#[path = "../../tests/reference_data.rs"]
+mod reference_data;
 mod requirements;
 mod schemas;
 mod tasks;

@@ -11,20 +11,19 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::sample::select;
 
+use crate::reference_data::reference;
+
 #[test]
 fn every_map_of_the_original_is_read() {
-    let default = concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/reference");
-    let root = std::env::var("DRIFTWORLD_REFERENCE").unwrap_or_else(|_| default.to_owned());
     for (file, objects, warnings) in [
         ("map_findobjects_0", 8, 7),
         ("map_simple", 3, 1),
         ("map_spawning", 3, 1),
     ] {
-        let path = format!("{root}/l2explorer/{file}.json");
-        let Ok(text) = std::fs::read_to_string(&path) else {
-            println!("skipped: {path} is not there; set DRIFTWORLD_REFERENCE");
+        let Some(path) = reference(&format!("l2explorer/{file}.json")) else {
             return;
         };
+        let text = std::fs::read_to_string(path).expect("the original's maps are text");
         let (world, found) = World::from_l2explorer(file, &text).unwrap_or_else(|error| panic!("{error}"));
         assert_eq!(world.objects.len(), objects, "{file}");
         assert_eq!(found.len(), warnings, "{file}: {found:#?}");
@@ -299,15 +298,11 @@ fn originals() -> Vec<(String, serde_json::Value)> {
         ]
     });
     let mut found = vec![("own".to_owned(), own)];
-    let default = concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/reference");
-    let root = std::env::var("DRIFTWORLD_REFERENCE").unwrap_or_else(|_| default.to_owned());
     for file in ["map_findobjects_0", "map_simple", "map_spawning"] {
-        // If they are missing, the first test says so.
-        if let Ok(text) = std::fs::read_to_string(format!("{root}/l2explorer/{file}.json")) {
-            found.push((
-                file.to_owned(),
-                serde_json::from_str(&text).expect("the original's maps are JSON"),
-            ));
+        if let Some(path) = reference(&format!("l2explorer/{file}.json")) {
+            let text = std::fs::read_to_string(path).expect("the original's maps are text");
+            let map = serde_json::from_str(&text).expect("the original's maps are JSON");
+            found.push((file.to_owned(), map));
         }
     }
     found

@@ -1,31 +1,20 @@
 //! `driftworld console` in scripts and pipes: whole transcripts, exit codes, and files that stay in their folder.
 
-use std::io::Write;
-use std::path::{Path, PathBuf};
-use std::process::{Output, Stdio};
+use std::path::Path;
+use std::process::Output;
 
 use driftworld::spec::World;
 
-use super::terminal::{driftworld, root, scratch};
+use super::terminal::{driftworld, fed, root, scratch};
+use crate::reference_data::reference;
 
 const WORLD: &str = "examples/console/world.json";
 
 /// Runs the console with lines on its standard input, and `--out` in the test's own folder.
 fn console(arguments: &[&str], out: &Path, lines: impl AsRef<[u8]>) -> Output {
-    let mut child = driftworld(&["console"])
-        .args(arguments)
-        .arg("--output")
-        .arg(out)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("the command was built by cargo and starts");
-    let mut input = child.stdin.take().expect("standard input is piped");
-    // A console that ends early leaves the rest unread.
-    let _ = input.write_all(lines.as_ref());
-    drop(input);
-    child.wait_with_output().expect("the command ends")
+    let mut command = driftworld(&["console"]);
+    command.args(arguments).arg("--output").arg(out);
+    fed(command, lines.as_ref())
 }
 
 /// The output, without the folder's name.
@@ -201,24 +190,11 @@ fn variant_has_numbered_worlds() {
     );
 }
 
-/// The original's messages; prints a notice if they are missing.
-fn original() -> Option<PathBuf> {
-    let default = root().join("../shared/reference");
-    let root = std::env::var_os("DRIFTWORLD_REFERENCE").map_or(default, PathBuf::from);
-    let messages = root.join("l2explorer/channel_messages.json");
-    if messages.exists() {
-        return Some(messages);
-    }
-    #[expect(clippy::print_stdout, reason = "a skip must be seen")]
-    {
-        println!("skipped: {} is not there; set DRIFTWORLD_REFERENCE", messages.display());
-    }
-    None
-}
-
 #[test]
 fn original_messages_run_completely() {
-    let Some(messages) = original() else { return };
+    let Some(messages) = reference("l2explorer/channel_messages.json") else {
+        return;
+    };
     let folder = scratch();
     let out = folder.path().join("out");
     let lines = format!("send_message '{}'\nstep 2 1 0 0\nobjects\n", messages.display());

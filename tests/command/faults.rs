@@ -12,8 +12,9 @@ use std::process::{Command, Output, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use super::run_files::{bytes_below, is_table, write};
+use super::run_files::{is_table, write};
 use super::terminal::{driftworld_in, output, root, scratch, signals, succeed_in};
+use crate::files_below::files_below;
 
 /// Most faults in one lifetime; after that it runs undisturbed.
 const MOST: u64 = 12;
@@ -84,7 +85,7 @@ fn meet_a_fault(folder: &Path, arguments: &[&str], took: Duration, size: u64, rn
         let error = String::from_utf8_lossy(&ended.stderr).into_owned();
         assert!(is_orderly(&ended), "{}: {error}", ended.status);
         assert!(ended.status.success() || error.contains("File too large"), "{error}");
-        let tables = bytes_below(&folder.join("log"))
+        let tables = files_below(&folder.join("log"))
             .into_iter()
             .filter(|(name, _)| is_table(name));
         let torn: Vec<_> = tables.filter(|(_, bytes)| bytes.last() != Some(&b'\n')).collect();
@@ -140,7 +141,7 @@ fn disturbed_runs_continue_to_the_same_bytes() {
             let start = Instant::now();
             let done = output(driftworld_in(folder, &run("undisturbed")).env(CLOCK.0, CLOCK.1));
             assert!(done.status.success());
-            let files = bytes_below(&folder.join("undisturbed"));
+            let files = files_below(&folder.join("undisturbed"));
             fs::remove_dir_all(folder.join("undisturbed")).expect("it was written");
             (files, start.elapsed())
         });
@@ -154,7 +155,7 @@ fn disturbed_runs_continue_to_the_same_bytes() {
         let last = output(driftworld_in(folder, &run("log")).env(CLOCK.0, CLOCK.1));
         let error = String::from_utf8_lossy(&last.stderr);
         assert!(last.status.success(), "seed {seed}, {left} faults left: {error}");
-        let found = bytes_below(&folder.join("log"));
+        let found = files_below(&folder.join("log"));
         let names = found.keys().chain(expected.keys());
         let differing: Vec<&String> = names.filter(|name| found.get(*name) != expected.get(*name)).collect();
         assert_eq!(
@@ -193,7 +194,7 @@ fn files_are_unchanged_without_disk_space() {
         let arguments: Vec<&str> = line.split(' ').collect();
         let path = folder.join("out").join(name);
         write(&path, "older");
-        let before = bytes_below(&folder.join("out"));
+        let before = files_below(&folder.join("out"));
         let ended = output(&mut with_room(folder, 0, &arguments));
         let error = String::from_utf8_lossy(&ended.stderr).into_owned();
         assert_eq!(ended.status.code(), Some(1), "{line}: {error}");
@@ -201,9 +202,9 @@ fn files_are_unchanged_without_disk_space() {
             is_orderly(&ended) && error.contains("File too large"),
             "{line}: {error}"
         );
-        assert_eq!(bytes_below(&folder.join("out")), before, "{line}");
+        assert_eq!(files_below(&folder.join("out")), before, "{line}");
         succeed_in(folder, &arguments);
-        assert_ne!(bytes_below(&folder.join("out")), before, "{line}");
+        assert_ne!(files_below(&folder.join("out")), before, "{line}");
         fs::remove_dir_all(folder.join("out")).expect("it was written");
     }
 }

@@ -1,10 +1,10 @@
 //! A newcomer's first hour: each test was a defect once (docs of issue 24).
 
-use std::io::Write;
 use std::path::Path;
-use std::process::Stdio;
 
-use super::terminal::{driftworld, driftworld_in, fail_in, json_in, output, scratch, subcommands, succeed, succeed_in};
+use super::terminal::{
+    self, driftworld, driftworld_in, fail_in, json_in, output, scratch, subcommands, succeed, succeed_in,
+};
 use crate::tier::quick_or_full;
 
 /// A small task with a family.
@@ -25,16 +25,7 @@ fn with_berries() -> tempfile::TempDir {
 
 /// Runs the command with a text on standard input: returns code, standard output, standard error.
 fn fed(folder: &Path, input: &str, arguments: &[&str]) -> (Option<i32>, String, String) {
-    let mut command = driftworld_in(folder, arguments);
-    let command = command
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped());
-    let mut child = command.spawn().expect("the command starts");
-    let mut stdin = child.stdin.take().expect("it was piped");
-    stdin.write_all(input.as_bytes()).expect("the command reads it");
-    drop(stdin);
-    let done = child.wait_with_output().expect("it ends");
+    let done = terminal::fed(driftworld_in(folder, arguments), input.as_bytes());
     let shown = |bytes: Vec<u8>| String::from_utf8_lossy(&bytes).into_owned();
     (done.status.code(), shown(done.stdout), shown(done.stderr))
 }

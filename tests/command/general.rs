@@ -1,8 +1,9 @@
 //! The `driftworld` command in general: output, exit codes, messages, files that are whole or absent.
 
 use super::terminal::{
-    driftworld_in, fail, fail_in, json, json_in, output, reference, scratch, subcommands, succeed, succeed_in, text,
+    driftworld_in, fail, fail_in, json, json_in, output, scratch, subcommands, succeed, succeed_in, text,
 };
+use crate::reference_data::reference;
 
 /// The list itself is a snapshot at two widths in `widths`.
 #[test]

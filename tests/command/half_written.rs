@@ -2,10 +2,10 @@
 #![cfg(unix)]
 
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 
-use super::terminal::{driftworld_in, fail_in, scratch, signals, succeed_in};
+use super::terminal::{driftworld_in, fail_in, scratch, signal, signals, succeed_in};
 
 /// More worlds than can be drawn before the signal arrives.
 const MANY: [&str; 4] = ["find_objects", "--count", "100000000", "--jsonl"];
@@ -36,11 +36,6 @@ fn begun(folder: &Path) -> Child {
         std::thread::yield_now();
     }
     child
-}
-
-fn signal(child: &Child, signal: &str) {
-    let sent = Command::new("kill").args([signal, &child.id().to_string()]).status();
-    assert!(sent.is_ok_and(|sent| sent.success()));
 }
 
 #[test]

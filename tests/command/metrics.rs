@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use super::terminal::{driftworld_in, fail_in, json_in, output, read, reference, scratch, succeed_in};
+use super::terminal::{driftworld_in, fail_in, json_in, output, read, scratch, succeed_in};
+use crate::reference_data::reference;
 use driftworld::metrics::{BlockType, LogWriter, LoggerInfo, Record, ScenarioInfo, Timestamp};
 use serde_json::{Value, json};
 

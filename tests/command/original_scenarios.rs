@@ -4,7 +4,8 @@ use std::fs;
 use std::path::Path;
 
 use super::run_files::{files, num_rows, write};
-use super::terminal::{driftworld, fail, output, reference, scratch, succeed, text};
+use super::terminal::{driftworld, fail, output, scratch, succeed, text};
+use crate::reference_data::reference;
 
 #[test]
 fn original_scenario_runs_unchanged() {

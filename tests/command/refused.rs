@@ -2,8 +2,9 @@
 
 use std::fmt::Write;
 
-use super::run_files::{bytes_below, write};
+use super::run_files::write;
 use super::terminal::{driftworld_in, output, scratch, succeed_in, text};
+use crate::files_below::files_below;
 
 /// A task that does not change when the built-in ones do.
 pub(super) const PARK: &str = r#"{ "version": 2, "name": "park", "parameters": {
@@ -172,7 +173,7 @@ fn every_refusal_has_its_exit_code_and_its_words() {
         succeed_in(path, &format!("run scenario.json --agent still -o {log}"));
     }
     std::fs::create_dir(path.join("empty")).expect("the folder is ours");
-    let before = bytes_below(path);
+    let before = files_below(path);
     let mut said = String::new();
     for line in REFUSED {
         let ended = output(&mut driftworld_in(path, line));
@@ -190,5 +191,5 @@ fn every_refusal_has_its_exit_code_and_its_words() {
         .expect("texts grow");
     }
     insta::assert_snapshot!(said);
-    assert!(bytes_below(path) == before, "what is refused writes nothing");
+    assert!(files_below(path) == before, "what is refused writes nothing");
 }

@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
+use crate::files_below::files_below;
+
 /// Whether this is the name of a log's table.
 pub(crate) fn is_table(name: &str) -> bool {
     Path::new(name).extension().is_some_and(|ending| ending == "tsv")
@@ -16,26 +18,13 @@ pub(crate) fn write(path: &Path, text: &str) {
 
 /// All files of a log by path, without the time stamps of rows.
 pub(crate) fn files(log: &Path) -> BTreeMap<String, String> {
-    let mut found = BTreeMap::new();
-    let mut folders = vec![log.to_owned()];
-    while let Some(folder) = folders.pop() {
-        for entry in fs::read_dir(folder).expect("the log can be listed") {
-            let path = entry.expect("the log can be listed").path();
-            if path.is_dir() {
-                folders.push(path);
-                continue;
-            }
-            let name = path
-                .strip_prefix(log)
-                .expect("it lies in the log")
-                .display()
-                .to_string();
-            let text = fs::read_to_string(&path).expect("logs are text");
-            let text = if is_table(&name) { timeless(&text) } else { text };
-            found.insert(name, text);
-        }
-    }
-    found
+    let file = |(name, bytes): (String, Vec<u8>)| {
+        let text = String::from_utf8(bytes).expect("logs are text");
+        let text = if is_table(&name) { timeless(&text) } else { text };
+        (name, text)
+    };
+    assert!(log.is_dir(), "{}: there is no log", log.display());
+    files_below(log).into_iter().map(file).collect()
 }
 
 pub(crate) fn timeless(table: &str) -> String {
@@ -56,24 +45,4 @@ pub(crate) fn timeless(table: &str) -> String {
 pub(crate) fn num_rows(log: &Path) -> usize {
     let tables = files(log).into_iter().filter(|(name, _)| is_table(name));
     tables.map(|(_, text)| text.lines().count() - 1).sum()
-}
-
-/// All files below a folder; none if the folder does not exist.
-pub(crate) fn bytes_below(folder: &Path) -> BTreeMap<String, Vec<u8>> {
-    let mut found = BTreeMap::new();
-    let mut folders = vec![folder.to_owned()];
-    while let Some(next) = folders.pop() {
-        for entry in fs::read_dir(next).into_iter().flatten().flatten() {
-            let path = entry.path();
-            if path.is_dir() {
-                folders.push(path);
-            } else if let Ok(bytes) = fs::read(&path) {
-                found.insert(
-                    path.display().to_string().replace(&folder.display().to_string(), ""),
-                    bytes,
-                );
-            }
-        }
-    }
-    found
 }

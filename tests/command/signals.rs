@@ -8,20 +8,10 @@ use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
 
 use super::run_files::write;
-use super::terminal::{driftworld_in, scratch, signals};
+use super::terminal::{driftworld_in, piped, scratch, signal, signals};
 
 fn start(folder: &Path, arguments: &[&str]) -> Child {
-    let mut command = driftworld_in(folder, arguments);
-    let command = command
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped());
-    command.spawn().expect("the command starts")
-}
-
-fn signal(child: &Child, signal: &str) {
-    let sent = Command::new("kill").args([signal, &child.id().to_string()]).status();
-    assert!(sent.is_ok_and(|sent| sent.success()));
+    piped(driftworld_in(folder, arguments))
 }
 
 /// Waits until a condition holds for a running command.

@@ -1,7 +1,8 @@
 //! Helpers for tests of the command: running it, and reading its output.
 
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::io::Write;
+use std::path::Path;
+use std::process::{Child, Command, Output, Stdio};
 
 use serde_json::Value;
 
@@ -129,6 +130,29 @@ pub(crate) fn signals() -> impl Iterator<Item = (&'static str, i32)> {
     all.into_iter().skip(usize::from(!hangs_up))
 }
 
+/// Starts a command with pipes for its input and outputs.
+pub(crate) fn piped(mut command: Command) -> Child {
+    let command = command
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped());
+    command.spawn().expect("the command was built by cargo and starts")
+}
+
+/// Runs a command with this standard input; it need not read all of it.
+pub(crate) fn fed(command: Command, input: &[u8]) -> Output {
+    let mut child = piped(command);
+    let _ = child.stdin.take().map(|mut pipe| pipe.write_all(input));
+    child.wait_with_output().expect("the command ends")
+}
+
+/// Sends a signal to a child, such as `-INT`.
+#[cfg(unix)]
+pub(crate) fn signal(child: &Child, signal: &str) {
+    let sent = Command::new("kill").args([signal, &child.id().to_string()]).status();
+    assert!(sent.is_ok_and(|sent| sent.success()));
+}
+
 /// A temporary folder.
 pub(crate) fn scratch() -> tempfile::TempDir {
     tempfile::tempdir().expect("the machine has a folder for temporary files")
@@ -143,18 +167,4 @@ pub(crate) fn text(path: &Path) -> &str {
 pub(crate) fn read(path: impl AsRef<Path>) -> String {
     let path = path.as_ref();
     std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
-}
-
-/// A file or folder of the reference data; if it is missing, prints a notice and returns `None`.
-#[expect(clippy::print_stderr, reason = "a skip must be seen")]
-pub(crate) fn reference(name: &str) -> Option<PathBuf> {
-    let default = root().join("../shared/reference");
-    let path = std::env::var_os("DRIFTWORLD_REFERENCE")
-        .map_or(default, PathBuf::from)
-        .join(name);
-    if path.exists() {
-        return Some(path);
-    }
-    eprintln!("skipped: {} is not there; set DRIFTWORLD_REFERENCE", path.display());
-    None
 }

@@ -1,5 +1,6 @@
 //! Compares values with those of the reference.
 
+use driftworld_metrics::LifetimeMetrics;
 use serde_json::{Number, Value};
 
 /// The reference adds in another order; its values for lifetimes have ten decimals.
@@ -7,12 +8,18 @@ const TOLERANCE: f64 = 1e-9;
 
 /// Compares numbers within the tolerance, lists entry by entry; returns the number of numbers.
 pub(crate) fn compare(place: &str, found: &Value, expected: &Value) -> usize {
+    // Differences of numbers around 100 lose precision by cancellation.
+    compare_above(1.0, place, found, expected)
+}
+
+/// Like [`compare`], with a tolerance relative to each number, but at least to `least`.
+pub(crate) fn compare_above(least: f64, place: &str, found: &Value, expected: &Value) -> usize {
+    let compare = |place: String, found: &Value, expected: &Value| compare_above(least, &place, found, expected);
     match (found, expected) {
         (Value::Number(found), Value::Number(expected)) => {
             let number = |number: &Number| number.as_f64().expect("every number of a file is an f64");
             let (found, expected) = (number(found), number(expected));
-            // Differences of numbers around 100 lose precision by cancellation.
-            let near = (found - expected).abs() <= TOLERANCE * expected.abs().max(1.0);
+            let near = (found - expected).abs() <= TOLERANCE * expected.abs().max(least);
             assert!(near, "{place}: found {found}, the reference has {expected}");
             1
         }
@@ -20,7 +27,7 @@ pub(crate) fn compare(place: &str, found: &Value, expected: &Value) -> usize {
             assert_eq!(found.len(), expected.len(), "{place}: {found:?}, {expected:?}");
             let pairs = found.iter().zip(expected).enumerate();
             pairs
-                .map(|(index, (found, expected))| compare(&format!("{place}/{index}"), found, expected))
+                .map(|(index, (found, expected))| compare(format!("{place}/{index}"), found, expected))
                 .sum()
         }
         (Value::Object(found), Value::Object(expected)) => {
@@ -33,7 +40,7 @@ pub(crate) fn compare(place: &str, found: &Value, expected: &Value) -> usize {
             entries
                 .map(|(name, expected)| {
                     let found = found.get(name).unwrap_or(&Value::Null);
-                    compare(&format!("{place}/{name}"), found, expected)
+                    compare(format!("{place}/{name}"), found, expected)
                 })
                 .sum()
         }
@@ -42,4 +49,25 @@ pub(crate) fn compare(place: &str, found: &Value, expected: &Value) -> usize {
             0
         }
     }
+}
+
+/// Compares a lifetime's table of regimes; returns the number of numbers.
+pub(crate) fn compare_regimes(place: &str, found: &LifetimeMetrics, expected: &Value) -> usize {
+    let expected = expected.as_array().expect("the table is a list");
+    assert_eq!(found.regimes.len(), expected.len(), "{place}: regimes");
+    let rows = found.regimes.iter().zip(expected).map(|(regime, expected)| {
+        let value = |name: &str| serde_json::to_value(regime.values.get(name)).expect("values serialise");
+        let row = Value::Array(vec![
+            regime.regime_num.into(),
+            regime.block_num.into(),
+            regime.task_name.clone().into(),
+            value("saturation"),
+            value("exp_to_sat"),
+            value("term_perf"),
+            value("exp_to_term_perf"),
+            value("avg_perf"),
+        ]);
+        compare(&format!("{place}, regime {}", regime.regime_num), &row, expected)
+    });
+    rows.sum()
 }

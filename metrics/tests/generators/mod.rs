@@ -1,7 +1,5 @@
 //! Generators for property tests: arbitrary valid records, and lifetimes that can be scored.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
-
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::fs;
