@@ -3,7 +3,8 @@
 
 use std::hint::black_box;
 
-use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use criterion::measurement::WallTime;
+use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
 use driftworld_env::{Agent, Environment, OnRailsAgent};
 use driftworld_spec::{MotionModel, Object, Stimulus, World, WorldDraft};
 
@@ -36,6 +37,21 @@ fn crowd() -> World {
     world.check().expect("the scene is sound")
 }
 
+/// Measures a step of the expert in a world that begins again whenever an episode ends.
+fn acts(group: &mut BenchmarkGroup<WallTime>, name: &str, start: &World) {
+    let mut environment = Environment::new(start.clone());
+    let mut agent = OnRailsAgent::new();
+    group.bench_function(name, |bench| {
+        bench.iter(|| {
+            let action = agent.act(&environment);
+            if environment.step(action).expect("the action is sound").ended() {
+                environment.reset(start.clone());
+                agent.begin(0);
+            }
+        });
+    });
+}
+
 fn steps(c: &mut Criterion) {
     let mut group = c.benchmark_group("on rails, a step of moving_object");
     group.throughput(Throughput::Elements(1));
@@ -44,18 +60,7 @@ fn steps(c: &mut Criterion) {
         ("balls flee", MotionModel::Prey),
         ("balls come", MotionModel::Predator),
     ] {
-        let start = moving_object(motion);
-        let mut environment = Environment::new(start.clone());
-        let mut agent = OnRailsAgent::new();
-        group.bench_function(name, |bench| {
-            bench.iter(|| {
-                let action = agent.act(&environment);
-                if environment.step(action).expect("the action is sound").ended() {
-                    environment.reset(start.clone());
-                    agent.begin(0);
-                }
-            });
-        });
+        acts(&mut group, name, &moving_object(motion));
     }
     group.finish();
 }
@@ -70,18 +75,11 @@ fn errands(c: &mut Criterion) {
         ("put_next#three", include_str!("scenes/put_next.json")),
         ("lava_crossing#lava", include_str!("scenes/lava_crossing.json")),
     ] {
-        let start = World::from_json(name, text).expect("the scene is sound");
-        let mut environment = Environment::new(start.clone());
-        let mut agent = OnRailsAgent::new();
-        group.bench_function(name, |bench| {
-            bench.iter(|| {
-                let action = agent.act(&environment);
-                if environment.step(action).expect("the action is sound").ended() {
-                    environment.reset(start.clone());
-                    agent.begin(0);
-                }
-            });
-        });
+        acts(
+            &mut group,
+            name,
+            &World::from_json(name, text).expect("the scene is sound"),
+        );
     }
     group.finish();
 }

@@ -3,10 +3,7 @@
 use driftworld_env::{Action, EnvError, Environment, Obstacle, Warning};
 use driftworld_spec::{ActionModel, ActionSpace, EndCondition, Object, Shaping, StateFeature, Stimulus, WorldDraft};
 
-fn start(world: WorldDraft) -> Environment {
-    let world = world.check().expect("the world is sound");
-    Environment::new(world)
-}
+use crate::fixtures::start;
 
 fn coin(at: [f64; 2], reward: f64) -> Object {
     let mut coin = Object::new("barrel", at);

@@ -16,6 +16,7 @@ mod expert_of_puzzles;
 mod expert_of_what_remains;
 mod expert_of_zones;
 mod finite;
+mod fixtures;
 mod hostile;
 mod import;
 mod layouts;
@@ -27,13 +28,14 @@ mod natural;
 mod parity;
 mod pictures;
 mod pushing;
+#[path = "../../tests/reference_data.rs"]
+mod reference_data;
 mod rng;
 mod sarsa;
 mod show_carried;
 mod signs;
 mod simulation;
 mod state;
-mod tagged;
 mod things;
 mod things_laws;
 #[path = "../../tests/tier.rs"]

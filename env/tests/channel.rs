@@ -1,11 +1,11 @@
 //! The three channels from a client's side: the original's own messages, and hostile ones that must change nothing.
 
-use std::path::{Path, PathBuf};
-
 use driftworld_env::Channel::{Debug, Reset, State};
 use driftworld_env::{Action, Category, Channel, Channels, Environment, MAX_MESSAGE_BYTES, Outgoing};
 use driftworld_spec::{Object, WorldDraft};
 use serde_json::{Value, json};
+
+use crate::reference_data::reference;
 
 const NOW: &str = "2026-01-01T00:00:00";
 
@@ -28,16 +28,8 @@ fn ask(environment: &mut Environment, channels: &mut Channels, message: &Value) 
 
 /// The original's messages; prints a note if they are skipped.
 fn original() -> Option<Value> {
-    let default = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/reference");
-    let root = std::env::var_os("DRIFTWORLD_REFERENCE").map_or(default, PathBuf::from);
-    let path = root.join("l2explorer/channel_messages.json");
-    let Ok(text) = std::fs::read_to_string(&path) else {
-        #[expect(clippy::print_stdout, reason = "a skip must be seen")]
-        {
-            println!("skipped: {} is not there; set DRIFTWORLD_REFERENCE", path.display());
-        }
-        return None;
-    };
+    let path = reference("l2explorer/channel_messages.json")?;
+    let text = std::fs::read_to_string(path).expect("the original's messages are text");
     Some(serde_json::from_str(&text).expect("the original's messages are JSON"))
 }
 

@@ -2,14 +2,11 @@
 
 #![expect(clippy::disallowed_methods, reason = "compared within a tolerance")]
 
-use driftworld_env::{Action, Environment};
+use driftworld_env::Action;
 use driftworld_spec::{Object, Stimulus, WorldDraft};
 use proptest::prelude::*;
 
-fn start(world: WorldDraft) -> Environment {
-    let world = world.check().expect("the world is sound");
-    Environment::new(world)
-}
+use crate::fixtures::start;
 
 /// Number of times that each stimulus occurs on a path of legs (turn in degrees, metres), at a speed, with this time step.
 fn count(mut world: WorldDraft, legs: &[(f64, f64)], speed: f64, seconds: f64) -> [usize; 2] {

@@ -8,7 +8,7 @@ use driftworld_spec::{
 };
 use proptest::prelude::*;
 
-use crate::tagged::{key, thing};
+use crate::fixtures::{key, thing};
 
 const MOST: f64 = 100.0;
 

@@ -4,6 +4,8 @@ use driftworld_env::{Action, Environment, Warning};
 use driftworld_spec::{MotionModel, Object, Pushable, Respawn, Stimulus, World, WorldDraft};
 use proptest::prelude::*;
 
+use crate::fixtures::start;
+
 /// Makes one body of a crowd.
 type Make = fn([f64; 2]) -> Object;
 
@@ -63,11 +65,6 @@ fn crowd(makes: &[Make], count: usize, spread: f64) -> WorldDraft {
     };
     world.environment_params.map_size = [60.0, 60.0];
     world
-}
-
-fn start(world: WorldDraft) -> Environment {
-    let world = world.check().expect("the world is sound");
-    Environment::new(world)
 }
 
 fn go(environment: &mut Environment, steps: u32) -> f64 {

@@ -1,8 +1,10 @@
 //! The agent's energy: consumption, gains, and the end when it is used up; and stimuli that occur in every time step.
 
-use driftworld_env::{Action, Agent, EndedBy, Environment, RandomAgent, Step};
+use driftworld_env::{Action, Agent, EndedBy, Environment, RandomAgent};
 use driftworld_spec::{EndCondition, Energy, Object, StateFeature, Stimulus, Trigger, WorldDraft, Zone, ZoneEnd};
 use proptest::prelude::*;
+
+use crate::fixtures::step;
 
 const REST: Action = Action::Continuous([0.0; 3]);
 
@@ -21,10 +23,6 @@ fn start(change: impl FnOnce(&mut WorldDraft)) -> Environment {
     world.rules.failure = vec![EndCondition::OutOfEnergy];
     change(&mut world);
     Environment::new(world.check().expect("the world is sound"))
-}
-
-fn step(environment: &mut Environment, action: Action) -> Step {
-    environment.step(action).expect("the episode goes on")
 }
 
 fn has(environment: &Environment) -> f32 {

@@ -1,11 +1,13 @@
 //! The agent that knows the map, in worlds with doors, keys, switches and things: it finds out what has to be done first.
 
-use driftworld_env::{Agent, Environment, OnRailsAgent};
+use driftworld_env::Environment;
 use driftworld_spec::{
-    ActionModel, ActionSpace, Delivery, Door, EndCondition, Object, Portable, Stimulus, Switch, SwitchAction, Wall,
-    World, WorldDraft,
+    ActionModel, ActionSpace, Delivery, Door, EndCondition, Object, Portable, Stimulus, Switch, SwitchAction, World,
+    WorldDraft,
 };
 use proptest::prelude::*;
+
+use crate::fixtures::{by_expert, key, thing, wall_of};
 
 /// Three rooms in a row, 6 × 8 m each, between walls with a doorway of 1.5 m, at x −3 and at x 3. The agent is in the middle
 /// one.
@@ -16,11 +18,8 @@ fn rooms(doorways: [f64; 2]) -> WorldDraft {
         ..WorldDraft::default()
     };
     world.environment_params.map_size = [18.0, 8.0];
-    let wall = |x: f64, from: f64, to: f64| Wall {
-        polygon: vec![[x - 0.15, from], [x + 0.15, from], [x + 0.15, to], [x - 0.15, to]],
-        height: None,
-        color: None,
-    };
+    let wall =
+        |x: f64, from: f64, to: f64| wall_of([[x - 0.15, from], [x + 0.15, from], [x + 0.15, to], [x - 0.15, to]]);
     for (x, y) in [-3.0, 3.0].into_iter().zip(doorways) {
         world
             .environment_params
@@ -31,12 +30,6 @@ fn rooms(doorways: [f64; 2]) -> WorldDraft {
     world.agent_params.max_linear_speed = 3.0;
     world.agent_params.carry_limit = 1;
     world
-}
-
-fn thing(class: &str, tag: &str, at: [f64; 2]) -> Object {
-    let mut object = Object::new(class, at);
-    object.tag = Some(tag.to_owned());
-    object
 }
 
 fn door(tag: &str, at: [f64; 2], door: Door) -> Object {
@@ -52,12 +45,6 @@ fn locked(key: &str) -> Door {
     }
 }
 
-fn key(tag: &str, at: [f64; 2]) -> Object {
-    let mut object = thing("key", tag, at);
-    object.portable = Some(Portable::default());
-    object
-}
-
 fn goal(at: [f64; 2]) -> Object {
     thing("barrel", "goal", at)
 }
@@ -68,16 +55,8 @@ fn touch() -> EndCondition {
 
 /// Number of steps of the expert until success; `None` without success.
 fn solved(world: &World) -> Option<u32> {
-    let mut environment = Environment::new(world.clone());
-    let mut agent = OnRailsAgent::new();
-    agent.begin(0);
-    loop {
-        let action = agent.act(&environment);
-        let step = environment.step(action).expect("the agent's actions are sound");
-        if step.ended() {
-            return step.success.then(|| environment.num_steps());
-        }
-    }
+    let (environment, last) = by_expert(world.clone(), |_, _| ());
+    last.success.then(|| environment.num_steps())
 }
 
 /// Checks that the expert succeeds wherever objects are and in every action space.
@@ -298,18 +277,10 @@ fn expert_stands_still_if_nothing_can_be_done() {
         ));
         world.rules.success = vec![touch()];
         change(&mut world);
-        let mut environment = Environment::new(world.check().expect("the world is sound"));
-        let mut agent = OnRailsAgent::new();
-        let start = environment.agent();
-        while !environment.ended() {
-            let action = agent.act(&environment);
-            let step = environment.step(action).expect("the agent's actions are sound");
-            assert!(step.events.is_empty(), "{:?}", step.events);
-        }
-        assert_eq!(
-            (environment.agent().position, environment.num_steps()),
-            (start.position, 200)
-        );
+        let world = world.check().expect("the world is sound");
+        let start = Environment::new(world.clone()).agent().position;
+        let (environment, _) = by_expert(world, |_, step| assert!(step.events.is_empty(), "{:?}", step.events));
+        assert_eq!((environment.agent().position, environment.num_steps()), (start, 200));
     };
     stands(&|_| {});
     let key_is_here = |world: &mut WorldDraft| world.objects[1].coordinates = [0.0, 3.0];

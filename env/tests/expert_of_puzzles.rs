@@ -1,11 +1,11 @@
 //! The agent that knows the map, in puzzles in which a step can be an irreversible mistake: keys that open only one door. The
 //! test determines by exhaustive search whether a puzzle is solvable.
 
-use driftworld_env::{Agent, EndedBy, Environment, OnRailsAgent};
-use driftworld_spec::{
-    Delivery, Door, EndCondition, Object, Portable, Stimulus, Wall, World, WorldDraft, Zone, ZoneEnd,
-};
+use driftworld_env::{EndedBy, Environment};
+use driftworld_spec::{Delivery, Door, EndCondition, Object, Portable, Stimulus, World, WorldDraft, Zone, ZoneEnd};
 use proptest::prelude::*;
+
+use crate::fixtures::{by_expert, wall_of};
 
 /// Side of a room in metres.
 const ROOM: f64 = 4.0;
@@ -90,11 +90,7 @@ impl Puzzle {
                     let [dx, dy] = if is_upright { [-across, along] } else { [along, across] };
                     [at[0] + dx, at[1] + dy]
                 });
-                Wall {
-                    polygon: turned.to_vec(),
-                    height: None,
-                    color: None,
-                }
+                wall_of(turned)
             };
             let walls = &mut world.environment_params.walls;
             match self.between[number] {
@@ -141,17 +137,10 @@ fn thing(class: &str, tag: &str, [x, y]: [f64; 2], [dx, dy]: [f64; 2]) -> Object
 /// Runs an episode and returns whether it was a success. Checks the carry limit.
 fn lives(world: World) -> bool {
     let most = world.agent_params.carry_limit as usize;
-    let mut environment = Environment::new(world);
-    let mut agent = OnRailsAgent::new();
-    agent.begin(0);
-    loop {
-        let action = agent.act(&environment);
-        let step = environment.step(action).expect("the agent's actions are sound");
+    let (_, last) = by_expert(world, |environment, _| {
         assert!(environment.objects().iter().filter(|own| own.carried).count() <= most);
-        if step.ended() {
-            return step.success;
-        }
-    }
+    });
+    last.success
 }
 
 fn puzzle() -> impl Strategy<Value = Puzzle> {
@@ -202,18 +191,11 @@ fn carried_past_lava([ford, key_x, thickness]: [f64; 3], fails: bool, is_discret
     world.objects = vec![key, thing("barrel", "box", [0.0, -4.0], [0.0; 2])];
     let (tag, to) = ("ball".to_owned(), "box".to_owned());
     world.rules.success = vec![EndCondition::Delivered(Delivery { tag, to, within: 2.0 })];
-    let mut environment = Environment::new(world.check().expect("the world is sound"));
-    let mut agent = OnRailsAgent::new();
-    agent.begin(0);
     let mut paid = 0.0;
-    loop {
-        let action = agent.act(&environment);
-        let step = environment.step(action).expect("the agent's actions are sound");
+    let (_, last) = by_expert(world.check().expect("the world is sound"), |_, step| {
         paid += step.reward;
-        if step.ended() {
-            return (paid, step.ended_by);
-        }
-    }
+    });
+    (paid, last.ended_by)
 }
 
 proptest! {
@@ -293,18 +275,13 @@ proptest! {
         world.objects.push(thing("barrel", "box", [4.0, 4.0], [0.0; 2]));
         let (tag, to) = ("ball".to_owned(), "box".to_owned());
         world.rules.success = vec![EndCondition::Delivered(Delivery { tag, to, within: 3.0 })];
-        let mut environment = Environment::new(world.check().expect("the world is sound"));
-        let mut agent = OnRailsAgent::new();
-        agent.begin(0);
         let (mut carried, mut most, mut trips) = (0_usize, 0, 0);
-        while !environment.ended() {
-            let action = agent.act(&environment);
-            let step = environment.step(action).expect("the agent's actions are sound");
+        let (_, last) = by_expert(world.check().expect("the world is sound"), |environment, _| {
             let now = environment.objects().iter().filter(|own| own.carried).count();
             trips += usize::from(carried > 0 && now == 0);
             (carried, most) = (now, most.max(now));
-            prop_assert!(step.success || !step.ended(), "{:?}", places);
-        }
+        });
+        prop_assert!(last.success, "{:?}", places);
         prop_assert!(most <= hands as usize);
         if hands as usize >= places.len() {
             prop_assert_eq!((most, trips), (places.len(), 1));
@@ -352,14 +329,8 @@ proptest! {
             world.environment_params.zones.push(zone);
             world.max_steps = 400;
         });
-        let mut environment = Environment::new(world.expect("the world is sound"));
-        let mut agent = OnRailsAgent::new();
-        agent.begin(0);
-        while !environment.ended() {
-            let action = agent.act(&environment);
-            let step = environment.step(action).expect("the agent's actions are sound");
-            prop_assert!(!ends || !step.ended() || step.success);
-        }
+        let (environment, last) = by_expert(world.expect("the world is sound"), |_, _| ());
+        prop_assert!(!ends || last.success);
         prop_assert!(ends || environment.episode_return() > 15.0, "{}", environment.episode_return());
     }
 }

@@ -1,9 +1,11 @@
 //! The expert does what it can: unreachable objects do not keep it from others, and it touches nothing that ends the episode as
 //! a failure. With doors and things it uses the planner, otherwise the tour; both are tested.
 
-use driftworld_env::{Agent, EndedBy, Environment, OnRailsAgent};
+use driftworld_env::EndedBy;
 use driftworld_spec::{EndCondition, Object, Portable, Stimulus, Wall, World, WorldDraft};
 use proptest::prelude::*;
+
+use crate::fixtures::{by_expert, wall_of};
 
 fn cube(tag: &str, at: [f64; 2], reward: f64) -> Object {
     let mut object = Object::new("cube", at);
@@ -32,15 +34,13 @@ fn field(pays: f64, has_things: bool) -> WorldDraft {
 
 /// Four walls around a place.
 fn cell([x, y]: [f64; 2]) -> Vec<Wall> {
-    let wall = |low: [f64; 2], high: [f64; 2]| Wall {
-        polygon: vec![
+    let wall = |low: [f64; 2], high: [f64; 2]| {
+        wall_of([
             [x + low[0], y + low[1]],
             [x + high[0], y + low[1]],
             [x + high[0], y + high[1]],
             [x + low[0], y + high[1]],
-        ],
-        height: None,
-        color: None,
+        ])
     };
     vec![
         wall([-2.0, -2.0], [2.0, -1.8]),
@@ -52,18 +52,9 @@ fn cell([x, y]: [f64; 2]) -> Vec<Wall> {
 
 /// How an episode of the expert ends, and its return.
 fn lived(world: World) -> (Option<EndedBy>, bool, f64) {
-    let mut environment = Environment::new(world);
-    let mut expert = OnRailsAgent::new();
-    expert.begin(0);
     let mut earned = 0.0;
-    loop {
-        let action = expert.act(&environment);
-        let step = environment.step(action).expect("the episode goes on");
-        earned += step.reward;
-        if step.terminated || step.truncated {
-            return (step.ended_by, step.success, earned);
-        }
-    }
+    let (_, last) = by_expert(world, |_, step| earned += step.reward);
+    (last.ended_by, last.success, earned)
 }
 
 proptest! {
@@ -130,18 +121,10 @@ proptest! {
             key.portable = Some(Portable::default());
             key
         }));
-        let mut environment = Environment::new(world.check().expect("it is sound"));
-        let mut expert = OnRailsAgent::new();
-        expert.begin(0);
-        loop {
-            let action = expert.act(&environment);
-            let step = environment.step(action).expect("the episode goes on");
-            prop_assert!(environment.objects().iter().all(|own| !own.carried));
-            if step.ended() {
-                prop_assert!(step.success, "{:?}", step.ended_by);
-                break;
-            }
-        }
+        let (_, last) = by_expert(world.check().expect("it is sound"), |environment, _| {
+            assert!(environment.objects().iter().all(|own| !own.carried));
+        });
+        prop_assert!(last.success, "{:?}", last.ended_by);
     }
 }
 
@@ -150,11 +133,7 @@ proptest! {
 fn thing_in_the_way_is_picked_up() {
     let behind = |carry_limit: u32, at: f64| {
         let mut world = field(1.0, false);
-        let wall = |x: [f64; 2]| Wall {
-            polygon: vec![[x[0], -0.15], [x[1], -0.15], [x[1], 0.15], [x[0], 0.15]],
-            height: None,
-            color: None,
-        };
+        let wall = |x: [f64; 2]| wall_of([[x[0], -0.15], [x[1], -0.15], [x[1], 0.15], [x[0], 0.15]]);
         world.environment_params.walls = vec![wall([-12.0, -0.75]), wall([0.75, 12.0])];
         let mut key = Object::new("key", [0.0, at]);
         key.portable = Some(Portable::default());

@@ -1,7 +1,9 @@
 //! Objects that move by themselves, and objects that respawn.
 
 use driftworld_env::{Action, Environment};
-use driftworld_spec::{MotionModel, Object, Respawn, Stimulus, Wall, WorldDraft};
+use driftworld_spec::{MotionModel, Object, Respawn, Stimulus, WorldDraft};
+
+use crate::fixtures::wall_of;
 
 const STAND: Action = Action::Continuous([0.0, 0.0, 0.0]);
 
@@ -121,11 +123,7 @@ fn wanderers_cover_the_arena_stay_in_it_and_out_of_walls() {
     let mut world = WorldDraft::with_objects(vec![mover(MotionModel::RandomWaypoint, [10.0, 10.0], 8.0)]);
     world.environment_params.map_size = [40.0, 40.0];
     let block = vec![[-3.0, -15.0], [3.0, -15.0], [3.0, -5.0], [-3.0, -5.0]];
-    world.environment_params.walls.push(Wall {
-        polygon: block,
-        height: None,
-        color: None,
-    });
+    world.environment_params.walls.push(wall_of(block));
     let walk = |world: &WorldDraft| -> Vec<[f32; 2]> {
         let mut environment = begin(world);
         (0..3000)
@@ -213,11 +211,7 @@ fn movers_never_leave_the_arena_or_pass_walls() {
         moving.class = if number % 2 == 0 { "barrel" } else { "rock" }.to_owned();
         let mut world = WorldDraft::with_objects(vec![moving]);
         world.environment_params.map_size = [24.0, 24.0];
-        world.environment_params.walls = vec![Wall {
-            polygon: vec![[-12.0, 0.0], [12.0, 0.0], [12.0, 0.4], [-12.0, 0.4]],
-            height: None,
-            color: None,
-        }];
+        world.environment_params.walls = vec![wall_of([[-12.0, 0.0], [12.0, 0.0], [12.0, 0.4], [-12.0, 0.4]])];
         world.agent_params.coordinates = [3.0, -6.0];
         let mut environment = begin(&world);
         for turn in 0..150 {
@@ -244,11 +238,7 @@ fn objects_respawn_outside_of_regions() {
             objects: vec![coin.clone()],
             ..WorldDraft::default()
         };
-        world.environment_params.walls = vec![Wall {
-            polygon: vec![[4.0, -20.0], [20.0, -20.0], [20.0, 20.0], [4.0, 20.0]],
-            height: None,
-            color: None,
-        }];
+        world.environment_params.walls = vec![wall_of([[4.0, -20.0], [20.0, -20.0], [20.0, 20.0], [4.0, 20.0]])];
         let mut environment = begin(&world);
         for _ in 0..12 {
             environment

@@ -6,6 +6,8 @@ use driftworld_env::{
 };
 use driftworld_spec::{Color, Model, Object, World, WorldDraft};
 
+use crate::fixtures::wall_of;
+
 fn draw(world: &WorldDraft, camera: &Camera, width: u32, height: u32) -> Frame {
     let mut frame = Frame::new(width, height);
     CpuRenderer::new().render(
@@ -70,11 +72,7 @@ fn wall_hides_objects_behind_it() {
     let mut world = WorldDraft::with_objects(vec![Object::new("cube", [0.0, 20.0])]);
     assert!(ahead(&world).instance.contains(&1));
     let polygon = vec![[-5.0, 10.0], [5.0, 10.0], [5.0, 11.0], [-5.0, 11.0]];
-    world.environment_params.walls = vec![driftworld_spec::Wall {
-        polygon,
-        height: None,
-        color: None,
-    }];
+    world.environment_params.walls = vec![wall_of(polygon)];
     assert!(!ahead(&world).instance.contains(&1));
 }
 
@@ -325,12 +323,7 @@ fn instruction_sets_render_the_same_pixels() {
 #[test]
 fn target_of_the_wrong_size_is_an_error() {
     let mut rgb = vec![0; 10];
-    let mut target = Target {
-        width: 4,
-        height: 4,
-        rgb: Some(&mut rgb),
-        ..Target::default()
-    };
+    let mut target = Target::of_colors([4, 4], &mut rgb);
     let camera = Camera::first_person([0.0, 0.0], 0.0, 1.0, 60.0);
     let drawn = CpuRenderer::new().draw(&Scene::from_world(&World::default()), &camera, &mut target);
     assert!(drawn.is_err());

@@ -8,7 +8,7 @@ use driftworld_env::{
 use driftworld_spec::{Color, Modality, Object, World, WorldDraft};
 use proptest::prelude::*;
 
-use crate::tagged::{key, thing};
+use crate::fixtures::{key, thing};
 
 const USE: Action = Action::Continuous([0.0, 0.0, 1.0]);
 

@@ -1,10 +1,10 @@
 //! Touching, interacting and coming near; walls; ends of episodes; and exact reproducibility.
 
-use driftworld_env::{Action, Agent, EnvError, Environment, OnRailsAgent, RandomAgent, Step, Warning};
-use driftworld_spec::{
-    ActionModel, ActionSpace, EndCondition, MotionModel, Object, Shaping, Stimulus, Wall, WorldDraft,
-};
+use driftworld_env::{Action, Agent, EnvError, Environment, OnRailsAgent, RandomAgent, Warning};
+use driftworld_spec::{ActionModel, ActionSpace, EndCondition, MotionModel, Object, Shaping, Stimulus, WorldDraft};
 use proptest::prelude::*;
+
+use crate::fixtures::{start, step, wall_of};
 
 const AHEAD: Action = Action::Continuous([10.0, 0.0, 0.0]);
 const BACK: Action = Action::Continuous([-10.0, 0.0, 0.0]);
@@ -21,17 +21,6 @@ fn cube(metres: f64) -> Object {
 
 fn environment(objects: Vec<Object>) -> Environment {
     start(WorldDraft::with_objects(objects))
-}
-
-fn start(world: WorldDraft) -> Environment {
-    let world = world.check().expect("the world is sound");
-    Environment::new(world)
-}
-
-fn step(environment: &mut Environment, action: Action) -> Step {
-    environment
-        .step(action)
-        .expect("the episode is not over and the action is sound")
 }
 
 /// The rewards of a sequence of actions.
@@ -337,8 +326,8 @@ proptest! {
         world.environment_params.map_size = [20.0, 12.0];
         // A thin pillar and a long thin wall.
         world.environment_params.walls = vec![
-            Wall { polygon: vec![[-10.0, 2.0], [9.0, 2.0], [9.0, 2.05], [-10.0, 2.05]], height: None, color: None },
-            Wall { polygon: vec![[3.0, -3.0], [3.1, -3.0], [3.05, -2.9]], height: None, color: None },
+            wall_of([[-10.0, 2.0], [9.0, 2.0], [9.0, 2.05], [-10.0, 2.05]]),
+            wall_of([[3.0, -3.0], [3.1, -3.0], [3.05, -2.9]]),
         ];
         world.agent_params.agent_width = 0.6;
         world.agent_params.coordinates = [-5.0, -2.0];

@@ -3,9 +3,11 @@
 use driftworld_env::{Action, Agent, EnvError, Environment, RandomAgent};
 use driftworld_spec::{
     ActionModel, ActionSpace, EndCondition, Energy, MotionModel, Object, ObjectProgress, Progress, Pushable, Respawn,
-    Shaping, StateFeature, Stimulus, Trigger, Wall, World, WorldDraft, Zone,
+    Shaping, StateFeature, Stimulus, Trigger, World, WorldDraft, Zone,
 };
 use proptest::prelude::*;
+
+use crate::fixtures::wall_of;
 
 /// A small world with something of everything that has progress.
 fn world(action_model: ActionModel, frame_skip: u32) -> World {
@@ -49,11 +51,7 @@ fn world(action_model: ActionModel, frame_skip: u32) -> World {
         ..WorldDraft::default()
     };
     world.environment_params.map_size = [16.0, 16.0];
-    world.environment_params.walls = vec![Wall {
-        polygon: vec![[-6.0, 0.0], [-3.0, 0.0], [-3.0, 0.3], [-6.0, 0.3]],
-        height: None,
-        color: None,
-    }];
+    world.environment_params.walls = vec![wall_of([[-6.0, 0.0], [-3.0, 0.0], [-3.0, 0.3], [-6.0, 0.3]])];
     let mut door = Zone::disc([-5.0, -5.0], 1.5);
     (door.teleport, door.reward_on_entering) = (Some([5.0, 0.0]), 0.25);
     let mut mud = Zone::polygon(vec![[-2.0, 0.5], [3.0, 0.5], [3.0, 6.0]]);

@@ -2,10 +2,10 @@
 
 use driftworld_env::{Action, Effect, Environment, Event};
 use driftworld_spec::{
-    Delivery, Door, EndCondition, Portable, StateFeature, Stimulus, Switch, SwitchAction, Wall, WorldDraft,
+    Delivery, Door, EndCondition, Portable, StateFeature, Stimulus, Switch, SwitchAction, WorldDraft,
 };
 
-use crate::tagged::{key, thing};
+use crate::fixtures::{key, start, thing, wall_of};
 
 const AHEAD: Action = Action::Continuous([2.0, 0.0, 0.0]);
 const USE: Action = Action::Continuous([0.0, 0.0, 1.0]);
@@ -15,11 +15,7 @@ const WAIT: Action = Action::Continuous([0.0, 0.0, 0.0]);
 fn draft(door: Door) -> WorldDraft {
     let mut world = WorldDraft::default();
     world.environment_params.map_size = [20.0, 20.0];
-    let wall = |from: f64, to: f64| Wall {
-        polygon: vec![[from, 3.9], [to, 3.9], [to, 4.1], [from, 4.1]],
-        height: None,
-        color: None,
-    };
+    let wall = |from: f64, to: f64| wall_of([[from, 3.9], [to, 3.9], [to, 4.1], [from, 4.1]]);
     world.environment_params.walls = vec![wall(-10.0, -1.0), wall(1.0, 10.0)];
     world.agent_params.carry_limit = 1;
     let mut leaf = thing("door", "gate", [0.0, 4.0]);
@@ -27,10 +23,6 @@ fn draft(door: Door) -> WorldDraft {
     leaf.door = Some(door);
     world.objects = vec![leaf];
     world
-}
-
-fn start(world: WorldDraft) -> Environment {
-    Environment::new(world.check().expect("the world is sound"))
 }
 
 fn steps(environment: &mut Environment, action: Action, count: usize) -> Vec<Event> {

@@ -2,20 +2,16 @@
 //! the agent, and a saved world resumes.
 
 use driftworld_env::{Action, Effect, Environment};
-use driftworld_spec::{Door, Portable, Pushable, StateFeature, Stimulus, Switch, Wall, World, WorldDraft};
+use driftworld_spec::{Door, Portable, Pushable, StateFeature, Stimulus, Switch, World, WorldDraft};
 use proptest::prelude::*;
 
-use crate::tagged::{key, thing};
+use crate::fixtures::{key, thing, wall_of};
 
 /// A house of four rooms with doors of all kinds, keys, a switch, a pushable box and a wanderer.
 fn house() -> WorldDraft {
     let mut world = WorldDraft::default();
     world.environment_params.map_size = [16.0, 16.0];
-    let wall = |x: [f64; 2], y: [f64; 2]| Wall {
-        polygon: vec![[x[0], y[0]], [x[1], y[0]], [x[1], y[1]], [x[0], y[1]]],
-        height: None,
-        color: None,
-    };
+    let wall = |x: [f64; 2], y: [f64; 2]| wall_of([[x[0], y[0]], [x[1], y[0]], [x[1], y[1]], [x[0], y[1]]]);
     world.environment_params.walls = vec![
         wall([-8.0, -4.75], [-0.15, 0.15]),
         wall([-3.25, 3.25], [-0.15, 0.15]),

@@ -5,9 +5,11 @@
 #![expect(clippy::disallowed_methods, reason = "compared within a tolerance")]
 
 use driftworld_env::{Action, ColliderShape, Environment};
-use driftworld_spec::{Object, Wall, World, WorldDraft};
+use driftworld_spec::{Object, World, WorldDraft};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+
+use crate::fixtures::wall_of;
 
 const SKIN: f64 = 0.01;
 const STEPS: usize = 120;
@@ -160,11 +162,7 @@ fn world(rng: &mut ChaCha8Rng, number: usize) -> World {
             corner(1.0, 1.0),
             corner(-1.0, 1.0),
         ];
-        world.environment_params.walls.push(Wall {
-            polygon,
-            height: None,
-            color: None,
-        });
+        world.environment_params.walls.push(wall_of(polygon));
     }
     for class in CLASSES {
         let mut object = Object::new(class, [uniform(-45.0, 45.0), uniform(-45.0, 45.0)]);

@@ -7,21 +7,19 @@ use driftworld_env::{Action, Environment};
 use driftworld_spec::{MotionModel, Object, Pushable, Wall, WorldDraft};
 use proptest::prelude::*;
 
+use crate::fixtures::{start, wall_of};
+
 /// A wall of this length in metres through a point, rotated by degrees clockwise from +y.
 fn wall(through: [f64; 2], bearing_deg: f64, length: f64) -> Wall {
     let along = direction(bearing_deg).map(|part| part * length / 2.0);
     let across = direction(bearing_deg + 90.0).map(|part| part * 0.1);
     let corner = |a: f64, b: f64| [0, 1].map(|axis| through[axis] + a * along[axis] + b * across[axis]);
-    Wall {
-        polygon: vec![
-            corner(-1.0, 1.0),
-            corner(1.0, 1.0),
-            corner(1.0, -1.0),
-            corner(-1.0, -1.0),
-        ],
-        height: None,
-        color: None,
-    }
+    wall_of([
+        corner(-1.0, 1.0),
+        corner(1.0, 1.0),
+        corner(1.0, -1.0),
+        corner(-1.0, -1.0),
+    ])
 }
 
 fn direction(bearing_deg: f64) -> [f64; 2] {
@@ -33,11 +31,6 @@ fn arena(metres: f64) -> WorldDraft {
     let mut world = WorldDraft::default();
     world.environment_params.map_size = [metres, metres];
     world
-}
-
-fn start(world: WorldDraft) -> Environment {
-    let world = world.check().expect("the world is sound");
-    Environment::new(world)
 }
 
 fn go(environment: &mut Environment, speed: f64) -> [f64; 2] {
@@ -163,7 +156,7 @@ proptest! {
             vec![[0.0, 0.0], way, [way[0] + thick[0], way[1] + thick[1]], thick]
         };
         world.environment_params.walls = [opening / 2.0, -opening / 2.0]
-            .map(|turn| Wall { polygon: polygon(turn), height: None, color: None })
+            .map(|turn| wall_of(polygon(turn)))
             .to_vec();
         let agent = &mut world.agent_params;
         agent.agent_width = width;
@@ -194,11 +187,7 @@ proptest! {
 #[test]
 fn walks_from_the_audit_do_not_get_stuck() {
     let mut world = arena(200.0);
-    world.environment_params.walls = vec![Wall {
-        polygon: vec![[-30.0, -30.0], [30.0, 30.0], [29.0, 31.0], [-31.0, -29.0]],
-        height: None,
-        color: None,
-    }];
+    world.environment_params.walls = vec![wall_of([[-30.0, -30.0], [30.0, 30.0], [29.0, 31.0], [-31.0, -29.0]])];
     world.agent_params.coordinates = [-14.0, -18.0];
     world.agent_params.heading = 15.0;
     let mut environment = start(world);
@@ -221,11 +210,7 @@ fn sliding_body_keeps_the_parallel_velocity_at_a_wall() {
     for (class, friction) in [("ball", 0.0), ("cube", 0.0), ("barrel", 0.0)] {
         for heading in [10.0_f64, 30.0, 45.0, 60.0, 80.0] {
             let mut world = arena(300.0);
-            world.environment_params.walls = vec![Wall {
-                polygon: vec![[-150.0, 6.0], [150.0, 6.0], [150.0, 7.0], [-150.0, 7.0]],
-                height: None,
-                color: None,
-            }];
+            world.environment_params.walls = vec![wall_of([[-150.0, 6.0], [150.0, 6.0], [150.0, 7.0], [-150.0, 7.0]])];
             let mut body = Object::new(class, [-140.0, 0.0]);
             body.pushable = Some(Pushable { mass: 5.0, friction });
             body.heading = heading;
@@ -269,11 +254,8 @@ fn pushed_body_slides_along_a_wall() {
     for (class, friction) in [("ball", 0.0), ("cube", 0.0), ("ball", 0.5), ("cube", 0.5)] {
         for heading in [20.0_f64, 35.0, 60.0, 75.0] {
             let mut world = arena(300.0);
-            world.environment_params.walls = vec![Wall {
-                polygon: vec![[-150.0, 10.0], [150.0, 10.0], [150.0, 11.0], [-150.0, 11.0]],
-                height: None,
-                color: None,
-            }];
+            world.environment_params.walls =
+                vec![wall_of([[-150.0, 10.0], [150.0, 10.0], [150.0, 11.0], [-150.0, 11.0]])];
             let mut body = Object::new(class, [-100.0, 0.0]);
             body.heading = heading;
             body.pushable = Some(Pushable { mass: 5.0, friction });
@@ -316,11 +298,7 @@ proptest! {
     ) {
         let mut world = arena(100.0);
         world.agent_params.coordinates = [48.0, 48.0];
-        world.environment_params.walls = vec![Wall {
-            polygon: vec![[-15.0, -6.0], [15.0, -6.0], [15.0, 0.0], [-15.0, 0.0]],
-            height: None,
-            color: None,
-        }];
+        world.environment_params.walls = vec![wall_of([[-15.0, -6.0], [15.0, -6.0], [15.0, 0.0], [-15.0, 0.0]])];
         let mut mover = Object::new(class, [across, 3.5]);
         (mover.motion_model, mover.speed, mover.scale) = (MotionModel::Patrol, speed, scale);
         // Beyond the wall's end and slightly below its side: the path there leads along it.
@@ -352,11 +330,7 @@ proptest! {
         let mut world = arena(300.0);
         let way = |bearing: f64| direction(bearing + turn).map(|part| part * 30.0);
         let (left, right) = (way(-half), way(half));
-        world.environment_params.walls = vec![Wall {
-            polygon: vec![[0.0, 0.0], right, [left[0] + right[0], left[1] + right[1]], left],
-            height: None,
-            color: None,
-        }];
+        world.environment_params.walls = vec![wall_of([[0.0, 0.0], right, [left[0] + right[0], left[1] + right[1]], left])];
         let (ahead, across) = (direction(turn), direction(turn + 90.0));
         world.agent_params.coordinates = [0, 1].map(|axis| -3.0 * ahead[axis] + off * across[axis]);
         world.agent_params.heading = turn;

@@ -1,8 +1,10 @@
 //! Effects of zones on the agent inside: rewards, speed, ends of the episode, and teleports.
 
-use driftworld_env::{Action, Agent, Environment, RandomAgent, Step};
+use driftworld_env::{Action, Agent, Environment, RandomAgent};
 use driftworld_spec::{ActionModel, Object, World, WorldDraft, Zone, ZoneEnd};
 use proptest::prelude::*;
+
+use crate::fixtures::step;
 
 const AHEAD: Action = Action::Continuous([10.0, 0.0, 0.0]);
 const REST: Action = Action::Continuous([0.0; 3]);
@@ -12,10 +14,6 @@ fn start(zones: Vec<Zone>, change: impl FnOnce(&mut WorldDraft)) -> Environment 
     world.environment_params.zones = zones;
     change(&mut world);
     Environment::new(world.check().expect("the world is sound"))
-}
-
-fn step(environment: &mut Environment, action: Action) -> Step {
-    environment.step(action).expect("the episode goes on")
 }
 
 /// A square around a centre.

@@ -242,12 +242,7 @@ fn impossible_images_are_errors() {
     let scene = Scene::from_world(&World::default());
     let camera = Camera::overview(&scene);
     let mut short = vec![0; 5];
-    let mut target = Target {
-        width: 4,
-        height: 4,
-        rgb: Some(&mut short),
-        ..Target::default()
-    };
+    let mut target = Target::of_colors([4, 4], &mut short);
     let error = gpu.draw(&scene, &camera, &mut target).expect_err("too short");
     assert_eq!(error, EnvError::PictureSize { width: 4, height: 4 });
     // Rendering still works afterwards.
