@@ -53,7 +53,8 @@ def continual_world(values: List, curves: List, alone: List, steps: List | None)
 # TTomilin/COOM, results/common.py at 79298011: calculate_performance, calculate_forgetting, calculate_transfer.
 # The mean over seeds comes first there (load_cl_data). An evaluation stands for all of a task's time.
 def coom(values: List, curves: List, alone: List, steps: List | None) -> dict[str, float]:
-    """Performance: each task from its own learning on. Forgetting: all but the last task. Transfer: one curve for all.
+    """Performance: each task from its own learning on. Forgetting: all but the last task. Transfer: one curve for
+    all.
     """
     tasks, seen, lost = len(values[0][0]), [], []
     for i in range(tasks):

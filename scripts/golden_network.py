@@ -1,5 +1,6 @@
-"""Writes the network and its log-probabilities that env/src/agents/network/tests.rs compares with: python
-scripts/golden_network.py.
+"""Writes the network and its log-probabilities that env/src/agents/network/tests.rs compares with.
+
+    python scripts/golden_network.py
 
 Needs driftworld.learners and torch; another version of torch may change the last digits.
 """

@@ -76,7 +76,8 @@ def play(task: str, variant: str | None, *, seed: int, camera: str, most_steps: 
 
 
 class Episodes(gymnasium.Wrapper[Any, Any, Any, Any]):
-    """Prints events, continues with the next world after an episode, and asks the window to close after the last step.
+    """Prints events, continues with the next world after an episode, and asks the window to close after the last
+    step.
     """
 
     def __init__(self, env: gymnasium.Env[Any, Any], most_steps: int | None) -> None:

@@ -1,4 +1,4 @@
-"""Not an example: how the examples write a result down, so that it can be had again.
+"""Not an example: how the examples write a result down, so that it can be reproduced.
 
 A result is a folder: `config.json` (command, seeds, options, versions, machine, and the hashes of variants and first
 worlds), `curve.csv`, `curve.png`, and a `README.md` generated from them.

@@ -1,5 +1,4 @@
-"""RLlib's PPO on Find Objects, several env runners stepping native vector environments; needs only an address to run on
-a cluster.
+"""RLlib's PPO on Find Objects, several env runners stepping native vector environments; needs only an address to run on a cluster.
 
     python examples/python/rllib_ppo.py                    # a cluster of this machine's own
     python examples/python/rllib_ppo.py --address auto     # the Ray cluster that this machine is in

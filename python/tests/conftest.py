@@ -23,7 +23,8 @@ TASKS = {
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
-    """Parametrizes ``env_id`` with each task's id, and ``task_variant`` with each variant of each task, as (id, name).
+    """Parametrizes ``env_id`` with each task's id, and ``task_variant`` with each variant of each task, as (id,
+    name).
     """
     if "env_id" in metafunc.fixturenames:
         metafunc.parametrize("env_id", TASKS)

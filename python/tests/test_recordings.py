@@ -1,4 +1,5 @@
-"""Recorded episodes: of curricula in one and in many environments, of custom loops, and resumed after an interruption.
+"""Recorded episodes: of curricula in one and in many environments, of custom loops, and resumed after an
+interruption.
 """
 
 from __future__ import annotations

@@ -14,7 +14,8 @@ from test_lifetimes import QUARRY
 
 
 class Looker:
-    """Turns depending on its observations and its number; learns nothing. One per environment acts like a single one.
+    """Turns depending on its observations and its number; learns nothing. One per environment acts like a single
+    one.
     """
 
     name = "looker"

@@ -11,7 +11,7 @@
 # ---
 
 # %% [markdown]
-# # A lifetime, run and scored
+# # A lifetime, lived and scored
 #
 # Two small learners go through the same curriculum: by day blue cubes pay and red ones cost, in the evening it is the
 # other way round. One remembers what each colour is worth; the other remembers it for each sky. What does each retain,
@@ -39,7 +39,8 @@ LOGS = Path(tempfile.mkdtemp())
 
 # %%
 class Seeker:
-    """Walks towards the colour that it values most, away from one that costs, and learns values from touching objects.
+    """Walks towards the colour that it values most, away from one that costs, and learns values from touching
+    objects.
     """
 
     def __init__(self, name: str, by_sky: bool) -> None:

@@ -132,7 +132,7 @@ for block in curriculum:
 
 
 # %% [markdown]
-# Anything with `act`, `learn` and `freeze` can live it; what it did is logged, and scored in the other notebook, `lifetime.py`.
+# Any agent with `act`, `learn` and `freeze` can run through it; the other notebook, `lifetime.py`, scores the log.
 
 
 # %%

@@ -371,7 +371,8 @@ class Rollout:
         self._env.close()
 
     def _beginning(self, now: Experience) -> tuple[str | None, int]:
-        """The arguments of ``begin`` for an experience: the name of its variant if the agent may know it, and a seed.
+        """The arguments of ``begin`` for an experience: the name of its variant if the agent may know it, and a
+        seed.
         """
         chance = now.chance
         if not (now.learning or self._paired_chance):

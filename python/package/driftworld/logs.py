@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from driftworld.recordings import Recording
 
-#: Columns of words and whole numbers that every log has.
+#: Columns of words, ids and task parameters in every log.
 _WORDS = ("worker_id", "block_type", "block_subtype", "task_name", "task_params", "exp_status")
 
 

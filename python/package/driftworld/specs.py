@@ -69,7 +69,8 @@ def variants(*names: str | Variant | TaskSpec) -> list[tuple[str, Variant]]:
 
 
 def _variant_html(variant: Variant) -> str:
-    """The values of a variant as a table: those that differ from the task's defaults first, the others in a line below.
+    """The values of a variant as a table: those that differ from the task's defaults first, the others in a line
+    below.
     """
     usual = variant.task.variant().values
     parameters = variant.task.parameters

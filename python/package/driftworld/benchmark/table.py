@@ -126,7 +126,8 @@ class Results:
         return sorted(rows, key=lambda row: -row["performance"][0])
 
     def markdown(self, figure: str | None = None) -> str:
-        """A page with the table, a figure if a link is given, each task of each learner, and the limits of the results.
+        """A page with the table, a figure if a link is given, each task of each learner, and the limits of the
+        results.
         """
         shown = ["", f"![]({figure})", "", _FIGURE] if figure else []
         runs = [run for runs in self.runs.values() for run in runs]

@@ -201,7 +201,8 @@ _INSTEAD = {
 
 
 def coverings(found: str) -> dict[str, str]:
-    """Messages, by option, about the differences between variants that options hide, from the native module's findings.
+    """Messages, by option, about the differences between variants that options hide, from the native module's
+    findings.
     """
     told = {}
     for each in json.loads(found):

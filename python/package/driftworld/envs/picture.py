@@ -34,7 +34,8 @@ class Camera:
         self._size = (height, width)
 
     def picture(self, batch: _native.Batch, env: int) -> NDArray[np.uint8]:
-        """An image of one environment, uint8 (height, width, 3); with ``"both"`` as wide as width and height together.
+        """An image of one environment, uint8 (height, width, 3); with ``"both"`` as wide as width and height
+        together.
         """
         height, width = self._size
         if self._name != "both":

@@ -69,7 +69,8 @@ class Learner:
         self.seconds = 0.0
 
     def make_network(self) -> nn.Module:
-        """Makes a network; it is drawn from torch's global generator, which is seeded before and restored afterwards.
+        """Makes a network; it is drawn from torch's global generator, which is seeded before and restored
+        afterwards.
         """
         return PatchNetwork(self.num_actions, self.size)
 

@@ -128,7 +128,8 @@ class PackNet(PPO):
         return log_policy, values
 
     def _weights(self, slot: int) -> Mapping[str, torch.Tensor]:
-        """The weights that a task uses: its own and those of earlier tasks; the current task also uses the free ones.
+        """The weights that a task uses: its own and those of earlier tasks; the current task also uses the free
+        ones.
         """
         if slot not in self._views:
             fewest = 0 if slot == self.tasks else 1
