@@ -392,8 +392,9 @@ def _ending(path: Path) -> str:
 
 @dataclass(frozen=True)
 class Order(Sequence[str]):
-    """Items in an order by their distances. A sequence of their labels: ``order[0]``, ``order[-2:]``, ``"task#a" in
-    order``.
+    """Items in an order by their distances.
+
+    A sequence of their labels: ``order[0]``, ``order[-2:]``, ``"task#a" in order``.
 
     Attributes:
         method: The method that found it.

@@ -26,8 +26,9 @@ __all__ = ["Actions", "MiniWorldEnv", "names", "task"]
 
 
 class Actions(IntEnum):
-    """MiniWorld's actions and their numbers. The space of an environment has the first 3, 4, 5 or all of them; steps
-    accept any.
+    """MiniWorld's actions and their numbers.
+
+    The space of an environment has the first 3, 4, 5 or all of them; steps accept any.
     """
 
     turn_left = 0

@@ -26,8 +26,9 @@ def built_in_tasks() -> list[str]:
 
 
 def task_groups() -> dict[str, list[str]]:
-    """The names of all tasks that come with the package, grouped by kind. Each has an id, such as
-    ``driftworld/KeyCorridor-v0``.
+    """The names of all tasks that come with the package, grouped by kind.
+
+    Each has an id, such as ``driftworld/KeyCorridor-v0``.
     """
     return dict(_native.task_groups())
 

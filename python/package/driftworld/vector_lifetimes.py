@@ -29,8 +29,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class VectorTransition:
-    """One step of all environments, as given to ``learn``. The agent may keep the arrays; their first axis is the
-    environment.
+    """One step of all environments, as given to ``learn``.
+
+    The agent may keep the arrays; their first axis is the environment.
 
     Attributes:
         observations: The observations before the step.
@@ -57,8 +58,9 @@ class VectorTransition:
 
 @runtime_checkable
 class VectorAgent(Protocol):
-    """An agent that can run through a curriculum in many environments at the same time
-    (:meth:`driftworld.Curriculum.run_vector`).
+    """An agent that can run through a curriculum in many environments at once.
+
+    See :meth:`driftworld.Curriculum.run_vector`.
 
     It may have ``name``, ``policy``, ``save`` and ``load`` like :class:`driftworld.Agent`, and ``begin(env, label,
     seed)``, called before each experience with the number of its environment and the arguments of ``Agent.begin``.

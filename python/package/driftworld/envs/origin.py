@@ -264,8 +264,7 @@ def world_text(world: Any) -> tuple[str, str]:
 
 
 def spread_seeds(seed: int, num_envs: int) -> list[int]:
-    """The seeds of environments that step together: the seed itself for the first, and seeds drawn from it for the
-    others.
+    """The seeds of environments that step together: the first is the seed itself, the others are drawn from it.
 
     A seed of 2⁶³ or more is folded first, as by ``reset``. Seeds are not consecutive: environments under seeds s and s
     + 1 share no world. The first seeds do not depend on ``num_envs``.

@@ -18,16 +18,18 @@ from driftworld.learners.ppo import PPO
 
 
 class FineTuning(PPO):
-    """PPO that ignores tasks and keeps everything: network, optimiser and unfinished rollouts carry over. Arguments as
-    for :class:`PPO`.
+    """PPO that ignores tasks and keeps everything: network, optimiser and unfinished rollouts carry over.
+
+    Arguments as for :class:`PPO`.
     """
 
     name = "finetuning"
 
 
 class ResetOptimizer(PPO):
-    """Fine-tuning with Adam's moments cleared at the end of each task. Arguments as for :class:`PPO`; ``borders`` is
-    ``"labels"`` by default.
+    """Fine-tuning with Adam's moments cleared at the end of each task.
+
+    Arguments as for :class:`PPO`; ``borders`` is ``"labels"`` by default.
     """
 
     name = "finetuning_reset_optimizer"

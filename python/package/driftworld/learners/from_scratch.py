@@ -12,8 +12,9 @@ from driftworld.learners.ppo import PPO
 
 
 class FromScratch(PPO):
-    """PPO with a new network and optimiser for every task. Arguments as for :class:`PPO`; ``borders`` is ``"labels"``
-    by default.
+    """PPO with a new network and optimiser for every task.
+
+    Arguments as for :class:`PPO`; ``borders`` is ``"labels"`` by default.
     """
 
     name = "from_scratch"

@@ -24,8 +24,9 @@ from driftworld.vector_lifetimes import VectorTransition
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """Hyperparameters of PPO. The defaults learn easy tasks in 150,000 decisions of 32 × 32 pixels, each held for 5
-    time steps.
+    """Hyperparameters of PPO.
+
+    The defaults learn easy tasks in 150,000 decisions of 32 × 32 pixels, each held for 5 time steps.
 
     Attributes:
         rollout: Steps of each environment between updates, from 1.

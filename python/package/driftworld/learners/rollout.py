@@ -6,8 +6,9 @@ import torch
 
 
 class Rollout:
-    """``length`` steps of ``num_envs`` environments: tensors ``(length, num_envs, …)``, one step more for images and
-    values.
+    """``length`` steps of ``num_envs`` environments.
+
+    Tensors are ``(length, num_envs, …)``, with one step more for images and values.
 
     Attributes:
         images: Bytes ``(length + 1, num_envs, size, size, 3)``.
