@@ -17,7 +17,7 @@
 # curriculum ordered by distance. `jupytext --to notebook tour.py` turns this file into a notebook; it also runs as a
 # program.
 #
-# Needs `pip install driftworld matplotlib`.
+# Needs `pip install ./python matplotlib`.
 
 # %%
 import driftworld

@@ -228,5 +228,5 @@ def _pandas() -> Any:
     try:
         import pandas
     except ImportError as error:
-        raise ImportError('found no pandas, expected it for data frames; pip install "./python[pandas]"') from error
+        raise ImportError('found no pandas, expected it for data frames; pip install "pandas>=2"') from error
     return pandas

@@ -24,7 +24,7 @@ try:
     from minari.data_collector import EpisodeBuffer
 except ImportError as error:
     raise ImportError(
-        'driftworld.adapters.minari: found no minari, expected version 0.5 or later; pip install "./python[minari]"'
+        'driftworld.adapters.minari: found no minari, expected version 0.5 or later; pip install "minari[hdf5]>=0.5"'
     ) from error
 
 __all__ = ["collect"]

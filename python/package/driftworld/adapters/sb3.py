@@ -27,7 +27,7 @@ try:
     from stable_baselines3.common.vec_env import VecEnv, VecMonitor
 except ImportError as error:
     raise ImportError(
-        'driftworld.adapters.sb3: found no stable_baselines3, expected version 2.4 or later; pip install "./python[sb3]"'
+        'driftworld.adapters.sb3: found no stable_baselines3, expected version 2.4 or later; pip install "stable-baselines3>=2.4"'
     ) from error
 
 from driftworld.adapters.sb3_agent import Agent

@@ -72,7 +72,7 @@ def _opens_a_window(case: Case) -> None:
     try:
         import pygame
     except ImportError:
-        raise NotHere('pygame is not installed: pip install "./python[human]"') from None
+        raise NotHere('pygame is not installed: pip install "pygame>=2.1.3"') from None
     try:
         pygame.display.init()
     except pygame.error as error:
@@ -88,7 +88,7 @@ def _passes_sb3s_check(case: Case) -> None:
     try:
         from stable_baselines3.common.env_checker import check_env
     except ImportError:
-        raise NotHere('Stable-Baselines3 is not installed: pip install "./python[sb3]"') from None
+        raise NotHere('Stable-Baselines3 is not installed: pip install "stable-baselines3>=2.4"') from None
     with closing(case.bare(render_mode="rgb_array")) as env:
         check_env(env)
 

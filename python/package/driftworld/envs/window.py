@@ -26,7 +26,7 @@ class Window:
             from gymnasium.error import DependencyNotInstalled
 
             raise DependencyNotInstalled(
-                'render_mode "human": found no pygame, expected it installed: pip install "./python[human]"'
+                'render_mode "human": found no pygame, expected it installed: pip install "pygame>=2.1.3"'
             ) from error
         self._pygame = pygame
         Window._open += 1

@@ -14,7 +14,7 @@ try:
     import torch as _torch  # noqa: F401
 except ImportError as error:
     raise ImportError(
-        'driftworld.learners: found no torch, expected version 2.1 or later; pip install "./python[learners]"'
+        'driftworld.learners: found no torch, expected version 2.1 or later; pip install "torch>=2.1"'
     ) from error
 
 from driftworld.learners.clear import CLEAR
