@@ -102,12 +102,9 @@ impl Demo {
              Mean reward of each in the evaluations before and after, and of two agents beside it:\n\n{}",
             effects_table(&lifetime, &beside)
         ))?;
-        output::line(format!(
-            "\nThe variants:\n\n{}",
-            variants_table(&variants, &matrix, &ordering)
-        ))?;
+        output::line(format!("\n{}", variants_table(&variants, &matrix, &ordering)))?;
         output::line(
-            "The learner (--agent sarsa) sees 169 numbers of a small picture and no map. Yours takes its place from Python \
+            "\nThe learner (--agent sarsa) sees 169 numbers of a small picture and no map. Yours takes its place from Python \
              or Rust: docs/curricula.md says how.",
         )?;
         output::line(format!("\nEverything is in {}\n\n{CONTENTS}", folder.shown()))
