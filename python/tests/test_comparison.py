@@ -1,0 +1,64 @@
+"""The page of the comparison with other systems is made from its logs, and a run is summed up as the page says."""
+
+import importlib.util
+import json
+import sys
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture
+def compare(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+    path = ROOT / "examples/python/comparison/compare.py"
+    specification = importlib.util.spec_from_file_location("compare", path)
+    assert specification is not None and specification.loader is not None
+    module = importlib.util.module_from_spec(specification)
+    monkeypatch.setitem(sys.modules, "compare", module)
+    specification.loader.exec_module(module)
+    return module
+
+
+def test_page_is_that_of_the_logs(compare: ModuleType) -> None:
+    assert compare.PAGE.read_text(encoding="utf-8") == compare.page()
+
+
+def test_another_page_is_found(compare: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    other = tmp_path / "comparison.md"
+    other.write_text(compare.page().replace("| MiniGrid |", "| MiniGird |"), encoding="utf-8")
+    monkeypatch.setattr(compare, "PAGE", other)
+    monkeypatch.setattr(sys, "argv", ["compare.py", "page", "--check"])
+    with pytest.raises(SystemExit, match="found another page"):
+        compare.main()
+
+
+def test_a_run_is_learned_after_eighty_of_a_hundred_episodes(
+    compare: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def row(decisions: int, episodes: str) -> str:
+        return json.dumps({"decisions": decisions, "wall": 4.0, "processor": 2.0, "in_envs": 1.0, "load": 1.0, "episodes": episodes})
+
+    rows = [json.dumps({"decisions": 40}), row(10, "1" * 99), row(20, "0" * 20), row(30, "0" + "1" * 81), row(40, "1" * 80 + "0" * 20)]
+    monkeypatch.setattr(compare, "LOGS", tmp_path)
+    (tmp_path / "room").mkdir()
+    (tmp_path / "room/0.jsonl").write_text("\n".join(rows), encoding="utf-8")
+    found = compare.summary("room", 0)
+    # After 10 decisions 99 episodes have ended, after 20 there are 80 successes among the last hundred.
+    assert found["reached"]["decisions"] == 20
+    assert (found["first"], found["last"], found["rate"]) == (0.99, 0.8, 20.0)
+    (tmp_path / "room/0.jsonl").write_text("\n".join([rows[0], row(20, "0" * 21 + "1" * 79)]), encoding="utf-8")
+    assert compare.summary("room", 0)["reached"] is None
+
+
+def test_a_log_says_what_it_is_of(compare: ModuleType) -> None:
+    logs = sorted(compare.LOGS.glob("*/*.jsonl"))
+    assert logs
+    for log in logs:
+        head, *rows = compare.read(log)
+        assert (head["task"], str(head["seed"])) == (log.parent.name, log.stem)
+        assert head["task"] in compare.tasks()["tasks"]
+        # The budget is whole, but for the step of all environments in which it ends.
+        assert rows[-1]["decisions"] > head["decisions"] - head["num_envs"] * head["settings"]["rollout"]
