@@ -5,7 +5,6 @@
     reason = "a command line speaks through its terminal"
 )]
 
-mod dist;
 mod examples;
 mod fences;
 mod process;
@@ -34,10 +33,9 @@ Usage:
   cargo xtask test --all            all stages, with all features and tests at full size: CI runs this
   cargo xtask test --only STAGE     one stage (may be given several times, and with --all)
   cargo xtask test --list           the stages and what each checks
-  cargo xtask STAGE                 the same as `test --only STAGE`, except for the three below
+  cargo xtask STAGE                 the same as `test --only STAGE`, except for the two below
   cargo xtask schemas               write schemas/*.json and docs/reference/*.md anew from the Rust types
   cargo xtask size                  write the counts of lines of code in SIZE.md anew
-  cargo xtask dist [TARGET]...      wheels and programs for Linux, x86-64 and aarch64, into target/dist
 
 CONTRIBUTING.md has the commands for benches, fuzzing, sanitizers, pictures and releases.";
 
@@ -54,7 +52,6 @@ fn main() -> ExitCode {
             Ok(())
         }
         ["schemas"] => workspace(false).and_then(|workspace| schemas::rewrite(&workspace)),
-        ["dist", ref targets @ ..] => workspace(false).and_then(|workspace| dist::make(&workspace, targets)),
         ["size"] => workspace(false).and_then(|workspace| size::rewrite(&workspace)),
         _ => match parse(&words) {
             Ok((stages, is_full)) => workspace(is_full).and_then(|workspace| stage::run_all(&workspace, &stages)),

@@ -75,13 +75,6 @@ impl Environment {
         command
     }
 
-    /// A program that one of its packages brought, with these arguments, in the root.
-    pub(crate) fn tool(&self, workspace: &Workspace, name: &str, arguments: &[&str]) -> Command {
-        let mut command = python(&self.interpreter.with_file_name(name), arguments);
-        command.current_dir(&workspace.root);
-        command
-    }
-
     /// Runs its pip in the root, with `words` split at spaces, followed by arguments that may contain spaces.
     pub(crate) fn pip(&self, workspace: &Workspace, words: &str, rest: &[&str]) -> Result {
         let mut pip = self.python(workspace, &["-m", "pip", "--disable-pip-version-check"]);
