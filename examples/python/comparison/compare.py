@@ -1,6 +1,6 @@
 """Compares MiniGrid, MiniWorld, ViZDoom and Driftworld under one PPO: installs them, runs them, and writes docs/comparison.md.
 
-    python examples/python/comparison/compare.py install WHEEL   # an environment of Python for each system; WHEEL is of `cargo xtask dist`
+    python examples/python/comparison/compare.py install WHEEL   # an environment of Python for each system; WHEEL is of `scripts/dist.sh`
     python examples/python/comparison/compare.py run             # three seeds of each task; a run whose log is there is not repeated
     python examples/python/comparison/compare.py speed           # steps a second alone, the systems in turn
     python examples/python/comparison/compare.py page            # docs/comparison.md from the logs; with --check compares
@@ -232,8 +232,8 @@ def page() -> str:
         "alone": table(["system", "task", "decisions a second", "range", "steps of the engine a second"], alone),
         "beside": table(["peer", "ours", "peer's rate", "our rate", "ratio", "range of ratios"], beside),
         "installed": table(
-            ["system", "what it needs beside Python", "seconds", "MB on disk"],
-            [[named["systems"][key], named["needs"][key], f"{each['seconds']:.0f}", f"{each['megabytes']}"] for key, each in installed.items()]),
+            ["system", "what it needs beside Python", "seconds", "load average", "MB on disk"],
+            [[named["systems"][key], named["needs"][key], f"{each['seconds']:.0f}", f"{each['load']:.0f}", f"{each['megabytes']}"] for key, each in installed.items()]),
         "decisions": f"{head['decisions']:,}", "size": str(head["size"]), "num_envs": str(head["num_envs"]), "settings": settings,
         "load": spread(loads, ".0f"), "speed_load": spread([row["load"] for row in measured], ".0f"),
         "repeats": str(1 + max(row["repeat"] for row in measured)), "score": f"{100 * SCORE:.0f}", "window": str(WINDOW),
