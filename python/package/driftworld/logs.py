@@ -21,9 +21,6 @@ if TYPE_CHECKING:
 
     from driftworld.recordings import Recording
 
-#: Columns of words, ids and task parameters in every log.
-_WORDS = ("worker_id", "block_type", "block_subtype", "task_name", "task_params", "exp_status")
-
 
 class LogWriter:
     """Writes a log, row by row, each flushed as soon as it is written.

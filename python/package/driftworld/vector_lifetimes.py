@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from driftworld import _native
 from driftworld.envs import DriftworldVectorEnv
 from driftworld.errors import CurriculumError
+from driftworld.frozen import Trace
 from driftworld.lifetimes import (
     Rollout,
-    Trace,
     first_world,
     is_observed,
     one_hot,
