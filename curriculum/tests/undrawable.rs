@@ -119,7 +119,7 @@ fn log_is_the_same_however_it_is_run() {
     live(&skipping, &whole, 1, u64::MAX).expect("it is lived");
     live(&skipping, &jobs, 3, u64::MAX).expect("it is lived");
     while !live(&skipping, &pieces, 1, 4).expect("it is lived").finished {}
-    assert!(files_below(&whole) == files_below(&jobs), "lived by three at a time");
+    assert!(files_below(&whole) == files_below(&jobs), "run by three workers");
     assert!(files_below(&whole) == files_below(&pieces), "lived in pieces");
     // A run that refuses stops there, says where, and continues once it may skip.
     if let Ok(refusing) = plan(&scenario, Undrawable::Refused) {

@@ -22,7 +22,8 @@ use super::sample::Mix;
 use super::{Failure, output, overwrite};
 use crate::numbers::{self, documented};
 use folders::write_into;
-pub(crate) use tables::{blocks, choices};
+use tables::blocks;
+pub(crate) use tables::choices;
 
 /// Design a curriculum from variants and their distances.
 ///

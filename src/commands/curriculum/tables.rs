@@ -194,7 +194,7 @@ pub(super) fn optima(found: &[PairOptimum]) -> String {
 }
 
 /// The blocks of a scenario as a table, with the distance from the end of each learning block to the start of the next.
-pub(crate) fn blocks(scenario: &Scenario, measured: Option<(&DistanceMatrix, By)>) -> String {
+pub(super) fn blocks(scenario: &Scenario, measured: Option<(&DistanceMatrix, By)>) -> String {
     let matrix = measured.map(|(matrix, _)| matrix);
     let by = measured.map_or_else(String::new, |(_, by)| format!(" by {}", by.name()));
     let mut before: Option<(usize, usize, f64)> = None;

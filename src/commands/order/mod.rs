@@ -179,7 +179,7 @@ fn json_of(matrix: &DistanceMatrix, method: Method, ordering: &Ordering, seed: u
 }
 
 /// The items of an order, each with the step that leads to it.
-pub(crate) fn path_table(matrix: &DistanceMatrix, ordering: &Ordering) -> String {
+fn path_table(matrix: &DistanceMatrix, ordering: &Ordering) -> String {
     let rows = ordering.indices.iter().enumerate().map(|(place, index)| {
         let step = place
             .checked_sub(1)
