@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Makes a wheel and an archive of the programs for each target, with checksums, in target/dist. Nothing is uploaded.
+# Makes a wheel and an archive of the programs for each target, with checksums, in target/packages. Nothing is uploaded.
 #
 #     scripts/dist.sh [TARGET]...     # by default x86_64-unknown-linux-gnu and aarch64-unknown-linux-gnu
 #
@@ -17,7 +17,7 @@ for target; do
         echo "scripts/dist.sh: found no standard library of Rust for $target; run rustup target add $target" >&2 && exit 1
     }
 done
-tools=target/python/dist out=target/dist
+tools=target/python/dist out=target/packages
 python3 -m venv "$tools"
 "$tools/bin/python" -m pip install --quiet --disable-pip-version-check --requirement scripts/dist.txt
 export PATH="$PWD/$tools/bin:$PATH"
