@@ -3,6 +3,8 @@
 use std::fs;
 use std::path::Path;
 
+use serde_json::json;
+
 use super::run_files::write;
 use super::terminal::{driftworld_in, output, scratch};
 
@@ -79,6 +81,30 @@ fn scoring_and_aggregating_agree_with_validation() {
             assert!(error.contains(said), "{command}: {error}");
         }
     }
+}
+
+#[test]
+fn budgets_leave_numbers_unused_without_a_warning() {
+    let base = scratch();
+    let log = base.path().join("run");
+    let learns = |mix: &str| {
+        let regime =
+            |name: &str| json!({ "task": "find_objects", "variant": name, "count": 9, "steps": 25, "max_steps": 10 });
+        json!({ "type": "learning", "mix": mix, "regimes": [regime("blue"), regime("red")] })
+    };
+    let scenario = json!({ "name": "budget", "blocks": [learns("in_order"), learns("shuffled"), learns("in_order")] });
+    write(&base.path().join("budget.json"), &scenario.to_string());
+    run(base.path(), 0, "run budget.json --agent random -o run");
+    let (out, error) = run(base.path(), 0, "logs validate run");
+    assert_eq!(error, "");
+    assert!(out.contains("3 blocks"), "{out}");
+    // A row that is lost in the middle of a regime is still missed.
+    let path = log.join("worker-default/0-train/data-log.tsv");
+    let text = fs::read_to_string(&path).expect("it was written");
+    let rows: Vec<&str> = text.lines().collect();
+    write(&path, &(rows[..2].join("\n") + "\n" + &rows[3..].join("\n") + "\n"));
+    let (_, error) = run(base.path(), 0, "logs validate run");
+    assert!(error.contains("numbers without a row: 1"), "{error}");
 }
 
 #[test]

@@ -20,7 +20,6 @@
 
 # %%
 import tempfile
-import warnings
 from pathlib import Path
 
 import driftworld
@@ -134,8 +133,6 @@ for name in learners:
 # about luck.
 
 # %%
-# A block that ends with its budget of decisions leaves numbers of experiences unused, and `metrics` would say so.
-warnings.filterwarnings("ignore", "(?s).*numbers without a row")
 for name in learners:
     print(name, driftworld.metrics(LOGS / name), sep="\n")
 

@@ -93,6 +93,21 @@ impl ScenarioInfo {
 }
 
 impl ScenarioInfo {
+    /// Whether a block of our own scenario may skip numbers of experiences: its regimes have budgets of decisions, and one of
+    /// them ends here, or they are mixed and any may have ended.
+    pub(super) fn leaves_numbers_unused(&self, block: u64, regime_ends: bool) -> bool {
+        let Some(block) = self
+            .extra
+            .get("scenario")
+            .and_then(|scenario| scenario["blocks"].get(block as usize))
+        else {
+            return false;
+        };
+        let regimes = block["regimes"].as_array();
+        let has_budgets = regimes.is_some_and(|regimes| regimes.iter().any(|regime| regime["steps"].is_u64()));
+        has_budgets && (regime_ends || block.get("mix").is_some())
+    }
+
     /// Warns of each of the three fields that is missing.
     pub(super) fn warn_of_missing(&self, warnings: &mut Vec<LogWarning>) {
         let mut warn = |field: &'static str, is_missing: bool, expected: fn() -> String| {

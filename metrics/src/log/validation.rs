@@ -115,6 +115,7 @@ impl Check {
         self.order_in_files(&table)?;
         self.folders(dir, &table);
         self.completions(&table)?;
+        self.missing(&table, &scenario_info);
         self.metrics(&table, logger_info.metrics_columns());
         self.count(&table);
         self.sort(&mut table)?;
@@ -259,7 +260,6 @@ impl Check {
     /// Exactly one complete row for each experience of a worker, the last; its final experience may be unfinished.
     fn completions(&mut self, table: &Table<'_>) -> Result<(), MetricsError> {
         let rows = &table.rows;
-        self.missing(table);
         let key = |row: usize| (rows.workers().ids()[row], rows.exp_nums()[row]);
         let mut by_experience: Vec<u32> = (0..rows.len() as u32).collect();
         by_experience.sort_by_key(|&row| key(row as usize));
@@ -295,19 +295,25 @@ impl Check {
         Ok(())
     }
 
-    /// Experience numbers increase by one, over all workers; gaps cause one warning per log.
-    fn missing(&mut self, table: &Table<'_>) {
+    /// Experience numbers increase by one, over all workers; gaps cause one warning per log. A regime that ends with its budget
+    /// of decisions leaves numbers unused.
+    fn missing(&mut self, table: &Table<'_>, scenario: &ScenarioInfo) {
         let numbers = table.rows.exp_nums();
+        let (blocks, tasks) = (table.rows.block_nums(), table.rows.task_names().ids());
         let mut rows: Vec<u32> = (0..numbers.len() as u32).collect();
         rows.sort_by_key(|&row| numbers[row as usize]);
         let steps = rows.windows(2).map(|pair| {
-            let [before, after] = [pair[0], pair[1]].map(|row| numbers[row as usize]);
-            (pair[1] as usize, before, after)
+            let [before, after] = [pair[0] as usize, pair[1] as usize];
+            (before, after, numbers[after] - numbers[before])
         });
-        let mut gaps = steps.filter(|(_, before, after)| after - before > 1);
-        if let Some((row, before, after)) = gaps.next() {
-            let lacking = |before: u64, after: u64| after - before - 1;
-            let missing = gaps.map(|(_, before, after)| lacking(before, after)).sum::<u64>() + lacking(before, after);
+        let is_unused = |before: usize, after: usize| {
+            let ends = blocks[before] != blocks[after] || tasks[before] != tasks[after];
+            scenario.leaves_numbers_unused(blocks[before], ends)
+        };
+        let mut gaps = steps.filter(|&(before, after, step)| step > 1 && !is_unused(before, after));
+        if let Some((before, row, step)) = gaps.next() {
+            let missing = gaps.map(|(_, _, step)| step - 1).sum::<u64>() + step - 1;
+            let [before, after] = [before, row].map(|row| numbers[row]);
             self.warnings.add(LogWarning::Missing {
                 at: table.place(row),
                 before,
