@@ -42,8 +42,7 @@ pub use assets::{
     MAX_IMPORT_NODES, MAX_TEXTURE_SIDE, ReadBeside,
 };
 pub use batch::{
-    Autoreset, Batch, BatchOptions, DepthForm, Episode, GoOn, ImageLayout, Images, MAX_BATCH_BYTES, MAX_ENVS, Outputs,
-    WorldSource,
+    Autoreset, Batch, BatchOptions, Episode, GoOn, ImageLayout, Images, MAX_BATCH_BYTES, MAX_ENVS, Outputs, WorldSource,
 };
 pub use behavior::{ExpertRun, Expertise, MAX_EXPERT_STEPS};
 pub use camera::Camera;
@@ -57,8 +56,8 @@ pub use recording::{
 };
 pub use render::{
     AdapterReport, CATEGORY_BUILDING, CATEGORY_MAP, CATEGORY_NEGATIVE, CATEGORY_NEUTRAL, CATEGORY_POSITIVE,
-    CATEGORY_SKY, CpuRenderer, FAR_DEPTH, Frame, Image, Picture, Renderer, RendererKind, RendererReport, Target,
-    category_color, depth_to_gray, top_down, top_down_scale, top_down_with_way,
+    CATEGORY_SKY, CpuRenderer, DepthForm, FAR_DEPTH, Frame, Image, Picture, Renderer, RendererKind, RendererReport,
+    Target, category_color, depth_to_gray, top_down, top_down_scale, top_down_with_way,
 };
 #[cfg(feature = "gpu")]
 pub use render::{GpuChoice, GpuRenderer};

@@ -2,10 +2,9 @@
 
 use driftworld_spec::{Modality, StateFeature, World};
 
-use super::depth::{self, DepthForm};
 use super::options::MAX_BATCH_BYTES;
 use crate::EnvError;
-use crate::render::{FAR_DEPTH, Target};
+use crate::render::{DepthForm, FAR_DEPTH, Target, gray, millimetres};
 
 /// The layout of a batch's images, the same for all environments.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -225,10 +224,10 @@ impl<'a> ImagesMut<'a> {
         let pixels = self.size[0] as usize * self.size[1] as usize;
         let drawn = env * pixels..(env + 1) * pixels;
         if !self.depth_millimetres.is_empty() {
-            depth::millimetres(&self.depth[drawn.clone()], &mut self.depth_millimetres[drawn.clone()]);
+            millimetres(&self.depth[drawn.clone()], &mut self.depth_millimetres[drawn.clone()]);
         }
         if !self.depth_gray.is_empty() {
-            depth::gray(&self.depth[drawn.clone()], &mut self.depth_gray[drawn]);
+            gray(&self.depth[drawn.clone()], &mut self.depth_gray[drawn]);
         }
     }
 

@@ -1,6 +1,5 @@
 //! [`Batch`]: many environments that step together, with one contiguous buffer per output.
 
-mod depth;
 mod graphics;
 mod images;
 mod options;
@@ -11,7 +10,6 @@ mod slot;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
 
-pub use depth::DepthForm;
 pub use images::{ImageLayout, Images};
 pub use options::{Autoreset, BatchOptions, Episode, GoOn, MAX_BATCH_BYTES, MAX_ENVS, WorldSource};
 pub use outputs::Outputs;

@@ -5,8 +5,7 @@ use std::sync::Arc;
 
 use driftworld_spec::{Modality, World};
 
-use super::depth::DepthForm;
-use crate::render::RendererKind;
+use crate::render::{DepthForm, RendererKind};
 
 /// Most environments of one batch.
 pub const MAX_ENVS: usize = 65_536;

@@ -1,8 +1,8 @@
 //! Outputs of a batch: observations, rewards and flags, with one buffer each.
 
-use super::depth::DepthForm;
 use super::images::{ImageLayout, Images, ImagesMut, filled};
 use crate::EnvError;
+use crate::render::DepthForm;
 
 /// Observations, rewards and flags of all environments, one after another.
 #[derive(Clone, Debug)]

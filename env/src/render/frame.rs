@@ -62,28 +62,3 @@ pub fn category_color(category: u8) -> [u8; 3] {
         _ => [0, 0, 0],
     }
 }
-
-/// Depth as L2Explorer shows it: black at the camera, white at 100 m and beyond.
-pub fn depth_to_gray(depth: &[f32]) -> Vec<u8> {
-    let gray = |metres: &f32| rounded(metres * GRAY_PER_METRE, 255.0) as u8;
-    depth.iter().map(gray).collect()
-}
-
-/// Grey levels per metre: 255 at 100 m.
-pub(crate) const GRAY_PER_METRE: f32 = 2.55;
-
-/// The nearest integer, halves rounded up, within 0..=`most`, which must be below 2²³.
-///
-/// A sum with 2²³ has no bits for a fraction: its last bits are the integer. Compilers vectorise this, but not a saturating
-/// cast: it takes a third of the time with SSE2.
-#[inline]
-pub(crate) fn rounded(number: f32, most: f32) -> u32 {
-    const SHIFT: f32 = 8_388_608.0;
-    let raised = number + 0.5;
-    // Comparisons instead of `clamp`, which would pass NaN through.
-    let below = if raised < most { raised } else { most };
-    let within = if below > 0.0 { below } else { 0.0 };
-    let whole = within + SHIFT;
-    let is_rounded_up = whole - SHIFT > within;
-    (whole.to_bits() - SHIFT.to_bits()).wrapping_sub(u32::from(is_rounded_up))
-}

@@ -10,6 +10,7 @@ mod compose;
 mod compose_natural;
 mod cpu;
 mod daylight;
+mod depth;
 mod frame;
 #[cfg(feature = "gpu")]
 mod gpu;
@@ -34,11 +35,12 @@ mod view;
 mod visibility;
 
 pub use cpu::CpuRenderer;
+pub use depth::{DepthForm, depth_to_gray};
+pub(crate) use depth::{gray, millimetres};
 pub use frame::{
     CATEGORY_BUILDING, CATEGORY_MAP, CATEGORY_NEGATIVE, CATEGORY_NEUTRAL, CATEGORY_POSITIVE, CATEGORY_SKY, FAR_DEPTH,
-    Frame, category_color, depth_to_gray,
+    Frame, category_color,
 };
-pub(crate) use frame::{GRAY_PER_METRE, rounded};
 #[cfg(feature = "gpu")]
 pub use gpu::{GpuChoice, GpuRenderer};
 pub use kind::RendererKind;

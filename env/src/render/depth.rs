@@ -1,6 +1,4 @@
-//! [`DepthForm`]: the number formats of a batch's depth images.
-
-use crate::render::{GRAY_PER_METRE, rounded};
+//! Depth as bytes, millimetres and grey; [`DepthForm`] names the number formats of a batch's depth images.
 
 /// The number format of a batch's depth images, by the names of Python's array types.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, strum::EnumString)]
@@ -17,13 +15,38 @@ pub enum DepthForm {
     Gray,
 }
 
+/// Depth as L2Explorer shows it: black at the camera, white at 100 m and beyond.
+pub fn depth_to_gray(depth: &[f32]) -> Vec<u8> {
+    let gray = |metres: &f32| rounded(metres * GRAY_PER_METRE, 255.0) as u8;
+    depth.iter().map(gray).collect()
+}
+
+/// Grey levels per metre: 255 at 100 m.
+const GRAY_PER_METRE: f32 = 2.55;
+
+/// The nearest integer, halves rounded up, within 0..=`most`, which must be below 2²³.
+///
+/// A sum with 2²³ has no bits for a fraction: its last bits are the integer. Compilers vectorise this, but not a saturating
+/// cast: it takes a third of the time with SSE2.
+#[inline]
+fn rounded(number: f32, most: f32) -> u32 {
+    const SHIFT: f32 = 8_388_608.0;
+    let raised = number + 0.5;
+    // Comparisons instead of `clamp`, which would pass NaN through.
+    let below = if raised < most { raised } else { most };
+    let within = if below > 0.0 { below } else { 0.0 };
+    let whole = within + SHIFT;
+    let is_rounded_up = whole - SHIFT > within;
+    (whole.to_bits() - SHIFT.to_bits()).wrapping_sub(u32::from(is_rounded_up))
+}
+
 /// Converts metres to millimetres, rounded.
-pub(super) fn millimetres(depth: &[f32], out: &mut [u16]) {
+pub(crate) fn millimetres(depth: &[f32], out: &mut [u16]) {
     scaled(depth, 1000.0, 65_535.0, |word| word as u16, out);
 }
 
 /// Converts metres to grey.
-pub(super) fn gray(depth: &[f32], out: &mut [u8]) {
+pub(crate) fn gray(depth: &[f32], out: &mut [u8]) {
     scaled(depth, GRAY_PER_METRE, 255.0, |word| word as u8, out);
 }
 
