@@ -47,9 +47,9 @@ pub(crate) fn within(name: &str, found: u64, range: RangeInclusive<u64>) -> Resu
 /// ```
 #[derive(Clone, Debug)]
 pub enum Failure {
-    /// The input, or the place for the output, is invalid. The command ends with 1.
+    /// The input, or the place for the output, is invalid.
     Input(FailureText, Option<Cause>),
-    /// The arguments contradict each other. The command ends with 2.
+    /// The arguments contradict each other.
     Usage(FailureText),
 }
 
@@ -105,6 +105,14 @@ impl From<String> for FailureText {
 }
 
 impl Failure {
+    /// The exit code of a command that fails so.
+    pub(crate) fn exit_code(&self) -> u8 {
+        match self {
+            Self::Input(..) => 1,
+            Self::Usage(_) => 2,
+        }
+    }
+
     pub(crate) fn usage(text: impl Into<String>) -> Self {
         Self::Usage(FailureText(text.into()))
     }

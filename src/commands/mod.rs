@@ -264,10 +264,7 @@ subcommands! {
 /// Prints on standard error why the command failed; returns the exit code.
 fn report(failure: &Failure) -> u8 {
     output::note(format!("error: {}", failure.text().for_command()));
-    interrupt::exit_code().unwrap_or(match failure {
-        Failure::Input(..) => 1,
-        Failure::Usage(_) => 2,
-    })
+    interrupt::exit_code().unwrap_or_else(|| failure.exit_code())
 }
 
 /// Ends the command silently if the reader of its output goes away, as with `| head`, and with an error if the system cannot

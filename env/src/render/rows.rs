@@ -3,7 +3,7 @@
 
 use driftworld_spec::Surface;
 
-use super::daylight::Daylight;
+use super::daylight::{Daylight, between};
 use super::frame::{CATEGORY_MAP, CATEGORY_SKY, FAR_DEPTH};
 use super::shade::{FULL_LEVEL, ROUNDING};
 use super::surfaces::{self, SIDE, Tile};
@@ -38,9 +38,6 @@ pub(super) const CONTACT_PIXELS: f32 = 1.5;
 
 /// Number of a wall's lowest pixels that count as meeting the ground.
 const FOOT_PIXELS: f32 = 3.0;
-
-/// Height of fog above the eye, in metres.
-const FOG_HEIGHT: f32 = 30.0;
 
 /// The part of a row that does not depend on the camera's position and heading.
 #[derive(Clone, Copy, Debug, Default)]
@@ -302,19 +299,7 @@ impl RowLook {
 }
 
 fn sky(key: &Key, daylight: &Daylight, offset: f32, rise: f32) -> RowLook {
-    let steepness = rise / (rise * rise + 1.0).sqrt();
-    let left = 1.0 - steepness;
-    let share = 1.0 - left * left * left;
-    let fog = key.light.fog_distance.map_or(0.0, |distance| {
-        let reach = rise / FOG_HEIGHT * distance;
-        1.0 / (1.0 + reach * reach)
-    });
-    let mix = |a: [f32; 3], b: [f32; 3], share: f32| [0, 1, 2].map(|k| a[k] + (b[k] - a[k]) * share);
-    let of = |horizon: [f32; 3]| mix(mix(horizon, daylight.zenith, share), horizon, fog);
-    let (away, toward) = (
-        of(daylight.horizon),
-        of(mix(daylight.horizon, daylight.sunward, daylight.glow)),
-    );
+    let (away, toward, fog) = daylight.sky_along(rise, key.light.fog_distance);
     let base = packed(away, CATEGORY_SKY);
     let mut look = RowLook {
         offset,
@@ -332,7 +317,7 @@ fn sky(key: &Key, daylight: &Daylight, offset: f32, rise: f32) -> RowLook {
     let seen = (rise / full).min(1.0) * (1.0 - fog);
     if key.looks.has_clouds && seen > 0.02 {
         look.metres = height / rise;
-        look.row.cloud = packed(mix(away, daylight.cloud, 0.85 * seen), CATEGORY_SKY);
+        look.row.cloud = packed(between(away, daylight.cloud, 0.85 * seen), CATEGORY_SKY);
         let pixel = look.metres * look.metres * key.step * key.up.abs().max(0.05) / height;
         look.sharpen(period, pixel, look.metres * key.step);
     }

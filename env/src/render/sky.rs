@@ -7,6 +7,9 @@ use crate::scene::Light;
 /// Brightness of the sky: without light, per unit of the brightest channel, and at most.
 const SKY_BRIGHTNESS: [f32; 3] = [0.12, 0.88, 1.06];
 
+/// Height of fog above the eye, in metres.
+const FOG_HEIGHT: f32 = 30.0;
+
 /// The horizon's colour: this share of the zenith's, plus this much white.
 const HORIZON: [f32; 2] = [0.42, 0.55];
 
@@ -40,5 +43,20 @@ impl Daylight {
             glow: low,
             ..Self::default()
         }
+    }
+
+    /// The sky's colours away from the sun and towards it, along a ray that rises by this much per metre; and fog's share in
+    /// them.
+    pub(super) fn sky_along(&self, rise: f32, fog_distance: Option<f32>) -> ([f32; 3], [f32; 3], f32) {
+        let steepness = rise / (rise * rise + 1.0).sqrt();
+        let left = 1.0 - steepness;
+        let share = 1.0 - left * left * left;
+        let fog = fog_distance.map_or(0.0, |distance| {
+            let reach = rise / FOG_HEIGHT * distance;
+            1.0 / (1.0 + reach * reach)
+        });
+        let of = |horizon: [f32; 3]| between(between(horizon, self.zenith, share), horizon, fog);
+        let toward = between(self.horizon, self.sunward, self.glow);
+        (of(self.horizon), of(toward), fog)
     }
 }

@@ -1,4 +1,5 @@
-//! Rewards by the world's rules: per step, per second, and by the shaping's potential.
+//! Rewards by the world's rules: per step, per second, and by the shaping's potential. `step.rs` adds them to what objects
+//! (`interactions.rs`) and zones (`zones.rs`) pay.
 
 use driftworld_spec::World;
 

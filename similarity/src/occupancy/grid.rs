@@ -6,6 +6,9 @@ use crate::SimilarityError;
 /// Most cells of a grid, all planes together.
 pub const MAX_CELLS: usize = 1 << 20;
 
+/// Side of a cell in metres, unless that makes too many cells.
+pub(super) const DEFAULT_CELL: f64 = 1.0;
+
 /// Number and size of the cells. Grids can be compared if their shapes are equal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GridShape {

@@ -4,11 +4,8 @@ use std::collections::BTreeSet;
 
 use driftworld_spec::World;
 
-use super::grid::{Grid, GridShape};
+use super::grid::{DEFAULT_CELL, Grid, GridShape};
 use crate::SimilarityError;
-
-/// Side of a cell in metres, unless that makes too many cells.
-const CELL: f64 = 1.0;
 
 /// A common raster for worlds: the smallest area around the origin that holds all their arenas, divided into square cells from
 /// its south-western corner on, with a plane for each class.
@@ -30,7 +27,7 @@ impl Raster {
     /// # Errors
     /// Those of [`Raster::of_worlds`].
     pub(crate) fn fitting(worlds: &[&World]) -> Result<Self, SimilarityError> {
-        let mut cell = CELL;
+        let mut cell = DEFAULT_CELL;
         loop {
             match Self::of_worlds(worlds, cell) {
                 // An arena has at least one cell, and fewer classes than the limit of cells.
