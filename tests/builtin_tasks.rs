@@ -112,13 +112,7 @@ fn only_element(a: &Variant, b: &Variant) -> Option<Element> {
 
 #[test]
 fn each_task_of_the_paper_has_variants_that_change_one_element_alone() {
-    for task in [
-        "find_objects",
-        "get_to_goal",
-        "select_object",
-        "moving_object",
-        "scavenger_hunt",
-    ] {
+    for task in crate::looks_alone::TASKS.split(' ') {
         let variants = tasks::variants(task).unwrap_or_else(|error| panic!("{error}"));
         let alone: Vec<_> = variants[1..]
             .iter()

@@ -96,24 +96,13 @@ fn levels_are_passed() {
 }
 
 /// The worlds shown in the guide.
-const IN_THE_GUIDE: [&str; 11] = [
-    "maze",
-    "four_rooms",
-    "t_maze",
-    "cue_t_maze",
-    "locked_rooms",
-    "key_corridor",
-    "switches",
-    "lava_crossing",
-    "foraging",
-    "hunt",
-    "put_next",
-];
+const IN_THE_GUIDE: &str = "maze four_rooms t_maze cue_t_maze locked_rooms key_corridor switches lava_crossing foraging \
+                            hunt put_next";
 
 #[test]
 fn guide_shows_its_worlds() {
     let page = std::fs::read_to_string(format!("{ROOT}/docs/worlds.md")).expect("the page can be read");
-    for name in IN_THE_GUIDE {
+    for name in IN_THE_GUIDE.split(' ') {
         assert!(
             page.contains(&format!("examples/worlds/{name}.json")),
             "{name} is on the page"

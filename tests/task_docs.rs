@@ -185,24 +185,10 @@ fn task_tables_match_the_specs() {
 /// The curricula, one row each: what each learns, and how often.
 fn curricula() -> String {
     let mut text = "| file | learned, in this order | experiences | |\n|---|---|---|---|\n".to_owned();
-    for name in [
-        "reward",
-        "state",
-        "transition",
-        "observation",
-        "action",
-        "blue_red_green",
-        "map",
-        "modality",
-        "interaction",
-        "drift",
-        "across_tasks",
-        "families_abrupt",
-        "families_gradual",
-        "families_drifting",
-        "families_modality",
-        "families_interaction",
-    ] {
+    for name in "reward state transition observation action blue_red_green map modality interaction drift \
+         across_tasks families_abrupt families_gradual families_drifting families_modality families_interaction"
+        .split(' ')
+    {
         let path = format!("{ROOT}/examples/curricula/{name}.json");
         let document = std::fs::read_to_string(path).expect("the curricula are committed");
         let scenario = Scenario::from_json(name, &document).unwrap_or_else(|error| panic!("{error}"));

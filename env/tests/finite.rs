@@ -21,18 +21,7 @@ impl Dice {
 }
 
 /// Words for text values of the world's schema.
-const WORDS: [&str; 10] = [
-    "a",
-    "b",
-    "tree",
-    "geometric",
-    "door",
-    "switch",
-    "rock",
-    "animal",
-    "red",
-    "2",
-];
+const WORDS: &str = "a b tree geometric door switch rock animal red 2";
 
 fn resolved<'a>(root: &'a Value, mut node: &'a Value) -> &'a Value {
     while let Some(target) = node["$ref"].as_str() {
@@ -55,7 +44,7 @@ fn value(root: &Value, node: &Value, dice: &mut Dice) -> Value {
     }
     match node["type"].as_str().or_else(|| node["type"][0].as_str()) {
         Some("boolean") => json!(dice.roll(2) == 0),
-        Some("string") => json!(WORDS[dice.roll(WORDS.len())]),
+        Some("string") => json!(WORDS.split(' ').nth(dice.roll(10))),
         Some(kind @ ("number" | "integer")) => {
             let [low, high] = ["minimum", "maximum"].map(|end| node[end].as_f64().unwrap_or(0.0));
             let near = low + (high - low).min(20.0) * dice.unit();

@@ -180,14 +180,7 @@ fn values_with_reserved_names_are_refused() {
             format!("option value of a metric: found {name:?} of {whose}, expected {expected}")
         );
     };
-    for name in [
-        "run_id",
-        "complexity",
-        "metrics_column",
-        "min",
-        "runtime",
-        "task_metrics",
-    ] {
+    for name in "run_id complexity metrics_column min runtime task_metrics".split(' ') {
         assert!(written.get(name).is_some(), "{name} is a field");
         check(Level::Lifetime, name, "the lifetime");
     }
@@ -196,14 +189,7 @@ fn values_with_reserved_names_are_refused() {
         assert!(written["task_metrics"]["b_1"].get(name).is_some(), "{name} is a field");
         check(Level::Task, name, "task \"b_1\"");
     }
-    for name in [
-        "block_num",
-        "block_type",
-        "task_name",
-        "regime_num",
-        "task_params",
-        "run_id",
-    ] {
+    for name in "block_num block_type task_name regime_num task_params run_id".split(' ') {
         check(Level::Regime, name, "a regime");
     }
     // An empty list in JSON does not show its element type.

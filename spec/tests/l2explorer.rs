@@ -181,59 +181,32 @@ fn sayable() -> impl Strategy<Value = WorldDraft> {
 }
 
 /// The keys of the original, by part.
-const KEYS: [(&str, &[&str]); 4] = [
+const KEYS: [(&str, &str); 4] = [
     (
         "",
-        &[
-            "game_mode",
-            "max_steps",
-            "environment_params",
-            "agent_params",
-            "image_params",
-            "objects",
-        ],
+        "game_mode max_steps environment_params agent_params image_params objects",
     ),
     (
         "/environment_params",
-        &["bounding_wall_color", "light_intensity", "predefined_map", "map_size"],
+        "bounding_wall_color light_intensity predefined_map map_size",
     ),
     (
         "/agent_params",
-        &[
-            "action_model",
-            "agent_height",
-            "agent_width",
-            "max_linear_speed",
-            "max_angular_speed",
-            "observation_size",
-            "coordinates",
-            "heading",
-        ],
+        "action_model agent_height agent_width max_linear_speed max_angular_speed observation_size coordinates heading",
     ),
     (
         "/objects/*",
-        &[
-            "class",
-            "model",
-            "coordinates",
-            "color",
-            "motion_model",
-            "reward",
-            "reward_stimulus",
-            "reward_once_stimulus",
-            "destroy_stimulus",
-            "range_stimulus_distance",
-            "unique_name",
-        ],
+        "class model coordinates color motion_model reward reward_stimulus reward_once_stimulus destroy_stimulus \
+         range_stimulus_distance unique_name",
     ),
 ];
 
 /// A world as a file of the original, with only its keys.
 fn original(world: &World) -> String {
     let mut json: serde_json::Value = serde_json::from_str(&world.to_json()).expect("a world is JSON");
-    let keep = |part: &mut serde_json::Value, keys: &[&str]| {
+    let keep = |part: &mut serde_json::Value, keys: &str| {
         let part = part.as_object_mut().expect("a part is an object");
-        part.retain(|key, _| keys.contains(&key.as_str()));
+        part.retain(|key, _| keys.split(' ').any(|kept| kept == key));
     };
     for (at, keys) in KEYS {
         if at == "/objects/*" {

@@ -84,23 +84,9 @@ fn what_cannot_be_compared_is_refused_with_what_was_found_and_expected() {
 
 /// Conditions of random parts, valid or not.
 fn condition() -> impl Strategy<Value = String> {
-    let part = prop::sample::select(vec![
-        "count",
-        "drawn",
-        "day",
-        "trigger",
-        "other_trigger",
-        "mode",
-        "good",
-        "bad",
-        "name_of_color",
-        "pays[0]",
-        "start[1]",
-        "2",
-        "'red'",
-        "'touch'",
-        "true",
-    ]);
+    let parts =
+        "count drawn day trigger other_trigger mode good bad name_of_color pays[0] start[1] 2 'red' 'touch' true";
+    let part = prop::sample::select(parts.split(' ').collect::<Vec<_>>());
     let leaf = part.prop_map(str::to_owned);
     leaf.prop_recursive(3, 12, 2, |inner| {
         let symbol = prop::sample::select(vec!["==", "!=", "<", ">=", "and", "or", "+", "*"]);

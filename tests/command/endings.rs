@@ -71,14 +71,8 @@ fn run_counts_what_ended_episodes_even_when_resumed() {
 fn episode_is_drawn_frame_by_frame() {
     let folder = scratch();
     let path = folder.path().join("solved.png");
-    let episode = [
-        "render",
-        "examples/worlds/key_corridor.json#closed",
-        "--size",
-        "64",
-        "-o",
-        text(&path),
-    ];
+    let render = "render examples/worlds/key_corridor.json#closed --size 64 -o";
+    let episode = [&render.split(' ').collect::<Vec<_>>()[..], &[text(&path)]].concat();
     let size = |more: &[&str]| {
         let said = succeed(&[&episode[..], &["--view", "episode"], more].concat());
         assert!(path.exists(), "{said}");

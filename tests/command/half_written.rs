@@ -76,15 +76,7 @@ fn failed_sample_leaves_nothing() {
     let text = r#"{ "name": "t", "groups": [{ "name": "a", "count": { "integer_uniform": { "low": 1, "high": 60 } }, "separation": 3,
         "object": { "class": "cube" }, "placement": { "box": { "low": [0, 0], "high": [12, 12] } } }] }"#;
     std::fs::write(folder.path().join("crowded.json"), text).expect("the folder is ours");
-    let arguments = [
-        "sample",
-        "crowded.json",
-        "--count",
-        "2000",
-        "--jsonl",
-        "-o",
-        "worlds.jsonl",
-    ];
-    fail_in(folder.path(), 1, &arguments);
+    let command = "sample crowded.json --count 2000 --jsonl -o worlds.jsonl";
+    fail_in(folder.path(), 1, command);
     assert_eq!(names(folder.path()), ["crowded.json"]);
 }

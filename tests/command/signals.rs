@@ -108,16 +108,8 @@ fn hang_up_is_ignored_under_nohup() {
     let folder = scratch();
     let mut command = Command::new("nohup");
     let mut child = command
-        .args([
-            env!("CARGO_BIN_EXE_driftworld"),
-            "sample",
-            "find_objects",
-            "--count",
-            "2000",
-            "--jsonl",
-            "-o",
-            "worlds.jsonl",
-        ])
+        .arg(env!("CARGO_BIN_EXE_driftworld"))
+        .args("sample find_objects --count 2000 --jsonl -o worlds.jsonl".split(' '))
         .current_dir(folder.path())
         .stdin(Stdio::null())
         .stdout(Stdio::null())

@@ -142,15 +142,10 @@ fn everywhere(kind: usize, found: &str, make: impl Fn(&Path)) {
     let scratch = scratch();
     let folder = scratch.path();
     prepare(folder);
-    for name in [
-        "SPECIAL",
-        "SPECIAL.csv",
-        "SPECIAL.json",
-        "info_log/scenario_info.json",
-        "rows_log/w/0-train/data-log.tsv",
-        "schemas/world.schema.json",
-        "lamp.bin",
-    ] {
+    for name in "SPECIAL SPECIAL.csv SPECIAL.json info_log/scenario_info.json rows_log/w/0-train/data-log.tsv \
+         schemas/world.schema.json lamp.bin"
+        .split(' ')
+    {
         make(&folder.join(name));
     }
     for (number, line) in command_lines().into_iter().enumerate() {

@@ -193,13 +193,7 @@ mod tests {
             lines_of_code("spec/src/a.rs", inline),
             [Code, Test, Test, Test, Test, Code]
         );
-        for path in [
-            "spec/tests/a.rs",
-            "spec/src/tests.rs",
-            "env/benches/a.rs",
-            "examples/a.rs",
-            "fuzz/src/a.rs",
-        ] {
+        for path in "spec/tests/a.rs spec/src/tests.rs env/benches/a.rs examples/a.rs fuzz/src/a.rs".split(' ') {
             assert_eq!(lines_of_code(path, "fn f() {}\n"), [Test], "{path}");
         }
         // A module in its own file is no block to skip.

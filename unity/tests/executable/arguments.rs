@@ -102,15 +102,8 @@ fn invalid_values_exit_with_2_and_mention_help() {
 #[test]
 fn unity_options_are_ignored_and_unknown_ones_give_a_remark() {
     let folder = folder();
-    let arguments = [
-        "-nographics",
-        "-batchmode",
-        "-screen-width",
-        "84",
-        "-adapter",
-        "1",
-        "--raw-observation",
-    ];
+    let arguments = "-nographics -batchmode -screen-width 84 -adapter 1 --raw-observation";
+    let arguments: Vec<&str> = arguments.split(' ').collect();
     let (ended, seen) = look(&arguments, folder.path());
     assert_eq!(ended.code, Some(0), "{ended:?}");
     assert_eq!(seen.expect("there is a world").shape, [84, 84, 3]);

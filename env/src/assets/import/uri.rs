@@ -83,27 +83,12 @@ mod tests {
         check("lamp.bin", Some("lamp.bin"));
         check("parts/my%20lamp.bin", Some("parts/my lamp.bin"));
         check("./lamp.bin", Some("./lamp.bin"));
-        for outside in [
-            "",
-            "..",
-            "../lamp.bin",
-            "parts/../../lamp.bin",
-            "%2e%2e/lamp.bin",
-            "..%2Flamp.bin",
-            "/etc/passwd",
-            "%2Fetc/passwd",
-            "//server/share",
-            "C:\\lamp.bin",
-            "C:lamp.bin",
-            "..\\lamp.bin",
-            "http://example.org/lamp.bin",
-            "file:///etc/passwd",
-            "lamp%00.bin",
-            "lamp%zz.bin",
-            "lamp%+1.bin",
-            "lamp%2",
-            "lamp%ff.bin",
-        ] {
+        check("", None);
+        for outside in ".. ../lamp.bin parts/../../lamp.bin %2e%2e/lamp.bin ..%2Flamp.bin /etc/passwd \
+             %2Fetc/passwd //server/share C:\\lamp.bin C:lamp.bin ..\\lamp.bin http://example.org/lamp.bin \
+             file:///etc/passwd lamp%00.bin lamp%zz.bin lamp%+1.bin lamp%2 lamp%ff.bin"
+            .split(' ')
+        {
             check(outside, None);
         }
     }
