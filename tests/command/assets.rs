@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use driftworld::env::{Action, Catalogue, Environment, Library, Warning};
 use driftworld::spec::World;
 
-use super::terminal::{driftworld, fail, output, root, scratch, succeed, text};
+use super::terminal::{Says, driftworld, fail, output, root, scratch, succeed, text};
 
 const MODEL: &str = "examples/assets/lighthouse.gltf";
 const WORLD: &str = "examples/assets/harbour.json";
@@ -102,10 +102,9 @@ fn packing_is_deterministic_and_adding_continues_the_numbers() {
         "hull",
     ];
     let said = succeed(&arguments);
-    assert!(
-        said.contains("lighthouse  2") && said.contains("3.00 m") && said.contains("hull of"),
-        "{said}"
-    );
+    said.says("lighthouse  2");
+    said.says("3.00 m");
+    said.says("hull of");
     let listed = succeed(&["assets", "list", text(&library)]);
     assert_eq!(
         listed.lines().filter(|line| line.starts_with("lighthouse")).count(),
@@ -228,10 +227,7 @@ fn model_options_are_parsed_strictly() {
     let error = fail(1, &[pack.as_slice(), &["--scale", "-1"]].concat());
     assert!(error.contains("scale: found -1, expected a number above 0"), "{error}");
     let error = fail(1, &[pack.as_slice(), &["--height", "-2.5"]].concat());
-    assert!(
-        error.contains("height: found -2.5, expected a number above 0"),
-        "{error}"
-    );
+    error.says("height: found -2.5, expected a number above 0");
 }
 
 /// A link in the model's folder must not lead to files elsewhere.

@@ -5,7 +5,7 @@ use std::process::Output;
 
 use driftworld::spec::World;
 
-use super::terminal::{driftworld, fed, root, scratch};
+use super::terminal::{Says, driftworld, fed, root, scratch};
 use crate::reference_data::reference;
 
 const WORLD: &str = "examples/console/world.json";
@@ -153,17 +153,12 @@ fn first_error_ends_a_script_with_its_line() {
 #[test]
 fn ended_episode_needs_a_reset() {
     let ended = transcript("step 1000\n");
-    assert!(
-        ended.contains("60 steps, reward 0;") && ended.contains(": its last step"),
-        "{ended}"
-    );
+    ended.says("60 steps, reward 0;");
+    ended.says(": its last step");
     let folder = scratch();
     let output = console(&[WORLD], folder.path(), "step 60\nstep\n");
     let error = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(
-        error.contains("standard input:2: step: the episode has ended, expected a reset first"),
-        "{error}"
-    );
+    error.says("standard input:2: step: the episode has ended, expected a reset first");
     transcript("step 60\nreset\nstep\n");
 }
 
@@ -217,8 +212,5 @@ fn binary_lines_are_an_error_and_no_panic() {
     let output = console(&["find_objects"], folder.path(), b"info\n\xff\xfe\n");
     let error = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(1));
-    assert!(
-        error.contains("standard input:2: the line is not UTF-8 text"),
-        "{error}"
-    );
+    error.says("standard input:2: the line is not UTF-8 text");
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::terminal::{driftworld_in, fail_in, output, scratch, succeed_in};
+use super::terminal::{Says, driftworld_in, fail_in, output, scratch, succeed_in};
 
 /// A small design of two variants, with further arguments.
 fn design(more: &str) -> String {
@@ -64,10 +64,8 @@ fn existing_files_in_a_folder_are_not_replaced() {
     let before = std::fs::read(&file).expect("a scenario");
     let other = format!("{lifetimes} --seed 5");
     let again = fail_in(folder.path(), 1, &design(&other));
-    assert!(
-        again.contains("lives/curriculum-1.json: found a file, expected none") && again.contains("--force"),
-        "{again}"
-    );
+    again.says("lives/curriculum-1.json: found a file, expected none");
+    again.says("--force");
     assert_eq!(std::fs::read(&file).expect("a scenario"), before);
     // Nothing is written if a later folder is in the way.
     std::fs::remove_dir_all(folder.path().join("lives")).expect("a folder");

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::terminal::{
-    self, driftworld, driftworld_in, fail_in, json_in, output, scratch, subcommands, succeed, succeed_in,
+    self, Says, driftworld, driftworld_in, fail_in, json_in, output, scratch, subcommands, succeed, succeed_in,
 };
 use crate::tier::quick_or_full;
 
@@ -288,10 +288,8 @@ fn documents_from_new_and_export_validate_sample_and_run() {
     let folder = scratch();
     let path = folder.path();
     let said = succeed_in(path, &["new", "berries"]);
-    assert!(
-        said.contains("wrote berries.json") && said.contains("driftworld validate berries.json"),
-        "{said}"
-    );
+    said.says("wrote berries.json");
+    said.says("driftworld validate berries.json");
     // Follows the advice.
     let advised: Vec<Vec<&str>> = said
         .lines()
@@ -329,14 +327,10 @@ fn all_mistakes_are_reported_at_once() {
         "variants": { "a": { "extends": "c" } } }"#;
     std::fs::write(folder.path().join("t.json"), task).expect("the folder is ours");
     let said = fail_in(folder.path(), 1, &["validate", "t.json"]);
-    for place in [
-        "/parameters/light/default",
-        "/require/0",
-        "/world/max_steps",
-        "/world/environment_params/light_intensity",
-        "/groups/0/object/class",
-        "/variants/a/extends",
-    ] {
+    for place in "/parameters/light/default /require/0 /world/max_steps \
+         /world/environment_params/light_intensity /groups/0/object/class /variants/a/extends"
+        .split(' ')
+    {
         assert!(said.contains(place), "{place}: {said}");
     }
 }
@@ -364,10 +358,8 @@ fn readable_files_are_judged_beside_unreadable_ones() {
     let done = output(&mut driftworld_in(folder.path(), "validate missing.json bush.json"));
     let [shown, said] = [done.stdout, done.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
     assert!(shown.contains("bush.json: a valid task spec"), "{shown}");
-    assert!(
-        said.contains("missing.json: cannot be read") && said.contains("1 of 2 files refused"),
-        "{said}"
-    );
+    said.says("missing.json: cannot be read");
+    said.says("1 of 2 files refused");
 }
 
 // 10. Answers that help.
@@ -428,10 +420,8 @@ fn variant_has_one_spelling_in_all_tables() {
     let metrics = succeed_in(path, "metrics log");
     let scales = succeed_in(path, "scales bush.json#plain bush.json#l2-n3 --worlds 2");
     for shown in [order, design, run, metrics, scales] {
-        assert!(
-            shown.contains("berries#plain") && shown.contains("berries#l2-n3"),
-            "{shown}"
-        );
+        shown.says("berries#plain");
+        shown.says("berries#l2-n3");
         assert!(!shown.contains("bush.json#") && !shown.contains("berries_"), "{shown}");
     }
     // The log's own name occurs only in the files.

@@ -1,7 +1,7 @@
 //! The `driftworld` command in general: output, exit codes, messages, files that are whole or absent.
 
 use super::terminal::{
-    driftworld_in, fail, fail_in, json, json_in, output, scratch, subcommands, succeed, succeed_in, text,
+    Says, driftworld_in, fail, fail_in, json, json_in, output, scratch, subcommands, succeed, succeed_in, text,
 };
 use crate::reference_data::reference;
 
@@ -33,10 +33,8 @@ fn doctor_lists_the_working_renderers() {
         let missing = report["gpu"]["missing"][0].as_str().unwrap_or_default();
         assert!(missing.contains("--features gpu"), "{report}");
         let error = fail(1, &["render", "find_objects", "--renderer", "gpu"]);
-        assert!(
-            error.contains("--features gpu") && error.contains("driftworld doctor"),
-            "{error}"
-        );
+        error.says("--features gpu");
+        error.says("driftworld doctor");
     }
 }
 
@@ -183,15 +181,7 @@ fn matrix_is_the_same_in_every_format_and_gives_the_same_order() {
     succeed(&["order", "find_objects", "--plot", text(&picture)]);
     assert!(std::fs::metadata(&picture).is_ok_and(|file| file.len() > 5_000));
     let compared = succeed(&["order", "find_objects", "--compare", "--target-step", "0.1"]);
-    for method in [
-        "nearest",
-        "exact",
-        "two-opt",
-        "abrupt",
-        "farthest",
-        "target-step",
-        "given",
-    ] {
+    for method in "nearest exact two-opt abrupt farthest target-step given".split(' ') {
         assert!(compared.contains(&format!("\n{method} ")), "{compared}");
     }
 }
@@ -249,10 +239,8 @@ fn found_variant_is_appended_to_its_task() {
     let distance = json_in(path, "distance mine.json#red mine.json#found --json").to_string();
     assert!(distance.contains("0.5") || distance.contains("0.4999"), "{distance}");
     let error = fail_in(path, 1, asked);
-    assert!(
-        error.contains("found a file, expected none") && error.contains("--force"),
-        "{error}"
-    );
+    error.says("found a file, expected none");
+    error.says("--force");
     succeed_in(path, &format!("{asked} --force"));
 }
 
@@ -263,10 +251,8 @@ fn family_of_variants_has_one_name() {
         assert!(order.contains(member), "{order}");
     }
     let table = succeed(&["tasks", "show", "examples/tasks/settlement.json"]);
-    assert!(
-        table.contains("woods-20") && table.contains("von_mises(mean 0, kappa 2)"),
-        "{table}"
-    );
+    table.says("woods-20");
+    table.says("von_mises(mean 0, kappa 2)");
 }
 
 #[test]

@@ -7,7 +7,7 @@ use std::path::Path;
 use std::process::Stdio;
 
 use super::run_files::{files, write};
-use super::terminal::{driftworld, scratch, succeed, text};
+use super::terminal::{Says, driftworld, scratch, succeed, text};
 
 /// Many experiences, more than are run before the damage.
 fn scenario(folder: &Path) -> String {
@@ -164,9 +164,6 @@ fn stopped_clock_makes_two_logs_equal_to_the_byte() {
         .expect("the command starts");
     assert_eq!(wrong.status.code(), Some(1));
     let error = String::from_utf8_lossy(&wrong.stderr).into_owned();
-    assert!(
-        error.contains("DRIFTWORLD_CLOCK: found \"yesterday\", expected a UTC time"),
-        "{error}"
-    );
+    error.says("DRIFTWORLD_CLOCK: found \"yesterday\", expected a UTC time");
     assert!(!folder.path().join("wrong").exists(), "nothing was begun");
 }

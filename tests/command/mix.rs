@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use super::terminal::{fail, read, scratch, succeed, succeed_in};
+use super::terminal::{Says, fail, read, scratch, succeed, succeed_in};
 
 /// A design that drifts through variants of three tasks.
 fn design(more: &str) -> String {
@@ -38,10 +38,8 @@ fn mixture_of_two_tasks_is_designed_run_and_logged() {
     assert_eq!((worlds.len(), all), (36, 36), "no layout comes twice");
     succeed_in(folder.path(), "run mix.json --agent still --output log");
     let info = read(folder.path().join("log/scenario_info.json"));
-    assert!(
-        info.contains("get_to_goal#plain") && info.contains("moving_object#blue"),
-        "{info}"
-    );
+    info.says("get_to_goal#plain");
+    info.says("moving_object#blue");
 }
 
 #[test]

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use super::run_files::{files, num_rows, write};
-use super::terminal::{driftworld, fail, output, scratch, succeed, text};
+use super::terminal::{Says, driftworld, fail, output, scratch, succeed, text};
 use crate::reference_data::reference;
 
 #[test]
@@ -54,29 +54,17 @@ fn original_scenario_runs_unchanged() {
             folder.path().join("none").display()
         ),
     );
-    assert!(
-        error.contains("found no file \"../map_findobjects_1.json\", looked for"),
-        "{error}"
-    );
-    assert!(
-        error.contains("map_findobjects_0.json instead without --no-stand-in"),
-        "{error}"
-    );
+    error.says("found no file \"../map_findobjects_1.json\", looked for");
+    error.says("map_findobjects_0.json instead without --no-stand-in");
     let stand_in = folder.path().join("stand-in");
     let run = ["run", text(&original), "--agent", "random", "--output", text(&stand_in)];
     let output = output(&mut driftworld(&run));
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{said}");
     assert!(said.contains("beside the scenario"), "{said}");
-    assert!(
-        said.contains("map_findobjects_1.json: not there; map_findobjects_0.json stood in for it"),
-        "{said}"
-    );
+    said.says("map_findobjects_1.json: not there; map_findobjects_0.json stood in for it");
     let info = &files(&stand_in)["scenario_info.json"];
-    assert!(
-        info.contains("\"../map_findobjects_1.json\": \"not there; map_findobjects_0.json stood in for it\""),
-        "{info}"
-    );
+    info.says("\"../map_findobjects_1.json\": \"not there; map_findobjects_0.json stood in for it\"");
     let again = [&run[..], &["--resume"]].concat();
     succeed(&again);
 }

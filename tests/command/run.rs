@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 
 use super::run_files::{files, num_rows, write};
-use super::terminal::{driftworld, fail, output, scratch, succeed, text};
+use super::terminal::{Says, driftworld, fail, output, scratch, succeed, text};
 
 /// A lifetime of 3 blocks and 36 experiences, a few milliseconds each.
 fn scenario(folder: &Path) -> PathBuf {
@@ -115,20 +115,14 @@ fn log_of_another_run_is_refused_and_unchanged() {
         error
     };
     let error = resume(&scenario, "onrails");
-    assert!(
-        error.contains("/agent: found \"random\", expected \"onrails\" as in this run"),
-        "{error}"
-    );
+    error.says("/agent: found \"random\", expected \"onrails\" as in this run");
     let other = folder.path().join("other.json");
     let changed = fs::read_to_string(&scenario)
         .expect("it was written")
         .replace("\"count\": 20", "\"count\": 21");
     write(&other, &changed);
     let error = resume(&other, "random");
-    assert!(
-        error.contains("/scenario/blocks/1/regimes/0/count: found 20, expected 21"),
-        "{error}"
-    );
+    error.says("/scenario/blocks/1/regimes/0/count: found 20, expected 21");
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::null_bands::{parsed, write};
-use super::terminal::{driftworld_in, output, scratch, succeed_in};
+use super::terminal::{Says, driftworld_in, output, scratch, succeed_in};
 use driftworld::metrics::BlockType;
 
 /// Evaluates two variants before and after each is learned; the final reward in worlds of the first is `level`.
@@ -59,14 +59,8 @@ fn metrics_use_the_measured_scales() {
         .find(|line| line.starts_with("findobjects_red"))
         .expect("a row");
     assert!(red.contains("50% ± "), "{shown}");
-    assert!(
-        shown.contains("from its floor to its ceiling, to 1..101: findobjects_red."),
-        "{shown}"
-    );
-    assert!(
-        shown.contains("scaled by this lifetime's own range: findobjects_penalty."),
-        "{shown}"
-    );
+    shown.says("from its floor to its ceiling, to 1..101: findobjects_red.");
+    shown.says("scaled by this lifetime's own range: findobjects_penalty.");
     let json = parsed(&succeed_in(
         folder.path(),
         &["metrics", "life", "--scales", "scales.json", "--json"],
@@ -94,10 +88,8 @@ fn power_reports_what_lifetimes_can_show() {
         live(&folder.path().join(format!("runs/{number}")), level);
     }
     let shown = succeed_in(folder.path(), &["metrics", "-R", "runs", "-n", "none", "--power", "10"]);
-    assert!(
-        shown.contains("lifetimes for 10") && shown.contains("smallest effect"),
-        "{shown}"
-    );
+    shown.says("lifetimes for 10");
+    shown.says("smallest effect");
     assert!(shown.lines().any(|line| line.starts_with("findobjects_red")), "{shown}");
     let json = parsed(&succeed_in(
         folder.path(),
@@ -124,10 +116,8 @@ fn lookalike_tasks_have_a_separate_ceiling() {
     let mut measure = vec!["scales", "select_object#green", "select_object#red", "--worlds", "3"];
     measure.extend(["--unlabelled", "-o", "scales.json"]);
     let shown = succeed_in(folder.path(), &measure);
-    assert!(
-        shown.contains("look alike") && shown.contains("does the same in all"),
-        "{shown}"
-    );
+    shown.says("look alike");
+    shown.says("does the same in all");
     let tasks = ["selectobject_green", "selectobject_red"];
     let live = |name: &str, tasks: &[&'static str]| {
         let mut rows = Vec::new();
@@ -192,10 +182,7 @@ fn scales_that_fit_no_task_are_reported() {
     let said = warned(
         r#"{"scales": {"findobjects_red": {"floor": 0, "ceiling": 10}, "findobjects_penalt": {"floor": 0, "ceiling": 1}}}"#,
     );
-    assert!(
-        said.contains("of findobjects_penalty; did you mean \"findobjects_penalt\"?"),
-        "{said}"
-    );
+    said.says("of findobjects_penalty; did you mean \"findobjects_penalt\"?");
     let said = warned(r#"{"scales": {"findobjects_red": {"floor": 0, "ceiling": 10}}}"#);
     assert!(!said.contains("scales:"), "{said}");
 }

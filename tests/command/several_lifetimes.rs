@@ -5,7 +5,7 @@ use std::path::Path;
 use driftworld::metrics::BlockType;
 
 use super::null_bands::{parsed, write};
-use super::terminal::{scratch, succeed_in};
+use super::terminal::{Says, scratch, succeed_in};
 
 const SCALES: &str =
     r#"{"scales": {"find_red": {"floor": 0, "ceiling": 100}, "find_held": {"floor": 0, "ceiling": 100}}}"#;
@@ -49,10 +49,7 @@ fn good_needs_several_lifetimes_outside_the_null_band() {
     };
     let (row, shown) = reading("forgets");
     assert!(row.contains("  forgets  "), "{shown}");
-    assert!(
-        shown.contains("Null band: the central 95% of means over lifetimes"),
-        "{shown}"
-    );
+    shown.says("Null band: the central 95% of means over lifetimes");
     let (row, shown) = reading("keeps");
     assert!(row.contains("no clear effect"), "{shown}");
     let learned = shown
@@ -110,10 +107,7 @@ fn notes_of_two_agents_are_labelled() {
     }
     let compare = ["metrics", "-R", "mine", "--against", "theirs", "-n", "none"];
     let shown = succeed_in(folder.path(), &compare);
-    assert!(
-        shown.contains("\nnote on the other agent: some performances are negative"),
-        "{shown}"
-    );
+    shown.says("\nnote on the other agent: some performances are negative");
     assert!(!shown.contains("\nnote: some performances are negative"), "{shown}");
 }
 

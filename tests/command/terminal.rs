@@ -46,6 +46,18 @@ impl Arguments for Vec<&str> {
     }
 }
 
+/// Checks of what a command said, which show all of it if they fail.
+pub(crate) trait Says {
+    fn says(&self, part: &str);
+}
+
+impl Says for str {
+    #[track_caller]
+    fn says(&self, part: &str) {
+        assert!(self.contains(part), "found no {part:?} in: {self}");
+    }
+}
+
 /// The command with these arguments, to be run in the project's folder.
 pub(crate) fn driftworld(arguments: &(impl Arguments + ?Sized)) -> Command {
     driftworld_in(root(), arguments)

@@ -7,7 +7,7 @@ use driftworld::metrics::{BlockType, LogWriter, LoggerInfo, Record, ScenarioInfo
 use driftworld::similarity::{DistanceMatrix, SimilarityError};
 use serde_json::Value;
 
-use super::terminal::{fail_in, succeed_in};
+use super::terminal::{Says, fail_in, succeed_in};
 
 /// Positions of six variants on a line.
 const PLACES: [f64; 6] = [0.0, 0.1, 0.25, 0.5, 0.8, 1.0];
@@ -191,18 +191,14 @@ fn report_explains_itself_and_draws_a_picture() {
 fn impossible_reports_say_what_is_needed() {
     let folder = lived(&[&ORDERS[0]], by_distance, false);
     let error = refused(folder.path(), 1, &[]);
-    assert!(
-        error.contains("no evaluation in 1 logs") && error.contains("--evaluate every"),
-        "{error}"
-    );
+    error.says("no evaluation in 1 logs");
+    error.says("--evaluate every");
 
     let folder = lived(&[&ORDERS[0][..2]], by_distance, true);
     write_matrix(folder.path(), vec!["line#v0".to_owned(), "line#v1".to_owned()]);
     let error = refused(folder.path(), 1, &[]);
-    assert!(
-        error.contains("1 forward and 1 backward") && error.contains("at least 3"),
-        "{error}"
-    );
+    error.says("1 forward and 1 backward");
+    error.says("at least 3");
 
     write_matrix(folder.path(), vec!["curve#v0".to_owned(), "curve#v1".to_owned()]);
     let error = refused(folder.path(), 1, &[]);

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 
 use super::run_files::write;
-use super::terminal::{driftworld_in, fail_in, json_in, output, scratch, succeed, succeed_in, text};
+use super::terminal::{Says, driftworld_in, fail_in, json_in, output, scratch, succeed, succeed_in, text};
 use crate::tier::quick_or_full;
 
 /// Rocks that find no place in some worlds, a number whose middle is forbidden, and variants with one name in logs.
@@ -49,10 +49,8 @@ fn validate_draws_worlds_of_every_variant_and_reports_failures() {
         assert_eq!(trial["failed"].as_array().map_or(0, Vec::len) as u64, failed);
     }
     let error = fail_in(folder.path(), 1, "validate quarry.json --worlds 30");
-    assert!(
-        error.contains("of which") && error.contains("of 120 worlds cannot be drawn"),
-        "{error}"
-    );
+    error.says("of which");
+    error.says("of 120 worlds cannot be drawn");
     let fine = succeed(&["validate", "examples/tasks", "--worlds", "2"]);
     assert!(fine.contains("find_objects#red"), "{fine}");
 }
@@ -63,10 +61,8 @@ fn drift_across_a_forbidden_value_is_found_before_the_run() {
     quarry(folder.path());
     let design = "curriculum quarry.json#low high --drift linear --learn 41 --eval-episodes 5 -o s.json";
     let error = fail_in(folder.path(), 1, design);
-    assert!(
-        error.contains("quarry#low..high") && error.contains("x <= 4 or x >= 6"),
-        "{error}"
-    );
+    error.says("quarry#low..high");
+    error.says("x <= 4 or x >= 6");
     assert!(
         !folder.path().join("s.json").exists(),
         "what could not be run is not written"
@@ -81,10 +77,7 @@ fn drift_across_a_forbidden_value_is_found_before_the_run() {
     // It stops there, says so, and suggests how to continue.
     let run = "run s.json --agent random --output log";
     let error = fail_in(folder.path(), 1, run);
-    assert!(
-        error.contains("experience 27, quarry#low..high at 0.425 of its way"),
-        "{error}"
-    );
+    error.says("experience 27, quarry#low..high at 0.425 of its way");
     assert!(error.contains("--resume and --skip-undrawable"), "{error}");
     let again = fail_in(folder.path(), 1, &format!("{run} --resume"));
     assert!(again.contains("--skip-undrawable"), "{again}");
@@ -149,11 +142,8 @@ fn unknown_class_is_an_error_that_suggests_a_library() {
             "placement": { "disc": { "center": [0, 0], "radius": 9 } } }] }"#,
     );
     let error = fail_in(here, 1, &["validate", "w.json", "t.json"]);
-    assert!(
-        error.contains("did you mean \"shrub\"?")
-            && error.contains("(/groups/0/object/class): found the unknown class \"bushh\""),
-        "{error}"
-    );
+    error.says("did you mean \"shrub\"?");
+    error.says("(/groups/0/object/class): found the unknown class \"bushh\"");
     assert!(error.contains("--assets LIBRARY"), "{error}");
     assert!(fail_in(here, 1, &["curriculum", "t.json", "-o", "s.json"]).contains("bushh"));
     // A scenario with such a task is refused as by `run`.
@@ -283,10 +273,7 @@ fn probe_takes_the_named_variants_or_says_why_not() {
     assert!(shown.contains("distances from find_objects#red"), "{shown}");
     assert!(!shown.contains("find_objects#blue"), "only what was named: {shown}");
     let error = fail_in(folder.path(), 1, "curriculum find_objects#red dusk --probe reward");
-    assert!(
-        error.contains("find_objects#red and find_objects#dusk, which differ in observation"),
-        "{error}"
-    );
+    error.says("find_objects#red and find_objects#dusk, which differ in observation");
 }
 
 #[test]

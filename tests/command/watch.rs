@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use super::run_files::{files, write};
-use super::terminal::{driftworld_in, fail, fail_in, output, read, root, scratch, succeed, succeed_in, text};
+use super::terminal::{Says, driftworld_in, fail, fail_in, output, read, root, scratch, succeed, succeed_in, text};
 
 /// A lifetime of 3 blocks and 14 experiences in two tasks, the last block shuffled.
 fn scenario(folder: &Path) -> std::path::PathBuf {
@@ -120,10 +120,8 @@ fn log_without_recordings_gets_them_from_then_on() {
     assert!(none.contains("run with --record"), "{none}");
     succeed(&[&all[..], &["--resume", "--record"]].concat());
     let said = succeed(&["replay", text(&log)]);
-    assert!(
-        said.contains("9 episodes of") && said.contains("; 5 were not recorded"),
-        "{said}"
-    );
+    said.says("9 episodes of");
+    said.says("; 5 were not recorded");
     let said = fail(1, &["replay", text(&log), "--episode", "4"]);
     assert!(said.contains("no recording of episode 4"), "{said}");
 }
@@ -177,10 +175,7 @@ fn damaged_recording_is_located_and_others_are_readable() {
         .collect();
     fs::write(&table, changed.join("\n") + "\n").unwrap();
     let said = fail(1, &["replay", text(&log), "--episode", "0"]);
-    assert!(
-        said.contains("experience 0, steps: found 30 in its recording, expected 29"),
-        "{said}"
-    );
+    said.says("experience 0, steps: found 30 in its recording, expected 29");
 }
 
 #[test]
@@ -195,10 +190,7 @@ fn episode_becomes_a_film_or_a_sheet() {
         succeed_in(folder.path(), &line)
     };
     let said = replay("e.gif", "--size 48");
-    assert!(
-        said.contains("episode 1: find_objects#red, world 1 under seed 5: 30 steps"),
-        "{said}"
-    );
+    said.says("episode 1: find_objects#red, world 1 under seed 5: 30 steps");
     assert!(said.contains(": 31 frames of 96 × 48 pixels, 4.0 s"), "{said}");
     let said = replay("wide.gif", "--size 50 --every 30");
     assert!(said.contains(": 2 frames of 100 × 83 pixels"), "{said}");
@@ -210,10 +202,8 @@ fn episode_becomes_a_film_or_a_sheet() {
     assert!(said.contains(": 6 frames of 48 × 48 pixels, 2.2 s"), "{said}");
     assert_eq!(&first_bytes("e.apng")[1..], b"PNG");
     let said = replay("e.png", "--size 48 --json");
-    assert!(
-        said.contains("\"frames\": 12") && said.contains("\"width\": 96"),
-        "{said}"
-    );
+    said.says("\"frames\": 12");
+    said.says("\"width\": 96");
     let said = replay("e.png", "--size 48 --view above");
     assert!(said.contains(": 12 frames of 48 × 48 pixels, on a sheet of "), "{said}");
     assert_eq!(&first_bytes("e.png")[1..], b"PNG");
@@ -222,16 +212,11 @@ fn episode_becomes_a_film_or_a_sheet() {
     replay("e.gif", "--size 48");
     assert!(fs::read(at("e.gif")).unwrap() == before);
     let said = fail_in(folder.path(), 2, "replay log --episode 1 -o e.mp4");
-    assert!(
-        said.contains("expected .gif or .apng") && said.contains("ffmpeg -i"),
-        "{said}"
-    );
+    said.says("expected .gif or .apng");
+    said.says("ffmpeg -i");
     assert!(!at("e.mp4").exists());
     let said = fail_in(folder.path(), 1, "replay log --episode 99");
-    assert!(
-        said.contains("found no episode 99, expected one of episodes 0 to 13"),
-        "{said}"
-    );
+    said.says("found no episode 99, expected one of episodes 0 to 13");
 }
 
 /// A drawing of an episode depends on the options, not on the file's extension: different options give different pictures,
@@ -275,10 +260,7 @@ fn each_view_and_modality_is_a_different_picture() {
             &["film", "find_objects"],
         ] {
             let said = fail(2, &[command, &wrong].concat());
-            assert!(
-                said.contains("--modality: found depth of the view from above"),
-                "{said}"
-            );
+            said.says("--modality: found depth of the view from above");
             assert!(!refused.exists());
         }
     }
@@ -363,9 +345,7 @@ fn film_of_a_world_without_a_limit_ends() {
     };
     let (steps, said) = film("");
     assert_eq!(steps, Some(3000));
-    assert!(
-        said.contains("no limit of steps") && said.contains("--max-steps"),
-        "{said}"
-    );
+    said.says("no limit of steps");
+    said.says("--max-steps");
     assert_eq!(film("--max-steps 7"), (Some(7), String::new()));
 }
