@@ -345,7 +345,7 @@ fn every_place_takes_a_random_choice_from_a_list() {
         let task = TaskSpec::from_json(&pointer, &task.to_string()).unwrap_or_else(|error| panic!("{error}"));
         let sampler = Sampler::new(&task.variant("default").expect("it is always there"), 3);
         let mut seen = [false; 2];
-        for index in 0..40 {
+        for index in 0..crate::tier::quick_or_full(16, 40) {
             let world = sampler
                 .world(index)
                 .unwrap_or_else(|error| panic!("{pointer}: {error}"));

@@ -159,7 +159,7 @@ fn walks_and_experiment_detect_bodies_that_differ_with_looks() {
         assert_eq!(differing, shaped, "{name}: {forms:?}");
         for variant in of_looks(&task) {
             let request = ElementsRequest {
-                worlds: 4,
+                worlds: crate::tier::quick_or_full(2, 4),
                 ..ElementsRequest::of(variant.id())
             };
             let found = elements_of(&task, &request).unwrap_or_else(|error| panic!("{error}"));

@@ -12,7 +12,9 @@ use crate::drawn_task::{Drawn, Numbers};
 const TOLERANCE: f64 = 1e-3;
 
 /// Distances to request per task.
-const DISTANCES: usize = 24;
+fn distances() -> usize {
+    crate::tier::quick_or_full(12, 24)
+}
 
 /// The values of a parameter on a grid: all choices, integers and ends, and the variant's own value.
 fn grid_of(from: &Variant, name: &str, parts: usize) -> Vec<Value> {
@@ -230,7 +232,7 @@ macro_rules! drawn_tasks {
         $(
             #[test]
             fn $name() {
-                super::check($seed, $tasks, super::DISTANCES);
+                super::check($seed, $tasks, super::distances());
             }
         )*
     };
@@ -249,7 +251,7 @@ mod what_a_grid_finds_is_found_by_as_few_changes {
     #[test]
     #[ignore = "500 tasks take minutes: cargo nextest run -p driftworld-generator --run-ignored only"]
     fn in_five_hundred() {
-        super::check(1000, 500, super::DISTANCES);
+        super::check(1000, 500, super::distances());
     }
 }
 

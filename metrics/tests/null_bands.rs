@@ -218,12 +218,16 @@ fn several_lifetimes_show_what_one_leaves_unclear() {
 
 #[test]
 fn unchanging_agent_is_called_good_in_at_most_one_of_twenty_lifetimes() {
-    let lifetimes = random_lifetimes(200, |row| row);
+    let lifetimes = random_lifetimes(crate::tier::quick_or_full(100, 200), |row| row);
     check_calibration(&lifetimes, Exchanged::Worlds);
     // The purpose of bands: without them, most of these lifetimes show "transfer".
     let is_above = |scores: &&LifetimeMetrics| scores.lifetime.number("forward_transfer_ratio").unwrap() > 1.0;
     let above = lifetimes.iter().filter(is_above).count();
-    assert!(above > 110, "forward ratio above 1 in {above} of 200 lifetimes");
+    let all = lifetimes.len();
+    assert!(
+        100 * above > 55 * all,
+        "forward ratio above 1 in {above} of {all} lifetimes"
+    );
 }
 
 #[test]

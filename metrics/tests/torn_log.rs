@@ -64,18 +64,23 @@ fn stages(records: &[Record]) -> Vec<Files> {
     stages
 }
 
-/// The states of the disk between one stage and the next: the one file that grew, cut at every byte, or in the quick tier at every
-/// third. The file may be empty.
+/// How far cuts are apart in the quick tier, in bytes.
+const QUICK_STEP: usize = 7;
+
+/// The states of the disk between one stage and the next: the one file that grew, cut at every byte, or fewer in the quick tier.
+/// The file may be empty.
 fn cuts<'a>(before: &'a Files, after: &'a Files) -> impl Iterator<Item = Files> + 'a {
     let mut grown = after.iter().filter(|(path, bytes)| before.get(*path) != Some(bytes));
     let (path, bytes) = grown.next().unwrap();
     assert!(grown.next().is_none(), "a record goes to one file");
     let start = before.get(path).map_or(0, Vec::len);
-    (start..bytes.len()).step_by(quick_or_full(3, 1)).map(move |end| {
-        let mut cut = before.clone();
-        cut.insert(path.clone(), bytes[..end].to_vec());
-        cut
-    })
+    (start..bytes.len())
+        .step_by(quick_or_full(QUICK_STEP, 1))
+        .map(move |end| {
+            let mut cut = before.clone();
+            cut.insert(path.clone(), bytes[..end].to_vec());
+            cut
+        })
 }
 
 #[test]
@@ -106,7 +111,7 @@ fn a_log_cut_at_any_byte_goes_on_as_if_it_never_had_been() {
     }
     let num_bytes = |files: &Files| files.values().map(Vec::len).sum::<usize>();
     let grown = num_bytes(whole) - num_bytes(&stages[0]);
-    let expected = quick_or_full(grown / 3..=grown / 3 + records.len(), grown..=grown);
+    let expected = quick_or_full(grown / QUICK_STEP..=grown / QUICK_STEP + records.len(), grown..=grown);
     assert!(expected.contains(&num_cuts), "{num_cuts} cuts of {grown} bytes");
 }
 

@@ -6,3 +6,5 @@ mod page;
 mod reference;
 #[path = "../../tests/reference_data.rs"]
 mod reference_data;
+#[path = "../../tests/tier.rs"]
+mod tier;

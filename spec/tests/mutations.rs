@@ -86,7 +86,7 @@ fn nearly_every_mistake_in_a_shipped_task_is_reported_at_its_place() {
         let mut all = Vec::new();
         keys(&document, "", &mut all);
         // A sample is enough, a different one for each task.
-        let step = crate::tier::quick_or_full(7, 2);
+        let step = crate::tier::quick_or_full(11, 2);
         for (place, (parent, key)) in all
             .iter()
             .enumerate()
