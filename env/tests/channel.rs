@@ -164,66 +164,45 @@ fn positions_in_our_own_copy_are_not_reported() {
 
 #[test]
 fn hostile_resets_and_objects_change_nothing() {
-    check(Reset, "not JSON", "not valid JSON");
-    check(Reset, "null", "found null");
     check(Reset, &" ".repeat(MAX_MESSAGE_BYTES + 1), "expected at most");
     check(Reset, &"{\"action\":".repeat(1000), "not valid JSON");
-    check(
-        Reset,
-        r#"{ "action": "reset_enviroment" }"#,
-        "did you mean \"reset_environment\"?",
-    );
-    check(
-        Reset,
-        r#"{ "action": "get_observers" }"#,
-        "expected it on the State channel",
-    );
-    check(Reset, r#"{ "action": "reset_environment" }"#, "payload: found none");
-    check(
-        Reset,
-        r#"{ "action": "reset_environment", "payload": [] }"#,
-        "payload (/): found []",
-    );
-    check(
-        Reset,
-        r#"{ "action": "reset_environment", "payload": { "agent_params": { "heading": "east" }, "max_steps": -1 } }"#,
-        "payload (/max_steps): found -1",
-    );
-    check(
-        Reset,
-        r#"{ "action": "object_create", "payload": { "coordinates": [1, 2] } }"#,
-        "class",
-    );
-    check(
-        Reset,
-        r#"{ "action": "object_create", "payload": { "class": "tree", "coordinates": [1, 1e9] } }"#,
-        "(/coordinates/1): found",
-    );
-    check(
-        Reset,
-        r#"{ "action": "object_create", "unique_name": "oak", "payload": { "class": "tree", "coordinates": [1, 2] } }"#,
-        "object 0 has too",
-    );
-    check(
-        Reset,
-        r#"{ "action": "object_create", "unique_name": 7, "payload": { "class": "tree", "coordinates": [1, 2] } }"#,
-        "unique_name: found a number",
-    );
+    let tree = r#""class": "tree", "coordinates": [1, 2]"#;
+    for row in r#"
+not JSON => not valid JSON
+null => found null
+{ "action": "reset_enviroment" } => did you mean "reset_environment"?
+{ "action": "get_observers" } => expected it on the State channel
+{ "action": "reset_environment" } => payload: found none
+{ "action": "reset_environment", "payload": [] } => payload (/): found []
+{ "action": "reset_environment", "payload": { "agent_params": { "heading": "east" }, "max_steps": -1 } } => payload (/max_steps): found -1
+{ "action": "object_create", "payload": { "coordinates": [1, 2] } } => class
+{ "action": "object_create", "payload": { "class": "tree", "coordinates": [1, 1e9] } } => (/coordinates/1): found
+{ "action": "object_create", "unique_name": "oak", "payload": { TREE } } => object 0 has too
+{ "action": "object_create", "unique_name": 7, "payload": { TREE } } => unique_name: found a number"#
+        .trim()
+        .lines()
+    {
+        let (text, expected) = row.split_once(" => ").expect("a row has two parts");
+        check(Reset, &text.replace("TREE", tree), expected);
+    }
 }
 
 #[test]
 fn hostile_observer_requests_change_nothing() {
-    check(State, r#"{ "action": "set_active_observers" }"#, "found no state");
-    check(
-        State,
-        r#"{ "action": "set_active_observers", "payload": { "state": ["objects", "object"] } }"#,
-        "did you mean \"objects\"?",
-    );
-    check(
-        State,
-        r#"{ "action": "set_active_observers", "state": "objects" }"#,
-        "found a text",
-    );
+    for (more, expected) in [
+        ("", "found no state"),
+        (
+            r#", "payload": { "state": ["objects", "object"] }"#,
+            "did you mean \"objects\"?",
+        ),
+        (r#", "state": "objects""#, "found a text"),
+    ] {
+        check(
+            State,
+            &format!(r#"{{ "action": "set_active_observers"{more} }}"#),
+            expected,
+        );
+    }
 }
 
 #[test]
@@ -235,21 +214,12 @@ fn hostile_debug_requests_change_nothing() {
         );
         check(Debug, &text, "a whole number from 1 to 48");
     }
-    check(
-        Debug,
-        r#"{ "action": "set_debug_categories", "payload": [{ "category": "agent", "active": false }, { "category": "all", "active": true }] }"#,
-        "expected one of agent, communications",
-    );
-    check(
-        Debug,
-        r#"{ "action": "set_debug_categories", "payload": [{ "category": "agent" }] }"#,
-        "expected entries",
-    );
-    check(
-        Debug,
-        r#"{ "action": "debug_message" }"#,
-        "expected one of save_screenshot",
-    );
+    let categories = |listed: &str| format!(r#"{{ "action": "set_debug_categories", "payload": [{listed}] }}"#);
+    let all = categories(r#"{ "category": "agent", "active": false }, { "category": "all", "active": true }"#);
+    check(Debug, &all, "expected one of agent, communications");
+    check(Debug, &categories(r#"{ "category": "agent" }"#), "expected entries");
+    let unknown = r#"{ "action": "debug_message" }"#;
+    check(Debug, unknown, "expected one of save_screenshot");
 }
 
 #[test]

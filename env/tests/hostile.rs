@@ -167,19 +167,81 @@ fn textured_with(pointer: &str, value: Value) -> Vec<u8> {
     ])
 }
 
-fn uri(uri: &str) -> Vec<u8> {
-    with("/buffers/0/uri", json!(uri))
+/// Valid documents with places changed: in each line the file's name, then each place with its new value.
+const CHANGED: &str = r##"version_1_names.gltf | /meshes {"box": {"primitives": []}}
+version_1.gltf | /asset/version "1.0"
+extension_unknown.gltf | /extensionsRequired ["VENDOR_secret_sauce"]
+extension_draco.gltf | /extensionsRequired ["KHR_draco_mesh_compression"]
+extension_meshopt.gltf | /extensionsRequired ["EXT_meshopt_compression"]
+no_scene_content.gltf | /scenes/0/nodes []
+no_mesh.gltf | /meshes [] | /nodes [{}]
+points_only.gltf | /meshes/0/primitives/0/mode 0
+mode_unknown.gltf | /meshes/0/primitives/0/mode 77
+missing_scene.gltf | /scene 9
+missing_node.gltf | /scenes/0/nodes [9]
+missing_mesh.gltf | /nodes/0/mesh 9
+missing_positions.gltf | /meshes/0/primitives/0/attributes/POSITION 9
+missing_indices.gltf | /meshes/0/primitives/0/indices 9
+missing_material.gltf | /meshes/0/primitives/0/material 9
+missing_view.gltf | /accessors/0/bufferView 4000000000
+missing_buffer.gltf | /bufferViews/0/buffer 9
+missing_texture.gltf | /materials/0/pbrMetallicRoughness/baseColorTexture {"index": 9} | /meshes/0/primitives/0/attributes/TEXCOORD_0 9
+no_positions.gltf | /meshes/0/primitives/0/attributes {}
+no_view.gltf | /accessors/0 {"componentType": 5126, "count": 3, "type": "VEC3"}
+cycle_of_nodes.gltf | /nodes [{"children": [1]}, {"children": [2]}, {"children": [0]}]
+own_child.gltf | /nodes [{"mesh": 0, "children": [0]}]
+cycle_without_root.gltf | /nodes [{"children": [1]}, {"children": [0]}] | /scene 0 | /scenes []
+two_parents.gltf | /nodes [{"children": [1, 2]}, {"children": [3]}, {"children": [3]}, {"mesh": 0}]
+sparse.gltf | /accessors/0/sparse {"count": 1, "indices": {"bufferView": 1, "componentType": 5123}, "values": {"bufferView": 0}}
+count_huge.gltf | /accessors/0/count 4000000000
+count_largest.gltf | /accessors/1/count 18446744073709551615
+count_one_too_many.gltf | /accessors/0/count 5
+count_negative.gltf | /accessors/0/count -1
+offset_overflow.gltf | /accessors/0/byteOffset 18446744073709551615
+offset_beyond.gltf | /accessors/1/byteOffset 2
+view_overflow.gltf | /bufferViews/0/byteOffset 18446744073709551615 | /bufferViews/0/byteLength 2
+view_beyond.gltf | /bufferViews/1/byteLength 1000
+stride_zero.gltf | /bufferViews/0/byteStride 0
+stride_odd.gltf | /bufferViews/0/byteStride 13
+stride_large.gltf | /bufferViews/0/byteStride 1000000
+stride_overlaps.gltf | /bufferViews/0/byteStride 4
+stride_beyond.gltf | /bufferViews/0/byteStride 16
+buffer_longer_than_data.gltf | /buffers/0/byteLength 1000000
+positions_of_two.gltf | /accessors/0/type "VEC2"
+positions_of_bytes.gltf | /accessors/0/componentType 5120
+indices_of_floats.gltf | /accessors/1/componentType 5126
+component_unknown.gltf | /accessors/0/componentType 1
+uri_above.gltf | /buffers/0/uri "../../etc/passwd"
+uri_above_escaped.gltf | /buffers/0/uri "%2e%2e/%2E%2E/etc/passwd"
+uri_above_backslash.gltf | /buffers/0/uri "..\\..\\boot.ini"
+uri_absolute.gltf | /buffers/0/uri "/etc/passwd"
+uri_drive.gltf | /buffers/0/uri "C:/boot.ini"
+uri_file.gltf | /buffers/0/uri "file:///etc/passwd"
+uri_http.gltf | /buffers/0/uri "http://example.org/lamp.bin"
+uri_share.gltf | /buffers/0/uri "//server/share/lamp.bin"
+uri_absent.gltf | /buffers/0/uri "lamp.bin"
+uri_not_base64.gltf | /buffers/0/uri "data:application/octet-stream;base64,####"
+uri_plain_data.gltf | /buffers/0/uri "data:text/plain,hello"
+image_above.gltf | /images [{"uri": "../secret.png"}] | /textures [{"source": 0}] | /materials/0/pbrMetallicRoughness/baseColorTexture {"index": 0, "texCoord": 7}
+too_small.gltf | /nodes/0/scale [1e-5, 1e-5, 1e-5]
+scaled_to_nothing.gltf | /nodes/0/scale [0, 0, 0]
+scaled_beyond.gltf | /nodes/0/scale [1e38, 1e38, 1e38]
+color_above_1.gltf | /materials/0/pbrMetallicRoughness/baseColorFactor [2.0, 0.0, 0.0, 1.0]"##;
+
+fn changed_places(row: &'static str) -> (&'static str, Vec<u8>) {
+    let mut parts = row.split(" | ");
+    let name = parts.next().expect("a row has a name");
+    let change = |part: &'static str| {
+        let (pointer, value) = part.split_once(' ').expect("a place has a new value");
+        (pointer, value.parse().expect("the value is JSON"))
+    };
+    (name, changed(&parts.map(change).collect::<Vec<_>>()))
 }
 
 /// All cases: file name and bytes.
 fn cases() -> Vec<(&'static str, Vec<u8>)> {
-    let mut cases = containers();
-    cases.extend(documents());
-    cases.extend(references());
-    cases.extend(ranges());
-    cases.extend(places());
-    cases.extend(numbers());
-    cases
+    let changed = CHANGED.lines().map(changed_places).collect();
+    [changed, containers(), documents(), triangles()].concat()
 }
 
 fn containers() -> Vec<(&'static str, Vec<u8>)> {
@@ -212,218 +274,42 @@ fn containers() -> Vec<(&'static str, Vec<u8>)> {
 }
 
 fn documents() -> Vec<(&'static str, Vec<u8>)> {
+    let chain = (1..=70).map(|next| json!({"children": [next]}));
+    let sound = String::from_utf8(with("/nodes/0/scale", json!([123, 1, 1]))).expect("JSON is UTF-8");
+    let other_source = |texture: Value| textured_with("/textures", json!([{"source": 0}, texture]));
     vec![
-        ("json_cut.gltf", text(&sound())[..300].to_vec()),
+        ("json_cut.gltf", text(&self::sound())[..300].to_vec()),
         ("json_nested.gltf", [b"[".repeat(2000), b"]".repeat(2000)].concat()),
         ("json_other.gltf", b"{\"task\": \"find_objects\"}\n".to_vec()),
         ("json_long_text.gltf", with("/nodes", json!("x".repeat(2000)))),
-        (
-            "version_1_names.gltf",
-            with("/meshes", json!({"box": {"primitives": []}})),
-        ),
-        ("version_1.gltf", with("/asset/version", json!("1.0"))),
-        (
-            "extension_unknown.gltf",
-            with("/extensionsRequired", json!(["VENDOR_secret_sauce"])),
-        ),
-        (
-            "extension_draco.gltf",
-            with("/extensionsRequired", json!(["KHR_draco_mesh_compression"])),
-        ),
-        (
-            "extension_meshopt.gltf",
-            with("/extensionsRequired", json!(["EXT_meshopt_compression"])),
-        ),
-        ("no_scene_content.gltf", with("/scenes/0/nodes", json!([]))),
-        (
-            "no_mesh.gltf",
-            changed(&[("/meshes", json!([])), ("/nodes", json!([{}]))]),
-        ),
-        ("points_only.gltf", with("/meshes/0/primitives/0/mode", json!(0))),
-        ("mode_unknown.gltf", with("/meshes/0/primitives/0/mode", json!(77))),
-    ]
-}
-
-fn references() -> Vec<(&'static str, Vec<u8>)> {
-    vec![
-        ("missing_scene.gltf", with("/scene", json!(9))),
-        ("missing_node.gltf", with("/scenes/0/nodes", json!([9]))),
-        ("missing_mesh.gltf", with("/nodes/0/mesh", json!(9))),
-        (
-            "missing_positions.gltf",
-            with("/meshes/0/primitives/0/attributes/POSITION", json!(9)),
-        ),
-        ("missing_indices.gltf", with("/meshes/0/primitives/0/indices", json!(9))),
-        (
-            "missing_material.gltf",
-            with("/meshes/0/primitives/0/material", json!(9)),
-        ),
-        (
-            "missing_view.gltf",
-            with("/accessors/0/bufferView", json!(4_000_000_000_u32)),
-        ),
-        ("missing_buffer.gltf", with("/bufferViews/0/buffer", json!(9))),
-        (
-            "missing_texture.gltf",
-            changed(&[
-                (
-                    "/materials/0/pbrMetallicRoughness/baseColorTexture",
-                    json!({"index": 9}),
-                ),
-                ("/meshes/0/primitives/0/attributes/TEXCOORD_0", json!(9)),
-            ]),
-        ),
         ("missing_base_texture.gltf", textured_with("/textures", json!([]))),
-        (
-            "missing_image.gltf",
-            textured_with("/textures", json!([{"source": 0}, {"source": 9}])),
-        ),
-        (
-            "missing_sampler.gltf",
-            textured_with("/textures", json!([{"source": 0}, {"source": 0, "sampler": 9}])),
-        ),
+        ("missing_image.gltf", other_source(json!({"source": 9}))),
+        ("missing_sampler.gltf", other_source(json!({"source": 0, "sampler": 9}))),
         ("wrap_unknown.gltf", textured_with("/samplers", json!([{"wrapT": 1}]))),
         (
-            "no_positions.gltf",
-            with("/meshes/0/primitives/0/attributes", json!({})),
-        ),
-        (
-            "no_view.gltf",
-            with(
-                "/accessors/0",
-                json!({"componentType": 5126, "count": 3, "type": "VEC3"}),
-            ),
-        ),
-        (
-            "cycle_of_nodes.gltf",
-            with(
-                "/nodes",
-                json!([{"children": [1]}, {"children": [2]}, {"children": [0]}]),
-            ),
-        ),
-        ("own_child.gltf", with("/nodes", json!([{"mesh": 0, "children": [0]}]))),
-        (
-            "cycle_without_root.gltf",
-            changed(&[
-                ("/nodes", json!([{"children": [1]}, {"children": [0]}])),
-                ("/scene", json!(0)),
-                ("/scenes", json!([])),
-            ]),
-        ),
-        (
-            "two_parents.gltf",
-            with(
-                "/nodes",
-                json!([{"children": [1, 2]}, {"children": [3]}, {"children": [3]}, {"mesh": 0}]),
-            ),
-        ),
-        ("deep_nodes.gltf", {
-            let chain = (1..=70).map(|next| json!({"children": [next]}));
-            with("/nodes", chain.chain([json!({"mesh": 0})]).collect())
-        }),
-        ("sparse.gltf", {
-            let indices = json!({"bufferView": 1, "componentType": 5123});
-            let sparse = json!({"count": 1, "indices": indices, "values": {"bufferView": 0}});
-            with("/accessors/0/sparse", sparse)
-        }),
-    ]
-}
-
-fn ranges() -> Vec<(&'static str, Vec<u8>)> {
-    let huge = json!(u64::MAX);
-    vec![
-        ("count_huge.gltf", with("/accessors/0/count", json!(4_000_000_000_u64))),
-        ("count_largest.gltf", with("/accessors/1/count", huge.clone())),
-        ("count_one_too_many.gltf", with("/accessors/0/count", json!(5))),
-        ("count_negative.gltf", with("/accessors/0/count", json!(-1))),
-        ("offset_overflow.gltf", with("/accessors/0/byteOffset", huge.clone())),
-        ("offset_beyond.gltf", with("/accessors/1/byteOffset", json!(2))),
-        (
-            "view_overflow.gltf",
-            changed(&[
-                ("/bufferViews/0/byteOffset", huge),
-                ("/bufferViews/0/byteLength", json!(2)),
-            ]),
-        ),
-        ("view_beyond.gltf", with("/bufferViews/1/byteLength", json!(1000))),
-        ("stride_zero.gltf", with("/bufferViews/0/byteStride", json!(0))),
-        ("stride_odd.gltf", with("/bufferViews/0/byteStride", json!(13))),
-        ("stride_large.gltf", with("/bufferViews/0/byteStride", json!(1_000_000))),
-        ("stride_overlaps.gltf", with("/bufferViews/0/byteStride", json!(4))),
-        ("stride_beyond.gltf", with("/bufferViews/0/byteStride", json!(16))),
-        (
-            "buffer_longer_than_data.gltf",
-            with("/buffers/0/byteLength", json!(1_000_000)),
-        ),
-        ("positions_of_two.gltf", with("/accessors/0/type", json!("VEC2"))),
-        (
-            "positions_of_bytes.gltf",
-            with("/accessors/0/componentType", json!(5120)),
-        ),
-        (
-            "indices_of_floats.gltf",
-            with("/accessors/1/componentType", json!(5126)),
-        ),
-        ("component_unknown.gltf", with("/accessors/0/componentType", json!(1))),
-        ("index_beyond.gltf", {
-            let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
-            text(&document(&corners, &[0, 1, 65_535]))
-        }),
-    ]
-}
-
-fn places() -> Vec<(&'static str, Vec<u8>)> {
-    vec![
-        ("uri_above.gltf", uri("../../etc/passwd")),
-        ("uri_above_escaped.gltf", uri("%2e%2e/%2E%2E/etc/passwd")),
-        ("uri_above_backslash.gltf", uri("..\\..\\boot.ini")),
-        ("uri_absolute.gltf", uri("/etc/passwd")),
-        ("uri_drive.gltf", uri("C:/boot.ini")),
-        ("uri_file.gltf", uri("file:///etc/passwd")),
-        ("uri_http.gltf", uri("http://example.org/lamp.bin")),
-        ("uri_share.gltf", uri("//server/share/lamp.bin")),
-        ("uri_absent.gltf", uri("lamp.bin")),
-        ("uri_not_base64.gltf", uri("data:application/octet-stream;base64,####")),
-        ("uri_plain_data.gltf", uri("data:text/plain,hello")),
-        (
-            "image_above.gltf",
-            changed(&[
-                ("/images", json!([{"uri": "../secret.png"}])),
-                ("/textures", json!([{"source": 0}])),
-                (
-                    "/materials/0/pbrMetallicRoughness/baseColorTexture",
-                    json!({"index": 0, "texCoord": 7}),
-                ),
-            ]),
+            "deep_nodes.gltf",
+            with("/nodes", chain.chain([json!({"mesh": 0})]).collect()),
         ),
         ("png_huge.gltf", textured(&png_header(100_000, 100_000))),
         ("png_cut.gltf", textured(&png_header(8, 8))),
+        ("matrix_overflow.gltf", with("/nodes/0/matrix", json!(vec![1e30; 16]))),
+        ("number_too_large.gltf", sound.replace("123", "1e999").into_bytes()),
     ]
 }
 
-fn numbers() -> Vec<(&'static str, Vec<u8>)> {
-    let triangle = |corner: [f32; 3]| text(&document(&[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], corner], &[0, 1, 2]));
+fn triangles() -> Vec<(&'static str, Vec<u8>)> {
+    let triangle =
+        |corner: [f32; 3], indices: [u16; 3]| text(&document(&[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], corner], &indices));
     vec![
-        ("position_nan.gltf", triangle([0.0, f32::NAN, 0.0])),
-        ("position_infinite.gltf", triangle([f32::NEG_INFINITY, 1.0, 0.0])),
-        ("position_far.gltf", triangle([0.0, 1e30, 0.0])),
-        ("no_area.gltf", triangle([0.5, 0.0, 0.0])),
-        ("too_large.gltf", triangle([0.0, 5000.0, 0.0])),
-        ("too_small.gltf", with("/nodes/0/scale", json!([1e-5, 1e-5, 1e-5]))),
-        ("scaled_to_nothing.gltf", with("/nodes/0/scale", json!([0, 0, 0]))),
-        ("scaled_beyond.gltf", with("/nodes/0/scale", json!([1e38, 1e38, 1e38]))),
-        ("matrix_overflow.gltf", {
-            let number = json!(1e30);
-            with("/nodes/0/matrix", Value::Array(vec![number; 16]))
-        }),
-        ("color_above_1.gltf", {
-            let factor = json!([2.0, 0.0, 0.0, 1.0]);
-            with("/materials/0/pbrMetallicRoughness/baseColorFactor", factor)
-        }),
-        ("number_too_large.gltf", {
-            let sound = String::from_utf8(with("/nodes/0/scale", json!([123, 1, 1]))).expect("JSON is UTF-8");
-            sound.replace("123", "1e999").into_bytes()
-        }),
+        ("index_beyond.gltf", triangle([0.0, 1.0, 0.0], [0, 1, 65_535])),
+        ("position_nan.gltf", triangle([0.0, f32::NAN, 0.0], [0, 1, 2])),
+        (
+            "position_infinite.gltf",
+            triangle([f32::NEG_INFINITY, 1.0, 0.0], [0, 1, 2]),
+        ),
+        ("position_far.gltf", triangle([0.0, 1e30, 0.0], [0, 1, 2])),
+        ("no_area.gltf", triangle([0.5, 0.0, 0.0], [0, 1, 2])),
+        ("too_large.gltf", triangle([0.0, 5000.0, 0.0], [0, 1, 2])),
     ]
 }
 
@@ -453,15 +339,8 @@ fn every_hostile_file_is_refused_with_its_message() {
         );
     }
     let entries = fs::read_dir(folder()).expect("the corpus is committed");
-    let found: BTreeSet<String> = entries
-        .map(|entry| {
-            entry
-                .expect("the folder can be read")
-                .file_name()
-                .to_string_lossy()
-                .into_owned()
-        })
-        .collect();
+    let files = entries.map(|entry| entry.expect("the folder can be read").file_name());
+    let found: BTreeSet<String> = files.map(|name| name.to_string_lossy().into_owned()).collect();
     assert_eq!(found, known, "the folder holds the corpus and nothing else");
 }
 

@@ -57,58 +57,31 @@ fn header_without_tabs_is_one_problem() {
 
 #[test]
 fn bad_cell_is_named_with_the_expected_contents() {
-    let cell = |index: usize, text: &str, column: &str, found: &str, expected: &str| {
-        let message = format!("LOG/w/0-train/data-log.tsv:2, column {column}: found {found}, expected {expected}");
-        check(with_cell(index, text), "metrics/cell", &message);
-    };
-    cell(0, "one", "block_num", "\"one\"", "a whole number, 0 or more");
-    cell(1, "-1", "exp_num", "\"-1\"", "a whole number, 0 or more");
-    cell(
-        2,
-        "a b",
-        "worker_id",
-        "\"a b\"",
-        "a worker's name of letters, digits, _, - and .",
-    );
-    cell(
-        1,
-        "18446744073709551616",
-        "exp_num",
-        "\"18446744073709551616\"",
-        "a whole number of at most 18446744073709551615",
-    );
-    cell(3, "eval", "block_type", "\"eval\"", "one of train, test");
-    cell(4, "nap", "block_subtype", "\"nap\"", "one of wake, sleep");
-    cell(6, "[1]", "task_params", "\"[1]\"", "a JSON object");
-    cell(
-        6,
-        r#"{"a": [1, NaN]}"#,
-        "task_params",
-        r#""{/"a/": [1, NaN]}""#,
-        "a JSON object; not valid JSON: JSON has no NaN or Infinity; numbers are finite",
-    );
-    cell(7, "done", "exp_status", "\"done\"", "one of complete, incomplete");
-    cell(
-        8,
-        "20200931T122640.0",
-        "timestamp",
-        "\"20200931T122640.0\"",
-        "a time stamp as in 20200913T122640.000000",
-    );
-    cell(
-        9,
-        "much",
-        "reward",
-        "\"much\"",
-        "a finite number, or nothing for a missing one",
-    );
-    cell(
-        9,
-        "1e999",
-        "reward",
-        "\"1e999\"",
-        "a finite number, or nothing for a missing one",
-    );
+    for row in r#"
+0 | block_num | one | a whole number, 0 or more
+1 | exp_num | -1 | a whole number, 0 or more
+2 | worker_id | a b | a worker's name of letters, digits, _, - and .
+1 | exp_num | 18446744073709551616 | a whole number of at most 18446744073709551615
+3 | block_type | eval | one of train, test
+4 | block_subtype | nap | one of wake, sleep
+6 | task_params | [1] | a JSON object
+6 | task_params | {"a": [1, NaN]} | a JSON object; not valid JSON: JSON has no NaN or Infinity; numbers are finite
+7 | exp_status | done | one of complete, incomplete
+8 | timestamp | 20200931T122640.0 | a time stamp as in 20200913T122640.000000
+9 | reward | much | a finite number, or nothing for a missing one
+9 | reward | 1e999 | a finite number, or nothing for a missing one"#
+        .trim()
+        .lines()
+    {
+        let [index, column, text, expected] = row.split(" | ").collect::<Vec<_>>()[..] else {
+            panic!("{row}")
+        };
+        // `message` writes the escapes of quotes as slashes.
+        let found = text.replace('"', "/\"");
+        let place = format!("LOG/w/0-train/data-log.tsv:2, column {column}");
+        let message = format!("{place}: found \"{found}\", expected {expected}");
+        check(with_cell(index.parse().unwrap(), text), "metrics/cell", &message);
+    }
 }
 
 #[test]

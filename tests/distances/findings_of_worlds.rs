@@ -4,6 +4,7 @@ use driftworld::generator::Sampler;
 use driftworld::similarity::{Distance, Weights, world_distance, world_sets_distance};
 use driftworld::spec::{Color, Element, MotionModel, Object, Region, Stimulus, Wall, World, WorldDraft};
 use driftworld::tasks;
+use serde_json::Value;
 
 fn d(a: &World, b: &World) -> Distance {
     world_distance(a, b, &Weights::default())
@@ -135,58 +136,28 @@ fn added_costs_count() {
 /// 2, sizes of 1 and 1.0001 as 1 and 10; a map of 100 by 50 m equalled one of 50 by 100.
 #[test]
 fn magnitudes_are_graded() {
-    type Change = fn(&mut WorldDraft, f64);
-    let changes: [(&str, Change, [f64; 3]); 8] = [
-        (
-            "speed of a mover",
-            |world, speed| world.objects[0].speed = speed,
-            [2.0, 2.001, 20.0],
-        ),
-        (
-            "fog",
-            |world, metres| world.environment_params.fog_distance = Some(metres),
-            [60.0, 59.0, 2.0],
-        ),
-        (
-            "size",
-            |world, scale| world.objects[0].scale = scale,
-            [1.0, 1.0001, 10.0],
-        ),
-        (
-            "turn rate",
-            |world, rate| world.objects[0].turn_rate = Some(rate),
-            [90.0, 91.0, 720.0],
-        ),
-        (
-            "range",
-            |world, metres| world.objects[1].range_stimulus_distance = metres,
-            [2.0, 2.5, 19.0],
-        ),
-        (
-            "height of walls",
-            |world, metres| world.environment_params.wall_height = metres,
-            [4.0, 4.25, 9.0],
-        ),
-        (
-            "field of view",
-            |world, degrees| world.agent_params.field_of_view = degrees,
-            [60.0, 61.0, 120.0],
-        ),
-        (
-            "penalty",
-            |world, points| world.rules.order_penalty = points,
-            [-1.0, -1.25, -60.0],
-        ),
+    let changes = [
+        ("/objects/0/speed", [2.0, 2.001, 20.0]),
+        ("/environment_params/fog_distance", [60.0, 59.0, 2.0]),
+        ("/objects/0/scale", [1.0, 1.0001, 10.0]),
+        ("/objects/0/turn_rate", [90.0, 91.0, 720.0]),
+        ("/objects/1/range_stimulus_distance", [2.0, 2.5, 19.0]),
+        ("/environment_params/wall_height", [4.0, 4.25, 9.0]),
+        ("/agent_params/field_of_view", [60.0, 61.0, 120.0]),
+        ("/rules/order_penalty", [-1.0, -1.25, -60.0]),
     ];
-    for (name, change, values) in changes {
+    let mut taken = cube("red", 5.0, [3.0, 3.0]);
+    taken.reward_stimulus = vec![Stimulus::AgentInRange];
+    let mut mover = Object::new("ball", [0.0, 0.0]);
+    mover.motion_model = MotionModel::RandomWaypoint;
+    let plain: Value =
+        serde_json::to_value(world(|world| world.objects = vec![mover, taken])).expect("a world is JSON");
+    for (name, values) in changes {
         let [base, near, far] = values.map(|value| {
-            world(|world| {
-                let mut taken = cube("red", 5.0, [3.0, 3.0]);
-                taken.reward_stimulus = vec![Stimulus::AgentInRange];
-                world.objects.extend([Object::new("ball", [0.0, 0.0]), taken]);
-                world.objects[0].motion_model = MotionModel::RandomWaypoint;
-                change(world, value);
-            })
+            let mut json = plain.clone();
+            let (parent, key) = name.rsplit_once('/').expect("a pointer has a slash");
+            json.pointer_mut(parent).expect("every part is written")[key] = value.into();
+            World::from_json("w.json", &json.to_string()).unwrap_or_else(|error| panic!("{error}"))
         });
         let (near, far) = (d(&base, &near).total, d(&base, &far).total);
         let [at, by, to] = values.map(f64::abs);

@@ -309,39 +309,25 @@ mod tests {
 
     #[test]
     fn invalid_values_are_refused() {
-        let check = |text: &str, expected: &str| {
+        for row in r#"
+--mlagents-port => --mlagents-port: found no value, expected a port
+--mlagents-port 65536 => --mlagents-port: found "65536", expected a port from 1 to 65535
+--mlagents-port 0 => --mlagents-port: found "0", expected a port from 1 to 65535
+--wait NaN => --wait: found "NaN", expected seconds from 0.1 to 86400
+--world= => --world: found no value, expected a file
+--world --wait 5 => --world: found the option --wait, expected a file
+--maps -nographics => --maps: found the option -nographics, expected a file
+--wait -1 => --wait: found "-1", expected seconds from 0.1 to 86400
+--raw-observations=no => --raw-observations: found the value "no", expected none
+--raw-observations= => --raw-observations: found the value "", expected none"#
+            .trim()
+            .lines()
+        {
+            let (text, expected) = row.split_once(" => ").expect("a row has two parts");
             let error = parse(text).expect_err("the value cannot be");
             assert_eq!(error.to_string(), expected);
             assert_eq!(error.exit_code(), 2);
-        };
-        check("--mlagents-port", "--mlagents-port: found no value, expected a port");
-        check(
-            "--mlagents-port 65536",
-            "--mlagents-port: found \"65536\", expected a port from 1 to 65535",
-        );
-        check(
-            "--mlagents-port 0",
-            "--mlagents-port: found \"0\", expected a port from 1 to 65535",
-        );
-        check(
-            "--wait NaN",
-            "--wait: found \"NaN\", expected seconds from 0.1 to 86400",
-        );
-        check("--world=", "--world: found no value, expected a file");
-        check("--world --wait 5", "--world: found the option --wait, expected a file");
-        check(
-            "--maps -nographics",
-            "--maps: found the option -nographics, expected a file",
-        );
-        check("--wait -1", "--wait: found \"-1\", expected seconds from 0.1 to 86400");
-        check(
-            "--raw-observations=no",
-            "--raw-observations: found the value \"no\", expected none",
-        );
-        check(
-            "--raw-observations=",
-            "--raw-observations: found the value \"\", expected none",
-        );
+        }
     }
 
     #[test]

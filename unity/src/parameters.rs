@@ -139,45 +139,27 @@ mod tests {
         let mut parameters = Parameters::default();
         set(&mut parameters, "frame_skip", 4.0).expect("4 is sound");
         let before = parameters.clone();
-        let mut check = |key: &str, value: f32, expected: &str| {
+        for row in r#"
+frame_skip 0 => frame_skip = 0: ignored, expected a whole number from 1
+frame_skip 2.5 => expected a whole number from 1
+frame_skip 1e10 => frame_skip = 10000000000: ignored, expected at most 1000
+max_steps -1 => max_steps = -1: ignored, expected a whole number from 0
+max_steps NaN => max_steps = NaN: ignored, expected a whole number from 0
+max_steps inf => max_steps = inf: ignored, expected a whole number from 0
+max_steps 1e10 => max_steps = 10000000000: ignored, expected at most 1000000000
+field_of_view NaN => expected a number
+field_of_view 500 => 170
+feld_of_view 50 => did you mean "field_of_view"?
+gravity 9.8 => it has no meaning here"#
+            .trim()
+            .lines()
+        {
+            let (setting, expected) = row.split_once(" => ").expect("a row has two parts");
+            let (key, value) = setting.split_once(' ').expect("a setting has a value");
+            let value = value.parse().expect("it is a number");
             let reason = set(&mut parameters, key, value).expect_err("it cannot be");
             assert!(reason.contains(expected), "{reason}");
-        };
-        check(
-            "frame_skip",
-            0.0,
-            "frame_skip = 0: ignored, expected a whole number from 1",
-        );
-        check("frame_skip", 2.5, "expected a whole number from 1");
-        check(
-            "frame_skip",
-            1e10,
-            "frame_skip = 10000000000: ignored, expected at most 1000",
-        );
-        check(
-            "max_steps",
-            -1.0,
-            "max_steps = -1: ignored, expected a whole number from 0",
-        );
-        check(
-            "max_steps",
-            f32::NAN,
-            "max_steps = NaN: ignored, expected a whole number from 0",
-        );
-        check(
-            "max_steps",
-            f32::INFINITY,
-            "max_steps = inf: ignored, expected a whole number from 0",
-        );
-        check(
-            "max_steps",
-            1e10,
-            "max_steps = 10000000000: ignored, expected at most 1000000000",
-        );
-        check("field_of_view", f32::NAN, "expected a number");
-        check("field_of_view", 500.0, "170");
-        check("feld_of_view", 50.0, "did you mean \"field_of_view\"?");
-        check("gravity", 9.8, "it has no meaning here");
+        }
         assert_eq!(parameters, before);
     }
 }

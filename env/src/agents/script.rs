@@ -177,34 +177,19 @@ mod tests {
         assert_eq!(parse("script", text).expect("the script is sound"), expected, "{text}");
     }
 
-    fn refuse(text: &str, expected: &str) {
-        let said = parse("way.txt", text).expect_err("the script is not sound").to_string();
-        assert_eq!(said, expected, "{text}");
-    }
-
     #[test]
     fn actions_parse_as_in_the_console() {
         let action = Action::Continuous([2.0, 0.0, 1.0]);
+        let act = |action, steps| [Command::Act { action, steps }];
         for text in [
             "action -c 20 -a 2 0 1",
             "action -a 2 0 1 -c 20",
             "step 20 2 0 1 # ahead",
         ] {
-            check(text, &[Command::Act { action, steps: 20 }]);
+            check(text, &act(action, 20));
         }
-        let row = Action::Discrete(4);
-        check(
-            "# nothing yet\n\naction -a 4",
-            &[Command::Act { action: row, steps: 1 }],
-        );
-        let still = Action::Continuous([0.0; 3]);
-        check(
-            "step",
-            &[Command::Act {
-                action: still,
-                steps: 1,
-            }],
-        );
+        check("# nothing yet\n\naction -a 4", &act(Action::Discrete(4), 1));
+        check("step", &act(Action::Continuous([0.0; 3]), 1));
     }
 
     #[test]
@@ -225,42 +210,27 @@ mod tests {
 
     #[test]
     fn impossible_commands_are_refused_with_their_line() {
-        refuse(
-            "step\ntuch goal",
-            "way.txt:2: found command \"tuch\", expected one of step, action, touch, interact, near, tour, repeat; did you \
-             mean \"touch\"?",
-        );
-        refuse("step 0", "way.txt:1: found \"0\", expected how many steps, 1 to 100000");
-        refuse(
-            "step 5 1 2",
-            "way.txt:1: found \"step 5 1 2\", expected step [N] [A B C | ROW]",
-        );
-        refuse("step 5 1 nan 0", "way.txt:1: found \"nan\", expected a number");
-        refuse(
-            "step 5 north",
-            "way.txt:1: found \"north\", expected the number of a row of the action table, or three numbers",
-        );
-        refuse(
-            "near goal",
-            "way.txt:1: found \"near goal\", expected near NAME METRES [N]",
-        );
-        refuse(
-            "touch go\u{202e}al",
-            "way.txt:1: found \"go\\u{202e}al\", expected the name of an object: 1 to 100 characters that can be seen",
-        );
-        for metres in ["-1", "0", "inf", "far"] {
-            refuse(
-                &format!("near goal {metres}"),
-                &format!("way.txt:1: found {metres:?}, expected how many metres, more than 0"),
-            );
+        for row in r#"
+step | tuch goal => 2: found command "tuch", expected one of step, action, touch, interact, near, tour, repeat; did you mean "touch"?
+step 0 => 1: found "0", expected how many steps, 1 to 100000
+step 5 1 2 => 1: found "step 5 1 2", expected step [N] [A B C | ROW]
+step 5 1 nan 0 => 1: found "nan", expected a number
+step 5 north => 1: found "north", expected the number of a row of the action table, or three numbers
+near goal => 1: found "near goal", expected near NAME METRES [N]
+touch go\u{202e}al => 1: found "go\u{202e}al", expected the name of an object: 1 to 100 characters that can be seen
+near goal -1 => 1: found "-1", expected how many metres, more than 0
+near goal 0 => 1: found "0", expected how many metres, more than 0
+near goal inf => 1: found "inf", expected how many metres, more than 0
+near goal far => 1: found "far", expected how many metres, more than 0
+tour | repeat | step => 3: found "step", expected nothing after repeat, which begins anew
+# nothing |  |  => 2: found a script without a command, expected one of step, action, touch, interact, near, tour, repeat"#
+            .trim()
+            .lines()
+        {
+            let (text, expected) = row.split_once(" => ").expect("a row has two parts");
+            let text = text.replace(" | ", "\n").replace("\\u{202e}", "\u{202e}");
+            let said = parse("way.txt", &text).expect_err("the script is not sound").to_string();
+            assert_eq!(said, format!("way.txt:{expected}"), "{text}");
         }
-        refuse(
-            "tour\nrepeat\nstep",
-            "way.txt:3: found \"step\", expected nothing after repeat, which begins anew",
-        );
-        refuse(
-            "# nothing\n\n",
-            "way.txt:2: found a script without a command, expected one of step, action, touch, interact, near, tour, repeat",
-        );
     }
 }

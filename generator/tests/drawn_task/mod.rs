@@ -27,79 +27,37 @@ impl Numbers {
 }
 
 /// A parameter that may be chosen: its name, its declaration, and candidate default values.
-type Candidate = (&'static str, &'static str, &'static [&'static str]);
+type Candidate = (&'static str, &'static str, Vec<&'static str>);
 
-const CANDIDATES: [Candidate; 17] = [
-    ("a", r#""type": "number", "range": [0, 1]"#, &["0", "0.3", "0.55", "1"]),
-    (
-        "wolf_speed",
-        r#""type": "number", "range": [0, 10]"#,
-        &["0", "1", "2.5", "6"],
-    ),
-    (
-        "agent_speed",
-        r#""type": "number", "range": [0, 10]"#,
-        &["3", "5", "9", "10"],
-    ),
-    ("n", r#""type": "integer", "range": [0, 5]"#, &["0", "2", "5"]),
-    ("m", r#""type": "integer", "range": [-3, 8]"#, &["-3", "1", "4"]),
-    ("turn", r#""type": "heading", "range": [0, 360]"#, &["0", "40", "200"]),
-    (
-        "arc",
-        r#""type": "heading", "range": [300, 420]"#,
-        &["300", "350", "20"],
-    ),
-    (
-        "day",
-        r#""type": "boolean", "choices": [true, false]"#,
-        &["true", "false"],
-    ),
-    (
-        "sound",
-        r#""type": "boolean", "choices": [true, false]"#,
-        &["true", "false"],
-    ),
-    (
-        "word",
-        r#""type": "string", "choices": ["x", "y", "z"]"#,
-        &["\"x\"", "\"z\""],
-    ),
-    (
-        "look",
-        r#""type": "string", "choices": ["tree", "bush", "x", "y"]"#,
-        &["\"tree\"", "\"y\""],
-    ),
-    (
-        "good",
-        r#""type": "color", "choices": ["red", "green", "crimson", "white"]"#,
-        &["\"red\"", "\"white\""],
-    ),
-    (
-        "bad",
-        r#""type": "color", "choices": ["red", "green", "blue"]"#,
-        &["\"green\"", "\"blue\""],
-    ),
-    (
-        "pays",
-        r#""type": "vector", "range": [-10, 10]"#,
-        &["[-10, 10]", "[2, -4]", "[8, 8]"],
-    ),
-    (
-        "spot",
-        r#""type": "point", "choices": [[0, 0], [10, 0], [-10, 5], [3, 20]]"#,
-        &["[0, 0]", "[3, 20]"],
-    ),
-    (
-        "law",
-        r#""type": "distribution", "choices": [{ "constant": { "value": 0.2 } }, { "uniform": { "low": 0, "high": 1 } }, { "normal": { "mean": 0.9, "std": 0.1 } }]"#,
-        &[
-            r#"{ "constant": { "value": 0.2 } }"#,
-            r#"{ "uniform": { "low": 0, "high": 1 } }"#,
-        ],
-    ),
-    // Stands for the two ends of a law from which a randomized parameter is drawn.
-    ("ends", "", &["0"]),
-];
+/// The candidates, each ended by a semicolon. `ends` stands for the two ends of a law from which a randomized parameter is drawn.
+const CANDIDATES: &str = r#"
+a | "type": "number", "range": [0, 1] | 0 | 0.3 | 0.55 | 1;
+wolf_speed | "type": "number", "range": [0, 10] | 0 | 1 | 2.5 | 6;
+agent_speed | "type": "number", "range": [0, 10] | 3 | 5 | 9 | 10;
+n | "type": "integer", "range": [0, 5] | 0 | 2 | 5;
+m | "type": "integer", "range": [-3, 8] | -3 | 1 | 4;
+turn | "type": "heading", "range": [0, 360] | 0 | 40 | 200;
+arc | "type": "heading", "range": [300, 420] | 300 | 350 | 20;
+day | "type": "boolean", "choices": [true, false] | true | false;
+sound | "type": "boolean", "choices": [true, false] | true | false;
+word | "type": "string", "choices": ["x", "y", "z"] | "x" | "z";
+look | "type": "string", "choices": ["tree", "bush", "x", "y"] | "tree" | "y";
+good | "type": "color", "choices": ["red", "green", "crimson", "white"] | "red" | "white";
+bad | "type": "color", "choices": ["red", "green", "blue"] | "green" | "blue";
+pays | "type": "vector", "range": [-10, 10] | [-10, 10] | [2, -4] | [8, 8];
+spot | "type": "point", "choices": [[0, 0], [10, 0], [-10, 5], [3, 20]] | [0, 0] | [3, 20];
+law | "type": "distribution", "choices": [{ "constant": { "value": 0.2 } }, { "uniform": { "low": 0, "high": 1 } },
+    { "normal": { "mean": 0.9, "std": 0.1 } }] | { "constant": { "value": 0.2 } } | { "uniform": { "low": 0, "high": 1 } };
+ends |  | 0"#;
+
+fn candidates() -> Vec<Candidate> {
+    let row = |row: &'static str| {
+        let mut parts = row.split(" | ");
+        let mut next = || parts.next().expect("a row has a name, a declaration and values");
+        (next(), next(), parts.collect())
+    };
+    CANDIDATES.trim().split(";\n").map(row).collect()
+}
 
 const END: &str = r#""type": "number", "range": [0, 1]"#;
 
@@ -111,11 +69,11 @@ pub(crate) struct Drawn {
 
 impl Drawn {
     pub(crate) fn new(numbers: &mut Numbers) -> Self {
-        let mut candidates = Vec::new();
+        let (all, mut candidates) = (candidates(), Vec::new());
         let wanted = 2 + numbers.below(4);
         let mut axes = 0;
         while candidates.len() < wanted {
-            let candidate = *numbers.one_of(&CANDIDATES);
+            let candidate = numbers.one_of(&all).clone();
             let more = match candidate.0 {
                 "ends" | "pays" => 2,
                 _ => usize::from(candidate.1.contains("range") && !candidate.1.contains("integer")),
@@ -126,7 +84,10 @@ impl Drawn {
             }
         }
         if let Some(place) = candidates.iter().position(|(name, ..)| *name == "ends") {
-            let ends: [Candidate; 2] = [("lo", END, &["0", "0.1", "0.4"]), ("hi", END, &["0.4", "0.7", "1"])];
+            let ends: [Candidate; 2] = [
+                ("lo", END, vec!["0", "0.1", "0.4"]),
+                ("hi", END, vec!["0.4", "0.7", "1"]),
+            ];
             candidates.splice(place..=place, ends);
         }
         let names: Vec<&str> = candidates.iter().map(|(name, ..)| *name).collect();

@@ -175,14 +175,6 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn check_error(text: &str, expected: &str) {
-        assert_eq!(
-            DistanceMatrix::from_csv(text).unwrap_err().to_string(),
-            expected,
-            "{text:?}"
-        );
-    }
-
     #[test]
     fn csv_quotes_what_needs_it() {
         let names = vec!["a,b".to_owned(), "say \"x\"".to_owned()];
@@ -234,29 +226,21 @@ mod tests {
 
     #[test]
     fn bad_csv_error_names_the_place() {
-        check_error(
-            "",
-            "matrix, line 1: found no lines, expected a line of labels behind an empty cell",
-        );
-        check_error(
-            ",a,b\na,0,1\n",
-            "matrix, line 2: found 1 lines below the labels, expected 2, one for each label",
-        );
-        check_error(
-            ",a,b\na,0\nb,1,0\n",
-            "matrix, line 2: found 2 cells, expected 3: a label and 2 numbers",
-        );
-        check_error(
-            ",a,b\na,0,1\nc,1,0\n",
-            "matrix, line 3: found the label \"c\", expected \"b\", as in the first line",
-        );
-        check_error(
-            ",a,b\na,0,far\nb,1,0\n",
-            "matrix, line 2: found \"far\", expected a number",
-        );
-        check_error(
-            ",\"a\n",
-            "matrix, line 1: found quotes that do not end, expected a second quote",
-        );
+        for row in r#"
+ => 1: found no lines, expected a line of labels behind an empty cell
+,a,b|a,0,1| => 2: found 1 lines below the labels, expected 2, one for each label
+,a,b|a,0|b,1,0| => 2: found 2 cells, expected 3: a label and 2 numbers
+,a,b|a,0,1|c,1,0| => 3: found the label "c", expected "b", as in the first line
+,a,b|a,0,far|b,1,0| => 2: found "far", expected a number
+,"a| => 1: found quotes that do not end, expected a second quote"#
+            .lines()
+            .skip(1)
+        {
+            let (text, expected) = row.split_once(" => ").unwrap();
+            let error = DistanceMatrix::from_csv(&text.replace('|', "\n"))
+                .unwrap_err()
+                .to_string();
+            assert_eq!(error, format!("matrix, line {expected}"), "{text:?}");
+        }
     }
 }

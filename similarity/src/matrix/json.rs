@@ -69,14 +69,6 @@ fn without_place(error: &serde_json::Error) -> String {
 mod tests {
     use super::*;
 
-    fn check_error(text: &str, expected: &str) {
-        assert_eq!(
-            DistanceMatrix::from_json(text).unwrap_err().to_string(),
-            expected,
-            "{text}"
-        );
-    }
-
     #[test]
     fn json_round_trips() {
         let names = ["a", "say \"x\"", "é"].map(String::from).to_vec();
@@ -89,22 +81,24 @@ mod tests {
 
     #[test]
     fn bad_json_error_names_the_place() {
-        check_error(
-            "{\"labels\": [\"a\"],\n \"rows\": []}",
-            "matrix, line 2 column 7: found unknown field `rows`, expected one of `labels`, `nature`, `values`, \
-             expected an object with labels, nature and values",
-        );
-        check_error(
-            r#"{"labels": ["a", "b"], "values": [[0, 1]]}"#,
-            "matrix, number of rows: found 1, expected 2, one for each label",
-        );
-        check_error(
-            r#"{"labels": ["a", "b"], "values": [[0, 1], [1]]}"#,
-            "matrix, length of row 2: found 1, expected 2, one for each label",
-        );
-        check_error(
-            r#"{"labels": ["a", "b"], "values": [[0, -1], [-1, 0]]}"#,
-            "distance of \"a\" to \"b\": found -1, expected a number from 0 to 1e100",
-        );
+        let unknown = DistanceMatrix::from_json("{\"labels\": [\"a\"],\n \"rows\": []}").unwrap_err();
+        let expected = "matrix, line 2 column 7: found unknown field `rows`, expected one of `labels`, `nature`, `values`, \
+                        expected an object with labels, nature and values";
+        assert_eq!(unknown.to_string(), expected);
+        for row in r#"
+"values": [[0, 1]] => matrix, number of rows: found 1, expected 2, one for each label
+"values": [[0, 1], [1]] => matrix, length of row 2: found 1, expected 2, one for each label
+"values": [[0, -1], [-1, 0]] => distance of "a" to "b": found -1, expected a number from 0 to 1e100"#
+            .trim()
+            .lines()
+        {
+            let (rest, expected) = row.split_once(" => ").unwrap();
+            let text = format!("{{\"labels\": [\"a\", \"b\"],\n {rest}}}");
+            assert_eq!(
+                DistanceMatrix::from_json(&text).unwrap_err().to_string(),
+                expected,
+                "{text}"
+            );
+        }
     }
 }

@@ -279,87 +279,59 @@ fn gaussian(std: Option<&Spread>, correlation: Option<f64>, covariance: Option<&
 mod tests {
     use super::*;
 
-    #[track_caller]
-    fn check(json: &str, expected: Option<&str>) {
-        let distribution: Distribution = serde_json::from_str(json).unwrap_or_else(|error| panic!("{json}: {error}"));
-        assert_eq!(distribution.fault().map(|(_, expected)| expected), expected, "{json}");
+    /// Each row is a distribution and what is expected of it instead; "sound" if nothing.
+    fn check(rows: &str) {
+        for row in rows.trim().lines() {
+            let (json, expected) = row.split_once(" => ").unwrap();
+            let distribution: Distribution =
+                serde_json::from_str(json).unwrap_or_else(|error| panic!("{row}: {error}"));
+            let found = distribution.fault().map_or("sound", |(_, expected)| expected);
+            assert_eq!(found, expected, "{json}");
+        }
     }
 
     #[test]
     fn invalid_numbers_are_faults() {
-        let probability = Some("a probability in 0..1");
-        let weights = Some("one weight per value, none negative, not all 0");
-        check(r#"{"uniform": {"low": 0, "high": 1}}"#, None);
-        check(r#"{"uniform": {"low": 1, "high": 1}}"#, Some("low below high"));
         check(
-            r#"{"normal": {"mean": 1, "std": -1}}"#,
-            Some("a standard deviation of at least 0"),
-        );
-        check(r#"{"bernoulli": {"p": 1.5}}"#, probability);
-        check(r#"{"choice": {"values": [1, 2], "weights": [0, 0]}}"#, weights);
-        check(r#"{"choice": {"values": [1, 2], "weights": [1]}}"#, weights);
-        check(r#"{"mixture": {"parts": [{"bernoulli": {"p": 2}}]}}"#, probability);
-        check(
-            r#"{"mixture": {"parts": [{"bernoulli": {"p": 1}}], "weights": [-1]}}"#,
-            weights,
-        );
-        check(
-            r#"{"annulus": {"center": [0, 0], "inner": 3, "outer": 2}}"#,
-            Some("inner at least 0 and below outer"),
-        );
-        check(
-            r#"{"binomial": {"n": 2.5, "p": 0.5}}"#,
-            Some("a whole n in 0..100000 and p in 0..1"),
-        );
-        check(r#"{"gaussian": {"mean": [0, 0]}}"#, Some("one of std and covariance"));
-        check(
-            r#"{"gaussian": {"mean": [0, 0], "std": [1, 2], "correlation": 0.5}}"#,
-            None,
-        );
-        check(
-            r#"{"gaussian": {"mean": [0, 0], "covariance": [[4, 1], [1, 2]]}}"#,
-            None,
-        );
-        check(
-            r#"{"gaussian": {"mean": [0, 0], "covariance": [[1, 2], [2, 1]]}}"#,
-            Some("a symmetric matrix without negative eigenvalues, and no correlation beside it"),
-        );
-        check(r#"{"exponential": {"rate": 0}}"#, Some("a rate above 0"));
-        check(r#"{"geometric": {"p": 0}}"#, Some("a probability in 0.000000001..1"));
-        check(
-            r#"{"poisson_disc": {"low": [0, 0], "high": [1, 1], "distance": 0}}"#,
-            Some("a distance above 0, at most 600 m"),
-        );
-        check(r#"{"dirichlet": {"alpha": [1, 0]}}"#, Some("shapes in 0.001..1000000"));
-        check(
-            r#"{"von_mises": {"mean": 0, "kappa": -1}}"#,
-            Some("a concentration in 0..10000"),
+            r#"
+{"uniform": {"low": 0, "high": 1}} => sound
+{"uniform": {"low": 1, "high": 1}} => low below high
+{"normal": {"mean": 1, "std": -1}} => a standard deviation of at least 0
+{"bernoulli": {"p": 1.5}} => a probability in 0..1
+{"choice": {"values": [1, 2], "weights": [0, 0]}} => one weight per value, none negative, not all 0
+{"choice": {"values": [1, 2], "weights": [1]}} => one weight per value, none negative, not all 0
+{"mixture": {"parts": [{"bernoulli": {"p": 2}}]}} => a probability in 0..1
+{"mixture": {"parts": [{"bernoulli": {"p": 1}}], "weights": [-1]}} => one weight per value, none negative, not all 0
+{"annulus": {"center": [0, 0], "inner": 3, "outer": 2}} => inner at least 0 and below outer
+{"binomial": {"n": 2.5, "p": 0.5}} => a whole n in 0..100000 and p in 0..1
+{"gaussian": {"mean": [0, 0]}} => one of std and covariance
+{"gaussian": {"mean": [0, 0], "std": [1, 2], "correlation": 0.5}} => sound
+{"gaussian": {"mean": [0, 0], "covariance": [[4, 1], [1, 2]]}} => sound
+{"gaussian": {"mean": [0, 0], "covariance": [[1, 2], [2, 1]]}} => a symmetric matrix without negative eigenvalues, and no correlation beside it
+{"exponential": {"rate": 0}} => a rate above 0
+{"geometric": {"p": 0}} => a probability in 0.000000001..1
+{"poisson_disc": {"low": [0, 0], "high": [1, 1], "distance": 0}} => a distance above 0, at most 600 m
+{"dirichlet": {"alpha": [1, 0]}} => shapes in 0.001..1000000
+{"von_mises": {"mean": 0, "kappa": -1}} => a concentration in 0..10000"#,
         );
     }
 
     #[test]
     fn invalid_colours_are_faults() {
-        let color = Some("a colour with channels in 0..1");
-        let spread = Some("a spread of channels in 0..10");
-        check(r#"{"color_uniform": {"from": "red", "to": "blue"}}"#, None);
-        check(r#"{"color_uniform": {"from": "red", "to": [0, 2, 0]}}"#, color);
-        check(r#"{"color_normal": {"mean": [-1, 0, 0], "std": 0}}"#, color);
-        check(r#"{"color_normal": {"mean": "red", "std": [0, 0, -1]}}"#, spread);
-        check(r#"{"color_perturb": {"value": "red", "noise": 11}}"#, spread);
         check(
-            r#"{"color_perturb": {"value": "red", "noise": 1, "low": [0, 0, 3]}}"#,
-            color,
+            r#"
+{"color_uniform": {"from": "red", "to": "blue"}} => sound
+{"color_uniform": {"from": "red", "to": [0, 2, 0]}} => a colour with channels in 0..1
+{"color_normal": {"mean": [-1, 0, 0], "std": 0}} => a colour with channels in 0..1
+{"color_normal": {"mean": "red", "std": [0, 0, -1]}} => a spread of channels in 0..10
+{"color_perturb": {"value": "red", "noise": 11}} => a spread of channels in 0..10
+{"color_perturb": {"value": "red", "noise": 1, "low": [0, 0, 3]}} => a colour with channels in 0..1
+{"color_perturb": {"value": "red", "noise": 1, "low": "gray", "high": "red"}} => low not above high in any channel
+{"color_hsv": {"hue": [350, 370]}} => sound
+{"color_hsv": {"hue": [350, 10]}} => two hues in -360..720, the first not above the second, at most 360 degrees apart
+{"color_hsv": {"hue": [0, 361]}} => two hues in -360..720, the first not above the second, at most 360 degrees apart
+{"color_hsv": {"saturation": [0.5, 0.4]}} => two numbers in 0..1, the first not above the second
+{"color_hsv": {"value": [0.5, 1.4]}} => two numbers in 0..1, the first not above the second"#,
         );
-        check(
-            r#"{"color_perturb": {"value": "red", "noise": 1, "low": "gray", "high": "red"}}"#,
-            Some("low not above high in any channel"),
-        );
-        let hue = Some("two hues in -360..720, the first not above the second, at most 360 degrees apart");
-        check(r#"{"color_hsv": {"hue": [350, 370]}}"#, None);
-        check(r#"{"color_hsv": {"hue": [350, 10]}}"#, hue);
-        check(r#"{"color_hsv": {"hue": [0, 361]}}"#, hue);
-        let share = Some("two numbers in 0..1, the first not above the second");
-        check(r#"{"color_hsv": {"saturation": [0.5, 0.4]}}"#, share);
-        check(r#"{"color_hsv": {"value": [0.5, 1.4]}}"#, share);
     }
 }

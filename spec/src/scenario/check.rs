@@ -242,119 +242,86 @@ mod tests {
         read.map_or_else(|error| error.to_string(), |_| String::new())
     }
 
+    /// Words of the rows below, with what they stand for.
+    const WORDS: [(&str, &str); 9] = [
+        ("DIM", r#"{ AT, "values": { "light": 1 }, "name": "dim" }"#),
+        ("AT", r#""task": "t", "variant": "day", "count": 1"#),
+        ("DUSK", r#""task": "t", "variant": "dusk", "count": 1"#),
+        ("YARD", r#""task": "t", "variant": "yard", FILE"#),
+        ("OTHER", r#""task": "t", "variant": "yard", "world": "b.json", MORE"#),
+        ("FILE", r#""world": "maps/yard.json", MORE"#),
+        ("MORE", r#""max_steps": 20, "count": 1"#),
+        ("(0", "(/blocks/0/regimes/0"),
+        ("(1", "(/blocks/0/regimes/1"),
+    ];
+
+    /// Each row: regimes, and what is said of them; nothing if they are sound.
     #[track_caller]
-    fn check(regimes: &str, expected: &str) {
-        let said = said(regimes);
-        assert!(
-            if expected.is_empty() {
-                said.is_empty()
-            } else {
-                said.contains(expected)
-            },
-            "{said}"
-        );
+    fn check(rows: &str) {
+        for row in rows.trim().lines() {
+            let whole = WORDS
+                .iter()
+                .fold(row.to_owned(), |row, (word, text)| row.replace(word, text));
+            let (regimes, expected) = whole.split_once(" =>").unwrap();
+            let expected = expected.trim().replace("at 0", "at /blocks/0/regimes/0");
+            let said = said(regimes);
+            assert!(
+                said.contains(&expected) && said.is_empty() == expected.is_empty(),
+                "{row}: {said}"
+            );
+        }
     }
 
     #[test]
     fn values_need_a_name_and_a_name_means_one_variant() {
-        let dim = r#"{ "task": "t", "variant": "day", "values": { "light": 1 }, "name": "dim", "count": 1 }"#;
-        check(dim, "");
-        check(&format!("{dim}, {dim}"), "");
         check(
-            r#"{ "task": "t", "variant": "day", "name": "dim", "count": 1 }"#,
-            "(/blocks/0/regimes/0/name): found the name \"dim\" and no values, expected a name together with values; remove it",
-        );
-        check(
-            r#"{ "task": "t", "variant": "day", "values": { "light": 1 }, "count": 1 }"#,
-            "(/blocks/0/regimes/0/values): found values and no name, expected the key \"name\"",
-        );
-        check(
-            &format!("{dim}, {}", dim.replace("\"light\": 1", "\"light\": 1.5")),
-            "(/blocks/0/regimes/1/name): found \"dim\", which is another variant at /blocks/0/regimes/0",
-        );
-        check(
-            &format!(
-                r#"{}, {{ "task": "t", "variant": "dusk", "count": 1 }}"#,
-                dim.replace("dim", "dusk")
-            ),
-            "(/blocks/0/regimes/1/variant): found \"dusk\", which is another variant at /blocks/0/regimes/0",
+            r#"
+DIM =>
+DIM, DIM =>
+{ AT, "name": "dim" } => (0/name): found the name "dim" and no values, expected a name together with values; remove it
+{ AT, "values": { "light": 1 } } => (0/values): found values and no name, expected the key "name"
+DIM, { AT, "values": { "light": 1.5 }, "name": "dim" } => (1/name): found "dim", which is another variant at 0
+{ AT, "values": { "light": 1 }, "name": "dusk" }, { DUSK } => (1/variant): found "dusk", which is another variant at 0"#,
         );
     }
 
     #[test]
     fn end_of_a_drift_follows_the_rules_of_names() {
-        let drift = |end: &str| format!(r#"{{ "task": "t", "variant": "day", "drift": {{ {end} }}, "count": 1 }}"#);
-        let dim = drift(r#""to": "day", "values": { "light": 1 }, "name": "dim""#);
-        check(&dim, "");
-        check(
-            &drift(r#""to": "day", "values": { "light": 1 }"#),
-            "(/blocks/0/regimes/0/drift/values): found values and no name, expected the key \"name\"",
-        );
-        check(
-            &drift(r#""to": "dusk", "name": "dim""#),
-            "(/blocks/0/regimes/0/drift/name): found the name \"dim\" and no values",
-        );
-        check(
-            &drift(r#""to": "day", "values": { "light": 1 }, "name": "day""#),
-            "(/blocks/0/regimes/0/drift/name): found \"day\", which is another variant at /blocks/0/regimes/0",
-        );
-        check(
-            &drift(r#""to": "day", "task": "u""#),
-            "(/blocks/0/regimes/0/drift/task): found \"u\", expected \"switch\": \"task\" beside it; between two tasks",
-        );
         // A name belongs to one task, not to all.
         check(
-            &drift(r#""to": "day", "values": { "light": 1 }, "name": "day", "task": "u", "switch": "task""#),
-            "",
-        );
-        let lived = r#"{ "task": "t", "variant": "day", "values": { "light": 1 }, "name": "dim", "count": 1 }"#;
-        check(&format!("{dim}, {lived}"), "");
-        check(
-            &format!("{dim}, {}", lived.replace("\"light\": 1", "\"light\": 1.5")),
-            "(/blocks/0/regimes/1/name): found \"dim\", which is another variant at /blocks/0/regimes/0/drift",
+            r#"
+{ AT, "drift": { "to": "day", "values": { "light": 1 }, "name": "dim" } } =>
+{ AT, "drift": { "to": "day", "values": { "light": 1 } } } => (0/drift/values): found values and no name, expected the key "name"
+{ AT, "drift": { "to": "dusk", "name": "dim" } } => (0/drift/name): found the name "dim" and no values
+{ AT, "drift": { "to": "day", "values": { "light": 1 }, "name": "day" } } => (0/drift/name): found "day", which is another variant at 0
+{ AT, "drift": { "to": "day", "task": "u" } } => (0/drift/task): found "u", expected "switch": "task" beside it; between two tasks
+{ AT, "drift": { "to": "day", "values": { "light": 1 }, "name": "day", "task": "u", "switch": "task" } } =>
+{ AT, "drift": { "to": "day", "values": { "light": 1 }, "name": "dim" } }, DIM =>
+{ AT, "drift": { "to": "day", "values": { "light": 1.5 }, "name": "dim" } }, DIM => (1/name): found "dim", which is another variant at 0/drift"#,
         );
     }
 
     #[test]
     fn world_file_allows_no_drift_and_needs_valid_names() {
-        let world = r#"{ "task": "t", "variant": "yard", "world": "maps/yard.json", "max_steps": 20, "count": 1 }"#;
-        check(world, "");
         check(
-            &world.replace("\"count\"", "\"drift\": { \"to\": \"dusk\" }, \"count\""),
-            "(/blocks/0/regimes/0/drift): found a world file and drift, expected one of the two; a world file is lived as it is",
-        );
-        check(
-            &world.replace("\"yard\"", "\"a/yard\""),
-            "(/blocks/0/regimes/0/variant): found the name \"a/yard\" with the character \"/\", expected letters",
-        );
-        check(
-            &world.replace("\"t\"", "\"=t\""),
-            "(/blocks/0/regimes/0/task): found the name \"=t\" with",
-        );
-        check(
-            &format!("{world}, {}", world.replace("maps/yard", "other/yard")),
-            "(/blocks/0/regimes/1/variant): found \"yard\", which is another variant at /blocks/0/regimes/0",
+            r#"
+{ YARD } =>
+{ YARD, "drift": { "to": "dusk" } } => (0/drift): found a world file and drift, expected one of the two; a world file is lived as it is
+{ "task": "t", "variant": "a/yard", FILE } => (0/variant): found the name "a/yard" with the character "/", expected letters
+{ "task": "=t", "variant": "yard", FILE } => (0/task): found the name "=t" with
+{ YARD }, { OTHER } => (1/variant): found "yard", which is another variant at 0"#,
         );
     }
 
     #[test]
     fn variants_values_and_drifts_are_checked_against_the_task() {
-        check(r#"{ "task": "elsewhere.json", "variant": "any", "count": 1 }"#, "");
         check(
-            r#"{ "task": "t", "variant": "dask", "count": 1 }"#,
-            "(/blocks/0/regimes/0/variant): found \"dask\", expected a variant of t: day, dusk; did you mean \"dusk\"?",
-        );
-        check(
-            r#"{ "task": "t", "variant": "day", "values": { "light": 5 }, "name": "glare", "count": 1 }"#,
-            "(/blocks/0/regimes/0/values/light): found 5, expected a number in 0..4",
-        );
-        check(
-            r#"{ "task": "t", "variant": "day", "drift": { "to": "night" }, "count": 1 }"#,
-            "(/blocks/0/regimes/0/drift/to): found \"night\", expected a variant of t: day, dusk",
-        );
-        check(
-            r#"{ "task": "t", "variant": "day", "drift": { "to": "dusk", "values": { "lihgt": 1 }, "name": "dim" }, "count": 1 }"#,
-            "did you mean \"light\"?",
+            r#"
+{ "task": "elsewhere.json", "variant": "any", "count": 1 } =>
+{ "task": "t", "variant": "dask", "count": 1 } => (0/variant): found "dask", expected a variant of t: day, dusk; did you mean "dusk"?
+{ AT, "values": { "light": 5 }, "name": "glare" } => (0/values/light): found 5, expected a number in 0..4
+{ AT, "drift": { "to": "night" } } => (0/drift/to): found "night", expected a variant of t: day, dusk
+{ AT, "drift": { "to": "dusk", "values": { "lihgt": 1 }, "name": "dim" } } => did you mean "light"?"#,
         );
     }
 

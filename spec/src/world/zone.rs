@@ -246,32 +246,24 @@ mod tests {
         let disc = r#""disc": { "center": [0, 0], "radius": 3 }"#;
         check(&format!("{{ {disc} }}"), "");
         check(
-            "{ }",
-            "(/environment_params/zones/0): found neither a disc nor a polygon",
-        );
-        check(
-            &format!(r#"{{ {disc}, "polygon": [[0, 0], [1, 0], [0, 1]] }}"#),
-            "(/environment_params/zones/0): found both a disc and a polygon",
-        );
-        check(
-            r#"{ "polygon": [[0, 0], [1, 0]] }"#,
-            "(/environment_params/zones/0/polygon)",
-        );
-        check(
-            r#"{ "disc": { "center": [0, 0], "radius": 0 } }"#,
-            "(/environment_params/zones/0/disc/radius)",
-        );
-        check(
-            &format!(r#"{{ {disc}, "teleport": [11, 0] }}"#),
-            "(/environment_params/zones/0/teleport): found (11, 0), outside the 20 × 20 m arena",
-        );
-        check(
-            &format!(r#"{{ {disc}, "teleport": [7.5, 6] }}"#),
-            "(/environment_params/zones/0/teleport): found (7.5, 6), inside the wall /environment_params/walls/0",
-        );
-        check(
             r#"{ "disc": { "center": [0, 14], "radius": 3 } }"#,
             "the zone lies outside the 20 × 20 m arena",
         );
+        for row in r#"
+{ } => ): found neither a disc nor a polygon
+{ DISC, "polygon": [[0, 0], [1, 0], [0, 1]] } => ): found both a disc and a polygon
+{ "polygon": [[0, 0], [1, 0]] } => /polygon)
+{ "disc": { "center": [0, 0], "radius": 0 } } => /disc/radius)
+{ DISC, "teleport": [11, 0] } => /teleport): found (11, 0), outside the 20 × 20 m arena
+{ DISC, "teleport": [7.5, 6] } => /teleport): found (7.5, 6), inside the wall /environment_params/walls/0"#
+            .trim()
+            .lines()
+        {
+            let (zone, said) = row.split_once(" => ").unwrap();
+            check(
+                &zone.replace("DISC", disc),
+                &format!("(/environment_params/zones/0{said}"),
+            );
+        }
     }
 }

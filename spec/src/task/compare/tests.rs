@@ -18,56 +18,34 @@ const WORDS: &str = r#""role": "variant", "type": "string", "choices": ["a", "b"
 fn measure_must_fit_its_parameter() {
     check(r#"{ "measure": "difference", "weight": 3 }"#, NUMBER, "");
     check(r#"{ "measure": "same_or_not" }"#, WORDS, "");
-    check(
-        r#"{ "measure": "log_ratio" }"#,
-        NUMBER,
-        "/parameters/p/compare/measure): found log_ratio, expected a variant parameter of type number or integer whose values are all above 0 for it",
-    );
-    check(
-        r#"{ "measure": "ciede2000" }"#,
-        WORDS,
-        "/parameters/p/compare/measure): found ciede2000, expected a parameter of type color, or one whose distributions draw colours, for it",
-    );
-    check(
-        r#"{ "measure": "hellinger" }"#,
-        NUMBER,
-        "/parameters/p/compare/measure): found hellinger, expected a randomized parameter, or one of type distribution for it",
-    );
     let drawn = r#""role": "randomized", "type": "number", "distribution": { "uniform": { "low": 0, "high": 1 } }"#;
     check(r#"{ "measure": "hellinger" }"#, drawn, "");
     let color = r#""role": "variant", "type": "color", "choices": ["red", "tan"], "default": "red""#;
     check(r#"{ "measure": "hyab" }"#, color, "");
     check(r#"{ "measure": "relative_difference" }"#, NUMBER, "");
+    let number = "a variant parameter of type number or integer";
+    let colors = "a parameter of type color, or one whose distributions draw colours,";
+    let laws = "a randomized parameter, or one of type distribution";
     for (parameter, measure, expected) in [
-        (
-            color,
-            "relative_difference",
-            "a variant parameter of type number or integer for it",
-        ),
-        (
-            NUMBER,
-            "hyab",
-            "a parameter of type color, or one whose distributions draw colours, for it",
-        ),
-        (
-            NUMBER,
-            "energy",
-            "a randomized parameter, or one of type distribution for it",
-        ),
-        (
-            drawn,
-            "hyab",
-            "wasserstein_1, wasserstein_2, total_variation, hellinger, jensen_shannon, energy or \
-             same_or_not",
-        ),
-        (
-            drawn,
-            "relative_difference",
-            "wasserstein_1, wasserstein_2, total_variation, hellinger, jensen_shannon, energy or \
-             same_or_not",
-        ),
+        (NUMBER, "log_ratio", "NUMBER whose values are all above 0 for it"),
+        (WORDS, "ciede2000", "COLORS for it"),
+        (NUMBER, "hellinger", "LAWS for it"),
+        (color, "relative_difference", "NUMBER for it"),
+        (NUMBER, "hyab", "COLORS for it"),
+        (NUMBER, "energy", "LAWS for it"),
+        (drawn, "hyab", "MEASURES energy or same_or_not"),
+        (drawn, "relative_difference", "MEASURES energy or same_or_not"),
     ] {
-        let said = format!("/parameters/p/compare/measure): found {measure}, expected {expected}");
+        let measures = "wasserstein_1, wasserstein_2, total_variation, hellinger, jensen_shannon,";
+        let mut said = format!("/parameters/p/compare/measure): found {measure}, expected {expected}");
+        for (word, meaning) in [
+            ("NUMBER", number),
+            ("COLORS", colors),
+            ("LAWS", laws),
+            ("MEASURES", measures),
+        ] {
+            said = said.replace(word, meaning);
+        }
         check(&format!(r#"{{ "measure": "{measure}" }}"#), parameter, &said);
     }
 }
@@ -78,16 +56,7 @@ fn drawn_colours_need_a_measure_with_distances() {
         r#""role": "randomized", "type": "color", "distribution": { "color_normal": { "mean": "red", "std": 0.1 } }"#;
     let law = r#""role": "variant", "type": "distribution", "choices": [{ "color_hsv": {} }], "default": { "color_hsv": {} }"#;
     for parameter in [drawn, law] {
-        for fits in [
-            "srgb",
-            "cie76",
-            "ciede2000",
-            "oklab",
-            "hyab",
-            "wasserstein_1",
-            "wasserstein_2",
-            "same_or_not",
-        ] {
+        for fits in "srgb cie76 ciede2000 oklab hyab wasserstein_1 wasserstein_2 same_or_not".split(' ') {
             check(&format!(r#"{{ "measure": "{fits}" }}"#), parameter, "");
         }
         for odd in ["total_variation", "energy", "bures_wasserstein"] {
@@ -121,15 +90,7 @@ fn unused_measure_is_refused() {
     let numbers = drawn("number", r#""uniform": { "low": 0, "high": 90 }"#);
     let turns = r#""role": "variant", "type": "distribution", "choices": [{ "von_mises": { "mean": 0, "kappa": 1 } }],
         "default": { "von_mises": { "mean": 0, "kappa": 1 } }"#;
-    let measures = [
-        "wasserstein_1",
-        "wasserstein_2",
-        "total_variation",
-        "hellinger",
-        "jensen_shannon",
-        "energy",
-        "bures_wasserstein",
-    ];
+    let measures = "wasserstein_1 wasserstein_2 total_variation hellinger jensen_shannon energy bures_wasserstein";
     for (parameter, fits) in [
         (point.as_str(), [true, true, false, false, false, false, true]),
         (&shares, [true, false, false, false, false, false, false]),
@@ -138,7 +99,7 @@ fn unused_measure_is_refused() {
         (&words, [false, false, true, true, true, false, false]),
         (&numbers, [true, true, true, true, true, true, false]),
     ] {
-        for (measure, fits) in measures.iter().zip(fits) {
+        for (measure, fits) in measures.split(' ').zip(fits) {
             let text = format!(
                 r#"{{ "name": "t", "parameters": {{ "p": {{ "affects": ["S"], "compare": {{ "measure": "{measure}" }}, {parameter} }} }} }}"#
             );
@@ -165,39 +126,20 @@ fn measure_is_checked_against_the_distributions_of_another_parameter() {
 #[test]
 fn costs_must_be_distances_among_the_choices() {
     check(r#"{ "costs": [[0, 1, 2], [1, 0, 1.5], [2, 1.5, 0]] }"#, WORDS, "");
-    let wrong = |costs: &str, at: &str, said: &str| {
-        check(
-            &format!(r#"{{ "costs": {costs} }}"#),
-            WORDS,
-            &format!("/parameters/p/compare/costs{at}): {said}"),
-        );
-    };
-    wrong("[[0, 1], [1, 0]]", "", "found 2 rows, expected 3, one for each choice");
-    wrong(
-        "[[0, 1, 1], [1, 0], [1, 1, 0]]",
-        "/1",
-        "found 2 numbers, expected 3, one for each choice",
-    );
-    wrong(
-        "[[0, 1, 1], [2, 0, 1], [1, 1, 0]]",
-        "/1/0",
-        "found 2, expected 1, as at /0/1: as far there as back",
-    );
-    wrong(
-        "[[0, 1, 1], [1, 3, 1], [1, 1, 0]]",
-        "/1/1",
-        "found 3, expected 0: a choice is no distance from itself",
-    );
-    wrong(
-        "[[0, -1, 1], [-1, 0, 1], [1, 1, 0]]",
-        "/0/1",
-        "found -1, expected a number of at least 0",
-    );
-    wrong(
-        "[[0, 0, 0], [0, 0, 0], [0, 0, 0]]",
-        "",
-        "found costs that are all 0, expected some that are not, or a weight of 0",
-    );
+    for row in "
+[[0, 1], [1, 0]] => ): found 2 rows, expected 3, one for each choice
+[[0, 1, 1], [1, 0], [1, 1, 0]] => /1): found 2 numbers, expected 3, one for each choice
+[[0, 1, 1], [2, 0, 1], [1, 1, 0]] => /1/0): found 2, expected 1, as at /0/1: as far there as back
+[[0, 1, 1], [1, 3, 1], [1, 1, 0]] => /1/1): found 3, expected 0: a choice is no distance from itself
+[[0, -1, 1], [-1, 0, 1], [1, 1, 0]] => /0/1): found -1, expected a number of at least 0
+[[0, 0, 0], [0, 0, 0], [0, 0, 0]] => ): found costs that are all 0, expected some that are not, or a weight of 0"
+        .trim()
+        .lines()
+    {
+        let (costs, said) = row.split_once(" => ").unwrap();
+        let said = format!("/parameters/p/compare/costs{said}");
+        check(&format!(r#"{{ "costs": {costs} }}"#), WORDS, &said);
+    }
     check(
         r#"{ "costs": [[0]] }"#,
         NUMBER,
