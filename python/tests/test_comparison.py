@@ -2,6 +2,7 @@
 
 import importlib.util
 import json
+import shutil
 import sys
 from pathlib import Path
 from types import ModuleType
@@ -62,3 +63,49 @@ def test_a_log_says_what_it_is_of(compare: ModuleType) -> None:
         assert head["task"] in compare.tasks()["tasks"]
         # The budget is whole, but for the step of all environments in which it ends.
         assert rows[-1]["decisions"] > head["decisions"] - head["num_envs"] * head["settings"]["rollout"]
+
+
+def test_without_logs_of_jaxenstein_the_page_has_four_systems_and_says_so(
+    compare: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    shutil.copytree(compare.LOGS, tmp_path / "logs", ignore=shutil.ignore_patterns("jaxenstein-*"))
+    monkeypatch.setattr(compare, "LOGS", tmp_path / "logs")
+    found = " ".join(compare.page().split())
+    assert "# One PPO in four systems" in found
+    assert "3 of jaxenstein-simple, 3 of jaxenstein-house" in found
+    assert "| JAXenstein | `simple` | 3 |" not in found
+
+
+def test_run_and_speed_go_on_where_they_stopped(compare: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    started: list[tuple[str, ...]] = []
+
+    def python(_: object, system: str, core: int, *arguments: str) -> str:
+        started.append(arguments[:3])
+        if arguments[0] == "learn":
+            Path(arguments[3]).parent.mkdir(exist_ok=True)
+            Path(arguments[3]).touch()
+        return json.dumps({"task": arguments[1], "decisions": 10, "processor": 1.0, "core": core, "system": system})
+
+    monkeypatch.setattr(compare, "LOGS", tmp_path)
+    monkeypatch.setattr(compare.Systems, "python", python)
+    systems = compare.Systems(tmp_path, None)
+    (tmp_path / "minigrid").mkdir()
+    (tmp_path / "minigrid/0.jsonl").touch()
+    for anew, count in ((False, 3), (False, 0), (True, 4)):
+        started.clear()
+        compare.run(systems, [0], range(2), ["minigrid", "miniworld", "jaxenstein-simple"], None, anew)
+        # Of two seeds of two tasks: without a checkout of JAXenstein, its task is left out.
+        assert len(started) == count
+    for repeats, anew, count in ((1, False, 2), (3, False, 4), (3, False, 0), (3, True, 6)):
+        started.clear()
+        compare.speed(systems, 0, repeats, 1.0, ["minigrid", "miniworld"], anew)
+        assert len(started) == count
+    assert [row["repeat"] for row in compare.read(tmp_path / "speed.jsonl")] == [0, 0, 1, 1, 2, 2]
+
+
+def test_a_folder_that_is_no_checkout_is_refused(compare: ModuleType, tmp_path: Path) -> None:
+    with pytest.raises(SystemExit, match=r"--jaxenstein: found no jaxenstein/__init__\.py in .*, expected a checkout"):
+        compare.Systems(tmp_path, tmp_path)
+    (tmp_path / "jaxenstein").mkdir()
+    (tmp_path / "jaxenstein/__init__.py").touch()
+    assert "jaxenstein" in compare.Systems(tmp_path, tmp_path).names

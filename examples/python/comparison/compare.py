@@ -1,11 +1,13 @@
-"""Compares MiniGrid, MiniWorld, ViZDoom and Driftworld under one PPO: installs them, runs them, and writes docs/comparison.md.
+"""Compares MiniGrid, MiniWorld, ViZDoom, JAXenstein and Driftworld under one PPO: installs, runs them, and writes docs/comparison.md.
 
+    python examples/python/comparison/compare.py all WHEEL       # everything below; goes on where an earlier call stopped
     python examples/python/comparison/compare.py install WHEEL   # an environment of Python for each system; WHEEL is of `scripts/dist.sh`
     python examples/python/comparison/compare.py run             # three seeds of each task; a run whose log is there is not repeated
     python examples/python/comparison/compare.py speed           # steps a second alone, the systems in turn
     python examples/python/comparison/compare.py page            # docs/comparison.md from the logs; with --check compares
 
-Needs Python 3.10 or later and Linux; MiniWorld needs Mesa (Debian: libegl-mesa0 libgl1-mesa-dri libglu1-mesa).
+Needs Python 3.10 or later and Linux; MiniWorld needs Mesa (Debian: libegl-mesa0 libgl1-mesa-dri libglu1-mesa). JAXenstein is in no
+registry: name a checkout of its repository by --jaxenstein CHECKOUT before the command, or it is left out.
 """
 
 from __future__ import annotations
@@ -27,8 +29,9 @@ from typing import Any
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[2]
 LOGS, PAGE = HERE / "logs", ROOT / "docs/comparison.md"
-SYSTEMS = ["minigrid", "miniworld", "vizdoom", "driftworld"]
+SYSTEMS = ["minigrid", "miniworld", "vizdoom", "jaxenstein", "driftworld"]
 SEEDS = range(3)
+NUMBERS = ["no", "one", "two", "three", "four", "five"]
 #: Successes among the last hundred episodes that count as learned.
 SCORE, WINDOW = 0.8, 100
 
@@ -41,27 +44,63 @@ def tasks() -> dict[str, Any]:
 # --- installing and running -------------------------------------------------------------------------------------------
 
 
-def install(wheel: Path, envs: Path, torch: Path | None, only: list[str]) -> None:
-    """Makes environments, and writes down how long each took and how large it is. ``torch`` is a folder of packages with torch."""
+class Systems:
+    """The environments of Python in a folder, and JAXenstein's checkout, if there is one."""
+
+    def __init__(self, envs: Path, checkout: Path | None) -> None:
+        self.envs, self.checkout = envs.resolve(), checkout.resolve() if checkout else None
+        if self.checkout and not (self.checkout / "jaxenstein/__init__.py").is_file():
+            raise SystemExit(f"--jaxenstein: found no jaxenstein/__init__.py in {checkout}, expected a checkout of JAXenstein's repository")
+        self.names = [name for name in SYSTEMS if checkout or name != "jaxenstein"]
+
+    def asked(self, kinds: list[str], only: list[str]) -> dict[str, str]:
+        """The tasks (and rates) of the systems that are there: the system of each."""
+        found = {name: task["system"] for kind in kinds for name, task in tasks()[kind].items() if not only or name in only}
+        left = [name for name, system in found.items() if system not in self.names]
+        if left:
+            print(f"left out, without --jaxenstein CHECKOUT: {', '.join(left)}", flush=True)
+        return {name: system for name, system in found.items() if name not in left}
+
+    def python(self, system: str, core: int, *arguments: str) -> str:
+        """What ``learn.py`` prints in the environment of a system, on one core."""
+        program = [str(self.envs / system / "bin/python"), "-W", "ignore", str(HERE / "learn.py"), *arguments]
+        paths = [str(self.checkout)] if system == "jaxenstein" else []
+        variables = {**os.environ, "PYTHONPATH": os.pathsep.join([*paths, *filter(None, [os.environ.get("PYTHONPATH")])])}
+        # ViZDoom leaves a file of settings in the folder that it runs in.
+        command = ["taskset", "-c", str(core), *program]
+        done = subprocess.run(command, check=False, capture_output=True, text=True, cwd=self.envs, env=variables)
+        if done.returncode:
+            raise SystemExit(f"{system}: found exit code {done.returncode} of {' '.join(program)}\n{done.stderr[-2000:]}")
+        return done.stdout
+
+
+def install(systems: Systems, wheel: Path, torch: Path | None, only: list[str], keep: bool) -> None:
+    """Makes environments, and writes down how long each took and how large it is.
+
+    ``torch`` is a folder of packages with torch. ``keep`` leaves what is there, and gives Driftworld's the wheel.
+    """
     noted = LOGS / "install.json"
     found = json.loads(noted.read_text(encoding="utf-8")) if noted.is_file() else {}
-    for system in only or [*SYSTEMS, *([] if torch else ["learner"])]:
-        folder = envs / system
+    for system in only or [*systems.names, *([] if torch else ["learner"])]:
+        folder = systems.envs / system
+        pip = [str(folder / "bin/python"), "-m", "pip", "install", "--quiet", "--no-cache-dir", "--disable-pip-version-check"]
+        whole = own_packages(folder) / "zz_learner.pth"
+        if keep and whole.is_file():
+            if system == "driftworld":
+                subprocess.run([*pip, "--force-reinstall", "--no-deps", str(wheel)], check=True)
+            continue
         shutil.rmtree(folder, ignore_errors=True)
         subprocess.run([sys.executable, "-m", "venv", str(folder)], check=True)
         before = size(folder)
         what = ["-r", str(HERE / f"requirements/{system}.txt"), *([str(wheel)] if system == "driftworld" else [])]
         began = time.perf_counter()
-        pip = [str(folder / "bin/python"), "-m", "pip", "install", "--quiet", "--no-cache-dir", "--disable-pip-version-check"]
         subprocess.run([*pip, *what], check=True)
         seconds = time.perf_counter() - began
         found[system] = {"seconds": round(seconds, 1), "megabytes": round((size(folder) - before) / 1e6), "load": round(os.getloadavg()[0], 1)}
         print(system, found[system], flush=True)
-        if system != "learner":
-            # Looked into behind the system's own packages, whose versions come first.
-            others = [torch or own_packages(envs / "learner"), own_packages(envs / "driftworld")]
-            own = own_packages(folder)
-            (own / "zz_learner.pth").write_text("".join(f"{each}\n" for each in others if each != own), encoding="utf-8")
+        # Looked into behind the system's own packages, whose versions come first.
+        others = [torch or own_packages(systems.envs / "learner"), own_packages(systems.envs / "driftworld")]
+        whole.write_text("".join(f"{each}\n" for each in others if system != "learner" and each != whole.parent), encoding="utf-8")
     write(noted, json.dumps({system: found[system] for system in SYSTEMS if system in found}, indent=1) + "\n")
 
 
@@ -75,42 +114,42 @@ def size(folder: Path) -> int:
     return sum(each.lstat().st_size for each in folder.rglob("*") if each.is_file())
 
 
-def python(envs: Path, system: str, core: int, *arguments: str) -> str:
-    """What ``learn.py`` prints in the environment of a system, on one core."""
-    program = [str(envs / system / "bin/python"), "-W", "ignore", str(HERE / "learn.py"), *arguments]
-    # ViZDoom leaves a file of settings in the folder that it runs in.
-    done = subprocess.run(["taskset", "-c", str(core), *program], check=False, capture_output=True, text=True, cwd=envs)
-    if done.returncode:
-        raise SystemExit(f"{system}: found exit code {done.returncode} of {' '.join(program)}\n{done.stderr[-2000:]}")
-    return done.stdout
-
-
-def run(envs: Path, cores: list[int]) -> None:
+def run(systems: Systems, cores: list[int], seeds: range, only: list[str], decisions: int | None, anew: bool) -> None:
     """All seeds of all tasks whose logs are not there, one at a time on each core."""
-    wanted = [(name, seed) for seed in SEEDS for name in tasks()["tasks"]]
-    left = [(name, seed) for name, seed in wanted if not log_of(name, seed).is_file()]
+    asked = systems.asked(["tasks"], only)
+    for log in [log_of(name, seed) for seed in seeds for name in asked if anew]:
+        log.unlink(missing_ok=True)
+    left = [(name, seed) for seed in seeds for name in asked if not log_of(name, seed).is_file()]
 
     def one(core: int) -> None:
         while left:
             name, seed = left.pop(0)
-            python(envs, tasks()["tasks"][name]["system"], core, "learn", name, str(seed), str(log_of(name, seed)))
-            print(log_of(name, seed).relative_to(ROOT), flush=True)
+            began = time.perf_counter()
+            rest = [str(decisions)] if decisions else []
+            systems.python(asked[name], core, "learn", name, str(seed), str(log_of(name, seed)), *rest)
+            print(f"{name}, seed {seed}: {time.perf_counter() - began:.0f} s", flush=True)
 
     with ThreadPoolExecutor(len(cores)) as pool:
-        list(pool.map(one, cores))
+        try:
+            list(pool.map(one, cores))
+        finally:
+            # After an error or an interrupt, no core begins another.
+            left.clear()
 
 
-def speed(envs: Path, core: int, repeats: int, seconds: float) -> None:
-    """Rates without a learner, the systems in turn, so that a busy moment falls on all of them."""
-    rows = []
-    systems = {name: task["system"] for name, task in tasks()["tasks"].items()}
-    systems |= {name: rate["system"] for name, rate in tasks()["rates"].items()}
+def speed(systems: Systems, core: int, repeats: int, seconds: float, only: list[str], anew: bool) -> None:
+    """Rates without a learner, the systems in turn, so that a busy moment falls on all of them. Repeats that are whole are kept."""
+    path, asked = LOGS / "speed.jsonl", systems.asked(["tasks", "rates"], only)
+    old = [row for row in read(path) if not (anew and row["task"] in asked)] if path.is_file() else []
     for repeat in range(repeats):
-        for name, system in systems.items():
-            printed = python(envs, system, core, "speed", name, str(seconds))
-            rows.append(json.dumps({"repeat": repeat, **json.loads(printed.splitlines()[-1])}))
-            print(rows[-1], flush=True)
-    write(LOGS / "speed.jsonl", "".join(f"{row}\n" for row in rows))
+        rows = [row for row in old if row["repeat"] == repeat]
+        if not asked.keys() <= {row["task"] for row in rows}:
+            for name, system in asked.items():
+                printed = systems.python(system, core, "speed", name, str(seconds))
+                rows = [row for row in rows if row["task"] != name] + [{"repeat": repeat, **json.loads(printed.splitlines()[-1])}]
+                print(json.dumps(rows[-1]), flush=True)
+        old = [row for row in old if row["repeat"] != repeat] + rows
+        write(path, "".join(f"{json.dumps(row)}\n" for row in sorted(old, key=lambda row: row["repeat"])))
 
 
 def log_of(name: str, seed: int) -> Path:
@@ -169,6 +208,11 @@ def versions(systems: dict[str, str]) -> list[str]:
     return [f"{systems[key]} {own[0]}" for key, own in found.items() if own]
 
 
+def listed(names: list[str]) -> str:
+    """Names as in a sentence."""
+    return " and ".join([", ".join(names[:-1]), names[-1]])
+
+
 def spread(values: list[float], form: str) -> str:
     """The least and the largest of some numbers, or both in one if they look alike."""
     ends = [format(each, form) for each in (min(values), max(values))]
@@ -204,16 +248,19 @@ def page() -> str:
             spread([row["decisions"] / 1000 for row in reached], ".0f") if reached else "–",
             spread([row["processor"] / 60 for row in reached], ".2f") if reached else "–",
             rounded(rate := statistics.median(run["rate"] for run in found)),
-            f"{100 * rate / statistics.median(rates(measured, name)):.0f} %",
+            f"{100 * rate / statistics.median(own):.0f} %" if (own := rates(measured, name)) else "–",
         ])  # fmt: skip
     for name, task in named["tasks"].items():
-        own = rates(measured, name)
+        if not (own := rates(measured, name)):
+            continue
         frames = task["frames"]
         alone.append([
             named["systems"][task["system"]], f"`{task['name']}`", rounded(statistics.median(own)),
             f"{rounded(min(own))} to {rounded(max(own))}", rounded(frames * statistics.median(own)),
         ])  # fmt: skip
     for peer, ours in named["pairs"]:
+        if not (rates(measured, peer) and rates(measured, ours)):
+            continue
         each = [b / a for a, b in zip(rates(measured, peer), rates(measured, ours), strict=True)]
         what = {**named["tasks"], **named["rates"]}
         beside.append([f"{named['systems'][what[peer]['system']]}, `{what[peer]['name']}`", f"`{what[ours]['name']}`",
@@ -224,7 +271,14 @@ def page() -> str:
     settings = ", ".join(f"{key} {value:g}" for key, value in head["settings"].items() if key != "reward_scale")
     missing = {name: len(SEEDS) - len(runs.get(name, [])) for name in named["tasks"]}
     unfinished = ", ".join(f"{count} of {name}" for name, count in missing.items() if count)
+    heads = [run["head"] for found in runs.values() for run in found]
+    compiled = [row["compiling"] for row in (*heads, *measured) if "compiling" in row]
+    commits = [f"JAXenstein at commit {each}" for each in sorted({head["commit"] for head in heads if "commit" in head})]
+    shown = {named["tasks"][name]["system"] for name in runs}
     texts = {
+        "count": NUMBERS[len(shown)], "names": listed([label for key, label in named["systems"].items() if key in shown]),
+        "benchmarks": "[Benchmarks](benchmarks.md)",  # A link from docs/, where the template does not lie.
+        "compiled": f"in {spread(compiled, '.1f')} seconds of the processor" if compiled else "not measured here",
         "unfinished": f"**Not finished**: of {len(SEEDS)} seeds these are missing: {unfinished}. `compare.py run` runs them. " * bool(unfinished),
         "learned": table(
             ["system", "task", "seeds", "first 100, %", "last 100, %", "learned", "after, thousand decisions",
@@ -238,7 +292,7 @@ def page() -> str:
         "load": spread(loads, ".0f"), "speed_load": spread([row["load"] for row in measured], ".0f"),
         "repeats": str(1 + max(row["repeat"] for row in measured)), "score": f"{100 * SCORE:.0f}", "window": str(WINDOW),
         "versions": ", ".join(f"{key} {value}" for key, value in head["versions"].items()),
-        "systems": ", ".join(versions(named["systems"])), "date": min(run["head"]["began"] for found in runs.values() for run in found),
+        "systems": ", ".join([*versions(named["systems"]), *commits]), "date": min(head["began"] for head in heads),
     }  # fmt: skip
     text = (HERE / "page.md").read_text(encoding="utf-8")
     for key, value in texts.items():
@@ -255,30 +309,43 @@ def wrapped(part: str) -> str:
 
 def main() -> None:
     """Runs the command."""
+    global LOGS, PAGE
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--envs", type=Path, default=ROOT / "target/comparison", help="where the environments of Python are")
+    parser.add_argument("--jaxenstein", type=Path, metavar="CHECKOUT", help="a checkout of JAXenstein's repository; without it, JAXenstein is left out")
+    parser.add_argument("--logs", type=Path, help="another folder for the logs, which then also gets the page")
+    building, working, running, measuring = (argparse.ArgumentParser(add_help=False) for _ in range(4))
+    building.add_argument("wheel", type=Path)
+    building.add_argument("--torch", type=Path, metavar="SITE_PACKAGES", help="packages with torch that are there already, in place of new ones")
+    working.add_argument("--cores", default="0", help="such as 0,1: a run at a time on each; rates are measured on the first")
+    names = [*tasks()["tasks"], *tasks()["rates"]]
+    working.add_argument("--only", action="append", default=[], choices=names, metavar="NAME", help=f"one alone, repeatable: {', '.join(names)}")
+    working.add_argument("--anew", action="store_true", help="remove the logs first; without it, what they have is not done again")
+    running.add_argument("--seeds", type=int, default=len(SEEDS))
+    running.add_argument("--decisions", type=int, help="another budget, to try it")
+    measuring.add_argument("--repeats", type=int, default=3)
+    measuring.add_argument("--seconds", type=float, default=2.0, help="of the processor, for each rate in each repeat")
     commands = parser.add_subparsers(dest="command", required=True)
-    installing = commands.add_parser("install")
-    installing.add_argument("wheel", type=Path)
+    commands.add_parser("all", parents=[building, working, running, measuring])
+    installing = commands.add_parser("install", parents=[building])
     installing.add_argument("--only", action="append", default=[], choices=[*SYSTEMS, "learner"], help="one environment alone; repeatable")
-    installing.add_argument("--torch", type=Path, metavar="SITE_PACKAGES", help="packages with torch that are there already, in place of new ones")
-    commands.add_parser("run").add_argument("--cores", default="0", help="such as 0,1: a run at a time on each")
-    fast = commands.add_parser("speed")
-    fast.add_argument("--core", type=int, default=0)
-    fast.add_argument("--repeats", type=int, default=3)
-    fast.add_argument("--seconds", type=float, default=2.0, help="of the processor, for each rate in each repeat")
+    commands.add_parser("run", parents=[working, running])
+    commands.add_parser("speed", parents=[working, measuring])
     commands.add_parser("page").add_argument("--check", action="store_true", help="fail if the page is not that of the logs")
     given = parser.parse_args()
-    given.envs = given.envs.resolve()
-    if given.command == "install":
-        install(given.wheel.resolve(), given.envs, given.torch, given.only)
-    elif given.command == "run":
-        run(given.envs, [int(core) for core in given.cores.split(",")])
-    elif given.command == "speed":
-        speed(given.envs, given.core, given.repeats, given.seconds)
-    elif given.check and PAGE.read_text(encoding="utf-8") != page():
-        raise SystemExit("docs/comparison.md: found another page than that of the logs; run python examples/python/comparison/compare.py page")
-    elif not given.check:
+    if given.logs:
+        LOGS, PAGE = given.logs.resolve(), given.logs.resolve() / "comparison.md"
+    systems, everything = Systems(given.envs, given.jaxenstein), given.command == "all"
+    if everything or given.command == "install":
+        install(systems, given.wheel.resolve(), given.torch and given.torch.resolve(), [] if everything else given.only, keep=everything)
+    if everything or given.command == "run":
+        run(systems, [int(core) for core in given.cores.split(",")], range(given.seeds), given.only, given.decisions, given.anew)
+    if everything or given.command == "speed":
+        speed(systems, int(given.cores.split(",")[0]), given.repeats, given.seconds, given.only, given.anew)
+    if given.command == "page" and given.check:
+        if PAGE.read_text(encoding="utf-8") != page():
+            raise SystemExit("docs/comparison.md: found another page than that of the logs; run python examples/python/comparison/compare.py page")
+    elif everything or given.command == "page":
         write(PAGE, page())
 
 

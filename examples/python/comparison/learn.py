@@ -16,6 +16,7 @@ import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from systems import RATES, TASKS
@@ -57,8 +58,8 @@ def learn(name: str, seed: int, log: Path, decisions: int) -> None:
     said = {
         "task": name, "name": task.name, "seed": seed, "decisions": decisions, "size": SIZE, "num_envs": NUM_ENVS,
         "actions": learner.num_actions, "frames": task.frames, "settings": {key: getattr(settings, key) for key in settings.__slots__},
-        "versions": {each: importlib.metadata.version(each) for each in ("torch", "gymnasium", "numpy")},
-        "machine": platform.machine(), "began": time.strftime("%Y-%m-%d", time.gmtime()),
+        "versions": {each: importlib.metadata.version(each) for each in ("torch", "gymnasium", "numpy", "driftworld")},
+        "machine": platform.machine(), "began": time.strftime("%Y-%m-%d", time.gmtime()), **getattr(envs, "facts", {}),
     }  # fmt: skip
     partial = log.with_suffix(".part")
     partial.parent.mkdir(parents=True, exist_ok=True)
@@ -90,18 +91,18 @@ def learn(name: str, seed: int, log: Path, decisions: int) -> None:
 
 def speed(name: str, seconds: float) -> None:
     """Random actions for so many seconds of the processor, or a rate of ``RATES``; prints how many decisions they were, resets included."""
-    work = RATES[name]() if name in RATES else random_actions(name)
+    work, facts = (RATES[name](), {}) if name in RATES else random_actions(name)
     work()
     count, processor, began, began_processor = 0, 0.0, time.perf_counter(), processor_seconds()
     while processor < seconds:
         count += work()
         processor = processor_seconds() - began_processor
     found = {"task": name, "decisions": count, "wall": round(time.perf_counter() - began, 2), "processor": round(processor, 2)}
-    print(json.dumps({**found, "load": round(os.getloadavg()[0], 1)}))
+    print(json.dumps({**found, "load": round(os.getloadavg()[0], 1), **facts}))
 
 
-def random_actions(name: str) -> Callable[[], int]:
-    """Steps of all environments of a task."""
+def random_actions(name: str) -> tuple[Callable[[], int], dict[str, Any]]:
+    """Steps of all environments of a task, and what its system says of itself."""
     envs = TASKS[name].make(NUM_ENVS, SIZE)
     envs.reset(seed=0)
     table = np.random.default_rng(0).integers(int(envs.single_action_space.n), size=(16, NUM_ENVS))
@@ -111,7 +112,7 @@ def random_actions(name: str) -> Callable[[], int]:
             envs.step(actions)
         return len(table) * NUM_ENVS
 
-    return work
+    return work, getattr(envs, "facts", {})
 
 
 if __name__ == "__main__":

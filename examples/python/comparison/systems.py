@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import json
 import os
+import subprocess
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -122,6 +124,83 @@ def vizdoom(scenario: str, buttons: str, pays: float) -> Callable[[int, int], Ve
     return lambda num_envs, size: SyncVectorEnv([lambda: Doom(scenario, buttons.split(), pays, size)] * num_envs)
 
 
+#: Starts and the goal as in MiniGrid's room (more goals would cost JAXenstein time to draw); size, steps, turns, limit and the distance
+#: of a touch as in MiniWorld's, a cell a metre.
+ROOM = "\n".join(["#" * 8, *["#SSSSSS#"] * 5, "#SSSSSG#", "#" * 8])
+ROOM_TURN, ROOM_STEP, ROOM_TOUCH, ROOM_LIMIT, ROOM_ACTIONS = np.pi / 4, 0.7, 0.97, 50, 3
+
+
+class Jaxenstein(VectorEnv[Any, Any, Any]):
+    """A maze of JAXenstein in one batch by ``vmap``: a decision of all environments is one call of a compiled function.
+
+    As in ``SyncVectorEnv``, the step after an episode's last begins the next one. Only the picture that is seen is drawn.
+    """
+
+    def __init__(self, maze: str, num_envs: int, size: int) -> None:
+        # One thread. XLA reads its flags at the first import.
+        os.environ |= {"JAX_PLATFORMS": "cpu", "XLA_FLAGS": "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1"}
+        import jax
+        import jaxenstein
+        from jax import numpy as jnp
+
+        self.jax, self.num_envs = jax, num_envs
+        num_actions = jaxenstein.NUM_ACTIONS
+        if maze == "room":
+            numbers = {"turn_angle": ROOM_TURN, "move_speed": ROOM_STEP, "goal_radius": ROOM_TOUCH}
+            params = jaxenstein.EnvParams(**{key: jnp.float32(value) for key, value in numbers.items()})
+            num_actions = ROOM_ACTIONS
+            env = jaxenstein.RayMazeEnv.from_ascii(ROOM, params=params, episode_horizon=ROOM_LIMIT, img_h=size, img_w=size)
+        else:
+            env = jaxenstein.make_jaxenstein_env(maze, img_h=size, img_w=size)
+        self.single_observation_space = gym.spaces.Box(0, 255, env.observation_shape, np.uint8)
+        self.single_action_space = gym.spaces.Discrete(num_actions)
+        self.observation_space = gym.vector.utils.batch_space(self.single_observation_space, num_envs)
+        self.action_space = gym.vector.utils.batch_space(self.single_action_space, num_envs)
+
+        def step(states: Any, ended: Any, key: Any, actions: Any) -> tuple[tuple[Any, Any, Any], tuple[Any, Any, Any, Any]]:
+            key, use = jax.random.split(key)
+            _, fresh = jax.vmap(env.reset)(jax.random.split(use, num_envs))
+            _, moved, rewards, done, infos = jax.vmap(env.step)(states, actions)
+            states = jax.tree.map(lambda one, other: jnp.where(ended.reshape(-1, *[1] * (one.ndim - 1)), one, other), fresh, moved)
+            terminated, done = infos["reached_goal"] & ~ended, done & ~ended
+            seen = jax.vmap(env.render)(states), jnp.where(ended, 0, rewards), terminated, done & ~terminated
+            return (states, done, key), seen
+
+        # An ended environment begins anew, whatever its state was.
+        shapes = jax.eval_shape(jax.vmap(env.reset), jax.random.split(jax.random.key(0), num_envs))[1]
+        self.states = jax.tree.map(lambda each: jnp.zeros(each.shape, each.dtype), shapes)
+        self.function, self.compiled = step, jax.jit(step)
+        began = time.process_time()
+        self.reset(seed=0)
+        #: What a log says of it: the processor's seconds of the first call, in which XLA compiles, and which checkout this is.
+        self.facts = {"compiling": round(time.process_time() - began, 2), "jax": jax.__version__, "commit": commit(jaxenstein)}
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
+        """Begins an episode in all."""
+        self.carried = self.states, np.ones(self.num_envs, dtype=bool), self.jax.random.key(seed or 0)
+        return self.step(np.zeros(self.num_envs, dtype=np.int32))[0], {}
+
+    def step(self, actions: Any) -> tuple[Any, Any, Any, Any, dict[str, Any]]:
+        """One decision of each; waits for it."""
+        self.carried, seen = self.compiled(*self.carried, np.asarray(actions, dtype=np.int32))
+        pictures, rewards, terminated, truncated = (np.array(each) for each in seen)
+        return pictures, rewards.astype(np.float64), terminated, truncated, {}
+
+
+def commit(package: Any) -> str:
+    """The commit of the checkout that a package was imported from, if it is a clone."""
+    clone = Path(package.__file__).parents[1] / ".git"
+    if not clone.exists():
+        return "unknown"
+    asked = ["git", "--git-dir", str(clone), "rev-parse", "--short=12", "HEAD"]
+    return subprocess.run(asked, check=True, capture_output=True, text=True).stdout.strip()
+
+
+def jaxenstein(maze: str) -> Callable[[int, int], VectorEnv[Any, Any, Any]]:
+    """A maze of its own with its five actions and limit of steps, or ``ROOM``."""
+    return lambda num_envs, size: Jaxenstein(maze, num_envs, size)
+
+
 def driftworld_miniworld(num_envs: int, size: int) -> VectorEnv[Any, Any, Any]:
     """MiniWorld's task by the id of ours, in the same loop as MiniWorld."""
     import driftworld  # noqa: F401
@@ -160,6 +239,22 @@ def rate_of_doom() -> Callable[[], int]:
     return work
 
 
+def rate_of_jaxenstein() -> Callable[[], int]:
+    """32 decisions of 16 environments in one compiled call, as a learner written in JAX would have them."""
+    envs, steps = Jaxenstein("my-way-home", 16, 32), 32
+    table = np.random.default_rng(0).integers(int(envs.single_action_space.n), size=(steps, envs.num_envs), dtype=np.int32)
+    compiled = envs.jax.jit(lambda carried, table: envs.jax.lax.scan(lambda last, actions: envs.function(*last, actions), carried, table))
+    carried = envs.carried
+
+    def work() -> int:
+        nonlocal carried
+        carried, seen = envs.jax.block_until_ready(compiled(carried, table))
+        assert seen[0].shape == (steps, envs.num_envs, 32, 32, 3)
+        return steps * envs.num_envs
+
+    return work
+
+
 def rate_of_driftworld() -> Callable[[], int]:
     """One of ours alone: colour, depth and classes at 160 × 120 in a room with a box, a step of the engine for each decision."""
     from driftworld.envs import DriftworldVectorEnv
@@ -178,14 +273,17 @@ def rate_of_driftworld() -> Callable[[], int]:
     return work
 
 
-#: Rates of one environment with more than a picture: what makes them.
-RATES = {"vizdoom-depth": rate_of_doom, "driftworld-depth": rate_of_driftworld}
+#: Rates of something else than the loop of a learner: what makes them.
+RATES = {"vizdoom-depth": rate_of_doom, "driftworld-depth": rate_of_driftworld, "jaxenstein-rollouts": rate_of_jaxenstein}
 
 _MAKE = {
     "minigrid": minigrid,
     "miniworld": miniworld,
+    "jaxenstein-room": jaxenstein("room"),
+    "jaxenstein-simple": jaxenstein("simple"),
     "driftworld-room": driftworld_miniworld,
     "vizdoom-house": vizdoom("my_way_home", "TURN_LEFT TURN_RIGHT MOVE_FORWARD", 1.0),
+    "jaxenstein-house": jaxenstein("my-way-home"),
     "driftworld-house": driftworld_family("way_home", 5, [[0, -90, 0], [0, 90, 0], [4, 0, 0]]),
     "vizdoom-basic": vizdoom("basic", "MOVE_LEFT MOVE_RIGHT ATTACK", 100.0),
 }
