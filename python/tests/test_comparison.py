@@ -68,6 +68,7 @@ def test_a_log_says_what_it_is_of(compare: ModuleType) -> None:
 def test_without_logs_of_jaxenstein_the_page_has_four_systems_and_says_so(
     compare: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    assert "five systems" in compare.page()
     shutil.copytree(compare.LOGS, tmp_path / "logs", ignore=shutil.ignore_patterns("jaxenstein-*"))
     monkeypatch.setattr(compare, "LOGS", tmp_path / "logs")
     found = " ".join(compare.page().split())
