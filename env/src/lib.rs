@@ -32,14 +32,14 @@ pub use abstraction::{
 };
 pub use agents::{Agent, Label, NetworkAgent, OnRailsAgent, RandomAgent, SarsaAgent, ScriptedAgent, StillAgent};
 pub use assets::{
-    Asset, Catalogue, ColliderShape, FIRST_LIBRARY_CLASS, Library, LibraryModel, MAX_LIBRARY_MODELS, MAX_MODEL_LEVELS,
-    MAX_MODEL_PARTS, MAX_MODEL_REACH, MAX_MODEL_TRIANGLES, MAX_MODEL_VERTICES, MAX_NAME_BYTES, Mesh, Paint, Part,
-    UNKNOWN_CLASS, asset, asset_in, classes, model_names,
+    Asset, Catalogue, ColliderKind, ColliderShape, FIRST_LIBRARY_CLASS, Library, LibraryModel, MAX_LIBRARY_MODELS,
+    MAX_MODEL_LEVELS, MAX_MODEL_PARTS, MAX_MODEL_REACH, MAX_MODEL_TRIANGLES, MAX_MODEL_VERTICES, MAX_NAME_BYTES, Mesh,
+    Paint, Part, UNKNOWN_CLASS, asset, asset_in, classes, model_names,
 };
 #[cfg(feature = "gltf")]
 pub use assets::{
-    ColliderKind, ImportOptions, ImportSize, ImportWarning, Imported, MAX_IMPORT_BYTES, MAX_IMPORT_DEPTH,
-    MAX_IMPORT_NODES, MAX_TEXTURE_SIDE, ReadBeside,
+    ImportOptions, ImportSize, ImportWarning, Imported, MAX_IMPORT_BYTES, MAX_IMPORT_DEPTH, MAX_IMPORT_NODES,
+    MAX_TEXTURE_SIDE, ReadBeside,
 };
 pub use batch::{
     Autoreset, Batch, BatchOptions, Episode, GoOn, ImageLayout, Images, MAX_BATCH_BYTES, MAX_ENVS, Outputs, WorldSource,

@@ -22,8 +22,8 @@ pub(crate) use blocks::{BLOCK, Block, Material};
 pub use catalogue::{Catalogue, FIRST_LIBRARY_CLASS, UNKNOWN_CLASS};
 #[cfg(feature = "gltf")]
 pub use import::{
-    ColliderKind, ImportOptions, ImportSize, ImportWarning, Imported, MAX_IMPORT_BYTES, MAX_IMPORT_DEPTH,
-    MAX_IMPORT_NODES, MAX_TEXTURE_SIDE, ReadBeside,
+    ImportOptions, ImportSize, ImportWarning, Imported, MAX_IMPORT_BYTES, MAX_IMPORT_DEPTH, MAX_IMPORT_NODES,
+    MAX_TEXTURE_SIDE, ReadBeside,
 };
 pub use library::{
     Library, LibraryModel, MAX_LIBRARY_MODELS, MAX_MODEL_LEVELS, MAX_MODEL_PARTS, MAX_MODEL_REACH, MAX_MODEL_TRIANGLES,
@@ -125,9 +125,29 @@ pub enum Paint {
     Fixed([f32; 3]),
 }
 
-/// The shape of a body, in metres at scale 1.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+/// Which collider an imported model gets.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
+pub enum ColliderKind {
+    /// A ball for models that are round on all sides, otherwise the smaller one of box and cylinder.
+    #[default]
+    Auto,
+    /// The box around the part below 2 m, as high as the model.
+    Box,
+    /// A ball as high as the model.
+    Ball,
+    /// The upright cylinder around the part below 2 m, as high as the model.
+    Cylinder,
+    /// Like the cylinder, with round ends.
+    Capsule,
+    /// An approximate convex hull of the whole model, of at most 64 points.
+    Hull,
+}
+
+/// The shape of a body, in metres at scale 1.
+#[derive(Clone, Debug, PartialEq, Deserialize, strum::IntoStaticStr)]
+#[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "lowercase")]
 pub enum ColliderShape {
     /// A box of these half sides.
     Box {

@@ -55,7 +55,7 @@ impl List {
                 let triangles: Vec<usize> = asset.levels().map(|(triangles, _)| triangles).collect();
                 found.push(json!({
                     "library": path, "class": model.class(), "model": model.name(), "triangles": triangles,
-                    "height": asset.height, "width": 2.0 * asset.radius, "body": name(&asset.collider),
+                    "height": asset.height, "width": 2.0 * asset.radius, "body": <&str>::from(&asset.collider),
                 }));
             }
         }
@@ -93,7 +93,7 @@ fn built_in() -> String {
         let counts: BTreeSet<usize> = assets().map(|asset| triangles(&asset)).collect();
         let heights = || assets().map(|asset| asset.height);
         let (low, high) = (heights().fold(f32::INFINITY, f32::min), heights().fold(0.0, f32::max));
-        let bodies: BTreeSet<&str> = assets().map(|asset| name(&asset.collider)).collect();
+        let bodies: BTreeSet<&str> = assets().map(|asset| (&asset.collider).into()).collect();
         [
             class.to_owned(),
             catalogue.class_number(class).to_string(),
@@ -121,16 +121,6 @@ fn built_in() -> String {
     )
 }
 
-fn name(collider: &ColliderShape) -> &'static str {
-    match collider {
-        ColliderShape::Box { .. } => "box",
-        ColliderShape::Ball { .. } => "ball",
-        ColliderShape::Cylinder { .. } => "cylinder",
-        ColliderShape::Capsule { .. } => "capsule",
-        ColliderShape::Hull { .. } => "hull",
-    }
-}
-
 fn body(collider: &ColliderShape) -> String {
     let size = match collider {
         ColliderShape::Box { half: [x, y, z] } => format!("{:.2} × {:.2} × {:.2} m", 2.0 * x, 2.0 * y, 2.0 * z),
@@ -140,5 +130,5 @@ fn body(collider: &ColliderShape) -> String {
         }
         ColliderShape::Hull { points } => format!("of {} points", points.len()),
     };
-    format!("{} {size}", name(collider))
+    format!("{} {size}", <&str>::from(collider))
 }

@@ -4,9 +4,11 @@
 use std::path::Path;
 use std::path::PathBuf;
 
+use crate::env::ColliderKind;
 #[cfg(feature = "gltf")]
-use crate::env::{ColliderKind, ImportOptions, ImportSize, Library, LibraryModel};
-use clap::{Args, ValueEnum};
+use crate::env::{ImportOptions, ImportSize, Library, LibraryModel};
+use crate::numbers::documented;
+use clap::Args;
 #[cfg(feature = "gltf")]
 use driftworld_text::ShownPath;
 
@@ -42,8 +44,8 @@ pub(crate) struct Pack {
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, allow_negative_numbers = true)]
     scale: f32,
     /// Shape of the collider.
-    #[arg(long, value_enum, default_value_t = Body::Auto)]
-    collider: Body,
+    #[arg(long, value_parser = documented::<ColliderKind>(&COLLIDERS), default_value = "auto")]
+    collider: ColliderKind,
     /// Material that takes an object's colour [default: the one named main, if any].
     #[arg(long, value_name = "MATERIAL")]
     main: Option<String>,
@@ -52,22 +54,15 @@ pub(crate) struct Pack {
     json: bool,
 }
 
-/// The bodies that models can get.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Body {
-    /// A ball if the model is round, else the smaller of box and cylinder.
-    Auto,
-    /// A box around the part below 2 m.
-    Box,
-    /// A ball as high as the model.
-    Ball,
-    /// A cylinder around the part below 2 m.
-    Cylinder,
-    /// A capsule: a cylinder with round ends.
-    Capsule,
-    /// Approximately the convex hull of the model.
-    Hull,
-}
+/// The colliders that models can get.
+const COLLIDERS: [&str; 6] = [
+    "auto: A ball if the model is round, else the smaller of box and cylinder",
+    "box: A box around the part below 2 m",
+    "ball: A ball as high as the model",
+    "cylinder: A cylinder around the part below 2 m",
+    "capsule: A capsule: a cylinder with round ends",
+    "hull: Approximately the convex hull of the model",
+];
 
 #[cfg(not(feature = "gltf"))]
 impl Pack {
@@ -111,7 +106,7 @@ impl Pack {
             name: free_name(library, &class),
             class,
             size: self.height.map_or(ImportSize::Scale(self.scale), ImportSize::Height),
-            collider: self.collider.kind(),
+            collider: self.collider,
             main: self.main.clone(),
         };
         let bytes = gltf::model(path)?;
@@ -132,18 +127,4 @@ fn free_name(library: &Library, class: &str) -> String {
     };
     let mut names = (1_u32..).map(|number| number.to_string());
     names.find(|name| !taken(name)).unwrap_or_default()
-}
-
-#[cfg(feature = "gltf")]
-impl Body {
-    fn kind(self) -> ColliderKind {
-        match self {
-            Self::Auto => ColliderKind::Auto,
-            Self::Box => ColliderKind::Box,
-            Self::Ball => ColliderKind::Ball,
-            Self::Cylinder => ColliderKind::Cylinder,
-            Self::Capsule => ColliderKind::Capsule,
-            Self::Hull => ColliderKind::Hull,
-        }
-    }
 }

@@ -3,31 +3,13 @@
 use std::f32::consts::PI;
 
 use super::surface::Surface;
-use crate::assets::ColliderShape;
+use crate::assets::{ColliderKind, ColliderShape};
 
 /// Only the part of a model below this height, in metres, determines its width: agents cannot bump into a tree's crown.
 const KNEE_TO_HEAD: f32 = 2.0;
 
 /// Least half size of a collider in metres, so that flat sheets have one.
 const LEAST: f32 = 0.01;
-
-/// Which collider a model gets.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum ColliderKind {
-    /// A ball for models that are round on all sides, otherwise the smaller one of box and cylinder.
-    #[default]
-    Auto,
-    /// The box around the part below 2 m, as high as the model.
-    Box,
-    /// A ball as high as the model.
-    Ball,
-    /// The upright cylinder around the part below 2 m, as high as the model.
-    Cylinder,
-    /// Like the cylinder, with round ends.
-    Capsule,
-    /// An approximate convex hull of the whole model, of at most 64 points.
-    Hull,
-}
 
 /// Extents of a model around its upright axis.
 struct Extent {

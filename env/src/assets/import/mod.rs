@@ -21,7 +21,6 @@ mod texture;
 mod uri;
 mod warning;
 
-pub use fit::ColliderKind;
 pub use limits::{MAX_IMPORT_BYTES, MAX_IMPORT_DEPTH, MAX_IMPORT_NODES, MAX_TEXTURE_SIDE};
 pub use options::{ImportOptions, ImportSize};
 pub use uri::ReadBeside;

@@ -1,8 +1,8 @@
 //! Options for importing a glTF file.
 
-use super::fit::ColliderKind;
 use super::refusal::refuse;
 use crate::EnvError;
+use crate::assets::ColliderKind;
 use crate::assets::library::MAX_MODEL_REACH;
 
 /// How to import a glTF file.
