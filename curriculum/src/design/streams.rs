@@ -2,12 +2,14 @@
 //! worlds, first indices of learning on the variant.
 
 use driftworld_spec::{MAX_EXPERIENCES, Regime};
+use serde::Deserialize;
 
 use super::{Choice, Design, MAX_BLOCKS};
 use crate::hash::number_of;
 
 /// The purpose of the worlds in evaluation blocks. The two splits share no world.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Split {
     /// For choosing hyperparameters and agents.
     Validation,

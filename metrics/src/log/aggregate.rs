@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use std::io::{self, Write};
 
 use driftworld_text::Cells;
+use serde::Deserialize;
 
 use super::columns::{STANDARD, delimited};
 use super::record::ExpStatus;
@@ -27,11 +28,13 @@ pub enum KeptRows {
 }
 
 /// The separator between the cells of a line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 pub enum Delimiter {
     /// TSV.
+    #[serde(rename = "tsv")]
     Tab,
     /// CSV.
+    #[serde(rename = "csv")]
     Comma,
 }
 

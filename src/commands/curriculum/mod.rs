@@ -13,7 +13,7 @@ use crate::spec::{
     DriftSchedule, DriftSwitch, Element, Modality, Scenario, ScenarioComplexity, ScenarioDifficulty, ScenarioForm,
     TaskLabel,
 };
-use clap::{Args, ValueEnum};
+use clap::Args;
 use serde_json::json;
 
 use super::assets::LibraryChoice;
@@ -126,8 +126,8 @@ pub(crate) struct Curriculum {
     #[arg(long, visible_alias = "evaluate-with", default_value_t = 50, value_name = "N")]
     eval_episodes: u32,
     /// When to evaluate the frozen agent, on all variants.
-    #[arg(long, value_enum, default_value_t = EvaluationSchedule::Every)]
-    evaluate: EvaluationSchedule,
+    #[arg(long, value_parser = documented::<Evaluate>(&EVALUATIONS), default_value = "every")]
+    evaluate: Evaluate,
     /// Evaluate after these numbers of learning blocks instead. 0 is before the first.
     #[arg(long, value_delimiter = ',', value_name = "N,…", conflicts_with = "evaluate")]
     evaluate_after: Option<Vec<u32>>,
@@ -144,8 +144,8 @@ pub(crate) struct Curriculum {
     #[arg(long, default_value_t = 0, allow_negative_numbers = true, value_parser = numbers::seed)]
     seed: u64,
     /// Which worlds to evaluate on: validation to choose hyperparameters, test for what you report.
-    #[arg(long, value_enum, default_value_t = WorldSplit::Test)]
-    split: WorldSplit,
+    #[arg(long, value_parser = documented::<Split>(&SPLITS), default_value = "test")]
+    split: Split,
     /// Learn the variants of a task in the same layouts, one by one.
     ///
     /// A learner can then use what it remembers of a layout, not of the task. By default, no two variants share one.
@@ -202,13 +202,10 @@ fn described(designed: &Designed) -> serde_json::Value {
 }
 
 /// When the agent is evaluated.
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum EvaluationSchedule {
-    /// Before the first learning block and after each.
-    Every,
-    /// Before the first learning block and after the last.
-    Ends,
-}
+const EVALUATIONS: [&str; 2] = [
+    "every: Before the first learning block and after each",
+    "ends: Before the first learning block and after the last",
+];
 
 /// Forms: arrangements of learning blocks.
 const FORMS: [&str; 7] = [
@@ -233,13 +230,10 @@ const COMPLEXITIES: [&str; 3] = ["1-low", "2-intermediate", "3-high"];
 const DIFFICULTIES: [&str; 3] = ["1-easy", "2-medium", "3-hard"];
 
 /// What the worlds of evaluation are for.
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum WorldSplit {
-    /// For choosing hyperparameters and agents.
-    Validation,
-    /// For what you report.
-    Test,
-}
+const SPLITS: [&str; 2] = [
+    "validation: For choosing hyperparameters and agents",
+    "test: For what you report",
+];
 
 impl Curriculum {
     pub(crate) fn run(self) -> Result<(), Failure> {
@@ -364,19 +358,12 @@ impl Curriculum {
             name: self.name.clone(),
             learn: self.learn,
             evaluate: self.eval_episodes,
-            evaluation: match (&self.evaluate_after, self.evaluate) {
-                (Some(places), _) => Evaluate::After(places.clone()),
-                (None, EvaluationSchedule::Every) => Evaluate::Every,
-                (None, EvaluationSchedule::Ends) => Evaluate::Ends,
-            },
+            evaluation: (self.evaluate_after.clone()).map_or_else(|| self.evaluate.clone(), Evaluate::After),
             form: self.form,
             blocks: self.blocks,
             lifetime: 0,
             fixed_evaluation: self.fixed_evaluation,
-            split: match self.split {
-                WorldSplit::Validation => Split::Validation,
-                WorldSplit::Test => Split::Test,
-            },
+            split: self.split,
             paired_learning: self.paired_learning,
             // Held-out variants are named in the request.
             held_out: Vec::new(),

@@ -4,10 +4,11 @@ use std::io::BufWriter;
 use std::path::PathBuf;
 
 use crate::metrics::{Delimiter, KeptRows, LogTable, read_log_with_texts};
-use clap::{Args, ValueEnum};
+use clap::Args;
 
 use super::super::{Failure, log_folders, output, overwrite};
 use super::count;
+use crate::numbers::documented;
 use crate::table::cells;
 
 /// Write the rows of one or several logs as one table.
@@ -30,8 +31,8 @@ pub(crate) struct Aggregate {
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     /// Format, if the file name does not tell it.
-    #[arg(long, value_enum, value_name = "FORMAT")]
-    format: Option<Format>,
+    #[arg(long, value_parser = documented::<Delimiter>(&FORMATS), value_name = "FORMAT")]
+    format: Option<Delimiter>,
     /// Search the folders for logs, up to four levels deep. Links are not followed.
     #[arg(short = 'R', long)]
     recursive: bool,
@@ -49,20 +50,12 @@ pub(crate) struct Aggregate {
     json: bool,
 }
 
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Format {
-    /// Tab-separated values.
-    Tsv,
-    /// Comma-separated values.
-    Csv,
-}
+/// The formats by file name extension.
+const FORMATS: [&str; 2] = ["tsv: Tab-separated values", "csv: Comma-separated values"];
 
 impl Aggregate {
     pub(crate) fn run(self) -> Result<(), Failure> {
-        let delimiter = match self.format()? {
-            Format::Tsv => Delimiter::Tab,
-            Format::Csv => Delimiter::Comma,
-        };
+        let delimiter = self.delimiter()?;
         let logs = log_folders::found(&self.logs, self.recursive)?;
         overwrite::refuse_log_files(&self.output)?;
         let mut table = LogTable::new(if self.incomplete {
@@ -88,15 +81,15 @@ impl Aggregate {
         output::json_of_what_was_written(self.json)
     }
 
-    fn format(&self) -> Result<Format, Failure> {
+    fn delimiter(&self) -> Result<Delimiter, Failure> {
         let ending = self
             .output
             .extension()
             .and_then(|ending| ending.to_str())
             .unwrap_or_default();
         let by_name = match ending {
-            "tsv" => Some(Format::Tsv),
-            "csv" => Some(Format::Csv),
+            "tsv" => Some(Delimiter::Tab),
+            "csv" => Some(Delimiter::Comma),
             _ => None,
         };
         output::refuse_removed_ending(&self.output)?;
