@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use crate::env::{
-    Asset, Camera, CpuRenderer, Frame, Library, LibraryModel, Scene, Target, classes, model_names as built_in,
+    Asset, Camera, CpuRenderer, Frame, Item, Library, LibraryModel, Scene, Target, classes, model_names as built_in,
 };
 use crate::spec::{Model, Object, Style, WorldDraft};
 use clap::Args;
@@ -184,15 +184,7 @@ impl Show {
         item.scale = SHOWN_SIZE / asset.height.max(2.0 * asset.radius);
         item.asset = Arc::clone(asset);
         item.heading_deg = heading_deg;
-        let back = 1.65 * SHOWN_SIZE;
-        let height = 0.62 * SHOWN_SIZE;
-        let middle = asset.height * item.scale / 2.0;
-        let camera = Camera {
-            position: [0.0, -back, height],
-            heading_deg: 0.0,
-            pitch_deg: -((height - middle) / back).atan().to_degrees(),
-            field_of_view_deg: 44.0,
-        };
+        let camera = towards(item, [1.65 * SHOWN_SIZE, 0.62 * SHOWN_SIZE], 44.0);
         let size = self.size.unwrap_or(SIZE);
         let mut frame = Frame::new(2 * size, 2 * size);
         CpuRenderer::new().render(&scene, &camera, &mut frame);
@@ -215,14 +207,7 @@ fn cut_out(class: &str, name: &str, size: u32) -> Picture {
     let item = &mut scene.items[0];
     item.heading_deg = 210.0;
     let reach = item.asset.height.max(2.0 * item.asset.radius) * item.scale;
-    let (back, height) = (2.6 * reach, 0.9 * reach);
-    let middle = item.asset.height * item.scale / 2.0;
-    let camera = Camera {
-        position: [0.0, -back, height],
-        heading_deg: 0.0,
-        pitch_deg: -((height - middle) / back).atan().to_degrees(),
-        field_of_view_deg: 32.0,
-    };
+    let camera = towards(item, [2.6 * reach, 0.9 * reach], 32.0);
     let side = 4 * size;
     let (mut rgb, mut instances) = (vec![0; 3 * (side * side) as usize], vec![0; (side * side) as usize]);
     let mut target = Target {
@@ -238,6 +223,17 @@ fn cut_out(class: &str, name: &str, size: u32) -> Picture {
     }
     let large = Picture::new(side, side, rgb);
     large.halved().halved()
+}
+
+/// A camera this far south of an item and this high, turned to its middle.
+fn towards(item: &Item, [back, height]: [f32; 2], field_of_view_deg: f32) -> Camera {
+    let middle = item.asset.height * item.scale / 2.0;
+    Camera {
+        position: [0.0, -back, height],
+        heading_deg: 0.0,
+        pitch_deg: -((height - middle) / back).atan().to_degrees(),
+        field_of_view_deg,
+    }
 }
 
 fn triangles(asset: &Asset) -> usize {
