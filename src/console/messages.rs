@@ -38,25 +38,14 @@ impl Session<'_> {
                 answers.push(self.channels.answer_screenshot(&picture, written.map(drop), &time));
             }
             lines.extend(answers.iter().map(shown));
-            refused = refused.or(answers.iter().find_map(refusal));
+            refused = refused.or(answers.iter().find_map(Outgoing::refusal));
         }
         match refused {
             None => Ok(lines.join("\n")),
             // Successful answers are shown all the same.
-            Some(text) => Err(format!("{text}\n{}", lines.join("\n"))),
+            Some(text) => Err(format!("the message was refused: {text}\n{}", lines.join("\n"))),
         }
     }
-}
-
-/// The reason for a refusal, if the answer is one.
-fn refusal(answer: &Outgoing) -> Option<String> {
-    let texts = answer
-        .payload
-        .as_ref()
-        .filter(|_| answer.action == "error")?
-        .as_array()?;
-    let texts: Vec<&str> = texts.iter().filter_map(|text| text.as_str()).collect();
-    Some(format!("the message was refused: {}", texts.join("; ")))
 }
 
 /// The messages of a text: one message, one with its channel (`{"channel", "message"}`), or a list of these under `tests`.

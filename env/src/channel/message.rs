@@ -35,6 +35,13 @@ pub struct Outgoing {
 }
 
 impl Outgoing {
+    /// The reasons for a refusal, in one text; `None` for other messages.
+    pub fn refusal(&self) -> Option<String> {
+        let texts = self.payload.as_ref().filter(|_| self.action == "error")?.as_array()?;
+        let texts: Vec<&str> = texts.iter().filter_map(Value::as_str).collect();
+        Some(texts.join("; "))
+    }
+
     /// The message as one line of JSON, with every key: the original's clients access them unconditionally.
     ///
     /// Without a message to answer, `req_token` is all zeros; without a payload, `payload` is `null`.

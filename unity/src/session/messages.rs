@@ -175,14 +175,8 @@ impl Session {
 
     /// Sends an L2Explorer message. Refusals also give a remark, because the original client ignores answers.
     pub(super) fn send(&mut self, message: &Outgoing) {
-        if let ("error", Some(texts)) = (message.action, &message.payload) {
-            let texts: Vec<&str> = texts
-                .as_array()
-                .into_iter()
-                .flatten()
-                .filter_map(|text| text.as_str())
-                .collect();
-            let (channel, texts) = (message.channel.name(), texts.join("; "));
+        if let Some(texts) = message.refusal() {
+            let channel = message.channel.name();
             let remark = format!("{channel} channel: a message was refused: {texts}");
             self.remarks.make(About::Refusals, &remark);
         }
