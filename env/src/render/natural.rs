@@ -109,13 +109,8 @@ impl NaturalParams<'_> {
 
 impl Shading for NaturalParams<'_> {
     #[inline(always)]
-    fn item(&self) -> u32 {
-        self.item
-    }
-
-    #[inline(always)]
-    fn may_be_cut(&self) -> bool {
-        self.may_be_cut
+    fn item(&self) -> (u32, bool) {
+        (self.item, self.may_be_cut)
     }
 
     #[inline(always)]

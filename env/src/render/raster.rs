@@ -22,11 +22,8 @@ pub(super) struct ShadingParams {
 
 /// Converts a material's triangles to pixels.
 pub(super) trait Shading: Copy {
-    /// Index of the item.
-    fn item(&self) -> u32;
-
-    /// Whether parts of it may be in front of the near plane.
-    fn may_be_cut(&self) -> bool;
+    /// Index of the item, and whether parts of it may be in front of the near plane.
+    fn item(&self) -> (u32, bool);
 
     /// Whether triangles have the opposite winding on the screen from those seen from the front.
     #[inline(always)]
@@ -53,13 +50,8 @@ pub(super) trait Shading: Copy {
 
 impl Shading for ShadingParams {
     #[inline(always)]
-    fn item(&self) -> u32 {
-        self.item
-    }
-
-    #[inline(always)]
-    fn may_be_cut(&self) -> bool {
-        self.may_be_cut
+    fn item(&self) -> (u32, bool) {
+        (self.item, self.may_be_cut)
     }
 
     #[inline(always)]
@@ -109,7 +101,8 @@ fn draw_lanes<L: Lanes, const ITEMS: bool, S: Shading>(
     let pixels = params.pixels(l, normal, at);
     // The path of a triangle must not depend on its neighbours: their number depends on the instruction set.
     let mut cut = 0;
-    if params.may_be_cut() {
+    let (item, may_be_cut) = params.item();
+    if may_be_cut {
         cut = l.bits(l.both(facing, l.above(l.splat(NEAR), least(l, depth))));
         draw_all_cut::<L, ITEMS, S>(l, canvas, block, (first, cut), at, (&pixels, params));
     }
@@ -152,7 +145,7 @@ fn draw_lanes<L: Lanes, const ITEMS: bool, S: Shading>(
     while seen != 0 {
         let lane = seen.trailing_zeros() as usize;
         seen &= seen - 1;
-        params.fill::<L, ITEMS>(l, canvas, &triangle(&rows, lane, pixels[lane], params.item()));
+        params.fill::<L, ITEMS>(l, canvas, &triangle(&rows, lane, pixels[lane], item));
     }
 }
 
@@ -278,7 +271,7 @@ fn draw_all_cut<L: Lanes, const ITEMS: bool, S: Shading>(
             if params.is_turned() {
                 corners.swap(1, 2);
             }
-            if let Some(triangle) = set_up(corners, [canvas.width, canvas.height], pixels[lane], params.item()) {
+            if let Some(triangle) = set_up(corners, [canvas.width, canvas.height], pixels[lane], params.item().0) {
                 params.fill::<L, ITEMS>(lanes, canvas, &triangle);
             }
         }

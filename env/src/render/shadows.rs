@@ -147,13 +147,8 @@ pub(super) struct ShadowParams {
 
 impl Shading for ShadowParams {
     #[inline(always)]
-    fn item(&self) -> u32 {
-        0
-    }
-
-    #[inline(always)]
-    fn may_be_cut(&self) -> bool {
-        self.may_be_cut
+    fn item(&self) -> (u32, bool) {
+        (0, self.may_be_cut)
     }
 
     #[inline(always)]
