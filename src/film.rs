@@ -97,7 +97,7 @@ fn rate(text: &str) -> Result<f64, String> {
 }
 
 /// A summary of a film.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct FilmSummary {
     /// Frames.
     pub frames: u32,
@@ -322,13 +322,7 @@ pub fn write_film(
     let seconds = options.fps.map_or(own, |rate| 1.0 / rate).max(kind.shortest());
     let mut file = output_file::create(path)?;
     let mut writer = None;
-    let mut summary = FilmSummary {
-        frames: 0,
-        width: 0,
-        height: 0,
-        seconds: 0.0,
-        sheet: None,
-    };
+    let mut summary = FilmSummary::default();
     let last = recording.actions.len();
     let mut to = Some(&mut file);
     film(recording, catalogue, options, &mut |picture, number| {

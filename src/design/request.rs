@@ -58,7 +58,7 @@ impl DesignOrder {
 }
 
 /// The options for designing a curriculum.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct DesignRequest {
     /// Variants, or tasks, which stand for all their variants.
     pub tasks: Vec<String>,
@@ -102,22 +102,8 @@ impl DesignRequest {
     pub fn of<S: Into<String>>(tasks: impl IntoIterator<Item = S>) -> Self {
         Self {
             tasks: tasks.into_iter().map(Into::into).collect(),
-            ordering: OrderRequest::default(),
-            order: None,
-            by: None,
-            probe: None,
-            modalities: None,
-            variants: None,
-            step_distance: None,
-            tolerance: None,
-            steps: None,
-            lifetimes: None,
-            hold_out: Vec::new(),
-            experts: false,
-            controls: false,
             worlds: 5,
-            libraries: Vec::new(),
-            design: Design::default(),
+            ..Self::default()
         }
     }
 

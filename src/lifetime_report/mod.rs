@@ -16,7 +16,7 @@ use crate::{Failure, Warn, log_folders};
 use neighbours::Neighbours;
 
 /// The lifetimes on a page, and how they are shown.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct ReportRequest {
     /// The logs, in the given folders or below them, with the scoring options; `recursive` is ignored.
     pub scoring: ScoringRequest,
@@ -43,14 +43,8 @@ impl ReportRequest {
     pub fn of<P: Into<PathBuf>>(logs: impl IntoIterator<Item = P>) -> Self {
         Self {
             scoring: ScoringRequest::of(logs),
-            title: None,
-            date: None,
-            distances: None,
-            tasks: Vec::new(),
             figures: Figure::ALL.to_vec(),
-            figure_options: FigureOptions::default(),
-            plots: None,
-            command: None,
+            ..Self::default()
         }
     }
 }
