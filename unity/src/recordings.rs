@@ -59,17 +59,8 @@ impl RecordingFile {
                 source,
             };
             let read = BufReader::new(file.try_clone().map_err(failed)?);
-            let mut reader = RecordingReader::new(read).map_err(damaged)?;
-            let end = loop {
-                let before = reader.mark();
-                match reader.next_episode() {
-                    Ok(Some(episode)) => next = episode.origin.experience + 1,
-                    Ok(None) => break reader.mark(),
-                    Err(_) if reader.is_torn() => break before,
-                    Err(error) => return Err(damaged(error)),
-                }
-            };
-            (kept, lines) = reader.into_lines_at(end);
+            let reader = RecordingReader::new(read).map_err(damaged)?;
+            (kept, lines, next) = reader.into_lines_before(u64::MAX).map_err(damaged)?;
         }
         file.set_len(kept).map_err(failed)?;
         file.rewind().map_err(failed)?;

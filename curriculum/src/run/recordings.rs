@@ -173,26 +173,14 @@ fn kept(path: &Path, experience: u64) -> Result<(u64, RecordingLines), Curriculu
     };
     let length = file.metadata().map_err(failed(path, "measure this file"))?.len();
     let wrong = |source| wrong(path, source);
-    let mut reader = match RecordingReader::new(BufReader::new(file)) {
+    let reader = match RecordingReader::new(BufReader::new(file)) {
         Ok(reader) => reader,
         // Its first line was being written.
         Err(_) if length < RecordingLines::header().len() as u64 => return Ok((0, RecordingLines::default())),
         Err(error) => return Err(wrong(error)),
     };
-    loop {
-        let before = reader.mark();
-        match reader.next_episode() {
-            Ok(Some(episode)) if episode.origin.experience < experience => {}
-            Ok(Some(_)) => return Ok(reader.into_lines_at(before)),
-            Ok(None) => {
-                let end = reader.mark();
-                return Ok(reader.into_lines_at(end));
-            }
-            // An incomplete line is the last one.
-            Err(_) if reader.is_torn() => return Ok(reader.into_lines_at(before)),
-            Err(error) => return Err(wrong(error)),
-        }
-    }
+    let (length, lines, _) = reader.into_lines_before(experience).map_err(wrong)?;
+    Ok((length, lines))
 }
 
 /// A file of recordings with random access to episodes.

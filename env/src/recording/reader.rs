@@ -166,14 +166,30 @@ impl<R: BufRead> RecordingReader<R> {
         }
     }
 
-    /// Whether the last line was incomplete: its writer was interrupted.
-    pub fn is_torn(&self) -> bool {
-        self.is_torn
+    /// The number of bytes before the first episode that is not before this experience, or before an incomplete last line; a
+    /// writer that continues there; and the experience after the last one before it, 0 without one.
+    ///
+    /// # Errors
+    /// [`EnvError::Recording`] for a damaged line before that.
+    pub fn into_lines_before(mut self, experience: u64) -> Result<(u64, RecordingLines, u64), EnvError> {
+        let mut next = 0;
+        let end = loop {
+            let before = self.mark();
+            match self.next_episode() {
+                Ok(Some(episode)) if episode.origin.experience < experience => next = episode.origin.experience + 1,
+                Ok(Some(_)) => break before,
+                Ok(None) => break self.mark(),
+                Err(_) if self.is_torn => break before,
+                Err(error) => return Err(error),
+            }
+        };
+        let (length, lines) = self.into_lines_at(end);
+        Ok((length, lines, next))
     }
 
     /// The number of bytes before a place, and a writer that continues there. It rewrites worlds whose lines cannot be decoded,
     /// such as those of another version.
-    pub fn into_lines_at(self, place: RecordingMark) -> (u64, RecordingLines) {
+    fn into_lines_at(self, place: RecordingMark) -> (u64, RecordingLines) {
         let before = self.worlds.iter().filter(|(_, (line, _))| *line <= place.line);
         let sound = before.filter(|(hash, _)| self.world(place.line, hash).is_ok());
         let sound = sound.map(|(hash, _)| hash.clone());
@@ -290,11 +306,9 @@ mod tests {
             world: deflated(br#"{ "of_another_version": true }"#.iter().copied()),
         });
         let mut file = RecordingLines::header() + &world;
-        let mut reader = RecordingReader::new(file.as_bytes()).unwrap();
-        assert!(reader.next_episode().unwrap().is_none());
-        let end = reader.mark();
-        let (offset, mut lines) = reader.into_lines_at(end);
-        assert_eq!(offset, file.len() as u64);
+        let reader = RecordingReader::new(file.as_bytes()).unwrap();
+        let (offset, mut lines, next) = reader.into_lines_before(u64::MAX).unwrap();
+        assert_eq!((offset, next), (file.len() as u64, 0));
         file += &lines.lines(&recording(0));
         file += &lines.lines(&recording(1));
         assert_eq!(file.matches("{\"world_hash\"").count(), 2, "written again, and once");
