@@ -155,34 +155,24 @@ impl RecordedEpisodes {
     }
 
     fn row(&self, number: u64, worker: Option<&str>) -> Result<&LoggedRow, Failure> {
-        let of_number = self.rows.iter().filter_map(|rows| rows.get(&number)).flatten();
-        let found: Vec<&LoggedRow> = of_number
-            .filter(|row| worker.is_none_or(|worker| row.block.0 == worker))
-            .collect();
-        match &found[..] {
-            [row] => Ok(row),
-            [] => match worker {
-                Some(worker) if self.rows.iter().any(|rows| rows.contains_key(&number)) => {
-                    let rows = self.rows.iter().flat_map(|rows| &rows[&number]);
-                    let workers: Vec<&str> = rows.map(|row| row.block.0.as_str()).collect();
-                    Err(Failure::input(format!(
-                        "{}: found no episode {number} of the worker {}, expected one of {}",
-                        self.path.shown(),
-                        printable(worker),
-                        workers.join(", ")
-                    )))
-                }
-                _ => Err(self.missing(number)),
-            },
-            several => {
-                let workers: Vec<&str> = several.iter().map(|row| row.block.0.as_str()).collect();
-                Err(Failure::input(format!(
-                    "{}: found episodes {number} of {}, expected one; say whose with {}",
-                    self.path.shown(),
-                    workers.join(", "),
-                    crate::argument("worker")
-                )))
-            }
+        let of_number = self.rows.as_ref().and_then(|rows| rows.get(&number));
+        let of_number = of_number.ok_or_else(|| self.missing(number))?;
+        let workers = || -> Vec<&str> { of_number.iter().map(|row| row.block.0.as_str()).collect() };
+        let path = self.path.shown();
+        match (&of_number[..], worker) {
+            ([row], None) => Ok(row),
+            (_, None) => Err(Failure::input(format!(
+                "{path}: found episodes {number} of {}, expected one; say whose with {}",
+                workers().join(", "),
+                crate::argument("worker")
+            ))),
+            (rows, Some(worker)) => rows.iter().find(|row| row.block.0 == worker).ok_or_else(|| {
+                Failure::input(format!(
+                    "{path}: found no episode {number} of the worker {}, expected one of {}",
+                    printable(worker),
+                    workers().join(", ")
+                ))
+            }),
         }
     }
 
