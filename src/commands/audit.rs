@@ -73,8 +73,8 @@ impl Audit {
         }
         if failed > 0 {
             return Err(Failure::input(format!(
-                "found {failed} {} with other scores than the protocol promises, expected none",
-                if failed == 1 { "agent" } else { "agents" }
+                "found {} with other scores than the protocol promises, expected none",
+                counted(failed, "agent")
             )));
         }
         if untested > 0 {
