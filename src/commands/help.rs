@@ -82,7 +82,8 @@ fn groups(command: &Command) -> String {
         }
         let _ = writeln!(text, "{}:", heading(title));
         for (name, about) in found {
-            let _ = writeln!(text, "{:GAP$}{}{:GAP$}{about}", "", command_name(name, width), "");
+            let blanks = width - name.len() + GAP;
+            let _ = writeln!(text, "{:GAP$}{}{:blanks$}{about}", "", styled("1", name), "");
         }
         text.push('\n');
     }
@@ -90,18 +91,13 @@ fn groups(command: &Command) -> String {
 }
 
 fn heading(text: &str) -> String {
-    if style::of_stdout() {
-        format!("\u{1b}[1;4m{text}\u{1b}[0m")
-    } else {
-        text.to_owned()
-    }
+    styled("1;4", text)
 }
 
-fn command_name(name: &str, width: usize) -> String {
-    let blanks = " ".repeat(width - name.len());
+fn styled(codes: &str, text: &str) -> String {
     if style::of_stdout() {
-        format!("\u{1b}[1m{name}\u{1b}[0m{blanks}")
+        format!("\u{1b}[{codes}m{text}\u{1b}[0m")
     } else {
-        format!("{name}{blanks}")
+        text.to_owned()
     }
 }
