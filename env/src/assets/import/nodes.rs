@@ -5,6 +5,7 @@ use gltf_json::{Index, Mesh, Node, Root};
 use super::limits::MAX_IMPORT_DEPTH;
 use super::refusal::{named, one_of, refuse};
 use crate::EnvError;
+use crate::vector::cross;
 
 /// The pose of a mesh: the upper three rows of a 4 × 4 matrix from its frame to the scene's.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -136,12 +137,8 @@ impl Pose {
 
     /// Whether the transform mirrors, so that the winding of triangles must be reversed.
     pub(super) fn mirrors(&self) -> bool {
-        let [a, b, c] = self.0;
-        let cross = [
-            b[1] * c[2] - b[2] * c[1],
-            b[2] * c[0] - b[0] * c[2],
-            b[0] * c[1] - b[1] * c[0],
-        ];
+        let [a, b, c] = self.0.map(|[x, y, z, _]| [x, y, z]);
+        let cross = cross(b, c);
         (0..3).map(|k| a[k] * cross[k]).sum::<f64>() < 0.0
     }
 }

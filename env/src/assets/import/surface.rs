@@ -8,6 +8,7 @@ use super::primitive::{ReadPrimitive, Reading};
 use super::refusal::{named, refuse};
 use crate::EnvError;
 use crate::assets::library::MAX_MODEL_REACH;
+use crate::vector::cross;
 
 /// Most primitives in the scene, counting each instance of a mesh.
 const MAX_PRIMITIVES: usize = 100_000;
@@ -88,12 +89,7 @@ impl Surface {
     pub(super) fn area(&self, corners: [u32; 3]) -> f64 {
         let [a, b, c] = corners.map(|corner| self.corners[corner as usize].map(f64::from));
         let (u, v) = ([0, 1, 2].map(|k| b[k] - a[k]), [0, 1, 2].map(|k| c[k] - a[k]));
-        let cross = [
-            u[1] * v[2] - u[2] * v[1],
-            u[2] * v[0] - u[0] * v[2],
-            u[0] * v[1] - u[1] * v[0],
-        ];
-        cross.iter().map(|part| part * part).sum::<f64>().sqrt() / 2.0
+        cross(u, v).iter().map(|part| part * part).sum::<f64>().sqrt() / 2.0
     }
 
     /// Scales everything to the given size and centres it above the origin, with its lowest corner on the ground.
