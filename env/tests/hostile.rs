@@ -168,7 +168,7 @@ fn textured_with(pointer: &str, value: Value) -> Vec<u8> {
 }
 
 /// Valid documents with places changed: in each line the file's name, then each place with its new value.
-const CHANGED: &str = r##"version_1_names.gltf | /meshes {"box": {"primitives": []}}
+const CHANGED: &str = r#"version_1_names.gltf | /meshes {"box": {"primitives": []}}
 version_1.gltf | /asset/version "1.0"
 extension_unknown.gltf | /extensionsRequired ["VENDOR_secret_sauce"]
 extension_draco.gltf | /extensionsRequired ["KHR_draco_mesh_compression"]
@@ -226,7 +226,7 @@ image_above.gltf | /images [{"uri": "../secret.png"}] | /textures [{"source": 0}
 too_small.gltf | /nodes/0/scale [1e-5, 1e-5, 1e-5]
 scaled_to_nothing.gltf | /nodes/0/scale [0, 0, 0]
 scaled_beyond.gltf | /nodes/0/scale [1e38, 1e38, 1e38]
-color_above_1.gltf | /materials/0/pbrMetallicRoughness/baseColorFactor [2.0, 0.0, 0.0, 1.0]"##;
+color_above_1.gltf | /materials/0/pbrMetallicRoughness/baseColorFactor [2.0, 0.0, 0.0, 1.0]"#;
 
 fn changed_places(row: &'static str) -> (&'static str, Vec<u8>) {
     let mut parts = row.split(" | ");
