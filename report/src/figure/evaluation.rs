@@ -1,9 +1,9 @@
 //! The mean of each evaluation with its 95 % interval, a panel per task with all its variants, and the times of learning.
 
+use driftworld_metrics::student_reach;
 use indexmap::IndexMap;
 use plotters::prelude::*;
 
-use super::interval::mean_and_reach;
 use super::palette::{FAINT, INK, Look};
 use super::panels::{Grid, MOST_PANELS};
 use super::paper::{Area, Axes, Drawn, Entry, Paper, Sample, chart, draw_mark};
@@ -132,6 +132,17 @@ struct Point {
     reach: f64,
 }
 
+/// Mean, and half-width of Student's 95 % interval: 0 for a single sample, which has no interval.
+fn mean_and_reach(samples: &[f64]) -> (f64, f64) {
+    let n = samples.len() as f64;
+    let mean = samples.iter().sum::<f64>() / n;
+    if samples.len() < 2 {
+        return (mean, 0.0);
+    }
+    let squares: f64 = samples.iter().map(|sample| (sample - mean).powi(2)).sum();
+    (mean, student_reach(0.95, n - 1.0) * (squares / (n - 1.0) / n).sqrt())
+}
+
 /// The evaluations of a cluster's tasks; those in one pixel column are merged.
 fn points(scene: &Scene, cluster: &Cluster, columns: i32) -> Vec<Point> {
     let column = scene.column(columns);
@@ -155,4 +166,23 @@ fn points(scene: &Scene, cluster: &Cluster, columns: i32) -> Vec<Point> {
             .collect()
     };
     cluster.tasks.iter().flat_map(|task| of_task(*task)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn intervals_match_student() {
+        let check = |samples: &[f64], expected: (f64, f64)| {
+            let found = mean_and_reach(samples);
+            assert!((found.0 - expected.0).abs() < 1e-12, "{samples:?}");
+            assert!((found.1 - expected.1).abs() < 1e-3, "{samples:?}: {}", found.1);
+        };
+        check(&[4.0], (4.0, 0.0));
+        check(&[1.0, 3.0], (2.0, 12.706));
+        // scipy.stats.t.interval(0.95, 4, loc=3, scale=scipy.stats.sem([1, 2, 3, 4, 5])) is 1.0368 to 4.9632.
+        check(&[1.0, 2.0, 3.0, 4.0, 5.0], (3.0, 1.9632));
+        check(&[2.0; 100], (2.0, 0.0));
+    }
 }

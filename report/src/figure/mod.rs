@@ -2,7 +2,6 @@
 
 mod evaluation;
 mod experts;
-mod interval;
 mod learning;
 mod palette;
 mod panels;
