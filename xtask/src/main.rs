@@ -9,7 +9,6 @@ mod examples;
 mod fences;
 mod process;
 mod python;
-mod rebuilds;
 mod rooms;
 mod runner;
 mod schemas;
