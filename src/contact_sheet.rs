@@ -5,11 +5,12 @@ use driftworld_env::{Agent, Environment, Renderer, Scene, StillAgent};
 use driftworld_generator::Sampler;
 use driftworld_report::picture::{Drawing, SheetRow, TextLine, sheet, text_lines};
 use driftworld_spec::{Modality, MotionModel, Variant, World};
+use driftworld_text::capitalized;
 
 use crate::Failure;
 use crate::map_drawing::Moves;
 use crate::modality;
-use crate::sheet_words::{Worlds, alike, below_all, commonest, differences, modality_words, placed, sentence};
+use crate::sheet_words::{Worlds, alike, below_all, commonest, differences, modality_words, placed};
 use crate::subject::{Sight, openness, sight, subjects};
 use crate::views::{TURNS, Views, agent_camera};
 
@@ -140,7 +141,7 @@ pub(crate) fn cells(shown: &[Shown], look: Look, tick: &dyn Fn()) -> Result<(Vec
         }
         words.push(modality_words(modality).to_owned());
         if Some(&places[number]) != usual {
-            words.push(sentence(&places[number]));
+            words.push(capitalized(&places[number]) + ".");
         }
         words.retain(|part| !part.is_empty());
         cells.push(Cell {
@@ -401,7 +402,7 @@ mod tests {
         let mut blind = 0;
         for ((candidates, cell), shown) in worlds.iter().zip(&cells).zip(&shown) {
             let (choice, is_seen) = candidates.own_choice(&mut renderer, joint, LOOK).expect("it is drawn");
-            let place = sentence(&placed(shown, choice, LOOK));
+            let place = capitalized(&placed(shown, choice, LOOK)) + ".";
             let below = format!("ther cells: {}.", placed(shown, choice, LOOK));
             assert_eq!(
                 cell.row.words.ends_with(&place),

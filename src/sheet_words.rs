@@ -23,13 +23,6 @@ pub(crate) fn commonest(places: &[String]) -> Option<&String> {
     places.iter().rev().max_by_key(|place| count(place))
 }
 
-/// Turns words into a sentence.
-pub(crate) fn sentence(words: &str) -> String {
-    let mut letters = words.chars();
-    let first = letters.next().map(|letter| letter.to_uppercase().collect::<String>());
-    format!("{}{}.", first.unwrap_or_default(), letters.as_str())
-}
-
 /// "a", "a and b", "a, b and c".
 fn listed<T: AsRef<str>>(words: &[T]) -> String {
     let words: Vec<&str> = words.iter().map(AsRef::as_ref).collect();

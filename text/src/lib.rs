@@ -17,7 +17,7 @@ mod unbroken;
 pub use cell::{Cells, cell, unguarded};
 pub use name::{IDENTIFIER_PATTERN, MAX_NAME_BYTES, MAX_NAME_CHARACTERS, NAME_PATTERN, NameFault, check_name};
 pub use number::{amount, rounded, short};
-pub use phrases::{counted, first_of, joined_or, shortened, when};
+pub use phrases::{capitalized, counted, first_of, joined_or, shortened, when};
 pub use plain::in_plain_words;
 pub use printable::{OneLine, ShownPath, is_unprintable, one_line, printable, printable_json, printable_lines, quoted};
 pub use removed::{WordKind, removed, removed_words};

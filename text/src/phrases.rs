@@ -47,6 +47,22 @@ pub fn shortened(text: &str, most: usize) -> String {
     }
 }
 
+/// The words with a capital letter at their beginning.
+///
+/// ```
+/// # use driftworld_text::capitalized;
+/// assert_eq!(capitalized("ärger over it"), "Ärger over it");
+/// ```
+pub fn capitalized(words: &str) -> String {
+    let mut letters = words.chars();
+    letters
+        .next()
+        .into_iter()
+        .flat_map(char::to_uppercase)
+        .collect::<String>()
+        + letters.as_str()
+}
+
 /// The words if a condition holds, else nothing.
 pub fn when(is_said: bool, words: impl FnOnce() -> String) -> String {
     if is_said { words() } else { String::new() }

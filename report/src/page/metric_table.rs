@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use driftworld_metrics::{AGREEING_PART, LARGEST_P, Lifetime, LifetimeMetrics, NULL_PERMUTATIONS, NullBand, ScaledBy};
+use driftworld_text::capitalized;
 use maud::{Markup, html};
 
 use super::verdict::{self, Verdict};
@@ -32,7 +33,7 @@ pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics) -> Result<Ma
             tr {
                 th scope="row" {
                     b { (verdict::title(name)) }
-                    span.says { (sentence(&row.explanation)) }
+                    span.says { (capitalized(&row.explanation)) }
                     code { (shown(name)) }
                 }
                 td.number { span.value { (number(value)) @if let Some(error) = standard_error(row.null_band) { span.from { "±\u{a0}" (error) } } } }
@@ -95,16 +96,6 @@ fn contrast_of(name: &str) -> Option<&'static str> {
         "backward_transfer_ratio" => Some("backward_transfer_contrast"),
         _ => None,
     }
-}
-
-/// The explanation as a sentence.
-fn sentence(words: &str) -> String {
-    let mut letters = words.chars();
-    let first = letters
-        .next()
-        .map(|letter| letter.to_uppercase().to_string())
-        .unwrap_or_default();
-    first + letters.as_str()
 }
 
 /// The range of the value if the agent had never changed.
