@@ -36,7 +36,7 @@ const LINEAR_FROM_CONES: Matrix = [
 /// Converted once per colour, so that distance matrices do not convert again.
 ///
 /// Source: Ottosson 2020, "A perceptual color space for image processing", with the matrices of 2021.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Oklab(pub [f64; 3]);
 
 impl From<Color> for Oklab {

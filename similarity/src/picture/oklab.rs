@@ -75,13 +75,8 @@ pub fn picture_oklab_sums(a: Picture, b: Picture, marked: &[bool]) -> Result<[(f
 }
 
 /// The bytes of the last pixel, and its colour.
+#[derive(Default)]
 struct Last([u8; 3], Oklab);
-
-impl Default for Last {
-    fn default() -> Self {
-        Self([0; 3], Oklab([0.0; 3]))
-    }
-}
 
 impl Last {
     fn oklab(&mut self, rgb: [u8; 3]) -> Oklab {
