@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
+import runpy
+from pathlib import Path
 
 import pytest
-from driftworld import bench
+from driftworld import DriftworldVectorEnv, bench
 
 
 def test_quick_run_prints_every_figure(capsys: pytest.CaptureFixture[str]) -> None:
@@ -35,4 +37,18 @@ def test_missing_peer_is_listed_with_the_reason() -> None:
 def test_zero_seconds_are_refused() -> None:
     with pytest.raises(SystemExit) as ended:
         bench.main(["--seconds", "0"])
+    assert ended.value.code == 2
+
+
+def test_arenas_of_the_scaling_table_have_the_size_in_their_name(capsys: pytest.CaptureFixture[str]) -> None:
+    scaling = runpy.run_path(str(Path(__file__).parents[2] / "scripts/scaling.py"))
+    world = scaling["arena"](num_objects=100, corners=120)
+    state = json.loads(DriftworldVectorEnv(num_envs=1, world=world)._members.batch.state(0))
+    assert len(state["objects"]) == 100
+    assert sum(len(wall["polygon"]) for wall in state["environment_params"]["walls"]) == 120
+    rates = scaling["best"]({"one": (lambda: None, 1), "two": (lambda: None, 2)}, seconds=0.001, rounds=2)
+    scaling["table"]("title", rates, "calls a second", "one")
+    assert "title" in capsys.readouterr().out and min(rates.values()) > 0
+    with pytest.raises(SystemExit) as ended:
+        scaling["main"](["--rounds", "0"])
     assert ended.value.code == 2
