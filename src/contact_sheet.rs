@@ -76,7 +76,7 @@ struct Candidate {
 
 /// A sheet's entry for one variant.
 pub(crate) struct Cell {
-    row: SheetRow,
+    pub(crate) row: SheetRow,
     /// Whether its subject is visible.
     #[cfg_attr(not(test), expect(dead_code, reason = "what tests count"))]
     pub(crate) is_seen: bool,

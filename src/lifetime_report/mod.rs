@@ -154,6 +154,7 @@ fn chapter_options(
         shown: request.figures.clone(),
         smoothed: options.smoothing_method != SmoothingMethod::Off,
         facts: facts(&log.log),
+        worlds: neighbours.worlds_of(&log.log),
         warnings: log.warnings.clone(),
         distance_note,
     }

@@ -1,18 +1,33 @@
-//! Distances between neighbouring learning blocks: from a given matrix, or measured from the scenario in the log.
+//! What the scenario in a log gives: distances between neighbouring learning blocks (unless a matrix does), pictures of worlds.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use driftworld_curriculum::{log_name, log_name_of_label};
-use driftworld_metrics::{Lifetime, Log, Regime, VariantMode};
+use driftworld_env::Catalogue;
+use driftworld_metrics::{Lifetime, Log, VariantMode};
 use driftworld_report::neighbours;
+use driftworld_report::picture::SheetRow;
 use driftworld_similarity::DistanceMatrix;
-use driftworld_spec::{BlockKind, Scenario, TaskSpec, Variant};
+use driftworld_spec::{BlockKind, Regime, Scenario, TaskSpec, Variant};
 use driftworld_text::{ShownPath, when};
+use serde_json::Value;
 
+use crate::contact_sheet::{Look, Shown, cells};
 use crate::distances::{Sample, fitting, variant_matrix};
+use crate::sheet_words::Worlds;
 use crate::{Failure, argument, matrix_file, tasks};
+
+/// Most variants whose worlds are drawn.
+const MOST_PICTURED: usize = 12;
+
+const LOOK: Look = Look {
+    index: None,
+    turn: None,
+    size: 144,
+    columns: 1,
+};
 
 /// With more variants, distances are not measured automatically.
 const MOST_MEASURED: usize = 32;
@@ -24,6 +39,8 @@ pub(super) struct Neighbours {
     mode: VariantMode,
     /// By the scenario's text: repeats share a scenario.
     measured: BTreeMap<String, Result<Named, String>>,
+    /// The scenarios whose worlds are on the page.
+    pictured: BTreeSet<String>,
 }
 
 /// A matrix, with its variants by their names in logs.
@@ -40,6 +57,9 @@ struct Ends {
     first: usize,
     last: usize,
 }
+
+/// A block of learning: its name in the log, and its variants at its beginning and, if it drifts, at its end.
+type Learned = (String, Regime, Variant, Option<Variant>);
 
 /// Distances of neighbours, with a sentence about them.
 type Distances = (Option<Vec<Option<f64>>>, String);
@@ -63,7 +83,19 @@ impl Neighbours {
             tasks: Tasks::read(tasks)?,
             mode,
             measured: BTreeMap::new(),
+            pictured: BTreeSet::new(),
         })
+    }
+
+    /// Pictures of the worlds that a lifetime learned in, or why there are none. Lifetimes of one scenario share them.
+    pub(super) fn worlds_of(&mut self, log: &Log) -> Result<Vec<SheetRow>, String> {
+        let scenario = log.scenario_info.extra.get("scenario").map(ToString::to_string);
+        let scenario = scenario.ok_or("No pictures of worlds: the log does not say which scenario was run.")?;
+        if !self.pictured.insert(scenario.clone()) {
+            return Err("This lifetime ran the same scenario as one above: see there for its worlds.".to_owned());
+        }
+        let made_from = log.scenario_info.extra.get("made_from");
+        pictures(&scenario, &self.tasks, made_from).map_err(|why| format!("No pictures of worlds: {why}."))
     }
 
     /// The distances between neighbouring learning blocks of a lifetime.
@@ -101,6 +133,29 @@ impl Neighbours {
     }
 }
 
+/// Pictures of the first worlds of each variant that a scenario learns.
+fn pictures(scenario: &str, tasks: &Tasks, made_from: Option<&Value>) -> Result<Vec<SheetRow>, String> {
+    let mut shown = Vec::new();
+    for (_, regime, variant, _) in learned(scenario, tasks)?.into_iter().take(MOST_PICTURED) {
+        let ran = made_from.and_then(|made_from| made_from.get(variant.id())?.get("variant")?.as_str());
+        if ran.is_some_and(|hash| hash != variant.hash()) {
+            return Err(format!("{} is not what it was when this was run", variant.id()));
+        }
+        shown.push(Shown {
+            index: regime.first_index,
+            count: u64::from(regime.count),
+            worlds: Worlds::OfScenario,
+            ..Shown::declared(variant, regime.seed)
+        });
+    }
+    let drawn = || {
+        tasks::check_variants(shown.iter().map(|shown| &shown.variant), &Catalogue::default())?;
+        cells(&shown, LOOK, &|| ())
+    };
+    let (cells, _) = drawn().map_err(|failure: Failure| failure.to_string())?;
+    Ok(cells.into_iter().map(|cell| cell.row).collect())
+}
+
 /// The logged distance from each learning block's variant to the one learned before it; `None` if the log has none.
 fn logged(log: &Log, lifetime: &Lifetime) -> Option<Vec<Option<f64>>> {
     let column = log.rows.metric("distance")?;
@@ -112,7 +167,7 @@ fn logged(log: &Log, lifetime: &Lifetime) -> Option<Vec<Option<f64>>> {
         .zip(column.iter().copied())
         .collect();
     let learned = lifetime.regimes().iter().filter(|regime| regime.is_wake_training());
-    let distance = |regime: &Regime| {
+    let distance = |regime: &driftworld_metrics::Regime| {
         numbers
             .get(regime.exp_nums.first()?)
             .copied()
@@ -191,22 +246,13 @@ impl Tasks {
     }
 }
 
-/// Measures the variants that a scenario learns, or returns why that is impossible.
-fn measure(scenario: &str, tasks: &Tasks) -> Result<Named, String> {
+/// The blocks that a scenario learns, each name once, or why they are unknown.
+fn learned(scenario: &str, tasks: &Tasks) -> Result<Vec<Learned>, String> {
     let scenario = Scenario::from_json_with("scenario_info.json", scenario, |task| tasks.task(task))
         .map_err(|_| "the scenario in the log is not of this version".to_owned())?;
-    let mut variants: Vec<(String, Variant)> = Vec::new();
-    let mut place = |variant: Variant| {
-        let name = log_name(variant.task().name(), variant.name());
-        let known = variants.iter().position(|(known, _)| *known == name);
-        known.unwrap_or_else(|| {
-            variants.push((name, variant));
-            variants.len() - 1
-        })
-    };
-    let mut index = BTreeMap::new();
-    let learned = scenario.blocks.iter().filter(|block| block.kind == BlockKind::Learning);
-    for regime in learned
+    let mut found: Vec<Learned> = Vec::new();
+    let blocks = scenario.blocks.iter().filter(|block| block.kind == BlockKind::Learning);
+    for regime in blocks
         .flat_map(|block| &block.regimes)
         .filter(|regime| regime.world.is_none())
     {
@@ -230,6 +276,29 @@ fn measure(scenario: &str, tasks: &Tasks) -> Result<Named, String> {
             }
             Some(ends) => log_name(task.name(), &format!("{}to{}", begins.name(), ends.name())),
         };
+        if found.iter().all(|(known, ..)| *known != name) {
+            found.push((name, regime.clone(), begins, ends));
+        }
+    }
+    if found.is_empty() {
+        return Err("the scenario ran world files, not variants of tasks".to_owned());
+    }
+    Ok(found)
+}
+
+/// Measures the variants that a scenario learns, or returns why that is impossible.
+fn measure(scenario: &str, tasks: &Tasks) -> Result<Named, String> {
+    let mut variants: Vec<(String, Variant)> = Vec::new();
+    let mut place = |variant: Variant| {
+        let name = log_name(variant.task().name(), variant.name());
+        let known = variants.iter().position(|(known, _)| *known == name);
+        known.unwrap_or_else(|| {
+            variants.push((name, variant));
+            variants.len() - 1
+        })
+    };
+    let mut index = BTreeMap::new();
+    for (name, _, begins, ends) in learned(scenario, tasks)? {
         let first = place(begins);
         let last = ends.map_or(first, &mut place);
         index.insert(name, Ends { first, last });
@@ -239,9 +308,6 @@ fn measure(scenario: &str, tasks: &Tasks) -> Result<Named, String> {
                  give --distances FILE"
             ));
         }
-    }
-    if variants.is_empty() {
-        return Err("the scenario ran world files, not variants of tasks".to_owned());
     }
     let by = fitting(variants.iter().map(|(_, variant)| variant));
     let matrix = variant_matrix(&variants, &Sample::by(by), Ok).map_err(|error| error.to_string())?;

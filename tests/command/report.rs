@@ -51,6 +51,17 @@ fn lifetime_becomes_a_page_and_figures_with_its_scenarios_distances() {
         !folder.path().join("figures/log_ste.svg").exists(),
         "there is no expert"
     );
+    for name in ["find_objects#blue", "find_objects#red"] {
+        assert!(
+            page.contains(&format!("alt=\"a world of {name}, as its agent sees it\"")),
+            "{name}"
+        );
+    }
+    assert_eq!(
+        page.matches("src=\"data:image/png;base64,iVBOR").count(),
+        4,
+        "a view and a map of each"
+    );
     succeed_in(folder.path(), "report log -o again.html");
     assert_eq!(
         read(folder.path().join("again.html")),
@@ -139,6 +150,22 @@ fn several_lifetimes_have_intervals_and_steps_on_request() {
         assert!(page.contains(part), "{part}");
     }
     assert_eq!(page.matches("<figure>").count(), 4, "two figures of each");
+    assert_eq!(page.matches("<figure class=\"world\">").count(), 2, "the worlds once");
+    assert!(page.contains("ran the same scenario as one above"));
+}
+
+#[test]
+fn worlds_of_a_task_that_changed_since_the_run_are_not_pictured() {
+    let folder = scratch();
+    live(folder.path());
+    let info = folder.path().join("log/scenario_info.json");
+    let mut said: serde_json::Value = serde_json::from_str(&read(&info)).expect("it is JSON");
+    said["made_from"]["find_objects#red"]["variant"] = "0".repeat(64).into();
+    write(&info, &said.to_string());
+    succeed_in(folder.path(), "report log");
+    let page = read(folder.path().join("report.html"));
+    assert!(page.contains("No pictures of worlds: find_objects#red is not what it was when this was run."));
+    assert!(!page.contains("<figure class=\"world\">"));
 }
 
 #[test]

@@ -1,12 +1,14 @@
 //! One lifetime on the page: facts, metrics, the curriculum, its figures, its tasks.
 
+use base64::prelude::{BASE64_STANDARD, Engine as _};
 use driftworld_metrics::{BlockSubtype, BlockType, Lifetime, LifetimeMetrics};
 use driftworld_text::when;
 use maud::{Markup, html};
 
-use super::{count, described, metric_table, number, pair_table, reached, task_table, warnings};
+use super::{breakable, count, described, metric_table, number, pair_table, reached, task_table, warnings};
 use crate::ReportError;
 use crate::figure::{Figure, FigureOptions, Figures, Layout};
+use crate::picture::{Drawing, SheetRow};
 use crate::words::shown;
 
 /// A lifetime rendered as HTML.
@@ -27,6 +29,8 @@ pub struct ChapterOptions {
     pub smoothed: bool,
     /// Further entries of the log, by name: agent, scenario, policy.
     pub facts: Vec<(String, String)>,
+    /// Pictures of worlds in which it learned, or a sentence that says why there are none.
+    pub worlds: Result<Vec<SheetRow>, String>,
     /// Warnings, such as those of the log's reader.
     pub warnings: Vec<String>,
     /// A sentence under the timeline: the source of its distances, or why there are none.
@@ -40,6 +44,7 @@ impl Default for ChapterOptions {
             shown: Figure::ALL.to_vec(),
             smoothed: true,
             facts: Vec::new(),
+            worlds: Err(String::new()),
             warnings: Vec::new(),
             distance_note: String::new(),
         }
@@ -100,9 +105,10 @@ impl Chapter {
             (false, false) => "in the log's unit",
         };
         let body = html! {
-            (facts(lifetime, metrics, &options.facts))
-            (warnings(&options.warnings))
             (reached::section(metrics, &options.figures.names))
+            (warnings(&options.warnings))
+            (facts(lifetime, metrics, &options.facts))
+            (worlds(&options.worlds)?)
             (pair_table::tables(metrics, &options.figures.names))
             h3 { "Metrics" }
             (table)
@@ -129,6 +135,31 @@ impl Chapter {
             body,
         })
     }
+}
+
+/// Pictures of worlds, or the reason why there are none.
+fn worlds(rows: &Result<Vec<SheetRow>, String>) -> Result<Markup, ReportError> {
+    let rows = match rows {
+        Ok(rows) => rows,
+        Err(why) => return Ok(html! { @if !why.is_empty() { p.note { (super::calm(why)) } } }),
+    };
+    let mut figures = Vec::new();
+    for SheetRow { title, words, pictures } in rows {
+        let pngs = pictures.iter().map(Drawing::to_png).collect::<Result<Vec<_>, _>>()?;
+        figures.push(html! {
+            figure.world {
+                @for (png, from) in pngs.iter().zip(["as its agent sees it", "from above"]) {
+                    img src=(format!("data:image/png;base64,{}", BASE64_STANDARD.encode(png)))
+                        alt=(format!("a world of {}, {from}", shown(title)));
+                }
+                figcaption { b { (breakable(&shown(title))) } " " (super::calm(words)) }
+            }
+        });
+    }
+    Ok(html! {
+        h3 { "Worlds" }
+        div.worlds { @for figure in &figures { (figure) } }
+    })
 }
 
 /// Numbers of blocks of a kind: all, and sleeping ones.

@@ -35,6 +35,7 @@ pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics) -> Result<Ma
                     b { (verdict::title(name)) }
                     span.says { (capitalized(&row.explanation)) }
                     code { (shown(name)) }
+                    @if let Some(words) = verdict::in_papers(name) { span.says { "In papers: " (words) } }
                 }
                 td.number { span.value { (number(value)) @if let Some(error) = standard_error(row.null_band) { span.from { "±\u{a0}" (error) } } } }
                 td {

@@ -213,6 +213,11 @@ fn plain(value: &Value) -> String {
     }
 }
 
+/// A name that may be broken between its parts.
+fn breakable(name: &str) -> Markup {
+    html! { @for part in name.split_inclusive(['_', '#', '-']) { (part) wbr; } }
+}
+
 /// Sanitises a sentence from outside: control characters become spaces, and it may be longer than a name.
 fn calm(text: &str) -> String {
     /// Most characters shown.

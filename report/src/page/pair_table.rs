@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use driftworld_metrics::{LifetimeMetrics, SummaryRow};
 use maud::{Markup, html};
 
-use super::number;
 use super::verdict::{self, Verdict};
+use super::{breakable, number};
 use crate::words::shown;
 
 /// Further tasks are only in the metrics files.
@@ -47,7 +47,7 @@ pub(super) fn tables(metrics: &LifetimeMetrics, called: &BTreeMap<String, String
                     thead {
                         tr {
                             th scope="col" { "learned ↓ evaluated →" }
-                            @for name in &names { th scope="col" { (named(name)) } }
+                            @for name in &names { th scope="col" { (breakable(&named(name))) } }
                         }
                     }
                     tbody {

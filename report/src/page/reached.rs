@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use driftworld_metrics::{EvaluationCell, LEARNED_SHARE, LifetimeMetrics, Reached};
+use driftworld_metrics::{EvaluationCell, EvaluationCurve, LEARNED_SHARE, LifetimeMetrics, Reached};
 use maud::{Markup, html};
 
 use super::number;
@@ -38,6 +38,7 @@ pub(super) fn section(metrics: &LifetimeMetrics, called: &BTreeMap<String, Strin
                             th.number scope="col" { "First evaluation" }
                             th.number scope="col" { "Best after learning" }
                             th.number scope="col" { "Last evaluation" }
+                            th.number scope="col" { "Forgetting" }
                             th scope="col" { "Reading" }
                         }
                     }
@@ -48,12 +49,14 @@ pub(super) fn section(metrics: &LifetimeMetrics, called: &BTreeMap<String, Strin
                                 td.number data-name="First evaluation" { (level(task.evaluations.first())) }
                                 td.number data-name="Best after learning" { (level(task.best())) }
                                 td.number data-name="Last evaluation" { (level(task.last())) }
+                                td.number data-name="Forgetting" { (metrics.curves.get(name).map_or("–".to_owned(), |curve| amount(curve.forgetting, curve.is_scaled))) }
                                 td { @if let Some(verdict) = verdict(task) { (pill(verdict)) } }
                             }
                         }
                     }
                 }
             }
+            (averages(metrics))
             p.note {
                 @if scaled { "In % of the way from floor to ceiling where these are known, else in the log's unit" }
                 @else { "In the log's unit" }
@@ -62,6 +65,32 @@ pub(super) fn section(metrics: &LifetimeMetrics, called: &BTreeMap<String, Strin
             }
         }
     }
+}
+
+/// The averages over tasks that papers report; none if tasks have different units.
+fn averages(metrics: &LifetimeMetrics) -> Markup {
+    let curves = || metrics.curves.values();
+    let num_scaled = curves().filter(|curve| curve.is_scaled).count();
+    let is_scaled = num_scaled > 0;
+    let mean = |value: fn(&EvaluationCurve) -> f64| curves().map(value).sum::<f64>() / metrics.curves.len() as f64;
+    let last = mean(|curve| curve.points.last().map_or(f64::NAN, |point| point.mean));
+    html! {
+        @if !metrics.curves.is_empty() && [0, metrics.curves.len()].contains(&num_scaled) {
+            p.note {
+                strong { "Average performance at the end (ACC): " (amount(last, is_scaled)) "; average forgetting: "
+                    (amount(mean(|curve| curve.forgetting), is_scaled)) ". " }
+                "Forgetting: the best evaluation less the last (Chaudhry et al. 2018)."
+            }
+        }
+    }
+}
+
+/// A performance as a share of the way from floor to ceiling, or in the log's unit.
+fn amount(value: f64, is_scaled: bool) -> String {
+    if is_scaled {
+        return format!("{:.0}\u{a0}%", 100.0 * value).replace('-', "−");
+    }
+    number(value)
 }
 
 /// Whether a task was learned; `None` if it was not evaluated after learning.
@@ -84,7 +113,7 @@ fn level(found: Option<&EvaluationCell>) -> String {
         return "–".to_owned();
     };
     if let Some(score) = found.score {
-        return format!("{:.0}\u{a0}%", 100.0 * score).replace('-', "−");
+        return amount(score, true);
     }
     let mean = number(found.mean);
     match found.standard_error {

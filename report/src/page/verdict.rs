@@ -61,6 +61,17 @@ pub(super) fn good_from(name: &str, direction: Direction) -> String {
     }
 }
 
+/// The closest measure of the literature, and how it differs.
+pub(super) fn in_papers(name: &str) -> Option<&'static str> {
+    match name {
+        "avg_eval_perf" => Some("average performance over the lifetime; ACC, in the first table, is that at its end"),
+        "perf_maintenance_mrlep" => Some("BWT (Lopez-Paz and Ranzato 2017), but of all later evaluations"),
+        "forward_transfer_contrast" => Some("FWT (Lopez-Paz and Ranzato 2017), but as change over sum"),
+        "backward_transfer_contrast" => Some("not BWT, which is maintenance: the effect on each task learned before"),
+        _ => None,
+    }
+}
+
 /// The name of a metric in words; user-defined names are split at underscores.
 pub(super) fn title(name: &str) -> String {
     let known = match name {

@@ -4,7 +4,7 @@ use super::lines::cut;
 use super::{Drawing, FAINT, INK, Rgb, TextLine, text_lines, text_width};
 
 /// One row of a [`sheet`].
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct SheetRow {
     /// Its title.
     pub title: String,
