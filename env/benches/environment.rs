@@ -10,7 +10,7 @@ use driftworld_spec::{Layout, Looks, Maze, Style, World};
 const CURVE: Action = Action::Continuous([5.0, 15.0, 0.0]);
 
 fn arena() -> World {
-    World::from_json("arena_20.json", include_str!("scenes/arena_20.json")).expect("the scene is sound")
+    World::from_json("arena_20.json", include_str!("../../src/throughput/arena_20.json")).expect("the scene is sound")
 }
 
 fn simulation(c: &mut Criterion) {

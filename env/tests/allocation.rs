@@ -56,7 +56,7 @@ static ALLOCATOR: Counting = Counting;
 
 /// The benchmark's scene, with a moving object, one that pays in passing, and an endless hunt.
 fn world() -> World {
-    let text = include_str!("../benches/scenes/arena_20.json");
+    let text = include_str!("../../src/throughput/arena_20.json");
     let scene = World::from_json("arena_20.json", text).expect("the bench's scene is sound");
     let mut world = scene.into_draft();
     world.agent_params.modalities = vec![
@@ -83,7 +83,7 @@ fn world() -> World {
 
 /// The benchmark's scene, with a pushable object at rest and out of reach.
 fn world_with_a_far_body() -> World {
-    let text = include_str!("../benches/scenes/arena_20.json");
+    let text = include_str!("../../src/throughput/arena_20.json");
     let mut world = World::from_json("arena_20.json", text).expect("the bench's scene is sound");
     let mut far = Object::new("cube", [45.0, 45.0]);
     far.pushable = Some(Pushable {

@@ -13,10 +13,10 @@ use crate::Failure;
 use super::{Figures, rate, rates};
 
 /// 20 objects of 2,652 triangles spread over a walled arena of 100 × 100 m; rewards for touching and approaching.
-const ARENA_20: &str = include_str!("../../env/benches/scenes/arena_20.json");
+const ARENA_20: &str = include_str!("arena_20.json");
 
 /// The same with 8 objects.
-const ARENA_8: &str = include_str!("../../env/benches/scenes/arena_8.json");
+const ARENA_8: &str = include_str!("arena_8.json");
 
 /// A maze drawn for each world, with a goal. The agent starts at the centre of a cell.
 const MAZE: &str = r#"{ "version": 2, "name": "maze",

@@ -9,7 +9,7 @@ const PIXELS: usize = (SIZE * SIZE) as usize;
 
 /// An environment, and cameras on a circle between its objects.
 fn circle() -> (Environment, Vec<Camera>) {
-    let text = include_str!("../scenes/arena_20.json");
+    let text = include_str!("../../../src/throughput/arena_20.json");
     let world = World::from_json("arena_20.json", text).expect("the scene is sound");
     let mut environment = Environment::new(world);
     let mut cameras = Vec::new();

@@ -27,8 +27,8 @@ fn world(file: &str) -> World {
 /// Worlds of all kinds: many objects, additional walls, fog, dusk, more classes than fit into a label.
 fn worlds() -> Vec<(String, World)> {
     let files = [
-        "env/benches/scenes/arena_8.json",
-        "env/benches/scenes/arena_20.json",
+        "src/throughput/arena_8.json",
+        "src/throughput/arena_20.json",
         "generator/tests/golden/find_objects-huddle-7-1.json",
         "generator/tests/golden/find_objects-red-7-0.json",
         "generator/tests/golden/get_to_goal-hazards-7-2.json",
@@ -212,7 +212,7 @@ fn gpu_batch_matches_a_cpu_batch() {
 #[test]
 fn images_rendered_together_match_those_rendered_separately() {
     let Some(mut gpu) = gpu() else { return };
-    let world = world("env/benches/scenes/arena_20.json");
+    let world = world("src/throughput/arena_20.json");
     let scene = Scene::from_world(&world);
     let cameras = cameras(&world, &scene);
     // Two sizes, so that two passes are needed.
@@ -256,7 +256,7 @@ fn impossible_images_are_errors() {
 #[test]
 fn environment_renders_on_the_requested_gpu() {
     let Some(gpu) = gpu() else { return };
-    let world = world("env/benches/scenes/arena_8.json");
+    let world = world("src/throughput/arena_8.json");
     let mut environment = Environment::with_renderer(world, RendererKind::Gpu).expect("there is an adapter");
     assert!(environment.renderer().device().starts_with(gpu.adapter_name()));
     let found = environment.observe().clone();
@@ -341,7 +341,7 @@ fn natural_images_of_a_batch_are_rendered_on_the_cpu() {
     let Some(mut gpu) = gpu() else { return };
     let styles = [Style::Natural, Style::Plain, Style::Natural];
     let scenes = styles.map(|style| {
-        let mut world = world("env/benches/scenes/arena_20.json").into_draft();
+        let mut world = world("src/throughput/arena_20.json").into_draft();
         world.environment_params.looks = Looks::of(style);
         world.environment_params.looks.fog_in_depth = true;
         world.environment_params.fog_distance = Some(40.0);
