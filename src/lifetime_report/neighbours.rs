@@ -281,7 +281,7 @@ fn learned(scenario: &str, tasks: &Tasks) -> Result<Vec<Learned>, String> {
         }
     }
     if found.is_empty() {
-        return Err("the scenario ran world files, not variants of tasks".to_owned());
+        return Err("the scenario learned no variants of tasks".to_owned());
     }
     Ok(found)
 }

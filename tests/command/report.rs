@@ -169,6 +169,18 @@ fn worlds_of_a_task_that_changed_since_the_run_are_not_pictured() {
 }
 
 #[test]
+fn scenario_without_learning_is_not_said_to_run_world_files() {
+    let folder = scratch();
+    let regime = r#"{ "task": "find_objects", "variant": "blue", "count": 2, "max_steps": 5 }"#;
+    let scenario = format!(r#"{{ "name": "s", "blocks": [{{ "type": "evaluation", "regimes": [{regime}] }}] }}"#);
+    write(&folder.path().join("scenario.json"), &scenario);
+    succeed_in(folder.path(), "run scenario.json --agent random --output log");
+    succeed_in(folder.path(), "report log");
+    let page = read(folder.path().join("report.html"));
+    assert!(page.contains("No pictures of worlds: the scenario learned no variants of tasks."));
+}
+
+#[test]
 fn log_warnings_are_printed_and_on_the_page() {
     let folder = scratch();
     live(folder.path());
