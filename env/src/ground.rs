@@ -158,6 +158,8 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         /// The triangles of a simple polygon cover exactly its inside.
         #[test]
         fn triangles_cover_the_zone(

@@ -279,6 +279,8 @@ mod tests {
     use super::*;
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         #[test]
         fn rows_of_a_disc_cover_exactly_its_cells(
             size in [1.0..400.0_f32, 1.0..400.0_f32],

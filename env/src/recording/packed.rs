@@ -133,6 +133,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         #[test]
         fn actions_round_trip_to_the_bit(
             kind in 0usize..4,

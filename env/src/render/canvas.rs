@@ -272,6 +272,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         #[test]
         fn skipped_rows_contain_no_pixel_of_the_triangle(
             corners in prop::array::uniform3(prop::array::uniform2(prop_oneof![-300.0..400.0_f32, -9.0..99.0_f32, Just(30.0)])),

@@ -19,6 +19,10 @@ use super::view::View;
 /// The share of detail at which all of it is shown.
 const FULL_SHARE: u32 = 255;
 
+/// Darkness that is visible, as a share: what is fainter changes no pixel. Far above the errors of rounding, so that rows left out
+/// before it is computed are those in which nothing would be dark.
+const FAINTEST: f32 = 1e-4;
+
 /// Distance in metres of the foot in columns without one.
 const NOWHERE: f32 = 1e9;
 
@@ -375,7 +379,7 @@ impl Composition<'_> {
         let fades = l.mul(seen.inverse, l.splat(1.0 / (CONTACT_PIXELS * self.view.step)));
         let fades = l.select(standing, l.min(fades, l.splat(1.0 / reach)), l.splat(row.fades));
         let near = l.max(l.min(l.sub(one, l.mul(away, fades)), one), zero);
-        let meets = l.above(near, zero);
+        let meets = l.above(near, l.splat(FAINTEST));
         if l.bits(meets) == 0 {
             return seen.word;
         }

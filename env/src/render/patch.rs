@@ -241,6 +241,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         /// A run finds the same texels with less work, and marks columns that it does not know.
         #[test]
         fn run_finds_the_same_texels_as_its_patch(

@@ -73,6 +73,8 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         #[test]
         fn bounding_box_matches_the_engines(
             at in prop::array::uniform3(-300.0_f32..300.0), heading in -7.0_f32..7.0, tilt in -2.0_f32..2.0,

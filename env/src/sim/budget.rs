@@ -87,6 +87,8 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         /// Whatever each takes, the total is never exceeded, and over several time steps everyone gets some.
         #[test]
         fn shared_budget_is_never_exceeded_and_starves_nobody(

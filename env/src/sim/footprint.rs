@@ -245,6 +245,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         #[test]
         fn gap_matches_the_nearest_of_many_boundary_points(footprint in footprint(), at in point()) {
             let gap = footprint.gap(at);

@@ -52,6 +52,8 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         /// Compared with the definition: every lower place has been collected.
         #[test]
         fn object_is_due_once_all_lower_places_are_collected(

@@ -63,6 +63,8 @@ mod tests {
     use super::*;
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         /// The traces give the same weights as a plain sum over all errors and earlier actions.
         #[test]
         fn weights_equal_the_sum_over_errors_and_earlier_actions(

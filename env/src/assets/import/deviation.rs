@@ -131,6 +131,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         #[test]
         fn evenly_yields_every_number_once(count in 0usize..3000) {
             let mut numbers: Vec<usize> = evenly(count).collect();

@@ -244,6 +244,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         /// Fixes up the checksum, so that the corrupted models themselves are parsed.
         #[test]
         fn changed_models_are_refused_or_sound(

@@ -256,6 +256,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         #[test]
         fn operations_agree_between_instruction_sets(
             a in prop::collection::vec(prop_oneof![-1e3..1e3_f32, Just(0.0), Just(-0.0)], MOST_LANES),
