@@ -337,6 +337,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         /// The frames are ascending, include the start and the end, are as many as requested if there are enough steps, and
         /// omit nothing more important than what they show.
         #[test]

@@ -229,6 +229,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         #[test]
         fn nearest_place_matches_brute_force(
             places in prop::collection::vec(prop::array::uniform2(-9.0..60.0_f32), 0..40),

@@ -261,6 +261,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         #[test]
         fn unbreakable_text_stays_on_one_line(
             facts in proptest::collection::vec("[0-9]{1,6} ± [0-9]{1,6}", 1..5),

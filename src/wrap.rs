@@ -119,6 +119,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         #[test]
         fn nothing_is_lost_and_no_word_is_broken(words in proptest::collection::vec("[a-zäß漢]{1,9}", 0..20), width in 1_usize..30) {
             let text = words.join(" ");

@@ -9,6 +9,9 @@ mod design;
 mod error;
 mod hash;
 mod run;
+#[cfg(test)]
+#[path = "../../tests/tier.rs"]
+mod tier;
 mod transfer;
 
 pub use audit::{AuditOptions, AuditRow, audit};

@@ -13,6 +13,9 @@ mod sampler;
 mod sequence;
 mod spatial_hash;
 mod stream;
+#[cfg(test)]
+#[path = "../../tests/tier.rs"]
+mod tier;
 
 use driftworld_spec::{Variant, World};
 

@@ -100,6 +100,8 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         #[test]
         fn nearest_agrees_with_linear_search(
             places in prop::collection::vec([-200.0..200.0_f64, -200.0..200.0_f64], 0..200),

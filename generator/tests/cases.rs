@@ -108,6 +108,8 @@ fn looked_up(fillings: &Fillings, of: &str) -> [Json; 8] {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
     /// A look-up over a variant parameter equals its case written out in place: worlds and distributions agree to the byte.
     #[test]
     fn look_up_over_variant_parameter_equals_its_case_written_out(fillings in fillings(), seed in 0..9u64) {

@@ -251,6 +251,8 @@ fn invalid_records_are_refused_and_nothing_is_written() {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
     #[test]
     fn no_file_makes_the_reader_panic(text in "([0-9a-z\t\"{}:.]|\n){0,80}", with_header in any::<bool>()) {
         let base = tempfile::tempdir().unwrap();

@@ -63,6 +63,8 @@ fn close(found: &[f64], expected: &[f64]) -> bool {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
     #[test]
     fn means_and_intervals_lie_between_the_extreme_scores(rows in rows(), how in resampling()) {
         let scores: Vec<f64> = rows.iter().flatten().flatten().copied().collect();

@@ -296,6 +296,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         #[test]
         fn solution_is_as_cheap_as_the_best_by_brute_force(first in matrix(), second in matrix()) {
             // One workspace for both: nothing of the first solution may remain in the second.

@@ -290,6 +290,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         /// A cell's step count is one more than its least neighbour's; a cell without a reached neighbour is unreachable.
         #[test]
         fn steps_are_one_more_than_the_least_neighbour(

@@ -150,6 +150,8 @@ fn laws<T>((name, bound, measure): Measure<T>, a: &T, b: &T, c: Option<&T>) -> R
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
     #[test]
     fn metrics_of_taken_cells_satisfy_the_axioms(a in grid(), b in grid(), c in grid()) {
         let (a, b, c) = (a.taken(), b.taken(), c.taken());

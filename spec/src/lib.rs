@@ -23,6 +23,9 @@ pub mod schema;
 mod serde_defaults;
 mod suggest;
 mod task;
+#[cfg(test)]
+#[path = "../../tests/tier.rs"]
+mod tier;
 mod value;
 mod version;
 mod warning;

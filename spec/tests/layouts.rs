@@ -107,6 +107,8 @@ fn in_a_wall(plan: &Plan, point: [f64; 2]) -> bool {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
     #[test]
     fn same_seed_gives_same_plan_and_is_saved(layout in layouts(), other in 0_u64..9) {
         let plan = layout.plan(other);

@@ -100,6 +100,8 @@ fn condition() -> impl Strategy<Value = String> {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
     /// Conditions that load are true or false for all values.
     #[test]
     fn accepted_condition_is_always_defined(require in condition(), count in 0_i64..10, drawn in 0.0..1.0, pick in any::<[bool; 6]>()) {

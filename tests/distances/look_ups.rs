@@ -40,6 +40,8 @@ fn laws() -> impl Strategy<Value = Json> {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
     /// A look-up over a variant parameter is compared like a parameter of type distribution with the same two values.
     #[test]
     fn look_up_over_a_variant_parameter_equals_its_cases(near in laws(), far in laws()) {

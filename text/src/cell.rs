@@ -92,6 +92,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         #[test]
         fn guarded_cells_start_no_formula_and_round_trip(
             start in "['=+@\t\r\n-]{0,3}", rest in "(?s).{0,8}"

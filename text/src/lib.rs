@@ -12,6 +12,9 @@ mod phrases;
 mod plain;
 mod printable;
 mod removed;
+#[cfg(test)]
+#[path = "../../tests/tier.rs"]
+mod tier;
 mod unbroken;
 
 pub use cell::{Cells, cell, unguarded};

@@ -209,6 +209,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         #[test]
         fn accepted_names_work_as_files_logs_and_cells(name in prop_oneof!["[ -~]{0,6}", "\\PC{0,6}", "(?s).{0,6}", "[a-z.+_-]{0,6}"]) {
             if check_name(&name).is_ok() {

@@ -67,6 +67,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         /// Sums of tenths, hundredths and so on read as their exact value, however many terms they have.
         #[test]
         fn sums_read_as_their_exact_value(

@@ -215,6 +215,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         #[test]
         fn escaping_removes_all_unprintable_and_keeps_the_rest(text in texts()) {
             let line = printable(&text);

@@ -1,7 +1,6 @@
 //! The stage `tests`: runs cargo-nextest if installed, otherwise `cargo test`. Doc tests are a separate stage, because nextest
 //! cannot run them.
 
-use std::env;
 use std::io::{self, BufRead, BufReader};
 use std::process::{Command, Stdio};
 
@@ -21,8 +20,6 @@ pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome> {
         run(workspace.cargo(&["build", "--release"]))?;
         let built = workspace.target.join("release/driftworld");
         command.env("DRIFTWORLD_FULL", "1").env("DRIFTWORLD_COMMAND", built);
-    } else if env::var_os("PROPTEST_CASES").is_none() {
-        command.env("PROPTEST_CASES", "24");
     }
     relay(command).map(|closing| Outcome::Passed(summary(&closing)))
 }

@@ -113,6 +113,8 @@ fn any_design(variants: usize) -> impl Strategy<Value = Design> {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
     #[test]
     fn layouts_are_disjoint_between_variants_lifetimes_seeds_and_splits(
         options in any_design(4), other in 3..9_u64,

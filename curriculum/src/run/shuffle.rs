@@ -75,6 +75,8 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         #[test]
         fn every_experience_occurs_once(first in 0..1_000_000_u64, count in 1..300_u64, key in any::<u64>()) {
             let shuffle = Shuffle::new(first, count, key);

@@ -91,6 +91,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         #[test]
         fn every_name_round_trips(name in ".{0,40}") {
             if let Ok(folder) = encoded(Path::new(""), &name) {

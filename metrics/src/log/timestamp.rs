@@ -135,6 +135,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         #[test]
         fn every_microsecond_round_trips(micros in -60_000_000_000_000_000_i64..250_000_000_000_000_000) {
             let stamp = Timestamp::from_unix_micros(micros).unwrap();

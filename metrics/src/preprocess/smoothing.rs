@@ -154,6 +154,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         #[test]
         fn parallel_sums_are_bit_identical_to_sequential_ones(
             values in proptest::collection::vec(-100.0..100.0, 7..100),

@@ -160,6 +160,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         #[test]
         fn effect_is_named_only_beyond_noise(band in any_band(), parts in proptest::collection::vec(-1.0..1.0, 0..6)) {
             let found = Reading::of_lifetime(GOOD, Some(&band), &parts).expect("there is a value of no effect");

@@ -130,6 +130,8 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         /// There are no more colours than wanted; they are exact if that is enough; and in total, colours are closer to their
         /// palette colours than to the overall mean.
         #[test]

@@ -93,6 +93,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         /// No line is wider than its image, and except above the narrowest every word is there, in order.
         #[test]
         fn no_line_is_too_wide_and_no_word_is_lost(

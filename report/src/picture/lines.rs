@@ -95,6 +95,8 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         /// Every word is there, in order; no line is too wide; and whole parts that fit into a line are not broken.
         #[test]
         fn whole_parts_stay_together(

@@ -253,6 +253,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         #[test]
         fn fast_form_equals_the_published_formula(a in lab(), b in lab()) {
             prop_assert!((ciede2000(a, b) - as_written(a, b)).abs() < 1e-9);

@@ -129,6 +129,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         #[test]
         fn measures_satisfy_their_declared_properties(a in color(), b in color(), c in color()) {
             for &measure in ColorMeasure::ALL {

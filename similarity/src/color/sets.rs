@@ -73,6 +73,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         #[test]
         fn set_distance_is_a_metric(a in colors(), b in colors(), c in colors()) {
             for &measure in ColorMeasure::ALL {

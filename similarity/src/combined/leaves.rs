@@ -342,6 +342,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         #[test]
         fn leaves_distance_is_a_metric(a in texts(), b in texts(), c in texts()) {
             let mut reader = LeafReader::default();

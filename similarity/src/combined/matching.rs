@@ -173,6 +173,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         #[test]
         fn matching_is_as_cheap_as_the_best_by_brute_force(a in objects(), b in objects()) {
             let (a, b) = (features(&a), features(&b));

@@ -458,6 +458,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         #[test]
         fn world_distance_is_symmetric_and_zero_on_itself(a in worlds(), b in worlds()) {
             let d = |a, b| world_distance(a, b, &Weights::default());

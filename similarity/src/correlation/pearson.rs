@@ -78,6 +78,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         #[test]
         fn pearson_is_symmetric_bounded_and_invariant_to_shift_and_scale((a, b) in lists(), shift in -9.0..9.0, scale in 0.1..9.0) {
             let Ok(r) = pearson(&a, &b) else { return Ok(()) };

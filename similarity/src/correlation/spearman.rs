@@ -95,6 +95,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         #[test]
         fn spearman_is_symmetric_bounded_and_invariant_under_rising_maps((a, b) in lists()) {
             let Ok(rho) = spearman(&a, &b) else { return Ok(()) };
@@ -112,6 +114,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         /// Ties do not depend on the order of additions, nor on the unit.
         #[test]
         fn rounding_neither_breaks_nor_makes_ties(

@@ -166,6 +166,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         #[test]
         fn placement_distance_is_symmetric_and_zero_on_itself(a in placements(), b in placements()) {
             let d = |a: &Distribution, b: &Distribution| placement_wasserstein_2(a, b).unwrap().value;

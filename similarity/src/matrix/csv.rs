@@ -186,6 +186,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         #[test]
         fn csv_round_trips(
             labels in prop::collection::btree_set("['=+@-]{0,2}[a-z1,\"\n\r\t #é]{1,5}", 1..6),

@@ -233,6 +233,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         #[test]
         fn result_matches_the_definition(a in process(6, 2), b in process(5, 2), discount in 0.0..0.9) {
             let expected = by_definition(&a, &b, discount);

@@ -90,6 +90,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         #[test]
         fn ospa_is_a_metric(a in objects(), b in objects(), c in objects(), cut_off in 0.5..15.0) {
             let mut turned = a.clone();

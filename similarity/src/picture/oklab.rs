@@ -103,6 +103,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         #[test]
         fn picture_oklab_is_a_metric(a in pixels(), b in pixels(), c in pixels()) {
             prop_assert_eq!(distance(&a, &a), 0.0);

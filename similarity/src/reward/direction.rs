@@ -119,6 +119,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         #[test]
         fn direction_distance_is_a_pseudometric(a in list(), b in list(), c in list()) {
             prop_assert_eq!(apart(&a, &a), 0.0);

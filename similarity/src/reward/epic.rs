@@ -263,6 +263,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         #[test]
         fn epic_is_a_pseudometric_on_any_samples(seed in 0_u64..1000, discount in 0.0..=1.0) {
             let mut rng = SplitMix64(seed);

@@ -231,6 +231,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         #[test]
         fn equivalent_rewards_are_0_apart_and_the_reverse_is_1(
             pays in prop::collection::vec(-100.0..100.0_f64, 1..6),

@@ -30,6 +30,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         #[test]
         fn circular_difference_is_a_metric(a in -720.0..720.0, b in -720.0..720.0, c in -720.0..720.0, turns in -2i8..3) {
             let d = circular_difference;

@@ -182,6 +182,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         #[test]
         fn table_declared_a_metric_is_one(costs in prop::array::uniform3(0.0..2.0)) {
             let [ab, ac, bc] = costs;

@@ -45,6 +45,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         #[test]
         fn counts_distance_is_a_metric(a in counts(), b in counts(), c in counts()) {
             let d = counts_distance;

@@ -38,6 +38,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         #[test]
         fn relative_difference_is_a_metric(a in number(), b in number(), c in number()) {
             let d = relative_difference;

@@ -88,6 +88,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         #[test]
         fn earth_movers_distance_is_a_metric(a in points(), b in points(), c in points()) {
             let d = |a: &[[f64; 2]], b: &[[f64; 2]]| earth_movers_distance(a, b).unwrap();

@@ -126,6 +126,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         #[test]
         fn all_mass_arrives(
             masses in prop::collection::vec((0.0f64..1.0, 0.0f64..1.0), 1..20),

@@ -187,6 +187,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         #[test]
         fn prices_prove_every_plan_optimal((sources, sinks) in sides(), numbers in prop::collection::vec(0.0f64..1.0, 900)) {
             check(&sources, &sinks, &numbers[..sources.len() * sinks.len()]);

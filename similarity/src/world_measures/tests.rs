@@ -154,6 +154,8 @@ fn larger_arena_can_violate_the_triangle_inequality() {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
     #[test]
     fn measures_are_symmetric_and_0_on_equals(a in things(), b in things(), turn in 0_usize..5) {
         let mut turned = a.clone();

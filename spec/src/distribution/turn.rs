@@ -183,6 +183,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         #[test]
         fn objects_take_their_own_place_or_the_next_free_one(
             blocked in prop::collection::vec(any::<bool>(), 1..30), count in 0_u64..70,

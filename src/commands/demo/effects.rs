@@ -203,6 +203,8 @@ Forgetting: learning b lowered a from 10 to 3, although a had been learned.";
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         /// For any rewards, the parts shown for a variant add up: the first and last rewards are those of the first and the
         /// last evaluation, and the parts sum to their difference.
         #[test]

@@ -114,6 +114,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         /// Whatever was shown before, the terminal then shows the picture; and nothing is sent if nothing changed.
         #[test]
         fn terminal_shows_the_last_picture(pictures in prop::collection::vec(picture(), 1..4)) {

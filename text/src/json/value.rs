@@ -247,6 +247,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
         /// The parser's own values serve as the oracle.
         #[test]
         fn values_agree_with_serde_json(value in any_json()) {

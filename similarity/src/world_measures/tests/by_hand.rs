@@ -108,6 +108,8 @@ fn assert_near(measure: &str, found: f64, expected: f64) {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
     #[test]
     fn earth_movers_match_the_best_pairing(a in things(), b in things()) {
         // At most 3 objects per class, so that pairings are few.

@@ -209,6 +209,8 @@ fn asked() -> impl Strategy<Value = (&'static str, &'static str, Vec<String>)> {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
+
     #[test]
     fn requested_measures_satisfy_their_laws((kind, measure, choices) in asked()) {
         let task = task(kind, measure, &choices);
