@@ -283,28 +283,33 @@ mod tests {
     fn third_party_libraries_built_twice_are_found() {
         let folder = env::temp_dir().join(format!("xtask-rebuilds-{}", std::process::id()));
         let deps = folder.join("debug/deps");
-        std::fs::create_dir_all(&deps).unwrap();
+        std::fs::create_dir_all(&deps).expect("the temporary folder is writable");
         let registry = "x.d: /home/user/.cargo/registry/src/index-0a1b";
+        let write = |name: &str, text: &str| std::fs::write(deps.join(name), text).expect("its folder was made above");
         let search = || {
             let script = concat!(env!("CARGO_MANIFEST_DIR"), "/../scripts/rebuilds.sh");
-            Command::new("sh").arg(script).arg(&folder).output().unwrap()
+            Command::new("sh")
+                .arg(script)
+                .arg(&folder)
+                .output()
+                .expect("every Unix has a shell")
         };
         // The third was only checked, the fourth and the fifth are ours.
-        for (library, sources) in [
-            ("a-1.rlib", format!("{registry}/a-1.0.0/src/lib.rs\n")),
-            ("a-3.so", format!("{registry}/a-2.0.0/src/lib.rs\n")),
-            ("a-4.rmeta", format!("{registry}/a-1.0.0/src/lib.rs\n")),
-            ("ours-5.rlib", "x.d: ours/src/lib.rs\n".to_owned()),
-            ("ours-6.rlib", "x.d: ours/src/lib.rs\n".to_owned()),
+        for (library, list, sources) in [
+            ("liba-1.rlib", "a-1.d", format!("{registry}/a-1.0.0/src/lib.rs\n")),
+            ("liba-3.so", "a-3.d", format!("{registry}/a-2.0.0/src/lib.rs\n")),
+            ("liba-4.rmeta", "a-4.d", format!("{registry}/a-1.0.0/src/lib.rs\n")),
+            ("libours-5.rlib", "ours-5.d", "x.d: ours/src/lib.rs\n".to_owned()),
+            ("libours-6.rlib", "ours-6.d", "x.d: ours/src/lib.rs\n".to_owned()),
         ] {
-            std::fs::write(deps.join(format!("lib{library}")), "").unwrap();
-            std::fs::write(deps.join(library).with_extension("d"), sources).unwrap();
+            write(library, "");
+            write(list, &sources);
         }
         assert!(search().status.success());
-        std::fs::write(deps.join("liba-2.rlib"), "").unwrap();
-        std::fs::write(deps.join("a-2.d"), format!("{registry}/a-1.0.0/src/lib.rs\n")).unwrap();
+        write("liba-2.rlib", "");
+        write("a-2.d", &format!("{registry}/a-1.0.0/src/lib.rs\n"));
         let found = search();
-        std::fs::remove_dir_all(&folder).unwrap();
+        std::fs::remove_dir_all(&folder).expect("it was made here");
         assert!(!found.status.success());
         let said = String::from_utf8_lossy(&found.stderr);
         assert!(

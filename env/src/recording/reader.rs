@@ -306,8 +306,8 @@ mod tests {
             world: deflated(br#"{ "of_another_version": true }"#.iter().copied()),
         });
         let mut file = RecordingLines::header() + &world;
-        let reader = RecordingReader::new(file.as_bytes()).unwrap();
-        let (offset, mut lines, next) = reader.into_lines_before(u64::MAX).unwrap();
+        let reader = RecordingReader::new(file.as_bytes()).expect("the file begins well");
+        let (offset, mut lines, next) = reader.into_lines_before(u64::MAX).expect("no line is damaged");
         assert_eq!((offset, next), (file.len() as u64, 0));
         file += &lines.lines(&recording(0));
         file += &lines.lines(&recording(1));

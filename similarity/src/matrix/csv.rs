@@ -238,7 +238,7 @@ mod tests {
             .lines()
             .skip(1)
         {
-            let (text, expected) = row.split_once(" => ").unwrap();
+            let (text, expected) = row.split_once(" => ").expect("a row has two parts");
             let error = DistanceMatrix::from_csv(&text.replace('|', "\n"))
                 .unwrap_err()
                 .to_string();

@@ -92,7 +92,7 @@ mod tests {
             .trim()
             .lines()
         {
-            let (rest, expected) = row.split_once(" => ").unwrap();
+            let (rest, expected) = row.split_once(" => ").expect("a row has two parts");
             let text = format!("{{\"labels\": [\"a\", \"b\"],\n {rest}}}");
             assert_eq!(
                 DistanceMatrix::from_json(&text).unwrap_err().to_string(),

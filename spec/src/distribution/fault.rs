@@ -282,7 +282,7 @@ mod tests {
     /// Each row is a distribution and what is expected of it instead; "sound" if nothing.
     fn check(rows: &str) {
         for row in rows.trim().lines() {
-            let (json, expected) = row.split_once(" => ").unwrap();
+            let (json, expected) = row.split_once(" => ").expect("a row has two parts");
             let distribution: Distribution =
                 serde_json::from_str(json).unwrap_or_else(|error| panic!("{row}: {error}"));
             let found = distribution.fault().map_or("sound", |(_, expected)| expected);

@@ -262,7 +262,7 @@ mod tests {
             let whole = WORDS
                 .iter()
                 .fold(row.to_owned(), |row, (word, text)| row.replace(word, text));
-            let (regimes, expected) = whole.split_once(" =>").unwrap();
+            let (regimes, expected) = whole.split_once(" =>").expect("a row has two parts");
             let expected = expected.trim().replace("at 0", "at /blocks/0/regimes/0");
             let said = said(regimes);
             assert!(

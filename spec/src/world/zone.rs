@@ -259,7 +259,7 @@ mod tests {
             .trim()
             .lines()
         {
-            let (zone, said) = row.split_once(" => ").unwrap();
+            let (zone, said) = row.split_once(" => ").expect("a row has two parts");
             check(
                 &zone.replace("DISC", disc),
                 &format!("(/environment_params/zones/0{said}"),

@@ -136,7 +136,7 @@ fn costs_must_be_distances_among_the_choices() {
         .trim()
         .lines()
     {
-        let (costs, said) = row.split_once(" => ").unwrap();
+        let (costs, said) = row.split_once(" => ").expect("a row has two parts");
         let said = format!("/parameters/p/compare/costs{said}");
         check(&format!(r#"{{ "costs": {costs} }}"#), WORDS, &said);
     }
