@@ -49,7 +49,7 @@ pub(super) fn section(metrics: &LifetimeMetrics, called: &BTreeMap<String, Strin
                                 td.number data-name="First evaluation" { (level(task.evaluations.first())) }
                                 td.number data-name="Best after learning" { (level(task.best())) }
                                 td.number data-name="Last evaluation" { (level(task.last())) }
-                                td.number data-name="Forgetting" { (metrics.curves.get(name).map_or("–".to_owned(), |curve| amount(curve.forgetting, curve.is_scaled))) }
+                                td.number data-name="Forgetting" { (forgetting(metrics.curves.get(name))) }
                                 td { @if let Some(verdict) = verdict(task) { (pill(verdict)) } }
                             }
                         }
@@ -83,6 +83,11 @@ fn averages(metrics: &LifetimeMetrics) -> Markup {
             }
         }
     }
+}
+
+/// The best evaluation of a task less its last.
+fn forgetting(curve: Option<&EvaluationCurve>) -> String {
+    curve.map_or("–".to_owned(), |curve| amount(curve.forgetting, curve.is_scaled))
 }
 
 /// A performance as a share of the way from floor to ceiling, or in the log's unit.
