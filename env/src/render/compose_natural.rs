@@ -19,6 +19,10 @@ use super::view::View;
 /// The share of detail at which all of it is shown.
 const FULL_SHARE: u32 = 255;
 
+/// Darkness that is visible, as a share: what is fainter changes no pixel. Far above the errors of rounding, so that rows left out
+/// before it is computed are those in which nothing would be dark.
+const FAINTEST: f32 = 1e-4;
+
 /// Distance in metres of the foot in columns without one.
 const NOWHERE: f32 = 1e9;
 
@@ -57,9 +61,10 @@ struct Columns<'a, L: Lanes> {
     /// The covering of walls, if columns show it from top to bottom.
     wall: Option<&'a Patch>,
     run: Run<L>,
-    /// Distance in metres of the last object that met the ground, and whether it may still darken the ground.
+    /// Distance in metres of the last object that met the ground, and the smallest of all columns. What is dark must depend on
+    /// its own column alone: the number of columns depends on the instruction set.
     foot: L::Float,
-    is_near_foot: bool,
+    nearest_foot: f32,
     /// Distance in metres of walls that reach the ceiling: the same there as at eye height.
     lintel: L::Float,
     /// Steepest slopes of rows that show ground or ceiling before they come near a continuing wall; distance in metres of the
@@ -202,7 +207,7 @@ impl Composition<'_> {
             wall: self.natural.upright_walls(),
             run: Run::new(l),
             foot: l.splat(NOWHERE),
-            is_near_foot: false,
+            nearest_foot: NOWHERE,
             lintel: l.splat(NOWHERE),
             quiet: [0.0; 2],
             nearest: f32::INFINITY,
@@ -356,12 +361,12 @@ impl Composition<'_> {
     #[inline(always)]
     fn in_contact<L: Lanes>(&self, l: L, columns: &mut Columns<'_, L>, row: &Row, seen: &Seen<L>) -> L::Word {
         let is_ceiling = row.shows == Shows::Ceiling;
-        let (foot, is_near) = if is_ceiling {
-            (columns.lintel, row.metres + 1.0 / row.fades > columns.nearest)
+        let (foot, nearest) = if is_ceiling {
+            (columns.lintel, columns.nearest)
         } else {
-            (columns.foot, columns.is_near_foot)
+            (columns.foot, columns.nearest_foot)
         };
-        if !seen.may_meet && !is_near {
+        if !seen.may_meet && row.metres + 1.0 / row.fades <= nearest {
             return seen.word;
         }
         let [most, reach] = CONTACT;
@@ -374,20 +379,19 @@ impl Composition<'_> {
         let fades = l.mul(seen.inverse, l.splat(1.0 / (CONTACT_PIXELS * self.view.step)));
         let fades = l.select(standing, l.min(fades, l.splat(1.0 / reach)), l.splat(row.fades));
         let near = l.max(l.min(l.sub(one, l.mul(away, fades)), one), zero);
-        let meets = l.above(near, zero);
-        let is_dark = l.bits(meets) != 0;
-        if !is_ceiling {
-            columns.is_near_foot = is_dark;
-        }
-        if !is_dark {
+        let meets = l.above(near, l.splat(FAINTEST));
+        if l.bits(meets) == 0 {
             return seen.word;
         }
-        if !is_ceiling {
+        let meets_foot = l.both(standing, meets);
+        if !is_ceiling && l.bits(meets_foot) != 0 {
             // Only the lowest pixels of a wall are its foot: seen from above, its edges overlap ground that it does not touch.
             let is_map = l.equal(l.and(seen.word, l.splat_word(NO_MAP)), l.splat_word(0));
             let is_above = l.above(l.mul(away, seen.inverse), l.splat(row.foot));
-            let met = l.select(l.both(is_map, is_above), foot, seen.metres);
-            columns.foot = l.select(l.both(standing, meets), met, foot);
+            columns.foot = l.select(meets_foot, l.select(l.both(is_map, is_above), foot, seen.metres), foot);
+            let mut feet = [NOWHERE; MOST_LANES];
+            l.store(columns.foot, &mut feet);
+            columns.nearest_foot = feet.into_iter().fold(NOWHERE, f32::min);
         }
         let dark = l.mul(l.mul(near, near), l.mul(fades, l.splat(128.0 * most * reach)));
         let left = l.truncate(l.sub(l.splat(128.0 + ROUNDING), dark));
