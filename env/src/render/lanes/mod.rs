@@ -1,7 +1,7 @@
 //! SIMD operations for the renderer, for each instruction set.
 //!
-//! Every set rounds the same way: no fused multiply-add, the same order, IEEE division and square root. So one
-//! operation gives the same numbers on every machine, and a test compares all sets of the machine.
+//! Every set rounds the same way: no fused multiply-add, the same order, IEEE division and square root. So a scene gives the
+//! same pixels on every machine, and a test compares all sets of the machine.
 //!
 //! Code between these operations avoids closures: closures lack the target feature, so the compiler calls each operation
 //! instead of inlining it (measured: three times slower).
