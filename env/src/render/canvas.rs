@@ -73,8 +73,7 @@ impl Canvas {
     #[inline(always)]
     pub(super) fn fill<L: Lanes, const ITEMS: bool>(&mut self, lanes: L, triangle: &Triangle, texture: impl Texture) {
         let Triangle { columns, rows, .. } = *triangle;
-        let (zero, outside) = (lanes.splat(0.0), lanes.splat(f32::NEG_INFINITY));
-        let [left, right] = columns.map(|column| lanes.splat(column as f32));
+        let zero = lanes.splat(0.0);
         let packed = lanes.splat_word(triangle.pixel);
         let item = lanes.splat_word(triangle.item);
         let top = rows[0] as f32;
@@ -89,9 +88,7 @@ impl Canvas {
                 None => rows,
             };
             let x = lanes.add(lanes.count_up(), lanes.splat(start as f32));
-            // How many columns of a vector lie outside depends on the number of lanes, and the edges of a sliver may hold there.
-            let within = lanes.both(lanes.at_least(x, left), lanes.at_least(right, x));
-            let mut e0 = lanes.select(within, at_top(lanes, triangle.edges[0], x, top), outside);
+            let mut e0 = lanes.add(at_top(lanes, triangle.edges[0], x, top), within(lanes, start, columns));
             let mut e1 = at_top(lanes, triangle.edges[1], x, top);
             let mut e2 = at_top(lanes, triangle.edges[2], x, top);
             let mut inverse = at_top(lanes, triangle.inverse_depth, x, top);
@@ -210,6 +207,25 @@ impl<T> std::ops::DerefMut for Aligned<T> {
         &mut self.numbers[self.start..self.start + self.length]
     }
 }
+
+/// What leaves out, added to an edge, the lanes beside a triangle's columns: how many these are depends on the instruction set,
+/// and the edges of a sliver may hold there.
+#[inline(always)]
+fn within<L: Lanes>(lanes: L, start: usize, [first, last]: [usize; 2]) -> L::Float {
+    let beside = BESIDE.as_flattened();
+    let right = lanes.load(&beside[2 * MOST_LANES - (last + 1 - start).min(L::N)..]);
+    if start >= first {
+        return right;
+    }
+    lanes.min(right, lanes.load(&beside[MOST_LANES + start - first..]))
+}
+
+/// Zeros between as many infinities.
+const BESIDE: [[f32; MOST_LANES]; 3] = [
+    [f32::NEG_INFINITY; MOST_LANES],
+    [0.0; MOST_LANES],
+    [f32::NEG_INFINITY; MOST_LANES],
+];
 
 /// `c + a·x + b·y` in one row.
 #[inline(always)]

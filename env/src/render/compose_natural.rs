@@ -61,16 +61,12 @@ struct Columns<'a, L: Lanes> {
     /// The covering of walls, if columns show it from top to bottom.
     wall: Option<&'a Patch>,
     run: Run<L>,
-    /// Distance in metres of the last object that met the ground, and the smallest of all columns. What is dark must depend on
-    /// its own column alone: the number of columns depends on the instruction set.
+    /// Distance in metres of the last object that met the ground.
     foot: L::Float,
-    nearest_foot: f32,
     /// Distance in metres of walls that reach the ceiling: the same there as at eye height.
     lintel: L::Float,
-    /// Steepest slopes of rows that show ground or ceiling before they come near a continuing wall; distance in metres of the
-    /// nearest wall.
+    /// Steepest slopes of rows that show ground or ceiling before they come near a continuing wall.
     quiet: [f32; 2],
-    nearest: f32,
 }
 
 /// Background of a vector: its pixels, with their texels.
@@ -207,10 +203,8 @@ impl Composition<'_> {
             wall: self.natural.upright_walls(),
             run: Run::new(l),
             foot: l.splat(NOWHERE),
-            nearest_foot: NOWHERE,
             lintel: l.splat(NOWHERE),
             quiet: [0.0; 2],
-            nearest: f32::INFINITY,
         };
         if columns.wall.is_some() {
             // If walls are higher than the eye, all are visible in the row at eye height.
@@ -237,7 +231,6 @@ impl Composition<'_> {
                     until(above, far).min(until(above, near)),
                 ];
                 if self.ceiling_meets_walls {
-                    columns.nearest = 1.0 / near;
                     columns.lintel = columns.run.metres_or(l, NOWHERE);
                 }
             }
@@ -361,12 +354,9 @@ impl Composition<'_> {
     #[inline(always)]
     fn in_contact<L: Lanes>(&self, l: L, columns: &mut Columns<'_, L>, row: &Row, seen: &Seen<L>) -> L::Word {
         let is_ceiling = row.shows == Shows::Ceiling;
-        let (foot, nearest) = if is_ceiling {
-            (columns.lintel, columns.nearest)
-        } else {
-            (columns.foot, columns.nearest_foot)
-        };
-        if !seen.may_meet && row.metres + 1.0 / row.fades <= nearest {
+        let foot = if is_ceiling { columns.lintel } else { columns.foot };
+        // What is dark depends on its own column alone: the number of columns beside it depends on the instruction set.
+        if !seen.may_meet && l.bits(l.above(l.splat(row.metres + 1.0 / row.fades), foot)) == 0 {
             return seen.word;
         }
         let [most, reach] = CONTACT;
@@ -389,9 +379,6 @@ impl Composition<'_> {
             let is_map = l.equal(l.and(seen.word, l.splat_word(NO_MAP)), l.splat_word(0));
             let is_above = l.above(l.mul(away, seen.inverse), l.splat(row.foot));
             columns.foot = l.select(meets_foot, l.select(l.both(is_map, is_above), foot, seen.metres), foot);
-            let mut feet = [NOWHERE; MOST_LANES];
-            l.store(columns.foot, &mut feet);
-            columns.nearest_foot = feet.into_iter().fold(NOWHERE, f32::min);
         }
         let dark = l.mul(l.mul(near, near), l.mul(fades, l.splat(128.0 * most * reach)));
         let left = l.truncate(l.sub(l.splat(128.0 + ROUNDING), dark));
