@@ -1,0 +1,462 @@
+// The typed client of the simulator: every call runs in one worker, with a time limit and a way to stop it.
+//
+// The worker holds the simulator compiled to WebAssembly. A call that takes too long, or that is stopped, ends the worker; the next
+// call starts a new one. Episodes that were open in the old worker are gone then: calls on them fail with the code `engine/lost`.
+
+/** Any JSON value. */
+export type Json = null | boolean | number | string | Json[] | { [key: string]: Json };
+
+/** The elements of a decision process: state, action, transition, reward, observation; `p` and `phi` are the finer ones. */
+export type Element = "S" | "A" | "T" | "R" | "O" | "p" | "phi";
+
+/** A problem of a document, at its place. Lines and columns count from 1; 0 while the place is not known. */
+export interface Problem {
+  code: string;
+  pointer: string;
+  line: number;
+  column: number;
+  found: string;
+  expected: string;
+  advice: string | null;
+  /** All of it in one sentence. */
+  message: string;
+}
+
+/** Why a call has no result. */
+export class EngineError extends Error {
+  /**
+   * A stable name. From here: `engine/timeout`, `engine/stopped`, `engine/lost`, `engine/crashed`, `engine/load`. From links:
+   * `link/damaged`, `link/version`, `link/too-long`. From the simulator: `spec/…`, `env/…`, `generator/…`, `request/…`.
+   */
+  readonly code: string;
+  /** Of a document that is wrong: every problem, in the order of the text. */
+  readonly problems: Problem[];
+
+  constructor(code: string, message: string, problems: Problem[] = []) {
+    super(message);
+    this.name = "EngineError";
+    this.code = code;
+    this.problems = problems;
+  }
+}
+
+/** A value of a parameter, as documents have it: a colour may be a name or a list of three numbers. */
+export type Value = Json;
+
+/** A declared parameter: what a slider or a picker needs. */
+export interface Parameter {
+  name: string;
+  role: "fixed" | "variant" | "randomized";
+  /** `number`, `integer`, `boolean`, `string`, `color`, `heading`, `position`, `vector`, `layout`, `distribution`, `json`, …. */
+  type: string;
+  affects: Element[];
+  unit: string | null;
+  description: string | null;
+  /** Variant only: the least and the greatest number. */
+  range: [number, number] | null;
+  /** Variant only: the values there are; `name` where the task names them. A value in an override is `name`, if there is one. */
+  choices: { value: Value; name: string | null }[] | null;
+  /** The value where no variant says: the default of a variant parameter, the value of a fixed one. */
+  value: Value | null;
+  /** Randomized only: the distribution, as the task has it. */
+  distribution: Json | null;
+  /** The condition under which anything reads it. */
+  read_if: string | null;
+}
+
+/** A variant and what it sets. */
+export interface Variant {
+  name: string;
+  description: string | null;
+  /** The values of all variant parameters in it. */
+  values: Record<string, Value>;
+}
+
+/** A task in the gallery. */
+export interface TaskCard {
+  name: string;
+  /** What it asks for, such as `navigation`. */
+  group: string;
+  description: string;
+  variants: string[];
+  /** Variants that describe themselves, best first: what a card shows. */
+  examples: { variant: string; description: string }[];
+}
+
+/** A task with its parameters and variants. */
+export interface Task {
+  name: string;
+  description: string;
+  /** The text of its document. */
+  text: string;
+  parameters: Parameter[];
+  variants: Variant[];
+  families: { name: string; members: string[] }[];
+  /** Conditions that every variant must meet. */
+  requirements: string[];
+}
+
+/** Which world: one that a task draws, or one as it is. */
+export type WorldRequest =
+  | {
+      /** The name of a built-in task, or the text of a task spec (what begins with `{`). */
+      task: string;
+      /** The variant; all parameters at their defaults if absent. */
+      variant?: string;
+      /** Values of variant parameters that replace those of the variant. */
+      values?: Record<string, Value>;
+      /** 0 if absent. */
+      seed?: number;
+      /** Number of the world under the seed, 0 if absent. */
+      index?: number;
+    }
+  | {
+      /** The JSON of a world. */
+      world: string;
+    };
+
+/** What a text is, and what is wrong with it. */
+export interface Validation {
+  kind: "task" | "world" | "scenario" | "maps" | "l2explorer-world" | "l2explorer-scenario";
+  problems: Problem[];
+  /** True where there are more problems than are listed. */
+  more: boolean;
+}
+
+/** `plain` colours or `natural` surfaces; the world's own if absent. */
+export type Looks = "plain" | "natural";
+
+/** What an image shows. */
+export type Modality = "rgb" | "depth" | "segmentation" | "class" | "instance";
+
+/** What the agent sees, or all of the world from above. */
+export type View = "agent" | "above";
+
+/** An image: `data` is RGBA, row 0 on top; what `ImageData` takes. */
+export interface Frame {
+  width: number;
+  height: number;
+  data: Uint8ClampedArray<ArrayBuffer>;
+}
+
+/** Actions that a world takes. */
+export interface ActionSpace {
+  /** `discrete`: a row of a table. `continuous`: three numbers in units. `normalized`: three numbers in -1..1. */
+  kind: "discrete" | "continuous" | "normalized";
+  /** What the three numbers mean. `none` and `onrails` ignore actions. */
+  model: "byvelocity" | "bywaypoint" | "onrails" | "none";
+  /** Discrete: a name for each row, such as `ahead left`. Otherwise a name for each number. */
+  names: string[];
+  /** Discrete: the rows themselves. */
+  table: [number, number, number][] | null;
+  can_interact: boolean;
+  max_speed: number;
+  max_turn_rate: number;
+  /** Seconds of the world in one step. */
+  step_seconds: number;
+}
+
+/** A row of the table, or three numbers. */
+export type Action = number | [number, number, number];
+
+/** What keys ask for, in -1..1: the action of the world that comes nearest is taken. `turn` is to the right. */
+export interface Keys {
+  ahead: number;
+  turn: number;
+  interact: boolean;
+}
+
+/** Something that happened to an object in a step. */
+export interface StepEvent {
+  object: number;
+  tag: string | null;
+  stimulus: string;
+  reward: number;
+  destroyed: boolean;
+  effect?: "opened" | "closed" | "switched" | "picked_up" | "put_down";
+}
+
+/** Where an episode stands, after a step or without one. */
+export interface Step {
+  /** How many steps have been taken. */
+  step: number;
+  /** What the last step paid. */
+  reward: number;
+  terminated: boolean;
+  truncated: boolean;
+  success: boolean;
+  /** `all_collected`, `touch`, `opened`, `carried`, `delivered`, `return`, `energy`, `zone`, `steps`, `time`. */
+  ended_by: string | null;
+  events: StepEvent[];
+  /** The action that was taken; null before the first step. */
+  action: Action | null;
+  /** Sum of rewards so far. */
+  total: number;
+  /** Seconds of the world so far. */
+  seconds: number;
+  /** The energy that is left, in worlds that count it. */
+  energy: number | null;
+  agent: { x: number; y: number; heading: number };
+}
+
+/** A wall on the map: a closed or an open line, in metres. */
+export interface MapWall {
+  points: [number, number][];
+  closed: boolean;
+  /** sRGB in 0..1. */
+  color: [number, number, number];
+}
+
+/** An object on the map. */
+export interface MapObject {
+  /** Its number in the world: what events and problems (`/objects/N`) name. */
+  index: number;
+  class: string;
+  tag: string | null;
+  x: number;
+  y: number;
+  /** Degrees clockwise from north. */
+  heading: number;
+  /** Radius of its body in metres. */
+  radius: number;
+  /** sRGB in 0..1. */
+  color: [number, number, number];
+  /** What it pays now. */
+  reward: number;
+  /** False once it is gone, and of a thing that is carried. */
+  present: boolean;
+  carried: boolean;
+  /** A door that stands open. */
+  open: boolean;
+}
+
+/** A zone on the map. */
+export interface MapZone {
+  name: string | null;
+  points: [number, number][];
+  color: [number, number, number];
+  visible: boolean;
+}
+
+/** All that a flat map shows, in metres: x to the east, y to the north, (0, 0) in the middle. */
+export interface WorldMap {
+  width: number;
+  depth: number;
+  walls: MapWall[];
+  objects: MapObject[];
+  zones: MapZone[];
+  agent: { x: number; y: number; heading: number; radius: number };
+}
+
+/** Who acts: the built-in ones, or a network in the format safetensors as `driftworld.learners` exports it. */
+export type Agent = "planner" | "random" | "still" | { network: Uint8Array };
+
+/** What two are compared by, such as `parameters`, `worlds`, `pictures`, `objects`, `rewards`, `dynamics` or `behavior`. */
+export type Measure = string;
+
+/** One comparison that a distance is made of. */
+export interface DistancePart {
+  name: string;
+  element: Element;
+  /** The measure, and what its number is divided by. */
+  measure: string;
+  raw: number;
+  normalised: number;
+  weight: number;
+  /** Share of the whole, in 0..1. */
+  share: number;
+}
+
+/** How far apart two are. */
+export interface Distance {
+  by: Measure;
+  /** By what, from how many worlds, and what else is to be known of the number, in words. */
+  description: string;
+  total: number;
+  /** Null where nothing could differ. */
+  elements: Record<"S" | "A" | "T" | "R" | "O", number | null>;
+  parts: DistancePart[];
+}
+
+/** Where an element of two variants was first seen to differ. */
+export interface Witness {
+  element: Element;
+  /** The case in a sentence. */
+  message: string;
+}
+
+/** What two variants of a task differ in: what their parameters claim, and what was measured in their worlds. */
+export interface Elements {
+  /** The parameters that differ. */
+  parameters: string[];
+  declared: Element[];
+  measured: Witness[];
+  /** Sentences about what was measured and is not declared. */
+  contradictions: string[];
+  /** Parameters that differ and made no difference. */
+  idle: string[];
+  verdict: "sound" | "idle" | "contradicted";
+}
+
+/** All distances among variants, and a flat map of them. */
+export interface Matrix {
+  by: Measure;
+  labels: string[];
+  rows: number[][];
+  /** A point for each label: distances between points are near to those of the matrix. */
+  points: [number, number][];
+  /** Share of the distances that the flat map shows, in 0..1. */
+  shown: number;
+}
+
+/** How variants are ordered. */
+export type OrderMethod =
+  | "nearest" | "exact" | "two-opt" | "abrupt" | "farthest" | "random" | "target-step" | "gradual" | "outward" | "given";
+
+/** Variants in an order. */
+export interface Order {
+  method: OrderMethod;
+  by: Measure;
+  labels: string[];
+  /** The distance from each to the next. */
+  steps: number[];
+  length: number;
+}
+
+/** A file that was dropped onto the page: its path in the folder, and its bytes. */
+export interface DroppedFile {
+  path: string;
+  bytes: Uint8Array;
+}
+
+/** An episode of a log. */
+export interface LoggedEpisode {
+  experience: number;
+  block: number;
+  block_type: "train" | "test";
+  task: string;
+  reward: number;
+  steps: number | null;
+  /** Whether its actions were recorded, so that it can be opened with `openLogged`. */
+  recorded: boolean;
+}
+
+/** A log of a lifetime. */
+export interface Log {
+  /** The names of the tasks, in the order in which they first come. */
+  tasks: string[];
+  metrics: string[];
+  episodes: LoggedEpisode[];
+  warnings: string[];
+}
+
+/** An episode that fits into a link. */
+export interface Link {
+  request: WorldRequest;
+  looks?: Looks;
+  actions: Action[];
+}
+
+/** How an episode of an agent went. */
+export interface Outcome {
+  request: WorldRequest;
+  steps: number;
+  total: number;
+  success: boolean;
+  ended_by: string | null;
+  actions: Action[];
+}
+
+/** An episode that runs in the worker. */
+export interface Episode {
+  readonly id: number;
+  readonly request: WorldRequest;
+  readonly actionSpace: ActionSpace;
+  /** The side of the image that the world itself asks for, in pixels. */
+  readonly imageSize: number;
+  /** The JSON of the world that it began in. */
+  readonly world: string;
+  /** Takes an action, or the action nearest to what keys ask for. Steps after the end fail with `env/ended`. */
+  step(action: Action | Keys): Promise<Step>;
+  /** Takes several actions; ends early where the episode does. The steps that were taken. */
+  steps(actions: Action[]): Promise<Step[]>;
+  /** What an agent would do now; changes nothing but the agent's own state. Agents begin anew where the episode does. */
+  choose(agent: Agent): Promise<Action>;
+  /** `choose` and `step` at once. */
+  act(agent: Agent): Promise<Step>;
+  /** Goes to the moment after so many steps, back or forth within what has been played. Playing on from there drops the rest. */
+  seek(step: number): Promise<Step>;
+  /** Where it stands. */
+  now(): Promise<Step>;
+  /** Draws what the agent sees, or the world from above. Size: that of `open`, unless it is given. */
+  frame(view?: View, modality?: Modality, size?: { width: number; height: number }): Promise<Frame>;
+  map(): Promise<WorldMap>;
+  /** All actions so far, also those beyond the moment that `seek` went to. */
+  actions(): Promise<Action[]>;
+  /** Frees it. */
+  close(): Promise<void>;
+}
+
+/** How the engine is started. */
+export interface EngineOptions {
+  /** Makes a worker that runs `worker.js`. */
+  worker?: () => Worker;
+  /** Milliseconds that a call may take; 10,000 if absent. */
+  limit?: number;
+}
+
+/** The simulator. Calls run one after the other. */
+export interface Engine {
+  /** Resolves when the simulator is loaded. The version of Driftworld in it, and how long loading took. */
+  ready(): Promise<{ version: string; milliseconds: number }>;
+  /** Ends what runs: the calls that wait fail with `engine/stopped`, open episodes are lost. */
+  stop(): void;
+  /** Calls are told here when they begin and end, for a spinner and a stop button. */
+  onbusy: ((busy: boolean) => void) | null;
+
+  tasks(): Promise<TaskCard[]>;
+  /** A task by its name, or from its text. */
+  task(nameOrText: string): Promise<Task>;
+  /** The parameters of a task; those of `task`. */
+  parameters(nameOrText: string): Promise<Parameter[]>;
+  /** All that is wrong with a text; a result, and not an error, also where much is. */
+  validate(text: string): Promise<Validation>;
+  /** The JSON Schema of a kind of document. */
+  schema(kind: "task" | "world" | "scenario"): Promise<Json>;
+  /** The JSON of a world, indented. */
+  sample(request: WorldRequest): Promise<string>;
+  /** Begins an episode. Width and height are those of its frames; the world's own if absent. */
+  open(request: WorldRequest, options?: { looks?: Looks; width?: number; height?: number }): Promise<Episode>;
+  /** Runs a whole episode of an agent, in at most so many steps (1000 if absent). */
+  run(request: WorldRequest, agent: Agent, steps?: number): Promise<Outcome>;
+  /** The first world from `request.index` on in which the agent does not succeed; null if it succeeds in all of them. */
+  findFailure(request: WorldRequest, agent: Agent, options?: { worlds?: number; steps?: number }): Promise<Outcome | null>;
+
+  /** The names of measures. */
+  measures(): Promise<Measure[]>;
+  /** How far apart two are. Variants are compared as such, worlds as worlds (`as: "worlds"` compares the two worlds of requests). */
+  distance(a: WorldRequest, b: WorldRequest, options?: {
+    by?: Measure; worlds?: number; seed?: number; as?: "variants" | "worlds";
+  }): Promise<Distance>;
+  /** What two variants of one task differ in, with a witness of each element. */
+  elements(task: string, a: string, b: string, options?: { worlds?: number; seed?: number }): Promise<Elements>;
+  /** All distances among the variants of a task, or among some of them. */
+  matrix(task: string, options?: { variants?: string[]; by?: Measure; worlds?: number }): Promise<Matrix>;
+  /** The variants of a task in an order. */
+  order(task: string, options?: {
+    variants?: string[]; by?: Measure; worlds?: number; method?: OrderMethod; start?: string; seed?: number;
+  }): Promise<Order>;
+
+  /** Reads the files of a log. */
+  log(files: DroppedFile[]): Promise<Log>;
+  /** Opens an episode of the log that was read last, with all its actions: `seek` plays it. */
+  openLogged(experience: number, options?: { looks?: Looks; width?: number; height?: number }): Promise<Episode>;
+
+  /** An episode as the fragment of an address, without `#`: at most 2 kB for 300 steps of a built-in task. */
+  encodeLink(link: Link): Promise<string>;
+  /** The episode of a fragment. Fails with `link/damaged` or `link/version`. */
+  decodeLink(fragment: string): Promise<Link>;
+}
+
+/** Starts the simulator in a worker. */
+export declare function createEngine(options?: EngineOptions): Engine;
