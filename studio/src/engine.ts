@@ -3,6 +3,8 @@
 // The worker holds the simulator compiled to WebAssembly. A call that takes too long, or that is stopped, ends the worker; the next
 // call starts a new one. Episodes that were open in the old worker are gone then: calls on them fail with the code `engine/lost`.
 
+import type { Answered, Asked } from "./worker.ts";
+
 /** Any JSON value. */
 export type Json = null | boolean | number | string | Json[] | { [key: string]: Json };
 
@@ -121,6 +123,8 @@ export interface Validation {
   problems: Problem[];
   /** True where there are more problems than are listed. */
   more: boolean;
+  /** What is odd and not wrong, in sentences. */
+  warnings: string[];
 }
 
 /** `plain` colours or `natural` surfaces; the world's own if absent. */
@@ -405,6 +409,35 @@ export interface EngineOptions {
   limit?: number;
 }
 
+/** In which looks a world is opened, and how large its frames are. */
+export interface OpenOptions {
+  looks?: Looks;
+  width?: number;
+  height?: number;
+}
+
+/** Which worlds a distance compares, and by what. */
+export interface DistanceOptions {
+  by?: Measure;
+  worlds?: number;
+  seed?: number;
+  as?: "variants" | "worlds";
+}
+
+/** Which variants of a task are compared, and by what; all, and by what the task declares, if absent. */
+export interface MatrixOptions {
+  variants?: string[];
+  by?: Measure;
+  worlds?: number;
+}
+
+/** The same, and how they are ordered. */
+export interface OrderOptions extends MatrixOptions {
+  method?: OrderMethod;
+  start?: string;
+  seed?: number;
+}
+
 /** The simulator. Calls run one after the other. */
 export interface Engine {
   /** Resolves when the simulator is loaded. The version of Driftworld in it, and how long loading took. */
@@ -426,7 +459,7 @@ export interface Engine {
   /** The JSON of a world, indented. */
   sample(request: WorldRequest): Promise<string>;
   /** Begins an episode. Width and height are those of its frames; the world's own if absent. */
-  open(request: WorldRequest, options?: { looks?: Looks; width?: number; height?: number }): Promise<Episode>;
+  open(request: WorldRequest, options?: OpenOptions): Promise<Episode>;
   /** Runs a whole episode of an agent, in at most so many steps (1000 if absent). */
   run(request: WorldRequest, agent: Agent, steps?: number): Promise<Outcome>;
   /** The first world from `request.index` on in which the agent does not succeed; null if it succeeds in all of them. */
@@ -435,22 +468,18 @@ export interface Engine {
   /** The names of measures. */
   measures(): Promise<Measure[]>;
   /** How far apart two are. Variants are compared as such, worlds as worlds (`as: "worlds"` compares the two worlds of requests). */
-  distance(a: WorldRequest, b: WorldRequest, options?: {
-    by?: Measure; worlds?: number; seed?: number; as?: "variants" | "worlds";
-  }): Promise<Distance>;
+  distance(a: WorldRequest, b: WorldRequest, options?: DistanceOptions): Promise<Distance>;
   /** What two variants of one task differ in, with a witness of each element. */
   elements(task: string, a: string, b: string, options?: { worlds?: number; seed?: number }): Promise<Elements>;
   /** All distances among the variants of a task, or among some of them. */
-  matrix(task: string, options?: { variants?: string[]; by?: Measure; worlds?: number }): Promise<Matrix>;
+  matrix(task: string, options?: MatrixOptions): Promise<Matrix>;
   /** The variants of a task in an order. */
-  order(task: string, options?: {
-    variants?: string[]; by?: Measure; worlds?: number; method?: OrderMethod; start?: string; seed?: number;
-  }): Promise<Order>;
+  order(task: string, options?: OrderOptions): Promise<Order>;
 
   /** Reads the files of a log. */
   log(files: DroppedFile[]): Promise<Log>;
   /** Opens an episode of the log that was read last, with all its actions: `seek` plays it. */
-  openLogged(experience: number, options?: { looks?: Looks; width?: number; height?: number }): Promise<Episode>;
+  openLogged(experience: number, options?: OpenOptions): Promise<Episode>;
 
   /** An episode as the fragment of an address, without `#`: at most 2 kB for 300 steps of a built-in task. */
   encodeLink(link: Link): Promise<string>;
@@ -459,4 +488,328 @@ export interface Engine {
 }
 
 /** Starts the simulator in a worker. */
-export declare function createEngine(options?: EngineOptions): Engine;
+export function createEngine(options: EngineOptions = {}): Engine {
+  return new WorkerEngine(options);
+}
+
+/** A call that waits for its turn, or runs. */
+interface Waiting {
+  id: number;
+  call: Record<string, unknown>;
+  bytes: Uint8Array | undefined;
+  /** The worker that it is meant for: calls on episodes of another one are lost. */
+  generation: number | null;
+  resolve(answer: { value: Json; bytes: Uint8Array<ArrayBuffer> }): void;
+  reject(error: EngineError): void;
+}
+
+class WorkerEngine implements Engine {
+  onbusy: ((busy: boolean) => void) | null = null;
+  readonly limit: number;
+  readonly makeWorker: () => Worker;
+  /** Counts the workers. */
+  generation = 0;
+  private worker: Worker | null = null;
+  private loaded: Promise<void> = Promise.resolve();
+  private waiting: Waiting[] = [];
+  private running: Waiting | null = null;
+  private timer: ReturnType<typeof setTimeout> | undefined;
+  private asked = 0;
+  private milliseconds = 0;
+  /** Numbers of networks in the worker that runs. */
+  private networks = new WeakMap<Uint8Array, { generation: number; number: number }>();
+
+  constructor({ worker, limit = 10_000 }: EngineOptions) {
+    this.makeWorker = worker ?? (() => new Worker(new URL("worker.js", document.baseURI), { type: "module" }));
+    this.limit = limit;
+    this.begin();
+  }
+
+  private begin(): void {
+    const begun = performance.now();
+    const worker = this.makeWorker();
+    this.generation += 1;
+    this.worker = worker;
+    this.loaded = new Promise((resolve, reject) => {
+      worker.onmessage = ({ data }: MessageEvent<Answered>) => {
+        if (data.id >= 0) {
+          this.answered(data);
+        } else if (data.failed === undefined) {
+          this.milliseconds = performance.now() - begun;
+          resolve();
+        } else {
+          reject(new EngineError("engine/load", data.failed));
+        }
+      };
+      worker.onerror = (event) => reject(new EngineError("engine/load", event.message || "the worker cannot be started"));
+    });
+    this.loaded.catch(() => {});
+  }
+
+  /** Ends the worker and all calls; the first that ran fails for `reason`. */
+  private end(reason: EngineError): void {
+    clearTimeout(this.timer);
+    this.worker?.terminate();
+    this.worker = null;
+    const { running, waiting } = this;
+    this.running = null;
+    this.waiting = [];
+    running?.reject(reason);
+    const others = reason.code === "engine/stopped" ? reason : new EngineError("engine/lost", "a call before this one ended the simulator; ask again");
+    for (const call of waiting) call.reject(others);
+    if (running) this.onbusy?.(false);
+  }
+
+  stop(): void {
+    this.end(new EngineError("engine/stopped", "it was stopped"));
+  }
+
+  /** Sends a call when its turn has come. */
+  send(call: Record<string, unknown>, bytes?: Uint8Array, generation: number | null = null): Promise<{ value: Json; bytes: Uint8Array<ArrayBuffer> }> {
+    return new Promise((resolve, reject) => {
+      this.asked += 1;
+      this.waiting.push({ id: this.asked, call, bytes, generation, resolve, reject });
+      this.next();
+    });
+  }
+
+  private next(): void {
+    if (this.running) return;
+    const call = this.waiting.shift();
+    if (!call) return;
+    if (!this.worker) this.begin();
+    if (call.generation !== null && call.generation !== this.generation) {
+      call.reject(new EngineError("engine/lost", "the episode ended with the simulator that it ran in; open it again"));
+      this.next();
+      return;
+    }
+    this.running = call;
+    this.onbusy?.(true);
+    this.loaded.then(
+      () => {
+        if (this.running !== call) return;
+        this.timer = setTimeout(
+          () => this.end(new EngineError("engine/timeout", `it took more than ${this.limit / 1000} s and was ended; ask for less`)),
+          this.limit,
+        );
+        const asked: Asked = { id: call.id, call: call.call, ...(call.bytes ? { bytes: call.bytes } : {}) };
+        this.worker?.postMessage(asked);
+      },
+      (error: EngineError) => {
+        if (this.running === call) this.end(error);
+      },
+    );
+  }
+
+  private answered({ id, json, bytes, failed }: Answered): void {
+    const call = this.running;
+    if (call?.id !== id) return;
+    if (failed !== undefined || json === undefined || bytes === undefined) {
+      this.end(new EngineError("engine/crashed", `the simulator failed: ${failed ?? "no answer"}; please report what you did`));
+      return;
+    }
+    clearTimeout(this.timer);
+    this.running = null;
+    const answer = JSON.parse(json) as { ok: Json } | { error: { code: string; message: string; problems: Problem[] } };
+    if ("error" in answer) {
+      call.reject(new EngineError(answer.error.code, answer.error.message, answer.error.problems));
+    } else {
+      call.resolve({ value: answer.ok, bytes });
+    }
+    this.onbusy?.(false);
+    this.next();
+  }
+
+  /** The answer of a call that has no bytes. */
+  async ask<T>(call: Record<string, unknown>, generation: number | null = null): Promise<T> {
+    return (await this.send(call, undefined, generation)).value as T;
+  }
+
+  /** An agent as calls name it; a network is handed over once to each worker. */
+  async agent(agent: Agent): Promise<Json> {
+    if (typeof agent === "string") return agent;
+    const known = this.networks.get(agent.network);
+    if (known && known.generation === this.generation && this.worker) return { network: known.number };
+    const number = (await this.send({ call: "network" }, agent.network)).value as number;
+    this.networks.set(agent.network, { generation: this.generation, number });
+    return { network: number };
+  }
+
+  async ready(): Promise<{ version: string; milliseconds: number }> {
+    const version = await this.ask<string>({ call: "version" });
+    return { version, milliseconds: this.milliseconds };
+  }
+
+  tasks(): Promise<TaskCard[]> {
+    return this.ask({ call: "tasks" });
+  }
+
+  task(task: string): Promise<Task> {
+    return this.ask({ call: "task", task });
+  }
+
+  async parameters(task: string): Promise<Parameter[]> {
+    return (await this.task(task)).parameters;
+  }
+
+  validate(text: string): Promise<Validation> {
+    return this.ask({ call: "validate", text });
+  }
+
+  schema(kind: "task" | "world" | "scenario"): Promise<Json> {
+    return this.ask({ call: "schema", kind });
+  }
+
+  sample(request: WorldRequest): Promise<string> {
+    return this.ask({ call: "sample", request });
+  }
+
+  open(request: WorldRequest, options: OpenOptions = {}): Promise<Episode> {
+    return this.opened(request, { call: "open", request, ...drawn(options) });
+  }
+
+  private async opened(request: WorldRequest | null, call: Record<string, unknown>): Promise<Episode> {
+    const found = await this.ask<Opened>(call);
+    return new WorkerEpisode(this, this.generation, request ?? { world: found.world }, found);
+  }
+
+  async run(request: WorldRequest, agent: Agent, steps = 1000): Promise<Outcome> {
+    const outcome = await this.ask<Omit<Outcome, "request">>({ call: "run", request, agent: await this.agent(agent), steps });
+    return { request, ...outcome };
+  }
+
+  async findFailure(request: WorldRequest, agent: Agent, { worlds = 100, steps = 1000 } = {}): Promise<Outcome | null> {
+    const first = "world" in request ? 0 : (request.index ?? 0);
+    const end = "world" in request ? 1 : first + worlds;
+    for (let index = first; index < end; index += 1) {
+      const outcome = await this.run("world" in request ? request : { ...request, index }, agent, steps);
+      if (!outcome.success) return outcome;
+    }
+    return null;
+  }
+
+  measures(): Promise<Measure[]> {
+    return this.ask({ call: "measures" });
+  }
+
+  distance(a: WorldRequest, b: WorldRequest, { as, ...options }: DistanceOptions = {}): Promise<Distance> {
+    return this.ask({ call: "distance", a, b, as_worlds: as === "worlds", ...options });
+  }
+
+  elements(task: string, a: string, b: string, { worlds = 8, seed = 0 } = {}): Promise<Elements> {
+    return this.ask({ call: "elements", task, a, b, worlds, seed });
+  }
+
+  matrix(task: string, options: MatrixOptions = {}): Promise<Matrix> {
+    return this.ask({ call: "matrix", task, ...options });
+  }
+
+  order(task: string, options: OrderOptions = {}): Promise<Order> {
+    return this.ask({ call: "order", task, ...options });
+  }
+
+  async log(files: DroppedFile[]): Promise<Log> {
+    const all = new Uint8Array(files.reduce((sum, file) => sum + file.bytes.length, 0));
+    let at = 0;
+    for (const { bytes } of files) {
+      all.set(bytes, at);
+      at += bytes.length;
+    }
+    const call = { call: "log", files: files.map(({ path, bytes }) => ({ path, length: bytes.length })) };
+    return (await this.send(call, all)).value as unknown as Log;
+  }
+
+  openLogged(experience: number, options: OpenOptions = {}): Promise<Episode> {
+    return this.opened(null, { call: "open_logged", experience, ...drawn(options) });
+  }
+
+  encodeLink(link: Link): Promise<string> {
+    return this.ask({ call: "encode_link", link });
+  }
+
+  decodeLink(fragment: string): Promise<Link> {
+    return this.ask({ call: "decode_link", fragment });
+  }
+}
+
+/** How a world and its pictures are opened, as calls say it. */
+function drawn({ looks, width, height }: OpenOptions): Record<string, unknown> {
+  const own = { ...(looks ? { style: looks } : {}) };
+  return width && height ? { ...own, size: [width, height] } : own;
+}
+
+/** What the simulator says of an episode that begins. */
+interface Opened {
+  id: number;
+  image_size: number;
+  world: string;
+  action_space: ActionSpace;
+}
+
+class WorkerEpisode implements Episode {
+  readonly id: number;
+  readonly actionSpace: ActionSpace;
+  readonly imageSize: number;
+  readonly world: string;
+
+  constructor(
+    private readonly engine: WorkerEngine,
+    private readonly generation: number,
+    readonly request: WorldRequest,
+    opened: Opened,
+  ) {
+    this.id = opened.id;
+    this.actionSpace = opened.action_space;
+    this.imageSize = opened.image_size;
+    this.world = opened.world;
+  }
+
+  private ask<T>(call: Record<string, unknown>): Promise<T> {
+    return this.engine.ask({ ...call, episode: this.id }, this.generation);
+  }
+
+  async step(action: Action | Keys): Promise<Step> {
+    const [step] = await this.ask<[Step]>({ call: "step", steps: [action] });
+    return step;
+  }
+
+  steps(actions: Action[]): Promise<Step[]> {
+    return this.ask({ call: "step", steps: actions });
+  }
+
+  async choose(agent: Agent): Promise<Action> {
+    return this.ask({ call: "choose", agent: await this.engine.agent(agent) });
+  }
+
+  async act(agent: Agent): Promise<Step> {
+    return this.ask({ call: "act", agent: await this.engine.agent(agent) });
+  }
+
+  seek(step: number): Promise<Step> {
+    return this.ask({ call: "seek", step });
+  }
+
+  now(): Promise<Step> {
+    return this.ask({ call: "now" });
+  }
+
+  async frame(view: View = "agent", modality: Modality = "rgb", size?: { width: number; height: number }): Promise<Frame> {
+    const wanted = size ? { size: [size.width, size.height] } : {};
+    const call = { call: "frame", episode: this.id, view, modality, ...wanted };
+    const { value, bytes } = await this.engine.send(call, undefined, this.generation);
+    const { width, height } = value as { width: number; height: number };
+    return { width, height, data: new Uint8ClampedArray(bytes.buffer) };
+  }
+
+  map(): Promise<WorldMap> {
+    return this.ask({ call: "map" });
+  }
+
+  actions(): Promise<Action[]> {
+    return this.ask({ call: "actions" });
+  }
+
+  async close(): Promise<void> {
+    await this.ask({ call: "close" }).catch(() => {});
+  }
+}
