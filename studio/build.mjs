@@ -1,0 +1,70 @@
+// Bundles the page and packs the simulator: `node build.mjs WASM OUT`, as `cargo xtask studio` calls it. Prints what each file takes.
+
+import { build } from "esbuild";
+import { cpSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { basename, dirname, join } from "node:path";
+import { fileURLToPath } from "node:url";
+import { brotliCompressSync, constants, gzipSync } from "node:zlib";
+
+/** The most that a browser transfers to show the page and run the simulator, networks apart, in bytes. */
+const MOST = 2_500_000;
+
+const here = dirname(fileURLToPath(import.meta.url));
+const [wasm, out] = process.argv.slice(2);
+if (!wasm || !out) {
+  console.error("build.mjs: found too few arguments, expected: node build.mjs WASM OUT; run `cargo xtask studio`");
+  process.exit(2);
+}
+
+rmSync(out, { recursive: true, force: true });
+mkdirSync(out, { recursive: true });
+await build({
+  absWorkingDir: here,
+  entryPoints: { main: "src/main.tsx", worker: "src/worker.ts", style: "src/style.css" },
+  outdir: out,
+  bundle: true,
+  format: "esm",
+  target: "es2022",
+  minify: true,
+  legalComments: "none",
+  logLevel: "warning",
+});
+for (const name of ["index.html", "icon.svg"]) cpSync(join(here, name), join(out, name));
+
+const packed = (bytes, name) => brotliCompressSync(bytes, {
+  params: {
+    [constants.BROTLI_PARAM_QUALITY]: 11,
+    [constants.BROTLI_PARAM_LGWIN]: 24,
+    [constants.BROTLI_PARAM_SIZE_HINT]: bytes.length,
+    [constants.BROTLI_PARAM_MODE]: name.endsWith(".wasm") ? constants.BROTLI_MODE_GENERIC : constants.BROTLI_MODE_TEXT,
+  },
+});
+
+let sum = 0;
+const tell = (name, raw, small) => console.log(`${name.padEnd(20)} ${String(raw).padStart(9)} bytes, ${String(small).padStart(9)} by brotli`);
+for (const name of readdirSync(out).sort()) {
+  const bytes = readFileSync(join(out, name));
+  const small = packed(bytes, name).length;
+  sum += small;
+  tell(name, bytes.length, small);
+}
+const simulator = readFileSync(wasm);
+const small = packed(simulator, "driftworld.wasm");
+writeFileSync(join(out, "driftworld.wasm.br"), small);
+// For browsers that cannot unpack brotli themselves.
+writeFileSync(join(out, "driftworld.wasm.gz"), gzipSync(simulator, { level: 9 }));
+sum += small.length;
+tell("driftworld.wasm", simulator.length, small.length);
+
+// Trained networks, fetched when one is asked to play.
+const networks = join(here, "..", "examples", "networks");
+mkdirSync(join(out, "networks"));
+const names = readdirSync(networks).filter((name) => name.endsWith(".safetensors")).sort();
+for (const name of names) cpSync(join(networks, name), join(out, "networks", name));
+writeFileSync(join(out, "networks", "index.json"), JSON.stringify(names.map((name) => basename(name, ".safetensors"))));
+
+console.log(`in all               ${sum} bytes by brotli, at most ${MOST}; networks beside it: ${names.join(", ")}`);
+if (sum > MOST) {
+  console.error(`build.mjs: found ${sum} bytes by brotli, expected at most ${MOST}; make the page or the simulator smaller`);
+  process.exit(1);
+}
