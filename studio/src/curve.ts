@@ -1,0 +1,36 @@
+// The learning curve of a log: rewards of learning episodes, smoothed, and those of evaluations as they are.
+
+import type { LoggedEpisode } from "./engine.ts";
+
+/** The curve of one task. */
+export interface Curve {
+  task: string;
+  /** Learning: number of the experience and mean reward of those around it. */
+  learned: [number, number][];
+  /** Evaluation: number of the experience and its reward. */
+  tested: [number, number][];
+}
+
+/** The means of each number and so many before it. */
+export function trailingMeans(numbers: number[], window: number): number[] {
+  let sum = 0;
+  return numbers.map((number, at) => {
+    sum += number - (numbers[at - window] ?? 0);
+    return sum / Math.min(at + 1, window);
+  });
+}
+
+/** A curve for each task, in the order in which they first come. */
+export function curves(episodes: LoggedEpisode[]): Curve[] {
+  const tasks = [...new Set(episodes.map(({ task }) => task))];
+  return tasks.map((task) => {
+    const own = episodes.filter((episode) => episode.task === task && Number.isFinite(episode.reward));
+    const train = own.filter(({ block_type: type }) => type === "train");
+    const means = trailingMeans(train.map(({ reward }) => reward), Math.max(1, Math.ceil(train.length / 20)));
+    return {
+      task,
+      learned: train.map(({ experience }, at) => [experience, means[at]!]),
+      tested: own.filter(({ block_type: type }) => type === "test").map(({ experience, reward }) => [experience, reward]),
+    };
+  });
+}

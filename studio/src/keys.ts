@@ -1,0 +1,67 @@
+// Which keys are held, as what they ask of an agent.
+
+import { useEffect, useRef } from "preact/hooks";
+import type { Keys } from "./engine.ts";
+
+const AHEAD = ["ArrowUp", "KeyW"];
+const BACK = ["ArrowDown", "KeyS"];
+const LEFT = ["ArrowLeft", "KeyA"];
+const RIGHT = ["ArrowRight", "KeyD"];
+const USE = ["Space", "KeyE"];
+const HELD = [AHEAD, BACK, LEFT, RIGHT, USE].flat();
+
+/** What keys ask for. */
+export function askedBy(held: ReadonlySet<string>): Keys {
+  const any = (codes: string[]) => Number(codes.some((code) => held.has(code)));
+  return { ahead: any(AHEAD) - any(BACK), turn: any(RIGHT) - any(LEFT), interact: any(USE) === 1 };
+}
+
+/** Whether someone asks for anything. */
+export const isAsking = (keys: Keys): boolean => keys.ahead !== 0 || keys.turn !== 0 || keys.interact;
+
+/** Whether a key is meant for a control, such as a list, and not for the world. */
+const isForControl = (target: EventTarget | null): boolean =>
+  target instanceof Element && target.closest("input, select, textarea, button, a, summary, [contenteditable], .editor") !== null;
+
+/** Keys that are held while the page has the focus; `press` hears each new one. A short press lasts until it is read. */
+export function useHeldKeys(press: (code: string) => void): { read(): Keys; set(code: string, isDown: boolean): void } {
+  const held = useRef(new Set<string>());
+  const tapped = useRef(new Set<string>());
+  const heard = useRef(press);
+  heard.current = press;
+  const set = (code: string, isDown: boolean) => {
+    if (isDown) {
+      held.current.add(code);
+      tapped.current.add(code);
+      heard.current(code);
+    } else {
+      held.current.delete(code);
+    }
+  };
+  useEffect(() => {
+    const down = (event: KeyboardEvent) => {
+      if (isForControl(event.target) || event.ctrlKey || event.metaKey || event.altKey) return;
+      if (HELD.includes(event.code)) event.preventDefault();
+      if (!event.repeat) {
+        if (HELD.includes(event.code)) set(event.code, true);
+        else heard.current(event.code);
+      }
+    };
+    const up = (event: KeyboardEvent) => set(event.code, false);
+    const blur = () => held.current.clear();
+    window.addEventListener("keydown", down);
+    window.addEventListener("keyup", up);
+    window.addEventListener("blur", blur);
+    return () => {
+      window.removeEventListener("keydown", down);
+      window.removeEventListener("keyup", up);
+      window.removeEventListener("blur", blur);
+    };
+  }, []);
+  const read = () => {
+    const keys = askedBy(new Set([...held.current, ...tapped.current]));
+    tapped.current.clear();
+    return keys;
+  };
+  return { read, set };
+}

@@ -1,0 +1,79 @@
+// Maps of letters in a task spec: where they stand in its text, and what a click on a cell changes.
+
+import type { Json } from "./engine.ts";
+import type { Path } from "./json_text.ts";
+
+/** A layout of type `text` in a document. */
+export interface TextLayout {
+  /** The way to its list of rows. */
+  path: Path;
+  /** Where it is, for people: `maze / choices / plus`. */
+  label: string;
+  rows: string[];
+  /** Letters that can be put into a cell, each with what it stands for. */
+  letters: { letter: string; meaning: string }[];
+}
+
+const USUAL: Record<string, string> = { "#": "wall", ".": "floor", A: "start" };
+
+/** What a letter of a legend stands for, in words. */
+function meaning(entry: Json): string {
+  return typeof entry === "string" ? entry : String(Object.values(entry as { [key: string]: Json })[0] ?? "");
+}
+
+/** Every layout of letters in a document, in its order. */
+export function textLayouts(document: Json): TextLayout[] {
+  const found: TextLayout[] = [];
+  const visit = (value: Json, path: Path): void => {
+    if (value === null || typeof value !== "object" || path.length > 12) return;
+    const { text, legend } = Array.isArray(value) ? {} : value;
+    if (Array.isArray(text) && text.length > 0 && text.every((row) => typeof row === "string")) {
+      const own = legend && typeof legend === "object" && !Array.isArray(legend) ? legend : {};
+      const letters = { ...USUAL, ...Object.fromEntries(Object.entries(own).map(([letter, entry]) => [letter, meaning(entry)])) };
+      found.push({
+        path: [...path, "text"],
+        label: path.filter((step) => step !== "parameters" && step !== "world").join(" / ") || "layout",
+        rows: text as string[],
+        letters: Object.entries(letters).map(([letter, word]) => ({ letter, meaning: word })),
+      });
+    }
+    const entries: [string | number, Json][] = Array.isArray(value) ? value.map((item, index) => [index, item]) : Object.entries(value);
+    for (const [key, item] of entries) visit(item, [...path, key]);
+  };
+  visit(document, []);
+  return found;
+}
+
+/** A row with another letter in a column; rows are counted in characters, as Driftworld does. */
+export function withLetter(row: string, column: number, letter: string): string {
+  const letters = [...row];
+  letters[column] = letter;
+  return letters.join("");
+}
+
+/** A group that stands at listed points. */
+export interface PointGroup {
+  name: string;
+  /** The way to its list of points. */
+  path: Path;
+  /** The way to its count, where that is a number. */
+  count: Path | null;
+  points: [number, number][];
+}
+
+/** The groups of a task whose places are a list of points, which a click on the map extends. */
+export function pointGroups(document: Json): PointGroup[] {
+  const groups = document !== null && typeof document === "object" && !Array.isArray(document) ? document["groups"] : null;
+  return (Array.isArray(groups) ? groups : []).flatMap((group, index) => {
+    const { name, count, placement } = (group ?? {}) as { [key: string]: Json };
+    const points = ((placement as { [key: string]: Json } | undefined)?.["points"] as { [key: string]: Json } | undefined)?.["values"];
+    const isList = Array.isArray(points) && points.every((point) => Array.isArray(point) && point.length === 2 && point.every((part) => typeof part === "number"));
+    if (!isList) return [];
+    return [{
+      name: typeof name === "string" ? name : `group ${index}`,
+      path: ["groups", index, "placement", "points", "values"],
+      count: typeof count === "number" ? ["groups", index, "count"] : null,
+      points: points as [number, number][],
+    }];
+  });
+}

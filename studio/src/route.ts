@@ -1,0 +1,46 @@
+// Addresses of the page: `#/play/maze?variant=small&seed=3` names a view and what it shows; any other fragment is an episode.
+
+/** The views of the page. */
+export const VIEWS = ["gallery", "play", "author", "compare", "order", "replay"] as const;
+export type ViewName = (typeof VIEWS)[number];
+
+/** What the fragment of an address says. */
+export interface Route {
+  view: ViewName;
+  /** A built-in task, or `draft` for the text of the author view; empty if none is named. */
+  task: string;
+  options: Record<string, string>;
+  /** The fragment of an episode, for the view `replay`. */
+  link: string | null;
+}
+
+/** Reads a fragment, with or without its `#`. What is no view is the gallery. */
+export function parseRoute(fragment: string): Route {
+  const text = fragment.replace(/^#/, "");
+  if (text && !text.startsWith("/")) return { view: "replay", task: "", options: {}, link: text };
+  const [path = "", query = ""] = text.split("?", 2);
+  const [, name, task = ""] = path.split("/");
+  const view = VIEWS.find((known) => known === name) ?? "gallery";
+  return { view, task: decode(task), options: Object.fromEntries(new URLSearchParams(query)), link: null };
+}
+
+/** The fragment of a route, with `#`. */
+export function hrefOf(view: ViewName, task = "", options: Record<string, string | number | undefined> = {}): string {
+  const query = new URLSearchParams();
+  for (const [key, value] of Object.entries(options)) if (value !== undefined && value !== "") query.set(key, String(value));
+  return `#/${view}${task ? `/${encodeURIComponent(task)}` : ""}${query.size ? `?${query}` : ""}`;
+}
+
+/** A whole number of an option; what is none, or too large, is 0. */
+export function wholeNumber(text: string | undefined): number {
+  const number = Number(text ?? 0);
+  return Number.isSafeInteger(number) && number >= 0 ? number : 0;
+}
+
+function decode(text: string): string {
+  try {
+    return decodeURIComponent(text);
+  } catch {
+    return text;
+  }
+}

@@ -1,0 +1,104 @@
+// The page's own reckoning: addresses, commands, maps, differences, timelines, curves and keys.
+
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { load } from "./bundle.mjs";
+
+const { hrefOf, parseRoute, wholeNumber } = await load("route.ts");
+const commands = await load("commands.ts");
+const { scaleOf, toMetres, toPixels, whatIsAt } = await load("map_view.ts");
+const { outlines } = await load("difference.ts");
+const { following, looped, marks } = await load("timeline.ts");
+const { curves, trailingMeans } = await load("curve.ts");
+const { askedBy, isAsking } = await load("keys.ts");
+
+test("addresses go there and back", () => {
+  const { view, task, options } = parseRoute(hrefOf("play", "a b/c", { variant: "x&y", seed: 3, index: undefined }));
+  assert.deepEqual([view, task, options], ["play", "a b/c", { variant: "x&y", seed: "3" }]);
+  assert.deepEqual(parseRoute("#1AbC_-"), { view: "replay", task: "", options: {}, link: "1AbC_-" });
+  assert.equal(parseRoute("#/nowhere").view, "gallery");
+  assert.equal(parseRoute("#/play/%E0%A4%A").task, "%E0%A4%A");
+  assert.deepEqual(["7", "-1", "1e99", "x", undefined].map(wholeNumber), [7, 0, 0, 0, 0]);
+});
+
+test("commands quote what a shell would read", () => {
+  const subject = { task: "it's.json", variant: "a b", seed: 7, index: 0 };
+  assert.equal(commands.play(subject).command, "driftworld play 'it'\\''s.json#a b' --seed 7");
+  assert.equal(commands.shellWord("maze#small"), "maze#small");
+  assert.equal(commands.shellWord("#x"), "'#x'");
+  assert.equal(commands.shellWord("$(rm -r x)"), "'$(rm -r x)'");
+  assert.equal(commands.pythonText('a"\n'), '"a\\"\\n"');
+});
+
+test("equal actions of an episode are counted", () => {
+  const walk = [[1, 0, 0], [1, 0, 0], [0, 5, 0]];
+  assert.deepEqual(commands.runs(walk), [{ action: [1, 0, 0], times: 2 }, { action: [0, 5, 0], times: 1 }]);
+  const subject = { task: "maze", variant: "", seed: 0, index: 2 };
+  const { command, python } = commands.episode(subject, { kind: "continuous" }, walk);
+  assert.equal(command, "printf 'step 2 1 0 0\\nstep 1 0 5 0\\n' | driftworld console maze --index 2");
+  assert.match(python, /actions="continuous"/);
+  assert.match(commands.episode(subject, { kind: "discrete" }, [3, 3]).command, /step 2 3\\n/);
+});
+
+const MAP = {
+  width: 20, depth: 10, agent: { x: 0, y: 0, heading: 0, radius: 0.5 },
+  walls: [{ points: [[5, 2], [7, 2], [7, 4], [5, 4]], closed: true, color: [0, 0, 0] }],
+  zones: [{ name: "mud", points: [[-9, -4], [-5, -4], [-5, -1], [-9, -1]], color: [0, 0, 0], visible: true }],
+  objects: [
+    { index: 0, class: "door", tag: "gate", x: -3, y: 3, radius: 0.5, reward: 0, present: true, open: true },
+    { index: 1, class: "geometric", tag: null, x: 3, y: -3, radius: 0.5, reward: 100, present: true, open: false },
+    { index: 2, class: "geometric", tag: null, x: 8, y: -4, radius: 0.5, reward: 1, present: false, open: false },
+  ],
+};
+
+test("points of a map go from metres to pixels and back", () => {
+  const scale = scaleOf(MAP, 420);
+  assert.deepEqual([scale.pixelsPerMetre, scale.height], [20, 220]);
+  assert.deepEqual(toPixels(scale, [1, 2]), [230, 70]);
+  assert.deepEqual(toMetres(scale, toPixels(scale, [-3.5, 4])), [-3.5, 4]);
+});
+
+test("a map says what lies at a point", () => {
+  const said = (x, y) => whatIsAt(MAP, [x, y]);
+  assert.deepEqual(said(-3, 3.2), { text: "gate (door), open", object: 0 });
+  assert.deepEqual(said(3, -3), { text: "geometric, pays 100", object: 1 });
+  assert.equal(said(0.2, 0).text, "the agent");
+  assert.match(said(6, 3).text, /^wall/);
+  assert.match(said(-7, -2).text, /^zone mud/);
+  assert.deepEqual(said(8, -4), { text: "8.0 m east, -4.0 m north", object: null });
+});
+
+test("differences are outlined where they are", () => {
+  const blank = () => ({ width: 20, height: 12, data: new Uint8ClampedArray(20 * 12 * 4) });
+  const [a, b] = [blank(), blank()];
+  assert.deepEqual(outlines(a, b), []);
+  b.data[4 * (9 * 20 + 18)] = 200;
+  const lines = outlines(a, b);
+  assert.deepEqual(lines.toSorted().map(String), ["16,12,20,12", "16,8,16,12", "16,8,20,8", "20,8,20,12"]);
+  b.data[4 * (9 * 20 + 18)] = 20;
+  assert.deepEqual(outlines(a, b), [], "within what shading may differ");
+  assert.deepEqual(outlines(a, { ...b, width: 10 }), []);
+});
+
+test("timelines mark what is unusual, and loops keep to their ends", () => {
+  const step = (number, reward, events = []) => ({ step: number, reward, events });
+  const found = marks([step(1, -1), step(2, -1), step(3, 50), step(4, -1, [{ tag: "door", effect: "picked_up", stimulus: "" }])]);
+  assert.deepEqual(found, [{ step: 3, reward: 50, text: "" }, { step: 4, reward: -1, text: "door picked up" }]);
+  assert.equal(following(4, 9, null), 5);
+  assert.equal(following(9, 9, null), null);
+  assert.equal(following(6, 9, { from: 2, to: 6 }), 2);
+  assert.deepEqual(looped(null, "to", 4, 9), { from: 0, to: 4 });
+  assert.deepEqual(looped({ from: 0, to: 4 }, "from", 7, 9), { from: 7, to: 7 });
+});
+
+test("curves are means of what was learned, task by task", () => {
+  assert.deepEqual(trailingMeans([1, 3, 5, 7], 2), [1, 2, 4, 6]);
+  const episode = (experience, task, reward, type = "train") => ({ experience, task, reward, block_type: type });
+  const found = curves([episode(0, "a", 1), episode(1, "b", 5), episode(2, "a", 3, "test"), episode(3, "a", Number.NaN)]);
+  assert.deepEqual(found, [{ task: "a", learned: [[0, 1]], tested: [[2, 3]] }, { task: "b", learned: [[1, 5]], tested: [] }]);
+});
+
+test("keys against each other cancel out", () => {
+  assert.deepEqual(askedBy(new Set(["ArrowUp", "KeyD", "Space"])), { ahead: 1, turn: 1, interact: true });
+  assert.equal(isAsking(askedBy(new Set(["ArrowUp", "KeyS", "KeyX"]))), false);
+});
