@@ -1,0 +1,98 @@
+// The page: which view is shown, the bar above it, and the stop button of the simulator.
+
+import { render } from "preact";
+import { useEffect, useRef, useState } from "preact/hooks";
+import { engine, useAnswer } from "./simulator.ts";
+import { hrefOf, parseRoute, type Route, type ViewName, VIEWS } from "./route.ts";
+import { ErrorNote } from "./parts/notes.tsx";
+import { Gallery } from "./views/gallery.tsx";
+import { Play } from "./views/play.tsx";
+import { Author } from "./views/author.tsx";
+import { Compare } from "./views/compare.tsx";
+import { Order } from "./views/order.tsx";
+import { Replay } from "./views/replay.tsx";
+
+const SHOWN: Record<ViewName, (props: { route: Route }) => preact.JSX.Element> = {
+  gallery: Gallery, play: Play, author: Author, compare: Compare, order: Order, replay: Replay,
+};
+const TITLES: Record<ViewName, string> = {
+  gallery: "Gallery", play: "Play", author: "Author", compare: "Compare", order: "Order", replay: "Replay",
+};
+/** Calls that are shorter than this show no sign that they run. */
+const SHORT_MS = 400;
+
+/** Says that the simulator works on something long, and can stop it. */
+function Busy() {
+  const [isShown, setShown] = useState(false);
+  useEffect(() => {
+    let timer = 0;
+    engine.onbusy = (busy) => {
+      clearTimeout(timer);
+      if (busy) timer = window.setTimeout(() => setShown(true), SHORT_MS);
+      else setShown(false);
+    };
+    return () => {
+      engine.onbusy = null;
+    };
+  }, []);
+  return (
+    <div class="busy" role="status">
+      {isShown && (
+        <>
+          <span class="dot" /><span>Working …</span>
+          <button type="button" onClick={() => engine.stop()}>Stop</button>
+        </>
+      )}
+    </div>
+  );
+}
+
+function App() {
+  const [route, setRoute] = useState(() => parseRoute(location.hash));
+  const main = useRef<HTMLElement>(null);
+  const started = useAnswer(() => engine.ready(), []);
+  useEffect(() => {
+    const go = () => {
+      const next = parseRoute(location.hash);
+      setRoute((last) => {
+        if (last.view !== next.view) requestAnimationFrame(() => main.current?.focus({ preventScroll: true }));
+        return next;
+      });
+    };
+    window.addEventListener("hashchange", go);
+    return () => window.removeEventListener("hashchange", go);
+  }, []);
+  useEffect(() => {
+    document.title = `${route.task ? `${route.task} · ` : ""}${TITLES[route.view]} · Driftworld`;
+  }, [route]);
+  const View = SHOWN[route.view];
+  return (
+    <>
+      <a class="skip" href="#main" onClick={(event) => { event.preventDefault(); main.current?.focus(); }}>Skip to the content</a>
+      <header class="bar">
+        <div>
+          <a class="brand" href={hrefOf("gallery")}><img src="icon.svg" alt="" />Driftworld</a>
+          <nav aria-label="Views">
+            {VIEWS.map((view) => (
+              <a key={view} href={hrefOf(view, view === "gallery" || view === "replay" ? "" : route.task)} {...(view === route.view ? { "aria-current": "page" as const } : {})}>
+                {TITLES[view]}
+              </a>
+            ))}
+          </nav>
+          <Busy />
+        </div>
+      </header>
+      <main id="main" ref={main} tabIndex={-1}>
+        {started.error && <ErrorNote error={started.error} again={() => location.reload()} />}
+        {started.value && <View key={route.view} route={route} />}
+        {started.pending && <p class="loading">Loading the simulator …</p>}
+      </main>
+    </>
+  );
+}
+
+const root = document.getElementById("app");
+if (root) {
+  root.replaceChildren();
+  render(<App />, root);
+}

@@ -1,0 +1,91 @@
+// Sliders and pickers for the parameters of a task, from the ranges and choices that it declares.
+
+import type { Json, Parameter, Value, Variant } from "../engine.ts";
+import { oneLine } from "../json_text.ts";
+
+const ELEMENTS: Record<string, string> = {
+  S: "state", A: "action", T: "transition", R: "reward", O: "observation", p: "initial state", phi: "emission",
+};
+
+/** What a value is called in a list: its name, a short form, or its first words. */
+export function wordOf(value: Json, name: string | null): string {
+  const text = name ?? (typeof value === "string" ? value : oneLine(value));
+  return text.length > 60 ? `${text.slice(0, 59)}…` : text;
+}
+
+/** A number as it is written by hand: no more digits than a step needs. */
+const rounded = (value: number, step: number): number => Number(value.toFixed(Math.max(0, Math.ceil(-Math.log10(step)))));
+
+function Slider({ id, low, high, isWhole, value, set }: {
+  id: string; low: number; high: number; isWhole: boolean; value: number; set: (value: number) => void;
+}) {
+  const step = isWhole ? 1 : 10 ** Math.floor(Math.log10((high - low) / 100));
+  return (
+    <input
+      id={id} type="range" min={low} max={high} step={step} value={value}
+      onInput={(event) => set(rounded(event.currentTarget.valueAsNumber, step))}
+    />
+  );
+}
+
+function Knob({ parameter, value, set }: { parameter: Parameter; value: Value; set: (value: Value) => void }) {
+  const { name, range, choices, type, unit, description, affects } = parameter;
+  const id = `knob-${name}`;
+  const isWhole = type === "integer";
+  const numbers = Array.isArray(value) && value.every((part) => typeof part === "number") ? (value as number[]) : null;
+  const title = [description, affects.length ? `Affects ${affects.map((element) => ELEMENTS[element]).join(", ")}.` : ""].filter(Boolean).join(" ");
+  const said = typeof value === "number" ? `${value}${unit ? ` ${unit}` : ""}` : numbers ? numbers.join(" × ") : "";
+  const chosen = choices?.findIndex((choice) => (choice.name !== null && choice.name === value) || oneLine(choice.value) === oneLine(value)) ?? -1;
+  return (
+    <div class="knob" title={title}>
+      <div class="top"><label for={id}>{name}</label><output for={id}>{said}</output></div>
+      {choices
+        ? (
+          <select
+            id={id} value={String(chosen)}
+            onChange={(event) => {
+              const choice = choices[Number(event.currentTarget.value)];
+              if (choice) set(choice.name ?? choice.value);
+            }}
+          >
+            {chosen < 0 && <option value="-1">{wordOf(value, null)}</option>}
+            {choices.map((choice, place) => <option key={place} value={String(place)}>{wordOf(choice.value, choice.name)}</option>)}
+          </select>
+        )
+        : range && typeof value === "number"
+          ? <Slider id={id} low={range[0]} high={range[1]} isWhole={isWhole} value={value} set={set} />
+          : range && numbers
+            ? numbers.map((part, place) => (
+              <Slider
+                key={place} id={place ? `${id}-${place}` : id} low={range[0]} high={range[1]} isWhole={numbers.every(Number.isInteger) && range.every(Number.isInteger)}
+                value={part} set={(next) => set(numbers.map((other, index) => (index === place ? next : other)))}
+              />
+            ))
+            : typeof value === "boolean"
+              ? <input id={id} type="checkbox" checked={value} onChange={(event) => set(event.currentTarget.checked)} />
+              : typeof value === "number"
+                ? <input id={id} type="number" step={isWhole ? 1 : "any"} value={value} onChange={(event) => Number.isFinite(event.currentTarget.valueAsNumber) && set(event.currentTarget.valueAsNumber)} />
+                : <code id={id}>{wordOf(value, null)}</code>}
+    </div>
+  );
+}
+
+/** All parameters that can be set: those of the role `variant` in the variant that is shown, and fixed numbers. */
+export function Knobs({ parameters, variant, set }: {
+  parameters: Parameter[];
+  variant: Variant | null;
+  set: (parameter: Parameter, value: Value) => void;
+}) {
+  const shown = parameters.filter(({ role, value }) => role === "variant" || (role === "fixed" && ["number", "boolean"].includes(typeof value)));
+  if (!shown.length) return <p class="faint small">Nothing varies in this task. A parameter of the role <code>variant</code> gets a slider or a list here.</p>;
+  return (
+    <div class="knobs">
+      {shown.map((parameter) => (
+        <Knob
+          key={parameter.name} parameter={parameter} set={(value) => set(parameter, value)}
+          value={(parameter.role === "variant" ? variant?.values[parameter.name] : undefined) ?? parameter.value ?? null}
+        />
+      ))}
+    </div>
+  );
+}

@@ -1,0 +1,63 @@
+// What the page says: errors, what is under way, and texts to copy.
+
+import { useState } from "preact/hooks";
+import type { ComponentChildren } from "preact";
+import type { EngineError } from "../engine.ts";
+import type { Recipe } from "../commands.ts";
+
+/** Why something did not come about, and a way out of it. */
+export function ErrorNote({ error, again }: { error: EngineError; again?: () => void }) {
+  const isStopped = error.code === "engine/stopped" || error.code === "engine/lost";
+  return (
+    <div class={`note ${isStopped ? "warn" : "bad"}`} role="alert">
+      <span>{isStopped ? "Stopped. The simulator starts anew with the next action." : error.message}</span>
+      {again && <button type="button" onClick={again}>{isStopped ? "Begin again" : "Try again"}</button>}
+    </div>
+  );
+}
+
+/** Puts a text on the clipboard; false where the browser does not allow it. */
+export async function copyText(text: string): Promise<boolean> {
+  try {
+    await navigator.clipboard.writeText(text);
+    return true;
+  } catch {
+    return false;
+  }
+}
+
+/** A button that copies a text, and says so. */
+export function CopyButton({ text, label, children }: { text: string; label: string; children?: ComponentChildren }) {
+  const [said, setSaid] = useState("");
+  const copy = async () => {
+    setSaid((await copyText(text)) ? "Copied" : "Not allowed");
+    setTimeout(() => setSaid(""), 1500);
+  };
+  return (
+    <button type="button" aria-label={label} onClick={() => void copy()}>
+      <span aria-live="polite">{said || (children ?? "Copy")}</span>
+    </button>
+  );
+}
+
+/** Actions as commands and as Python, to look at and to copy. */
+export function Recipes({ of }: { of: Record<string, Recipe> }) {
+  return (
+    <details class="copy">
+      <summary>Copy as command or Python</summary>
+      <div class="copies">
+        {Object.entries(of).map(([what, recipe]) => (
+          <section key={what} class="stack" aria-label={what}>
+            <h3>{what}</h3>
+            {(["command", "python"] as const).map((form) => (
+              <div key={form}>
+                <pre data-form={form} tabIndex={0}>{recipe[form].trimEnd()}</pre>
+                <CopyButton text={recipe[form]} label={`Copy ${what.toLowerCase()} as ${form === "python" ? "Python" : "command"}`} />
+              </div>
+            ))}
+          </section>
+        ))}
+      </div>
+    </details>
+  );
+}

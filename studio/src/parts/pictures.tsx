@@ -1,0 +1,137 @@
+// Pictures of the simulator on canvases: what an agent sees, and the flat map of a world.
+
+import { useLayoutEffect, useRef, useState } from "preact/hooks";
+import type { Frame, WorldMap } from "../engine.ts";
+import type { Line } from "../difference.ts";
+import { scaleOf, toMetres, toPixels, whatIsAt } from "../map_view.ts";
+
+/** A frame, with lines drawn over it. */
+export function Picture({ frame, label, lines }: { frame: Frame | null; label: string; lines?: Line[] }) {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  useLayoutEffect(() => {
+    const context = canvas.current?.getContext("2d");
+    if (!context || !frame) return;
+    if (canvas.current!.width !== frame.width) canvas.current!.width = frame.width;
+    if (canvas.current!.height !== frame.height) canvas.current!.height = frame.height;
+    context.putImageData(new ImageData(frame.data, frame.width, frame.height), 0, 0);
+    for (const [color, width] of lines?.length ? ([["#000", 3], ["#ffd84d", 1.5]] as const) : []) {
+      context.strokeStyle = color;
+      context.lineWidth = width;
+      context.beginPath();
+      for (const [ax, ay, bx, by] of lines!) {
+        context.moveTo(ax, ay);
+        context.lineTo(bx, by);
+      }
+      context.stroke();
+    }
+  }, [frame, lines]);
+  return <canvas ref={canvas} width={320} height={240} role="img" aria-label={label} />;
+}
+
+const css = ([red, green, blue]: readonly [number, number, number], alpha = 1) =>
+  `rgb(${Math.round(red * 255)} ${Math.round(green * 255)} ${Math.round(blue * 255)} / ${alpha})`;
+
+/** Pixels across a map; the page scales it. */
+const WIDTH = 640;
+
+/** Draws a map; the colours of ground and ink are those of the page. */
+function draw(canvas: HTMLCanvasElement, map: WorldMap, trail: readonly (readonly [number, number])[]): void {
+  const scale = scaleOf(map, WIDTH);
+  canvas.width = WIDTH;
+  canvas.height = scale.height;
+  const context = canvas.getContext("2d");
+  if (!context) return;
+  const style = getComputedStyle(canvas);
+  const [soft, ink, rim, link] = ["--soft", "--ink", "--strong", "--link"].map((name) => style.getPropertyValue(name));
+  context.fillStyle = soft!;
+  context.fillRect(0, 0, canvas.width, canvas.height);
+  context.lineJoin = "round";
+  const path = (points: readonly (readonly [number, number])[], isClosed: boolean) => {
+    context.beginPath();
+    points.forEach((point, index) => context[index ? "lineTo" : "moveTo"](...toPixels(scale, point)));
+    if (isClosed) context.closePath();
+  };
+  for (const zone of map.zones) {
+    path(zone.points, true);
+    context.fillStyle = css(zone.color, zone.visible ? 0.45 : 0.15);
+    context.fill();
+  }
+  const [halfWidth, halfDepth] = [map.width / 2, map.depth / 2];
+  path([[-halfWidth, -halfDepth], [halfWidth, -halfDepth], [halfWidth, halfDepth], [-halfWidth, halfDepth]], true);
+  context.strokeStyle = rim!;
+  context.lineWidth = 3;
+  context.stroke();
+  for (const wall of map.walls) {
+    path(wall.points, wall.closed);
+    context.fillStyle = css(wall.color, 0.9);
+    if (wall.closed) context.fill();
+    context.strokeStyle = rim!;
+    context.lineWidth = wall.closed ? 1 : 3;
+    context.stroke();
+  }
+  if (trail.length > 1) {
+    path(trail, false);
+    context.strokeStyle = link!;
+    context.lineWidth = 2;
+    context.stroke();
+  }
+  for (const object of map.objects) {
+    if (!object.present) continue;
+    const [x, y] = toPixels(scale, [object.x, object.y]);
+    context.beginPath();
+    context.arc(x, y, Math.max(6, object.radius * scale.pixelsPerMetre), 0, 2 * Math.PI);
+    context.fillStyle = css(object.color, object.open ? 0.35 : 1);
+    context.fill();
+    context.strokeStyle = ink!;
+    context.lineWidth = object.reward ? 2 : 0.75;
+    context.stroke();
+  }
+  const [x, y] = toPixels(scale, [map.agent.x, map.agent.y]);
+  const size = Math.max(15, map.agent.radius * scale.pixelsPerMetre * 1.4);
+  context.save();
+  context.translate(x, y);
+  context.rotate((map.agent.heading * Math.PI) / 180);
+  context.beginPath();
+  context.moveTo(0, -size);
+  context.lineTo(size * 0.75, size * 0.8);
+  context.lineTo(0, size * 0.4);
+  context.lineTo(-size * 0.75, size * 0.8);
+  context.closePath();
+  context.fillStyle = link!;
+  context.fill();
+  context.strokeStyle = soft!;
+  context.lineWidth = 2;
+  context.stroke();
+  context.restore();
+}
+
+/** A map that says what lies under the pointer; `click` hears where it was clicked, in metres. */
+export function FlatMap({ map, trail = [], click }: {
+  map: WorldMap | null;
+  trail?: readonly (readonly [number, number])[];
+  click?: (point: [number, number], object: number | null) => void;
+}) {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const [under, setUnder] = useState("");
+  useLayoutEffect(() => {
+    if (canvas.current && map) draw(canvas.current, map, trail);
+  }, [map, trail]);
+  const place = (event: MouseEvent): [number, number] => {
+    const box = canvas.current!.getBoundingClientRect();
+    const scale = scaleOf(map!, box.width);
+    return toMetres(scale, [event.clientX - box.left, event.clientY - box.top]);
+  };
+  const count = map?.objects.filter((object) => object.present).length ?? 0;
+  return (
+    <div class="map">
+      <canvas
+        ref={canvas} width={WIDTH} height={WIDTH} role="img" class={click ? "clickable" : ""}
+        aria-label={map ? `Map: ${Math.round(map.width)} by ${Math.round(map.depth)} metres, ${count} objects` : "Map"}
+        onMouseMove={(event) => map && setUnder(whatIsAt(map, place(event)).text)}
+        onMouseLeave={() => setUnder("")}
+        onClick={(event) => map && click?.(place(event), whatIsAt(map, place(event)).object)}
+      />
+      {under && <div class="tip"><span>{under}</span></div>}
+    </div>
+  );
+}

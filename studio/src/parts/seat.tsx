@@ -1,0 +1,44 @@
+// One who acts in a world: the name, what it sees, and how it fares.
+
+import { useEffect, useRef } from "preact/hooks";
+import type { ComponentChildren } from "preact";
+import type { Line } from "../difference.ts";
+import { ending, type Session } from "../session.ts";
+import { Picture } from "./pictures.tsx";
+
+export const amount = (number: number): string => (Number.isInteger(number) ? String(number) : number.toFixed(2)).replace("-", "−");
+
+export function Seat({ name, session, isYours = false, lines, below, children }: {
+  name: string;
+  session: Session;
+  isYours?: boolean;
+  lines?: Line[];
+  below?: ComponentChildren;
+  children?: ComponentChildren;
+}) {
+  const frame = useRef<HTMLDivElement>(null);
+  useEffect(() => {
+    if (isYours) frame.current?.focus({ preventScroll: true });
+  }, [session.episode.id]);
+  const { step } = session;
+  const end = ending(step);
+  return (
+    <section class="card seat" aria-label={name}>
+      <header>
+        <h2>{name}</h2>
+        {end ? <span class={`tag ${step.success ? "good" : "bad"}`} role="status">{end}</span> : children}
+      </header>
+      <div
+        ref={frame} class="frame"
+        {...(isYours ? { tabIndex: 0, role: "application", "aria-label": "Your view. Arrow keys walk and turn, space uses what is ahead." } : {})}
+      >
+        <Picture frame={session.frame} label={`What ${name.toLowerCase()} sees`} {...(lines ? { lines } : {})} />
+      </div>
+      <footer class="number">
+        <span>Reward <b>{amount(step.total)}</b></span>
+        <span class="faint">step {step.step} · {step.seconds.toFixed(1)} s{step.energy === null ? "" : ` · energy ${amount(step.energy)}`}</span>
+      </footer>
+      {below}
+    </section>
+  );
+}

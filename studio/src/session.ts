@@ -1,0 +1,75 @@
+// An episode with who acts in it: by keys or an agent, with the last picture and the last map.
+
+import type { Action, Agent, Episode, Frame, Keys, Step, WorldMap, WorldRequest } from "./engine.ts";
+import { engine } from "./simulator.ts";
+
+/** Pixels of the agent's view in the play view. */
+export const VIEW = { width: 320, height: 240 };
+
+export class Session {
+  frame: Frame | null = null;
+  map: WorldMap | null = null;
+  step: Step;
+  /** What was done in each step so far. */
+  readonly actions: Action[] = [];
+  /** What was met, the latest first. */
+  readonly log: { step: number; text: string; reward: number }[] = [];
+
+  private constructor(readonly episode: Episode, readonly agent: Agent | null, step: Step) {
+    this.step = step;
+  }
+
+  /** Begins an episode; `agent` null waits for keys. */
+  static async open(request: WorldRequest, agent: Agent | null, size = VIEW): Promise<Session> {
+    const episode = await engine.open(request, size);
+    const session = new Session(episode, agent, await episode.now());
+    await session.draw();
+    return session;
+  }
+
+  get ended(): boolean {
+    return this.step.terminated || this.step.truncated;
+  }
+
+  /** Whether the world has an action for someone who presses nothing; where it has not, it waits for keys. */
+  get canWait(): boolean {
+    const { table } = this.episode.actionSpace;
+    return !table || table.some((row) => row.every((number) => number === 0));
+  }
+
+  async advance(keys: Keys): Promise<void> {
+    if (this.ended) return;
+    this.note(this.agent ? await this.episode.act(this.agent) : await this.episode.step(keys));
+    await this.draw();
+  }
+
+  /** Takes an action that was chosen elsewhere. */
+  async take(action: Action): Promise<void> {
+    if (this.ended) return;
+    this.note(await this.episode.step(action));
+    await this.draw();
+  }
+
+  async draw(): Promise<void> {
+    [this.frame, this.map] = await Promise.all([this.episode.frame("agent"), this.episode.map()]);
+  }
+
+  private note(step: Step): void {
+    this.step = step;
+    if (step.action !== null) this.actions.push(step.action);
+    for (const event of step.events) {
+      const what = event.tag ?? this.map?.objects[event.object]?.class ?? `object ${event.object}`;
+      this.log.unshift({ step: step.step, text: `${what} ${(event.effect ?? EFFECTS[event.stimulus] ?? "touched").replace("_", " ")}`, reward: event.reward });
+    }
+    this.log.length = Math.min(this.log.length, 50);
+  }
+}
+
+const EFFECTS: Record<string, string> = { AgentCollide: "touched", AgentInteract: "used", AgentInRange: "came near" };
+
+/** How an episode ended, for people. */
+export function ending(step: Step): string {
+  if (!step.terminated && !step.truncated) return "";
+  if (step.success) return "Solved";
+  return step.truncated || step.ended_by === "time" || step.ended_by === "steps" ? "Time is up" : "Failed";
+}

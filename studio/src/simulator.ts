@@ -1,0 +1,68 @@
+// The one simulator of the page, and hooks that wait for it.
+
+import { useEffect, useState } from "preact/hooks";
+import { type Agent, createEngine, EngineError, type WorldRequest } from "./engine.ts";
+import { draft } from "./draft.ts";
+
+export const engine = createEngine();
+
+/** What became of a call. While another is under way, the last value stays. */
+export interface Outcome<T> {
+  value: T | null;
+  error: EngineError | null;
+  pending: boolean;
+}
+
+/** Any failure as one of the simulator. */
+export function asError(error: unknown): EngineError {
+  return error instanceof EngineError ? error : new EngineError("page/failed", error instanceof Error ? error.message : String(error));
+}
+
+/** Calls again when one of `inputs` changes, and keeps the last answer that is still asked for; null asks for nothing. */
+export function useAnswer<T>(call: (() => Promise<T>) | null, inputs: unknown[]): Outcome<T> {
+  const [outcome, setOutcome] = useState<Outcome<T>>({ value: null, error: null, pending: call !== null });
+  useEffect(() => {
+    let isCurrent = true;
+    if (!call) {
+      setOutcome({ value: null, error: null, pending: false });
+      return undefined;
+    }
+    setOutcome((last) => ({ ...last, pending: true }));
+    call().then(
+      (value) => isCurrent && setOutcome({ value, error: null, pending: false }),
+      (error: unknown) => isCurrent && setOutcome({ value: null, error: asError(error), pending: false }),
+    );
+    return () => {
+      isCurrent = false;
+    };
+  }, inputs);
+  return outcome;
+}
+
+/** Which world a view shows: `draft` is the text of the author view. */
+export function requestOf(task: string, variant: string, seed: number, index: number): WorldRequest {
+  const text = task === "draft" ? draft.text : task;
+  return { task: text, ...(variant ? { variant } : {}), seed, index };
+}
+
+let shelf: Promise<string[]> | null = null;
+
+/** The tasks for which a trained network lies beside the page. */
+export function trainedTasks(): Promise<string[]> {
+  shelf ??= fetch("networks/index.json").then((reply) => (reply.ok ? (reply.json() as Promise<string[]>) : []), () => []);
+  return shelf;
+}
+
+const networks = new Map<string, Promise<Agent>>();
+
+/** The trained network of a task. */
+export function trainedAgent(task: string): Promise<Agent> {
+  const known = networks.get(task);
+  if (known) return known;
+  const agent = fetch(`networks/${encodeURIComponent(task)}.safetensors`).then(async (reply) => {
+    if (!reply.ok) throw new EngineError("page/network", `no trained network of ${task} lies beside the page`);
+    return { network: new Uint8Array(await reply.arrayBuffer()) };
+  });
+  networks.set(task, agent);
+  return agent;
+}

@@ -1,0 +1,267 @@
+// A task as text, with its parameters as sliders, a world of it drawn as it is typed, and its map to click on.
+
+import { useEffect, useRef, useState } from "preact/hooks";
+import type { EngineError, Frame, Json, Parameter, Problem, Task, Value, Variant, WorldMap, WorldRequest } from "../engine.ts";
+import * as commands from "../commands.ts";
+import { draft } from "../draft.ts";
+import type { Editor } from "../editor.ts";
+import { applied, change, type Change, pathOf, type Path, removal, spanAt, spans } from "../json_text.ts";
+import { pointGroups, textLayouts, withLetter } from "../layouts.ts";
+import { hrefOf, type Route } from "../route.ts";
+import { asError, engine } from "../simulator.ts";
+import { TEMPLATES } from "../templates.ts";
+import { Cells } from "../parts/cells.tsx";
+import { NumberPicker, VariantPicker } from "../parts/choices.tsx";
+import { Knobs } from "../parts/knobs.tsx";
+import { ErrorNote, Recipes } from "../parts/notes.tsx";
+import { FlatMap, Picture } from "../parts/pictures.tsx";
+
+/** Milliseconds without a key after which a text is looked at. */
+const PAUSE_MS = 150;
+/** Metres within which a click takes a point away. */
+const NEAR = 1.5;
+
+/** What the last valid text shows. */
+interface Drawn {
+  document: Json;
+  task: Task | null;
+  frame: Frame;
+  map: WorldMap;
+}
+
+/** Draws one world of a text. */
+async function drawn(text: string, kind: string, variant: string, seed: number, index: number): Promise<Drawn> {
+  const task = kind === "task" ? await engine.task(text) : null;
+  const known = task?.variants.some(({ name }) => name === variant);
+  const request: WorldRequest = task ? { task: text, ...(known ? { variant } : {}), seed, index } : { world: text };
+  const episode = await engine.open(request, { width: 320, height: 240 });
+  try {
+    return { document: JSON.parse(text) as Json, task, frame: await episode.frame("agent"), map: await episode.map() };
+  } finally {
+    void episode.close().catch(() => undefined);
+  }
+}
+
+function save(): void {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(new Blob([draft.text], { type: "application/json" }));
+  link.download = draft.file;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+}
+
+export function Author({ route }: { route: Route }) {
+  const place = useRef<HTMLDivElement>(null);
+  const editor = useRef<Editor | null>(null);
+  const context = useRef<{ schema: Json; task: Task | null }>({ schema: {}, task: null });
+  const [text, setText] = useState(draft.text || TEMPLATES[0]!.text);
+  const [variant, setVariant] = useState(route.options["variant"] ?? "");
+  const [seed, setSeed] = useState(0);
+  const [index, setIndex] = useState(0);
+  const [shown, setShown] = useState<Drawn | null>(null);
+  const [problems, setProblems] = useState<Problem[]>([]);
+  const [error, setError] = useState<EngineError | null>(null);
+  const [round, setRound] = useState(0);
+  const [layoutIndex, setLayoutIndex] = useState(0);
+  const [target, setTarget] = useState("");
+  const [said, setSaid] = useState("");
+
+  useEffect(() => {
+    let isOver = false;
+    const begin = async () => {
+      const [{ createEditor }, schema] = await Promise.all([import("../editor.ts"), engine.schema("task")]);
+      const named = route.task && route.task !== "draft" ? (await engine.task(route.task)).text : null;
+      if (isOver || !place.current) return;
+      context.current.schema = schema;
+      editor.current = createEditor(place.current, text, () => context.current, setText);
+      if (named !== null) editor.current.replace(named);
+    };
+    begin().catch((reason: unknown) => setError(asError(reason)));
+    return () => {
+      isOver = true;
+      editor.current?.destroy();
+      editor.current = null;
+    };
+  }, [route.task]);
+
+  useEffect(() => {
+    draft.keep(text);
+    let isOver = false;
+    const look = async () => {
+      const found = await engine.validate(text);
+      if (isOver) return;
+      setProblems(found.problems);
+      editor.current?.mark(found.problems);
+      setError(null);
+      if (found.problems.length) return;
+      const next = await drawn(text, found.kind, variant, seed, index);
+      if (isOver) return;
+      context.current.task = next.task;
+      setShown(next);
+    };
+    const timer = setTimeout(() => void look().catch((reason: unknown) => !isOver && setError(asError(reason))), PAUSE_MS);
+    return () => {
+      isOver = true;
+      clearTimeout(timer);
+    };
+  }, [text, variant, seed, index, round]);
+
+  const edit = (path: Path, value: Value) => {
+    const found = change(editor.current?.text() ?? text, path, value);
+    if (found) editor.current?.change(found);
+    return found !== null;
+  };
+  const setKnob = (parameter: Parameter, value: Value) => {
+    const path: Path = parameter.role === "fixed"
+      ? ["parameters", parameter.name, "value"]
+      : variant ? ["variants", variant, parameter.name] : ["parameters", parameter.name, "default"];
+    setSaid(edit(path, value) ? "" : `${variant} is a member of a family: change the family in the text, or choose another variant.`);
+  };
+  const showPlace = (path: Path) => {
+    const span = spanAt(spans(text), path);
+    if (span) editor.current?.show(span.from, span.to);
+  };
+
+  const layouts = shown ? textLayouts(shown.document) : [];
+  const layout = layouts[Math.min(layoutIndex, layouts.length - 1)];
+  const groups = shown ? pointGroups(shown.document) : [];
+  const group = groups.find(({ name }) => name === target);
+  const clickMap = (point: [number, number], object: number | null) => {
+    if (!group) {
+      if (object !== null) showPlace(shown?.task ? placeOf(shown, object) : ["objects", object]);
+      return;
+    }
+    const before = editor.current?.text() ?? text;
+    const here = group.points.findIndex(([x, y]) => Math.hypot(x - point[0], y - point[1]) <= NEAR);
+    const places = here < 0
+      ? change(before, [...group.path, group.points.length], point.map((metres) => Math.round(metres * 10) / 10))
+      : removal(before, [...group.path, here]);
+    if (!places) return;
+    const after = applied(before, places);
+    const count = group.count && change(after, group.count, group.points.length + (here < 0 ? 1 : -1));
+    const whole = count ? applied(after, count) : after;
+    editor.current?.change(minimal(before, whole));
+  };
+
+  const request = { variant: shown?.task?.variants.some(({ name }) => name === variant) ? variant : "", seed, index };
+  const subject = { task: draft.file, ...request };
+  const current: Variant | null = shown?.task?.variants.find(({ name }) => name === variant) ?? null;
+  return (
+    <>
+      <div class="head">
+        <div>
+          <h1>Author</h1>
+          <p>A task is one JSON text. The world beside it is drawn again as you type; <kbd>Ctrl</kbd> <kbd>space</kbd> completes.</p>
+        </div>
+        <div class="row end">
+          <label class="field">
+            New from
+            <select
+              value="" onChange={(event) => {
+                const template = TEMPLATES[Number(event.currentTarget.value)];
+                if (template) {
+                  setVariant("");
+                  editor.current?.replace(template.text);
+                }
+                event.currentTarget.value = "";
+              }}
+            >
+              <option value="">a template …</option>
+              {TEMPLATES.map((template, number) => <option key={template.name} value={String(number)}>{template.name}</option>)}
+            </select>
+          </label>
+          <button type="button" onClick={() => editor.current?.undo()}>Undo</button>
+          <button type="button" onClick={() => editor.current?.redo()}>Redo</button>
+          <button type="button" onClick={save}>Save {draft.file}</button>
+          <a class="button main" href={hrefOf("play", "draft", { variant: request.variant, seed: seed || undefined, index: index || undefined })}>Play</a>
+        </div>
+      </div>
+      <div class="author">
+        <div class="stack">
+          <div class="card editor" ref={place} />
+          {problems.length > 0
+            ? (
+              <ul class="problems" aria-label="Problems">
+                {problems.slice(0, 20).map((problem, number) => (
+                  <li key={number}>
+                    <button type="button" onClick={() => showProblem(editor.current, text, problem)}>
+                      {problem.line > 0 && <b>{problem.line}:{problem.column} </b>}{problem.message}
+                    </button>
+                  </li>
+                ))}
+              </ul>
+            )
+            : shown && <p class="note good" role="status"><span>Valid. {shown.task ? `${shown.task.variants.length} variants, ${shown.task.parameters.length} parameters.` : "A world."}</span></p>}
+          <Recipes of={{ "Check it": commands.validate(draft.file), "Play it": commands.play(subject), "Draw this world": commands.sample(subject) }} />
+        </div>
+        <div class="stack">
+          {error && <ErrorNote error={error} again={() => setRound((last) => last + 1)} />}
+          <section class="card pad stack" aria-label="World">
+            <div class="row end">
+              <VariantPicker variants={shown?.task?.variants.map(({ name }) => name) ?? []} variant={request.variant} pick={setVariant} />
+              <NumberPicker label="Seed" value={seed} pick={setSeed} />
+              <NumberPicker label="World" value={index} pick={setIndex} />
+            </div>
+            <div class="views" aria-busy={problems.length > 0}>
+              <Picture frame={shown?.frame ?? null} label="What the agent sees at first" />
+              <FlatMap map={shown?.map ?? null} click={clickMap} />
+            </div>
+            {problems.length > 0 && <p class="faint small">The last valid text is shown.</p>}
+            {groups.length > 0 && (
+              <label class="field">
+                A click on the map
+                <select value={target} onChange={(event) => setTarget(event.currentTarget.value)}>
+                  <option value="">finds what is there in the text</option>
+                  {groups.map(({ name }) => <option key={name} value={name}>puts one of {name} there, or takes it away</option>)}
+                </select>
+              </label>
+            )}
+          </section>
+          {layout && (
+            <section class="card pad stack" aria-label="Map of letters">
+              <div class="row spread">
+                <h2>Map of letters</h2>
+                {layouts.length > 1 && (
+                  <select aria-label="Which map" value={String(layoutIndex)} onChange={(event) => setLayoutIndex(Number(event.currentTarget.value))}>
+                    {layouts.map(({ label }, number) => <option key={label} value={String(number)}>{label}</option>)}
+                  </select>
+                )}
+              </div>
+              <Cells layout={layout} put={(row, column, letter) => edit([...layout.path, row], withLetter(layout.rows[row] ?? "", column, letter))} />
+            </section>
+          )}
+          <section class="card pad stack" aria-label="Parameters">
+            <h2>{current ? `Parameters of ${current.name}` : "Parameters"}</h2>
+            <Knobs parameters={shown?.task?.parameters ?? []} variant={current} set={setKnob} />
+            <p class="small faint" role="status">{said}</p>
+          </section>
+        </div>
+      </div>
+    </>
+  );
+}
+
+/** Where the group of an object stands in a task: the first with its class and tag. */
+function placeOf({ document, map }: Drawn, object: number): Path {
+  const found = map.objects.find(({ index }) => index === object);
+  const groups = (document as { groups?: { object?: { class?: Json; tag?: Json } }[] }).groups ?? [];
+  const place = groups.findIndex((group) => group.object?.class === found?.class && (!found?.tag || !group.object?.tag || group.object.tag === found.tag));
+  return place < 0 ? ["groups"] : ["groups", place];
+}
+
+function showProblem(editor: Editor | null, text: string, problem: Problem): void {
+  const span = spanAt(spans(text), pathOf(problem.pointer));
+  if (span) return editor?.show(span.from, span.to);
+  const lines = text.split("\n").slice(0, Math.max(0, problem.line - 1));
+  const from = lines.reduce((sum, line) => sum + line.length + 1, 0) + Math.max(0, problem.column - 1);
+  return editor?.show(from, from);
+}
+
+/** One change that leads from a text to another. */
+function minimal(before: string, after: string): Change {
+  let from = 0;
+  while (from < before.length && before[from] === after[from]) from += 1;
+  let end = 0;
+  while (end < Math.min(before.length, after.length) - from && before.at(-1 - end) === after.at(-1 - end)) end += 1;
+  return { from, to: before.length - end, insert: after.slice(from, after.length - end) };
+}

@@ -1,0 +1,231 @@
+// Two variants of a task side by side, under one seed and one set of actions; and how far apart they are, element by element.
+
+import { useEffect, useMemo, useState } from "preact/hooks";
+import type { Distance, EngineError, Parameter, Variant } from "../engine.ts";
+import * as commands from "../commands.ts";
+import { useClock } from "../clock.ts";
+import { outlines } from "../difference.ts";
+import { draft } from "../draft.ts";
+import { isAsking, useHeldKeys } from "../keys.ts";
+import { hrefOf, type Route, wholeNumber } from "../route.ts";
+import { Session } from "../session.ts";
+import { asError, engine, requestOf, useAnswer } from "../simulator.ts";
+import { NumberPicker, TaskPicker, VariantPicker } from "../parts/choices.tsx";
+import { ErrorNote, Recipes } from "../parts/notes.tsx";
+import { FlatMap } from "../parts/pictures.tsx";
+import { oneLine } from "../json_text.ts";
+import { wordOf } from "../parts/knobs.tsx";
+import { Seat } from "../parts/seat.tsx";
+
+const NAMES = { S: "State", A: "Action", T: "Transition", R: "Reward", O: "Observation" } as const;
+
+/** A share as a bar, beside its number. */
+export function Meter({ share }: { share: number }) {
+  return (
+    <svg class="meter" viewBox="0 0 100 8" preserveAspectRatio="none" aria-hidden="true">
+      <rect width="100" height="8" rx="2" /><rect width={Math.min(1, Math.max(0, share)) * 100} height="8" rx="2" />
+    </svg>
+  );
+}
+
+function Elements({ distance }: { distance: Distance }) {
+  const entries = Object.entries(distance.elements) as [keyof typeof NAMES, number | null][];
+  const most = Math.max(1e-9, ...entries.map(([, value]) => value ?? 0));
+  const parts = distance.parts.filter((part) => part.share > 0).sort((a, b) => b.share - a.share);
+  return (
+    <div class="stage">
+      <div class="stack">
+        <h2>{distance.total.toFixed(3)} apart</h2>
+        <p class="faint small">{distance.description}</p>
+        <div class="table">
+          <table>
+            <thead><tr><th scope="col">Element</th><th scope="col" class="right">Distance</th><th scope="col"><span class="hidden">Bar</span></th></tr></thead>
+            <tbody>
+              {entries.map(([element, value]) => (
+                <tr key={element}>
+                  <th scope="row">{NAMES[element]}</th><td class="right">{value === null ? "–" : value.toFixed(3)}</td><td><Meter share={(value ?? 0) / most} /></td>
+                </tr>
+              ))}
+            </tbody>
+          </table>
+        </div>
+      </div>
+      <div class="stack">
+        <h2>What makes it</h2>
+        {parts.length === 0
+          ? <p class="faint small">Nothing that is compared differs.</p>
+          : (
+            <div class="table">
+              <table>
+                <thead><tr><th scope="col">Part</th><th scope="col">Measure</th><th scope="col" class="right">Share</th></tr></thead>
+                <tbody>
+                  {parts.map((part) => (
+                    <tr key={`${part.name} ${part.element}`}><td><code>{part.name}</code></td><td class="faint">{part.measure}</td><td class="right">{(100 * part.share).toFixed(1)} %</td></tr>
+                  ))}
+                </tbody>
+              </table>
+            </div>
+          )}
+      </div>
+    </div>
+  );
+}
+
+/** The parameters in which two variants differ, with both values. */
+function differing(parameters: Parameter[], a: Variant | undefined, b: Variant | undefined) {
+  const valueIn = (variant: Variant | undefined, parameter: Parameter) => variant?.values[parameter.name] ?? parameter.value;
+  return parameters
+    .filter(({ role }) => role === "variant")
+    .map((parameter) => ({ parameter, values: [valueIn(a, parameter), valueIn(b, parameter)] as const }))
+    .filter(({ values: [left, right] }) => oneLine(left) !== oneLine(right));
+}
+
+export function Compare({ route }: { route: Route }) {
+  const task = route.task || "find_objects";
+  const about = useAnswer(() => engine.task(task === "draft" ? draft.text : task), [task]);
+  const variants = about.value?.variants ?? [];
+  const names = variants.map(({ name }) => name);
+  const { a = names[0] ?? "", b = names[1] ?? "", by = "parameters" } = route.options;
+  const [seed, index] = [wholeNumber(route.options["seed"]), wholeNumber(route.options["index"])];
+  const go = (change: Record<string, string | number>, to = task) => {
+    location.hash = hrefOf("compare", to, to === task ? { a, b, by, seed: seed || undefined, index: index || undefined, ...change } : change);
+  };
+  const [pair, setPair] = useState<[Session, Session] | null>(null);
+  const [error, setError] = useState<EngineError | null>(null);
+  const [round, setRound] = useState(0);
+  const [isOutlined, setOutlined] = useState(true);
+  const [leader, setLeader] = useState<"keys" | "planner">("keys");
+  const [turn, setTurn] = useState(0);
+  const isReady = names.length > 0;
+
+  useEffect(() => {
+    if (!isReady) return undefined;
+    let isOver = false;
+    const opened: Session[] = [];
+    const open = async () => {
+      for (const name of [a, b]) opened.push(await Session.open(requestOf(task, name, seed, index), null));
+      if (isOver) return;
+      setPair([opened[0]!, opened[1]!]);
+      setError(null);
+      setLeader("keys");
+    };
+    open().catch((reason: unknown) => !isOver && (setPair(null), setError(asError(reason))));
+    return () => {
+      isOver = true;
+      for (const session of opened) void session.episode.close().catch(() => undefined);
+    };
+  }, [task, a, b, seed, index, isReady, round]);
+
+  const keys = useHeldKeys((code) => {
+    if (code === "KeyR") setRound((last) => last + 1);
+  });
+  useClock(pair !== null && !pair.every((session) => session.ended), 1 / (pair?.[0].episode.actionSpace.step_seconds ?? 0.1), async () => {
+    const [left, right] = pair!;
+    const asked = keys.read();
+    if (leader === "keys" && !isAsking(asked)) return;
+    if (leader === "keys") {
+      await left.advance(asked);
+      await right.advance(asked);
+    } else {
+      // The planner acts in the first world; the second gets the same actions.
+      const action = left.ended ? null : await left.episode.choose("planner");
+      if (action === null) return setLeader("keys");
+      await left.take(action);
+      await right.take(action);
+    }
+    setTurn((last) => last + 1);
+  }, (reason) => {
+    setPair(null);
+    setError(asError(reason));
+  });
+  const lines = useMemo(
+    () => (isOutlined && pair?.[0].frame && pair[1].frame ? outlines(pair[0].frame, pair[1].frame) : []),
+    [isOutlined, pair, turn],
+  );
+
+  const measures = useAnswer(() => engine.measures(), []).value ?? ["parameters"];
+  const distance = useAnswer(
+    isReady && a && b ? () => engine.distance(requestOf(task, a, seed, index), requestOf(task, b, seed, index), { by }) : null, [task, a, b, by, isReady, round],
+  );
+  const [isMeasured, setMeasured] = useState("");
+  const key = `${task} ${a} ${b} ${round}`;
+  const elements = useAnswer(
+    isMeasured === key ? () => engine.elements(task === "draft" ? draft.text : task, a, b, { worlds: commands.ELEMENT_WORLDS }) : null, [isMeasured, key],
+  );
+  const file = task === "draft" ? draft.file : task;
+  const rows = differing(about.value?.parameters ?? [], variants.find(({ name }) => name === a), variants.find(({ name }) => name === b));
+  return (
+    <>
+      <div class="head">
+        <div>
+          <h1>Compare</h1>
+          <p>Two variants under one seed. What you do is done in both; what looks different is outlined.</p>
+        </div>
+        <div class="row end">
+          <TaskPicker task={task} pick={(to) => go({}, to)} />
+          <VariantPicker label="Left" variants={names} variant={a} pick={(to) => go({ a: to })} />
+          <VariantPicker label="Right" variants={names} variant={b} pick={(to) => go({ b: to })} />
+          <NumberPicker label="Seed" value={seed} pick={(to) => go({ seed: to })} />
+          <NumberPicker label="World" value={index} pick={(to) => go({ index: to })} />
+        </div>
+      </div>
+      {(about.error ?? error) && <ErrorNote error={(about.error ?? error)!} again={() => setRound((last) => last + 1)} />}
+      <div class="row">
+        <button type="button" aria-pressed={isOutlined} onClick={() => setOutlined(!isOutlined)}>Outline differences</button>
+        <button type="button" aria-pressed={leader === "planner"} onClick={() => setLeader(leader === "planner" ? "keys" : "planner")}>Let the planner lead</button>
+        <button type="button" onClick={() => setRound((last) => last + 1)}>Again</button>
+        <span class="faint small">Arrow keys act in both.</span>
+      </div>
+      {pair && (
+        <div class="pair">
+          {pair.map((session, side) => (
+            <div key={side} class="side">
+              <Seat name={(side ? b : a) || "defaults"} session={session} isYours={side === 0} lines={lines} />
+              <FlatMap map={session.map} />
+            </div>
+          ))}
+        </div>
+      )}
+      {rows.length > 0 && (
+        <section class="card pad stack" aria-label="Parameters that differ">
+          <h2>Parameters that differ</h2>
+          <div class="table">
+            <table>
+              <thead><tr><th scope="col">Parameter</th><th scope="col">{a || "defaults"}</th><th scope="col">{b || "defaults"}</th><th scope="col">Affects</th></tr></thead>
+              <tbody>
+                {rows.map(({ parameter, values: [left, right] }) => (
+                  <tr key={parameter.name}>
+                    <td><code>{parameter.name}</code></td><td>{wordOf(left, null)}</td><td>{wordOf(right, null)}</td><td class="faint">{parameter.affects.join(" ")}</td>
+                  </tr>
+                ))}
+              </tbody>
+            </table>
+          </div>
+        </section>
+      )}
+      <section class="card pad stack" aria-label="Distance">
+        <div class="row spread">
+          <label class="field">
+            Measured by
+            <select value={by} onChange={(event) => go({ by: event.currentTarget.value })}>{measures.map((name) => <option key={name}>{name}</option>)}</select>
+          </label>
+          <button type="button" disabled={!isReady || elements.pending} onClick={() => setMeasured(key)}>Test what differs in their worlds</button>
+        </div>
+        {distance.error && <ErrorNote error={distance.error} again={() => setRound((last) => last + 1)} />}
+        {distance.pending && <p class="faint">Measuring …</p>}
+        {distance.value && <Elements distance={distance.value} />}
+        {elements.error && <ErrorNote error={elements.error} />}
+        {elements.value && (
+          <div class="stack">
+            <h3>Seen in their worlds: <span class={`tag ${elements.value.verdict === "sound" ? "good" : "bad"}`}>{elements.value.verdict}</span></h3>
+            <ul class="plain">{elements.value.measured.map((witness) => <li key={witness.element}><b>{witness.element}</b> {witness.message}</li>)}</ul>
+            {elements.value.measured.length === 0 && <p class="faint small">No element was seen to differ.</p>}
+            {elements.value.contradictions.map((text) => <p key={text} class="note bad"><span>{text}</span></p>)}
+            {elements.value.idle.length > 0 && <p class="faint small">Without effect here: {elements.value.idle.join(", ")}.</p>}
+          </div>
+        )}
+        <Recipes of={{ "This distance": commands.distance(file, a, b, by), "What differs in their worlds": commands.elements(file, a, b) }} />
+      </section>
+    </>
+  );
+}

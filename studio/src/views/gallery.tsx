@@ -1,0 +1,140 @@
+// All tasks as cards with a picture of a world, in which the planner walks while a card is looked at.
+
+import { useEffect, useRef, useState } from "preact/hooks";
+import type { Frame, TaskCard } from "../engine.ts";
+import { useClock } from "../clock.ts";
+import { Session } from "../session.ts";
+import { engine, trainedTasks, useAnswer } from "../simulator.ts";
+import { hrefOf, type Route } from "../route.ts";
+import { Picture } from "../parts/pictures.tsx";
+import { ErrorNote } from "../parts/notes.tsx";
+
+const SIZE = { width: 280, height: 210 };
+
+/** The picture of a card: drawn once it comes into view, and alive while `isLive`. */
+function Shot({ card, isLive }: { card: TaskCard; isLive: boolean }) {
+  const place = useRef<HTMLSpanElement>(null);
+  const session = useRef<Session | null>(null);
+  const [frame, setFrame] = useState<Frame | null>(null);
+  const [isLoaded, setLoaded] = useState(false);
+  const variant = card.examples[0]?.variant;
+  const request = { task: card.name, ...(variant ? { variant } : {}) };
+  useEffect(() => {
+    const watch = new IntersectionObserver((entries) => {
+      if (!entries.some((entry) => entry.isIntersecting)) return;
+      watch.disconnect();
+      engine.open(request, SIZE)
+        .then(async (episode) => {
+          setFrame(await episode.frame("agent"));
+          await episode.close();
+        })
+        .catch(() => undefined);
+    }, { rootMargin: "200px" });
+    if (place.current) watch.observe(place.current);
+    return () => watch.disconnect();
+  }, []);
+  useEffect(() => {
+    if (!isLive) return undefined;
+    let isOver = false;
+    Session.open(request, "planner", SIZE).then((opened) => {
+      if (isOver) void opened.episode.close().catch(() => undefined);
+      else session.current = opened;
+      setLoaded(!isOver);
+    }, () => undefined);
+    return () => {
+      isOver = true;
+      void session.current?.episode.close().catch(() => undefined);
+      session.current = null;
+      setLoaded(false);
+    };
+  }, [isLive]);
+  useClock(isLive && isLoaded, 20, async () => {
+    const walker = session.current;
+    if (!walker || walker.ended) return;
+    await walker.advance({ ahead: 0, turn: 0, interact: false });
+    setFrame(walker.frame);
+  }, () => setLoaded(false));
+  return <span ref={place}><Picture frame={frame} label="" /></span>;
+}
+
+function Card({ card, isTrained }: { card: TaskCard; isTrained: boolean }) {
+  const [isLive, setLive] = useState(false);
+  const variant = card.examples[0]?.variant;
+  const go = (companion?: string) => hrefOf("play", card.name, { variant, with: companion });
+  return (
+    <li>
+      <article
+        class="card" onMouseEnter={() => setLive(true)} onMouseLeave={() => setLive(false)}
+        onFocusCapture={() => setLive(true)} onBlurCapture={() => setLive(false)}
+      >
+        <a class="shot" href={go()} aria-label={`Play ${card.name}`}><Shot card={card} isLive={isLive} /></a>
+        <div class="body">
+          <h3>{card.name}</h3>
+          <p>{card.description}</p>
+        </div>
+        <div class="foot">
+          <a class="button quiet" href={go()} tabIndex={-1} aria-hidden="true">Play</a>
+          {isTrained && <a class="button quiet" href={go("policy")} aria-label={`Play ${card.name} beside the trained policy`}>Policy</a>}
+          <a class="button quiet" href={go("planner")} aria-label={`Play ${card.name} beside the planner`}>Planner</a>
+        </div>
+      </article>
+    </li>
+  );
+}
+
+export function Gallery({ route }: { route: Route }) {
+  const cards = useAnswer(() => engine.tasks(), []);
+  const trained = useAnswer(trainedTasks, []).value ?? [];
+  const [words, setWords] = useState(route.options["q"] ?? "");
+  const [group, setGroup] = useState("");
+  const all = cards.value ?? [];
+  const wanted = words.toLowerCase().split(/\s+/).filter(Boolean);
+  const shown = all.filter((card) => (!group || card.group === group)
+    && wanted.every((word) => `${card.name} ${card.group} ${card.description}`.toLowerCase().includes(word)));
+  const groups = [...new Set(all.map((card) => card.group))];
+  const variants = all.reduce((sum, card) => sum + card.variants.length, 0);
+  return (
+    <>
+      <div class="head">
+        <div>
+          <h1>Gallery</h1>
+          <p>
+            {all.length ? `${all.length} tasks with ${variants} variants. ` : ""}
+            Choose one to play it in first person; the same worlds as in training, to the bit.
+          </p>
+        </div>
+        <div class="row end">
+          <label class="field">
+            Search
+            <input type="search" value={words} placeholder="maze, door, memory …" onInput={(event) => setWords(event.currentTarget.value)} />
+          </label>
+          <label class="field">
+            Group
+            <select value={group} onChange={(event) => setGroup(event.currentTarget.value)}>
+              <option value="">all</option>
+              {groups.map((name) => <option key={name}>{name}</option>)}
+            </select>
+          </label>
+        </div>
+      </div>
+      {cards.error && <ErrorNote error={cards.error} again={() => location.reload()} />}
+      {all.length > 0 && shown.length === 0 && (
+        <div class="empty">
+          <h2>No task matches</h2>
+          <p>None of {all.length} tasks has “{words}” in its name, group or description.</p>
+          <button type="button" onClick={() => { setWords(""); setGroup(""); }}>Show all</button>
+        </div>
+      )}
+      {groups.filter((name) => shown.some((card) => card.group === name)).map((name) => (
+        <section key={name} class="stack" aria-label={name}>
+          <h2 class="group-name">{name}</h2>
+          <ul class="gallery">
+            {shown.filter((card) => card.group === name).map((card) => (
+              <Card key={card.name} card={card} isTrained={trained.includes(card.name)} />
+            ))}
+          </ul>
+        </section>
+      ))}
+    </>
+  );
+}

@@ -1,0 +1,237 @@
+// A world to walk in, alone or beside the trained policy and the planner; an episode of it as a link.
+
+import { useCallback, useEffect, useRef, useState } from "preact/hooks";
+import type { EngineError } from "../engine.ts";
+import * as commands from "../commands.ts";
+import { useClock } from "../clock.ts";
+import { draft } from "../draft.ts";
+import { isAsking, useHeldKeys } from "../keys.ts";
+import { hrefOf, type Route, wholeNumber } from "../route.ts";
+import { Session } from "../session.ts";
+import { asError, engine, requestOf, trainedAgent, trainedTasks, useAnswer } from "../simulator.ts";
+import { NumberPicker, TaskPicker, VariantPicker } from "../parts/choices.tsx";
+import { copyText, ErrorNote, Recipes } from "../parts/notes.tsx";
+import { FlatMap } from "../parts/pictures.tsx";
+import { amount, Seat } from "../parts/seat.tsx";
+
+type Companion = "policy" | "planner";
+const NAMES: Record<Companion, string> = { policy: "Trained policy", planner: "Planner" };
+const SPEEDS = [1, 2, 6];
+/** Worlds that are tried for one in which an agent fails. */
+const TRIED = 50;
+
+/** The buttons for who has no keyboard. */
+const PAD: [string, string, string][] = [["", "", ""], ["ArrowUp", "↑", "Ahead"], ["Space", "●", "Use"], ["ArrowLeft", "←", "Left"], ["ArrowDown", "↓", "Back"], ["ArrowRight", "→", "Right"]];
+
+function Pad({ set }: { set: (code: string, isDown: boolean) => void }) {
+  return (
+    <div class="pad-keys">
+      {PAD.map(([code, sign, word], place) => code
+        ? (
+          <button
+            key={place} type="button" aria-label={word}
+            onPointerDown={() => set(code, true)} onPointerUp={() => set(code, false)} onPointerLeave={() => set(code, false)}
+          >{sign}</button>
+        )
+        : <span key={place} />)}
+    </div>
+  );
+}
+
+export function Play({ route }: { route: Route }) {
+  const task = route.task || "find_objects";
+  const { variant = "", seed: seedText, index: indexText, with: withText = "" } = route.options;
+  const [seed, index] = [wholeNumber(seedText), wholeNumber(indexText)];
+  const companions = (Object.keys(NAMES) as Companion[]).filter((name) => withText.split(",").includes(name));
+  const go = (change: Record<string, string | number | undefined>, to = task) => {
+    location.hash = hrefOf("play", to, { variant, seed: seed || undefined, index: index || undefined, with: withText, ...change });
+  };
+
+  const about = useAnswer(() => engine.task(task === "draft" ? draft.text : task), [task]);
+  const isTrained = (useAnswer(trainedTasks, []).value ?? []).includes(task);
+  const [seats, setSeats] = useState<{ name: string; session: Session }[]>([]);
+  const [error, setError] = useState<EngineError | null>(null);
+  const [round, setRound] = useState(0);
+  const [state, setState] = useState<"waiting" | "running" | "paused">("waiting");
+  const [speed, setSpeed] = useState(1);
+  const [shared, setShared] = useState("");
+  const [link, setLink] = useState("");
+  const [, redraw] = useState(0);
+  const trail = useRef<[number, number][]>([]);
+
+  const again = useCallback(() => setRound((last) => last + 1), []);
+  useEffect(() => {
+    let isOver = false;
+    let opened: Session[] = [];
+    const request = requestOf(task, variant, seed, index);
+    const open = async () => {
+      const you = await Session.open(request, null);
+      opened = [you];
+      const found = [{ name: "You", session: you }];
+      for (const name of companions) {
+        const agent = name === "planner" ? "planner" : await trainedAgent(task);
+        const session = await Session.open(request, agent);
+        opened.push(session);
+        found.push({ name: NAMES[name], session });
+      }
+      if (isOver) return;
+      trail.current = [];
+      setSeats(found);
+      setError(null);
+      setState("waiting");
+      setShared("");
+      setLink("");
+    };
+    open().catch((reason: unknown) => {
+      if (isOver) return;
+      setSeats([]);
+      setError(asError(reason));
+    });
+    return () => {
+      isOver = true;
+      for (const session of opened) void session.episode.close().catch(() => undefined);
+    };
+  }, [task, variant, seed, index, withText, round]);
+
+  const keys = useHeldKeys((code) => {
+    if (code === "KeyR") again();
+    else if (code === "KeyN") go({ index: index + 1 });
+    else if (code === "KeyP" || code === "Escape") setState((last) => (last === "running" ? "paused" : "running"));
+    else setState((last) => (last === "waiting" || last === "paused" ? "running" : last));
+  });
+  const you = seats[0]?.session;
+  const isPaused = state === "paused" || (you?.ended ?? false);
+  const isAllOver = seats.every(({ session }) => session.ended);
+  const rate = speed / (you?.episode.actionSpace.step_seconds ?? 0.1);
+  useClock(state === "running" && seats.length > 0 && !isAllOver, rate, async () => {
+    const asked = keys.read();
+    if (you && !you.ended && !you.canWait && !isAsking(asked)) return;
+    for (const { session } of seats) await session.advance(asked);
+    if (you) trail.current = [...trail.current, [you.step.agent.x, you.step.agent.y]];
+    redraw((last) => last + 1);
+  }, (reason) => {
+    setError(asError(reason));
+    setSeats([]);
+  });
+
+  const fragment = async () => {
+    const { episode, actions } = you!;
+    return { text: await engine.encodeLink({ request: episode.request, actions }), steps: actions.length };
+  };
+  const share = async () => {
+    setState((last) => (last === "running" ? "paused" : last));
+    const { text, steps } = await fragment();
+    const address = `${location.href.split("#")[0]}#${text}`;
+    setLink(address);
+    setShared(`${(await copyText(address)) ? "Copied" : "Ready to copy"}: ${text.length} characters for ${steps} step${steps === 1 ? "" : "s"}`);
+  };
+  const watch = async () => {
+    location.hash = (await fragment()).text;
+  };
+  const [search, setSearch] = useState("");
+  const findFailure = async () => {
+    const agent = isTrained ? await trainedAgent(task) : "planner";
+    setSearch(`Trying up to ${TRIED} worlds …`);
+    try {
+      const failure = await engine.findFailure(requestOf(task, variant, seed, index + 1), agent, { worlds: TRIED });
+      const found = failure && "index" in failure.request ? failure.request.index : undefined;
+      setSearch(found === undefined ? `It succeeds in all of the next ${TRIED} worlds.` : "");
+      if (found !== undefined) go({ index: found, with: isTrained ? "policy" : "planner" });
+    } catch (reason) {
+      setSearch(asError(reason).message);
+    }
+  };
+  const guarded = (action: () => Promise<void>) => () => void action().catch((reason: unknown) => setError(asError(reason)));
+
+  const subject = { task: task === "draft" ? draft.file : task, variant, seed, index };
+  const network = `examples/networks/${task}.safetensors`;
+  const recipes: Record<string, commands.Recipe> = { "Play this world": commands.play(subject) };
+  if (you && isPaused) recipes["This episode"] = commands.episode(subject, you.episode.actionSpace, you.actions);
+  for (const name of companions) recipes[`A film of the ${name}`] = commands.film(subject, name === "planner" ? "onrails" : { network });
+  recipes["Draw this world"] = commands.sample(subject);
+  const toggle = (name: Companion) =>
+    go({ with: (companions.includes(name) ? companions.filter((other) => other !== name) : [...companions, name]).join(",") });
+  const description = about.value?.variants.find((known) => known.name === variant)?.description ?? "";
+  return (
+    <>
+      <div class="head">
+        <div>
+          <h1>{task === "draft" ? draft.name : task}</h1>
+          <p>{about.value?.description} {description}</p>
+        </div>
+      </div>
+      <div class="tools stack">
+        <div class="row end">
+          <TaskPicker task={task} pick={(to) => go({ variant: undefined, index: undefined, with: undefined }, to)} />
+          <VariantPicker variants={about.value?.variants.map(({ name }) => name) ?? []} variant={variant} pick={(to) => go({ variant: to })} />
+          <NumberPicker label="Seed" value={seed} pick={(to) => go({ seed: to || undefined })} />
+          <NumberPicker label="World" value={index} pick={(to) => go({ index: to || undefined })} />
+        </div>
+      <div class="row spread">
+        <div class="row" role="group" aria-label="Who plays beside you">
+          <button type="button" aria-pressed={companions.includes("planner")} onClick={() => toggle("planner")}>Planner</button>
+          <button
+            type="button" aria-pressed={companions.includes("policy")} disabled={!isTrained} onClick={() => toggle("policy")}
+            title={isTrained ? "" : "No trained network of this task lies beside the page"}
+          >Trained policy</button>
+          <button type="button" onClick={guarded(findFailure)}>Show me where {isTrained ? "the policy" : "the planner"} fails</button>
+          <span class="faint small" role="status">{search}</span>
+        </div>
+        <div class="row">
+          <div class="group" role="group" aria-label="Speed">
+            {SPEEDS.map((factor) => (
+              <button key={factor} type="button" aria-pressed={speed === factor} aria-label={`${factor} times the world's time`} onClick={() => setSpeed(factor)}>{factor}×</button>
+            ))}
+          </div>
+          <button type="button" onClick={() => setState(state === "running" ? "paused" : "running")}>{state === "running" ? "Pause" : "Go"}</button>
+          <button type="button" onClick={again}>Again</button>
+          <button type="button" onClick={() => go({ index: index + 1 })}>Next world</button>
+        </div>
+      </div>
+      </div>
+      {error && <ErrorNote error={error} again={again} />}
+      {!seats.length && !error && <p class="loading">Drawing the world …</p>}
+      {seats.length > 0 && (
+        <div class="stage">
+          {seats.map(({ name, session }, place) => (
+            <Seat key={name} name={name} session={session} isYours={place === 0} below={place === 0 ? <Pad set={keys.set} /> : null}>
+              {state !== "running" && <span class="tag">{state === "paused" ? "paused" : "press a key to begin"}</span>}
+            </Seat>
+          ))}
+          <section class="card pad stack" aria-label="Map">
+            <h2>Map</h2>
+            <FlatMap map={you?.map ?? null} trail={trail.current} />
+          </section>
+          <section class={`card pad episode ${seats.length > 1 ? "span" : ""}`} aria-label="Episode">
+            <div class="stack">
+            <h2>Episode</h2>
+            <p class="small key-list">
+              <kbd>↑</kbd> <kbd>↓</kbd> <kbd>←</kbd> <kbd>→</kbd> or <kbd>W</kbd> <kbd>A</kbd> <kbd>S</kbd> <kbd>D</kbd> walk and turn,{" "}
+              <kbd>space</kbd> uses what is ahead, <kbd>P</kbd> pauses, <kbd>R</kbd> begins again, <kbd>N</kbd> goes to the next world.
+            </p>
+            </div>
+            {you && you.log.length > 0
+              ? (
+                <ul class="events" aria-label="What happened">
+                  {you.log.map((line) => (
+                    <li key={`${line.step} ${line.text}`}><span>{line.text}</span><span class="number faint">{line.reward ? `${amount(line.reward)} · ` : ""}step {line.step}</span></li>
+                  ))}
+                </ul>
+              )
+              : <p class="faint small">What you meet is listed here.</p>}
+            <div class="stack">
+            <div class="row">
+              <button type="button" class="main" onClick={guarded(share)}>Share as a link</button>
+              <button type="button" disabled={!you || you.step.step === 0} onClick={guarded(watch)}>Replay</button>
+              <a class="button quiet" href={hrefOf("author", task === "draft" ? "" : task)}>Edit the task</a>
+            </div>
+            <p class="small faint" role="status">{shared}</p>
+            {link && <input type="text" readOnly value={link} aria-label="The link" onFocus={(event) => event.currentTarget.select()} />}
+            <Recipes of={recipes} />
+            </div>
+          </section>
+        </div>
+      )}
+    </>
+  );
+}

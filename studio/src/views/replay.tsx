@@ -1,0 +1,311 @@
+// An episode on a timeline: from a link, or from a log that was dropped onto the page, with its learning curve beside.
+
+import { useEffect, useMemo, useRef, useState } from "preact/hooks";
+import type { DroppedFile, EngineError, Episode, Frame, Log, Step, WorldMap } from "../engine.ts";
+import * as commands from "../commands.ts";
+import { useClock } from "../clock.ts";
+import { curves } from "../curve.ts";
+import { droppedFiles, pickedFiles } from "../files.ts";
+import { hrefOf, type Route } from "../route.ts";
+import { VIEW } from "../session.ts";
+import { asError, engine } from "../simulator.ts";
+import { following, type Loop, looped, marks } from "../timeline.ts";
+import { ErrorNote, Recipes } from "../parts/notes.tsx";
+import { FlatMap, Picture } from "../parts/pictures.tsx";
+import { amount } from "../parts/seat.tsx";
+
+/** An episode that is replayed, with all its steps. */
+interface Played {
+  episode: Episode;
+  title: string;
+  /** The moment before the first step, and that after each. */
+  steps: Step[];
+}
+
+async function played(episode: Episode, title: string): Promise<Played> {
+  const actions = await episode.actions();
+  const first = await episode.seek(0);
+  return { episode, title, steps: [first, ...(await episode.steps(actions))] };
+}
+
+async function fromLink(fragment: string): Promise<Played> {
+  const { request, looks, actions } = await engine.decodeLink(fragment);
+  const episode = await engine.open(request, { ...VIEW, ...(looks ? { looks } : {}) });
+  const first = await episode.now();
+  const task = "task" in request ? request.task : "a world";
+  const name = task.startsWith("{") ? "a task of its own" : `${task}${"variant" in request && request.variant ? `#${request.variant}` : ""}`;
+  const where = "task" in request ? `, world ${request.index ?? 0} under seed ${request.seed ?? 0}` : "";
+  return { episode, title: `${name}${where}`, steps: [first, ...(await episode.steps(actions))] };
+}
+
+function Timeline({ steps, moment, loop, seek }: { steps: Step[]; moment: number; loop: Loop | null; seek: (moment: number) => void }) {
+  const last = steps.length - 1;
+  const found = useMemo(() => marks(steps.slice(1)), [steps]);
+  const most = Math.max(1e-9, ...found.map(({ reward }) => Math.abs(reward)));
+  const x = (step: number) => (last ? (1000 * step) / last : 0);
+  return (
+    <div class="timeline">
+      <svg viewBox="0 0 1000 56" preserveAspectRatio="none" aria-hidden="true">
+        <rect class="track" y="24" width="1000" height="8" />
+        {loop && <rect class="loop" x={x(loop.from)} width={Math.max(2, x(loop.to) - x(loop.from))} height="56" />}
+        {found.map((mark) => {
+          const height = 4 + (22 * Math.abs(mark.reward)) / most;
+          return <rect key={mark.step} class={mark.reward < 0 ? "loss" : "gain"} x={x(mark.step) - 2} width="4" y={mark.reward < 0 ? 28 : 28 - height} height={height} />;
+        })}
+        <line class="here" x1={x(moment)} x2={x(moment)} y1="0" y2="56" vector-effect="non-scaling-stroke" />
+      </svg>
+      <input
+        type="range" min={0} max={last} value={moment} aria-label="Moment of the episode" aria-valuetext={`step ${moment} of ${last}`}
+        onInput={(event) => seek(event.currentTarget.valueAsNumber)}
+      />
+    </div>
+  );
+}
+
+function Curves({ log, now, pick }: { log: Log; now: number | null; pick: (experience: number) => void }) {
+  const all = useMemo(() => curves(log.episodes), [log]);
+  const points = all.flatMap(({ learned, tested }) => [...learned, ...tested]);
+  const [width, height, pad] = [640, 240, 36];
+  const most = Math.max(1, ...log.episodes.map(({ experience }) => experience));
+  const [low, high] = [Math.min(0, ...points.map(([, y]) => y)), Math.max(1e-9, ...points.map(([, y]) => y))];
+  const place = ([x, y]: [number, number]): [number, number] => [pad + ((width - pad - 8) * x) / most, height - 24 - ((height - 36) * (y - low)) / (high - low)];
+  return (
+    <>
+      <svg
+        class="plot" viewBox={`0 0 ${width} ${height}`} role="img" aria-label={`Learning curves of ${all.length} tasks`}
+        onClick={(event) => {
+          const box = event.currentTarget.getBoundingClientRect();
+          const wanted = ((((event.clientX - box.left) * width) / box.width - pad) * most) / (width - pad - 8);
+          const nearest = [...log.episodes].filter(({ recorded }) => recorded).sort((a, b) => Math.abs(a.experience - wanted) - Math.abs(b.experience - wanted))[0];
+          if (nearest) pick(nearest.experience);
+        }}
+      >
+        <line class="axis" x1={pad} x2={width - 8} y1={place([0, 0])[1]} y2={place([0, 0])[1]} />
+        <text class="label" x={pad - 4} y={place([0, high])[1] + 4} text-anchor="end">{amount(Number(high.toPrecision(3)))}</text>
+        <text class="label" x={pad - 4} y={place([0, low])[1] + 4} text-anchor="end">{amount(Number(low.toPrecision(3)))}</text>
+        <text class="label" x={width - 8} y={height - 6} text-anchor="end">experience {most}</text>
+        {all.map((curve, number) => (
+          <g key={curve.task} class={`series s${number % 6}`}>
+            <polyline points={curve.learned.map((point) => place(point).join(",")).join(" ")} />
+            {curve.tested.map((point) => <circle key={point[0]} cx={place(point)[0]} cy={place(point)[1]} r="2" />)}
+          </g>
+        ))}
+        {now !== null && <line class="here" x1={place([now, 0])[0]} x2={place([now, 0])[0]} y1="8" y2={height - 24} />}
+      </svg>
+      <ul class="legend">{all.map((curve, number) => <li key={curve.task} class={`s${number % 6}`}><span class="swatch" aria-hidden="true" />{curve.task}</li>)}</ul>
+      <p class="faint small">Lines: learning, means of a twentieth of the episodes. Dots: evaluations.</p>
+    </>
+  );
+}
+
+export function Replay({ route }: { route: Route }) {
+  const [shown, setShown] = useState<Played | null>(null);
+  const [error, setError] = useState<EngineError | null>(null);
+  const [log, setLog] = useState<Log | null>(null);
+  const [folder, setFolder] = useState("");
+  const [experience, setExperience] = useState<number | null>(null);
+  const [moment, setMoment] = useState(0);
+  const [picture, setPicture] = useState<{ frame: Frame; map: WorldMap } | null>(null);
+  const [isPlaying, setPlaying] = useState(false);
+  const [loop, setLoop] = useState<Loop | null>(null);
+  const [isOver, setOver] = useState(false);
+  const [isReading, setReading] = useState(false);
+  const wanted = useRef(0);
+
+  const show = async (opening: Promise<Played>) => {
+    setError(null);
+    setReading(true);
+    try {
+      const next = await opening;
+      setShown((last) => {
+        void last?.episode.close().catch(() => undefined);
+        return next;
+      });
+      setMoment(0);
+      setLoop(null);
+      setPlaying(false);
+    } catch (reason) {
+      setShown(null);
+      setError(asError(reason));
+    } finally {
+      setReading(false);
+    }
+  };
+  useEffect(() => {
+    if (route.link) void show(fromLink(route.link));
+  }, [route.link]);
+
+  const read = async (files: Promise<DroppedFile[]>) => {
+    setError(null);
+    setReading(true);
+    try {
+      const found = await files;
+      const next = await engine.log(found);
+      setLog(next);
+      setFolder(found[0]?.path.split("/")[0] ?? "log");
+      setShown(null);
+      const first = next.episodes.find(({ recorded }) => recorded);
+      if (first) open(first.experience);
+    } catch (reason) {
+      setError(asError(reason));
+    } finally {
+      setReading(false);
+    }
+  };
+  const open = (number: number) => {
+    setExperience(number);
+    void show(engine.openLogged(number, VIEW).then((episode) => played(episode, `Episode ${number}`)));
+  };
+
+  // The picture of the moment; while one is drawn, only the latest moment waits.
+  useEffect(() => {
+    if (!shown) return setPicture(null);
+    wanted.current = moment;
+    const { episode } = shown;
+    const draw = async () => {
+      await episode.seek(moment);
+      const [frame, map] = [await episode.frame("agent"), await episode.map()];
+      if (wanted.current === moment) setPicture({ frame, map });
+    };
+    draw().catch((reason: unknown) => {
+      setError(asError(reason));
+      setShown(null);
+    });
+    return undefined;
+  }, [shown, moment]);
+
+  const last = shown ? shown.steps.length - 1 : 0;
+  const seek = (to: number) => setMoment(Math.min(Math.max(0, to), last));
+  useClock(isPlaying && shown !== null, 1 / (shown?.episode.actionSpace.step_seconds ?? 0.1), async () => {
+    const next = following(wanted.current, last, loop);
+    if (next === null) setPlaying(false);
+    else setMoment(next);
+  }, () => setPlaying(false));
+
+  useEffect(() => {
+    if (!shown) return undefined;
+    const press = (event: KeyboardEvent) => {
+      if (event.ctrlKey || event.metaKey || event.altKey) return;
+      if (event.target instanceof Element && event.target.closest("select, textarea, input[type=text], input[type=number]")) return;
+      const isButton = event.target instanceof Element && event.target.closest("button, a, summary") !== null;
+      const stride = event.shiftKey ? 10 : 1;
+      if (event.code === "ArrowLeft") seek(moment - stride);
+      else if (event.code === "ArrowRight") seek(moment + stride);
+      else if (event.code === "Home") seek(0);
+      else if (event.code === "End") seek(last);
+      else if (event.code === "Space" && !isButton) setPlaying(!isPlaying);
+      else if (event.code === "KeyI") setLoop(looped(loop, "from", moment, last));
+      else if (event.code === "KeyO") setLoop(looped(loop, "to", moment, last));
+      else if (event.code === "KeyL") setLoop(null);
+      else return;
+      event.preventDefault();
+    };
+    window.addEventListener("keydown", press);
+    return () => window.removeEventListener("keydown", press);
+  });
+
+  const step = shown?.steps[moment];
+  const trail = useMemo(() => shown?.steps.slice(0, moment + 1).map(({ agent }): [number, number] => [agent.x, agent.y]) ?? [], [shown, moment]);
+  const found = useMemo(() => (shown ? marks(shown.steps.slice(1)) : []), [shown]);
+  const request = shown?.episode.request;
+  const subject = request && "task" in request && !request.task.startsWith("{")
+    ? { task: request.task, variant: request.variant ?? "", seed: request.seed ?? 0, index: request.index ?? 0 }
+    : null;
+  const actions = shown?.steps.slice(1).flatMap(({ action }) => (action === null ? [] : [action])) ?? [];
+  const recipe = log && experience !== null ? commands.replayLog(folder, experience) : subject && shown ? commands.episode(subject, shown.episode.actionSpace, actions) : null;
+  return (
+    <div
+      class="stack drop" onDragOver={(event) => { event.preventDefault(); setOver(true); }} onDragLeave={() => setOver(false)}
+      onDrop={(event) => { event.preventDefault(); setOver(false); if (event.dataTransfer) void read(droppedFiles(event.dataTransfer)); }}
+    >
+      <div class="head">
+        <div>
+          <h1>Replay</h1>
+          <p>{shown ? `${shown.title}, ${last} steps` : "An episode from a link, or a log of a lifetime."}</p>
+        </div>
+        <div class="row">
+          {subject && <a class="button" href={hrefOf("play", subject.task, { variant: subject.variant, seed: subject.seed || undefined, index: subject.index || undefined })}>Play this world</a>}
+          <label class="button">
+            Open a log folder
+            <input class="hidden" type="file" multiple {...{ webkitdirectory: true }} onChange={(event) => void read(pickedFiles(event.currentTarget.files))} />
+          </label>
+        </div>
+      </div>
+      {error && <ErrorNote error={error} />}
+      {isReading && <p class="faint">Reading …</p>}
+      {!shown && !log && !isReading && (
+        <div class={`empty ${isOver ? "over" : ""}`}>
+          <h2>Drop a log folder here</h2>
+          <p>Any folder that <code>driftworld run --record</code> or a learner in Python wrote. Nothing is uploaded: the page reads it itself.</p>
+          <p>Or play a world and choose <b>Replay</b>, or open a link that someone shared.</p>
+        </div>
+      )}
+      {shown && step && (
+        <>
+          <div class="stage">
+            <section class="card seat" aria-label="What the agent sees">
+              <div class="frame"><Picture frame={picture?.frame ?? null} label="What the agent sees" /></div>
+              <footer class="number">
+                <span>Reward <b>{amount(step.total)}</b></span>
+                <span class="faint">step {moment} of {last} · {step.seconds.toFixed(1)} s</span>
+              </footer>
+            </section>
+            <section class="card pad" aria-label="Map"><FlatMap map={picture?.map ?? null} trail={trail} /></section>
+            <section class="card pad stack" aria-label="Moments">
+              <h2>Moments</h2>
+              {found.length
+                ? (
+                  <ul class="events picks">
+                    {found.map((mark) => (
+                      <li key={mark.step}>
+                        <button type="button" {...(mark.step === moment ? { "aria-current": "step" as const } : {})} onClick={() => seek(mark.step)}>
+                          <span>step {mark.step}{mark.text && `: ${mark.text}`}</span><span class="number">{amount(mark.reward)}</span>
+                        </button>
+                      </li>
+                    ))}
+                  </ul>
+                )
+                : <p class="faint small">Nothing was met, and every step paid the same.</p>}
+            </section>
+          </div>
+          <section class="card pad stack" aria-label="Timeline">
+            <Timeline steps={shown.steps} moment={moment} loop={loop} seek={seek} />
+            <div class="row spread">
+              <div class="row">
+                <button type="button" class="main" onClick={() => { if (moment === last && !loop) seek(0); setPlaying(!isPlaying); }}>{isPlaying ? "Pause" : "Play"}</button>
+                <button type="button" onClick={() => setLoop(looped(loop, "from", moment, last))}>Loop in</button>
+                <button type="button" onClick={() => setLoop(looped(loop, "to", moment, last))}>Loop out</button>
+                <button type="button" disabled={!loop} onClick={() => setLoop(null)}>No loop</button>
+              </div>
+              <p class="small faint key-list"><kbd>space</kbd> plays, <kbd>←</kbd> <kbd>→</kbd> step, with <kbd>shift</kbd> ten, <kbd>I</kbd> <kbd>O</kbd> loop, <kbd>L</kbd> no loop</p>
+            </div>
+            {recipe && <Recipes of={{ "This episode": recipe }} />}
+          </section>
+        </>
+      )}
+      {log && (
+        <div class="stage wide">
+          <section class="card pad stack" aria-label="Learning curve">
+            <h2>Learning curve</h2>
+            <Curves log={log} now={experience} pick={open} />
+            {log.warnings.map((warning) => <p key={warning} class="note warn"><span>{warning}</span></p>)}
+          </section>
+          <section class="card pad stack" aria-label="Episodes">
+            <h2>{log.episodes.length} episodes</h2>
+            <div class="picks">
+              {log.episodes.slice(0, 2000).map((episode) => (
+                <button
+                  key={episode.experience} type="button" disabled={!episode.recorded} {...(episode.experience === experience ? { "aria-current": "true" as const } : {})}
+                  onClick={() => open(episode.experience)}
+                >
+                  <span>{episode.experience} · {episode.task}{episode.block_type === "test" ? " · evaluation" : ""}</span><span class="number">{amount(episode.reward)}</span>
+                </button>
+              ))}
+            </div>
+            {!log.episodes.some(({ recorded }) => recorded) && <p class="note warn"><span>No episode of this log was recorded. <code>run --record</code> or <code>record=True</code> keeps them.</span></p>}
+          </section>
+        </div>
+      )}
+    </div>
+  );
+}
