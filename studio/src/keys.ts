@@ -1,6 +1,6 @@
 // Which keys are held, as what they ask of an agent.
 
-import { useEffect, useRef } from "preact/hooks";
+import { useLayoutEffect, useRef } from "preact/hooks";
 import type { Keys } from "./engine.ts";
 
 const AHEAD = ["ArrowUp", "KeyW"];
@@ -8,7 +8,8 @@ const BACK = ["ArrowDown", "KeyS"];
 const LEFT = ["ArrowLeft", "KeyA"];
 const RIGHT = ["ArrowRight", "KeyD"];
 const USE = ["Space", "KeyE"];
-const HELD = [AHEAD, BACK, LEFT, RIGHT, USE].flat();
+/** All keys that ask something of an agent. */
+export const HELD = [AHEAD, BACK, LEFT, RIGHT, USE].flat();
 
 /** What keys ask for. */
 export function askedBy(held: ReadonlySet<string>): Keys {
@@ -38,7 +39,7 @@ export function useHeldKeys(press: (code: string) => void): { read(): Keys; set(
       held.current.delete(code);
     }
   };
-  useEffect(() => {
+  useLayoutEffect(() => {
     const down = (event: KeyboardEvent) => {
       if (isForControl(event.target) || event.ctrlKey || event.metaKey || event.altKey) return;
       if (HELD.includes(event.code)) event.preventDefault();

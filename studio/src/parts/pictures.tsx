@@ -46,6 +46,7 @@ function draw(canvas: HTMLCanvasElement, map: WorldMap, trail: readonly (readonl
   context.fillStyle = soft!;
   context.fillRect(0, 0, canvas.width, canvas.height);
   context.lineJoin = "round";
+  context.lineCap = "round";
   const path = (points: readonly (readonly [number, number])[], isClosed: boolean) => {
     context.beginPath();
     points.forEach((point, index) => context[index ? "lineTo" : "moveTo"](...toPixels(scale, point)));
@@ -66,7 +67,8 @@ function draw(canvas: HTMLCanvasElement, map: WorldMap, trail: readonly (readonl
     context.fillStyle = css(wall.color, 0.9);
     if (wall.closed) context.fill();
     context.strokeStyle = rim!;
-    context.lineWidth = wall.closed ? 1 : 3;
+    // An open line is a face of a wall: as wide as to meet the one behind it.
+    context.lineWidth = wall.closed ? 1 : Math.max(3, 0.35 * scale.pixelsPerMetre);
     context.stroke();
   }
   if (trail.length > 1) {

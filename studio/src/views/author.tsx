@@ -69,12 +69,13 @@ export function Author({ route }: { route: Route }) {
   useEffect(() => {
     let isOver = false;
     const begin = async () => {
-      const [{ createEditor }, schema] = await Promise.all([import("../editor.ts"), engine.schema("task")]);
+      const { createEditor } = await import("../editor.ts");
       const named = route.task && route.task !== "draft" ? (await engine.task(route.task)).text : null;
       if (isOver || !place.current) return;
-      context.current.schema = schema;
       editor.current = createEditor(place.current, text, () => context.current, setText);
       if (named !== null) editor.current.replace(named);
+      // The text can be read before it can be completed.
+      context.current.schema = await engine.schema("task");
     };
     begin().catch((reason: unknown) => setError(asError(reason)));
     return () => {

@@ -109,7 +109,7 @@ export function Order({ route }: { route: Route }) {
             <select value={by} onChange={(event) => go({ by: event.currentTarget.value })}>{measures.map((name) => <option key={name}>{name}</option>)}</select>
           </label>
           <label class="field">
-            Order
+            Method
             <select value={method} onChange={(event) => go({ method: event.currentTarget.value })}>{METHODS.map((name) => <option key={name}>{name}</option>)}</select>
           </label>
           <VariantPicker label="Start" variants={all} variant={start} pick={(to) => go({ start: to })} />

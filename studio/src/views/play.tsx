@@ -5,7 +5,7 @@ import type { EngineError } from "../engine.ts";
 import * as commands from "../commands.ts";
 import { useClock } from "../clock.ts";
 import { draft } from "../draft.ts";
-import { isAsking, useHeldKeys } from "../keys.ts";
+import { HELD, isAsking, useHeldKeys } from "../keys.ts";
 import { hrefOf, type Route, wholeNumber } from "../route.ts";
 import { Session } from "../session.ts";
 import { asError, engine, requestOf, trainedAgent, trainedTasks, useAnswer } from "../simulator.ts";
@@ -97,7 +97,7 @@ export function Play({ route }: { route: Route }) {
     if (code === "KeyR") again();
     else if (code === "KeyN") go({ index: index + 1 });
     else if (code === "KeyP" || code === "Escape") setState((last) => (last === "running" ? "paused" : "running"));
-    else setState((last) => (last === "waiting" || last === "paused" ? "running" : last));
+    else if (HELD.includes(code)) setState("running");
   });
   const you = seats[0]?.session;
   const isPaused = state === "paused" || (you?.ended ?? false);

@@ -1,6 +1,6 @@
 // An episode on a timeline: from a link, or from a log that was dropped onto the page, with its learning curve beside.
 
-import { useEffect, useMemo, useRef, useState } from "preact/hooks";
+import { useEffect, useLayoutEffect, useMemo, useRef, useState } from "preact/hooks";
 import type { DroppedFile, EngineError, Episode, Frame, Log, Step, WorldMap } from "../engine.ts";
 import * as commands from "../commands.ts";
 import { useClock } from "../clock.ts";
@@ -110,6 +110,7 @@ export function Replay({ route }: { route: Route }) {
   const [loop, setLoop] = useState<Loop | null>(null);
   const [isOver, setOver] = useState(false);
   const [isReading, setReading] = useState(false);
+  /** The moment that was asked for last; the state follows it. */
   const wanted = useRef(0);
 
   const show = async (opening: Promise<Played>) => {
@@ -121,6 +122,7 @@ export function Replay({ route }: { route: Route }) {
         void last?.episode.close().catch(() => undefined);
         return next;
       });
+      wanted.current = 0;
       setMoment(0);
       setLoop(null);
       setPlaying(false);
@@ -157,45 +159,57 @@ export function Replay({ route }: { route: Route }) {
     void show(engine.openLogged(number, VIEW).then((episode) => played(episode, `Episode ${number}`)));
   };
 
-  // The picture of the moment; while one is drawn, only the latest moment waits.
+  // One picture is drawn at a time, each of the moment that is wanted then.
+  const source = useRef<Episode | null>(null);
+  const isDrawing = useRef(false);
+  source.current = shown?.episode ?? null;
   useEffect(() => {
-    if (!shown) return setPicture(null);
-    wanted.current = moment;
-    const { episode } = shown;
     const draw = async () => {
-      await episode.seek(moment);
-      const [frame, map] = [await episode.frame("agent"), await episode.map()];
-      if (wanted.current === moment) setPicture({ frame, map });
+      let drawnMoment = -1;
+      let episode = source.current;
+      while (episode && (episode !== source.current || drawnMoment !== wanted.current)) {
+        episode = source.current;
+        drawnMoment = wanted.current;
+        if (!episode) break;
+        await episode.seek(drawnMoment);
+        setPicture({ frame: await episode.frame("agent"), map: await episode.map() });
+      }
     };
+    if (isDrawing.current) return;
+    isDrawing.current = true;
     draw().catch((reason: unknown) => {
       setError(asError(reason));
       setShown(null);
+    }).finally(() => {
+      isDrawing.current = false;
     });
-    return undefined;
   }, [shown, moment]);
 
   const last = shown ? shown.steps.length - 1 : 0;
-  const seek = (to: number) => setMoment(Math.min(Math.max(0, to), last));
+  const seek = (to: number) => {
+    wanted.current = Math.min(Math.max(0, to), last);
+    setMoment(wanted.current);
+  };
   useClock(isPlaying && shown !== null, 1 / (shown?.episode.actionSpace.step_seconds ?? 0.1), async () => {
     const next = following(wanted.current, last, loop);
     if (next === null) setPlaying(false);
-    else setMoment(next);
+    else seek(next);
   }, () => setPlaying(false));
 
-  useEffect(() => {
+  useLayoutEffect(() => {
     if (!shown) return undefined;
     const press = (event: KeyboardEvent) => {
       if (event.ctrlKey || event.metaKey || event.altKey) return;
       if (event.target instanceof Element && event.target.closest("select, textarea, input[type=text], input[type=number]")) return;
       const isButton = event.target instanceof Element && event.target.closest("button, a, summary") !== null;
       const stride = event.shiftKey ? 10 : 1;
-      if (event.code === "ArrowLeft") seek(moment - stride);
-      else if (event.code === "ArrowRight") seek(moment + stride);
+      if (event.code === "ArrowLeft") seek(wanted.current - stride);
+      else if (event.code === "ArrowRight") seek(wanted.current + stride);
       else if (event.code === "Home") seek(0);
       else if (event.code === "End") seek(last);
       else if (event.code === "Space" && !isButton) setPlaying(!isPlaying);
-      else if (event.code === "KeyI") setLoop(looped(loop, "from", moment, last));
-      else if (event.code === "KeyO") setLoop(looped(loop, "to", moment, last));
+      else if (event.code === "KeyI") setLoop(looped(loop, "from", wanted.current, last));
+      else if (event.code === "KeyO") setLoop(looped(loop, "to", wanted.current, last));
       else if (event.code === "KeyL") setLoop(null);
       else return;
       event.preventDefault();

@@ -1,0 +1,252 @@
+// Ten tasks that people come for, done by keyboard alone in headless Chromium.
+//
+// DRIFTWORLD_PAGE is the built page, DRIFTWORLD_COMMAND the command that writes a log to drop. With DRIFTWORLD_SHOTS, each task ends with
+// pictures of the page in that folder: on a desk in light and in dark, and on a phone.
+
+import assert from "node:assert/strict";
+import { execFile } from "node:child_process";
+import { mkdtemp, rm } from "node:fs/promises";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import { promisify } from "node:util";
+import { browserPath, launch, overflow, SCREENS, serve, shot } from "./browser.mjs";
+
+const { DRIFTWORLD_PAGE: folder, DRIFTWORLD_COMMAND: command } = process.env;
+const skip = (!folder && "DRIFTWORLD_PAGE names no built page") || (!browserPath() && "there is no Chromium");
+/** A busy machine draws its first world within this. */
+const PATIENCE_MS = 60_000;
+
+let server;
+let browser;
+before(async () => {
+  if (skip) return;
+  server = await serve(folder);
+  browser = await launch();
+});
+after(async () => {
+  await browser?.close();
+  server?.close();
+});
+
+/** A task: opens an address, does it, and looks at what is left: no fault, nothing that sticks out, and pictures of it. */
+function task(name, address, does) {
+  test(name, { skip, timeout: 5 * PATIENCE_MS }, async () => {
+    const page = await browser.page();
+    page.setDefaultTimeout(PATIENCE_MS);
+    await page.goto(server.address + address);
+    await does(page);
+    for (const [screen, { width, height, scheme }] of Object.entries(SCREENS)) {
+      await page.emulateMedia({ colorScheme: scheme, reducedMotion: "reduce" });
+      await page.setViewportSize({ width, height });
+      // A picture of the page as it is after it was laid out anew.
+      await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+      await shot(page, `${name.split(":")[0].replaceAll(" ", "-")}-${screen}`);
+      assert.deepEqual(await overflow(page), [], `${name}, ${screen}`);
+    }
+    assert.deepEqual(page.faults, []);
+    await page.context().close();
+  });
+}
+
+/** The name by which a screen reader knows what has the focus. */
+const focused = (page) => page.evaluate(() => {
+  const host = document.activeElement;
+  const element = host?.shadowRoot?.activeElement ?? host;
+  return (element?.getAttribute("aria-label") ?? element?.labels?.[0]?.firstChild?.textContent ?? element?.textContent ?? "").trim();
+});
+
+/** Presses Tab until something of this name has the focus. */
+async function tabTo(page, name) {
+  const matches = (found) => (typeof name === "string" ? found === name : name.test(found));
+  for (let presses = 0; presses < 250; presses += 1) {
+    if (matches(await focused(page))) return;
+    await page.keyboard.press("Tab");
+  }
+  assert.fail(`Tab never comes to ${name}`);
+}
+
+/** Chooses an entry of a list: its first letters select it. */
+async function choose(page, list, entry) {
+  await tabTo(page, list);
+  await page.keyboard.type(entry);
+}
+
+const text = (page, selector) => page.locator(selector).first().innerText();
+const until = (page, works, ...given) => page.waitForFunction(works, ...given, { polling: 100 });
+/** How many steps a seat has taken. */
+const stepsOf = async (page, seat) => Number(/step (\d+)/.exec(await text(page, `section.seat[aria-label="${seat}"] footer`))[1]);
+const untilSteps = (page, seat, least) => until(page, ([name, count]) => {
+  const found = /step (\d+)/.exec(document.querySelector(`section.seat[aria-label="${name}"] footer`)?.textContent ?? "");
+  return found !== null && Number(found[1]) >= count;
+}, [seat, least]);
+/** The pixels of a picture, as one number. */
+const pixels = (page, selector) => page.evaluate((wanted) => {
+  const canvas = document.querySelector(wanted);
+  const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+  return data.reduce((sum, byte) => (Math.imul(sum, 31) + byte) | 0, 7);
+}, selector);
+const walk = async (page, seat, least) => {
+  await page.keyboard.down("ArrowUp");
+  await untilSteps(page, seat, least);
+  await page.keyboard.up("ArrowUp");
+};
+
+task("01 gallery: find a task, and play it", "", async (page) => {
+  await page.waitForSelector(".gallery .card");
+  assert.match(await text(page, ".head p"), /^\d+ tasks with \d+ variants/);
+  await tabTo(page, "Search");
+  await page.keyboard.type("dead ends");
+  await until(page, () => document.querySelectorAll(".gallery .card").length < 5);
+  await page.keyboard.press("Control+A");
+  await page.keyboard.type("no such thing");
+  await page.waitForSelector(".empty");
+  await tabTo(page, "Show all");
+  await page.keyboard.press("Enter");
+  await tabTo(page, "Play find_objects");
+  await until(page, () => new Set(document.querySelector(".gallery canvas").getContext("2d").getImageData(0, 0, 99, 99).data).size > 9);
+});
+
+task("02 play: walk, and begin again", "#/play/find_objects?variant=blue", async (page) => {
+  await page.waitForSelector(".seat");
+  const before = await pixels(page, ".seat canvas");
+  assert.match(await focused(page), /^Your view/);
+  await walk(page, "You", 10);
+  assert.notEqual(await pixels(page, ".seat canvas"), before);
+  await page.keyboard.press("KeyR");
+  await until(page, () => / 0 ·/.test(document.querySelector(".seat footer")?.textContent ?? ""));
+  assert.equal(await pixels(page, ".seat canvas"), before, "the same world begins with the same picture");
+  await walk(page, "You", 5);
+});
+
+task("03 planner: it plays beside", "#/play/maze?variant=small", async (page) => {
+  await page.waitForSelector(".seat");
+  await tabTo(page, "Planner");
+  await page.keyboard.press("Enter");
+  await page.waitForSelector('.seat[aria-label="Planner"]');
+  await tabTo(page, "6 times the world's time");
+  await page.keyboard.press("Enter");
+  await tabTo(page, "Go");
+  await page.keyboard.press("Enter");
+  await page.waitForSelector('.seat[aria-label="Planner"] .tag.good', { timeout: 2 * PATIENCE_MS });
+});
+
+task("04 policy: where it fails", "#/play/obstacle_course?with=policy", async (page) => {
+  await page.waitForSelector('.seat[aria-label="Trained policy"]');
+  await walk(page, "Trained policy", 10);
+  await tabTo(page, "Show me where the policy fails");
+  await page.keyboard.press("Enter");
+  await until(page, () => /index=\d+/.test(location.hash) || /It succeeds in all/.test(document.body.textContent), undefined);
+});
+
+task("05 share: an episode is a link", "#/play/four_rooms?seed=3", async (page) => {
+  await page.waitForSelector(".seat");
+  await walk(page, "You", 12);
+  await tabTo(page, "Share as a link");
+  await page.keyboard.press("Enter");
+  await page.waitForSelector('input[aria-label="The link"]');
+  const [link, steps, last] = [await page.inputValue('input[aria-label="The link"]'), await stepsOf(page, "You"), await pixels(page, ".seat canvas")];
+  assert.ok(link.split("#")[1].length <= 2048);
+  await page.goto("about:blank");
+  await page.goto(link);
+  await page.waitForSelector(".timeline");
+  await page.keyboard.press("End");
+  await until(page, (count) => document.querySelector(".seat footer").textContent.includes(`step ${count} of ${count}`), steps);
+  await page.waitForTimeout(500);
+  assert.equal(await pixels(page, ".seat canvas"), last, "replayed to the bit");
+  await page.goto("about:blank");
+  await page.goto(`${link.slice(0, -5)}AAAAA`);
+  await page.waitForSelector(".note.bad");
+});
+
+task("06 author: a mistake at its place, undone, and a slider", "#/author", async (page) => {
+  await page.waitForSelector(".editor");
+  await choose(page, "New from", "a maze");
+  await page.waitForSelector(".note.good");
+  const before = await pixels(page, ".views canvas");
+  await tabTo(page, "Text of the task");
+  await page.keyboard.press("Control+Home");
+  await page.keyboard.press("ArrowDown");
+  await page.keyboard.press("End");
+  await page.keyboard.press("ArrowLeft");
+  await page.keyboard.press("Backspace");
+  await page.keyboard.type("99");
+  await page.waitForSelector(".problems button");
+  assert.match(await text(page, ".problems button"), /^2:\d+ /);
+  await shot(page, "06-author-mistake");
+  await page.keyboard.press("Control+Z");
+  await page.waitForSelector(".note.good");
+  await page.locator("#knob-light").focus();
+  await page.keyboard.press("Home");
+  await until(page, (old) => {
+    const canvas = document.querySelector(".views canvas");
+    const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+    return data.reduce((sum, byte) => (Math.imul(sum, 31) + byte) | 0, 7) !== old;
+  }, before);
+});
+
+task("07 letters: a wall is built on a map", "#/author", async (page) => {
+  await page.waitForSelector(".editor");
+  await choose(page, "New from", "a map");
+  await page.waitForSelector(".cells");
+  await tabTo(page, /^row 1, column 1/);
+  for (const key of ["ArrowDown", "ArrowRight", "ArrowRight", "#"]) await page.keyboard.press(key);
+  await page.waitForSelector('[aria-label="row 2, column 3: wall"]');
+  assert.match(await page.evaluate(() => localStorage.getItem("driftworld.draft")), /"#\.#\.\.#\.\.\.\.#"/);
+  await page.waitForSelector(".note.good");
+});
+
+task("08 compare: two variants under one set of actions", "#/compare/find_objects", async (page) => {
+  await page.waitForSelector(".seat");
+  await choose(page, "Right", "dusk");
+  await page.waitForSelector('.seat[aria-label="dusk"]');
+  await page.waitForSelector(".meter");
+  await page.locator(".seat .frame").first().focus();
+  await walk(page, "dusk", 6);
+  assert.equal(await stepsOf(page, "blue"), await stepsOf(page, "dusk"));
+  assert.match(await text(page, 'section[aria-label="Distance"]'), /1\.447 apart/);
+  await tabTo(page, "Test what differs in their worlds");
+  await page.keyboard.press("Enter");
+  await page.waitForSelector("ul.plain", { timeout: 3 * PATIENCE_MS });
+});
+
+task("09 order: walk along it", "#/order/find_objects", async (page) => {
+  await page.waitForSelector("svg.plot");
+  await choose(page, "Method", "outward");
+  await until(page, () => location.hash.includes("outward"));
+  await page.waitForSelector("svg.plot");
+  await tabTo(page, "Along the order");
+  await page.keyboard.press("ArrowRight");
+  await page.keyboard.press("ArrowRight");
+  await until(page, () => document.body.textContent.includes("3 of "));
+  await until(page, () => [...document.querySelectorAll(".sheet canvas")].every((canvas) => canvas.width === 240));
+});
+
+task("10 replay: a log on a timeline", "#/replay", async (page) => {
+  await page.waitForSelector(".empty");
+  await shot(page, "10-replay-empty");
+  if (!command) return;
+  const place = await mkdtemp(join(tmpdir(), "driftworld-log-"));
+  const run = (...words) => promisify(execFile)(command, words, { cwd: place });
+  try {
+    await run("curriculum", "find_objects#blue", "find_objects#red", "--learn", "8", "--eval-episodes", "2", "-o", "scenario.json");
+    await run("run", "scenario.json", "--agent", "random", "-o", "log", "--record");
+    await page.setInputFiles("input[type=file]", join(place, "log"));
+    await page.waitForSelector(".timeline");
+    await page.waitForSelector("svg.plot");
+    const moment = () => page.inputValue(".timeline input").then(Number);
+    await page.keyboard.press("ArrowRight");
+    await page.keyboard.press("Shift+ArrowRight");
+    await until(page, () => document.querySelector(".timeline input").value === "11");
+    await page.keyboard.press("KeyI");
+    for (let times = 0; times < 3; times += 1) await page.keyboard.press("ArrowRight");
+    await page.keyboard.press("KeyO");
+    await page.keyboard.press("Space");
+    await page.waitForTimeout(1500);
+    const now = await moment();
+    assert.ok(now >= 11 && now <= 14, `the loop of 11 to 14 is at ${now}`);
+    await page.keyboard.press("Space");
+  } finally {
+    await rm(place, { recursive: true, force: true });
+  }
+});
