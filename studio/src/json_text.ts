@@ -104,6 +104,15 @@ export function oneLine(value: Json): string {
   return members.length ? `{ ${members.join(", ")} }` : "{}";
 }
 
+/** Whether two values are the same, in whatever order their keys stand. */
+export function same(a: Json, b: Json): boolean {
+  if (a === null || b === null || typeof a !== "object" || typeof b !== "object") return a === b;
+  const [left, right] = [Object.entries(a), Object.entries(b)];
+  const other = b as { [key: string]: Json };
+  return Array.isArray(a) === Array.isArray(b) && left.length === right.length
+    && left.every(([key, value]) => key in other && same(value, other[key]!));
+}
+
 /** What puts a value at a path whose parent is there; null if that is not so. */
 export function change(text: string, path: Path, value: Json): Change | null {
   const root = spans(text);

@@ -5,7 +5,7 @@ import { readFile } from "node:fs/promises";
 import { test } from "node:test";
 import { load } from "./bundle.mjs";
 
-const { applied, change, cursorAt, oneLine, pathOf, removal, spanAt, spans } = await load("json_text.ts");
+const { applied, change, cursorAt, oneLine, pathOf, removal, same, spanAt, spans } = await load("json_text.ts");
 const { suggestions } = await load("schema.ts");
 const { pointGroups, textLayouts, withLetter } = await load("layouts.ts");
 const { TEMPLATES } = await load("templates.ts");
@@ -100,4 +100,9 @@ test("JSON on one line reads back", () => {
   const value = { a: [1, "x", { b: null }], c: {} };
   assert.equal(oneLine(value), '{ "a": [1, "x", { "b": null }], "c": {} }');
   assert.deepEqual(JSON.parse(oneLine(value)), value);
+});
+
+test("values are the same in whatever order their keys stand", () => {
+  assert.ok(same({ a: [1, { b: 2, c: null }] }, { a: [1, { c: null, b: 2 }] }));
+  for (const [a, b] of [[{ a: 1 }, { a: 1, b: 1 }], [[1, 2], [2, 1]], [{}, []], [null, {}], ["1", 1], [{ a: 1 }, { b: 1 }]]) assert.ok(!same(a, b));
 });

@@ -1,17 +1,11 @@
 // Sliders and pickers for the parameters of a task, from the ranges and choices that it declares.
 
-import type { Json, Parameter, Value, Variant } from "../engine.ts";
-import { oneLine } from "../json_text.ts";
+import type { Parameter, Value, Variant } from "../engine.ts";
+import { choiceOf, wordOf } from "./value.tsx";
 
 const ELEMENTS: Record<string, string> = {
   S: "state", A: "action", T: "transition", R: "reward", O: "observation", p: "initial state", phi: "emission",
 };
-
-/** What a value is called in a list: its name, a short form, or its first words. */
-export function wordOf(value: Json, name: string | null): string {
-  const text = name ?? (typeof value === "string" ? value : oneLine(value));
-  return text.length > 60 ? `${text.slice(0, 59)}…` : text;
-}
 
 /** A number as it is written by hand: no more digits than a step needs. */
 const rounded = (value: number, step: number): number => Number(value.toFixed(Math.max(0, Math.ceil(-Math.log10(step)))));
@@ -35,7 +29,7 @@ function Knob({ parameter, value, set }: { parameter: Parameter; value: Value; s
   const numbers = Array.isArray(value) && value.every((part) => typeof part === "number") ? (value as number[]) : null;
   const title = [description, affects.length ? `Affects ${affects.map((element) => ELEMENTS[element]).join(", ")}.` : ""].filter(Boolean).join(" ");
   const said = typeof value === "number" ? `${value}${unit ? ` ${unit}` : ""}` : numbers ? numbers.join(" × ") : "";
-  const chosen = choices?.findIndex((choice) => (choice.name !== null && choice.name === value) || oneLine(choice.value) === oneLine(value)) ?? -1;
+  const chosen = choiceOf(parameter, value);
   return (
     <div class="knob" title={title}>
       <div class="top"><label for={id}>{name}</label><output for={id}>{said}</output></div>
@@ -48,7 +42,7 @@ function Knob({ parameter, value, set }: { parameter: Parameter; value: Value; s
               if (choice) set(choice.name ?? choice.value);
             }}
           >
-            {chosen < 0 && <option value="-1">{wordOf(value, null)}</option>}
+            {chosen < 0 && <option value="-1">{wordOf(value)}</option>}
             {choices.map((choice, place) => <option key={place} value={String(place)}>{wordOf(choice.value, choice.name)}</option>)}
           </select>
         )
@@ -65,7 +59,7 @@ function Knob({ parameter, value, set }: { parameter: Parameter; value: Value; s
               ? <input id={id} type="checkbox" checked={value} onChange={(event) => set(event.currentTarget.checked)} />
               : typeof value === "number"
                 ? <input id={id} type="number" step={isWhole ? 1 : "any"} value={value} onChange={(event) => Number.isFinite(event.currentTarget.valueAsNumber) && set(event.currentTarget.valueAsNumber)} />
-                : <code id={id}>{wordOf(value, null)}</code>}
+                : <code id={id}>{wordOf(value)}</code>}
     </div>
   );
 }

@@ -1,6 +1,6 @@
 // Pictures of the simulator on canvases: what an agent sees, and the flat map of a world.
 
-import { useLayoutEffect, useRef, useState } from "preact/hooks";
+import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
 import type { Frame, WorldMap } from "../engine.ts";
 import type { Line } from "../difference.ts";
 import { scaleOf, toMetres, toPixels, whatIsAt } from "../map_view.ts";
@@ -107,6 +107,18 @@ function draw(canvas: HTMLCanvasElement, map: WorldMap, trail: readonly (readonl
   context.restore();
 }
 
+/** Whether the page is dark: canvases are drawn anew when that changes. */
+function useDark(): boolean {
+  const query = matchMedia("(prefers-color-scheme: dark)");
+  const [isDark, setDark] = useState(query.matches);
+  useEffect(() => {
+    const changed = () => setDark(query.matches);
+    query.addEventListener("change", changed);
+    return () => query.removeEventListener("change", changed);
+  }, []);
+  return isDark;
+}
+
 /** A map that says what lies under the pointer; `click` hears where it was clicked, in metres. */
 export function FlatMap({ map, trail = [], click }: {
   map: WorldMap | null;
@@ -115,9 +127,10 @@ export function FlatMap({ map, trail = [], click }: {
 }) {
   const canvas = useRef<HTMLCanvasElement>(null);
   const [under, setUnder] = useState("");
+  const isDark = useDark();
   useLayoutEffect(() => {
     if (canvas.current && map) draw(canvas.current, map, trail);
-  }, [map, trail]);
+  }, [map, trail, isDark]);
   const place = (event: MouseEvent): [number, number] => {
     const box = canvas.current!.getBoundingClientRect();
     const scale = scaleOf(map!, box.width);

@@ -186,7 +186,7 @@ export function Author({ route }: { route: Route }) {
                 {problems.slice(0, 20).map((problem, number) => (
                   <li key={number}>
                     <button type="button" onClick={() => showProblem(editor.current, text, problem)}>
-                      {problem.line > 0 && <b>{problem.line}:{problem.column} </b>}{problem.message}
+                      {problem.message}
                     </button>
                   </li>
                 ))}

@@ -13,8 +13,8 @@ import { asError, engine, requestOf, useAnswer } from "../simulator.ts";
 import { NumberPicker, TaskPicker, VariantPicker } from "../parts/choices.tsx";
 import { ErrorNote, Recipes } from "../parts/notes.tsx";
 import { FlatMap } from "../parts/pictures.tsx";
-import { oneLine } from "../json_text.ts";
-import { wordOf } from "../parts/knobs.tsx";
+import { same } from "../json_text.ts";
+import { ShownValue } from "../parts/value.tsx";
 import { Seat } from "../parts/seat.tsx";
 
 const NAMES = { S: "State", A: "Action", T: "Transition", R: "Reward", O: "Observation" } as const;
@@ -77,7 +77,7 @@ function differing(parameters: Parameter[], a: Variant | undefined, b: Variant |
   return parameters
     .filter(({ role }) => role === "variant")
     .map((parameter) => ({ parameter, values: [valueIn(a, parameter), valueIn(b, parameter)] as const }))
-    .filter(({ values: [left, right] }) => oneLine(left) !== oneLine(right));
+    .filter(({ values: [left, right] }) => !same(left, right));
 }
 
 export function Compare({ route }: { route: Route }) {
@@ -195,7 +195,7 @@ export function Compare({ route }: { route: Route }) {
               <tbody>
                 {rows.map(({ parameter, values: [left, right] }) => (
                   <tr key={parameter.name}>
-                    <td><code>{parameter.name}</code></td><td>{wordOf(left, null)}</td><td>{wordOf(right, null)}</td><td class="faint">{parameter.affects.join(" ")}</td>
+                    <td><code>{parameter.name}</code></td><td><ShownValue parameter={parameter} value={left} /></td><td><ShownValue parameter={parameter} value={right} /></td><td class="faint">{parameter.affects.join(" ")}</td>
                   </tr>
                 ))}
               </tbody>

@@ -55,10 +55,10 @@ function DistanceMap({ matrix, order, now, pick }: { matrix: Matrix; order: Foun
   return (
     <svg class="plot" viewBox={`0 0 ${width} ${height}`} role="img" aria-label={`Map of the distances of ${matrix.labels.length} variants`}>
       <polyline class="way" points={way.map((point) => point.join(",")).join(" ")} />
-      {[...place].map(([variant, [x, y]]) => (
+      {[...place].map(([variant, [x, y]], number) => (
         <g key={variant} onClick={() => pick(variant)}>
           <circle class={`dot ${variant === now ? "now" : ""}`} cx={x} cy={y} r={variant === now ? 7 : 5} />
-          <text x={x} y={y - 10} text-anchor="middle">{variant}</text>
+          <text x={x} y={number % 2 ? y + 20 : y - 10} text-anchor="middle">{variant}</text>
         </g>
       ))}
     </svg>

@@ -192,7 +192,7 @@ export function Play({ route }: { route: Route }) {
       {error && <ErrorNote error={error} again={again} />}
       {!seats.length && !error && <p class="loading">Drawing the world …</p>}
       {seats.length > 0 && (
-        <div class="stage">
+        <div class={`stage ${seats.length === 1 ? "solo" : ""}`}>
           {seats.map(({ name, session }, place) => (
             <Seat key={name} name={name} session={session} isYours={place === 0} below={place === 0 ? <Pad set={keys.set} /> : null}>
               {state !== "running" && <span class="tag">{state === "paused" ? "paused" : "press a key to begin"}</span>}

@@ -1,0 +1,43 @@
+// Values of parameters, for people: colours as swatches, the names of choices, long values cut short.
+
+import type { Parameter, Value } from "../engine.ts";
+import { oneLine, same } from "../json_text.ts";
+
+let brush: CanvasRenderingContext2D | null = null;
+
+/** A colour as `#rrggbb`: from a name that the browser knows, as documents know it, or from three numbers in 0..1. */
+export function hexOf(value: Value): string | null {
+  if (Array.isArray(value) && value.length === 3 && value.every((part) => typeof part === "number")) {
+    return `#${(value as number[]).map((part) => Math.round(Math.min(1, Math.max(0, part)) * 255).toString(16).padStart(2, "0")).join("")}`;
+  }
+  brush ??= document.createElement("canvas").getContext("2d");
+  if (typeof value !== "string" || !brush) return null;
+  brush.fillStyle = "#010203";
+  brush.fillStyle = value;
+  return brush.fillStyle === "#010203" ? null : brush.fillStyle;
+}
+
+/** The choice that a value is, by its number; -1 if it is none. */
+export function choiceOf({ choices, type }: Parameter, value: Value): number {
+  return choices?.findIndex((choice) => (choice.name !== null && choice.name === value) || same(choice.value, value)
+    || (type === "color" && hexOf(choice.value) !== null && hexOf(choice.value) === hexOf(value))) ?? -1;
+}
+
+/** What a value is called in a list: its name, a short form, or its first characters. */
+export function wordOf(value: Value, name: string | null = null): string {
+  const text = name ?? (typeof value === "string" ? value : oneLine(value));
+  return text.length > 60 ? `${text.slice(0, 59)}…` : text;
+}
+
+/** A value in a table. */
+export function ShownValue({ parameter, value }: { parameter: Parameter; value: Value }) {
+  const choice = parameter.choices?.[choiceOf(parameter, value)];
+  const color = parameter.type === "color" ? hexOf(value) : null;
+  const unit = typeof value === "number" && parameter.unit ? ` ${parameter.unit}` : "";
+  return (
+    <span class="value">
+      {color && <span class="swatch" aria-hidden="true" style={{ background: color }} />}
+      {color ?? (choice ? wordOf(choice.value, choice.name) : wordOf(value))}{unit}
+    </span>
+  );
+}
