@@ -1,7 +1,7 @@
 // A task as text, with its parameters as sliders, a world of it drawn as it is typed, and its map to click on.
 
 import { useEffect, useRef, useState } from "preact/hooks";
-import type { EngineError, Frame, Json, Parameter, Problem, Task, Value, Variant, WorldMap, WorldRequest } from "../engine.ts";
+import { EngineError, type Frame, type Json, type Parameter, type Problem, type Task, type Value, type Variant, type WorldMap, type WorldRequest } from "../engine.ts";
 import * as commands from "../commands.ts";
 import { draft } from "../draft.ts";
 import type { Editor } from "../editor.ts";
@@ -42,6 +42,16 @@ async function drawn(text: string, kind: string, variant: string, seed: number, 
   }
 }
 
+/** The text that an address asks for: of a built-in task, or of a file that `driftworld studio` put beside the page; null is the draft. */
+async function begunWith({ task, options: { file } }: Route): Promise<string | null> {
+  if (file && /^[\w-]+\.json$/.test(file)) {
+    const reply = await fetch(file);
+    if (!reply.ok) throw new EngineError("page/file", `${file}: found nothing of this name beside the page; open the task with \`driftworld studio\``);
+    return reply.text();
+  }
+  return task && task !== "draft" ? (await engine.task(task)).text : null;
+}
+
 function save(): void {
   const link = document.createElement("a");
   link.href = URL.createObjectURL(new Blob([draft.text], { type: "application/json" }));
@@ -70,7 +80,7 @@ export function Author({ route }: { route: Route }) {
     let isOver = false;
     const begin = async () => {
       const { createEditor } = await import("../editor.ts");
-      const named = route.task && route.task !== "draft" ? (await engine.task(route.task)).text : null;
+      const named = await begunWith(route);
       if (isOver || !place.current) return;
       editor.current = createEditor(place.current, text, () => context.current, setText);
       if (named !== null) editor.current.replace(named);
@@ -83,7 +93,7 @@ export function Author({ route }: { route: Route }) {
       editor.current?.destroy();
       editor.current = null;
     };
-  }, [route.task]);
+  }, [route.task, route.options["file"]]);
 
   useEffect(() => {
     draft.keep(text);
