@@ -33,7 +33,7 @@ const THEME = EditorView.theme({
   ".cm-scroller": { fontFamily: "var(--mono)", lineHeight: "1.55" },
   ".cm-content": { caretColor: "var(--ink)", padding: "8px 0" },
   ".cm-cursor": { borderLeftColor: "var(--ink)" },
-  ".cm-gutters": { backgroundColor: "var(--card)", color: "var(--strong)", border: "none" },
+  ".cm-gutters": { backgroundColor: "var(--card)", color: "var(--faint)", border: "none" },
   ".cm-activeLine, .cm-activeLineGutter": { backgroundColor: "var(--soft)" },
   "&.cm-focused > .cm-scroller > .cm-selectionLayer .cm-selectionBackground, .cm-selectionBackground": { backgroundColor: "var(--link-soft)" },
   ".cm-tooltip": { backgroundColor: "var(--card)", color: "var(--ink)", border: "1px solid var(--rim)", borderRadius: "8px", overflow: "hidden" },
@@ -70,7 +70,7 @@ export function createEditor(place: HTMLElement, text: string, context: () => { 
         lineNumbers(), foldGutter(), lintGutter(), history(), drawSelection(), highlightActiveLine(), bracketMatching(), closeBrackets(),
         indentOnInput(), indentUnit.of("  "), json(), syntaxHighlighting(COLORS), THEME, EditorView.lineWrapping,
         autocompletion({ override: [complete], icons: false }),
-        EditorView.contentAttributes.of({ "aria-label": "Text of the task" }),
+        EditorView.contentAttributes.of({ "aria-label": "Text of the task", tabindex: "0" }),
         keymap.of([...closeBracketsKeymap, ...completionKeymap, ...defaultKeymap, ...historyKeymap, ...foldKeymap]),
         EditorView.updateListener.of((update) => {
           if (update.docChanged) changed(update.state.doc.toString());

@@ -8,6 +8,7 @@ import { load } from "./bundle.mjs";
 const { applied, change, cursorAt, oneLine, pathOf, removal, same, spanAt, spans } = await load("json_text.ts");
 const { suggestions } = await load("schema.ts");
 const { pointGroups, textLayouts, withLetter } = await load("layouts.ts");
+const { written } = await load("written.ts");
 const { TEMPLATES } = await load("templates.ts");
 
 const TEXT = `{
@@ -105,4 +106,16 @@ test("JSON on one line reads back", () => {
 test("values are the same in whatever order their keys stand", () => {
   assert.ok(same({ a: [1, { b: 2, c: null }] }, { a: [1, { c: null, b: 2 }] }));
   for (const [a, b] of [[{ a: 1 }, { a: 1, b: 1 }], [[1, 2], [2, 1]], [{}, []], [null, {}], ["1", 1], [{ a: 1 }, { b: 1 }]]) assert.ok(!same(a, b));
+});
+
+test("choices of parameters are as they are written", () => {
+  const text = '{"parameters": {"c": {"choices": ["gold"]}, "l": {"choices": {"big": {"maze": {}}}}, "n": {}}}';
+  const full = [1, 0.84, 0];
+  const parameters = [
+    { name: "c", choices: [{ value: full, name: null }] }, { name: "l", choices: [{ value: { maze: { braid: 0 } }, name: "big" }] }, { name: "n", choices: null },
+  ];
+  const [color, layout, number] = written({ text, parameters });
+  assert.deepEqual(color.choices, [{ value: "gold", full, name: null }]);
+  assert.deepEqual(layout.choices, [{ value: { maze: {} }, full: { maze: { braid: 0 } }, name: "big" }]);
+  assert.equal(number.choices, null);
 });

@@ -32,7 +32,7 @@ export function Cells({ layout, put }: { layout: TextLayout; put: (row: number, 
         ))}
       </div>
       <div
-        class="cells" role="grid" aria-label="Cells of the map: arrow keys move, a letter or Enter puts"
+        class="cells" role="group" aria-label="Cells of the map: arrow keys move, a letter or Enter puts"
         style={{ gridTemplateColumns: `repeat(${columns}, minmax(0, 1fr))`, maxWidth: `${columns * 1.75}rem` }}
       >
         {rows.flatMap((row, r) => row.map((sign, c) => (

@@ -23,18 +23,19 @@ export function TaskPicker({ task, pick }: { task: string; pick: (task: string) 
   );
 }
 
-/** A variant of a task; empty is that of all defaults. */
-export function VariantPicker({ variants, variant, pick, label = "Variant" }: {
+/** A variant of a task; empty is that of all defaults, where there is a choice of it. */
+export function VariantPicker({ variants, variant, pick, label = "Variant", isNamed = false }: {
   variants: string[];
   variant: string;
   pick: (variant: string) => void;
   label?: string;
+  isNamed?: boolean;
 }) {
   return (
     <label class="field">
       {label}
       <select value={variant} onChange={(event) => pick(event.currentTarget.value)}>
-        <option value="">defaults</option>
+        {!isNamed && <option value="">defaults</option>}
         {variants.map((name) => <option key={name}>{name}</option>)}
       </select>
     </label>

@@ -1,6 +1,7 @@
 // Sliders and pickers for the parameters of a task, from the ranges and choices that it declares.
 
-import type { Parameter, Value, Variant } from "../engine.ts";
+import type { Value, Variant } from "../engine.ts";
+import type { WrittenParameter } from "../written.ts";
 import { choiceOf, wordOf } from "./value.tsx";
 
 const ELEMENTS: Record<string, string> = {
@@ -22,7 +23,7 @@ function Slider({ id, low, high, isWhole, value, set }: {
   );
 }
 
-function Knob({ parameter, value, set }: { parameter: Parameter; value: Value; set: (value: Value) => void }) {
+function Knob({ parameter, value, set }: { parameter: WrittenParameter; value: Value; set: (value: Value) => void }) {
   const { name, range, choices, type, unit, description, affects } = parameter;
   const id = `knob-${name}`;
   const isWhole = type === "integer";
@@ -66,9 +67,9 @@ function Knob({ parameter, value, set }: { parameter: Parameter; value: Value; s
 
 /** All parameters that can be set: those of the role `variant` in the variant that is shown, and fixed numbers. */
 export function Knobs({ parameters, variant, set }: {
-  parameters: Parameter[];
+  parameters: WrittenParameter[];
   variant: Variant | null;
-  set: (parameter: Parameter, value: Value) => void;
+  set: (parameter: WrittenParameter, value: Value) => void;
 }) {
   const shown = parameters.filter(({ role, value }) => role === "variant" || (role === "fixed" && ["number", "boolean"].includes(typeof value)));
   if (!shown.length) return <p class="faint small">Nothing varies in this task. A parameter of the role <code>variant</code> gets a slider or a list here.</p>;

@@ -25,7 +25,7 @@ export function Picture({ frame, label, lines }: { frame: Frame | null; label: s
       context.stroke();
     }
   }, [frame, lines]);
-  return <canvas ref={canvas} width={320} height={240} role="img" aria-label={label} />;
+  return <canvas ref={canvas} width={320} height={240} {...(label ? { role: "img", "aria-label": label } : { "aria-hidden": true })} />;
 }
 
 const css = ([red, green, blue]: readonly [number, number, number], alpha = 1) =>

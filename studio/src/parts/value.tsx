@@ -1,7 +1,8 @@
 // Values of parameters, for people: colours as swatches, the names of choices, long values cut short.
 
-import type { Parameter, Value } from "../engine.ts";
+import type { Value } from "../engine.ts";
 import { oneLine, same } from "../json_text.ts";
+import type { WrittenParameter } from "../written.ts";
 
 let brush: CanvasRenderingContext2D | null = null;
 
@@ -18,9 +19,8 @@ export function hexOf(value: Value): string | null {
 }
 
 /** The choice that a value is, by its number; -1 if it is none. */
-export function choiceOf({ choices, type }: Parameter, value: Value): number {
-  return choices?.findIndex((choice) => (choice.name !== null && choice.name === value) || same(choice.value, value)
-    || (type === "color" && hexOf(choice.value) !== null && hexOf(choice.value) === hexOf(value))) ?? -1;
+export function choiceOf({ choices }: WrittenParameter, value: Value): number {
+  return choices?.findIndex(({ name, value: short, full }) => (name !== null && name === value) || same(short, value) || same(full, value)) ?? -1;
 }
 
 /** What a value is called in a list: its name, a short form, or its first characters. */
@@ -30,14 +30,14 @@ export function wordOf(value: Value, name: string | null = null): string {
 }
 
 /** A value in a table. */
-export function ShownValue({ parameter, value }: { parameter: Parameter; value: Value }) {
+export function ShownValue({ parameter, value }: { parameter: WrittenParameter; value: Value }) {
   const choice = parameter.choices?.[choiceOf(parameter, value)];
   const color = parameter.type === "color" ? hexOf(value) : null;
   const unit = typeof value === "number" && parameter.unit ? ` ${parameter.unit}` : "";
   return (
     <span class="value">
       {color && <span class="swatch" aria-hidden="true" style={{ background: color }} />}
-      {color ?? (choice ? wordOf(choice.value, choice.name) : wordOf(value))}{unit}
+      {choice ? wordOf(choice.value, choice.name) : (color ?? wordOf(value))}{unit}
     </span>
   );
 }

@@ -1,7 +1,7 @@
 // A task as text, with its parameters as sliders, a world of it drawn as it is typed, and its map to click on.
 
 import { useEffect, useRef, useState } from "preact/hooks";
-import { EngineError, type Frame, type Json, type Parameter, type Problem, type Task, type Value, type Variant, type WorldMap, type WorldRequest } from "../engine.ts";
+import { EngineError, type Frame, type Json, type Problem, type Task, type Value, type Variant, type WorldMap, type WorldRequest } from "../engine.ts";
 import * as commands from "../commands.ts";
 import { draft } from "../draft.ts";
 import type { Editor } from "../editor.ts";
@@ -10,6 +10,7 @@ import { pointGroups, textLayouts, withLetter } from "../layouts.ts";
 import { hrefOf, type Route } from "../route.ts";
 import { asError, engine } from "../simulator.ts";
 import { TEMPLATES } from "../templates.ts";
+import { written, type WrittenParameter } from "../written.ts";
 import { Cells } from "../parts/cells.tsx";
 import { NumberPicker, VariantPicker } from "../parts/choices.tsx";
 import { Knobs } from "../parts/knobs.tsx";
@@ -25,6 +26,7 @@ const NEAR = 1.5;
 interface Drawn {
   document: Json;
   task: Task | null;
+  parameters: WrittenParameter[];
   frame: Frame;
   map: WorldMap;
 }
@@ -36,7 +38,7 @@ async function drawn(text: string, kind: string, variant: string, seed: number, 
   const request: WorldRequest = task ? { task: text, ...(known ? { variant } : {}), seed, index } : { world: text };
   const episode = await engine.open(request, { width: 320, height: 240 });
   try {
-    return { document: JSON.parse(text) as Json, task, frame: await episode.frame("agent"), map: await episode.map() };
+    return { document: JSON.parse(text) as Json, task, parameters: task ? written({ ...task, text }) : [], frame: await episode.frame("agent"), map: await episode.map() };
   } finally {
     void episode.close().catch(() => undefined);
   }
@@ -122,7 +124,7 @@ export function Author({ route }: { route: Route }) {
     if (found) editor.current?.change(found);
     return found !== null;
   };
-  const setKnob = (parameter: Parameter, value: Value) => {
+  const setKnob = (parameter: WrittenParameter, value: Value) => {
     const path: Path = parameter.role === "fixed"
       ? ["parameters", parameter.name, "value"]
       : variant ? ["variants", variant, parameter.name] : ["parameters", parameter.name, "default"];
@@ -243,7 +245,7 @@ export function Author({ route }: { route: Route }) {
           )}
           <section class="card pad stack" aria-label="Parameters">
             <h2>{current ? `Parameters of ${current.name}` : "Parameters"}</h2>
-            <Knobs parameters={shown?.task?.parameters ?? []} variant={current} set={setKnob} />
+            <Knobs parameters={shown?.parameters ?? []} variant={current} set={setKnob} />
             <p class="small faint" role="status">{said}</p>
           </section>
         </div>

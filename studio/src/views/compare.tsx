@@ -1,7 +1,7 @@
 // Two variants of a task side by side, under one seed and one set of actions; and how far apart they are, element by element.
 
 import { useEffect, useMemo, useState } from "preact/hooks";
-import type { Distance, EngineError, Parameter, Variant } from "../engine.ts";
+import type { Distance, EngineError, Task, Variant } from "../engine.ts";
 import * as commands from "../commands.ts";
 import { useClock } from "../clock.ts";
 import { outlines } from "../difference.ts";
@@ -14,6 +14,7 @@ import { NumberPicker, TaskPicker, VariantPicker } from "../parts/choices.tsx";
 import { ErrorNote, Recipes } from "../parts/notes.tsx";
 import { FlatMap } from "../parts/pictures.tsx";
 import { same } from "../json_text.ts";
+import { written, type WrittenParameter } from "../written.ts";
 import { ShownValue } from "../parts/value.tsx";
 import { Seat } from "../parts/seat.tsx";
 
@@ -72,9 +73,9 @@ function Elements({ distance }: { distance: Distance }) {
 }
 
 /** The parameters in which two variants differ, with both values. */
-function differing(parameters: Parameter[], a: Variant | undefined, b: Variant | undefined) {
-  const valueIn = (variant: Variant | undefined, parameter: Parameter) => variant?.values[parameter.name] ?? parameter.value;
-  return parameters
+function differing(task: Task, a: Variant | undefined, b: Variant | undefined) {
+  const valueIn = (variant: Variant | undefined, parameter: WrittenParameter) => variant?.values[parameter.name] ?? parameter.value;
+  return written(task)
     .filter(({ role }) => role === "variant")
     .map((parameter) => ({ parameter, values: [valueIn(a, parameter), valueIn(b, parameter)] as const }))
     .filter(({ values: [left, right] }) => !same(left, right));
@@ -153,7 +154,7 @@ export function Compare({ route }: { route: Route }) {
     isMeasured === key ? () => engine.elements(task === "draft" ? draft.text : task, a, b, { worlds: commands.ELEMENT_WORLDS }) : null, [isMeasured, key],
   );
   const file = task === "draft" ? draft.file : task;
-  const rows = differing(about.value?.parameters ?? [], variants.find(({ name }) => name === a), variants.find(({ name }) => name === b));
+  const rows = about.value ? differing(about.value, variants.find(({ name }) => name === a), variants.find(({ name }) => name === b)) : [];
   return (
     <>
       <div class="head">
@@ -163,8 +164,8 @@ export function Compare({ route }: { route: Route }) {
         </div>
         <div class="row end">
           <TaskPicker task={task} pick={(to) => go({}, to)} />
-          <VariantPicker label="Left" variants={names} variant={a} pick={(to) => go({ a: to })} />
-          <VariantPicker label="Right" variants={names} variant={b} pick={(to) => go({ b: to })} />
+          <VariantPicker isNamed label="Left" variants={names} variant={a} pick={(to) => go({ a: to })} />
+          <VariantPicker isNamed label="Right" variants={names} variant={b} pick={(to) => go({ b: to })} />
           <NumberPicker label="Seed" value={seed} pick={(to) => go({ seed: to })} />
           <NumberPicker label="World" value={index} pick={(to) => go({ index: to })} />
         </div>

@@ -10,6 +10,8 @@ import { Picture } from "../parts/pictures.tsx";
 import { ErrorNote } from "../parts/notes.tsx";
 
 const SIZE = { width: 280, height: 210 };
+/** Steps of the planner before a card's picture is taken: many worlds begin in front of a wall. */
+const GLANCE = 12;
 
 /** The picture of a card: drawn once it comes into view, and alive while `isLive`. */
 function Shot({ card, isLive }: { card: TaskCard; isLive: boolean }) {
@@ -25,6 +27,10 @@ function Shot({ card, isLive }: { card: TaskCard; isLive: boolean }) {
       watch.disconnect();
       engine.open(request, SIZE)
         .then(async (episode) => {
+          for (let step = 0; step < GLANCE; step += 1) {
+            const { terminated, truncated } = await episode.act("planner");
+            if (terminated || truncated) break;
+          }
           setFrame(await episode.frame("agent"));
           await episode.close();
         })

@@ -112,7 +112,7 @@ export function Order({ route }: { route: Route }) {
             Method
             <select value={method} onChange={(event) => go({ method: event.currentTarget.value })}>{METHODS.map((name) => <option key={name}>{name}</option>)}</select>
           </label>
-          <VariantPicker label="Start" variants={all} variant={start} pick={(to) => go({ start: to })} />
+          <VariantPicker isNamed label="Start" variants={all} variant={start} pick={(to) => go({ start: to })} />
           <NumberPicker label="Seed" value={seed} pick={(to) => go({ seed: to })} />
         </div>
       </div>

@@ -1,0 +1,26 @@
+// Parameters as their author wrote them: `gold`, where the simulator has three numbers; a maze without its defaults.
+
+import type { Json, Parameter, Task, Value } from "./engine.ts";
+
+/** A choice as it is written, and in full, as variants have it. */
+export interface WrittenChoice {
+  value: Value;
+  full: Value;
+  name: string | null;
+}
+
+/** A parameter whose choices are as they are written. */
+export type WrittenParameter = Omit<Parameter, "choices"> & { choices: WrittenChoice[] | null };
+
+/** The parameters of a task, with the choices that stand in its text. */
+export function written({ text, parameters }: Pick<Task, "text" | "parameters">): WrittenParameter[] {
+  const document = JSON.parse(text) as { parameters?: Record<string, { choices?: Json }> };
+  return parameters.map((parameter) => {
+    const choices = document.parameters?.[parameter.name]?.choices;
+    const values = choices && typeof choices === "object" ? Object.values(choices as { [key: string]: Json }) : [];
+    return {
+      ...parameter,
+      choices: parameter.choices?.map(({ value, name }, at) => ({ value: values[at] ?? value, full: value, name })) ?? null,
+    };
+  });
+}
