@@ -82,7 +82,8 @@ export const sheet = (task: string, variants: string[], seed: number): Recipe =>
 
 export const order = (task: string, variants: string[], by: string, method: string, start: string): Recipe => ({
   command: shell("order", ...variants.map((variant) => name({ task, variant })), "--by", by, "--order", method, "--start", start, "--plot", "order.png"),
-  python: `import driftworld\n\nvariants = [${variants.map((variant) => pythonText(name({ task, variant }))).join(", ")}]\norder = driftworld.order(driftworld.distance_matrix(variants, by=${
+  python: `import driftworld\n\nvariants = [${
+    variants.map((variant) => pythonText(name({ task, variant }))).join(", ")}]\norder = driftworld.order(driftworld.distance_matrix(variants, by=${
     pythonText(by)}), ${pythonText(method)}, start=${pythonText(name({ task, variant: start }))})\nprint(order)\n`,
 });
 
@@ -90,6 +91,9 @@ export const replayLog = (log: string, episode: number): Recipe => ({
   command: shell("replay", log, "--episode", episode, "-o", "episode.gif"),
   python: `import driftworld\n\ndriftworld.Recording.read(${pythonText(log)}, ${episode}).save("episode.gif")\n`,
 });
+
+/** The file that a recording is saved as. */
+export const RECORDING = "episode.jsonl";
 
 /** Equal actions that follow each other, counted. */
 export function runs(actions: Action[]): { action: Action; times: number }[] {
@@ -102,6 +106,8 @@ export function runs(actions: Action[]): { action: Action; times: number }[] {
   return found;
 }
 
+const STEP = "        observation, reward, terminated, truncated, info = env.step(action)\n        total += reward\n";
+
 /** An episode action by action: `console` reads it from a pipe, Python steps through it. */
 export function episode(subject: Subject, space: Pick<ActionSpace, "kind">, actions: Action[]): Recipe {
   const counted = runs(actions);
@@ -111,6 +117,6 @@ export function episode(subject: Subject, space: Pick<ActionSpace, "kind">, acti
     ? `printf '${lines.join("\\n")}\\n' | ${shell("console", name(subject), ...where(subject))}`
     : shell("console", name(subject), ...where(subject));
   const python = `${environment(subject, space.kind === "continuous" ? "continuous" : null)}total = 0.0\nfor action, times in [\n${
-    rows.join("")}]:\n    for _ in range(times):\n        observation, reward, terminated, truncated, info = env.step(action)\n        total += reward\nprint(total)\n`;
+    rows.join("")}]:\n    for _ in range(times):\n${STEP}print(total)\n`;
   return { command, python };
 }

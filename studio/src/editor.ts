@@ -89,7 +89,8 @@ export function createEditor(place: HTMLElement, text: string, context: () => { 
     change: (changes) => view.dispatch({ changes, userEvent: "input.control" }),
     show: (from, to) => {
       const end = view.state.doc.length;
-      view.dispatch({ selection: { anchor: Math.min(from, end), head: Math.min(to, end) }, effects: EditorView.scrollIntoView(Math.min(from, end), { y: "center" }) });
+      const [anchor, head] = [Math.min(from, end), Math.min(to, end)];
+      view.dispatch({ selection: { anchor, head }, effects: EditorView.scrollIntoView(anchor, { y: "center" }) });
       view.focus();
     },
     mark: (problems) => {

@@ -10,7 +10,8 @@ async function readAll(files: { path: string; file: File }[]): Promise<DroppedFi
   const bytes = files.reduce((sum, { file }) => sum + file.size, 0);
   if (!files.length) throw new EngineError("page/no-files", "nothing was dropped that can be read: drop the folder of a log");
   if (files.length > MAX_FILES || bytes > MAX_BYTES) {
-    throw new EngineError("page/too-much", `the folder has ${files.length} files of ${Math.ceil(bytes / 1e6)} MB; at most ${MAX_FILES} files of 268 MB are read: drop one log`);
+    const found = `found ${files.length} files of ${Math.ceil(bytes / 1e6)} MB`;
+    throw new EngineError("page/too-much", `folder: ${found}, expected at most ${MAX_FILES} files of 268 MB; drop one log`);
   }
   return Promise.all(files.map(async ({ path, file }) => ({ path, bytes: new Uint8Array(await file.arrayBuffer()) })));
 }

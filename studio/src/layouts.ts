@@ -67,7 +67,8 @@ export function pointGroups(document: Json): PointGroup[] {
   return (Array.isArray(groups) ? groups : []).flatMap((group, index) => {
     const { name, count, placement } = (group ?? {}) as { [key: string]: Json };
     const points = ((placement as { [key: string]: Json } | undefined)?.["points"] as { [key: string]: Json } | undefined)?.["values"];
-    const isList = Array.isArray(points) && points.every((point) => Array.isArray(point) && point.length === 2 && point.every((part) => typeof part === "number"));
+    const isPoint = (point: Json) => Array.isArray(point) && point.length === 2 && point.every((part) => typeof part === "number");
+    const isList = Array.isArray(points) && points.every(isPoint);
     if (!isList) return [];
     return [{
       name: typeof name === "string" ? name : `group ${index}`,

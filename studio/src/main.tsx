@@ -74,7 +74,10 @@ function App() {
           <a class="brand" href={hrefOf("gallery")}><img src="icon.svg" alt="" />Driftworld</a>
           <nav aria-label="Views">
             {VIEWS.map((view) => (
-              <a key={view} href={hrefOf(view, view === "gallery" || view === "replay" ? "" : route.task)} {...(view === route.view ? { "aria-current": "page" as const } : {})}>
+              <a
+                key={view} href={hrefOf(view, view === "gallery" || view === "replay" ? "" : route.task)}
+                {...(view === route.view ? { "aria-current": "page" as const } : {})}
+              >
                 {TITLES[view]}
               </a>
             ))}

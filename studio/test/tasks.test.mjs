@@ -95,6 +95,15 @@ async function untilPixels(page, selector, wanted, isSame) {
     await page.waitForTimeout(100);
   }
 }
+/** Does something in a folder that is gone afterwards. */
+async function inFolder(does) {
+  const place = await mkdtemp(join(tmpdir(), "driftworld-page-"));
+  try {
+    await does(place);
+  } finally {
+    await rm(place, { recursive: true, force: true });
+  }
+}
 const walk = async (page, seat, least) => {
   await page.keyboard.down("ArrowUp");
   await untilSteps(page, seat, least);
@@ -160,6 +169,15 @@ task("05 share: an episode is a link", "#/play/four_rooms?seed=3", async (page) 
   await page.waitForSelector('input[aria-label="The link"]');
   const [link, steps, last] = [await page.inputValue('input[aria-label="The link"]'), await stepsOf(page, "You"), await pixels(page, ".seat canvas")];
   assert.ok(link.split("#")[1].length <= 2048);
+  if (command) {
+    await tabTo(page, "Save");
+    const [saved] = await Promise.all([page.waitForEvent("download"), page.keyboard.press("Enter")]);
+    await inFolder(async (place) => {
+      await saved.saveAs(join(place, saved.suggestedFilename()));
+      const { stdout } = await promisify(execFile)(command, ["replay", "episode.jsonl"], { cwd: place });
+      assert.match(stdout, new RegExp(`${steps} steps .*as recorded`), "the command replays what the page recorded");
+    });
+  }
   await page.goto("about:blank");
   await page.goto(link);
   await page.waitForSelector(".timeline");
@@ -234,9 +252,8 @@ task("10 replay: a log on a timeline", "#/replay", async (page) => {
   await page.waitForSelector(".empty");
   await shot(page, "10-replay-empty");
   if (!command) return;
-  const place = await mkdtemp(join(tmpdir(), "driftworld-log-"));
-  const run = (...words) => promisify(execFile)(command, words, { cwd: place });
-  try {
+  await inFolder(async (place) => {
+    const run = (...words) => promisify(execFile)(command, words, { cwd: place });
     await run("curriculum", "find_objects#blue", "find_objects#red", "--learn", "8", "--eval-episodes", "2", "-o", "scenario.json");
     await run("run", "scenario.json", "--agent", "random", "-o", "log", "--record");
     await page.setInputFiles("input[type=file]", join(place, "log"));
@@ -254,7 +271,5 @@ task("10 replay: a log on a timeline", "#/replay", async (page) => {
     const now = await moment();
     assert.ok(now >= 11 && now <= 14, `the loop of 11 to 14 is at ${now}`);
     await page.keyboard.press("Space");
-  } finally {
-    await rm(place, { recursive: true, force: true });
-  }
+  });
 });

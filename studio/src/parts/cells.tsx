@@ -37,7 +37,8 @@ export function Cells({ layout, put }: { layout: TextLayout; put: (row: number, 
       >
         {rows.flatMap((row, r) => row.map((sign, c) => (
           <button
-            key={`${r} ${c}`} type="button" data-cell={`${r} ${c}`} class={meaning(sign) === "wall" ? "wall" : ""} tabIndex={place[0] === r && place[1] === c ? 0 : -1}
+            key={`${r} ${c}`} type="button" data-cell={`${r} ${c}`}
+            class={meaning(sign) === "wall" ? "wall" : ""} tabIndex={place[0] === r && place[1] === c ? 0 : -1}
             aria-label={`row ${r + 1}, column ${c + 1}: ${meaning(sign)}`}
             onClick={() => { setPlace([r, c]); put(r, c, letter); }}
             onPointerEnter={(event) => event.buttons === 1 && event.pointerType === "mouse" && sign !== letter && put(r, c, letter)}

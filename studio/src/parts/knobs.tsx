@@ -52,14 +52,20 @@ function Knob({ parameter, value, set }: { parameter: WrittenParameter; value: V
           : range && numbers
             ? numbers.map((part, place) => (
               <Slider
-                key={place} id={place ? `${id}-${place}` : id} low={range[0]} high={range[1]} isWhole={numbers.every(Number.isInteger) && range.every(Number.isInteger)}
+                key={place} id={place ? `${id}-${place}` : id} low={range[0]} high={range[1]}
+                isWhole={numbers.every(Number.isInteger) && range.every(Number.isInteger)}
                 value={part} set={(next) => set(numbers.map((other, index) => (index === place ? next : other)))}
               />
             ))
             : typeof value === "boolean"
               ? <input id={id} type="checkbox" checked={value} onChange={(event) => set(event.currentTarget.checked)} />
               : typeof value === "number"
-                ? <input id={id} type="number" step={isWhole ? 1 : "any"} value={value} onChange={(event) => Number.isFinite(event.currentTarget.valueAsNumber) && set(event.currentTarget.valueAsNumber)} />
+                ? (
+                  <input
+                    id={id} type="number" step={isWhole ? 1 : "any"} value={value}
+                    onChange={({ currentTarget: { valueAsNumber } }) => Number.isFinite(valueAsNumber) && set(valueAsNumber)}
+                  />
+                )
                 : <code id={id}>{wordOf(value)}</code>}
     </div>
   );

@@ -26,6 +26,15 @@ export async function copyText(text: string): Promise<boolean> {
   }
 }
 
+/** Saves a text as a file. */
+export function saveText(name: string, text: string): void {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(new Blob([text], { type: "application/json" }));
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+}
+
 /** A button that copies a text, and says so. */
 export function CopyButton({ text, label, children }: { text: string; label: string; children?: ComponentChildren }) {
   const [said, setSaid] = useState("");

@@ -34,8 +34,11 @@ const css = ([red, green, blue]: readonly [number, number, number], alpha = 1) =
 /** Pixels across a map; the page scales it. */
 const WIDTH = 640;
 
-/** Draws a map; the colours of ground and ink are those of the page. */
-function draw(canvas: HTMLCanvasElement, map: WorldMap, trail: readonly (readonly [number, number])[]): void {
+/** Where someone is and looks. */
+type Pose = Pick<WorldMap["agent"], "x" | "y" | "heading">;
+
+/** Draws a map, with others as hollow arrows; the colours of ground and ink are those of the page. */
+function draw(canvas: HTMLCanvasElement, map: WorldMap, trail: readonly (readonly [number, number])[], others: readonly Pose[]): void {
   const scale = scaleOf(map, WIDTH);
   canvas.width = WIDTH;
   canvas.height = scale.height;
@@ -88,23 +91,21 @@ function draw(canvas: HTMLCanvasElement, map: WorldMap, trail: readonly (readonl
     context.lineWidth = object.reward ? 2 : 0.75;
     context.stroke();
   }
-  const [x, y] = toPixels(scale, [map.agent.x, map.agent.y]);
   const size = Math.max(15, map.agent.radius * scale.pixelsPerMetre * 1.4);
-  context.save();
-  context.translate(x, y);
-  context.rotate((map.agent.heading * Math.PI) / 180);
-  context.beginPath();
-  context.moveTo(0, -size);
-  context.lineTo(size * 0.75, size * 0.8);
-  context.lineTo(0, size * 0.4);
-  context.lineTo(-size * 0.75, size * 0.8);
-  context.closePath();
-  context.fillStyle = link!;
-  context.fill();
-  context.strokeStyle = soft!;
-  context.lineWidth = 2;
-  context.stroke();
-  context.restore();
+  for (const [agent, fill, rimColor] of [...others.map((other) => [other, soft!, link!] as const), [map.agent, link!, soft!] as const]) {
+    context.save();
+    context.translate(...toPixels(scale, [agent.x, agent.y]));
+    context.rotate((agent.heading * Math.PI) / 180);
+    context.beginPath();
+    for (const [ahead, right] of [[1, 0], [-0.8, 0.75], [-0.4, 0], [-0.8, -0.75]] as const) context.lineTo(right * size, -ahead * size);
+    context.closePath();
+    context.fillStyle = fill;
+    context.fill();
+    context.strokeStyle = rimColor;
+    context.lineWidth = 2;
+    context.stroke();
+    context.restore();
+  }
 }
 
 /** Whether the page is dark: canvases are drawn anew when that changes. */
@@ -119,9 +120,13 @@ function useDark(): boolean {
   return isDark;
 }
 
+/** One list, so that a map without anyone is drawn once. */
+const NONE: never[] = [];
+
 /** A map that says what lies under the pointer; `click` hears where it was clicked, in metres. */
-export function FlatMap({ map, trail = [], click }: {
+export function FlatMap({ map, trail = NONE, others = NONE, click }: {
   map: WorldMap | null;
+  others?: readonly Pose[];
   trail?: readonly (readonly [number, number])[];
   click?: (point: [number, number], object: number | null) => void;
 }) {
@@ -129,8 +134,8 @@ export function FlatMap({ map, trail = [], click }: {
   const [under, setUnder] = useState("");
   const isDark = useDark();
   useLayoutEffect(() => {
-    if (canvas.current && map) draw(canvas.current, map, trail);
-  }, [map, trail, isDark]);
+    if (canvas.current && map) draw(canvas.current, map, trail, others);
+  }, [map, trail, others, isDark]);
   const place = (event: MouseEvent): [number, number] => {
     const box = canvas.current!.getBoundingClientRect();
     const scale = scaleOf(map!, box.width);

@@ -14,7 +14,7 @@ import { written, type WrittenParameter } from "../written.ts";
 import { Cells } from "../parts/cells.tsx";
 import { NumberPicker, VariantPicker } from "../parts/choices.tsx";
 import { Knobs } from "../parts/knobs.tsx";
-import { ErrorNote, Recipes } from "../parts/notes.tsx";
+import { ErrorNote, Recipes, saveText } from "../parts/notes.tsx";
 import { FlatMap, Picture } from "../parts/pictures.tsx";
 
 /** Milliseconds without a key after which a text is looked at. */
@@ -38,7 +38,8 @@ async function drawn(text: string, kind: string, variant: string, seed: number, 
   const request: WorldRequest = task ? { task: text, ...(known ? { variant } : {}), seed, index } : { world: text };
   const episode = await engine.open(request, { width: 320, height: 240 });
   try {
-    return { document: JSON.parse(text) as Json, task, parameters: task ? written({ ...task, text }) : [], frame: await episode.frame("agent"), map: await episode.map() };
+    const parameters = task ? written({ ...task, text }) : [];
+    return { document: JSON.parse(text) as Json, task, parameters, frame: await episode.frame("agent"), map: await episode.map() };
   } finally {
     void episode.close().catch(() => undefined);
   }
@@ -52,14 +53,6 @@ async function begunWith({ task, options: { file } }: Route): Promise<string | n
     return reply.text();
   }
   return task && task !== "draft" ? (await engine.task(task)).text : null;
-}
-
-function save(): void {
-  const link = document.createElement("a");
-  link.href = URL.createObjectURL(new Blob([draft.text], { type: "application/json" }));
-  link.download = draft.file;
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 }
 
 export function Author({ route }: { route: Route }) {
@@ -185,7 +178,7 @@ export function Author({ route }: { route: Route }) {
           </label>
           <button type="button" onClick={() => editor.current?.undo()}>Undo</button>
           <button type="button" onClick={() => editor.current?.redo()}>Redo</button>
-          <button type="button" onClick={save}>Save {draft.file}</button>
+          <button type="button" onClick={() => saveText(draft.file, draft.text)}>Save {draft.file}</button>
           <a class="button main" href={hrefOf("play", "draft", { variant: request.variant, seed: seed || undefined, index: index || undefined })}>Play</a>
         </div>
       </div>
@@ -204,7 +197,11 @@ export function Author({ route }: { route: Route }) {
                 ))}
               </ul>
             )
-            : shown && <p class="note good" role="status"><span>Valid. {shown.task ? `${shown.task.variants.length} variants, ${shown.task.parameters.length} parameters.` : "A world."}</span></p>}
+            : shown && (
+              <p class="note good" role="status">
+                <span>Valid. {shown.task ? `${shown.task.variants.length} variants, ${shown.task.parameters.length} parameters.` : "A world."}</span>
+              </p>
+            )}
           <Recipes of={{ "Check it": commands.validate(draft.file), "Play it": commands.play(subject), "Draw this world": commands.sample(subject) }} />
         </div>
         <div class="stack">

@@ -44,7 +44,9 @@ function Elements({ distance }: { distance: Distance }) {
             <tbody>
               {entries.map(([element, value]) => (
                 <tr key={element}>
-                  <th scope="row">{NAMES[element]}</th><td class="right">{value === null ? "–" : value.toFixed(3)}</td><td><Meter share={(value ?? 0) / most} /></td>
+                  <th scope="row">{NAMES[element]}</th>
+                  <td class="right">{value === null ? "–" : value.toFixed(3)}</td>
+                  <td><Meter share={(value ?? 0) / most} /></td>
                 </tr>
               ))}
             </tbody>
@@ -61,7 +63,11 @@ function Elements({ distance }: { distance: Distance }) {
                 <thead><tr><th scope="col">Part</th><th scope="col">Measure</th><th scope="col" class="right">Share</th></tr></thead>
                 <tbody>
                   {parts.map((part) => (
-                    <tr key={`${part.name} ${part.element}`}><td><code>{part.name}</code></td><td class="faint">{part.measure}</td><td class="right">{(100 * part.share).toFixed(1)} %</td></tr>
+                    <tr key={`${part.name} ${part.element}`}>
+                      <td><code>{part.name}</code></td>
+                      <td class="faint">{part.measure}</td>
+                      <td class="right">{(100 * part.share).toFixed(1)} %</td>
+                    </tr>
                   ))}
                 </tbody>
               </table>
@@ -146,7 +152,8 @@ export function Compare({ route }: { route: Route }) {
 
   const measures = useAnswer(() => engine.measures(), []).value ?? ["parameters"];
   const distance = useAnswer(
-    isReady && a && b ? () => engine.distance(requestOf(task, a, seed, index), requestOf(task, b, seed, index), { by }) : null, [task, a, b, by, isReady, round],
+    isReady && a && b ? () => engine.distance(requestOf(task, a, seed, index), requestOf(task, b, seed, index), { by }) : null,
+    [task, a, b, by, isReady, round],
   );
   const [isMeasured, setMeasured] = useState("");
   const key = `${task} ${a} ${b} ${round}`;
@@ -173,7 +180,9 @@ export function Compare({ route }: { route: Route }) {
       {(about.error ?? error) && <ErrorNote error={(about.error ?? error)!} again={() => setRound((last) => last + 1)} />}
       <div class="row">
         <button type="button" aria-pressed={isOutlined} onClick={() => setOutlined(!isOutlined)}>Outline differences</button>
-        <button type="button" aria-pressed={leader === "planner"} onClick={() => setLeader(leader === "planner" ? "keys" : "planner")}>Let the planner lead</button>
+        <button type="button" aria-pressed={leader === "planner"} onClick={() => setLeader(leader === "planner" ? "keys" : "planner")}>
+          Let the planner lead
+        </button>
         <button type="button" onClick={() => setRound((last) => last + 1)}>Again</button>
         <span class="faint small">Arrow keys act in both.</span>
       </div>
@@ -192,11 +201,14 @@ export function Compare({ route }: { route: Route }) {
           <h2>Parameters that differ</h2>
           <div class="table">
             <table>
-              <thead><tr><th scope="col">Parameter</th><th scope="col">{a || "defaults"}</th><th scope="col">{b || "defaults"}</th><th scope="col">Affects</th></tr></thead>
+              <thead><tr>{["Parameter", a, b, "Affects"].map((word) => <th key={word} scope="col">{word}</th>)}</tr></thead>
               <tbody>
                 {rows.map(({ parameter, values: [left, right] }) => (
                   <tr key={parameter.name}>
-                    <td><code>{parameter.name}</code></td><td><ShownValue parameter={parameter} value={left} /></td><td><ShownValue parameter={parameter} value={right} /></td><td class="faint">{parameter.affects.join(" ")}</td>
+                    <td><code>{parameter.name}</code></td>
+                    <td><ShownValue parameter={parameter} value={left} /></td>
+                    <td><ShownValue parameter={parameter} value={right} /></td>
+                    <td class="faint">{parameter.affects.join(" ")}</td>
                   </tr>
                 ))}
               </tbody>

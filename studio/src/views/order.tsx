@@ -110,7 +110,9 @@ export function Order({ route }: { route: Route }) {
           </label>
           <label class="field">
             Method
-            <select value={method} onChange={(event) => go({ method: event.currentTarget.value })}>{METHODS.map((name) => <option key={name}>{name}</option>)}</select>
+            <select value={method} onChange={(event) => go({ method: event.currentTarget.value })}>
+              {METHODS.map((name) => <option key={name}>{name}</option>)}
+            </select>
           </label>
           <VariantPicker isNamed label="Start" variants={all} variant={start} pick={(to) => go({ start: to })} />
           <NumberPicker label="Seed" value={seed} pick={(to) => go({ seed: to })} />

@@ -10,7 +10,7 @@ import { hrefOf, type Route, wholeNumber } from "../route.ts";
 import { Session } from "../session.ts";
 import { asError, engine, requestOf, trainedAgent, trainedTasks, useAnswer } from "../simulator.ts";
 import { NumberPicker, TaskPicker, VariantPicker } from "../parts/choices.tsx";
-import { copyText, ErrorNote, Recipes } from "../parts/notes.tsx";
+import { copyText, ErrorNote, Recipes, saveText } from "../parts/notes.tsx";
 import { FlatMap } from "../parts/pictures.tsx";
 import { amount, Seat } from "../parts/seat.tsx";
 
@@ -21,7 +21,10 @@ const SPEEDS = [1, 2, 6];
 const TRIED = 50;
 
 /** The buttons for who has no keyboard. */
-const PAD: [string, string, string][] = [["", "", ""], ["ArrowUp", "↑", "Ahead"], ["Space", "●", "Use"], ["ArrowLeft", "←", "Left"], ["ArrowDown", "↓", "Back"], ["ArrowRight", "→", "Right"]];
+const PAD: [string, string, string][] = [
+  ["", "", ""], ["ArrowUp", "↑", "Ahead"], ["Space", "●", "Use"],
+  ["ArrowLeft", "←", "Left"], ["ArrowDown", "↓", "Back"], ["ArrowRight", "→", "Right"],
+];
 
 function Pad({ set }: { set: (code: string, isDown: boolean) => void }) {
   return (
@@ -128,6 +131,7 @@ export function Play({ route }: { route: Route }) {
   const watch = async () => {
     location.hash = (await fragment()).text;
   };
+  const save = async () => saveText(commands.RECORDING, await you!.episode.recording());
   const [search, setSearch] = useState("");
   const findFailure = async () => {
     const agent = isTrained ? await trainedAgent(task) : "planner";
@@ -146,7 +150,10 @@ export function Play({ route }: { route: Route }) {
   const subject = { task: task === "draft" ? draft.file : task, variant, seed, index };
   const network = `examples/networks/${task}.safetensors`;
   const recipes: Record<string, commands.Recipe> = { "Play this world": commands.play(subject) };
-  if (you && isPaused) recipes["This episode"] = commands.episode(subject, you.episode.actionSpace, you.actions);
+  if (you && isPaused) {
+    recipes["This episode"] = commands.episode(subject, you.episode.actionSpace, you.actions);
+    recipes["This episode, once it is saved"] = commands.replayLog(commands.RECORDING, 0);
+  }
   for (const name of companions) recipes[`A film of the ${name}`] = commands.film(subject, name === "planner" ? "onrails" : { network });
   recipes["Draw this world"] = commands.sample(subject);
   const toggle = (name: Companion) =>
@@ -180,7 +187,10 @@ export function Play({ route }: { route: Route }) {
         <div class="row">
           <div class="group" role="group" aria-label="Speed">
             {SPEEDS.map((factor) => (
-              <button key={factor} type="button" aria-pressed={speed === factor} aria-label={`${factor} times the world's time`} onClick={() => setSpeed(factor)}>{factor}×</button>
+              <button
+                key={factor} type="button" aria-pressed={speed === factor} aria-label={`${factor} times the world's time`}
+                onClick={() => setSpeed(factor)}
+              >{factor}×</button>
             ))}
           </div>
           <button type="button" onClick={() => setState(state === "running" ? "paused" : "running")}>{state === "running" ? "Pause" : "Go"}</button>
@@ -200,7 +210,7 @@ export function Play({ route }: { route: Route }) {
           ))}
           <section class="card pad stack" aria-label="Map">
             <h2>Map</h2>
-            <FlatMap map={you?.map ?? null} trail={trail.current} />
+            <FlatMap map={you?.map ?? null} trail={trail.current} others={seats.slice(1).map(({ session }) => session.step.agent)} />
           </section>
           <section class={`card pad episode ${seats.length > 1 ? "span" : ""}`} aria-label="Episode">
             <div class="stack">
@@ -214,7 +224,10 @@ export function Play({ route }: { route: Route }) {
               ? (
                 <ul class="events" aria-label="What happened">
                   {you.log.map((line) => (
-                    <li key={`${line.step} ${line.text}`}><span>{line.text}</span><span class="number faint">{line.reward ? `${amount(line.reward)} · ` : ""}step {line.step}</span></li>
+                    <li key={`${line.step} ${line.text}`}>
+                      <span>{line.text}</span>
+                      <span class="number faint">{line.reward ? `${amount(line.reward)} · ` : ""}step {line.step}</span>
+                    </li>
                   ))}
                 </ul>
               )
@@ -223,6 +236,7 @@ export function Play({ route }: { route: Route }) {
             <div class="row">
               <button type="button" class="main" onClick={guarded(share)}>Share as a link</button>
               <button type="button" disabled={!you || you.step.step === 0} onClick={guarded(watch)}>Replay</button>
+              <button type="button" disabled={!you || you.step.step === 0} onClick={guarded(save)}>Save</button>
               <a class="button quiet" href={hrefOf("author", task === "draft" ? "" : task)}>Edit the task</a>
             </div>
             <p class="small faint" role="status">{shared}</p>

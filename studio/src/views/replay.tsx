@@ -4,15 +4,16 @@ import { useEffect, useLayoutEffect, useMemo, useRef, useState } from "preact/ho
 import type { DroppedFile, EngineError, Episode, Frame, Log, Step, WorldMap } from "../engine.ts";
 import * as commands from "../commands.ts";
 import { useClock } from "../clock.ts";
-import { curves } from "../curve.ts";
 import { droppedFiles, pickedFiles } from "../files.ts";
 import { hrefOf, type Route } from "../route.ts";
 import { VIEW } from "../session.ts";
 import { asError, engine } from "../simulator.ts";
 import { following, type Loop, looped, marks } from "../timeline.ts";
+import { Curves } from "../parts/curves.tsx";
 import { ErrorNote, Recipes } from "../parts/notes.tsx";
 import { FlatMap, Picture } from "../parts/pictures.tsx";
 import { amount } from "../parts/seat.tsx";
+import { Timeline } from "../parts/timeline.tsx";
 
 /** An episode that is replayed, with all its steps. */
 interface Played {
@@ -38,65 +39,8 @@ async function fromLink(fragment: string): Promise<Played> {
   return { episode, title: `${name}${where}`, steps: [first, ...(await episode.steps(actions))] };
 }
 
-function Timeline({ steps, moment, loop, seek }: { steps: Step[]; moment: number; loop: Loop | null; seek: (moment: number) => void }) {
-  const last = steps.length - 1;
-  const found = useMemo(() => marks(steps.slice(1)), [steps]);
-  const most = Math.max(1e-9, ...found.map(({ reward }) => Math.abs(reward)));
-  const x = (step: number) => (last ? (1000 * step) / last : 0);
-  return (
-    <div class="timeline">
-      <svg viewBox="0 0 1000 56" preserveAspectRatio="none" aria-hidden="true">
-        <rect class="track" y="24" width="1000" height="8" />
-        {loop && <rect class="loop" x={x(loop.from)} width={Math.max(2, x(loop.to) - x(loop.from))} height="56" />}
-        {found.map((mark) => {
-          const height = 4 + (22 * Math.abs(mark.reward)) / most;
-          return <rect key={mark.step} class={mark.reward < 0 ? "loss" : "gain"} x={x(mark.step) - 2} width="4" y={mark.reward < 0 ? 28 : 28 - height} height={height} />;
-        })}
-        <line class="here" x1={x(moment)} x2={x(moment)} y1="0" y2="56" vector-effect="non-scaling-stroke" />
-      </svg>
-      <input
-        type="range" min={0} max={last} value={moment} aria-label="Moment of the episode" aria-valuetext={`step ${moment} of ${last}`}
-        onInput={(event) => seek(event.currentTarget.valueAsNumber)}
-      />
-    </div>
-  );
-}
-
-function Curves({ log, now, pick }: { log: Log; now: number | null; pick: (experience: number) => void }) {
-  const all = useMemo(() => curves(log.episodes), [log]);
-  const points = all.flatMap(({ learned, tested }) => [...learned, ...tested]);
-  const [width, height, pad] = [640, 240, 36];
-  const most = Math.max(1, ...log.episodes.map(({ experience }) => experience));
-  const [low, high] = [Math.min(0, ...points.map(([, y]) => y)), Math.max(1e-9, ...points.map(([, y]) => y))];
-  const place = ([x, y]: [number, number]): [number, number] => [pad + ((width - pad - 8) * x) / most, height - 24 - ((height - 36) * (y - low)) / (high - low)];
-  return (
-    <>
-      <svg
-        class="plot" viewBox={`0 0 ${width} ${height}`} role="img" aria-label={`Learning curves of ${all.length} tasks`}
-        onClick={(event) => {
-          const box = event.currentTarget.getBoundingClientRect();
-          const wanted = ((((event.clientX - box.left) * width) / box.width - pad) * most) / (width - pad - 8);
-          const nearest = [...log.episodes].filter(({ recorded }) => recorded).sort((a, b) => Math.abs(a.experience - wanted) - Math.abs(b.experience - wanted))[0];
-          if (nearest) pick(nearest.experience);
-        }}
-      >
-        <line class="axis" x1={pad} x2={width - 8} y1={place([0, 0])[1]} y2={place([0, 0])[1]} />
-        <text class="label" x={pad - 4} y={place([0, high])[1] + 4} text-anchor="end">{amount(Number(high.toPrecision(3)))}</text>
-        <text class="label" x={pad - 4} y={place([0, low])[1] + 4} text-anchor="end">{amount(Number(low.toPrecision(3)))}</text>
-        <text class="label" x={width - 8} y={height - 6} text-anchor="end">experience {most}</text>
-        {all.map((curve, number) => (
-          <g key={curve.task} class={`series s${number % 6}`}>
-            <polyline points={curve.learned.map((point) => place(point).join(",")).join(" ")} />
-            {curve.tested.map((point) => <circle key={point[0]} cx={place(point)[0]} cy={place(point)[1]} r="2" />)}
-          </g>
-        ))}
-        {now !== null && <line class="here" x1={place([now, 0])[0]} x2={place([now, 0])[0]} y1="8" y2={height - 24} />}
-      </svg>
-      <ul class="legend">{all.map((curve, number) => <li key={curve.task} class={`s${number % 6}`}><span class="swatch" aria-hidden="true" />{curve.task}</li>)}</ul>
-      <p class="faint small">Lines: learning, means of a twentieth of the episodes. Dots: evaluations.</p>
-    </>
-  );
-}
+/** The options of an address that name a world. */
+const placeOf = ({ variant, seed, index }: commands.Subject) => ({ variant, seed: seed || undefined, index: index || undefined });
 
 export function Replay({ route }: { route: Route }) {
   const [shown, setShown] = useState<Played | null>(null);
@@ -207,7 +151,7 @@ export function Replay({ route }: { route: Route }) {
       else if (event.code === "ArrowRight") seek(wanted.current + stride);
       else if (event.code === "Home") seek(0);
       else if (event.code === "End") seek(last);
-      else if (event.code === "Space" && !isButton) setPlaying(!isPlaying);
+      else if (event.code === "Space" && !isButton) play();
       else if (event.code === "KeyI") setLoop(looped(loop, "from", wanted.current, last));
       else if (event.code === "KeyO") setLoop(looped(loop, "to", wanted.current, last));
       else if (event.code === "KeyL") setLoop(null);
@@ -218,6 +162,10 @@ export function Replay({ route }: { route: Route }) {
     return () => window.removeEventListener("keydown", press);
   });
 
+  const play = () => {
+    if (moment === last && !loop) seek(0);
+    setPlaying(!isPlaying);
+  };
   const step = shown?.steps[moment];
   const trail = useMemo(() => shown?.steps.slice(0, moment + 1).map(({ agent }): [number, number] => [agent.x, agent.y]) ?? [], [shown, moment]);
   const found = useMemo(() => (shown ? marks(shown.steps.slice(1)) : []), [shown]);
@@ -226,7 +174,9 @@ export function Replay({ route }: { route: Route }) {
     ? { task: request.task, variant: request.variant ?? "", seed: request.seed ?? 0, index: request.index ?? 0 }
     : null;
   const actions = shown?.steps.slice(1).flatMap(({ action }) => (action === null ? [] : [action])) ?? [];
-  const recipe = log && experience !== null ? commands.replayLog(folder, experience) : subject && shown ? commands.episode(subject, shown.episode.actionSpace, actions) : null;
+  const recipe = log && experience !== null
+    ? commands.replayLog(folder, experience)
+    : subject && shown ? commands.episode(subject, shown.episode.actionSpace, actions) : null;
   return (
     <div
       class="stack drop" onDragOver={(event) => { event.preventDefault(); setOver(true); }} onDragLeave={() => setOver(false)}
@@ -238,7 +188,7 @@ export function Replay({ route }: { route: Route }) {
           <p>{shown ? `${shown.title}, ${last} steps` : "An episode from a link, or a log of a lifetime."}</p>
         </div>
         <div class="row">
-          {subject && <a class="button" href={hrefOf("play", subject.task, { variant: subject.variant, seed: subject.seed || undefined, index: subject.index || undefined })}>Play this world</a>}
+          {subject && <a class="button" href={hrefOf("play", subject.task, placeOf(subject))}>Play this world</a>}
           <label class="button">
             Open a log folder
             <input class="hidden" type="file" multiple {...{ webkitdirectory: true }} onChange={(event) => void read(pickedFiles(event.currentTarget.files))} />
@@ -286,12 +236,14 @@ export function Replay({ route }: { route: Route }) {
             <Timeline steps={shown.steps} moment={moment} loop={loop} seek={seek} />
             <div class="row spread">
               <div class="row">
-                <button type="button" class="main" onClick={() => { if (moment === last && !loop) seek(0); setPlaying(!isPlaying); }}>{isPlaying ? "Pause" : "Play"}</button>
+                <button type="button" class="main" onClick={play}>{isPlaying ? "Pause" : "Play"}</button>
                 <button type="button" onClick={() => setLoop(looped(loop, "from", moment, last))}>Loop in</button>
                 <button type="button" onClick={() => setLoop(looped(loop, "to", moment, last))}>Loop out</button>
                 <button type="button" disabled={!loop} onClick={() => setLoop(null)}>No loop</button>
               </div>
-              <p class="small faint key-list"><kbd>space</kbd> plays, <kbd>←</kbd> <kbd>→</kbd> step, with <kbd>shift</kbd> ten, <kbd>I</kbd> <kbd>O</kbd> loop, <kbd>L</kbd> no loop</p>
+              <p class="small faint key-list">
+                <kbd>space</kbd> plays, <kbd>←</kbd> <kbd>→</kbd> step, with <kbd>shift</kbd> ten, <kbd>I</kbd> <kbd>O</kbd> loop, <kbd>L</kbd> no loop
+              </p>
             </div>
             {recipe && <Recipes of={{ "This episode": recipe }} />}
           </section>
@@ -309,14 +261,20 @@ export function Replay({ route }: { route: Route }) {
             <div class="picks">
               {log.episodes.slice(0, 2000).map((episode) => (
                 <button
-                  key={episode.experience} type="button" disabled={!episode.recorded} {...(episode.experience === experience ? { "aria-current": "true" as const } : {})}
+                  key={episode.experience} type="button" disabled={!episode.recorded}
+                  {...(episode.experience === experience ? { "aria-current": "true" as const } : {})}
                   onClick={() => open(episode.experience)}
                 >
-                  <span>{episode.experience} · {episode.task}{episode.block_type === "test" ? " · evaluation" : ""}</span><span class="number">{amount(episode.reward)}</span>
+                  <span>{episode.experience} · {episode.task}{episode.block_type === "test" ? " · evaluation" : ""}</span>
+                  <span class="number">{amount(episode.reward)}</span>
                 </button>
               ))}
             </div>
-            {!log.episodes.some(({ recorded }) => recorded) && <p class="note warn"><span>No episode of this log was recorded. <code>run --record</code> or <code>record=True</code> keeps them.</span></p>}
+            {!log.episodes.some(({ recorded }) => recorded) && (
+              <p class="note warn">
+                <span>No episode of this log was recorded. <code>run --record</code> or <code>record=True</code> keeps them.</span>
+              </p>
+            )}
           </section>
         </div>
       )}
