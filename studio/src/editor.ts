@@ -1,7 +1,7 @@
 // The editor of documents: CodeMirror in a shadow root, where its styles need no exception from the page's policy. Loaded when first used.
 
 import { autocompletion, closeBrackets, closeBracketsKeymap, completionKeymap, type CompletionContext, type CompletionResult } from "@codemirror/autocomplete";
-import { defaultKeymap, history, historyKeymap, redo, undo } from "@codemirror/commands";
+import { defaultKeymap, history, historyKeymap, isolateHistory, redo, undo } from "@codemirror/commands";
 import { json } from "@codemirror/lang-json";
 import { bracketMatching, foldGutter, foldKeymap, HighlightStyle, indentOnInput, indentUnit, syntaxHighlighting } from "@codemirror/language";
 import { type Diagnostic, lintGutter, setDiagnostics } from "@codemirror/lint";
@@ -15,9 +15,9 @@ import { suggestions } from "./schema.ts";
 /** What the author view asks of its editor. */
 export interface Editor {
   text(): string;
-  /** Another text, or a change of this one; both can be undone. */
+  /** Another text, or a change of this one; both can be undone. Changes of one `drag` are undone together. */
   replace(text: string): void;
-  change(change: Change): void;
+  change(change: Change, kind?: "alone" | "drag"): void;
   /** Selects a part of the text and shows it. */
   show(from: number, to: number): void;
   /** Marks problems at their places. */
@@ -86,7 +86,9 @@ export function createEditor(place: HTMLElement, text: string, context: () => { 
   return {
     text: () => view.state.doc.toString(),
     replace: (next) => view.dispatch({ changes: { from: 0, to: view.state.doc.length, insert: next }, selection: { anchor: 0 }, userEvent: "input.replace" }),
-    change: (changes) => view.dispatch({ changes, userEvent: "input.control" }),
+    change: (changes, kind = "alone") => view.dispatch({
+      changes, userEvent: "input.control", annotations: kind === "alone" ? [isolateHistory.of("full")] : [],
+    }),
     show: (from, to) => {
       const end = view.state.doc.length;
       const [anchor, head] = [Math.min(from, end), Math.min(to, end)];

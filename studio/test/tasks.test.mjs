@@ -231,6 +231,11 @@ task("08 compare: two variants under one set of actions", "#/compare/find_object
   await walk(page, "dusk", 6);
   assert.equal(await stepsOf(page, "blue"), await stepsOf(page, "dusk"));
   assert.match(await text(page, 'section[aria-label="Distance"]'), /1\.447 apart/);
+  assert.match(await text(page, 'section[aria-label="Distance"] tbody'), /Observation\s+1\.447/);
+  await tabTo(page, "Let the planner lead");
+  await page.keyboard.press("Enter");
+  await untilSteps(page, "dusk", 20);
+  await page.keyboard.press("Enter");
   await tabTo(page, "Test what differs in their worlds");
   await page.keyboard.press("Enter");
   await page.waitForSelector("ul.plain", { timeout: 3 * PATIENCE_MS });
@@ -272,4 +277,31 @@ task("10 replay: a log on a timeline", "#/replay", async (page) => {
     assert.ok(now >= 11 && now <= 14, `the loop of 11 to 14 is at ${now}`);
     await page.keyboard.press("Space");
   });
+});
+
+task("11 mouse: a rock is put on the map, and taken away", "#/author", async (page) => {
+  await page.waitForSelector(".editor");
+  await choose(page, "New from", "a park");
+  await choose(page, "A click on the map", "puts");
+  const rocks = () => page.evaluate(() => {
+    const { count, placement } = JSON.parse(localStorage.getItem("driftworld.draft")).groups[0];
+    return [count, placement.points.values.length];
+  });
+  const map = page.locator(".map canvas");
+  const at = async (count) => {
+    await until(page, (wanted) => JSON.parse(localStorage.getItem("driftworld.draft")).groups[0].count === wanted, count);
+    assert.deepEqual(await rocks(), [count, count]);
+    await page.waitForSelector(".note.good");
+  };
+  await at(3);
+  const { width, height } = await map.boundingBox();
+  const corner = { position: { x: width * 0.2, y: height * 0.2 } };
+  await map.click(corner);
+  await at(4);
+  await until(page, () => /5 objects|[6-9] objects/.test(document.querySelector(".map canvas").getAttribute("aria-label")));
+  await map.click(corner);
+  await at(3);
+  await tabTo(page, "Undo");
+  await page.keyboard.press("Enter");
+  await at(4);
 });

@@ -112,16 +112,16 @@ export function Author({ route }: { route: Route }) {
     };
   }, [text, variant, seed, index, round]);
 
-  const edit = (path: Path, value: Value) => {
+  const edit = (path: Path, value: Value, kind: "alone" | "drag" = "alone") => {
     const found = change(editor.current?.text() ?? text, path, value);
-    if (found) editor.current?.change(found);
+    if (found) editor.current?.change(found, kind);
     return found !== null;
   };
   const setKnob = (parameter: WrittenParameter, value: Value) => {
     const path: Path = parameter.role === "fixed"
       ? ["parameters", parameter.name, "value"]
       : variant ? ["variants", variant, parameter.name] : ["parameters", parameter.name, "default"];
-    setSaid(edit(path, value) ? "" : `${variant} is a member of a family: change the family in the text, or choose another variant.`);
+    setSaid(edit(path, value, "drag") ? "" : `${variant} is a member of a family: change the family in the text, or choose another variant.`);
   };
   const showPlace = (path: Path) => {
     const span = spanAt(spans(text), path);

@@ -64,14 +64,15 @@ function Shot({ card, isLive }: { card: TaskCard; isLive: boolean }) {
 }
 
 function Card({ card, isTrained }: { card: TaskCard; isTrained: boolean }) {
-  const [isLive, setLive] = useState(false);
+  const [isLooked, setLooked] = useState(false);
+  const isLive = isLooked && !matchMedia("(prefers-reduced-motion: reduce)").matches;
   const variant = card.examples[0]?.variant;
   const go = (companion?: string) => hrefOf("play", card.name, { variant, with: companion });
   return (
     <li>
       <article
-        class="card" onMouseEnter={() => setLive(true)} onMouseLeave={() => setLive(false)}
-        onFocusCapture={() => setLive(true)} onBlurCapture={() => setLive(false)}
+        class="card" onMouseEnter={() => setLooked(true)} onMouseLeave={() => setLooked(false)}
+        onFocusCapture={() => setLooked(true)} onBlurCapture={() => setLooked(false)}
       >
         <a class="shot" href={go()} aria-label={`Play ${card.name}`}><Shot card={card} isLive={isLive} /></a>
         <div class="body">
