@@ -1,8 +1,13 @@
 // Values of parameters, for people: colours as swatches, the names of choices, long values cut short.
 
-import type { Value } from "../engine.ts";
+import type { Element, Value } from "../engine.ts";
 import { oneLine, same } from "../json_text.ts";
 import type { WrittenParameter } from "../written.ts";
+
+/** The elements of a decision process. */
+export const ELEMENTS: Record<Element, string> = {
+  S: "State", A: "Action", T: "Transition", R: "Reward", O: "Observation", p: "Initial state", phi: "Emission",
+};
 
 let brush: CanvasRenderingContext2D | null = null;
 
@@ -25,7 +30,7 @@ export function choiceOf({ choices }: WrittenParameter, value: Value): number {
 
 /** What a value is called in a list: its name, a short form, or its first characters. */
 export function wordOf(value: Value, name: string | null = null): string {
-  const text = name ?? (typeof value === "string" ? value : oneLine(value));
+  const text = name ?? (value === null ? "none" : typeof value === "string" ? value : oneLine(value));
   return text.length > 60 ? `${text.slice(0, 59)}…` : text;
 }
 

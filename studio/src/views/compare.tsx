@@ -1,7 +1,7 @@
 // Two variants of a task side by side, under one seed and one set of actions; and how far apart they are, element by element.
 
 import { useEffect, useMemo, useState } from "preact/hooks";
-import type { Distance, EngineError, Task, Variant } from "../engine.ts";
+import type { Distance, Element, EngineError, Task, Variant } from "../engine.ts";
 import * as commands from "../commands.ts";
 import { useClock } from "../clock.ts";
 import { outlines } from "../difference.ts";
@@ -15,10 +15,8 @@ import { ErrorNote, Recipes } from "../parts/notes.tsx";
 import { FlatMap } from "../parts/pictures.tsx";
 import { same } from "../json_text.ts";
 import { written, type WrittenParameter } from "../written.ts";
-import { ShownValue } from "../parts/value.tsx";
+import { ELEMENTS, ShownValue } from "../parts/value.tsx";
 import { Seat } from "../parts/seat.tsx";
-
-const NAMES = { S: "State", A: "Action", T: "Transition", R: "Reward", O: "Observation" } as const;
 
 /** A share as a bar, beside its number. */
 export function Meter({ share }: { share: number }) {
@@ -30,7 +28,7 @@ export function Meter({ share }: { share: number }) {
 }
 
 function Elements({ distance }: { distance: Distance }) {
-  const entries = Object.entries(distance.elements) as [keyof typeof NAMES, number | null][];
+  const entries = Object.entries(distance.elements) as [Element, number | null][];
   const most = Math.max(1e-9, ...entries.map(([, value]) => value ?? 0));
   const parts = distance.parts.filter((part) => part.share > 0).sort((a, b) => b.share - a.share);
   return (
@@ -44,7 +42,7 @@ function Elements({ distance }: { distance: Distance }) {
             <tbody>
               {entries.map(([element, value]) => (
                 <tr key={element}>
-                  <th scope="row">{NAMES[element]}</th>
+                  <th scope="row">{ELEMENTS[element]}</th>
                   <td class="right">{value === null ? "–" : value.toFixed(3)}</td>
                   <td><Meter share={(value ?? 0) / most} /></td>
                 </tr>
@@ -231,7 +229,7 @@ export function Compare({ route }: { route: Route }) {
         {elements.value && (
           <div class="stack">
             <h3>Seen in their worlds: <span class={`tag ${elements.value.verdict === "sound" ? "good" : "bad"}`}>{elements.value.verdict}</span></h3>
-            <ul class="plain">{elements.value.measured.map((witness) => <li key={witness.element}><b>{witness.element}</b> {witness.message}</li>)}</ul>
+            <ul class="plain">{elements.value.measured.map((witness) => <li key={witness.element}><b>{ELEMENTS[witness.element]}:</b> {witness.message}</li>)}</ul>
             {elements.value.measured.length === 0 && <p class="faint small">No element was seen to differ.</p>}
             {elements.value.contradictions.map((text) => <p key={text} class="note bad"><span>{text}</span></p>)}
             {elements.value.idle.length > 0 && <p class="faint small">Without effect here: {elements.value.idle.join(", ")}.</p>}
