@@ -61,7 +61,11 @@ const BY_HAND: &[(&str, usize, &str)] = &[
         "minutes: the stage `learners` runs a smaller one, and an exported network",
     ),
     ("docs/install.md", 2, "`scripts/empty_root.sh`, after `scripts/dist.sh`"),
-    ("docs/how-to/studio.md", 4, "want the built page and a browser: the stage `studio`"),
+    (
+        "docs/how-to/studio.md",
+        4,
+        "want the built page and a browser: the stage `studio`",
+    ),
     ("docs/l2explorer.md", 5, "the stage `unity`, with the published clients"),
     ("docs/python.md", 2, "`python/tests/`: windows and the checker"),
     ("docs/worlds.md", 1, "how its figures were measured"),
