@@ -3,9 +3,15 @@
 
 use std::path::Path;
 
-use crate::log_folders::has_info;
 use crate::top_level::TopLevel;
 use driftworld_text::ShownPath;
+
+/// Whether a folder has one of a log's info files.
+pub(crate) fn has_info(folder: &Path) -> bool {
+    ["logger_info.json", "scenario_info.json"]
+        .iter()
+        .any(|name| folder.join(name).is_file())
+}
 
 /// The kind of a file or folder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -11,70 +11,114 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+#![cfg_attr(
+    target_family = "wasm",
+    expect(dead_code, reason = "what only the command uses, which is left out there")
+)]
+
 pub use driftworld_curriculum as curriculum;
 pub use driftworld_env as env;
 pub use driftworld_generator as generator;
 pub use driftworld_metrics as metrics;
+#[cfg(not(target_family = "wasm"))]
 pub use driftworld_report as report;
 pub use driftworld_similarity as similarity;
 pub use driftworld_spec as spec;
 
+// Without `cfg`: what the workbench needs in a browser, where there are no files, no terminal and no figures (`studio/wasm/`).
 pub mod behavior;
+#[cfg(not(target_family = "wasm"))]
 mod checksum;
+#[cfg(not(target_family = "wasm"))]
 pub mod clock;
+#[cfg(not(target_family = "wasm"))]
 pub mod commands;
+#[cfg(not(target_family = "wasm"))]
 mod console;
+#[cfg(not(target_family = "wasm"))]
 mod contact_sheet;
 pub mod contents;
+#[cfg(not(target_family = "wasm"))]
 pub mod design;
 pub mod distances;
 pub mod documents;
 mod dynamics;
 pub mod elements;
+#[cfg(not(target_family = "wasm"))]
 mod episode_frames;
 mod failure;
+#[cfg(not(target_family = "wasm"))]
 mod figure_files;
+#[cfg(not(target_family = "wasm"))]
 pub mod film;
 mod libraries;
+#[cfg(not(target_family = "wasm"))]
 pub mod lifetime_report;
+#[cfg(not(target_family = "wasm"))]
 mod log_folders;
+#[cfg(not(target_family = "wasm"))]
 mod log_names;
+#[cfg(not(target_family = "wasm"))]
 mod map_colors;
+#[cfg(not(target_family = "wasm"))]
 mod map_drawing;
+#[cfg(not(target_family = "wasm"))]
 mod map_legend;
+#[cfg(not(target_family = "wasm"))]
 mod map_scale;
+#[cfg(not(target_family = "wasm"))]
 mod matrix_file;
-mod modality;
+pub mod modality;
 mod numbers;
+#[cfg(not(target_family = "wasm"))]
 pub mod ordering;
+#[cfg(not(target_family = "wasm"))]
 mod output_file;
+#[cfg(not(target_family = "wasm"))]
 mod overwrite;
 pub mod picture_distance;
+#[cfg(not(target_family = "wasm"))]
 pub mod recordings;
+#[cfg(not(target_family = "wasm"))]
 mod remarks;
+#[cfg(not(target_family = "wasm"))]
 pub mod scales;
+#[cfg(not(target_family = "wasm"))]
 pub mod scenarios;
+#[cfg(not(target_family = "wasm"))]
 pub mod scoring;
+#[cfg(not(target_family = "wasm"))]
 mod sheet_words;
+#[cfg(not(target_family = "wasm"))]
 mod style;
+#[cfg(not(target_family = "wasm"))]
 mod subject;
+#[cfg(not(target_family = "wasm"))]
 mod table;
 pub mod tasks;
+#[cfg(not(target_family = "wasm"))]
 mod throughput;
 #[cfg(test)]
 #[path = "../tests/tier.rs"]
 mod tier;
 mod top_level;
+#[cfg(not(target_family = "wasm"))]
 mod trials;
+#[cfg(not(target_family = "wasm"))]
 mod value_words;
+#[cfg(not(target_family = "wasm"))]
 mod variant_names;
+#[cfg(not(target_family = "wasm"))]
 mod views;
+#[cfg(not(target_family = "wasm"))]
 mod worlds;
+#[cfg(not(target_family = "wasm"))]
 mod wrap;
 
 pub use failure::{Cause, Failure, FailureText, Warn};
 pub(crate) use failure::{argument, within};
 pub use libraries::MAX_LIBRARY_BYTES;
+#[cfg(not(target_family = "wasm"))]
 pub use matrix_file::MAX_MATRIX_BYTES;
 
 /// The Rust code of the page is compiled with the doc tests.

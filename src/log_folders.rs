@@ -6,7 +6,7 @@ use std::path::{Component, Path, PathBuf, absolute};
 
 use driftworld_files::FileError;
 
-use crate::contents::{Contents, OtherContents};
+use crate::contents::{Contents, OtherContents, has_info};
 use crate::documents;
 use crate::{Failure, argument};
 use driftworld_text::ShownPath;
@@ -216,13 +216,6 @@ fn too_many(path: &Path, logs: usize) -> Result<(), Failure> {
         path,
         format!("found more than {MOST_LOGS} logs, expected at most that; name fewer folders"),
     ))
-}
-
-/// Whether a folder has one of a log's info files.
-pub(crate) fn has_info(folder: &Path) -> bool {
-    ["logger_info.json", "scenario_info.json"]
-        .iter()
-        .any(|name| folder.join(name).is_file())
 }
 
 /// Whether a folder is a log, even an incomplete one.

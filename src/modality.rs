@@ -3,7 +3,9 @@
 use crate::env::{Frame, category_color, depth_to_gray};
 use crate::spec::Modality;
 
+#[cfg(not(target_family = "wasm"))]
 use crate::report::ReportError;
+#[cfg(not(target_family = "wasm"))]
 use crate::report::picture::{Gray, Picture};
 
 /// The largest value of a 16-bit image.
@@ -27,7 +29,7 @@ pub(crate) fn name(kind: Modality) -> &'static str {
 }
 
 /// A frame as colours, three bytes per pixel; classes and instances are coloured by `color_of`.
-pub(crate) fn to_rgb(kind: Modality, frame: &Frame, color_of: fn(u32) -> [u8; 3]) -> Vec<u8> {
+pub fn to_rgb(kind: Modality, frame: &Frame, color_of: fn(u32) -> [u8; 3]) -> Vec<u8> {
     match kind {
         Modality::Rgb => frame.rgb.clone(),
         Modality::Depth => gray_rgb(&frame.depth),
@@ -43,7 +45,7 @@ pub(crate) fn gray_rgb(metres: &[f32]) -> Vec<u8> {
 }
 
 /// A colour for a number, different from its neighbours'; black for 0.
-pub(crate) fn number_color(number: u32) -> [u8; 3] {
+pub fn number_color(number: u32) -> [u8; 3] {
     [97_u32, 53, 151].map(|step| {
         let share = number.wrapping_mul(step) % 192;
         if number == 0 { 0 } else { 64 + share as u8 }
@@ -52,6 +54,7 @@ pub(crate) fn number_color(number: u32) -> [u8; 3] {
 
 /// A PNG file's bytes: colours and reward categories as RGB; depths (in levels of `metres_per_level`, at most 65535 of them),
 /// classes and instances as 16-bit numbers. Larger numbers are clamped.
+#[cfg(not(target_family = "wasm"))]
 pub(crate) fn to_png(kind: Modality, frame: &Frame, metres_per_level: f32) -> Result<Vec<u8>, ReportError> {
     let (width, height) = (frame.width, frame.height);
     let picture = |rgb: Vec<u8>| Picture { width, height, rgb }.to_png();

@@ -5,6 +5,7 @@ use std::fs::{File, Metadata};
 use tempfile::Builder;
 
 /// The mode of a file that is new, before the umask takes from it.
+#[cfg(unix)]
 const PLAIN: u32 = 0o666;
 
 /// Lets a temporary file begin with no more than it will end with; the umask takes from that.

@@ -397,14 +397,16 @@ export interface Episode {
   map(): Promise<WorldMap>;
   /** All actions so far, also those beyond the moment that `seek` went to. */
   actions(): Promise<Action[]>;
+  /** What was played up to now as a file, which `driftworld replay` plays. */
+  recording(): Promise<string>;
   /** Frees it. */
   close(): Promise<void>;
 }
 
 /** How the engine is started. */
 export interface EngineOptions {
-  /** Makes a worker that runs `worker.js`. */
-  worker?: () => Worker;
+  /** The address of the folder with `worker.js`; that of the page if absent. */
+  base?: string;
   /** Milliseconds that a call may take; 10,000 if absent. */
   limit?: number;
 }
@@ -506,6 +508,8 @@ interface Waiting {
 class WorkerEngine implements Engine {
   onbusy: ((busy: boolean) => void) | null = null;
   readonly limit: number;
+  /** The address of the folder that the page lies in. */
+  private readonly base: string;
   readonly makeWorker: () => Worker;
   /** Counts the workers. */
   generation = 0;
@@ -519,8 +523,9 @@ class WorkerEngine implements Engine {
   /** Numbers of networks in the worker that runs. */
   private networks = new WeakMap<Uint8Array, { generation: number; number: number }>();
 
-  constructor({ worker, limit = 10_000 }: EngineOptions) {
-    this.makeWorker = worker ?? (() => new Worker(new URL("worker.js", document.baseURI), { type: "module" }));
+  constructor({ base = document.baseURI, limit = 10_000 }: EngineOptions) {
+    this.base = base;
+    this.makeWorker = () => new Worker(new URL("worker.js", base), { type: "module" });
     this.limit = limit;
     this.begin();
   }
@@ -640,8 +645,10 @@ class WorkerEngine implements Engine {
     return { version, milliseconds: this.milliseconds };
   }
 
-  tasks(): Promise<TaskCard[]> {
-    return this.ask({ call: "tasks" });
+  async tasks(): Promise<TaskCard[]> {
+    // The build asked the same simulator already.
+    const kept = await fetch(new URL("tasks.json", this.base)).catch(() => null);
+    return kept?.ok ? ((await kept.json()) as TaskCard[]) : this.ask({ call: "tasks" });
   }
 
   task(task: string): Promise<Task> {
@@ -807,6 +814,10 @@ class WorkerEpisode implements Episode {
 
   actions(): Promise<Action[]> {
     return this.ask({ call: "actions" });
+  }
+
+  recording(): Promise<string> {
+    return this.ask({ call: "recording" });
   }
 
   async close(): Promise<void> {

@@ -15,6 +15,7 @@ mod schemas;
 mod size;
 mod sources;
 mod stage;
+mod studio;
 mod unity;
 mod unreached;
 
@@ -32,9 +33,10 @@ Usage:
   cargo xtask test --all            all stages, with all features and tests at full size: CI runs this
   cargo xtask test --only STAGE     one stage (may be given several times, and with --all)
   cargo xtask test --list           the stages and what each checks
-  cargo xtask STAGE                 the same as `test --only STAGE`, except for the two below
+  cargo xtask STAGE                 the same as `test --only STAGE`, except for the three below
   cargo xtask schemas               write schemas/*.json and docs/reference/*.md anew from the Rust types
   cargo xtask size                  write the counts of lines of code in SIZE.md anew
+  cargo xtask studio                build the page of the workbench into target/studio (needs Node.js and a target of rustup)
 
 CONTRIBUTING.md has the commands for benches, fuzzing, sanitizers, pictures and releases.";
 
@@ -52,6 +54,11 @@ fn main() -> ExitCode {
         }
         ["schemas"] => workspace(false).and_then(|workspace| schemas::rewrite(&workspace)),
         ["size"] => workspace(false).and_then(|workspace| size::rewrite(&workspace)),
+        ["studio"] => workspace(false).and_then(|workspace| {
+            studio::build(&workspace)?;
+            studio::tell(&workspace);
+            Ok(())
+        }),
         _ => match parse(&words) {
             Ok((stages, is_full)) => workspace(is_full).and_then(|workspace| stage::run_all(&workspace, &stages)),
             Err(complaint) => {

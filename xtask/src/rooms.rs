@@ -4,7 +4,7 @@
 use serde_json::Value;
 
 /// Each crate with our crates that it may import, directly or indirectly, without the prefix `driftworld-`.
-const ROOMS: [(&str, &str); 17] = [
+const ROOMS: [(&str, &str); 18] = [
     ("features", ""),
     ("text", ""),
     ("atomic-files", ""),
@@ -29,6 +29,10 @@ const ROOMS: [(&str, &str); 17] = [
     ),
     (
         "python",
+        "features text atomic-files files schema-errors spec generator similarity env metrics curriculum report driftworld",
+    ),
+    (
+        "wasm",
         "features text atomic-files files schema-errors spec generator similarity env metrics curriculum report driftworld",
     ),
     ("unity", "features text atomic-files files schema-errors spec env"),

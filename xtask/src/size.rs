@@ -11,8 +11,8 @@ const FILE: &str = "SIZE.md";
 const OPENING: &str = "\
 # Size
 
-Lines of code in each room: Rust, except where the name says Python. A line of code is neither blank nor a comment. Tests
-are counted apart: the folders `tests/`, `benches/`, `examples/` and `fuzz/`, files named `tests.rs`, and modules under
+Lines of code in each room: Rust, except where the name says another language. A line of code is neither blank nor a comment. Tests
+are counted apart: the folders `tests/`, `test/`, `benches/`, `examples/` and `fuzz/`, files named `tests.rs`, and modules under
 `#[cfg(test)]`.
 
 `cargo xtask test` fails if a room is over its limit: raise the limit in the same commit and say why in the last column.
@@ -23,7 +23,7 @@ It also fails if a count is more than 2% out of date: `cargo xtask size` writes 
 ";
 
 /// The rooms: a file belongs to the first room with a prefix of its path.
-const ROOMS: [(&str, &[&str]); 23] = [
+const ROOMS: [(&str, &[&str]); 25] = [
     ("spec", &["spec/", "schema_errors/"]),
     ("generator", &["generator/"]),
     ("similarity", &["similarity/"]),
@@ -47,12 +47,15 @@ const ROOMS: [(&str, &[&str]); 23] = [
     ("python (Rust)", &["python/src/"]),
     (PYTHON, &["python/package/"]),
     ("unity", &["unity/"]),
+    ("studio: wasm (Rust)", &["studio/wasm/"]),
+    (TYPESCRIPT, &["studio/"]),
     ("xtask", &["xtask/"]),
     ("text, files, atomic_files", &["text/", "files/", "atomic_files/"]),
     ("elsewhere", &[""]),
 ];
 
 const PYTHON: &str = "python (Python)";
+const TYPESCRIPT: &str = "studio: page (TypeScript)";
 const TESTS: &str = "tests (Rust)";
 const TOTAL: &str = "all Rust outside tests";
 
@@ -87,10 +90,10 @@ pub(crate) fn rewrite(workspace: &Workspace) -> Result {
 fn count(sources: &Sources) -> Vec<(&'static str, usize)> {
     let mut counts: Vec<(&str, usize)> = ROOMS.iter().map(|(room, _)| (*room, 0)).collect();
     let (mut tests, mut total) = (0, 0);
-    for (path, text) in sources.with_extensions(&["rs", "py"]) {
+    for (path, text) in sources.with_extensions(&["rs", "py", "ts", "tsx", "mjs"]) {
         let is_home = |(_, prefixes): &(&str, &[&str])| prefixes.iter().any(|prefix| path.starts_with(prefix));
         let home = ROOMS.iter().position(is_home).unwrap_or(ROOMS.len() - 1);
-        if (ROOMS[home].0 == PYTHON) != (extension(path) == "py") {
+        if !endings(ROOMS[home].0).contains(&extension(path)) {
             continue;
         }
         let lines = lines_of_code(path, text);
@@ -104,6 +107,15 @@ fn count(sources: &Sources) -> Vec<(&'static str, usize)> {
     counts.retain(|(_, lines)| *lines > 0);
     counts.extend([(TESTS, tests), (TOTAL, total)]);
     counts
+}
+
+/// The endings of the files that count in a room.
+fn endings(room: &str) -> &'static [&'static str] {
+    match room {
+        PYTHON => &["py"],
+        TYPESCRIPT => &["ts", "tsx", "mjs"],
+        _ => &["rs"],
+    }
 }
 
 fn summary(counts: &[(&str, usize)]) -> String {
@@ -200,6 +212,9 @@ mod tests {
             ("python/src/a.rs", "fn f() {}\n"),
             ("python/package/driftworld/a.py", "a = 1\nb = 2\nc = 3\n"),
             ("python/api_pages.py", "a = 1\n"),
+            ("studio/wasm/src/a.rs", "fn f() {}\n"),
+            ("studio/src/a.tsx", "// A.\nconst a = 1;\n/* B.\n */\nconst b = 2;\n"),
+            ("studio/test/a.mjs", "const a = 1;\n"),
         ]);
         let expected = [
             ("spec", 1),
@@ -207,8 +222,10 @@ mod tests {
             ("env: rest", 1),
             ("python (Rust)", 1),
             (PYTHON, 3),
+            ("studio: wasm (Rust)", 1),
+            (TYPESCRIPT, 2),
             (TESTS, 4),
-            (TOTAL, 5),
+            (TOTAL, 6),
         ];
         assert_eq!(count(&sources), expected);
     }

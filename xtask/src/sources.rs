@@ -74,7 +74,7 @@ pub(crate) fn extension(path: &str) -> &str {
 /// Whether a whole file is for tests, benches, examples or fuzzing.
 pub(crate) fn is_test_file(path: &str) -> bool {
     let (folders, name) = path.rsplit_once('/').unwrap_or(("", path));
-    let is_test_folder = |folder: &str| ["tests", "benches", "examples", "fuzz"].contains(&folder);
+    let is_test_folder = |folder: &str| ["tests", "test", "benches", "examples", "fuzz"].contains(&folder);
     name == "tests.rs" || folders.split('/').any(is_test_folder)
 }
 

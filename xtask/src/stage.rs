@@ -5,7 +5,7 @@ use std::process::Command;
 use std::time::Instant;
 
 use crate::process::{Result, Workspace, run, works};
-use crate::{examples, fences, python, runner, schemas, size, unity};
+use crate::{examples, fences, python, runner, schemas, size, studio, unity};
 
 /// The outcome of a stage that did not fail.
 pub(crate) enum Outcome {
@@ -45,7 +45,7 @@ const fn slow(name: &'static str, about: &'static str, run: fn(&Workspace) -> Re
 }
 
 /// In execution order. With `--all`, everything is built with the feature `full`, so `tests` also compares the renderers.
-pub(crate) const STAGES: [Stage; 17] = [
+pub(crate) const STAGES: [Stage; 18] = [
     quick("fmt", "every file is formatted by rustfmt", fmt),
     quick("clippy", "no compiler or clippy warning in any target", clippy),
     quick(
@@ -104,6 +104,11 @@ pub(crate) const STAGES: [Stage; 17] = [
         "unity",
         "Python clients of ML-Agents, old and new, drive driftworld-unity",
         unity::stage,
+    ),
+    slow(
+        "studio",
+        "the page of the workbench is built and typed, and its simulator gives this machine's answers, in a browser too",
+        studio::stage,
     ),
     slow(
         "deny",

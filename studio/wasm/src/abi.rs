@@ -1,0 +1,68 @@
+//! The C functions of the module: memory for a call, the call, and where its answer lies. One thread calls them, one after the other.
+
+#![expect(unsafe_code, reason = "exported names and foreign memory have no safe form")]
+#![expect(unreachable_pub, reason = "they are reached by their exported names")]
+
+use std::cell::RefCell;
+
+use crate::Session;
+
+/// The session, and the answer to its last call: where its JSON and its bytes lie, for the caller to copy.
+struct Module {
+    session: Session,
+    json: String,
+    bytes: Vec<u8>,
+    /// Address and length of both.
+    places: [u32; 4],
+}
+
+thread_local! {
+    static MODULE: RefCell<Module> = RefCell::new(Module {
+        session: Session::default(),
+        json: String::new(),
+        bytes: Vec::new(),
+        places: [0; 4],
+    });
+}
+
+/// Memory of so many bytes, for the input of [`driftworld_call`], which frees it.
+#[unsafe(no_mangle)]
+pub extern "C" fn driftworld_memory(length: usize) -> *mut u8 {
+    Box::into_raw(vec![0_u8; length].into_boxed_slice()).cast()
+}
+
+/// Answers a call: its JSON is the first `json` of `length` bytes at `input`, the rest are its bytes. Returns the address of four
+/// 32-bit numbers: address and length of the answer's JSON and of its bytes, which stay until the next call.
+///
+/// # Safety
+/// `input` and `length` are those of a call of [`driftworld_memory`] that no other call has used.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn driftworld_call(input: *mut u8, length: usize, json: usize) -> *const u32 {
+    let memory = std::ptr::slice_from_raw_parts_mut(input, length);
+    // SAFETY: the caller promises that it is a box of this length, which nobody else frees.
+    let input = unsafe { Box::from_raw(memory) };
+    let (call, bytes) = input.split_at(json.min(length));
+    MODULE.with_borrow_mut(|module| {
+        let call = String::from_utf8_lossy(call);
+        (module.json, module.bytes) = module.session.call(&call, bytes);
+        let (json, bytes) = (module.json.as_bytes(), module.bytes.as_slice());
+        module.places = [
+            json.as_ptr() as u32,
+            json.len() as u32,
+            bytes.as_ptr() as u32,
+            bytes.len() as u32,
+        ];
+        module.places.as_ptr()
+    })
+}
+
+/// What hash maps ask for their keys: the same numbers in every page, for nobody else chooses what is in its maps.
+///
+/// # Safety
+/// `place` is memory of so many bytes.
+#[unsafe(no_mangle)]
+unsafe extern "Rust" fn __getrandom_v03_custom(place: *mut u8, length: usize) -> Result<(), getrandom::Error> {
+    // SAFETY: the caller promises that the memory is there.
+    unsafe { std::ptr::write_bytes(place, 0x5a, length) };
+    Ok(())
+}

@@ -1,0 +1,217 @@
+//! [`Call`]: what can be asked of a session. `studio/src/engine.ts` says what each is for, and what comes of it.
+
+use driftworld::env::Action;
+use driftworld::similarity::Method;
+use driftworld::spec::{By, Modality, Style};
+use serde::{Deserialize, Serialize};
+
+use crate::request::WorldRequest;
+
+/// A call, with its arguments. Agents and files come as numbers of what was handed over, or as bytes beside the call.
+#[derive(Debug, Deserialize)]
+#[serde(tag = "call", rename_all = "snake_case", deny_unknown_fields)]
+pub(crate) enum Call {
+    Version,
+    Tasks,
+    Task {
+        task: String,
+    },
+    Validate {
+        text: String,
+    },
+    Schema {
+        kind: String,
+    },
+    Sample {
+        request: WorldRequest,
+    },
+    Open {
+        request: WorldRequest,
+        #[serde(default)]
+        style: Option<Style>,
+        #[serde(default)]
+        size: Option<[u32; 2]>,
+    },
+    Step {
+        episode: u32,
+        steps: Vec<Command>,
+    },
+    Choose {
+        episode: u32,
+        agent: AgentName,
+    },
+    Act {
+        episode: u32,
+        agent: AgentName,
+    },
+    Seek {
+        episode: u32,
+        step: usize,
+    },
+    Now {
+        episode: u32,
+    },
+    Frame {
+        episode: u32,
+        view: View,
+        modality: Modality,
+        #[serde(default)]
+        size: Option<[u32; 2]>,
+    },
+    Map {
+        episode: u32,
+    },
+    Actions {
+        episode: u32,
+    },
+    Recording {
+        episode: u32,
+    },
+    Close {
+        episode: u32,
+    },
+    /// Hands a network over: the bytes beside the call.
+    Network,
+    Run {
+        request: WorldRequest,
+        agent: AgentName,
+        steps: u32,
+    },
+    Measures,
+    Distance {
+        a: WorldRequest,
+        b: WorldRequest,
+        #[serde(default)]
+        by: Option<By>,
+        #[serde(default)]
+        worlds: Option<u64>,
+        #[serde(default)]
+        seed: u64,
+        #[serde(default)]
+        as_worlds: bool,
+    },
+    Elements {
+        task: String,
+        a: String,
+        b: String,
+        worlds: u64,
+        seed: u64,
+    },
+    Matrix(Among),
+    Order {
+        #[serde(flatten)]
+        among: Among,
+        #[serde(default)]
+        method: Option<String>,
+        #[serde(default)]
+        start: Option<String>,
+        #[serde(default)]
+        seed: u64,
+    },
+    Log {
+        files: Vec<File>,
+    },
+    OpenLogged {
+        experience: u64,
+        #[serde(default)]
+        style: Option<Style>,
+        #[serde(default)]
+        size: Option<[u32; 2]>,
+    },
+    EncodeLink {
+        link: Link,
+    },
+    DecodeLink {
+        fragment: String,
+    },
+}
+
+/// Some variants of a task, and by what they are compared.
+#[derive(Debug, Deserialize)]
+pub(crate) struct Among {
+    pub(crate) task: String,
+    #[serde(default)]
+    pub(crate) variants: Option<Vec<String>>,
+    #[serde(default)]
+    pub(crate) by: Option<By>,
+    #[serde(default)]
+    pub(crate) worlds: Option<u64>,
+}
+
+/// A file of a log: the next so many of the bytes beside the call.
+#[derive(Debug, Deserialize)]
+pub(crate) struct File {
+    pub(crate) path: String,
+    pub(crate) length: usize,
+}
+
+/// An episode that fits into a link.
+#[derive(Debug, Deserialize, Serialize)]
+pub(crate) struct Link {
+    pub(crate) request: WorldRequest,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) looks: Option<Style>,
+    pub(crate) actions: Vec<Taken>,
+}
+
+/// What a step is asked to do.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(untagged)]
+pub(crate) enum Command {
+    Action(Taken),
+    /// What keys ask for, in −1..1.
+    Keys {
+        ahead: f64,
+        turn: f64,
+        interact: bool,
+    },
+}
+
+/// An action as JSON has it.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+#[serde(untagged)]
+pub(crate) enum Taken {
+    Row(usize),
+    Numbers([f64; 3]),
+}
+
+impl From<Action> for Taken {
+    fn from(action: Action) -> Self {
+        match action {
+            Action::Discrete(row) => Self::Row(row),
+            Action::Continuous(numbers) => Self::Numbers(numbers),
+        }
+    }
+}
+
+impl From<Taken> for Action {
+    fn from(taken: Taken) -> Self {
+        match taken {
+            Taken::Row(row) => Self::Discrete(row),
+            Taken::Numbers(numbers) => Self::Continuous(numbers),
+        }
+    }
+}
+
+/// Who acts; a network by the number that it was given when it was handed over.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum AgentName {
+    Planner,
+    Random,
+    Still,
+    Network(usize),
+}
+
+/// From where a picture is taken.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum View {
+    Agent,
+    Above,
+}
+
+/// The method of this name.
+pub(crate) fn method(name: Option<&str>) -> Result<Option<Method>, crate::fault::Fault> {
+    Ok(name.map(str::parse).transpose()?)
+}

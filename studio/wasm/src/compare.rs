@@ -1,0 +1,115 @@
+//! Distances, elements and orders as a page shows them.
+
+use driftworld::distances::{self, Sample, Side};
+use driftworld::elements::{ElementsRequest, elements_of};
+use driftworld::similarity::{DistanceMatrix, Method, OrderOptions, classical_map, order};
+use driftworld::spec::{By, Element, Variant};
+use serde_json::{Value, json};
+
+use crate::call::Among;
+use crate::fault::Fault;
+use crate::request::TaskCache;
+
+/// How far apart two are.
+pub(crate) fn distance(a: &Side, b: &Side, by: Option<By>, worlds: Option<u64>, seed: u64) -> Result<Value, Fault> {
+    let sample = Sample {
+        by,
+        worlds,
+        seed,
+        ..Sample::default()
+    };
+    let found = distances::between(a, b, &sample, Ok)?;
+    let elements = Element::ALL.iter().zip(found.distance.elements);
+    let elements: serde_json::Map<String, Value> = elements
+        .map(|(element, distance)| (element.letter().to_owned(), json!(distance)))
+        .collect();
+    Ok(json!({
+        "by": found.by, "description": found.description, "total": found.distance.total, "elements": elements,
+        "parts": found.distance.parts,
+    }))
+}
+
+/// What two variants of a task differ in, and a witness of each element.
+pub(crate) fn elements(
+    tasks: &mut TaskCache,
+    called: &str,
+    [a, b]: [&str; 2],
+    worlds: u64,
+    seed: u64,
+) -> Result<Value, Fault> {
+    let task = tasks.task(called)?;
+    let request = ElementsRequest {
+        worlds,
+        seed,
+        ..ElementsRequest::between(task.name(), a, b)
+    };
+    let found = elements_of(&task, &request)?;
+    let Some(variant) = found.variants.first() else {
+        return Err(Fault::request("elements: found one variant, expected two"));
+    };
+    let measured = variant.measured.iter().map(|measured| {
+        let witness = &measured.witness;
+        let message = format!("{}: {} beside {}", witness.what, witness.a, witness.b);
+        json!({ "element": measured.element, "message": message, "witness": witness })
+    });
+    Ok(json!({
+        "parameters": variant.parameters, "declared": variant.declared, "measured": measured.collect::<Vec<_>>(),
+        "contradictions": variant.contradictions.iter().map(|one| &one.message).collect::<Vec<_>>(),
+        "idle": variant.idle, "verdict": variant.verdict,
+    }))
+}
+
+/// All distances among variants, and by what they were measured.
+fn measured(tasks: &mut TaskCache, among: &Among) -> Result<(DistanceMatrix, By), Fault> {
+    let task = tasks.task(&among.task)?;
+    let variants: Vec<Variant> = match &among.variants {
+        None => task.all_variants(),
+        Some(names) => names.iter().map(|name| task.variant(name)).collect::<Result<_, _>>()?,
+    };
+    let by = among.by.unwrap_or_else(|| distances::fitting(&variants));
+    let named: Vec<(String, Variant)> = (variants.into_iter())
+        .map(|variant| (variant.name().to_owned(), variant))
+        .collect();
+    let sample = Sample {
+        worlds: among.worlds,
+        ..Sample::by(by)
+    };
+    Ok((distances::variant_matrix(&named, &sample, Ok)?, by))
+}
+
+/// All distances among variants, and a flat map of them.
+pub(crate) fn matrix(tasks: &mut TaskCache, among: &Among) -> Result<Value, Fault> {
+    let (matrix, by) = measured(tasks, among)?;
+    let map = classical_map(&matrix);
+    let rows: Vec<Vec<f64>> = matrix.values().rows().into_iter().map(|row| row.to_vec()).collect();
+    Ok(json!({ "by": by, "labels": matrix.labels(), "rows": rows, "points": map.points, "shown": map.explained }))
+}
+
+/// Variants in an order.
+pub(crate) fn ordered(
+    tasks: &mut TaskCache,
+    among: &Among,
+    method: Option<Method>,
+    start: Option<&str>,
+    seed: u64,
+) -> Result<Value, Fault> {
+    let (matrix, by) = measured(tasks, among)?;
+    let method = method.unwrap_or_else(|| Method::default_for(matrix.len()));
+    let place = |start: &str| {
+        let found = matrix.labels().iter().position(|label| label == start);
+        found.ok_or_else(|| {
+            Fault::request(format!(
+                "start: found {start:?}, expected one of {}",
+                matrix.labels().join(", ")
+            ))
+        })
+    };
+    let options = OrderOptions {
+        first: start.map(place).transpose()?,
+        seed,
+        ..OrderOptions::default()
+    };
+    let found = order(&matrix, method, &options)?;
+    let labels: Vec<&String> = found.indices.iter().map(|index| &matrix.labels()[*index]).collect();
+    Ok(json!({ "method": method, "by": by, "labels": labels, "steps": found.steps, "length": found.length }))
+}

@@ -1,0 +1,328 @@
+//! [`Episode`]: a world that runs, with all that was done in it, so that any moment of it can be gone back to; its map and its pictures.
+
+use driftworld::env::{
+    Action, Agent, Camera, Environment, EpisodeOrigin, Frame, NetworkAgent, OnRailsAgent, Paint, RandomAgent,
+    Recording, RecordingLines, Snapshot, Step, StillAgent, top_down,
+};
+use driftworld::modality;
+use driftworld::spec::{ActionModel, ActionSpace, Modality, World};
+use serde_json::{Value, json};
+
+use crate::call::{AgentName, Command, Taken, View};
+use crate::fault::Fault;
+
+/// So many steps lie between moments that are kept.
+const KEPT: usize = 64;
+
+/// Corners of a disc on the map.
+const CORNERS: usize = 32;
+
+/// Agents that were handed over, by their numbers.
+pub(crate) type Networks = Vec<NetworkAgent>;
+
+/// An agent that begins anew; the seed of all of them is 0, as the command's `--agent-seed`.
+pub(crate) fn agent(name: AgentName, networks: &Networks) -> Result<Box<dyn Agent>, Fault> {
+    let mut agent: Box<dyn Agent> = match name {
+        AgentName::Planner => Box::new(OnRailsAgent::new()),
+        AgentName::Random => Box::new(RandomAgent::new(0)),
+        AgentName::Still => Box::new(StillAgent),
+        AgentName::Network(number) => networks.get(number).and_then(Agent::frozen).ok_or_else(|| {
+            Fault::request(format!(
+                "agent: found network {number}, expected one that was handed over"
+            ))
+        })?,
+    };
+    agent.begin(0);
+    Ok(agent)
+}
+
+/// A world that runs.
+pub(crate) struct Episode {
+    environment: Environment,
+    actions: Vec<Action>,
+    /// How many of these were taken.
+    at: usize,
+    /// Every [`KEPT`] steps, what was then.
+    moments: Vec<(Snapshot, Step)>,
+    step: Step,
+    /// Who chose the last action; an agent begins anew when it takes over.
+    agent: Option<(AgentName, Box<dyn Agent>)>,
+    /// What it chose last.
+    chosen: Option<Action>,
+    size: Option<[u32; 2]>,
+}
+
+impl Episode {
+    pub(crate) fn new(world: World, size: Option<[u32; 2]>) -> Self {
+        Self::with_actions(world, Vec::new(), size)
+    }
+
+    /// An episode at its start whose actions are known.
+    pub(crate) fn with_actions(world: World, actions: Vec<Action>, size: Option<[u32; 2]>) -> Self {
+        let environment = Environment::new(world);
+        let start = (environment.snapshot(), Step::default());
+        Self {
+            environment,
+            actions,
+            at: 0,
+            moments: vec![start],
+            step: Step::default(),
+            agent: None,
+            chosen: None,
+            size,
+        }
+    }
+
+    pub(crate) fn actions(&self) -> Vec<Taken> {
+        self.actions.iter().copied().map(Taken::from).collect()
+    }
+
+    pub(crate) fn ended(&self) -> bool {
+        self.environment.ended()
+    }
+
+    /// Does what is asked; what was played beyond this moment is dropped.
+    pub(crate) fn step(&mut self, command: Command) -> Result<(), Fault> {
+        let action = match command {
+            Command::Action(action) => action.into(),
+            Command::Keys { ahead, turn, interact } => {
+                let agent = &self.environment.world().agent_params;
+                let (speed, rate) = (agent.max_linear_speed, agent.max_angular_speed);
+                self.environment.action_near(ahead * speed, turn * rate, interact)
+            }
+        };
+        if self.chosen != Some(action) {
+            self.agent = None;
+        }
+        self.take(action)
+    }
+
+    fn take(&mut self, action: Action) -> Result<(), Fault> {
+        if self.ended() {
+            return Err(Fault::new(
+                "env/ended",
+                "step: found an episode that is over, expected one that goes on; go back or begin anew",
+            ));
+        }
+        self.environment.check(action)?;
+        self.actions.truncate(self.at);
+        self.moments.truncate(self.at / KEPT + 1);
+        self.actions.push(action);
+        self.go_on()
+    }
+
+    /// Takes the next of the actions that are known.
+    fn go_on(&mut self) -> Result<(), Fault> {
+        self.step = self.environment.step(self.actions[self.at])?;
+        self.at += 1;
+        if self.at == KEPT * self.moments.len() {
+            self.moments.push((self.environment.snapshot(), self.step.clone()));
+        }
+        Ok(())
+    }
+
+    /// What an agent would do now.
+    pub(crate) fn choose(&mut self, name: AgentName, networks: &Networks) -> Result<Action, Fault> {
+        let mut acting = match self.agent.take() {
+            Some((known, agent)) if known == name => agent,
+            _ => agent(name, networks)?,
+        };
+        let action = acting.act(&self.environment);
+        self.agent = Some((name, acting));
+        self.chosen = Some(action);
+        Ok(action)
+    }
+
+    pub(crate) fn act(&mut self, name: AgentName, networks: &Networks) -> Result<(), Fault> {
+        let action = self.choose(name, networks)?;
+        self.take(action)
+    }
+
+    /// Goes to the moment after so many steps, or to the last.
+    pub(crate) fn seek(&mut self, step: usize) -> Result<(), Fault> {
+        let step = step.min(self.actions.len());
+        self.agent = None;
+        let nearest = (step / KEPT).min(self.moments.len() - 1);
+        if step < self.at || nearest * KEPT > self.at {
+            let (moment, last) = &self.moments[nearest];
+            self.environment.restore(moment);
+            (self.step, self.at) = (last.clone(), nearest * KEPT);
+        }
+        while self.at < step {
+            self.go_on()?;
+        }
+        Ok(())
+    }
+
+    /// Where it stands.
+    pub(crate) fn now(&self) -> Value {
+        let agent = self.environment.agent();
+        let mut now = json!(self.step);
+        let more = json!({
+            "step": self.at,
+            "action": self.at.checked_sub(1).map(|last| Taken::from(self.actions[last])),
+            "total": self.environment.episode_return(),
+            "seconds": self.environment.seconds(),
+            "energy": self.environment.energy(),
+            "agent": { "x": agent.position[0], "y": agent.position[1], "heading": agent.heading_deg },
+        });
+        if let (Value::Object(now), Value::Object(more)) = (&mut now, more) {
+            now.extend(more);
+        }
+        now
+    }
+
+    /// What was played up to now as a file of recordings, as `driftworld film --record` writes it.
+    pub(crate) fn recording(&self) -> String {
+        let recording = Recording {
+            origin: EpisodeOrigin::default(),
+            recorded_by: env!("CARGO_PKG_VERSION").to_owned(),
+            world: self.environment.world().clone(),
+            edits: Vec::new(),
+            actions: self.actions[..self.at].to_vec(),
+            reward: self.environment.episode_return(),
+            ended_by: self.step.ended_by,
+        };
+        RecordingLines::header() + &RecordingLines::default().lines(&recording)
+    }
+
+    /// What the page is told of it when it begins.
+    pub(crate) fn opened(&self) -> Value {
+        let world = self.environment.world();
+        let agent = &world.agent_params;
+        let table: Option<Vec<[f64; 3]>> = agent
+            .num_actions()
+            .map(|rows| (0..rows).filter_map(|row| agent.action_row(row)).collect());
+        let kind = match agent.actions {
+            ActionSpace::Continuous => "continuous",
+            ActionSpace::Normalized => "normalized",
+            ActionSpace::DefaultDiscrete | ActionSpace::Discrete(_) => "discrete",
+        };
+        let names: Vec<String> = match (&table, agent.action_model) {
+            (Some(rows), _) => rows.iter().map(|row| row_name(*row)).collect(),
+            (None, ActionModel::ByWaypoint) => ["x", "y", "turn"].map(str::to_owned).into(),
+            (None, _) => ["ahead", "turn", "interact"].map(str::to_owned).into(),
+        };
+        let [width, height] = agent.picture_size();
+        json!({
+            "image_size": width.max(height), "world": world.to_json(),
+            "action_space": {
+                "kind": kind, "model": agent.action_model, "names": names, "table": table, "can_interact": agent.interact,
+                "max_speed": agent.max_linear_speed, "max_turn_rate": agent.max_angular_speed,
+                "step_seconds": agent.time_step * f64::from(agent.frame_skip.max(1)),
+            },
+        })
+    }
+
+    /// A picture: its size, and its pixels as RGBA.
+    pub(crate) fn frame(
+        &mut self,
+        view: View,
+        modality: Modality,
+        size: Option<[u32; 2]>,
+    ) -> Result<([u32; 2], Vec<u8>), Fault> {
+        let own = self.environment.world().agent_params.picture_size();
+        let [width, height] = size.or(self.size).unwrap_or(own);
+        if view == View::Above && modality == Modality::Rgb {
+            if !(1..=4096).contains(&width) || !(1..=4096).contains(&height) {
+                return Err(driftworld::env::EnvError::PictureSize { width, height }.into());
+            }
+            let agent = self.environment.agent();
+            let place = Some((agent.position, agent.heading_deg));
+            let image = top_down(self.environment.scene(), width, height, place);
+            return Ok(([width, height], rgba(&image.rgb)));
+        }
+        let rgb = |frame: &Frame| rgba(&modality::to_rgb(modality, frame, modality::number_color));
+        let pixels = if view == View::Above {
+            let camera = Camera::overview(self.environment.scene());
+            rgb(&self.environment.render(&camera, width, height)?)
+        } else if [width, height] == own {
+            rgb(self.environment.observe())
+        } else {
+            rgb(&self.environment.observe_at(width, height)?)
+        };
+        Ok(([width, height], pixels))
+    }
+
+    /// All that a flat map shows.
+    pub(crate) fn map(&self) -> Value {
+        let (world, scene) = (self.environment.world(), self.environment.scene());
+        let walls = scene
+            .walls
+            .iter()
+            .map(|wall| json!({ "points": [wall.from, wall.to], "closed": false, "color": wall.color }));
+        let objects = world.objects.iter().zip(self.environment.objects()).zip(&scene.items);
+        let objects = objects.enumerate().map(|(index, ((object, state), item))| {
+            let main = item.asset.parts.iter().find_map(|part| match part.paint {
+                Paint::Main(color) => Some(color),
+                Paint::Fixed(_) => None,
+            });
+            json!({
+                "index": index, "class": object.class, "tag": object.tag, "x": state.position[0], "y": state.position[1],
+                "heading": state.heading_deg, "radius": item.body.radius * item.scale, "color": item.color.or(main).unwrap_or([0.5; 3]),
+                "reward": state.reward, "present": state.present && item.visible, "carried": state.carried,
+                "open": state.open,
+            })
+        });
+        let zones = world.environment_params.zones.iter().map(|zone| {
+            let points = match (&zone.disc, &zone.polygon) {
+                (Some(disc), _) => (0..CORNERS)
+                    .map(|corner| around(disc.center, disc.radius, corner))
+                    .collect(),
+                (None, corners) => corners.clone().unwrap_or_default(),
+            };
+            json!({ "name": zone.name, "points": points, "color": zone.ground_color(), "visible": zone.visible })
+        });
+        let [width, depth] = scene.arena_size();
+        let agent = self.environment.agent();
+        json!({
+            "width": width, "depth": depth, "walls": walls.collect::<Vec<_>>(), "objects": objects.collect::<Vec<_>>(),
+            "zones": zones.collect::<Vec<_>>(),
+            "agent": {
+                "x": agent.position[0], "y": agent.position[1], "heading": agent.heading_deg,
+                "radius": world.agent_params.agent_width / 2.0,
+            },
+        })
+    }
+
+    /// How an episode went that an agent has played to its end.
+    pub(crate) fn outcome(&self) -> Value {
+        json!({
+            "steps": self.at, "total": self.environment.episode_return(), "success": self.step.success,
+            "ended_by": self.step.ended_by, "actions": self.actions(),
+        })
+    }
+}
+
+fn around([x, y]: [f64; 2], radius: f64, corner: usize) -> [f64; 2] {
+    let turn = corner as f64 / CORNERS as f64 * std::f64::consts::TAU;
+    [x + radius * libm::cos(turn), y + radius * libm::sin(turn)]
+}
+
+/// What a row of a table does, in words.
+fn row_name([speed, turn, interact]: [f64; 3]) -> String {
+    let along = if speed > 0.0 { "ahead" } else { "back" };
+    let turn = (turn != 0.0).then_some(if turn > 0.0 { "right" } else { "left" });
+    let words: Vec<&str> = [
+        (speed != 0.0).then_some(along),
+        turn,
+        (interact > 0.5).then_some("interact"),
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
+    if words.is_empty() {
+        "wait".to_owned()
+    } else {
+        words.join(" ")
+    }
+}
+
+/// Colours with an alpha of 1.
+fn rgba(rgb: &[u8]) -> Vec<u8> {
+    let mut pixels = vec![255; rgb.len() / 3 * 4];
+    for (pixel, rgb) in pixels.chunks_exact_mut(4).zip(rgb.chunks_exact(3)) {
+        pixel[..3].copy_from_slice(rgb);
+    }
+    pixels
+}

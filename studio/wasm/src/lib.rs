@@ -1,0 +1,16 @@
+//! Driftworld for a browser: a [`Session`] answers calls in JSON, with bytes beside them. The simulator, distances and orders are
+//! other crates'; `abi.rs` has the C functions that WebAssembly exports.
+
+#[cfg(target_family = "wasm")]
+mod abi;
+mod call;
+mod compare;
+mod episode;
+mod fault;
+mod link;
+mod log;
+mod request;
+mod session;
+mod tasks;
+
+pub use session::Session;

@@ -1,0 +1,296 @@
+//! An episode as the fragment of an address. Base64url of: the version of the form, a checksum, and what is deflated: a line of JSON
+//! that says which world and what came of it, then a number for each step.
+//!
+//! Actions of three numbers would take 24 bytes a step. But the planner and the agent that acts at random do the same again, so
+//! that a step is a few bits: who chose it, or which of the actions that are listed.
+
+use std::io::{Read, Write};
+
+use base64::Engine;
+use base64::engine::general_purpose::URL_SAFE_NO_PAD;
+use driftworld::env::{Action, Agent, Environment};
+use driftworld::spec::Style;
+use flate2::Compression;
+use flate2::read::DeflateDecoder;
+use flate2::write::DeflateEncoder;
+use serde::{Deserialize, Serialize};
+
+use crate::call::{AgentName, Link, Taken};
+use crate::episode::agent;
+use crate::fault::Fault;
+use crate::request::{TaskCache, WorldRequest, in_style};
+
+/// The version of the form.
+const FORMAT: u8 = 1;
+
+/// The most steps in a link.
+pub(crate) const MAX_LINK_STEPS: usize = 20_000;
+
+/// The longest fragment, and the most bytes that come out of it.
+const MAX_FRAGMENT: usize = 1 << 18;
+const MAX_UNPACKED: u64 = 1 << 22;
+
+/// Who acts again as they did: each as one who goes on, and as one who begins anew.
+const AGENTS: [AgentName; 2] = [AgentName::Planner, AgentName::Random];
+/// Numbers of steps below this are agents, the others places in the list of actions.
+const LISTED: u64 = 2 * AGENTS.len() as u64;
+
+/// What the line of JSON says.
+#[derive(Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+struct Header {
+    /// The version of Driftworld.
+    by: String,
+    request: WorldRequest,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    looks: Option<Style>,
+    steps: usize,
+    /// The beginning of the world's hash.
+    hash: String,
+    /// The bits of the sum of rewards.
+    total: String,
+    /// Actions that nobody chooses again.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    listed: Vec<Taken>,
+}
+
+/// Agents that are asked along an episode what they would do.
+#[derive(Default)]
+struct Asked([Option<Box<dyn Agent>>; AGENTS.len()]);
+
+impl Asked {
+    /// What an agent does that goes on (even numbers) or begins anew; nobody else can go on from here.
+    fn act(&mut self, number: usize, environment: &Environment) -> Option<Action> {
+        let (own, is_new) = (number / 2, number % 2 == 1);
+        let mut acting = if is_new {
+            Some(agent(AGENTS[own], &Vec::new()).ok()?)
+        } else {
+            self.0[own].take()
+        }?;
+        let action = acting.act(environment);
+        *self = Self::default();
+        self.0[own] = Some(acting);
+        Some(action)
+    }
+}
+
+fn same(a: Action, b: Action) -> bool {
+    match (a, b) {
+        (Action::Discrete(a), Action::Discrete(b)) => a == b,
+        (Action::Continuous(a), Action::Continuous(b)) => a.map(f64::to_bits) == b.map(f64::to_bits),
+        _ => false,
+    }
+}
+
+/// The fragment of an episode.
+pub(crate) fn encoded(tasks: &mut TaskCache, link: Link) -> Result<String, Fault> {
+    let steps = link.actions.len();
+    if steps > MAX_LINK_STEPS {
+        return Err(Fault::new(
+            "link/too-long",
+            format!("link: found {steps} steps, expected at most {MAX_LINK_STEPS}; record the episode in a file"),
+        ));
+    }
+    let world = tasks.world(&link.request)?;
+    let hash = short_hash(&world.hash());
+    let mut environment = Environment::new(in_style(world, link.looks)?);
+    let (mut asked, mut listed, mut numbers) = (Asked::default(), Vec::<Action>::new(), Vec::new());
+    for taken in &link.actions {
+        let action = Action::from(*taken);
+        // Rows are as short as a number of an agent, and quicker to read back.
+        let number = match action {
+            Action::Discrete(_) => None,
+            Action::Continuous(_) => chosen_again(&mut asked, &environment, action),
+        };
+        numbers.push(number.unwrap_or_else(|| {
+            asked = Asked::default();
+            let known = listed.iter().position(|known| same(*known, action));
+            LISTED
+                + known.unwrap_or_else(|| {
+                    listed.push(action);
+                    listed.len() - 1
+                }) as u64
+        }));
+        environment.step(action)?;
+    }
+    let header = Header {
+        by: env!("CARGO_PKG_VERSION").to_owned(),
+        request: link.request,
+        looks: link.looks,
+        steps,
+        hash,
+        total: bits(environment.episode_return()),
+        listed: listed.into_iter().map(Taken::from).collect(),
+    };
+    let mut unpacked = serde_json::to_vec(&header).expect("keys are strings, and numbers were checked by steps");
+    unpacked.push(b'\n');
+    for number in numbers {
+        push_number(&mut unpacked, number);
+    }
+    let mut deflater = DeflateEncoder::new(Vec::new(), Compression::best());
+    let packed = deflater.write_all(&unpacked).and_then(|()| deflater.finish());
+    let packed = packed.expect("writing into memory cannot fail");
+    let mut bytes = vec![FORMAT];
+    bytes.extend(crc32fast::hash(&packed).to_le_bytes());
+    bytes.extend(packed);
+    Ok(URL_SAFE_NO_PAD.encode(bytes))
+}
+
+/// The number of an agent that would have chosen this action, too.
+fn chosen_again(asked: &mut Asked, environment: &Environment, action: Action) -> Option<u64> {
+    for own in 0..AGENTS.len() {
+        // One who acted until now goes on; should that be another action, it may have begun anew.
+        let goes_on = asked.0[own].is_some();
+        let tries = if goes_on {
+            vec![2 * own, 2 * own + 1]
+        } else {
+            vec![2 * own + 1]
+        };
+        for number in tries {
+            let mut trying = Asked::default();
+            if number % 2 == 0 {
+                trying.0[own] = asked.0[own].take();
+            }
+            if trying.act(number, environment).is_some_and(|would| same(would, action)) {
+                *asked = trying;
+                return Some(number as u64);
+            }
+        }
+    }
+    None
+}
+
+/// The episode of a fragment, which has been run again to see that it is the same.
+pub(crate) fn decoded(tasks: &mut TaskCache, fragment: &str) -> Result<Link, Fault> {
+    let (header, mut numbers) = unpacked(fragment)?;
+    let other = |what: &str| {
+        Fault::new(
+            "link/version",
+            format!(
+                "link: found {what} made by Driftworld {}, expected one made by {}; open it with the version that made it",
+                printable(&header.by),
+                env!("CARGO_PKG_VERSION")
+            ),
+        )
+    };
+    let world = tasks
+        .world(&header.request)
+        .map_err(|fault| other(&format!("an episode ({}) that was", fault.message)))?;
+    if short_hash(&world.hash()) != header.hash {
+        return Err(other("a world that is not the one here, in an episode"));
+    }
+    let mut environment = Environment::new(in_style(world, header.looks)?);
+    let (mut asked, mut actions) = (Asked::default(), Vec::with_capacity(header.steps));
+    for _ in 0..header.steps {
+        let number = pop_number(&mut numbers).ok_or_else(|| damaged("fewer numbers than steps"))?;
+        let action = if number < LISTED {
+            asked.act(number as usize, &environment)
+        } else {
+            asked = Asked::default();
+            header
+                .listed
+                .get((number - LISTED) as usize)
+                .map(|taken| Action::from(*taken))
+        };
+        let action = action.ok_or_else(|| damaged("a step that is none"))?;
+        if environment.ended() || environment.step(action).is_err() {
+            return Err(other("steps that cannot be taken here, in an episode"));
+        }
+        actions.push(Taken::from(action));
+    }
+    if !numbers.is_empty() {
+        return Err(damaged("more numbers than steps"));
+    }
+    if bits(environment.episode_return()) != header.total {
+        return Err(other("rewards that are not paid here, in an episode"));
+    }
+    Ok(Link {
+        request: header.request,
+        looks: header.looks,
+        actions,
+    })
+}
+
+/// What is deflated in a fragment: the line of JSON, and the numbers.
+fn unpacked(fragment: &str) -> Result<(Header, std::collections::VecDeque<u8>), Fault> {
+    if fragment.len() > MAX_FRAGMENT {
+        return Err(damaged(&format!(
+            "{} characters, more than {MAX_FRAGMENT}",
+            fragment.len()
+        )));
+    }
+    let bytes = URL_SAFE_NO_PAD
+        .decode(fragment)
+        .map_err(|error| damaged(&error.to_string()))?;
+    let (&format, rest) = bytes.split_first().ok_or_else(|| damaged("nothing"))?;
+    let (sum, packed) = rest
+        .split_first_chunk::<4>()
+        .ok_or_else(|| damaged("too few characters"))?;
+    if u32::from_le_bytes(*sum) != crc32fast::hash(packed) {
+        return Err(damaged("another checksum than that of its characters"));
+    }
+    if format != FORMAT {
+        return Err(Fault::new(
+            "link/version",
+            format!(
+                "link: found the form {format}, expected {FORMAT}; open it with the version of Driftworld that made it"
+            ),
+        ));
+    }
+    let mut all = Vec::new();
+    let read = DeflateDecoder::new(packed).take(MAX_UNPACKED + 1).read_to_end(&mut all);
+    read.map_err(|error| damaged(&error.to_string()))?;
+    if all.len() as u64 > MAX_UNPACKED {
+        return Err(damaged("more than can be unpacked"));
+    }
+    let end = all
+        .iter()
+        .position(|byte| *byte == b'\n')
+        .ok_or_else(|| damaged("no line of JSON"))?;
+    let header: Header = serde_json::from_slice(&all[..end]).map_err(|error| damaged(&error.to_string()))?;
+    if header.steps > MAX_LINK_STEPS {
+        return Err(damaged(&format!("{} steps, more than {MAX_LINK_STEPS}", header.steps)));
+    }
+    Ok((header, all.drain(end + 1..).collect()))
+}
+
+fn damaged(found: &str) -> Fault {
+    Fault::new(
+        "link/damaged",
+        format!("link: found {found}, expected a whole link; copy all of it"),
+    )
+}
+
+/// The beginning of a name that somebody else wrote.
+fn printable(text: &str) -> String {
+    text.chars().filter(char::is_ascii_graphic).take(20).collect()
+}
+
+fn short_hash(hash: &str) -> String {
+    hash.chars().take(12).collect()
+}
+
+fn bits(number: f64) -> String {
+    format!("{:x}", number.to_bits())
+}
+
+/// Seven bits a byte, the lowest first.
+fn push_number(bytes: &mut Vec<u8>, mut number: u64) {
+    while number >= 0x80 {
+        bytes.push(number as u8 | 0x80);
+        number >>= 7;
+    }
+    bytes.push(number as u8);
+}
+
+fn pop_number(bytes: &mut std::collections::VecDeque<u8>) -> Option<u64> {
+    let mut number = 0;
+    for place in 0..9 {
+        let byte = bytes.pop_front()?;
+        number |= u64::from(byte & 0x7f) << (7 * place);
+        if byte < 0x80 {
+            return Some(number);
+        }
+    }
+    None
+}

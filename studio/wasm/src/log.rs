@@ -1,0 +1,170 @@
+//! A log of a lifetime out of files that a page was given: what its learning curve shows, and the episodes whose actions were recorded.
+//! Checking and scoring logs is `metrics`', which reads folders.
+
+use std::collections::BTreeSet;
+use std::io::Cursor;
+
+use driftworld::env::{Recording, RecordingReader};
+use serde_json::{Value, json};
+
+use crate::call::File;
+use crate::fault::Fault;
+
+/// The most rows of a log.
+const MAX_ROWS: usize = 1_000_000;
+
+/// Columns that are no metrics.
+const COLUMNS: [&str; 9] = [
+    "block_num",
+    "exp_num",
+    "worker_id",
+    "block_type",
+    "block_subtype",
+    "task_name",
+    "task_params",
+    "exp_status",
+    "timestamp",
+];
+
+/// The recordings of the log that was read last.
+#[derive(Default)]
+pub(crate) struct Log {
+    recordings: Vec<Vec<u8>>,
+}
+
+/// A row of a table, by its columns; a cell in quotes may hold what parts cells, and a quote twice.
+fn cells(line: &str) -> Vec<String> {
+    let unquoted = |cell: &str| match cell.strip_prefix('"').and_then(|cell| cell.strip_suffix('"')) {
+        Some(inner) => inner.replace("\"\"", "\""),
+        None => cell.to_owned(),
+    };
+    line.trim_end_matches('\r').split('\t').map(unquoted).collect()
+}
+
+impl Log {
+    /// Reads the files of a log; `bytes` are those of all files, one after the other.
+    pub(crate) fn read(files: &[File], mut bytes: &[u8]) -> Result<(Self, Value), Fault> {
+        let mut log = Self::default();
+        let (mut rows, mut warnings): (Vec<Value>, Vec<String>) = (Vec::new(), Vec::new());
+        let (mut tasks, mut metrics): (Vec<String>, Vec<String>) = (Vec::new(), Vec::new());
+        let mut recorded = BTreeSet::new();
+        for file in files {
+            let (own, rest) = bytes
+                .split_at_checked(file.length)
+                .ok_or_else(|| Fault::request(format!("{}: found fewer bytes than it has, expected all", file.path)))?;
+            bytes = rest;
+            let name = file.path.rsplit('/').next().unwrap_or_default();
+            if name == "data-log.tsv" {
+                read_rows(&file.path, own, &mut rows, &mut tasks, &mut metrics, &mut warnings)?;
+            } else if name.rsplit_once('.').is_some_and(|(_, ending)| ending == "jsonl") {
+                match RecordingReader::new(Cursor::new(own)) {
+                    Ok(mut reader) => loop {
+                        match reader.next_episode() {
+                            Ok(Some(episode)) => recorded.extend([episode.origin.experience]),
+                            Ok(None) => break,
+                            Err(error) => warnings.push(format!("{}: {error}", file.path)),
+                        }
+                    },
+                    Err(error) => warnings.push(format!("{}: {error}", file.path)),
+                }
+                log.recordings.push(own.to_vec());
+            }
+        }
+        if rows.is_empty() && log.recordings.is_empty() {
+            return Err(Fault::new(
+                "log/empty",
+                "log: found no data-log.tsv and no actions.jsonl, expected the folder that `driftworld run --log` wrote",
+            ));
+        }
+        rows.sort_by_key(|row| (row["experience"].as_u64(), row["block"].as_u64()));
+        for row in &mut rows {
+            row["recorded"] = json!(
+                row["experience"]
+                    .as_u64()
+                    .is_some_and(|number| recorded.contains(&number))
+            );
+        }
+        Ok((
+            log,
+            json!({ "tasks": tasks, "metrics": metrics, "episodes": rows, "warnings": warnings }),
+        ))
+    }
+
+    /// A recorded episode by its number.
+    pub(crate) fn recording(&self, experience: u64) -> Result<Recording, Fault> {
+        for bytes in &self.recordings {
+            let Ok(mut reader) = RecordingReader::new(Cursor::new(&bytes[..])) else {
+                continue;
+            };
+            loop {
+                match reader.next_episode() {
+                    Ok(Some(episode)) if episode.origin.experience == experience => {
+                        return Ok(reader.recording(&episode)?);
+                    }
+                    Ok(Some(_)) | Err(_) => {}
+                    Ok(None) => break,
+                }
+            }
+        }
+        Err(Fault::request(format!(
+            "experience: found {experience}, expected one whose actions were recorded; record with `driftworld run --record`"
+        )))
+    }
+}
+
+fn read_rows(
+    path: &str,
+    bytes: &[u8],
+    rows: &mut Vec<Value>,
+    tasks: &mut Vec<String>,
+    metrics: &mut Vec<String>,
+    warnings: &mut Vec<String>,
+) -> Result<(), Fault> {
+    let text = String::from_utf8_lossy(bytes);
+    let mut lines = text.lines();
+    let header = cells(lines.next().unwrap_or_default());
+    let place = |name: &str| header.iter().position(|column| column == name);
+    let needed = ["block_num", "exp_num", "block_type", "task_name"].map(place);
+    let [Some(block), Some(experience), Some(kind), Some(task)] = needed else {
+        return Err(Fault::new(
+            "log/header",
+            format!(
+                "{path}:1: found the columns {}, expected those of a log",
+                header.join(", ")
+            ),
+        ));
+    };
+    for name in header.iter().filter(|name| !COLUMNS.contains(&name.as_str())) {
+        if !metrics.contains(name) {
+            metrics.push(name.clone());
+        }
+    }
+    let (reward, steps) = (place("reward"), place("steps").or_else(|| place("episode_step_count")));
+    for (number, line) in (2..).zip(lines) {
+        let cells = cells(line);
+        if cells.len() != header.len() {
+            warnings.push(format!(
+                "{path}:{number}: found {} cells, expected {}; left out",
+                cells.len(),
+                header.len()
+            ));
+            continue;
+        }
+        if rows.len() == MAX_ROWS {
+            return Err(Fault::new(
+                "log/too-long",
+                format!("{path}:{number}: found more than {MAX_ROWS} rows, expected at most that many"),
+            ));
+        }
+        let whole = |place: usize| cells[place].parse::<u64>().unwrap_or_default();
+        let number = |place: Option<usize>| place.and_then(|place| cells[place].parse::<f64>().ok());
+        if !tasks.contains(&cells[task]) {
+            tasks.push(cells[task].clone());
+        }
+        rows.push(json!({
+            "block": whole(block), "experience": whole(experience), "block_type": cells[kind], "task": cells[task],
+            "reward": number(reward), "steps": number(steps),
+        }));
+    }
+    Ok(())
+}

@@ -1,0 +1,129 @@
+//! `cargo xtask studio`, which builds the page of the workbench into `target/studio`, and the stage `studio`, which tests it. How
+//! the page is bundled is in `studio/build.mjs`.
+
+use std::env;
+use std::fs;
+use std::path::PathBuf;
+use std::process::Command;
+
+use crate::process::{Result, Workspace, about, output, run, works};
+use crate::stage::{Outcome, missing};
+
+const TARGET: &str = "wasm32-unknown-unknown";
+
+/// Builds the page: the simulator, the packages of the page, and the bundle of both.
+pub(crate) fn build(workspace: &Workspace) -> Result {
+    tools(workspace).map_err(|lack| lack.join("; "))?;
+    bundle(workspace)
+}
+
+/// What is missing to build the page, each with what to do about it.
+fn tools(workspace: &Workspace) -> std::result::Result<(), Vec<String>> {
+    let mut lack = Vec::new();
+    let version = "process.exit(Number(process.versions.node.split('.')[0]) >= 20 ? 0 : 1)";
+    if !works(workspace.program("node".as_ref(), &["-e", version])) || !works(npm(workspace, &["--version"])) {
+        lack.push("found no Node.js 20 or later with npm, expected both (Debian: apt install nodejs npm)".to_owned());
+    }
+    if !has_target(workspace) && !works(workspace.program("rustup".as_ref(), &["target", "add", TARGET])) {
+        lack.push(format!(
+            "found no standard library for {TARGET}, expected one (rustup target add {TARGET})"
+        ));
+    }
+    if lack.is_empty() { Ok(()) } else { Err(lack) }
+}
+
+fn has_target(workspace: &Workspace) -> bool {
+    let sysroot = output(workspace.program("rustc".as_ref(), &["--print", "sysroot"]));
+    sysroot.is_ok_and(|sysroot| PathBuf::from(sysroot.trim()).join("lib/rustlib").join(TARGET).is_dir())
+}
+
+fn bundle(workspace: &Workspace) -> Result {
+    run(workspace.cargo(&[
+        "build",
+        "-p",
+        "driftworld-wasm",
+        "--lib",
+        "--target",
+        TARGET,
+        "--profile",
+        "wasm",
+    ]))?;
+    install(workspace)?;
+    let mut bundle = workspace.program("node".as_ref(), &["studio/build.mjs"]);
+    bundle.arg(workspace.target.join(TARGET).join("wasm/driftworld_wasm.wasm"));
+    bundle.arg(workspace.target.join("studio"));
+    run(bundle)
+}
+
+/// Installs the packages of `studio/package-lock.json`, unless they are there.
+fn install(workspace: &Workspace) -> Result {
+    let time = |path: &str| {
+        let changed = workspace.root.join("studio").join(path).metadata();
+        changed.and_then(|it| it.modified()).ok()
+    };
+    let (installed, wanted) = (time("node_modules/.package-lock.json"), time("package-lock.json"));
+    if installed.is_some() && installed >= wanted {
+        return Ok(());
+    }
+    run(npm(workspace, &["ci", "--no-audit", "--no-fund"]))
+}
+
+fn npm(workspace: &Workspace, arguments: &[&str]) -> Command {
+    let mut npm = workspace.program(if cfg!(windows) { "npm.cmd" } else { "npm" }.as_ref(), arguments);
+    npm.current_dir(workspace.root.join("studio"));
+    npm
+}
+
+/// Builds the page, checks its types, and compares its simulator with this machine's, in Node and, where there is one, in Chromium.
+pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome> {
+    if let Err(lack) = tools(workspace) {
+        return missing("STUDIO", lack.join("; "));
+    }
+    if let Err(reason) = install(workspace) {
+        return missing("STUDIO", format!("the packages of the page cannot be had: {reason}"));
+    }
+    bundle(workspace)?;
+    run(npm(workspace, &["run", "--silent", "check"]))?;
+    // The tests of the machine have built what this is made of.
+    run(workspace.cargo_everywhere(&["build", "--example", "answers", "--bin", "driftworld"]))?;
+    let command = workspace.target.join("debug/driftworld");
+    let page = workspace.target.join("studio");
+    // What the page's own documentation does by hand.
+    let mut export = workspace.program(&command, &["studio", "--export"]);
+    export.arg(workspace.target.join("studio-export"));
+    run(export)?;
+    let mut tests = workspace.program("node".as_ref(), &["--test", "--test-reporter=spec"]);
+    tests
+        .args(test_files(workspace)?)
+        .env("CARGO_TARGET_DIR", &workspace.target)
+        .env("DRIFTWORLD_PAGE", &page)
+        .env("DRIFTWORLD_COMMAND", &command);
+    if workspace.is_full {
+        tests.env("DRIFTWORLD_FULL", "1");
+    }
+    run(tests)?;
+    Ok(Outcome::Passed(format!(
+        "the page is {}",
+        workspace.target.join("studio").display()
+    )))
+}
+
+/// The files of tests: not all versions of Node.js find them in a folder.
+fn test_files(workspace: &Workspace) -> Result<Vec<PathBuf>> {
+    let folder = workspace.root.join("studio/test");
+    let entries = fs::read_dir(&folder).map_err(about(&folder))?;
+    let mut files: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
+    files.retain(|path| path.to_string_lossy().ends_with(".test.mjs"));
+    files.sort();
+    Ok(files)
+}
+
+/// Says how the page gets into a program.
+pub(crate) fn tell(workspace: &Workspace) {
+    let folder = workspace.target.join("studio");
+    let shown = folder.display();
+    println!("the page is {shown}; `driftworld studio` of this build folder serves it");
+    if env::var_os("DRIFTWORLD_STUDIO").is_none() {
+        println!("to put it into a program: DRIFTWORLD_STUDIO='{shown}' cargo build --release");
+    }
+}
