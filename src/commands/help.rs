@@ -30,7 +30,7 @@ const GROUPS: [(&str, &[&str]); 7] = [
         "Score what was learned",
         &["scales", "metrics", "report", "transfer-report", "logs"],
     ),
-    ("Watch and play", &["play", "console", "film", "replay"]),
+    ("Watch and play", &["studio", "play", "console", "film", "replay"]),
     ("Work with other tools", &["convert", "completions", "bench", "help"]),
 ];
 

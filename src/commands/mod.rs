@@ -36,6 +36,7 @@ mod scales;
 mod schema;
 mod scoring;
 mod sheet;
+mod studio;
 mod tasks;
 mod transfer_report;
 mod validate;
@@ -254,7 +255,7 @@ macro_rules! subcommands {
 subcommands! {
     demo::Demo, tasks::Tasks, new::New, new::Export, validate::Validate,
     sample::Sample, vary::Vary, convert::Convert,
-    render::Render, film::Film, play::Play, sheet::Sheet, assets::Assets, console::Console, photograph::Photograph,
+    render::Render, film::Film, play::Play, studio::Studio, sheet::Sheet, assets::Assets, console::Console, photograph::Photograph,
     elements::Elements, distance::Distance, order::Order, curriculum::Curriculum,
     run::Run, replay::Replay, audit::Audit, scales::Scales,
     logs::Logs, metrics::Metrics, report::Report, transfer_report::TransferReport,

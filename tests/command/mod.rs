@@ -34,6 +34,7 @@ mod scales;
 mod several_lifetimes;
 mod signals;
 mod special_files;
+mod studio;
 mod terminal;
 mod transfer_report;
 mod undrawable;

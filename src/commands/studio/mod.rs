@@ -1,0 +1,143 @@
+//! `driftworld studio`: the workbench, a page in which the simulator runs, served to this machine alone or written into a folder.
+
+mod page;
+mod server;
+
+use std::net::{Ipv4Addr, TcpListener};
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+
+use clap::Args;
+use driftworld_text::counted;
+
+use super::{Failure, output};
+use crate::contents::Contents;
+use crate::{documents, output_file, tasks};
+use page::Page;
+use server::Server;
+
+/// Play, author, compare, order and replay worlds in a browser.
+///
+/// The simulator runs in the page: frames equal those of this command to the bit, and nothing is sent anywhere. The page is
+/// served to this machine alone, under an address that nobody can guess, until Ctrl-C. --export writes it into a folder that any
+/// web server can hold.
+#[derive(Args)]
+#[command(after_help = "Examples:
+  driftworld studio
+  driftworld studio find_objects#red --port 8008 --no-open
+  driftworld studio --export public")]
+pub(crate) struct Studio {
+    /// What to begin with: a built-in task, or the path of a task spec to edit.
+    task: Option<String>,
+    /// Write the page into this folder, and end.
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["task", "port", "no_open"])]
+    export: Option<PathBuf>,
+    /// The port on 127.0.0.1; 0 takes one that is free.
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    port: u16,
+    /// Print the address, and open no browser.
+    #[arg(long)]
+    no_open: bool,
+}
+
+/// The name of the file that holds the task of a path, beside the page.
+const TASK_FILE: &str = "task.json";
+
+impl Studio {
+    pub(crate) fn run(self) -> Result<(), Failure> {
+        let mut page = Page::find()?;
+        if let Some(folder) = &self.export {
+            return export(&page, folder);
+        }
+        let fragment = match &self.task {
+            Some(task) => begin_with(&mut page, task)?,
+            None => String::new(),
+        };
+        let port = self.port;
+        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(|error| {
+            Failure::input(format!(
+                "--port: found {port}, which cannot be listened on ({error}); give another, or 0 for a free one"
+            ))
+        })?;
+        let server = Server::new(listener, page).map_err(|error| Failure::input(format!("--port: {error}")))?;
+        let address = server.address() + &fragment;
+        output::line(&address)?;
+        if !self.no_open && !open(&address) {
+            output::note("found no browser to open; open the address above");
+        }
+        output::note("serving to this machine alone; Ctrl-C ends it");
+        server.serve()
+    }
+}
+
+/// The fragment of the page's address that shows a task; the text of a file is put beside the page.
+fn begin_with(page: &mut Page, called: &str) -> Result<String, Failure> {
+    let (name, variant) = tasks::split(called);
+    let task = tasks::task(name)?;
+    if let Some(variant) = variant {
+        task.variant(variant)?;
+    }
+    let variant = variant.map_or_else(String::new, |variant| format!("variant={}", encoded(variant)));
+    if tasks::text_by_name(name).is_some() {
+        let query = if variant.is_empty() {
+            String::new()
+        } else {
+            format!("?{variant}")
+        };
+        return Ok(format!("#/play/{}{query}", encoded(name)));
+    }
+    let text =
+        documents::text_of(name.as_ref(), &[Contents::Task]).map_err(|error| Failure::input(error.to_string()))?;
+    page.add(TASK_FILE, text.into_bytes());
+    Ok(format!("#/author/draft?file={TASK_FILE}&{variant}")
+        .trim_end_matches('&')
+        .to_owned())
+}
+
+/// A word in an address.
+fn encoded(word: &str) -> String {
+    let plain = |byte: u8| byte.is_ascii_alphanumeric() || b"-_.".contains(&byte);
+    word.bytes().fold(String::new(), |encoded, byte| {
+        if plain(byte) {
+            encoded + &char::from(byte).to_string()
+        } else {
+            encoded + &format!("%{byte:02X}")
+        }
+    })
+}
+
+fn export(page: &Page, folder: &std::path::Path) -> Result<(), Failure> {
+    let mut bytes = 0;
+    for (name, content) in page.files() {
+        let path = folder.join(name);
+        let parent = documents::folder_of(&path);
+        std::fs::create_dir_all(parent).map_err(|error| output_file::unwritable(parent, &error))?;
+        output_file::write(&path, content)?;
+        bytes += content.len();
+    }
+    output::wrote(
+        folder,
+        format!(
+            "{}, {} kB; any web server can serve them",
+            counted(page.files().count(), "file"),
+            bytes.div_ceil(1000)
+        ),
+    );
+    Ok(())
+}
+
+/// Opens an address in the user's browser, if there is a way to.
+fn open(address: &str) -> bool {
+    let program = match std::env::consts::OS {
+        "macos" => "open",
+        "windows" => "explorer",
+        _ => "xdg-open",
+    };
+    let mut command = Command::new(program);
+    command
+        .arg(address)
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null());
+    command.spawn().is_ok()
+}

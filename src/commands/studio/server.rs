@@ -1,0 +1,239 @@
+//! [`Server`]: a page over HTTP, to this machine alone. It answers GET and HEAD for the files of the page, below a name that nobody can
+//! guess, and for hosts that are this machine; a page of another site can neither name a file nor read one.
+
+use std::hash::{BuildHasher, Hasher, RandomState};
+use std::io::{Read, Write};
+use std::net::{TcpListener, TcpStream};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
+
+use super::page::Page;
+use crate::Failure;
+
+/// The longest head of a request in bytes, and how long one may take.
+const MAX_HEAD: usize = 1 << 14;
+const PATIENCE: Duration = Duration::from_secs(10);
+
+/// The most requests that are answered at a time.
+const MAX_REQUESTS: usize = 64;
+
+/// What the page may do: run its own scripts and the simulator, and load what lies beside it. A notebook on this machine may frame it.
+const POLICY: &str = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self'; img-src 'self' blob: data:; \
+                      connect-src 'self'; worker-src 'self'; base-uri 'none'; form-action 'none'; \
+                      frame-ancestors 'self' http://localhost:* http://127.0.0.1:*";
+
+pub(super) struct Server {
+    listener: TcpListener,
+    site: Arc<Site>,
+}
+
+/// What is served, and to whom.
+struct Site {
+    page: Page,
+    /// The first part of every path.
+    token: String,
+    port: u16,
+    requests: AtomicUsize,
+}
+
+/// What is answered: a status, and a file if there is one.
+#[derive(Debug, PartialEq)]
+struct Answer<'a> {
+    status: &'static str,
+    file: Option<(&'a str, &'a [u8])>,
+    has_body: bool,
+}
+
+impl Server {
+    pub(super) fn new(listener: TcpListener, page: Page) -> std::io::Result<Self> {
+        let port = listener.local_addr()?.port();
+        let site = Site {
+            page,
+            token: token(),
+            port,
+            requests: AtomicUsize::new(0),
+        };
+        Ok(Self {
+            listener,
+            site: Arc::new(site),
+        })
+    }
+
+    pub(super) fn address(&self) -> String {
+        format!("http://127.0.0.1:{}/{}/", self.site.port, self.site.token)
+    }
+
+    /// Answers until the process ends.
+    pub(super) fn serve(self) -> Result<(), Failure> {
+        for stream in self.listener.incoming() {
+            // A connection that broke off before it was taken is nobody's fault.
+            let Ok(stream) = stream else { continue };
+            let site = Arc::clone(&self.site);
+            if site.requests.fetch_add(1, Ordering::SeqCst) >= MAX_REQUESTS {
+                site.requests.fetch_sub(1, Ordering::SeqCst);
+                continue;
+            }
+            let work = move || {
+                // Whoever asked has gone away: there is nobody to tell.
+                let _ = site.converse(stream);
+                site.requests.fetch_sub(1, Ordering::SeqCst);
+            };
+            std::thread::Builder::new().spawn(work).map_err(|error| {
+                Failure::input(format!("threads: could not start one ({error}); end other programs"))
+            })?;
+        }
+        Ok(())
+    }
+}
+
+impl Site {
+    fn converse(&self, mut stream: TcpStream) -> std::io::Result<()> {
+        stream.set_read_timeout(Some(PATIENCE))?;
+        stream.set_write_timeout(Some(PATIENCE))?;
+        let head = head(&mut stream)?;
+        let answer = self.answer(&head);
+        let (name, bytes) = answer.file.unwrap_or(("", b""));
+        let headers = format!(
+            "HTTP/1.1 {}\r\nContent-Type: {}\r\nContent-Length: {}\r\nContent-Security-Policy: {POLICY}\r\nX-Content-Type-Options: \
+             nosniff\r\nReferrer-Policy: no-referrer\r\nCross-Origin-Resource-Policy: same-origin\r\nCache-Control: \
+             no-store\r\nConnection: close\r\n\r\n",
+            answer.status,
+            kind(name),
+            bytes.len()
+        );
+        stream.write_all(headers.as_bytes())?;
+        if answer.has_body {
+            stream.write_all(bytes)?;
+        }
+        stream.flush()
+    }
+
+    /// What a request gets.
+    fn answer(&self, head: &str) -> Answer<'_> {
+        let nothing = |status| Answer {
+            status,
+            file: None,
+            has_body: false,
+        };
+        let mut lines = head.split("\r\n");
+        let words: Vec<&str> = lines.next().unwrap_or_default().split(' ').collect();
+        let [method, path, "HTTP/1.1" | "HTTP/1.0"] = words[..] else {
+            return nothing("400 Bad Request");
+        };
+        if !["GET", "HEAD"].contains(&method) {
+            return nothing("405 Method Not Allowed");
+        }
+        // A name that leads to this machine by another's doing is not ours.
+        let host = lines.find_map(|line| {
+            let (name, value) = line.split_once(':')?;
+            name.eq_ignore_ascii_case("host").then_some(value.trim())
+        });
+        let own = ["127.0.0.1", "localhost"].map(|name| format!("{name}:{}", self.port));
+        if !host.is_some_and(|host| own.iter().any(|own| own == host)) {
+            return nothing("421 Misdirected Request");
+        }
+        let path = path.split('?').next().unwrap_or_default();
+        let name = path
+            .strip_prefix('/')
+            .and_then(|path| path.strip_prefix(self.token.as_str()))
+            .and_then(|path| path.strip_prefix('/'));
+        let name = name.map(|name| if name.is_empty() { "index.html" } else { name });
+        match name.and_then(|name| self.page.files().find(|(known, _)| *known == name)) {
+            Some(file) => Answer {
+                status: "200 OK",
+                file: Some(file),
+                has_body: method == "GET",
+            },
+            None => nothing("404 Not Found"),
+        }
+    }
+}
+
+/// The head of a request, up to the empty line.
+fn head(stream: &mut TcpStream) -> std::io::Result<String> {
+    let (start, mut head, mut piece) = (Instant::now(), Vec::new(), [0; 1024]);
+    while !head.windows(4).any(|end| end == b"\r\n\r\n") {
+        let length = stream.read(&mut piece)?;
+        if length == 0 || head.len() + length > MAX_HEAD || start.elapsed() > PATIENCE {
+            return Err(std::io::ErrorKind::InvalidData.into());
+        }
+        head.extend_from_slice(&piece[..length]);
+    }
+    Ok(String::from_utf8_lossy(&head).into_owned())
+}
+
+/// The media type of a file.
+fn kind(name: &str) -> &'static str {
+    match name.rsplit('.').next().unwrap_or_default() {
+        "html" => "text/html; charset=utf-8",
+        "js" => "text/javascript; charset=utf-8",
+        "css" => "text/css; charset=utf-8",
+        "svg" => "image/svg+xml",
+        "json" => "application/json",
+        _ => "application/octet-stream",
+    }
+}
+
+/// 128 bits that differ each time: keyed hashes, whose keys the system draws.
+fn token() -> String {
+    let drawn = |_| RandomState::new().build_hasher().finish();
+    [0, 1].map(drawn).map(|half: u64| format!("{half:016x}")).concat()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn site() -> Site {
+        let mut page = Page::of(&[("index.html", b"<p>"), ("networks/a.safetensors", b"1")]);
+        page.add("task.json", b"{}".to_vec());
+        Site {
+            page,
+            token: "secret".into(),
+            port: 8008,
+            requests: AtomicUsize::new(0),
+        }
+    }
+
+    #[test]
+    fn only_files_of_the_page_are_served_below_the_token() {
+        let site = site();
+        let check = |line: &str, host: &str, expected: &str| {
+            let answer = site.answer(&format!("{line} HTTP/1.1\r\nAccept: */*\r\nhost: {host}\r\n\r\n"));
+            assert_eq!(answer.status, expected, "{line} {host}");
+            assert_eq!(answer.file.is_some(), expected == "200 OK");
+        };
+        let own = "127.0.0.1:8008";
+        check("GET /secret/", own, "200 OK");
+        check("GET /secret/index.html?x=1", "localhost:8008", "200 OK");
+        check("HEAD /secret/networks/a.safetensors", own, "200 OK");
+        for path in [
+            "/",
+            "/index.html",
+            "/secre/",
+            "/secret",
+            "/secretx/",
+            "/secret/../secret/",
+            "/secret//etc/passwd",
+            "/secret/%2e%2e/x",
+        ] {
+            check(&format!("GET {path}"), own, "404 Not Found");
+        }
+        for host in ["evil.example", "127.0.0.1", "127.0.0.1:80", "evil.example:8008"] {
+            check("GET /secret/", host, "421 Misdirected Request");
+        }
+        check("POST /secret/", own, "405 Method Not Allowed");
+        check("GET", own, "400 Bad Request");
+        assert_eq!(
+            site.answer("GET /secret/ HTTP/1.1\r\n\r\n").status,
+            "421 Misdirected Request"
+        );
+    }
+
+    #[test]
+    fn tokens_differ() {
+        assert_ne!(token(), token());
+        assert_eq!(token().len(), 32);
+    }
+}
