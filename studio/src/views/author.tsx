@@ -138,13 +138,16 @@ export function Author({ route }: { route: Route }) {
       return;
     }
     const before = editor.current?.text() ?? text;
-    const here = group.points.findIndex(([x, y]) => Math.hypot(x - point[0], y - point[1]) <= NEAR);
+    // The text may be ahead of what was drawn from it.
+    const now = spans(before) && pointGroups(JSON.parse(before) as Json).find(({ name }) => name === target);
+    if (!now) return;
+    const here = now.points.findIndex(([x, y]) => Math.hypot(x - point[0], y - point[1]) <= NEAR);
     const places = here < 0
-      ? change(before, [...group.path, group.points.length], point.map((metres) => Math.round(metres * 10) / 10))
-      : removal(before, [...group.path, here]);
+      ? change(before, [...now.path, now.points.length], point.map((metres) => Math.round(metres * 10) / 10))
+      : removal(before, [...now.path, here]);
     if (!places) return;
     const after = applied(before, places);
-    const count = group.count && change(after, group.count, group.points.length + (here < 0 ? 1 : -1));
+    const count = now.count && change(after, now.count, now.points.length + (here < 0 ? 1 : -1));
     const whole = count ? applied(after, count) : after;
     editor.current?.change(minimal(before, whole));
   };
