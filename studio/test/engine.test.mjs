@@ -33,11 +33,15 @@ test("the simulator starts, plays and draws", { skip }, async () => {
     const { version, milliseconds } = await engine.ready();
     const cards = await engine.tasks();
     const speed = async (looks, width, height) => {
-      const episode = await engine.open({ task: "find_objects", variant: "red" }, { looks, width, height });
-      let frames = 0;
+      const open = () => engine.open({ task: "find_objects", variant: "red" }, { looks, width, height });
+      let [episode, frames] = [await open(), 0];
       const begun = performance.now();
       for (; performance.now() - begun < 1500; frames += 1) {
-        await episode.step({ ahead: 1, turn: frames % 7 ? 0.3 : -1, interact: false });
+        const now = await episode.step({ ahead: 1, turn: frames % 7 ? 0.3 : -1, interact: false });
+        if (now.terminated || now.truncated) {
+          await episode.close();
+          episode = await open();
+        }
         const { data } = await episode.frame();
         if (data.length !== width * height * 4) throw new Error("a frame has another size");
       }
