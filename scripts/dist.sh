@@ -3,7 +3,7 @@
 #
 #     scripts/dist.sh [TARGET]...     # by default x86_64-unknown-linux-gnu and aarch64-unknown-linux-gnu
 #
-# zig links them, so that they run with glibc 2.28 and later whatever this machine has.
+# zig links them, so that they run with glibc 2.28 and later whatever this machine has. The page of the workbench wants Node.js.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 known=(x86_64-unknown-linux-gnu aarch64-unknown-linux-gnu)
@@ -23,6 +23,9 @@ python3 -m venv "$tools"
 export PATH="$PWD/$tools/bin:$PATH"
 export CARGO_TARGET_DIR="$PWD/target"
 mkdir -p "$out"
+# Every program has the page of the workbench in it.
+cargo xtask studio
+export DRIFTWORLD_STUDIO="$PWD/target/studio"
 version="$(cargo pkgid --package driftworld)" && version="${version##*[#@]}"
 for target; do
     # For Python 3.10 and later, with every feature and the command.
