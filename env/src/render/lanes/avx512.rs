@@ -4,7 +4,6 @@
     reason = "intrinsics of an instruction set: every call rests on the token, every pointer on a slice of checked length"
 )]
 
-#[expect(clippy::wildcard_imports, reason = "the names of intrinsics cannot be mistaken")]
 use std::arch::x86_64::*;
 
 use super::{Lanes, first, first_mut, operations};
