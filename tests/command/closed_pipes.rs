@@ -6,7 +6,7 @@ use super::terminal::{driftworld_in, output, root, scratch, subcommands, succeed
 use crate::tier::quick_or_full;
 
 /// Every subcommand with arguments that make it print results, messages, or both.
-const COMMANDS: [&str; 41] = [
+const COMMANDS: [&str; 42] = [
     "--help",
     "run --help",
     "nonsense",
@@ -35,6 +35,7 @@ const COMMANDS: [&str; 41] = [
     "film find_objects#red --agent still --size 32 -o f.gif",
     "replay log",
     "play find_objects",
+    "studio nowhere",
     "logs validate log",
     "logs aggregate log --format csv -o -",
     "metrics log",
@@ -50,7 +51,7 @@ const COMMANDS: [&str; 41] = [
     "doctor --json",
 ];
 
-/// Commands whose exit code is a result, whoever reads the output.
+/// Commands whose exit code is a result and must stay the same even if nobody reads the output.
 const ANSWERS: [&str; 5] = ["validate", "logs validate", "audit", "replay", "doctor"];
 
 /// A pipe whose reading end is closed.

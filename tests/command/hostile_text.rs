@@ -301,6 +301,7 @@ fn worlds(stage: &mut Stage) {
     );
     stage.run(&["console", &world, "--script", "script.txt", "--keep-going"]);
     stage.run(&["assets", "show", HOSTILE]);
+    stage.fail(&["studio", HOSTILE, "--no-open"]);
     let library = stage.path().join("bad.assets");
     fs::write(&library, HOSTILE).expect("the folder can be written");
     stage.fail(&["assets", "list", text(&library)]);

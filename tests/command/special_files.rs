@@ -85,6 +85,7 @@ fn command_lines() -> Vec<Vec<&'static str>> {
         "transfer-report SPECIAL --distances matrix.csv",
         "transfer-report log --distances SPECIAL.csv",
         "schema --check schemas",
+        "studio SPECIAL --no-open",
     ];
     #[cfg(feature = "gltf")]
     let lines = lines.into_iter().chain([

@@ -40,19 +40,22 @@ pub(crate) struct Studio {
     no_open: bool,
 }
 
-/// The name of the file that holds the task of a path, beside the page.
+/// Name of the file beside the page that holds a task given by its path.
 const TASK_FILE: &str = "task.json";
 
 impl Studio {
     pub(crate) fn run(self) -> Result<(), Failure> {
+        let (fragment, text) = match &self.task {
+            Some(task) => begin_with(task)?,
+            None => Default::default(),
+        };
         let mut page = Page::find()?;
         if let Some(folder) = &self.export {
             return export(&page, folder);
         }
-        let fragment = match &self.task {
-            Some(task) => begin_with(&mut page, task)?,
-            None => String::new(),
-        };
+        if let Some(text) = text {
+            page.add(TASK_FILE, text.into_bytes());
+        }
         let port = self.port;
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(|error| {
             Failure::input(format!(
@@ -70,8 +73,8 @@ impl Studio {
     }
 }
 
-/// The fragment of the page's address that shows a task; the text of a file is put beside the page.
-fn begin_with(page: &mut Page, called: &str) -> Result<String, Failure> {
+/// The fragment of the page's address that opens a task, and the text of its spec unless it is built in.
+fn begin_with(called: &str) -> Result<(String, Option<String>), Failure> {
     let (name, variant) = tasks::split(called);
     let task = tasks::task(name)?;
     if let Some(variant) = variant {
@@ -84,17 +87,15 @@ fn begin_with(page: &mut Page, called: &str) -> Result<String, Failure> {
         } else {
             format!("?{variant}")
         };
-        return Ok(format!("#/play/{}{query}", encoded(name)));
+        return Ok((format!("#/play/{}{query}", encoded(name)), None));
     }
     let text =
         documents::text_of(name.as_ref(), &[Contents::Task]).map_err(|error| Failure::input(error.to_string()))?;
-    page.add(TASK_FILE, text.into_bytes());
-    Ok(format!("#/author/draft?file={TASK_FILE}&{variant}")
-        .trim_end_matches('&')
-        .to_owned())
+    let fragment = format!("#/author/draft?file={TASK_FILE}&{variant}");
+    Ok((fragment.trim_end_matches('&').to_owned(), Some(text)))
 }
 
-/// A word in an address.
+/// A word, percent-encoded for an address.
 fn encoded(word: &str) -> String {
     let plain = |byte: u8| byte.is_ascii_alphanumeric() || b"-_.".contains(&byte);
     word.bytes().fold(String::new(), |encoded, byte| {
@@ -126,7 +127,7 @@ fn export(page: &Page, folder: &std::path::Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Opens an address in the user's browser, if there is a way to.
+/// Opens an address in the user's browser; returns whether the browser could be started.
 fn open(address: &str) -> bool {
     let program = match std::env::consts::OS {
         "macos" => "open",

@@ -8,20 +8,20 @@ use driftworld_text::ShownPath;
 
 use crate::Failure;
 
-/// The files that were put into the program when it was built; none unless the page had been built before.
+/// The files embedded in the program at build time; none unless the page had been built before.
 const EMBEDDED: &[(&str, &[u8])] = include!(concat!(env!("OUT_DIR"), "/studio_files.rs"));
 
-/// The variable that names a folder with the page; when a program is built, too.
+/// The environment variable that names a folder with the page, both at run time and at build time.
 const VARIABLE: &str = "DRIFTWORLD_STUDIO";
 
-/// The largest file of a page.
+/// Maximum size in bytes of a file of the page.
 const MAX_FILE_BYTES: u64 = 1 << 26;
 
-/// Files by their paths below the page's folder, with `/` between. What is not in here cannot be served.
+/// Files by their paths below the page's folder, with `/` as separator. No other file can be served.
 pub(super) struct Page(BTreeMap<String, Cow<'static, [u8]>>);
 
 impl Page {
-    /// The page in the folder that the environment names, that in this program, or that built beside it.
+    /// The page in the folder that the environment variable names, else the embedded one, else the one built beside it.
     pub(super) fn find() -> Result<Self, Failure> {
         if let Some(folder) = std::env::var_os(VARIABLE).map(PathBuf::from) {
             return Self::read(&folder);

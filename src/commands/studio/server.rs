@@ -1,5 +1,5 @@
-//! [`Server`]: a page over HTTP, to this machine alone. It answers GET and HEAD for the files of the page, below a name that nobody can
-//! guess, and for hosts that are this machine; a page of another site can neither name a file nor read one.
+//! [`Server`]: serves a page over HTTP to this machine alone. It answers GET and HEAD for the page's files below a
+//! secret path if the Host header names this machine; pages of other sites can neither guess nor read a file.
 
 use std::hash::{BuildHasher, Hasher, RandomState};
 use std::io::{Read, Write};
@@ -11,14 +11,14 @@ use std::time::{Duration, Instant};
 use super::page::Page;
 use crate::Failure;
 
-/// The longest head of a request in bytes, and how long one may take.
+/// Maximum size of a request's head in bytes, and the time limit for reading it and for each write.
 const MAX_HEAD: usize = 1 << 14;
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// The most requests that are answered at a time.
+/// Maximum number of requests that are answered at a time.
 const MAX_REQUESTS: usize = 64;
 
-/// What the page may do: run its own scripts and the simulator, and load what lies beside it. A notebook on this machine may frame it.
+/// The page may run its own scripts and the simulator, and load its own files. A notebook on this machine may frame it.
 const POLICY: &str = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self'; img-src 'self' blob: data:; \
                       connect-src 'self'; worker-src 'self'; base-uri 'none'; form-action 'none'; \
                       frame-ancestors 'self' http://localhost:* http://127.0.0.1:*";
@@ -37,7 +37,7 @@ struct Site {
     requests: AtomicUsize,
 }
 
-/// What is answered: a status, and a file if there is one.
+/// The answer to a request: a status, and a file if there is one.
 #[derive(Debug, PartialEq)]
 struct Answer<'a> {
     status: &'static str,
@@ -67,7 +67,7 @@ impl Server {
     /// Answers until the process ends.
     pub(super) fn serve(self) -> Result<(), Failure> {
         for stream in self.listener.incoming() {
-            // A connection that broke off before it was taken is nobody's fault.
+            // A connection that was aborted before it was accepted is not an error.
             let Ok(stream) = stream else { continue };
             let site = Arc::clone(&self.site);
             if site.requests.fetch_add(1, Ordering::SeqCst) >= MAX_REQUESTS {
@@ -75,7 +75,7 @@ impl Server {
                 continue;
             }
             let work = move || {
-                // Whoever asked has gone away: there is nobody to tell.
+                // An error means that the client has gone away: there is nobody to report it to.
                 let _ = site.converse(stream);
                 site.requests.fetch_sub(1, Ordering::SeqCst);
             };
@@ -109,7 +109,7 @@ impl Site {
         stream.flush()
     }
 
-    /// What a request gets.
+    /// Answers a request.
     fn answer(&self, head: &str) -> Answer<'_> {
         let nothing = |status| Answer {
             status,
@@ -124,7 +124,7 @@ impl Site {
         if !["GET", "HEAD"].contains(&method) {
             return nothing("405 Method Not Allowed");
         }
-        // A name that leads to this machine by another's doing is not ours.
+        // Refuses other names that resolve to this machine (DNS rebinding).
         let host = lines.find_map(|line| {
             let (name, value) = line.split_once(':')?;
             name.eq_ignore_ascii_case("host").then_some(value.trim())
