@@ -52,7 +52,7 @@ class Experience:
         block: Its block, from 0.
         regime: Its regime in the block, from 0.
         learning: Whether the agent may learn from it.
-        variant: The variant's name: ``task#variant``, in a drift with both ends.
+        variant: The variant's name: ``task#variant``; in a drift, the names of both ends.
         seed: The seed of its world; ``None`` for a world from a file.
         index: The number of its world under the seed.
         progress: Progress of the drift, in 0..=1; 0 without a drift.
@@ -78,7 +78,7 @@ class Experience:
     @property
     def task(self) -> str:
         """The name of its task."""
-        return self.variant.rpartition("#")[0]
+        return self.variant.partition("#")[0]
 
     def world(self) -> dict[str, Any]:
         """Its world as it is run, with the scenario's limit of steps applied."""
@@ -300,7 +300,7 @@ class Curriculum(Sequence[Block]):
         order.
 
         The orders are the rows of a balanced Latin square: each variant comes equally often in each place and after
-        each other variant. With an order, blocks or a drift, all share it.
+        each other variant. If an order, blocks or a drift is given, all share one order.
 
         Args:
             count: Number of lifetimes, 1 to 10,000.
@@ -472,7 +472,7 @@ class Curriculum(Sequence[Block]):
                 from and are not in the log: only an agent with ``save`` and ``load`` continues as if nothing had
                 happened.
             skip_undrawable: As for :meth:`run`, like all that follows.
-            check_frozen: As there, for the first 4 evaluations of each block, which then share the same batches again.
+            check_frozen: As there, for the first 4 evaluations of each block, which are repeated in the same batches.
             seed: As there.
             paired_chance: As there.
             watch: As there.
@@ -526,8 +526,8 @@ class Curriculum(Sequence[Block]):
 
         rows = [(str(block.number), block.kind, variants(block), f"{len(block):,}") for block in self._blocks[:_SHOWN]]
         more = f"; the first {_SHOWN} are shown" if len(self) > _SHOWN else ""
-        told = f"{self.name}: {len(self)} blocks, {self.num_experiences:,} experiences{more}"
-        return table(("block", "kind", "variants", "experiences"), rows, told)
+        caption = f"{self.name}: {len(self)} blocks, {self.num_experiences:,} experiences{more}"
+        return table(("block", "kind", "variants", "experiences"), rows, caption)
 
     def __eq__(self, other: object) -> bool:
         """Whether both would run the same: scenario, tasks and world files are equal."""
