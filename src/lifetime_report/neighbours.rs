@@ -1,4 +1,4 @@
-//! What the scenario in a log gives: distances between neighbouring learning blocks (unless a matrix does), pictures of worlds.
+//! Distances between neighbouring learning blocks, from a matrix or the logged scenario, and pictures of its worlds.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -123,7 +123,7 @@ impl Neighbours {
                 Some(distances) => {
                     let words = format!(
                         "Stems: how far apart the variants of neighbouring learning blocks are, as the run logged it (column \
-                         distance); not measured anew: {why}."
+                         distance); not measured again: {why}."
                     );
                     (Some(distances), words)
                 }
@@ -249,7 +249,7 @@ impl Tasks {
 /// The blocks that a scenario learns, each name once, or why they are unknown.
 fn learned(scenario: &str, tasks: &Tasks) -> Result<Vec<Learned>, String> {
     let scenario = Scenario::from_json_with("scenario_info.json", scenario, |task| tasks.task(task))
-        .map_err(|_| "the scenario in the log is not of this version".to_owned())?;
+        .map_err(|_| "this version cannot read the scenario in the log".to_owned())?;
     let mut found: Vec<Learned> = Vec::new();
     let blocks = scenario.blocks.iter().filter(|block| block.kind == BlockKind::Learning);
     for regime in blocks
@@ -265,10 +265,13 @@ fn learned(scenario: &str, tasks: &Tasks) -> Result<Vec<Learned>, String> {
             })
         };
         let (task, end_task) = (find(&regime.task)?, find(regime.end_task())?);
-        let lost = |name: &str| format!("the task {} has no longer the variant {name} that was run", regime.task);
-        let begins = regime.resolve(&task).map_err(|_| lost(regime.variant_name()))?;
-        let ends = regime.resolve_end(&end_task).map_err(|_| lost("its drift leads to"))?;
-        // As `driftworld run` names a block in its log.
+        let lost = |task: &str, name: &str| format!("the task {task} no longer has the variant {name} that was run");
+        let begins = regime
+            .resolve(&task)
+            .map_err(|_| lost(&regime.task, regime.variant_name()))?;
+        let ends = regime.resolve_end(&end_task);
+        let ends = ends.map_err(|_| lost(regime.end_task(), "at the end of the drift"))?;
+        // The name that `driftworld run` gives a block in its log.
         let name = match &ends {
             None => log_name(task.name(), begins.name()),
             Some(ends) if ends.task().name() != task.name() => {
@@ -281,7 +284,7 @@ fn learned(scenario: &str, tasks: &Tasks) -> Result<Vec<Learned>, String> {
         }
     }
     if found.is_empty() {
-        return Err("the scenario learned no variants of tasks".to_owned());
+        return Err("no variant of a task was learned in the scenario".to_owned());
     }
     Ok(found)
 }

@@ -6,7 +6,7 @@ use std::path::Path;
 use super::run_files::write;
 use super::terminal::{driftworld_in, fail_in, json_in, output, read, root, scratch, succeed_in};
 
-/// One of our lifetimes in `log`: three learning blocks of two variants with an evaluation before each.
+/// Runs a lifetime and logs it in `log`: three learning blocks on two variants, each after an evaluation.
 fn live(folder: &Path) {
     let regime = |variant: &str, count: u32| {
         format!(r#"{{ "task": "find_objects", "variant": "{variant}", "count": {count}, "max_steps": 20 }}"#)
@@ -119,12 +119,12 @@ fn drift_is_measured_at_both_ends() {
     assert_eq!(
         page.matches("0.00\n</text>").count(),
         2,
-        "it begins where the block before was"
+        "the drift begins at the variant of the block before"
     );
     assert_eq!(
         page.matches(&told).count(),
         2,
-        "the block after it is {told} from its end"
+        "the block after the drift is {told} from the end of the drift"
     );
     assert!(page.contains("The beginning of a drifting block"));
 }
@@ -169,7 +169,7 @@ fn worlds_of_a_task_that_changed_since_the_run_are_not_pictured() {
 }
 
 #[test]
-fn scenario_without_learning_is_not_said_to_run_world_files() {
+fn scenario_without_learning_gets_its_own_reason_for_missing_pictures() {
     let folder = scratch();
     let regime = r#"{ "task": "find_objects", "variant": "blue", "count": 2, "max_steps": 5 }"#;
     let scenario = format!(r#"{{ "name": "s", "blocks": [{{ "type": "evaluation", "regimes": [{regime}] }}] }}"#);
@@ -177,7 +177,7 @@ fn scenario_without_learning_is_not_said_to_run_world_files() {
     succeed_in(folder.path(), "run scenario.json --agent random --output log");
     succeed_in(folder.path(), "report log");
     let page = read(folder.path().join("report.html"));
-    assert!(page.contains("No pictures of worlds: the scenario learned no variants of tasks."));
+    assert!(page.contains("No pictures of worlds: no variant of a task was learned in the scenario."));
 }
 
 #[test]
@@ -206,7 +206,7 @@ fn unreadable_logs_are_named_and_the_page_can_go_to_standard_output() {
     assert!(!folder.path().join("report.html").exists());
     let page = succeed_in(folder.path(), &["report", "log", "-o", "-", "--title", " "]);
     assert!(page.starts_with("<!DOCTYPE html>") && page.ends_with("</html>\n") || page.ends_with("</html>"));
-    assert!(page.contains("<h1>log</h1>"), "an empty title is none");
+    assert!(page.contains("<h1>log</h1>"), "a blank title is ignored");
 }
 
 /// A log may name any file: only those on the command line are opened.
@@ -224,7 +224,7 @@ fn files_named_in_a_log_are_not_opened() {
     write(&path.join("scenario.json"), &scenario);
     std::fs::copy(root().join("examples/tasks/find_objects.json"), path.join("mine.json")).expect("the folder is ours");
     succeed_in(path, "run scenario.json --agent random --output log");
-    // Not even the right one.
+    // Not even the file that does define the task is opened.
     succeed_in(path, "report log");
     let page = read(path.join("report.html"));
     assert!(
