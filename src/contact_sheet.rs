@@ -67,7 +67,7 @@ pub(crate) struct Choice {
     pub(crate) turn: f32,
 }
 
-/// A world with what is visible in it.
+/// A world with its scene and the objects that a picture should show.
 struct Candidate {
     world: World,
     scene: Scene,
@@ -160,7 +160,7 @@ pub(crate) fn cells(shown: &[Shown], look: Look, tick: &dyn Fn()) -> Result<(Vec
     Ok((cells, said.into_iter().collect()))
 }
 
-/// The image kind in which a world is shown, of those that its agent gets: colours before depth before segmentation.
+/// The modality in which a world is shown: the agent's first in the order colours, depth, segmentation.
 fn shown_modality(world: &World) -> Modality {
     let own = &world.agent_params.modalities;
     let first = modality::ALL.into_iter().find(|kind| own.contains(kind));
@@ -250,7 +250,7 @@ fn turns(look: Look) -> Vec<f32> {
     look.turn.map_or_else(|| TURNS.to_vec(), |turn| vec![turn])
 }
 
-/// The world and the camera that show the subject of most variants, and up to three things for each; ties go to the first.
+/// The world and camera that show most variants' subjects, then most objects, up to three each; ties go to the first.
 fn joint_choice(renderer: &mut Renderer, worlds: &[Candidates], look: Look) -> Result<Choice, Failure> {
     let most = worlds.iter().map(|candidates| candidates.all.len()).max().unwrap_or(1) as u64;
     let mut best = (
@@ -359,7 +359,7 @@ mod tests {
         let files = std::fs::read_dir(folder).expect("the examples are there");
         let mut files: Vec<_> = files.map(|entry| entry.expect("it can be read").path()).collect();
         files.sort();
-        for path in files.into_iter().step_by(crate::tier::quick_or_full(2, 1)) {
+        for path in files.into_iter().step_by(crate::tier::quick_or_full(4, 1)) {
             if path.extension().is_some_and(|ending| ending == "json") {
                 let task = tasks::task(&path.display().to_string()).expect("it is a task");
                 let (own, of) = seen(&task);
@@ -440,7 +440,7 @@ mod tests {
                 .all(|pixel| pixel[0] == pixel[1] && pixel[1] == pixel[2]);
             assert_eq!(gray, is_gray, "{}", cell.row.title);
             assert_eq!(
-                cell.row.words.contains("Shown in depth: the agent sees no colours."),
+                cell.row.words.contains("Shown as depth: the agent sees no colours."),
                 is_gray
             );
             assert_eq!(

@@ -91,7 +91,7 @@ fn blue_red_green_is_solved_in_every_variant() {
 
 #[test]
 fn built_in_tasks_claim_every_change_of_their_variants() {
-    for (task, _) in tasks::BUILT_IN.into_iter().step_by(quick_or_full(2, 1)) {
+    for (task, _) in tasks::BUILT_IN.into_iter().step_by(quick_or_full(3, 1)) {
         let request = ElementsRequest {
             worlds: quick_or_full(1, 4),
             ..ElementsRequest::of(task)

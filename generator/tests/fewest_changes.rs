@@ -13,7 +13,7 @@ const TOLERANCE: f64 = 1e-3;
 
 /// Distances to request per task.
 fn distances() -> usize {
-    crate::tier::quick_or_full(12, 24)
+    crate::tier::quick_or_full(6, 24)
 }
 
 /// The values of a parameter on a grid: all choices, integers and ends, and the variant's own value.

@@ -99,7 +99,7 @@ fn simulated_tests_detect_as_often_as_predicted() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(24))]
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(8, 24)))]
 
     #[test]
     fn power_grows_with_effect_and_lifetimes_in_any_unit(

@@ -75,7 +75,7 @@ fn crowd(kinds: &[Kind], class: &str, count: usize, spread: f64, time_step: f64)
     world
 }
 
-/// Most queries of any of several steps.
+/// The largest number of queries in any of several steps.
 fn looked(world: WorldDraft) -> u64 {
     let world = world.check().expect("the world is sound");
     let mut environment = Environment::new(world);
@@ -97,7 +97,7 @@ fn bound(count: usize) -> u64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(24))]
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(8, 24)))]
 
     #[test]
     fn work_of_any_crowd_stays_within_the_linear_bound(

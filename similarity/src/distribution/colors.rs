@@ -8,15 +8,16 @@ use super::values;
 use super::wasserstein_2::wasserstein_2;
 use crate::{Assignment, ColorMeasure, optimal_transport};
 
-/// Sample colours per distribution with a density; also the longest list that is used as it is.
+/// Number of sample colours per distribution with a density; also the maximum length of lists that are compared
+/// exactly.
 const STAND_INS: usize = 256;
 
 /// Wasserstein-1 of two distributions of colours, with `measure` between single colours: in the measure's own unit, at most its
 /// [`diameter`](ColorMeasure::diameter).
 ///
-/// Exact between single colours and between lists of at most 256; otherwise from 256 evenly spread colours of each, matched at
-/// the least cost, which is accurate within some percent of the spreads. Among distributions with a density a metric (except
-/// that equal samples are 0 apart) if the measure is one. `None` if either draws anything but colours.
+/// Exact between single colours and between lists of at most 256; otherwise from 256 evenly spread colours of each,
+/// matched at the least cost, which is accurate to a few per cent of the spreads. Among distributions with a density a
+/// metric (except that equal samples are 0 apart) if the measure is one. `None` if either draws anything but colours.
 ///
 /// Source: Villani 2009, "Optimal Transport: Old and New", chapter 6.
 ///
@@ -103,7 +104,7 @@ fn strewn(distribution: &Distribution) -> Option<Vec<Color>> {
     units.map(|unit| color(distribution, unit)).collect()
 }
 
-/// The digits of a number to a base, mirrored behind the point and moved off 0.
+/// The digits of a number in a base, mirrored at the radix point and moved off 0.
 fn reversed(mut number: u32, base: u32) -> f64 {
     let (mut sum, mut share) = (0.5 / STAND_INS as f64, 1.0);
     while number > 0 {
@@ -232,7 +233,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() })]
+        #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(6, 24)))]
 
         #[test]
         fn colour_transport_is_a_metric_for_metric_measures(a in any_law(), b in any_law(), c in any_law()) {

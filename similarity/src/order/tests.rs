@@ -62,7 +62,7 @@ fn least(matrix: &DistanceMatrix, options: &OrderOptions, value: &impl Fn(&Order
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 48)))]
+    #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(8, 48)))]
 
     #[test]
     fn exact_methods_match_brute_force(points in points(7), fixed in any::<[bool; 2]>()) {
