@@ -40,7 +40,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Runs a world for some steps or seconds, and prints their cost.
+/// Runs a world for at most 20 steps or 5 seconds, and prints times and memory.
 #[expect(clippy::print_stdout, reason = "an example shows what it finds")]
 fn measure(name: &str, world: WorldDraft) -> Result<(), Box<dyn Error>> {
     const STEPS: usize = 20;
@@ -62,7 +62,7 @@ fn measure(name: &str, world: WorldDraft) -> Result<(), Box<dyn Error>> {
     let picture = start.elapsed();
     times.sort();
     println!(
-        "{name:16} {count:7} objects: reset {:7.1} ms, step {:7.1} ms at most, {:7.1} ms in the middle, picture {:7.1} ms, memory {}",
+        "{name:16} {count:7} objects: reset {:7.1} ms, step {:7.1} ms at most, {:7.1} ms median, picture {:7.1} ms, memory {}",
         milliseconds(reset),
         milliseconds(times[times.len() - 1]),
         milliseconds(times[times.len() / 2]),
@@ -221,7 +221,7 @@ fn returning(count: usize) -> WorldDraft {
     world
 }
 
-/// A sequence of all objects, and a state that asks for the nearest.
+/// All objects form one sequence, and the state observation includes the nearest target 20 times.
 fn sequence(count: usize) -> WorldDraft {
     let mut world = ranges(count);
     for (index, object) in world.objects.iter_mut().enumerate() {

@@ -49,7 +49,7 @@ pub enum EnvError {
     BatchSize {
         /// Requested environments.
         found: usize,
-        /// Most environments.
+        /// Maximum number of environments.
         most: usize,
     },
     /// Outputs need more memory than a batch may use, or than is available.
@@ -62,7 +62,7 @@ pub enum EnvError {
     BatchMemory {
         /// Requested bytes.
         found: u64,
-        /// Most bytes.
+        /// Maximum number of bytes.
         most: u64,
     },
     /// Work was stopped before it was done.
@@ -173,7 +173,7 @@ pub enum EnvError {
     /// The world is full.
     #[error("spawn: found a world of {limit} objects, expected fewer; destroyed objects count, so start another world")]
     TooManyObjects {
-        /// Most objects of a world.
+        /// Maximum number of objects in a world.
         limit: usize,
     },
     /// The world has no object of this index.
@@ -218,7 +218,7 @@ pub enum EnvError {
         objects: usize,
         /// Views of each object.
         views: usize,
-        /// Most photographs.
+        /// Maximum number of photographs.
         most: usize,
     },
     /// A setting of an abstraction is out of range.
@@ -236,7 +236,7 @@ pub enum EnvError {
     TooManyStates {
         /// States needed.
         found: usize,
-        /// Most states.
+        /// Maximum number of states.
         most: usize,
     },
     /// A world that was composed from others is invalid.

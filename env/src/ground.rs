@@ -21,7 +21,7 @@ const AROUND: [f32; 3] = [0.0, 500.0, 50_000.0];
 /// Its height in metres.
 const HEIGHT_AROUND: f32 = 0.01;
 
-/// Flat ground around an arena of this size, beside the arena's own.
+/// Flat ground around an arena of this size, outside the arena's own.
 pub(crate) fn around(size: [f32; 2], color: [f32; 3]) -> PanelGroup {
     let ring = |more: f32| {
         let [x, y] = size.map(|side| side / 2.0 + more);

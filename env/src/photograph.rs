@@ -9,7 +9,7 @@ use crate::render::{CpuRenderer, Target};
 use crate::scene::{Item, Scene};
 use crate::vector::{add, scaled};
 
-/// Most photographs of one world; object numbers then fit into 16-bit images.
+/// Maximum number of photographs of one world, so that object numbers fit into 16-bit images.
 pub const MAX_PHOTOGRAPHS: usize = 50_000;
 
 /// The sun's angle to the left of the camera, and its elevation, in degrees.

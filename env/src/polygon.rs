@@ -1,4 +1,4 @@
-//! Polygons on the ground: conversion, and tests of points.
+//! Polygons on the ground: conversion and point tests.
 
 use std::ops::{Add, Div, Mul, Sub};
 

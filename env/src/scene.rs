@@ -212,7 +212,7 @@ impl Scene {
         self
     }
 
-    /// The same scene, in the natural style with other ground around its arena, for images from outside.
+    /// The same scene; in the natural style, with other ground around its arena, for images from outside.
     #[must_use]
     pub fn with_surroundings(mut self) -> Self {
         if self.natural.is_some() {

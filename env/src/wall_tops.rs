@@ -1,11 +1,11 @@
-//! Tops of walls: of all walls in images from above; in the agent's view, in the natural style, of those lower than its eyes.
+//! Tops of walls: of all walls in images from above; in the agent's view in the natural style, of those below its eyes.
 
 use crate::assets::Mesh;
 use crate::ground::triangles;
 use crate::scene::{ARENA_WALLS, PanelGroup, WallPanel};
 
-/// The tops of regions and walls as faces that look up, each in its wall's colour, for walls where `is_seen` holds for the
-/// edges. The arena's own walls have no thickness, and walls without height no top.
+/// The tops of regions and walls as faces that point up, each in its wall's colour, for walls whose edges satisfy
+/// `is_seen`. The arena's own walls have no thickness, and walls without height have no top.
 pub(crate) fn tops(walls: &[WallPanel], is_seen: impl Fn(&[WallPanel]) -> bool) -> impl Iterator<Item = PanelGroup> {
     let mut left = walls.get(ARENA_WALLS..).unwrap_or_default();
     std::iter::from_fn(move || {

@@ -14,7 +14,7 @@ use crate::EnvError;
 use crate::assets::Catalogue;
 use walker::{Walked, Walker};
 
-/// Most states of a [`WorldAbstraction`].
+/// Maximum number of states of a [`WorldAbstraction`].
 pub const MAX_ABSTRACT_STATES: usize = 1 << 20;
 
 /// The longest macro action in seconds.
@@ -52,9 +52,9 @@ impl Default for Abstraction {
 ///
 /// A state is a cell and a heading; everything else is as at the start of the world: each object is present, pays what it paid
 /// then, and starts its own motion. So the tables reflect walls, the agent's body and speed, the time step, how long actions
-/// are held, the action model, solid and pushed objects, and rewards. Whatever is taken, pushed or moves past is reset after
-/// the action; limits of steps and seconds are ignored; rules about the return count only what this one action earns. Uncertain
-/// rewards pay their mean.
+/// are held, the action model, solid and pushed objects, and rewards. Everything that was taken, pushed or moved is
+/// reset after the action; limits of steps and seconds are ignored; rules about the return count only what this one
+/// action earns. Uncertain rewards pay their mean.
 ///
 /// Actions are in the order of [`NUM_MACRO_ACTIONS`]; each is done at the agent's full speed, by the nearest row if the world
 /// has a table of actions. An agent that cannot interact stands still instead.

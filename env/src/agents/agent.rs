@@ -10,8 +10,8 @@ pub trait Agent {
     /// Called before each episode, with a seed for all random numbers that the agent draws in it.
     ///
     /// Within a run, every evaluation of a world gets the same seed, so that an unchanged agent acts the same way again.
-    /// Learning in that world again gets another seed. Worlds of the same index and seed get the same number in all variants of
-    /// a task.
+    /// Learning in that world again gets another seed. Worlds of the same index and seed get the same agent seed in all
+    /// variants of a task.
     fn begin(&mut self, _seed: u64) {}
 
     /// Called before [`begin`](Self::begin) with the label of the next task, if the scenario reveals it.

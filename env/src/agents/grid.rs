@@ -1,9 +1,9 @@
 //! The arena as a grid of square cells.
 
-/// Most cells along one side of the grid.
+/// Maximum number of cells along one side of the grid.
 const MOST_CELLS: usize = 256;
 
-/// Least side of a cell in metres.
+/// Minimum side of a cell in metres.
 const LEAST_SIDE: f32 = 0.5;
 
 /// Limits for a grid with narrow corridors.

@@ -5,7 +5,7 @@ use std::collections::BinaryHeap;
 
 use super::grid::Grid;
 
-/// Most cells visited around goals per choice; beyond that, the best path length known so far is used.
+/// Maximum number of cells visited around goals per choice; beyond that, the best path length known so far is used.
 const MOST_LOOKS: usize = 4_000_000;
 
 /// The goals of each cell, as linked lists in one vector, and scratch space for searching around a goal.

@@ -9,7 +9,8 @@ use super::marks::Marks;
 use super::route::Route;
 use crate::scene::Scene;
 
-/// Most cells that belong to goals in one choice. If there are more, only the nearest goals in a straight line are considered.
+/// Most cells that belong to goals in one choice. If there are more, only the nearest goals by straight-line distance
+/// are considered.
 const MOST_MARKS: usize = 2_000_000;
 
 /// A candidate destination.
@@ -54,7 +55,8 @@ impl Route {
         }
         let here = self.open_cell(from);
         self.flood.begin(&self.occupancy, here);
-        // For each goal a lower bound on its distance: that of the first open cell on the path that only this goal may use.
+        // For each goal a lower bound on its distance: that at which the flood first reaches the goal's cell or the
+        // ground that the goal's own object blocks.
         let mut least: Vec<Option<u32>> = vec![None; goals.len()];
         let likeliest = goals.iter().map(|goal| goal.probability).fold(0.0, f32::max);
         let (mut best, mut farthest, mut num_unseen) = (f32::INFINITY, 0, looked_at.len());

@@ -19,7 +19,7 @@ fn clearance(corridor: f32, body: f32) -> f32 {
 /// Distance in metres that the agent's centre keeps from zones that cost.
 const ZONE_CLEARANCE: f32 = 0.35;
 
-/// Largest side of a cell in metres where zones end the episode as a failure, so that narrow fords are found.
+/// Largest side of a cell in metres if zones end the episode as a failure, so that narrow gaps between them are found.
 const SIDE_BESIDE_FAILURE: f32 = 0.25;
 
 /// Counts how often each cell is taken: once by walls, and once by each avoided object. Updates only what changed since the
@@ -129,7 +129,7 @@ impl OccupancyGrid {
         Some(self.discs[place])
     }
 
-    /// Blocks the walls of a world, and these of its objects at their places at the start; frees everything else.
+    /// Blocks the walls of a world and the `avoided` objects at their start positions; frees everything else.
     pub(super) fn block(&mut self, world: &World, scene: &Scene, avoided: &[u32]) {
         self.block_walls(world, scene);
         let margin = self.walls.body + clearance(self.walls.corridor, self.walls.body);

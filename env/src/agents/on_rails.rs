@@ -21,7 +21,7 @@ const IDLE: u32 = 20;
 const ASIDE: f32 = 1.5;
 
 /// Visits all objects that pay, nearest first along paths around obstacles and most probable first if rewards are uncertain,
-/// and then goes where the world's success is.
+/// and then goes to the object or zone that counts as success.
 ///
 /// Reads the world's state, not its images.
 #[derive(Clone, Debug, Default)]
@@ -152,7 +152,7 @@ impl OnRailsAgent {
         if !self.given_up.is_empty() {
             given_up.resize(sim.objects().len(), false);
         }
-        // A snapshot may name objects that the world does not have.
+        // Ignores indices beyond the world's objects.
         for index in &self.given_up {
             if let Some(given_up) = given_up.get_mut(*index) {
                 *given_up = true;
@@ -288,8 +288,8 @@ impl GivenUp {
     }
 }
 
-/// Objects worth going to, by index: those that pay now, except that objects whose touch is a success wait until no others pay;
-/// if nothing pays, those whose touch is a success.
+/// Objects worth going to, by index: those that pay now without ending the episode; if there are none, those that pay
+/// and end it as a success; failing that, those that only end it as a success.
 pub(super) fn wanted(sim: SimRef) -> Vec<usize> {
     tiers(sim).into_iter().find(|tier| !tier.is_empty()).unwrap_or_default()
 }

@@ -8,13 +8,13 @@ use driftworld_text::{is_unprintable, quoted};
 use crate::EnvError;
 use crate::sim::Action;
 
-/// Most steps of one command.
+/// Maximum number of steps of one command.
 const MOST_STEPS: u32 = 100_000;
 
 /// Default number of steps after which a walk to an object is given up.
 const WALK_STEPS: u32 = 300;
 
-/// Most lines of a script.
+/// Maximum number of lines of a script.
 const MOST_LINES: usize = 100_000;
 
 /// Longest name of an object, as in worlds.

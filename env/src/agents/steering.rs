@@ -161,8 +161,8 @@ pub(super) fn is_narrow(sim: SimRef) -> bool {
     sim.world.environment_params.zones.iter().any(Zone::is_costly) || failing(sim).next().is_some()
 }
 
-/// The objects that a path to `goal` avoids: static ones that are solid, cost or fail. Without a goal all of them, by rising
-/// index.
+/// The objects that a path to `goal` avoids: static ones that are solid, cost or fail; without a goal, all of them. In
+/// ascending order of index.
 pub(super) fn avoided(sim: SimRef, goal: Option<usize>) -> Vec<u32> {
     let objects = sim.world.objects.iter().zip(sim.objects());
     let returns_elsewhere = |object: &Object| object.respawn.as_ref().is_some_and(|back| back.radius > 0.0);

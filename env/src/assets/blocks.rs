@@ -40,8 +40,8 @@ impl Material {
     }
 }
 
-/// Which of 24 directions a normal is nearest to, numbered so that neighbouring directions have close numbers: down, around,
-/// up.
+/// The direction that a normal faces, numbered so that neighbouring directions have close numbers: down, one of 24
+/// around, or up.
 fn facing([x, y, z]: [f32; 3]) -> u32 {
     if z.abs() > 0.7 {
         return if z < 0.0 { 0 } else { 100 };

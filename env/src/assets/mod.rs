@@ -229,7 +229,7 @@ pub(crate) fn sign(model: u32, text: &str, lettering: Lettering) -> Arc<Asset> {
     if let Some(asset) = made.get(&key) {
         return Arc::clone(asset);
     }
-    // Bounds the memory of endless new texts; assets in use stay alive.
+    // Bounds the memory if new texts keep coming; assets in use stay alive.
     if made.len() >= MOST_SIGNS {
         made.clear();
     }
@@ -239,7 +239,7 @@ pub(crate) fn sign(model: u32, text: &str, lettering: Lettering) -> Arc<Asset> {
     asset
 }
 
-/// Most signs in the cache.
+/// Maximum number of signs in the cache.
 const MOST_SIGNS: usize = 256;
 
 /// The built-in classes with their numbers of models, ordered by number in class segmentation.

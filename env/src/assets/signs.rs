@@ -11,7 +11,7 @@ const POST: [f32; 2] = [1.3, 0.62];
 const WIDE: [f32; 2] = [2.2, 0.62];
 const MIDDLE: f32 = 1.15;
 
-/// Size in pixels of a letter's square from which letters are drawn, seen from the sign's nearest point.
+/// Letters are drawn if their squares have at least this size in pixels, at the sign's distance from the camera.
 const READABLE: f32 = 1.6;
 
 /// Thickness of a board, and distance of letters in front of it, in metres.
@@ -57,7 +57,7 @@ pub(crate) fn sign(bare: &Asset, model: u32, text: &str, lettering: Lettering) -
     };
     let mut all = bare.parts.clone();
     all.push(Part::new(letters, Paint::Fixed(color)));
-    // An error of half a pixel is allowed: this many metres at that size of square.
+    // An error of half a pixel is allowed: this many metres if a square is `READABLE` pixels wide.
     let levels = vec![(0.0, all), (square / (2.0 * READABLE), bare.parts.clone())];
     Asset::of_levels(levels, bare.collider.clone())
 }

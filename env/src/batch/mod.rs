@@ -22,7 +22,7 @@ use crate::recording::Recording;
 use crate::render::{CpuRenderer, Renderer, RendererKind};
 use crate::sim::{Action, EndedBy, Environment, Event};
 
-/// Most threads of a batch per processor: more would only take turns.
+/// Maximum number of threads of a batch per processor: more would only take turns.
 const THREADS_PER_PROCESSOR: usize = 4;
 
 /// `num_envs` environments that step together.
@@ -200,8 +200,8 @@ impl Batch {
         }
     }
 
-    /// The recording of an environment's current episode. Before its first step, and if it began by itself in the step that
-    /// ended another episode, that of the previous one. `None` unless [`Batch::set_recording`] requested it.
+    /// The recording of an environment's current episode; before that episode's first step, as after an automatic
+    /// reset, the recording of the previous one, if there is one. `None` unless [`Batch::set_recording`] requested it.
     pub fn recording(&self, env: usize) -> Option<Recording> {
         self.slots.get(env)?.recording()
     }

@@ -7,10 +7,10 @@ use driftworld_spec::{Modality, World};
 
 use crate::render::{DepthForm, RendererKind};
 
-/// Most environments of one batch.
+/// Maximum number of environments in one batch.
 pub const MAX_ENVS: usize = 65_536;
 
-/// Most bytes that the outputs of one batch may take: 16 GiB.
+/// Maximum size of the outputs of one batch in bytes: 16 GiB.
 pub const MAX_BATCH_BYTES: u64 = 16 << 30;
 
 /// Whether to continue: called before each environment's reset, from several threads.

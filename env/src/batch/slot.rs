@@ -141,7 +141,7 @@ impl Slot {
         mut renderer: Option<&mut CpuRenderer>,
     ) -> Result<(), EnvError> {
         if self.is_over {
-            // Next-step autoreset, or an episode that could not begin in its own time.
+            // Next-step autoreset, or an episode that could not begin when it was due.
             return self.reset(index, outputs, renderer);
         }
         self.environment.step_into(action, &mut self.step)?;

@@ -10,7 +10,8 @@ use crate::sim::{Action, Environment, Step};
 /// A world as an expert from elsewhere believes it to be, synchronised with the state of the true one.
 pub(super) struct Belief {
     environment: Environment,
-    /// For each object, the stimuli that are believed to use it up but do not; empty where belief and truth agree.
+    /// For each object about which the belief is wrong, the stimuli that are believed to use it up; empty for the
+    /// others.
     vain: Vec<Vec<Stimulus>>,
     /// Which of those have been triggered.
     tried: Vec<bool>,

@@ -10,7 +10,7 @@ use driftworld_spec::World;
 use crate::EnvError;
 use crate::assets::Catalogue;
 
-/// Most steps of an expert's episode.
+/// Maximum number of steps of an expert's episode.
 pub const MAX_EXPERT_STEPS: u32 = 100_000;
 
 /// Result of one episode.
@@ -55,10 +55,11 @@ impl Expertise {
     ///
     /// Before each step the expert is shown the true state of `abroad`: its map, the agent and the present objects with their
     /// positions. It plans by the rules of `home`, and takes each object for the most similar one of the same class at home: by
-    /// nearest colour, then by model, then by nearest place, then by index. It believes that the object has that one's reward,
-    /// probability, stimuli, order and respawn; about a class that home lacks it believes nothing. The chosen action is then
-    /// carried out in `abroad`, within that agent's limits, by the nearest row of its action table if there is one. The expert
-    /// leaves an object alone once it has triggered what it believes to use the object up.
+    /// nearest colour, then by model, then by nearest place, then by index. It believes that the object has that one's
+    /// reward, probability, stimuli, order and respawn; it believes objects of a class that home lacks to have no
+    /// effect. The chosen action is then carried out in `abroad`, within that agent's limits, by the nearest row of its
+    /// action table if there is one. The expert leaves an object alone once it has triggered what it believes to use
+    /// the object up.
     ///
     /// If the world is `home` itself, the result is that of [`at_home`](Self::at_home), to the bit.
     ///

@@ -32,7 +32,7 @@ use crate::{Environment, Step, Warning};
 pub struct Channels {
     /// The hash of the last world that was reset to.
     world: String,
-    /// Layouts that replace the built-in ones in worlds of resets.
+    /// Layouts that replace the built-in ones in worlds that are reset to.
     maps: MapLibrary,
     sent: u64,
     /// The parts that are sent after each step, out of [`PARTS`].
@@ -75,7 +75,7 @@ impl Channels {
         }
     }
 
-    /// The same channels, with these layouts in place of the built-in ones in worlds of resets.
+    /// The same channels, with these layouts in place of the built-in ones in worlds that are reset to.
     #[must_use]
     pub fn with_maps(mut self, maps: MapLibrary) -> Self {
         self.maps = maps;
@@ -117,7 +117,7 @@ impl Channels {
             Ok(Answer::Say(action, payload)) => messages.push(self.message(channel, action, payload, token, time)),
             Ok(Answer::Picture(screenshot)) => received.screenshot = Some(Screenshot { token, ..screenshot }),
             Err(refusal) => {
-                // A refusal has one text, or lists all problems.
+                // A refusal always has at least one text.
                 let said = format!("{} refused: {}", channel.name(), refusal.texts()[0]);
                 messages.extend(self.remark(Category::Communications, Level::Error, said, time));
                 let payload = Some(json!(refusal.texts()));

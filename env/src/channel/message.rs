@@ -5,16 +5,16 @@ use serde_json::{Map, Value, json};
 
 use super::Channel;
 
-/// Longest message that is read, in bytes: the same as for documents.
+/// Maximum size of a message that is read, in bytes: the same as for documents.
 pub const MAX_MESSAGE_BYTES: usize = driftworld_spec::MAX_BYTES;
 
 /// The longest token, in characters; a UUID has 36.
 const LONGEST_TOKEN: usize = 100;
 
-/// The token that stands for no message.
+/// The `req_token` of a message that answers no other.
 const NO_TOKEN: &str = "00000000-0000-0000-0000-000000000000";
 
-/// Most texts in the payload of one error.
+/// Maximum number of texts in the payload of one error; one more says how many are missing.
 const MOST_TEXTS: usize = 20;
 
 /// A message to the client.

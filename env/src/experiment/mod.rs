@@ -20,7 +20,7 @@ use matching::Paired;
 use run::Run;
 use space::StateSpace;
 
-/// Most steps of a run.
+/// Maximum number of steps of a run.
 pub const MAX_EXPERIMENT_STEPS: u32 = 100_000;
 
 /// Settings of an experiment.

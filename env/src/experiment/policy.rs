@@ -43,7 +43,7 @@ impl Policy {
 fn scripted(script: &str) -> Box<dyn Agent> {
     match ScriptedAgent::parse("experiment", script) {
         Ok(agent) => Box::new(agent),
-        // Tags that no script can name: the tour stands in.
+        // If a tag cannot be named in a script, the expert takes over.
         Err(_) => Box::new(OnRailsAgent::new()),
     }
 }

@@ -37,14 +37,14 @@ pub(super) struct EpisodeLine {
     pub(super) origin: EpisodeOrigin,
     /// The hash of its world.
     pub(super) world_hash: String,
-    /// For readers that do not run it: seconds per time step, and time steps for which an action is held.
+    /// For readers that do not replay the episode: seconds per time step, and time steps for which an action is held.
     pub(super) time_step: f64,
     pub(super) frame_skip: u32,
     pub(super) steps: u32,
     pub(super) reward: f64,
     pub(super) ended_by: Option<String>,
     pub(super) driftworld: String,
-    /// Steps, and hashes of worlds.
+    /// The step of each edit, and the hash of the world after it.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(super) edits: Vec<(u32, String)>,
     pub(super) actions: PackedActions,

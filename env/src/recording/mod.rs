@@ -17,7 +17,7 @@ pub use replay::Replay;
 
 use crate::sim::{Action, EndedBy};
 
-/// Identifies a recorded episode, as far as it has names.
+/// Identifies a recorded episode; what is unknown is `None`.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct EpisodeOrigin {
     /// Index of the experience over the whole lifetime, as in the log; otherwise the episode's index in its file, from 0.
@@ -28,7 +28,7 @@ pub struct EpisodeOrigin {
     /// The task.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub task: Option<String>,
-    /// The variant; in a drift both ends, as in the log's summary.
+    /// The variant; during a drift, both of its ends, as in the log's summary.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub variant: Option<String>,
     /// The seed of its world.

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::sim::Action;
 
-/// Most steps of a readable episode.
+/// Maximum number of steps in an episode that can be read.
 pub const MAX_RECORDED_STEPS: u32 = 1 << 24;
 
 /// The actions of an episode, in the shortest lossless form. Little-endian.

@@ -96,7 +96,7 @@ impl<R: BufRead> RecordingReader<R> {
             if line.starts_with(b"{\"world_hash\":") {
                 let world: WorldLine = serde_json::from_slice(&line).map_err(|error| not_a_line(self, &error))?;
                 let line = self.line;
-                // The last line of a world counts: it was written because an earlier one could not be decoded.
+                // If a world has several lines, the last counts: it was written because an earlier one was undecodable.
                 self.worlds.insert(world.world_hash, (line, world.world));
                 continue;
             }
@@ -166,11 +166,11 @@ impl<R: BufRead> RecordingReader<R> {
         }
     }
 
-    /// The number of bytes before the first episode that is not before this experience, or before an incomplete last line; a
-    /// writer that continues there; and the experience after the last one before it, 0 without one.
+    /// Returns the number of bytes before the first episode of this or a later experience, or before an incomplete last
+    /// line; a writer that continues there; and the experience after the last one before that point, or 0 without any.
     ///
     /// # Errors
-    /// [`EnvError::Recording`] for a damaged line before that.
+    /// [`EnvError::Recording`] for a damaged line before that point.
     pub fn into_lines_before(mut self, experience: u64) -> Result<(u64, RecordingLines, u64), EnvError> {
         let mut next = 0;
         let end = loop {
@@ -298,7 +298,7 @@ mod tests {
         recording
     }
 
-    /// Found by the fuzzer: what was written after such a line could not be read.
+    /// Found by the fuzzer: episodes written after such a line could not be read.
     #[test]
     fn undecodable_world_is_written_again() {
         let world = sealed(&WorldLine {

@@ -124,7 +124,7 @@ impl Canvas {
     }
 }
 
-/// Least height in rows for which finding the rows that a triangle reaches in a few columns is worthwhile.
+/// Minimum height, in rows, of triangles for which it pays to find the rows that they reach in a few columns.
 const TALL: usize = 12;
 
 /// Computes the rows that a triangle reaches in some columns: never too few, despite rounding.
@@ -208,8 +208,8 @@ impl<T> std::ops::DerefMut for Aligned<T> {
     }
 }
 
-/// What leaves out, added to an edge, the lanes beside a triangle's columns: how many these are depends on the instruction set,
-/// and the edges of a sliver may hold there.
+/// Added to an edge function, excludes the lanes beside a triangle's columns: their number depends on the instruction
+/// set, and the edge functions of a sliver may be non-negative there.
 #[inline(always)]
 fn within<L: Lanes>(lanes: L, start: usize, [first, last]: [usize; 2]) -> L::Float {
     let beside = BESIDE.as_flattened();
@@ -220,7 +220,7 @@ fn within<L: Lanes>(lanes: L, start: usize, [first, last]: [usize; 2]) -> L::Flo
     lanes.min(right, lanes.load(&beside[MOST_LANES + start - first..]))
 }
 
-/// Zeros between as many infinities.
+/// Zeros, with as many negative infinities on each side.
 const BESIDE: [[f32; MOST_LANES]; 3] = [
     [f32::NEG_INFINITY; MOST_LANES],
     [0.0; MOST_LANES],

@@ -19,8 +19,8 @@ use super::view::View;
 /// The share of detail at which all of it is shown.
 const FULL_SHARE: u32 = 255;
 
-/// Darkness that is visible, as a share: what is fainter changes no pixel. Far above the errors of rounding, so that rows left out
-/// before it is computed are those in which nothing would be dark.
+/// Smallest visible darkening, as a share: anything fainter changes no pixel. Far above rounding errors, so that rows
+/// skipped without computing it are rows in which nothing would be darkened.
 const FAINTEST: f32 = 1e-4;
 
 /// Distance in metres of the foot in columns without one.
@@ -52,20 +52,20 @@ struct Columns<'a, L: Lanes> {
     shared: L::Word,
     pair: u32,
     offset: L::Float,
-    /// Offset of the middle of each two and each four columns.
+    /// Offset of the middle of each group of two columns, and of four.
     offset_of_two: L::Float,
     offset_of_four: L::Float,
-    /// Most of its columns that may be looked up together.
+    /// Maximum number of its columns that may be looked up together.
     most_alike: u32,
     glow: L::Word,
-    /// The covering of walls, if columns show it from top to bottom.
+    /// The covering of walls, if columns of the image run along columns of its texels.
     wall: Option<&'a Patch>,
     run: Run<L>,
     /// Distance in metres of the last object that met the ground.
     foot: L::Float,
     /// Distance in metres of walls that reach the ceiling: the same there as at eye height.
     lintel: L::Float,
-    /// Steepest slopes of rows that show ground or ceiling before they come near a continuing wall.
+    /// For ground and ceiling, the steepest slope of rows that do not yet come near a continuing wall.
     quiet: [f32; 2],
 }
 
@@ -355,7 +355,7 @@ impl Composition<'_> {
     fn in_contact<L: Lanes>(&self, l: L, columns: &mut Columns<'_, L>, row: &Row, seen: &Seen<L>) -> L::Word {
         let is_ceiling = row.shows == Shows::Ceiling;
         let foot = if is_ceiling { columns.lintel } else { columns.foot };
-        // What is dark depends on its own column alone: the number of columns beside it depends on the instruction set.
+        // Darkening must depend on a pixel's own column alone: how many are beside it depends on the instruction set.
         if !seen.may_meet && l.bits(l.above(l.splat(row.metres + 1.0 / row.fades), foot)) == 0 {
             return seen.word;
         }

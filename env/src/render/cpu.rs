@@ -102,7 +102,7 @@ impl CpuRenderer {
         Ok(())
     }
 
-    /// Draws these items of the scene, which are carried, at the lower edge of the target's colours.
+    /// Draws these carried items of the scene at the lower edge of the target's colours.
     pub(crate) fn draw_carried(&mut self, scene: &Scene, carried: &[u32], target: &mut Target<'_>) {
         self.hand.draw(scene, carried, target);
     }

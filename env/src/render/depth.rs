@@ -26,8 +26,8 @@ const GRAY_PER_METRE: f32 = 2.55;
 
 /// The nearest integer, halves rounded up, within 0..=`most`, which must be below 2²³.
 ///
-/// A sum with 2²³ has no bits for a fraction: its last bits are the integer. Compilers vectorise this, but not a saturating
-/// cast: it takes a third of the time with SSE2.
+/// A sum with 2²³ has no bits for a fraction: its last bits are the integer. Compilers vectorise this, but not a
+/// saturating cast, which takes three times as long with SSE2.
 #[inline]
 fn rounded(number: f32, most: f32) -> u32 {
     const SHIFT: f32 = 8_388_608.0;

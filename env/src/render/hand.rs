@@ -11,7 +11,7 @@ use crate::scene::{Item, Light, Scene};
 /// The image's height divided by this is the height of a thing's picture.
 const SHARE: u32 = 5;
 
-/// Least height of a thing's picture in pixels, if the image is that large.
+/// Minimum height of a thing's picture in pixels, if the image is that large.
 const LEAST: u32 = 8;
 
 /// Draws carried things. Allocates when the first is drawn, and afterwards only for larger pictures.
@@ -76,7 +76,7 @@ impl Studio {
             // Its face, slightly from the side.
             heading_deg: 200.0,
             scale: 1.0 / length,
-            // Its number may be unknown in this scene.
+            // Its class number may be unknown in this scene.
             class_id: 0,
             visible: true,
             ..item.clone()

@@ -164,7 +164,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 64)))]
 
-        /// To the bit, except for a pixel on a seam of what is in front.
+        /// Colours, depths and instances are the same, to the bit.
         #[test]
         fn culling_hidden_objects_does_not_change_images(
             (seed, standing, wall) in (0_u64..999, 0.3..=1.0, 0.05..1.5_f64),

@@ -51,7 +51,7 @@ pub(super) struct Natural {
     pub(super) rows: Rows,
     /// Coverings of walls that face along x and y, and of their tops.
     pub(super) walls: Option<[Patch; 3]>,
-    /// Per column, how much it shows of the sky towards the sun: a byte, in the three of a colour.
+    /// Per column, how much it shows of the sky towards the sun: a byte, repeated in the three bytes of a colour.
     pub(super) glow: Vec<u32>,
 }
 
@@ -414,7 +414,7 @@ impl Natural {
         });
     }
 
-    /// The covering of walls, if each column of the image shows it from top to bottom.
+    /// The covering of walls, if columns of the image run along columns of its texels.
     pub(super) fn upright_walls(&self) -> Option<&Patch> {
         let [along_x, along_y, _] = self.walls.as_ref()?;
         (along_x.is_upright() && along_y.is_upright()).then_some(along_x)

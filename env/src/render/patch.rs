@@ -72,7 +72,7 @@ impl Patch {
         l.power_of_two(l.min(l.max(side, one), l.splat(SIDE as f32)))
     }
 
-    /// Whether each column of an image shows the patch along the tile's v only: an upright face before a level camera.
+    /// Whether each column of an image runs along the tile's v axis only: an upright face in front of a level camera.
     pub(super) fn is_upright(&self) -> bool {
         [self.u[3], self.v[1], self.v[2], self.facing[2]] == [0.0; 4]
     }
@@ -142,7 +142,7 @@ pub(super) struct Run<L: Lanes> {
     inverse: L::Float,
     /// The bits of a packed pixel that identify the covering.
     material: L::Word,
-    /// Distance in metres for depth images, and in formulas.
+    /// Distance in metres, for depth images and formulas.
     pub(super) metres: L::Float,
     /// Texels per side; texels per metre of depth; and the last texel of a row.
     side: L::Float,

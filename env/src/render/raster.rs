@@ -198,7 +198,7 @@ fn most<L: Lanes>(l: L, a: [L::Float; 3]) -> L::Float {
     l.max(a[0], l.max(a[1], a[2]))
 }
 
-/// The next integer, at least 0.
+/// Rounds up to an integer, at least 0.
 #[inline(always)]
 fn round_up<L: Lanes>(l: L, value: L::Float) -> L::Float {
     let value = l.min(l.max(value, l.splat(0.0)), l.splat(65536.0));
@@ -252,7 +252,7 @@ fn byte<L: Lanes>(l: L, share: L::Float, full: f32) -> L::Word {
     l.truncate(l.min(level, l.splat(FULL_LEVEL)))
 }
 
-/// Draws the parts of these lanes' triangles beyond the near plane: one by one, because few are ever so near.
+/// Draws the parts of these lanes' triangles beyond the near plane: one by one, because few are ever that near.
 #[inline(always)]
 fn draw_all_cut<L: Lanes, const ITEMS: bool, S: Shading>(
     lanes: L,

@@ -43,7 +43,7 @@ impl Renderer {
         }
     }
 
-    /// A renderer on a GPU; with `or_software`, otherwise on software emulation of one.
+    /// A renderer on a GPU; with `or_software`, if none works, on software emulation of one.
     #[cfg(feature = "gpu")]
     fn on_gpu(or_software: bool) -> Result<Self, EnvError> {
         let choice = if or_software {
@@ -109,7 +109,7 @@ impl Renderer {
         }
     }
 
-    /// Draws these items of the scene, which are carried, at the lower edge of the target's colours.
+    /// Draws these carried items of the scene at the lower edge of the target's colours.
     pub(crate) fn draw_carried(&mut self, scene: &Scene, carried: &[u32], target: &mut Target<'_>) {
         match &mut self.0 {
             Inner::Cpu(renderer) => renderer.draw_carried(scene, carried, target),

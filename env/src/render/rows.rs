@@ -14,13 +14,14 @@ use crate::scene::{Light, Scene};
 /// Added to texel indices to make them positive; a multiple of every side of a tile.
 const SHIFT: f32 = 65536.0;
 
-/// How much coarser than a pixel texels may be: a pixel shows less than one texel of its level, and none is skipped.
+/// Most texels per pixel, along the pixel's footprint. The side of a level is a power of two, so a pixel shows between
+/// half as many texels and this many.
 const SHARPNESS: f32 = 1.25;
 
 /// Columns may share a texel if the texel is wider than them by this factor.
 const WIDER: f32 = 1.25;
 
-/// Finest texels per pixel at which the first of their detail is visible, and at which all of it is.
+/// Finest texels across a pixel's width at which the detail starts to appear, and at which it has its full strength.
 const DETAIL: [f32; 2] = [0.5, 0.25];
 
 /// A layer of clouds: metres above the eye, metres per side of its tile, and the slope of the ray from which it is fully
@@ -33,7 +34,7 @@ pub(super) const CEILING: Surface = Surface::Tile;
 /// Darkness where walls, ground, ceiling and objects meet, and the distance in metres over which it fades.
 pub(super) const CONTACT: [f32; 2] = [0.5, 0.35];
 
-/// Fewest pixels over which it fades, so that it does not flicker; it is fainter then.
+/// Fewest pixels over which that darkness fades, so that it does not flicker; it is fainter where this limit applies.
 pub(super) const CONTACT_PIXELS: f32 = 1.5;
 
 /// Number of a wall's lowest pixels that count as meeting the ground.
@@ -64,7 +65,7 @@ pub(super) struct Row {
     /// Packed pixels of the sky towards the sun, and of clouds; the same as `base` if there is no difference.
     pub(super) sunward: u32,
     pub(super) cloud: u32,
-    /// Texture coordinates, each at the middle, and its change to the right at 1 m. The texel is
+    /// Texture coordinates: each at the middle column, and its change per metre to the right at 1 m depth. The texel is
     /// `texels[(u & mask) << bits | v & mask | first]`. With a side of 1 there is nothing to look up.
     pub(super) u: [f32; 2],
     pub(super) v: [f32; 2],
@@ -334,7 +335,7 @@ pub(super) fn packed(levels: [f32; 3], category: u8) -> u32 {
 mod tests {
     use super::*;
 
-    /// Detail of the ground appears in the farthest of its rows and increases row by row, faster when nearer, with no jump
+    /// Detail of the ground is absent from the farthest row and increases row by row, faster when nearer, with no jump
     /// between neighbouring rows.
     #[test]
     fn detail_increases_gradually_from_row_to_row() {

@@ -25,7 +25,7 @@ const SPREAD: f32 = 1.2;
 /// Largest error of a simplified mesh that casts a shadow, in pixels.
 const TOLERANCE: f32 = 2.5;
 
-/// Shadow direction: opposite to this vector, of height 1.
+/// How shadows are cast: away from the light, in the direction opposite to `toward`, whose height is 1.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cast {
     toward: [f32; 3],
@@ -65,7 +65,7 @@ impl Cast {
         }
     }
 
-    /// Bounding ball of the shadow of a thing, which stands in the middle of a circle.
+    /// Bounding ball of the shadow of a thing with this position, radius and height.
     fn ball(&self, [x, y]: [f32; 2], radius: f32, height: f32) -> ([f32; 3], f32) {
         let away = [self.toward[0], self.toward[1]].map(|part| part * height / 2.0);
         let length = (away[0] * away[0] + away[1] * away[1]).sqrt();
@@ -92,8 +92,8 @@ impl Cast {
     }
 }
 
-/// Collects the casters of shadows that may be visible: things, and outdoors also the walls within the arena. Without `hidden`,
-/// includes those behind walls. The depth of each is that of its shadow.
+/// Collects the casters of shadows that may be visible: things, and outdoors also the walls within the arena. Leaves
+/// out shadows behind the walls recorded in `hidden`. The depth of each is that of its shadow.
 pub(super) fn find(
     scene: &Scene,
     looks: &NaturalLooks,

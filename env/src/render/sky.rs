@@ -26,7 +26,7 @@ impl Shader {
 }
 
 impl Daylight {
-    /// The sky for a light with this elevation of the sun, and how low the sun looks.
+    /// The sky in this light: `height` is that of the unit vector towards the sun, `low` how low the sun looks, 0..1.
     pub(super) fn sky(light: &Light, exposure: f32, low: f32, height: f32) -> Self {
         let bright = exposure * (0.62 + 0.38 * rise(height, -0.1, 0.35)) * FULL_LEVEL;
         let tint = between([1.0; 3], [0.7, 0.62, 0.74], low);

@@ -81,7 +81,7 @@ pub(super) fn clouds() -> &'static Tile {
 impl Tile {
     fn baked(period: f32, is_grain: bool, sharpness: f32, texel: fn(f32, f32) -> [f32; 3]) -> Self {
         let mut levels = levels(texel);
-        // Normalises each channel, so that its mean is the colour.
+        // Normalises each channel to a mean of 1, so that the mean is the covered colour.
         let mean = levels.last().map_or([1.0; 3], |coarsest| coarsest[0]);
         for texel in levels.iter_mut().flatten() {
             (0..3).for_each(|channel| texel[channel] /= mean[channel]);

@@ -6,7 +6,7 @@ use super::frame::Frame;
 use crate::EnvError;
 use crate::scene::Light;
 
-/// The images to fill; `None` is not computed. Row 0 is on top.
+/// The images to fill; those that are `None` are not computed. Row 0 is at the top.
 #[derive(Debug, Default)]
 pub struct Target<'a> {
     /// Width in pixels, 1 to 4096.

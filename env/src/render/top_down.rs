@@ -1,4 +1,4 @@
-//! Draws the map of a scene from straight above, north on top, with the agent.
+//! Draws a map of a scene, seen from straight above, with north at the top and the agent on it.
 
 use super::cpu::CpuRenderer;
 use super::frame::Frame;
@@ -6,7 +6,7 @@ use crate::assets::{ColliderShape, Paint};
 use crate::camera::Camera;
 use crate::scene::{ARENA_WALLS, Item, Scene};
 
-/// Least radius of an object on the map, as a fraction of the map's height.
+/// Minimum radius of an object on the map, as a fraction of the map's height.
 const LEAST_SIZE: f32 = 0.014;
 
 /// Classes that are hardly visible from above.
@@ -31,7 +31,7 @@ pub fn top_down(scene: &Scene, width: u32, height: u32, agent: Option<([f32; 2],
     top_down_with_way(scene, width, height, agent, &[])
 }
 
-/// Like [`top_down`], with a path over these places, in metres, as a line below the arrow.
+/// Like [`top_down`], with the path through these places, in metres, as a line under the arrow.
 pub fn top_down_with_way(
     scene: &Scene,
     width: u32,

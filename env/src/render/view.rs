@@ -7,7 +7,7 @@ use crate::vector::{add, dot, scaled, sub};
 /// Nearest distance at which anything is drawn, in metres.
 pub(crate) const NEAR: f32 = 0.05;
 
-/// A camera for a size of image. Pixel centres have integer coordinates.
+/// A camera for an image of a given size. Pixel centres have integer coordinates.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct View {
     pub(crate) axes: Axes,

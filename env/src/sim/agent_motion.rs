@@ -55,7 +55,7 @@ pub(super) fn apply_action(
 
 /// Moves the agent's body as far as solid objects allow, sliding along them; returns its new position.
 ///
-/// Nothing is passed through at any speed. Stores the path for [`CollisionWorld::path`].
+/// It passes through nothing, at any speed. Stores the path for [`CollisionWorld::path`].
 fn slide(bodies: &mut CollisionWorld, from: [f32; 2], by: [f32; 2], budget: &mut Budget) -> [f32; 2] {
     let start = from.map(f64::from);
     let way = by.map(f64::from);

@@ -25,8 +25,8 @@ pub(super) struct BroadPhase {
 
 #[derive(Default)]
 struct Tree {
-    /// The engine's own broad phase is meant for its step; without one, it lost bodies that were removed and inserted many
-    /// times.
+    /// The engine's own broad phase is meant to run in the engine's steps; without them, it lost bodies that were
+    /// removed and inserted many times.
     boxes: Bvh,
     /// Number of moves since the tree was built. Inner boxes only grow when bodies move, so that eventually every query would
     /// visit every body.

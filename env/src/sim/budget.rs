@@ -2,8 +2,8 @@
 //! used up: `slide.rs`, `moving_body.rs`, `motion.rs` and `pushing.rs`.
 //!
 //! The unit is a query about one corner of one body. Queries are counted, not timed, so that a world runs the same on every
-//! machine, alone or in a batch. Counts depend only on where objects are, so that a saved world resumes exactly. Worlds of some
-//! thousand bodies that are not crowded use a small part of the budget.
+//! machine, alone or in a batch. Counts depend only on where objects are, so that a saved world resumes exactly. Worlds
+//! with a few thousand bodies that are not crowded use a small part of the budget.
 
 /// Queries for the agent's path in one time step; when they are used up, its path ends there.
 pub(super) const AGENTS: u64 = 4_000_000;
@@ -42,8 +42,8 @@ impl Budget {
     }
 }
 
-/// Queries for a queue that is always in the same order. Half of them is reserved for those from a position on that changes
-/// with every time step, so that nobody waits forever behind the same crowd.
+/// Queries for a queue that is always in the same order. Half of them are reserved for the positions from a certain one
+/// on, which changes with every time step, so that nobody waits forever behind the same crowd.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SharedBudget {
     budget: Budget,
@@ -66,7 +66,7 @@ impl SharedBudget {
         }
     }
 
-    /// The budget for a position in the queue; positions must be requested in rising order.
+    /// The budget for a position in the queue; positions must be requested in ascending order.
     pub(super) fn at(&mut self, place: usize) -> &mut Budget {
         if place >= self.from {
             self.budget.left += std::mem::take(&mut self.kept);

@@ -52,7 +52,7 @@ pub(super) struct Standing {
     pub(super) outline: Outline,
     /// Its object; `None` for walls and the agent.
     pub(super) object: Option<u32>,
-    /// A number that depends only on the world: walls are ordered by their number of creation, objects by their index.
+    /// A number that depends only on the world: walls are numbered in order of creation, objects by their index.
     pub(super) rank: u64,
 }
 
@@ -315,7 +315,7 @@ impl CollisionWorld {
         self.scratch.places.reserve(64);
         let least = [0, 1].map(|axis| (from[axis].min(to[axis]) - reach) as f32);
         let most = [0, 1].map(|axis| (from[axis].max(to[axis]) + reach) as f32);
-        // One more than the budget is too many, wherever it is in the tree.
+        // One body more than the budget shows that there are too many, whatever the order of the tree.
         let at_most = usize::try_from(budget.left()).unwrap_or(usize::MAX).saturating_add(1);
         let around = self.around(groups, but, [least, most]).take(at_most);
         numbers.extend(around.map(|handle| slot(handle) as u32));
@@ -346,7 +346,7 @@ impl CollisionWorld {
         start.map(|metres| metres as f32)
     }
 
-    /// The solid objects that the agent's body would overlap at a place, by rising index.
+    /// The solid objects that the agent's body would overlap at a place, in order of index.
     pub(crate) fn blocking(&self, at: [f32; 2], found: &mut Vec<u32>) {
         found.clear();
         let radius = self.radius as f32;
@@ -359,7 +359,7 @@ impl CollisionWorld {
         found.sort_unstable();
     }
 
-    /// Finds the objects in the 1 m cube directly in front of the agent, by rising index.
+    /// Finds the objects in the 1 m cube directly in front of the agent, in order of index.
     pub(crate) fn in_reach(&self, at: [f32; 2], forward: [f32; 2], found: &mut Vec<u32>) {
         found.clear();
         let cube = Cuboid::new(Vector::new(0.5, 0.5, 0.5));

@@ -74,8 +74,8 @@ impl CollisionWorld {
         }
     }
 
-    /// Whether an agent that goes straight from place to place touches an object, or comes nearer to a touch than `metres`,
-    /// without moving away from it.
+    /// Whether an agent that goes straight from place to place touches an object or comes within `metres` of a touch.
+    /// If it starts nearer than that, only coming even nearer counts.
     pub(super) fn would_touch(&self, object: u32, path: &[Point], metres: f64) -> bool {
         let Some(handle) = self.handles[object as usize] else {
             return false;

@@ -83,8 +83,8 @@ impl Environment {
 
     /// Moves the agent to another place, with a heading in degrees clockwise from +y, which may exceed a full turn.
     ///
-    /// It arrives at rest. Objects and zones that it touches, is near to or in there cause no events: only what it meets by its
-    /// own motion pays.
+    /// It arrives at rest. Objects and zones that it touches, is near or is inside on arrival cause no events: only
+    /// what it meets by its own motion pays.
     ///
     /// # Errors
     /// [`EnvError::NoRoom`] for places outside the arena, in walls, in regions that cannot be entered and in solid objects;

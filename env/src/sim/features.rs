@@ -105,7 +105,7 @@ fn values(world: &World, state: &SimState, zones: &Zones, feature: StateFeature)
     }
 }
 
-/// Whether the goal feature may point to this object: by the shaping's tag, otherwise by tags whose touch is a success.
+/// Whether the goal feature may point to an object: it has the shaping's tag or, without one, touching it is a success.
 fn is_goal(world: &World, object: &Object, own: &ObjectState) -> bool {
     let Some(tag) = &object.tag else { return false };
     let rules = &world.rules;

@@ -1,7 +1,7 @@
 //! [`Footprint`]: the ground that a body covers, as a disc or a convex polygon.
 //!
-//! All bodies are upright and move in the plane, so collisions are a two-dimensional problem. The results are exact: closed
-//! forms in `f64`, with no iteration that could end early.
+//! All bodies are upright and move in the plane, so collisions are a two-dimensional problem. Gaps are exact: closed
+//! forms in `f64`. The search for the time of a contact iterates, but its result is never late.
 
 use smallvec::{SmallVec, smallvec};
 
@@ -22,7 +22,7 @@ pub(super) struct Footprint {
 /// Distance from the target, in metres, at which the search for a time stops.
 const NEAR_ENOUGH: f64 = 1e-7;
 
-/// Most iterations of the search for the first time; it needs about five, and twenty if a path only grazes.
+/// Maximum number of iterations of the search for the first time; it needs about five, or twenty if a path only grazes.
 const MOST_ROUNDS: usize = 64;
 
 impl Footprint {

@@ -148,7 +148,7 @@ fn update_contacts(
     }
     contacts.sort_unstable();
     let stays = |index: &u32| {
-        // An object met in front of the agent that has moved on since was touched when the agent had moved.
+        // A newly met object that has moved on since was in contact after the agent's motion.
         let is_new = triggered.binary_search_by_key(index, |(other, _)| *other).is_ok();
         let has_moved = || {
             moved
@@ -205,7 +205,7 @@ fn trigger(
     let effect = (object.is_used() && !destroyed && is_hand)
         .then(|| effect_of(world, state, index, stimulus))
         .flatten();
-    // An object that a stimulus is meant to move pays for it only if it moves, and a door not for being closed.
+    // An object that a stimulus is meant to move pays for it only if it moves; a door does not pay for being closed.
     let is_moved = effect.is_some_and(|effect| effect != Effect::Closed);
     let would_pay = would_pay && (is_moved || destroyed || !due || !listens(object, stimulus));
     let odds = object.reward_probability;

@@ -18,8 +18,8 @@ const MOST_NEAR: usize = 256;
 /// Queries that a test of two shapes costs.
 const LOOKS_PER_SHAPE: usize = 16;
 
-/// Queries per body before a body with corners moves: its corners are added to each other body at most twice, and room is
-/// searched for eight times.
+/// Queries per corner before a body with corners moves: its corners are added to those of every other body at most
+/// twice, and up to eight attempts are made to find room.
 const LOOKS_TO_TURN: usize = 12;
 
 impl CollisionWorld {
@@ -59,7 +59,7 @@ impl CollisionWorld {
         outline.turned_into(heading_deg, &mut body);
         let reach = length + TURN_ROOM + body.reach() + 2.0 * SKIN;
         let around = self.gather(SOLID | WALL | AGENT, Some(handle), [from, from], reach, budget);
-        // Corners are added to corners, and room has to be found.
+        // The body's corners are added to those of each obstacle, and room has to be found.
         let given = if body.as_disc().is_some() {
             0
         } else {
@@ -146,7 +146,7 @@ impl CollisionWorld {
         let around = ball.compute_aabb(&pose);
         let area = [around.mins, around.maxs].map(|corner| [corner.x, corner.y]);
         let mut near: Vec<ColliderHandle> = self.around(SOLID | WALL | AGENT, None, area).take(MOST_NEAR).collect();
-        // The tree's order depends on its history, and queries are counted until one meets.
+        // The tree's order depends on its history, which a saved world does not have.
         near.sort_unstable_by_key(|handle| self.standing[slot(*handle)].rank);
         let meets = |handle: &ColliderHandle| {
             let collider = &self.colliders[*handle];

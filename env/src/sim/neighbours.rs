@@ -15,36 +15,36 @@ use super::warning::Warning;
 /// Distance in metres within which bodies count as able to meet, in addition to their paths.
 pub(super) const MARGIN: f32 = 0.2;
 
-/// Most bodies checked around all that may move.
+/// Maximum number of bodies checked around all bodies that may move.
 const LOOKS: u64 = 200_000;
 
-/// Most bodies that all moving bodies may meet on their paths in a time step, counted once per possible encounter.
+/// Maximum number of possible encounters of all moving bodies with other bodies on their paths in a time step.
 const MAY_MEET: u64 = 40_000;
 
-/// Most moving bodies, times the physics steps in the time step.
+/// Maximum number of moving bodies, times the number of physics steps in the time step.
 const MOVE: u64 = 36_000;
 
-/// Most initial overlaps of all moving bodies, by bounding boxes, times these physics steps; and a lower bound.
+/// Maximum number of initial overlaps of moving bodies, by bounding boxes, times these steps; and its lower bound.
 const OVERLAP: u64 = 30_000;
 const FEWEST_OVERLAPS: u64 = 1_500;
 
-/// Most pairs of bodies that may be near each other while they move, times these physics steps; and a lower bound.
+/// Maximum number of pairs of bodies near each other while they move, times these steps; and its lower bound.
 const PAIRS: u64 = 60_000;
 const FEWEST_PAIRS: u64 = 4_000;
 
-/// Most bodies checked around one body, that it may meet, and that it overlaps: a body held by many at once costs more than its
-/// share.
+/// Per body, maximum numbers of bodies checked around it, that it may meet, and that it overlaps: a body held by many
+/// at once costs more than its share.
 const ONE_LOOKS: usize = 8192;
 const ONE_MAY_MEET: usize = 1024;
 const ONE_OVERLAPS: usize = 256;
 
 /// The bodies that move in a time step.
 pub(super) struct Chosen {
-    /// Indices among the pushed bodies, rising.
+    /// Indices among the pushed bodies, in ascending order.
     pub(super) indices: Vec<usize>,
     /// Whether all bodies that should move do.
     pub(super) is_whole: bool,
-    /// Most pairs that may be near each other while they move.
+    /// Maximum number of pairs that may be near each other while they move.
     pub(super) most_pairs: usize,
     /// Number of bodies checked.
     #[cfg(test)]
@@ -155,7 +155,7 @@ fn around_pushed(sim: SimRef, index: usize, seconds: f32, widest: f32, budget: &
     Some(around)
 }
 
-/// The first pushable object that more bodies overlap than allowed.
+/// A warning about the first pushable object that overlaps with more bodies than allowed.
 pub(super) fn heap(sim: SimRef) -> Option<Warning> {
     let others = |object: usize| {
         let own = sim.views.bodies.handles[object];
@@ -179,7 +179,7 @@ pub(super) fn pushed_way(sim: SimRef, index: usize, seconds: f32) -> f32 {
     (vx * vx + vy * vy).sqrt().max(agent_speed) * seconds
 }
 
-/// Largest distance from a pushed body's centre of static bodies that it may meet, in metres along each axis.
+/// Largest distance from a pushed body's centre to static bodies that it may meet, in metres along each axis.
 pub(super) fn standing_reach(sim: SimRef, index: usize, seconds: f32) -> f32 {
     let radius = sim.body_radius(sim.state.pushed[index].object).max(0.05);
     radius + pushed_way(sim, index, seconds) + MARGIN

@@ -60,7 +60,7 @@ pub(super) fn to_world(sim: SimRef, seed: &Seed, rails: Option<RailsProgress>) -
         .expect("steps keep the rules that the world started with")
 }
 
-/// The world's agent at its current place: to the bit the start if it is there.
+/// The world's agent at its current place; exactly the start, to the bit, if it is there.
 pub(super) fn agent_now(sim: SimRef) -> AgentParams {
     let agent = sim.agent();
     let mut now = sim.world.agent_params.clone();
@@ -179,7 +179,7 @@ impl ResumeState {
         }
     }
 
-    /// Whether the world ran before: progress with only a seed is that of a start.
+    /// Whether the world ran before it was saved: progress with only a seed is that of a world at its start.
     pub(super) fn has_begun(&self) -> bool {
         let only_seed = Progress {
             seed: self.progress.seed.clone(),

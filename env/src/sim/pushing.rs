@@ -19,16 +19,16 @@ use super::slide::SKIN;
 use super::state::{SimState, wrapped};
 use super::views::Views;
 
-/// The agent's mass, in kilograms. In each time step it meets the bodies that it pushes with this mass at its own speed.
+/// The agent's mass in kilograms. In each time step it meets the bodies that it pushes with this mass and its speed.
 const AGENT_MASS: f32 = 80.0;
 
 /// Longest step of the physics, in seconds.
 const LONGEST: f32 = 1.0 / 60.0;
 
-/// Fewest physics steps in a time step: the first one of a new physics world ignores bodies that already touch.
+/// Minimum number of physics steps in a time step: the first step of a new physics world ignores existing contacts.
 const FEWEST_PARTS: u32 = 2;
 
-/// Most physics steps in a time step: longer time steps use longer physics steps.
+/// Maximum number of physics steps in a time step: longer time steps use longer physics steps.
 const MOST_PARTS: u32 = 60;
 
 /// Standard gravity in metres per second squared, for friction with the ground.
@@ -43,8 +43,8 @@ struct Active {
     friction: f32,
 }
 
-/// Lets the agent push what is in its way, and lets pushed bodies slide on. Returns the agent's own displacement if what it
-/// pushes holds it up; records what it pushed.
+/// Lets the agent push what is in its way, and lets pushed bodies slide on. Returns the agent's displacement: less than
+/// `by` if what it pushes holds it up. Records what it pushed.
 pub(super) fn push_bodies(
     world: &World,
     state: &mut SimState,
@@ -112,7 +112,7 @@ fn may_meet_agent(sim: SimRef, body: &Pushed, by: [f32; 2]) -> bool {
     (x * x + y * y).sqrt() < reach + sim.body_radius(body.object) + MARGIN
 }
 
-/// Stops all pushed bodies except these; `indices` rise.
+/// Stops all pushed bodies except these; `indices` must be sorted.
 fn stop_all_but(pushed: &mut [Pushed], indices: &[usize]) {
     for (index, body) in pushed.iter_mut().enumerate() {
         if indices.binary_search(&index).is_err() {
@@ -220,8 +220,8 @@ fn add_agent(sim: SimRef, physics: &mut PhysicsWorld, by: [f32; 2], seconds: f32
         .ccd_enabled(true)
         .can_sleep(false);
     let body = physics.bodies.insert(body);
+    // Its radius includes the skin, at which it meets pushed bodies.
     // Neither pushed bodies nor walls slow it by friction.
-    // With its skin, at which it meets pushed bodies.
     let collider = ColliderBuilder::ball((sim.views.bodies.radius + SKIN) as f32)
         .mass(AGENT_MASS)
         .friction(0.0)

@@ -31,14 +31,14 @@ impl<'a> SimRef<'a> {
         &self.views.scene
     }
 
-    /// Finds the objects that an interaction would reach now, by rising index.
+    /// Finds the objects that an interaction would reach now, in order of index.
     pub(crate) fn reached_by_hand(self, found: &mut Vec<u32>) {
         let agent = self.agent();
         self.views.bodies.in_reach(agent.position, agent.forward(), found);
     }
 
-    /// Whether an agent that goes straight from place to place touches an object, or comes nearer to a touch than `metres`,
-    /// without moving away from it.
+    /// Whether an agent that goes straight from place to place touches an object or comes within `metres` of a touch.
+    /// If it starts nearer than that, only coming even nearer counts.
     pub(crate) fn would_touch(self, object: u32, path: &[[f64; 2]], metres: f64) -> bool {
         self.views.bodies.would_touch(object, path, metres)
     }

@@ -17,10 +17,10 @@ const SLACK: f64 = 2e-4;
 /// How far a section of the path may depart from a round edge before it is corrected, in metres.
 const SAGITTA: f64 = 1e-3;
 
-/// Most sections of a path: each is straight along one obstacle. A path of 1 km along a thousand bodies ends early.
+/// Maximum number of sections of a path, each straight along one obstacle. 1 km along a thousand bodies ends early.
 const MOST_PARTS: usize = 4096;
 
-/// Queries per body in a section of a path: whether it is touched, when it will be, and whether it is being followed.
+/// Queries per corner in a section of a path: whether its body is touched, when it will be, and whether it is followed.
 const LOOKS_PER_PART: usize = 4;
 
 /// Potential obstacles: the footprints of these numbers.
@@ -63,7 +63,7 @@ impl Obstacles<'_> {
 
     /// Moves a round body out of overlaps, by at most half a metre and never through anything else.
     ///
-    /// If that would lead into other obstacles equally deeply, it stays.
+    /// If that would lead just as deep into other obstacles, it stays.
     pub(super) fn out_of_overlap(&self, start: Point, radius: f64) -> Point {
         let mut at = start;
         for _ in 0..3 {
@@ -100,7 +100,7 @@ impl Obstacles<'_> {
         None
     }
 
-    /// Lets a round body, driven in a direction for a unit of time, slide; stores in `path` its bends and its end.
+    /// Slides a round body that is driven in a direction for a unit of time; stores its bends and its end in `path`.
     ///
     /// A footprint that contains its centre does not hold it: if something was put onto it, it can walk out in any direction.
     /// Its path ends when the budget does.
@@ -176,7 +176,7 @@ impl Obstacles<'_> {
 /// The fraction of the time that a section of the path takes at its initial speed, if the speed grows linearly with the
 /// distance.
 ///
-/// Around a corner it does, up to the third power of the angle.
+/// Around a corner it does, up to the third order in the angle.
 fn share_of_time(first: f64, last: f64) -> f64 {
     let growth = last / first - 1.0;
     if growth > 1e-6 {
@@ -186,8 +186,8 @@ fn share_of_time(first: f64, last: f64) -> f64 {
     }
 }
 
-/// Whether something holds a body of this radius. A body without radius stands for outlines of others, which hold it from
-/// inside as well.
+/// Whether something holds a body of this radius. A body without radius is a point among widened footprints, which hold
+/// it from inside as well.
 fn is_touched(gap: &Gap, radius: f64) -> bool {
     gap.distance - radius <= SKIN + SLACK && (gap.distance >= 0.0 || radius == 0.0)
 }
@@ -213,9 +213,9 @@ fn allowed(by: Point, touched: &[Gap], budget: &mut Budget) -> Option<(Point, Op
     if free(by, 0.0) {
         return Some((by, None));
     }
-    // Among the directions along one obstacle each that lead into no other, chooses the nearest to the intended one. It is at
-    // least as far from the intended one as that leads into the deepest obstacle, minus the slack: nearer ones need not be
-    // checked.
+    // Among the directions along a single obstacle that lead into no other, chooses the one nearest to the intended
+    // one. The change must be at least as large as the part of the intended one that leads into the deepest obstacle,
+    // minus the slack: directions with smaller changes need not be checked.
     let deepest = touched.iter().map(|gap| -dot(by, gap.out)).fold(0.0, f64::max);
     let mut best: Option<(f64, Point, Point)> = None;
     for gap in touched {

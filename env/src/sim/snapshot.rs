@@ -90,7 +90,7 @@ impl Environment {
         to_world(self.sim(), &self.seed, self.rails.as_ref().map(OnRailsAgent::progress))
     }
 
-    /// The world's agent at its current place: to the bit the start if it is there.
+    /// The world's agent at its current place; exactly the start, to the bit, if it is there.
     pub(crate) fn agent_now(&self) -> AgentParams {
         agent_now(self.sim())
     }

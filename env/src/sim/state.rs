@@ -44,7 +44,7 @@ pub struct ObjectState {
     pub present: bool,
     /// Whether it has paid, or was destroyed: sequences depend on it.
     pub collected: bool,
-    /// Whether it is an open door, which stops nothing.
+    /// Whether it is an open door, which blocks nothing.
     pub open: bool,
     /// Whether the agent carries it: it is absent then, and its position is the agent's.
     pub carried: bool,
@@ -144,7 +144,7 @@ impl SimState {
     /// Adds an object in its initial state, except its place in the sequence.
     pub(super) fn add_object(&mut self, object: &Object, seed: &Seed, identities: &mut Identities) {
         let index = self.objects.len();
-        // Most objects draw nothing, and then need no identity.
+        // Most objects draw nothing, so they need no identity.
         let identity = if object.takes_chances() {
             identities.take(object)
         } else {

@@ -76,8 +76,8 @@ fn is_delivered(world: &World, state: &SimState, delivery: &Delivery) -> bool {
     let mut count = 0;
     let lies_there = |own: &ObjectState| {
         let near = |other: &ObjectState| {
-            let way = [0, 1].map(|axis| f64::from(own.position[axis]) - f64::from(other.position[axis]));
-            other.present && way[0] * way[0] + way[1] * way[1] <= delivery.within * delivery.within
+            let offset = [0, 1].map(|axis| f64::from(own.position[axis]) - f64::from(other.position[axis]));
+            other.present && offset[0] * offset[0] + offset[1] * offset[1] <= delivery.within * delivery.within
         };
         own.present && of_tag(world, state, &delivery.to).any(near)
     };

@@ -38,7 +38,7 @@ pub(crate) fn effect_of(world: &World, state: &SimState, index: usize, stimulus:
         return None;
     }
     if let Some(door) = &object.door {
-        // A door that waits to close reacts as a closed one.
+        // A door that is waiting to close reacts like a closed one.
         let is_as_closed = !own.open || waits_to_close(state, index);
         if is_as_closed && door.opens_on.contains(&stimulus) && !is_locked(world, state, index) {
             return Some(Effect::Opened);

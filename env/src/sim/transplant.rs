@@ -12,7 +12,7 @@ use super::state::SimState;
 use super::walls::agent_obstacle;
 use crate::EnvError;
 
-/// Most characters of a value in a message: lists of corners may be arbitrarily long.
+/// Maximum number of characters of a value in a message: lists of corners may be arbitrarily long.
 const MOST_CHARACTERS: usize = 200;
 
 /// A difference, as text, with the value on each side.
@@ -119,7 +119,7 @@ impl Environment {
         agent_obstacle(self.sim(), self.state.agent.position.map(f64::from)).is_none()
     }
 
-    /// The body's commands for an action: in this world, and in one with this action space and time steps of `seconds`.
+    /// The body's commands for an action: in this world, and in one with its action space and time steps of `seconds`.
     pub(crate) fn commands(&mut self, action: Action, seconds: f64) -> Result<[Intent; 2], EnvError> {
         let numbers = self.numbers(action)?;
         let own = self.intent(numbers);

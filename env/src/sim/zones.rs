@@ -56,7 +56,7 @@ impl Zones {
         state.inside.extend(self.0.iter().map(|area| area.contains(here)));
     }
 
-    /// Indices in the world's list of the zones that the agent has entered and is still in, rising.
+    /// Indices, in the world's list, of the zones that the agent has entered and is still in, in ascending order.
     pub(super) fn entered(&self, state: &SimState) -> Vec<u32> {
         let areas = self.0.iter().zip(&state.inside);
         let entered = areas.filter(|(_, inside)| **inside);
@@ -125,7 +125,7 @@ fn side(from: Point, to: Point, point: Point) -> bool {
     (to[0] - from[0]) * (point[1] - from[1]) > (to[1] - from[1]) * (point[0] - from[0])
 }
 
-/// A command of the body, slowed by the zones that the agent is in.
+/// A command for the body, slowed by the zones that the agent is in.
 pub(super) fn slowed(intent: Intent, state: &SimState, zones: &Zones) -> Intent {
     if zones.0.is_empty() {
         return intent;

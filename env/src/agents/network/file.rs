@@ -10,15 +10,15 @@ use super::Trained;
 use super::forward::{Layer, PATCH, PatchNetwork};
 use crate::EnvError;
 
-/// Most bytes of the header.
+/// Maximum size of the header in bytes.
 const MAX_NETWORK_HEADER: u64 = 1 << 20;
-/// Most pixels of an image's side.
+/// Maximum side of an image in pixels.
 const MAX_NETWORK_SIDE: u32 = 512;
-/// Most multiplications per image.
+/// Maximum number of multiplications per image.
 const MAX_NETWORK_PRODUCTS: u64 = 1_000_000_000;
-/// Most rows of the action table, as in worlds.
+/// Maximum number of rows of the action table, as in worlds.
 const MAX_NETWORK_ACTIONS: usize = 1000;
-/// Most time steps for which an action is held.
+/// Maximum number of time steps for which an action is held.
 const MAX_NETWORK_FRAME_SKIP: u32 = 1000;
 
 /// A tensor's entry in the header.

@@ -1,7 +1,7 @@
 //! Forward pass of `PatchNetwork` of `driftworld.learners`: patches of 4 × 4 pixels, then 2 × 2 of those, a hidden layer, the
 //! policy. Sums have a fixed order, so results are the same on every machine.
 
-/// Pixels of a patch's side.
+/// Side of a patch in pixels.
 pub(super) const PATCH: usize = 4;
 
 /// A matrix and biases.
@@ -52,7 +52,7 @@ fn rectified(values: &[f32]) -> impl Iterator<Item = f32> {
 /// The network without its value head.
 #[derive(Clone, Debug)]
 pub(super) struct PatchNetwork {
-    /// Pixels of an image's side, a multiple of twice [`PATCH`].
+    /// Side of an image in pixels, a multiple of twice [`PATCH`].
     pub(super) side: usize,
     /// Maps a patch's pixels to features.
     pub(super) small: Layer,

@@ -17,8 +17,8 @@ const SIDE: f32 = 0.2;
 const MIN_CLEARANCE: f32 = 0.04;
 const PREFERRED_CLEARANCE: f32 = 0.25;
 
-/// Clearance from closed doors, and from objects whose touch is a failure, in metres; wider than the gap at which the last step is
-/// held back.
+/// Clearance from closed doors, and from objects whose touch is a failure, in metres; the latter is larger than the
+/// extra distance that `shield.rs` keeps from them.
 const DOOR_CLEARANCE: f32 = 0.02;
 const FAILURE_CLEARANCE: f32 = 0.15;
 
@@ -29,7 +29,7 @@ pub(super) const BESIDE: u16 = 2;
 const BESIDE_OBSTACLE: u16 = 6;
 pub(super) const COSTS: u16 = 20;
 
-/// A place this far beyond touching still counts as beside an object, in metres.
+/// A place up to this far beyond touching distance, in metres, still counts as beside an object.
 const NEAR: f32 = 0.3;
 
 /// The number of a room; closed cells have none.
@@ -65,7 +65,7 @@ pub(super) struct Floor {
     pub(super) bare: Vec<u16>,
     /// The same with objects.
     pub(super) weight: Vec<u16>,
-    /// What zones cost to enter and to be in.
+    /// Costs of entering zones, and which cells are in zones that cost.
     pub(super) zone_costs: ZoneCosts,
     pub(super) room: Vec<Room>,
     pub(super) standing: Vec<Standing>,
@@ -78,7 +78,7 @@ pub(super) struct Floor {
     pub(super) leads: Option<(u64, Vec<u32>)>,
     /// Whether the checked part of the last path enters no zone that costs.
     pub(super) keeps_out: bool,
-    /// The version and what is brought, if `field` leads to where a thing is put down.
+    /// The version and the delivery, if `field` leads to a place to put a thing down.
     pub(super) brings: Option<(u64, Bringing)>,
 }
 
@@ -291,7 +291,7 @@ fn by_room(metres: f32) -> u16 {
     }
 }
 
-/// The objects that affect where paths lead, by rising index.
+/// The objects that affect where paths lead, in ascending order of index.
 fn standing(sim: SimRef) -> Vec<Standing> {
     let objects = sim.world.objects.iter().zip(sim.objects()).enumerate();
     let stands = objects.filter_map(|(index, (object, own))| {

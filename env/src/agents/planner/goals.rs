@@ -1,5 +1,5 @@
-//! [`Goal`]: what is worth doing in a world with doors and things: what pays, then what ends the episode in success. `plan.rs`
-//! finds what must be done first.
+//! [`Goal`]: lists the goals in a world with doors and things: those that pay, then those that end the episode in
+//! success. `plan.rs` finds what must be done first.
 
 use driftworld_spec::{EndCondition, Object, Stimulus};
 
@@ -29,8 +29,8 @@ impl Goal<'_> {
     }
 }
 
-/// All goals in three lists by priority: what pays; what ends the episode in success; and what an agent with a free hand carries
-/// to be delivered.
+/// All goals in three lists by priority: those that pay; those that end the episode in success; and the delivery of the
+/// thing picked up last, which comes second if the agent's hands are full.
 pub(super) fn goals(sim: SimRef) -> [Vec<Goal>; 3] {
     let paying: Vec<Goal> = wanted(sim).into_iter().map(|index| toward(sim, index as u32)).collect();
     let carried = sim.state.carried();
@@ -54,7 +54,7 @@ pub(super) fn goals(sim: SimRef) -> [Vec<Goal>; 3] {
     }
 }
 
-/// Whether an object is present whose touch is a success.
+/// Whether an object is present and touching it is a success.
 fn ends_by_touch(sim: SimRef, index: u32) -> bool {
     let object = &sim.world.objects[index as usize];
     let mut conditions = sim.world.rules.success.iter();

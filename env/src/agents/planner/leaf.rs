@@ -1,9 +1,9 @@
-//! What a body takes of the ground, as plans see it.
+//! [`Leaf`]: the area of ground that a body covers, as plans see it.
 
 use crate::assets::ColliderShape;
 use crate::sim::SimRef;
 
-/// What a body takes of the ground: a rectangle, or a disc.
+/// The area of ground that a body covers: a rectangle, or a disc.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Leaf {
     pub(super) at: [f32; 2],
@@ -30,7 +30,7 @@ impl Leaf {
         }
     }
 
-    /// How far it reaches from its middle at most, in metres.
+    /// Largest distance of its outline from its centre, in metres.
     pub(super) fn reach(&self) -> f32 {
         (self.half[0] * self.half[0] + self.half[1] * self.half[1]).sqrt() + self.rounding
     }
@@ -40,7 +40,7 @@ impl Leaf {
         self.half[0] > 3.0 * self.half[1] && self.half[0] > 0.3
     }
 
-    /// A place to its right and ahead of it, in metres from its middle.
+    /// A place in the body's own axes: metres to the right of its centre, and ahead of it.
     pub(super) fn own_axes(&self, at: [f32; 2]) -> [f32; 2] {
         let [dx, dy] = [at[0] - self.at[0], at[1] - self.at[1]];
         let [sine, cosine] = self.turn;

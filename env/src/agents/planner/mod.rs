@@ -1,5 +1,5 @@
-//! Planning in worlds with doors, keys, switches and things that are carried. It knows the map and the rules, and does nothing
-//! that an episode does not allow.
+//! Planning in worlds with doors, keys, switches and things that are carried. The planner knows the map and the rules,
+//! and does nothing that an episode does not allow.
 //!
 //! `goals.rs` lists the goals, `plan.rs` and `spending.rs` choose the subgoal that comes first, `subgoal.rs` carries it out, and
 //! `floor.rs`, `zone_costs.rs` and `ways.rs` find the way. The next step depends only on where things are and on the current
@@ -60,7 +60,7 @@ struct Situation {
     /// For each door whether it is unlocked, and what is carried.
     unlocked: Vec<bool>,
     carried: Vec<u32>,
-    /// Where portable things and switches are that may be walked through.
+    /// Positions of the doors, switches and portable things that are present, as bits.
     things: Vec<[u32; 2]>,
     is_due: Vec<bool>,
     /// The objects of all goals.
@@ -143,8 +143,8 @@ impl Planner {
         known.is_some_and(|known| *known == self.situation(sim, None, goals))
     }
 
-    /// The subgoal where no goal can be reached: to enter the best zone within reach, one that ends the episode in success, then
-    /// one that pays most.
+    /// The subgoal if no goal can be reached: enters the best zone within reach, preferring zones that end the episode
+    /// in success, then those that pay most.
     fn rest(&mut self, sim: SimRef, goals: &[Vec<Goal>; 3]) -> Option<Subgoal> {
         let plan = Plan::new(sim, &self.floor, goals);
         let zones = sim.world.environment_params.zones.iter().enumerate();
@@ -203,7 +203,7 @@ impl Planner {
         })
     }
 
-    /// The first subgoal of a goal; planned anew only when the situation has changed.
+    /// The first subgoal of a goal, planned again only when the situation has changed.
     fn first(&mut self, sim: SimRef, goal: Goal, goals: &[Vec<Goal>; 3]) -> Option<Subgoal> {
         let situation = self.situation(sim, Some(goal.object()), goals);
         if let Some((known, subgoal)) = &self.known

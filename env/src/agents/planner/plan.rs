@@ -1,5 +1,5 @@
 //! [`Plan`]: chooses the next subgoal: which door to open, and which key or switch comes first. `subgoal.rs` carries it out;
-//! `spending.rs` decides which doors to spend keys on that open one door only.
+//! `spending.rs` decides which doors to spend keys on, where a key opens only one door.
 
 use driftworld_spec::{ActionModel, ActionSpace, Object, Stimulus, SwitchAction, World, Zone};
 
@@ -74,7 +74,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// The doors that can be opened next, by rising object.
+    /// The doors that can be opened next, in ascending order of object.
     pub(super) fn ways_through(&self) -> Vec<Way> {
         let doors = self.floor.doors.iter();
         doors
@@ -122,7 +122,7 @@ impl<'a> Plan<'a> {
         })
     }
 
-    /// How to open a door, and the key that uses up; prefers what uses up none.
+    /// How to open a door, and the key that this uses up; prefers means that use up none.
     fn means(&self, door: u32) -> Option<(Means, Option<u32>)> {
         let by_hand = self.by_hand(door);
         match by_hand {
@@ -315,8 +315,8 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// The first locked door on the way to a door, if the door's key would fill the agent's hands: else it would swap the two keys
-    /// forever. Terminates, since an unlocked door stays unlocked.
+    /// The first locked door on the way to a door, if the door's key would fill the agent's hands: otherwise it would
+    /// swap the two keys forever. Terminates, since an unlocked door stays unlocked.
     fn locked_before(&self, way: Way) -> Option<Way> {
         let hands = self.sim.world.agent_params.carry_limit as usize;
         if self.sim.state.carried().len() + 1 < hands {

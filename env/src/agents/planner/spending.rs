@@ -6,7 +6,8 @@ use std::collections::{BTreeSet, VecDeque};
 use super::goals::Goal;
 use super::plan::{Plan, Way};
 
-/// The most choices of doors that are compared, those that spend fewer keys first; if there are more, the best of these wins.
+/// Most choices of doors to compare, starting with those that spend the fewest keys; if there are more, the best of
+/// these wins.
 const MOST_CHOICES: usize = 1000;
 
 /// What a plan is worth, most important first: whether it reaches a success, what it is paid, how many successful endings it
@@ -21,7 +22,7 @@ struct Worth {
 }
 
 impl Plan<'_> {
-    /// The plan that spends the most valuable set of keys; of equals, the smallest.
+    /// Spends keys on the choice of doors that makes the plan worth most; ties go to the choice with the fewest keys.
     pub(super) fn with_keys_spent(self, goals: &[Vec<Goal>; 3]) -> Self {
         let mut next = self.spendings();
         if next.is_empty() {
@@ -99,7 +100,7 @@ impl Plan<'_> {
                 || endings()
                     .filter(|goal| !is_one_of_many(goal))
                     .any(|goal| can_end(&goal)),
-            // Objects touched for a success may pay nothing.
+            // The constant counts goals that pay nothing themselves, such as objects touched only for a success.
             pay: paying.iter().filter(is_possible).map(|goal| 1e-6 + pay(goal)).sum(),
             num_endings: endings().filter(can_end).count(),
             num_zones: zones().count(),

@@ -16,7 +16,7 @@ const OFF: f32 = 8.0;
 /// An agent slower than this, in m/s, is held up.
 const HELD_UP: f32 = 0.3;
 
-/// Within this distance of a thing, in metres, full hands put something down to take it.
+/// Within this distance of a thing, in metres, an agent with full hands puts something down to take it.
 const BESIDE: f32 = 1.8;
 
 /// Things are put down at least this far, in metres, from things still to be picked up.
@@ -133,7 +133,7 @@ impl Subgoal {
         if zone.contains(here.map(f64::from)) {
             return [0.0; 3];
         }
-        // In a cell whose middle is in the zone, but not in the zone.
+        // The centre of the cell is in the zone, but the agent is not.
         floor
             .cell_near(here)
             .map_or([0.0; 3], |cell| walk(sim, floor.grid.centre(cell), 0.1))
@@ -175,7 +175,7 @@ impl Subgoal {
         if !is_facing(sim, to) {
             return [0.0, turn(sim, to), 0.0];
         }
-        // The middle of the cell is near enough, but the agent is not there.
+        // The centre of the cell is near enough, but the agent is not.
         let speed = (distance(sim.agent().position, to) - f32::midpoint(least, most)) / seconds(sim);
         let most = sim.world.agent_params.max_linear_speed as f32;
         [f64::from(speed.clamp(-most, most)), turn(sim, to), 0.0]

@@ -25,9 +25,9 @@ pub(super) struct Bringing {
     pub(super) radius: f32,
     /// How far in front of the agent's centre it will lie, in metres.
     pub(super) ahead: f32,
-    /// The least and the most distance of the agent from the object, in metres.
+    /// Minimum and maximum distance of the agent from the object, in metres.
     pub(super) from: [f32; 2],
-    /// The most distance of the thing from the object, in metres.
+    /// Maximum distance of the thing from the object, in metres.
     pub(super) within: f32,
     /// How many things the agent carries: a free hand picks up what lies in front of it.
     pub(super) carried: usize,

@@ -7,7 +7,7 @@ use crate::agents::grid::Grid;
 use crate::ground;
 use crate::polygon::{is_near_or_inside, to_f32};
 
-/// How far paths keep from zones that cost or fail, in metres, and the weight of cells that are nearer.
+/// How far paths keep from zones that cost or fail, in metres, and the factor on the weights of nearer cells.
 const LIKED: f32 = 0.35;
 const NEAR: u16 = 8;
 
@@ -15,16 +15,16 @@ const NEAR: u16 = 8;
 /// costs.
 const MOST: f64 = 100.0;
 
-/// The most that entering costs, in fifths of a cell: 800 m of open ground with cells of 0.2 m.
+/// Maximum cost of entering, in fifths of a cell: 800 m of open ground with cells of 0.2 m.
 const MOST_ENTRY_COST: f64 = 20_000.0;
 
 /// The largest weight of a cell: sums over all cells stay far from overflow.
 const MOST_WEIGHT: f64 = 4000.0;
 
-/// An agent slower than this cannot leave a zone.
+/// Below this speed factor an agent cannot leave a zone, so its cells are closed.
 const STUCK: f64 = 0.01;
 
-/// What zones add to path costs beside the weights of cells.
+/// What zones add to path costs, in addition to the weights of cells.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ZoneCosts {
     /// For each cell, what entering its zones costs, in fifths of a cell; empty if nothing does.
@@ -108,7 +108,7 @@ impl ZoneCosts {
     }
 }
 
-/// Raises the weights around a zone, and closes the cells of one that fails.
+/// Raises the weights in and around a zone; if the zone fails, closes its cells.
 fn shun(zone: &Zone, fails: bool, grid: Grid, weight: &mut [u16]) {
     for cell in cells(zone, LIKED, grid) {
         weight[cell] = weight[cell].saturating_mul(NEAR);
@@ -123,7 +123,7 @@ fn seal(grid: Grid) -> f32 {
     0.71 * grid.side()
 }
 
-/// The cells whose centres are in a zone, or nearer to it than `metres`.
+/// The cells whose centres are in a zone, or nearer to it than `margin` metres.
 fn cells(zone: &Zone, margin: f32, grid: Grid) -> impl Iterator<Item = usize> {
     let corners = to_f32(&ground::corners(zone));
     let bounds = zone.bounds().unwrap_or([[0.0; 2]; 2]);

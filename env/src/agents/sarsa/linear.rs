@@ -6,25 +6,25 @@ use super::eye::FEATURES;
 /// The features before an action.
 pub(super) type Seen = [f32; FEATURES];
 
-/// Weights of `DEEDS` actions, and their eligibility traces.
+/// Weights of `ACTIONS` actions, and their eligibility traces.
 #[derive(Clone)]
-pub(super) struct LinearSarsa<const DEEDS: usize> {
-    weights: Box<[Seen; DEEDS]>,
-    traces: Box<[Seen; DEEDS]>,
+pub(super) struct LinearSarsa<const ACTIONS: usize> {
+    weights: Box<[Seen; ACTIONS]>,
+    traces: Box<[Seen; ACTIONS]>,
 }
 
-impl<const DEEDS: usize> LinearSarsa<DEEDS> {
+impl<const ACTIONS: usize> LinearSarsa<ACTIONS> {
     /// All actions start with value 0.
     pub(super) fn new() -> Self {
         Self {
-            weights: Box::new([[0.0; FEATURES]; DEEDS]),
-            traces: Box::new([[0.0; FEATURES]; DEEDS]),
+            weights: Box::new([[0.0; FEATURES]; ACTIONS]),
+            traces: Box::new([[0.0; FEATURES]; ACTIONS]),
         }
     }
 
     /// The value of each action.
-    pub(super) fn values(&self, seen: &Seen) -> [f32; DEEDS] {
-        std::array::from_fn(|deed| self.weights[deed].iter().zip(seen).map(|(w, x)| w * x).sum())
+    pub(super) fn values(&self, seen: &Seen) -> [f32; ACTIONS] {
+        std::array::from_fn(|action| self.weights[action].iter().zip(seen).map(|(w, x)| w * x).sum())
     }
 
     /// Clears the traces and keeps the weights.
@@ -35,11 +35,11 @@ impl<const DEEDS: usize> LinearSarsa<DEEDS> {
     }
 
     /// Records an action: adds its features to the traces, after earlier traces have been multiplied by `decay`.
-    pub(super) fn done(&mut self, seen: &Seen, deed: usize, decay: f32) {
+    pub(super) fn done(&mut self, seen: &Seen, action: usize, decay: f32) {
         for trace in self.traces.iter_mut().flatten() {
             *trace *= decay;
         }
-        for (trace, x) in self.traces[deed].iter_mut().zip(seen) {
+        for (trace, x) in self.traces[action].iter_mut().zip(seen) {
             *trace += x;
         }
     }
@@ -77,22 +77,22 @@ mod tests {
                 seen[way[t].0] = way[t].1;
                 seen
             };
-            for (t, (_, _, deed, error)) in way.iter().enumerate() {
-                learner.done(&seen_at(t), *deed, decay);
+            for (t, (_, _, action, error)) in way.iter().enumerate() {
+                learner.done(&seen_at(t), *action, decay);
                 learner.learn(&seen_at(t), *error);
             }
-            for (k, (feature, _, deed, _)) in way.iter().enumerate() {
+            for (k, (feature, _, action, _)) in way.iter().enumerate() {
                 let mut expected = 0.0_f64;
                 for (t, (_, x, _, error)) in way.iter().enumerate() {
                     let step = f64::from(LEARNING_RATE * error) / f64::from((x * x).max(1.0));
                     for (earlier, other) in way.iter().enumerate().take(t + 1) {
-                        if (other.0, other.2) == (*feature, *deed) {
+                        if (other.0, other.2) == (*feature, *action) {
                             expected += step * f64::from(decay).powi((t - earlier) as i32) * f64::from(other.1);
                         }
                     }
                 }
-                let found = f64::from(learner.weights[*deed][*feature]);
-                prop_assert!((found - expected).abs() < 1e-5, "deed {}: {} and {}", k, found, expected);
+                let found = f64::from(learner.weights[*action][*feature]);
+                prop_assert!((found - expected).abs() < 1e-5, "action {}: {} and {}", k, found, expected);
             }
         }
     }

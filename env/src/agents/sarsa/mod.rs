@@ -13,7 +13,7 @@ use eye::Eye;
 use linear::{LinearSarsa, Seen};
 
 /// The actions: shares of the largest speed and turn rate, and whether it interacts.
-const DEEDS: [[f64; 3]; 5] = [
+const ACTIONS: [[f64; 3]; 5] = [
     [1.0, 0.0, 1.0],
     [1.0, -0.5, 1.0],
     [1.0, 0.5, 1.0],
@@ -22,7 +22,7 @@ const DEEDS: [[f64; 3]; 5] = [
 ];
 
 /// Seconds of simulated time per action, rounded to whole steps.
-const DEED_SECONDS: f64 = 0.2;
+const ACTION_SECONDS: f64 = 0.2;
 /// Learning rate.
 const LEARNING_RATE: f32 = 0.02;
 /// Discount per action.
@@ -30,7 +30,7 @@ const DISCOUNT: f32 = 0.93;
 /// Trace decay λ.
 const LAMBDA: f32 = 0.8;
 /// Probability of a random action, in evaluations as well: a greedy agent without memory turns in circles.
-const TRIES: f64 = 0.1;
+const EPSILON: f64 = 0.1;
 /// Rewards are divided by 100: touching a cube of the built-in tasks pays 1.
 const UNIT: f32 = 0.01;
 
@@ -61,7 +61,7 @@ const UNIT: f32 = 0.01;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct SarsaAgent {
-    learner: LinearSarsa<{ DEEDS.len() }>,
+    learner: LinearSarsa<{ ACTIONS.len() }>,
     eye: Eye,
     rng: ChaCha8Rng,
     /// The last action, with the features before it.
@@ -100,23 +100,23 @@ impl SarsaAgent {
     fn decide(&mut self, environment: &Environment) -> (Seen, usize) {
         let seen = self.eye.look(environment);
         let values = self.learner.values(&seen);
-        let deed = if self.rng.random::<f64>() < TRIES {
-            self.rng.random_range(0..DEEDS.len() as u32) as usize
+        let action = if self.rng.random::<f64>() < EPSILON {
+            self.rng.random_range(0..ACTIONS.len() as u32) as usize
         } else {
             best(&values)
         };
         if !self.is_frozen {
-            self.learn_that(DISCOUNT * values[deed]);
-            self.learner.done(&seen, deed, DISCOUNT * LAMBDA);
+            self.learn_from_last(DISCOUNT * values[action]);
+            self.learner.done(&seen, action, DISCOUNT * LAMBDA);
         }
-        (seen, deed)
+        (seen, action)
     }
 
     /// Learns from the reward since the last action and the discounted value of the next one.
-    fn learn_that(&mut self, to_come: f32) {
+    fn learn_from_last(&mut self, next_value: f32) {
         let paid = std::mem::take(&mut self.reward);
-        if let Some((seen, deed)) = &self.last {
-            let error = paid + to_come - self.learner.values(seen)[*deed];
+        if let Some((seen, action)) = &self.last {
+            let error = paid + next_value - self.learner.values(seen)[*action];
             self.learner.learn(seen, error);
         }
     }
@@ -124,7 +124,7 @@ impl SarsaAgent {
 
 /// The action with the highest value; ties go to the first.
 fn best(values: &[f32]) -> usize {
-    let better = |best: usize, deed: usize| if values[deed] > values[best] { deed } else { best };
+    let better = |best: usize, action: usize| if values[action] > values[best] { action } else { best };
     (0..values.len()).fold(0, better)
 }
 
@@ -134,10 +134,10 @@ impl Agent for SarsaAgent {
         if self.held == 0 {
             self.last = Some(self.decide(environment));
             let step_seconds = agent.time_step * f64::from(agent.frame_skip.max(1));
-            self.held = (DEED_SECONDS / step_seconds).round().max(1.0) as u32;
+            self.held = (ACTION_SECONDS / step_seconds).round().max(1.0) as u32;
         }
         self.held -= 1;
-        let [speed, turn, interact] = self.last.as_ref().map_or([0.0; 3], |(_, deed)| DEEDS[*deed]);
+        let [speed, turn, interact] = self.last.as_ref().map_or([0.0; 3], |(_, action)| ACTIONS[*action]);
         let numbers = [speed * agent.max_linear_speed, turn * agent.max_angular_speed, interact];
         in_space(numbers, environment.sim())
     }
@@ -155,7 +155,7 @@ impl Agent for SarsaAgent {
         }
         self.reward += step.reward as f32 * UNIT;
         if step.terminated {
-            self.learn_that(0.0);
+            self.learn_from_last(0.0);
         }
     }
 

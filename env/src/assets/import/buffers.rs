@@ -8,7 +8,7 @@ use super::refusal::{at_most, named, refuse};
 use super::uri::{self, ReadBeside};
 use crate::EnvError;
 
-/// Most buffers, and most bytes of all buffers together.
+/// Maximum number of buffers, and of bytes in all buffers together.
 const MAX_BUFFERS: usize = 1000;
 const MAX_BYTES: usize = 256 << 20;
 

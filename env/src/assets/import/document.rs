@@ -12,10 +12,10 @@ use super::limits::{MAX_IMPORT_DEPTH, MAX_IMPORT_NODES};
 use super::refusal::{at_most, quoted, refuse};
 use crate::EnvError;
 
-/// Most objects and lists: each may take some hundred bytes of memory for two of text.
+/// Maximum number of objects and lists: each may take some hundred bytes of memory for two bytes of text.
 const MAX_ITEMS: usize = 200_000;
 
-/// Most characters of the parser's own message that are shown: it may quote a text as long as the file.
+/// Maximum number of characters shown of the parser's own message, which may quote a text as long as the file.
 const MAX_WORDS: usize = 200;
 
 /// Extensions that may be ignored even if a file requires them: they change no triangle.

@@ -8,7 +8,7 @@ use crate::assets::{ColliderKind, ColliderShape};
 /// Only the part of a model below this height, in metres, determines its width: agents cannot bump into a tree's crown.
 const KNEE_TO_HEAD: f32 = 2.0;
 
-/// Least half size of a collider in metres, so that flat sheets have one.
+/// Minimum half size of a collider in metres, so that flat sheets have one.
 const LEAST: f32 = 0.01;
 
 /// Extents of a model around its upright axis.

@@ -6,7 +6,7 @@ use super::color::srgb;
 use super::surface::Surface;
 use crate::assets::Paint;
 
-/// Most fixed colours of a model.
+/// Maximum number of fixed colours of a model.
 const MOST_COLORS: usize = 64;
 
 /// Quantisation steps per channel: colours that round to the same step are merged.

@@ -7,20 +7,21 @@ use rapier3d::math::Vector;
 use super::deviation::{Deviation, Looks};
 use crate::assets::library::{Detail, MAX_MODEL_LEVELS};
 
-/// Fewest triangles worth simplifying: a few blocks of the renderer.
+/// Minimum number of triangles worth simplifying: a few blocks of the renderer.
 const WORTH_IT: usize = 96;
 
-/// Each level aims at one in so many triangles of the level before.
+/// Each level aims at the number of triangles of the level before, divided by this.
 const KEPT: usize = 4;
 
 /// Largest error of a level, as a fraction of the surface's size.
 const MOST_ERROR: f32 = 0.2;
 
-/// Most corners of the whole surface that are measured per level: beyond that, evenly chosen ones represent the rest.
+/// Maximum number of corners of the whole surface that are measured per level: if there are more, evenly chosen ones
+/// represent the rest.
 const MEASURED: usize = 20_000;
 
-/// Most pairs of triangles that share a corner, summed over all corners: the simplifier visits every pair. One corner shared by
-/// 63,000 triangles has that many.
+/// Maximum number of pairs of triangles that share a corner, summed over all corners: the simplifier visits every pair.
+/// One corner shared by 63,000 triangles has about that many.
 const MOST_PAIRS: u64 = 4_000_000_000;
 
 /// Up to three coarser levels of a surface, with triangles grouped by colour; each level has at most two thirds of the

@@ -10,7 +10,7 @@ use crate::EnvError;
 use crate::assets::library::MAX_MODEL_REACH;
 use crate::vector::cross;
 
-/// Most primitives in the scene, counting each instance of a mesh.
+/// Maximum number of primitives in the scene, counting each instance of a mesh.
 const MAX_PRIMITIVES: usize = 100_000;
 
 /// All triangles of a file.

@@ -15,13 +15,13 @@ use super::uri::{self, ReadBeside};
 use super::warning::{ImportWarning, Warnings};
 use crate::EnvError;
 
-/// Most pixels of all textures of a model together: two of the largest.
+/// Maximum number of pixels of all textures of a model together: two of the largest.
 const MAX_PIXELS: usize = 2 * 4096 * 4096;
 
-/// Most images that are read.
+/// Maximum number of images that are read.
 const MAX_IMAGES: usize = 256;
 
-/// Stands for a missing image index.
+/// Marks a missing image index.
 const NO_SOURCE: usize = u32::MAX as usize;
 
 /// The textures of a file, read on first use.

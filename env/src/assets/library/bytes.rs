@@ -18,9 +18,9 @@ const MAGIC: &[u8; 8] = b"DRIFTLIB";
 const VERSION: u32 = 1;
 /// Bytes of the header.
 const HEADER: usize = 8 + 4 + 8 + 32;
-/// Most corners of a model whose triangles are stored as 16-bit indices.
+/// Maximum number of corners of a model whose triangles are stored as 16-bit indices.
 pub(super) const SMALL: usize = 1 << 16;
-/// Fewest bytes of a model.
+/// Minimum size of a model in bytes.
 const LEAST_MODEL: usize = 32;
 
 impl Library {

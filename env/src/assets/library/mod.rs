@@ -14,19 +14,19 @@ use std::collections::BTreeSet;
 use crate::EnvError;
 use crate::assets::catalogue::key;
 
-/// Most models of a library.
+/// Maximum number of models in a library.
 pub const MAX_LIBRARY_MODELS: usize = 10_000;
 
-/// Most corners of a model, over all parts.
+/// Maximum number of corners of a model, over all parts.
 pub const MAX_MODEL_VERTICES: usize = 1_000_000;
 
-/// Most triangles of a model; two-sided ones count twice.
+/// Maximum number of triangles of a model; two-sided ones count twice.
 pub const MAX_MODEL_TRIANGLES: usize = 1_000_000;
 
-/// Most colours of a model.
+/// Maximum number of colours of a model.
 pub const MAX_MODEL_PARTS: usize = 256;
 
-/// Most levels of detail of a model, including the full one.
+/// Maximum number of levels of detail of a model, including the full one.
 pub const MAX_MODEL_LEVELS: usize = 4;
 
 /// Largest distance of a model from its origin, along each axis in metres.

@@ -201,5 +201,5 @@ fn is_sound(collider: &ColliderShape) -> bool {
     }
 }
 
-/// Most points of a hull.
+/// Maximum number of points of a hull.
 pub(crate) const MAX_HULL_POINTS: usize = 64;

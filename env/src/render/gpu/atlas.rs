@@ -9,7 +9,7 @@ const BYTES: u32 = 4;
 /// Alignment in pixels of rows that are copied from a texture.
 const ALIGNED: u32 = wgpu::COPY_BYTES_PER_ROW_ALIGNMENT / BYTES;
 
-/// Most pixels of a pass, unless a single tile has more.
+/// Maximum number of pixels in a pass, unless a single tile has more.
 const MOST_PIXELS: u32 = 1 << 24;
 
 /// The images that a pass reads back.
@@ -51,7 +51,7 @@ impl Grid {
         Some(Self { tile, columns, rows })
     }
 
-    /// Most tiles that fit.
+    /// Maximum number of tiles.
     pub(super) fn capacity(self) -> usize {
         self.columns as usize * self.rows as usize
     }
@@ -77,7 +77,7 @@ fn rounded(count: usize) -> usize {
     count.next_multiple_of((count.next_power_of_two() / 8).max(1))
 }
 
-/// Most atlases kept, and most pixels of all of them together.
+/// Maximum number of atlases kept, and of pixels in all of them together.
 const MOST_KEPT: (usize, u64) = (16, 1 << 25);
 
 /// Cached atlases of several sizes: depths can only be copied from whole textures, so each grid needs its own.

@@ -255,7 +255,7 @@ fn read(device: &Device, atlas: &Atlas, layout: Layout, take: impl FnOnce(&[u8],
     let done = Arc::new(OnceLock::new());
     let noted = Arc::clone(&done);
     atlas.back.map_async(wgpu::MapMode::Read, ..layout.end, move |outcome| {
-        // Called once.
+        // The callback runs once, so the cell is still empty.
         let _ = noted.set(outcome);
     });
     let waited = device.card.poll(wgpu::PollType::wait_indefinitely());

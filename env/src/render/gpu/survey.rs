@@ -12,7 +12,7 @@ use driftworld_spec::{Object, WorldDraft};
 /// Side of the test image, in pixels.
 const SIDE: u32 = 64;
 
-/// Share of pixels that must match the CPU's image, within a tolerance.
+/// Share of colour bytes that must match the CPU's image, within a tolerance.
 const ALIKE: f64 = 0.98;
 
 /// Every adapter with its test result; or the reason why there is none.

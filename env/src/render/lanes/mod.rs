@@ -20,7 +20,7 @@ pub(super) use avx512::Avx512;
 use operations::operations;
 pub(super) use portable::Portable;
 
-/// Most lanes of any set: buffers are padded to it.
+/// Maximum number of lanes of any set; buffers are padded to it.
 pub(super) const MOST_LANES: usize = crate::assets::BLOCK;
 
 /// The first `N` elements of a slice, for reading.
@@ -94,7 +94,7 @@ pub(super) trait Lanes: Copy {
     fn has_bit(self, value: Self::Word, bit: u32) -> Self::Mask;
     /// Where any of these bits is set.
     fn has_any(self, value: Self::Word, bits: u32) -> Self::Mask;
-    /// Multiplies bytes, where 128 in `b` stands for 1; capped at 255.
+    /// Multiplies bytes, where 128 in `b` means 1; capped at 255.
     fn modulate(self, a: Self::Word, b: Self::Word) -> Self::Word;
     /// Interpolates bytes: `a` where the byte of `share` is 0, `b` where it is 255.
     fn mix(self, a: Self::Word, b: Self::Word, share: Self::Word) -> Self::Word;
