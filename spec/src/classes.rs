@@ -6,7 +6,7 @@ use crate::error::Problem;
 use crate::suggest::nearest;
 use crate::world::{Model, Object};
 
-/// Most classes or models that a message lists.
+/// Maximum number of classes or models listed in a message.
 const LISTED: usize = 40;
 
 /// The classes that objects may have. Case is ignored.
@@ -37,7 +37,7 @@ pub trait Models: std::fmt::Debug + Send + Sync {
 }
 
 impl Classes {
-    /// Knows these classes, and any models of them.
+    /// The given classes, with any models.
     pub fn new<S: AsRef<str>>(names: impl IntoIterator<Item = S>) -> Self {
         let mut names: Vec<String> = names.into_iter().map(|name| plain(name.as_ref())).collect();
         names.sort();

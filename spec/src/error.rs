@@ -6,13 +6,13 @@ use driftworld_text::one_line;
 
 use crate::suggest::{did_you_mean, nearest};
 
-/// Most problems of a document that are listed; beyond it, the error only says that there are more.
+/// Maximum number of problems listed for a document; beyond it, the error only says that there are more.
 pub const MAX_PROBLEMS: usize = 300;
 
-/// Most problems shown in one message.
+/// Maximum number of problems shown in one message.
 const SHOWN: usize = 20;
 
-/// Most characters of a value shown in a message.
+/// Maximum number of characters of a value shown in a message.
 const SHOWN_CHARACTERS: usize = 100;
 
 /// One problem of a document: where it is, what was found, what was expected, what to do.
@@ -116,7 +116,7 @@ pub enum SpecError {
         name: String,
         /// Its length in bytes.
         bytes: usize,
-        /// Most bytes allowed.
+        /// Maximum number of bytes allowed.
         limit: usize,
     },
     /// The text has too many values for a document: each takes a hundred bytes or more while it is checked.
@@ -126,7 +126,7 @@ pub enum SpecError {
     TooManyValues {
         /// The document's name.
         name: String,
-        /// Most values allowed.
+        /// Maximum number of values allowed.
         limit: usize,
     },
     /// A key is longer than any key of a document.

@@ -70,7 +70,7 @@ fn is_below(pointer: &str, part: &str) -> bool {
     pointer.strip_prefix(part).is_some_and(|rest| rest.starts_with('/'))
 }
 
-/// The keys in the order of the table, with those inside progress, which the table has only as a whole.
+/// The keys in the order of the table, with those inside progress, which the table lists only as a whole.
 fn keys() -> Vec<FieldPlace> {
     let mut keys = Vec::new();
     for place in World::places().iter().filter(|place| place.is_key) {
@@ -82,7 +82,7 @@ fn keys() -> Vec<FieldPlace> {
     keys
 }
 
-/// Adds the keys below a place that the table has only as a whole, from the schema.
+/// Adds, from the schema, the keys below a place that the table lists only as a whole.
 fn add_inside(place: &FieldPlace, pointer: &str, keys: &mut Vec<FieldPlace>) {
     let root = World::schema().json();
     let part = part::at(root, root, pointer).unwrap_or(&Json::Null);

@@ -7,7 +7,7 @@ pub fn did_you_mean<S: AsRef<str>>(word: &str, known: impl IntoIterator<Item = S
     nearest(word, known).map_or_else(String::new, |near| format!("; did you mean {near:?}?"))
 }
 
-/// The known word that a misspelt one most likely stands for.
+/// The known word that was most likely meant by a misspelt one.
 pub fn nearest<S: AsRef<str>>(word: &str, known: impl IntoIterator<Item = S>) -> Option<String> {
     // No name is this long, and comparing takes memory proportional to the product of the lengths.
     if word.len() > MAX_KEY_BYTES {

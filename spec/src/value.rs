@@ -220,7 +220,7 @@ pub(crate) fn turned(degrees: f64) -> f64 {
     if turned >= 360.0 { 0.0 } else { turned }
 }
 
-/// For people to read: colours by name if they have one.
+/// A human-readable form, with colours by name if they have one.
 impl std::fmt::Display for Value {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         match self {

@@ -35,7 +35,7 @@ impl fmt::Display for Warning {
 /// The first few hundred oddities of a document.
 #[derive(Debug, Default)]
 pub(crate) struct Remarks {
-    /// Each after the pointer to its subject.
+    /// Pairs of a pointer to the subject and the text of the remark.
     first: Vec<(String, String)>,
     more: usize,
 }

@@ -98,7 +98,7 @@ fn both_mistakes_of_the_readme_are_reported_together() {
     );
 }
 
-/// A list that was left before its end may have more problems than were counted; the message says so.
+/// When checking stops before the end of a list, there may be more problems than were counted; the message says so.
 #[test]
 fn incomplete_count_of_problems_is_reported_as_a_minimum() {
     let said = |num: usize| {

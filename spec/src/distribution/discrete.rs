@@ -110,7 +110,7 @@ fn search(u: f64, mean: f64, deviation: f64, most: f64, cdf: impl Fn(f64) -> f64
         low -= stride;
         stride *= 2.0;
     }
-    // cdf(low) < u <= cdf(high), where -1 stands for «below everything».
+    // cdf(low) < u <= cdf(high), where -1 means below every count.
     low = low.max(-1.0);
     while high - low > 1.0 {
         let middle = f64::midpoint(low, high).floor();

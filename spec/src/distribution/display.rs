@@ -22,7 +22,7 @@ fn one(json: &Json) -> String {
             let index = map.get("index").map_or_else(String::new, |index| format!("[{index}]"));
             format!("{}{index}", map["param"].as_str().unwrap_or_default())
         }
-        // The values of a distribution of JSON.
+        // A plain JSON object, such as a value of a choice.
         Json::Object(map) if map.len() != 1 || !map.values().all(Json::is_object) => json.to_string(),
         Json::Object(map) => {
             let forms = map.iter().map(|(name, fields)| {

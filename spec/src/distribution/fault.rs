@@ -279,7 +279,7 @@ fn gaussian(std: Option<&Spread>, correlation: Option<f64>, covariance: Option<&
 mod tests {
     use super::*;
 
-    /// Each row is a distribution and what is expected of it instead; "sound" if nothing.
+    /// Each row is a distribution and the expectation that it violates, or "sound".
     fn check(rows: &str) {
         for row in rows.trim().lines() {
             let (json, expected) = row.split_once(" => ").expect("a row has two parts");

@@ -1,6 +1,7 @@
 //! Special functions behind the laws, computed with `libm` alone, so that they give the same bits on every platform.
 //!
-//! Written here because the available libraries call the platform's mathematics, and quantiles decide which worlds are drawn.
+//! Implemented here because the available libraries call the platform's maths functions, and quantiles decide which
+//! worlds are drawn.
 
 use std::f64::consts::{PI, SQRT_2};
 

@@ -4,7 +4,7 @@ use super::Distribution;
 use super::moments::cut;
 use crate::value::{ParameterType, Value};
 
-/// Most values to list for a distribution or a parameter.
+/// Maximum number of values to list for a distribution or a parameter.
 pub(crate) const MOST_ATOMS: usize = 1000;
 
 impl<N> Distribution<N> {

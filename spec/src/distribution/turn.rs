@@ -4,10 +4,10 @@ use std::collections::HashMap;
 
 use super::{Distribution, Order};
 
-/// Most places to try for one object.
+/// Maximum number of places to try for one object.
 const TRIES: usize = 1000;
 
-/// Most tries of a check whether a group fits; beyond that, drawing decides.
+/// Maximum number of tries when checking whether a group fits; beyond that, only sampling decides.
 const MOST_CHECKED: usize = 200_000;
 
 /// Tracks which places of a `points` or `grid` in turn are taken by the objects of one group around one anchor.

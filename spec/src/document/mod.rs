@@ -112,7 +112,7 @@ impl<'a> Document<'a> {
 
 /// The JSON as a typed value, or the problem that prevents it.
 pub(crate) fn typed<T: DeserializeOwned>(json: &Value) -> Result<T, Problem> {
-    // The plain way is twice as fast as the one that knows where it fails.
+    // Plain deserialisation is twice as fast as tracking the path of a failure.
     if let Ok(typed) = T::deserialize(json) {
         return Ok(typed);
     }

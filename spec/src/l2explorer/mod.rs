@@ -2,7 +2,7 @@
 //! `lenient.rs`; `mend.rs` repairs unusable entries. Scenario files, which name reset files, are read in `read_scenario.rs`.
 //!
 //! Every reset file becomes a [`World`](crate::World), with a [`Warning`](crate::Warning) for everything that is not taken
-//! literally. The number of a predefined map stands for the original's regions, which are written into the world.
+//! literally. For the number of a predefined map, the original's regions are written into the world.
 
 mod lenient;
 mod mend;
@@ -73,8 +73,8 @@ static PARTS: LazyLock<Parts> = LazyLock::new(|| {
     }
 });
 
-/// Speed of the original's moving objects in metres per second, which its documents do not give: as the balls of the built-in
-/// `moving_object`, a fifth of the agent's speed.
+/// Assumed speed of the original's moving objects in metres per second, which its documents do not give: the speed of
+/// the balls in the built-in `moving_object`, a fifth of the agent's.
 const ASSUMED_SPEED: f64 = 2.0;
 
 /// Whether black is a deliberate colour for this class (in lower case); for all others it is the default and means the

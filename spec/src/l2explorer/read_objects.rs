@@ -13,7 +13,7 @@ use crate::limits::MAX_OBJECTS;
 
 impl Reader {
     pub(super) fn objects(&mut self, objects: Vec<Json>) -> Vec<Json> {
-        // The schema refuses too many objects: does not build each of them first.
+        // The schema will refuse too many objects, so they are not read one by one first.
         if objects.len() > MAX_OBJECTS {
             return objects;
         }

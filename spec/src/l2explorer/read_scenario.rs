@@ -17,7 +17,7 @@ use crate::limits::MAX_SCENARIO_VALUES;
 use crate::scenario::{Block, BlockKind, MAX_EXPERIENCES, Regime, Scenario};
 use crate::warning::{Remarks, Warning};
 
-/// Most steps that a regime may allow, as in our own documents.
+/// Maximum number of steps that a regime may allow, as in our own documents.
 const MAX_STEPS: u64 = 1_000_000_000;
 
 impl Scenario {

@@ -27,7 +27,7 @@ use crate::world::Region;
 use crate::world::fields::{Place, fields};
 use text::TextMap;
 
-/// Most cells of a layout, including those of walls.
+/// Maximum number of cells in a layout, including wall cells.
 pub const MAX_CELLS: usize = 10_000;
 
 /// Longest side of a layout in metres, which is that of an arena.

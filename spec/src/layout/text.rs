@@ -203,7 +203,7 @@ fn doorways(squares: &[Square], columns: usize, rooms: &[u32], plan: &Plan, cell
         .map(|(place, center)| {
             let [east, north, west, south] = beside(place, columns, squares.len());
             let is_floor = |next: &Option<usize>| next.is_some_and(|next| squares[next] != Square::Wall);
-            // Passed along the axis on which more neighbours are floor; northwards if both have as many.
+            // The doorway leads along the axis with more floor neighbours; northwards on a tie.
             let count = |pair: [Option<usize>; 2]| pair.iter().filter(|next| is_floor(next)).count();
             let along_x = count([west, east]) > count([south, north]);
             let [before, beyond] = if along_x { [west, east] } else { [south, north] };

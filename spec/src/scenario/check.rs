@@ -186,7 +186,7 @@ pub(super) fn against_tasks(scenario: &Scenario, mut find: impl FnMut(&str) -> O
     for (pointer, _, regime) in regimes(scenario).filter(|(.., regime)| regime.world.is_none()) {
         let mut found = |name| tasks.entry(name).or_insert_with(|| find(name)).clone();
         let (task, end_task) = (found(&regime.task), found(regime.end_task()));
-        // Each one takes time: variants and similar names are looked up.
+        // Each regime takes time: variants and similar names are looked up.
         if problems.len() > MAX_PROBLEMS {
             break;
         }
@@ -242,7 +242,7 @@ mod tests {
         read.map_or_else(|error| error.to_string(), |_| String::new())
     }
 
-    /// Words of the rows below, with what they stand for.
+    /// Abbreviations in the rows below, each with its expansion.
     const WORDS: [(&str, &str); 9] = [
         ("DIM", r#"{ AT, "values": { "light": 1 }, "name": "dim" }"#),
         ("AT", r#""task": "t", "variant": "day", "count": 1"#),
@@ -255,7 +255,7 @@ mod tests {
         ("(1", "(/blocks/0/regimes/1"),
     ];
 
-    /// Each row: regimes, and what is said of them; nothing if they are sound.
+    /// Each row holds regimes and a part of the expected error; nothing if they are valid.
     #[track_caller]
     fn check(rows: &str) {
         for row in rows.trim().lines() {

@@ -71,7 +71,7 @@ pub enum DriftSchedule {
 }
 
 impl DriftSchedule {
-    /// The progress of the drift, 0..=1, at `progress`, 0..=1, of its regime. Cosine: (1 − cos π·progress) / 2. With steps, the
+    /// How far the drift has come, 0..=1, at a `progress` of 0..=1. Cosine: (1 − cos π·progress) / 2. With steps, the
     /// first is at `1 / (steps + 1)` of the way, the last at `steps / (steps + 1)`.
     pub fn at(self, progress: f64) -> f64 {
         let progress = progress.clamp(0.0, 1.0);

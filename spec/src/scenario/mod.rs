@@ -24,7 +24,7 @@ use crate::task::TaskSpec;
 use crate::version;
 use crate::version::SCENARIO_VERSION;
 
-/// Most experiences of one regime.
+/// Maximum number of experiences of one regime.
 pub const MAX_EXPERIENCES: u32 = 10_000_000;
 
 /// A lifetime: blocks of learning and evaluation, in order.

@@ -15,7 +15,7 @@ use crate::error::{Listed, MAX_PROBLEMS};
 /// Depth beyond which values of a schema are written on one line; the keys of definitions are at this depth.
 const DEEPEST_BREAK: usize = 4;
 
-/// Most bytes written on one line.
+/// Maximum length in bytes of a value that is written on one line at any depth.
 const SHORT_LINE: usize = 100;
 
 /// The schema of one document type, ready to check values.
@@ -59,7 +59,7 @@ impl DocumentSchema {
         self.validator.is_valid(value)
     }
 
-    /// The problems of a value; of any one list or object about [`MAX_PROBLEMS`].
+    /// The problems of a value, at most about [`MAX_PROBLEMS`] for any one list or object.
     pub(crate) fn problems(&self, value: &Value) -> Listed {
         // Nearly every document is valid, and this check is much faster than listing errors.
         if self.allows(value) {

@@ -41,7 +41,7 @@ impl From<Problem> for Finding {
     }
 }
 
-/// All problems behind the schema's errors, without duplicates; of several about one value only the most specific.
+/// All problems behind the schema's errors, without duplicates; if several concern one value, only the most specific.
 pub(super) fn problems<'a>(
     schema: &Value,
     document: &Value,

@@ -24,7 +24,7 @@ pub(super) fn code_of(kind: &ValidationErrorKind) -> &'static str {
 pub(super) fn expected(error: &ValidationError, root: &Value, schema: &Value) -> String {
     match error.kind() {
         ValidationErrorKind::Type { kind } => {
-            // Null stands for an absent key, which is of no interest to an author who wrote a value.
+            // Null means an absent key, which is irrelevant to an author who wrote a value.
             let is_one = matches!(kind, TypeKind::Single(_));
             let kinds = types(kind).into_iter().filter(|kind| is_one || kind != "null");
             let word = |kind: String| match kind.as_str() {

@@ -35,7 +35,7 @@ impl Choices {
         &self.names
     }
 
-    /// The value that a name stands for.
+    /// The value with this name.
     pub(super) fn named(&self, name: &Value) -> Option<&Value> {
         let name = name.as_text()?;
         let place = self.names.iter().position(|known| known == name)?;

@@ -188,8 +188,8 @@ impl MeasureName {
     }
 }
 
-/// The distributions that a parameter declares: its own, or its possible values. If another parameter is its distribution, the
-/// measure is checked against that one's.
+/// The distributions that a parameter declares: its own, or its possible values. If it is drawn from another
+/// parameter, `Check::compared_by` checks the measure against that parameter's distributions.
 fn distributions(parameter: &Parameter) -> impl Iterator<Item = &Distribution<Number>> {
     let own = match &parameter.distribution {
         Some(Source::Distribution(distribution)) => Some(&**distribution),

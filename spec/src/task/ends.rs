@@ -1,4 +1,4 @@
-//! The distributions that a task's declared ranges and choices allow, whatever variants it has.
+//! The distributions that a task's declared ranges and choices allow, regardless of its variants.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -11,14 +11,14 @@ use super::variant::{DEFAULT_VARIANT, Variant, broken};
 use crate::distribution::Distribution;
 use crate::value::{ParameterType, Value};
 
-/// Most combinations of values.
+/// Maximum number of combinations of values.
 const MOST_ENDS: usize = 256;
 
 impl TaskSpec {
-    /// The distributions of a parameter at the ends of the ranges and at the choices of all parameters behind it, in all
-    /// combinations, without duplicates; beyond 256 combinations each parameter varies alone, with the others at their defaults.
-    /// Leaves out distributions that cannot be drawn from, and combinations that break a requirement on these and fixed
-    /// parameters alone. Declared variants play no part. Empty for a parameter that is not drawn.
+    /// The distributions of a parameter at the range ends and choices of all parameters that it depends on, in all
+    /// combinations, without duplicates; beyond 256 combinations each parameter varies alone, with the others at their
+    /// defaults. Leaves out distributions that cannot be drawn from, and combinations that break a requirement on only
+    /// these and fixed parameters. Ignores declared variants. Empty for a parameter that is not drawn.
     ///
     /// # Example
     /// ```

@@ -12,13 +12,13 @@ use crate::error::Problem;
 use crate::names;
 use crate::value::{ParameterType, Value};
 
-/// Most variants of one task, with families unfolded.
+/// Maximum number of variants of one task, with families unfolded.
 const MAX_VARIANTS: usize = 10_000;
 
-/// Most values of all variants of a task together: variants times parameters.
+/// Maximum number of values in all variants of a task together: variants times parameters.
 const MAX_VARIANT_VALUES: usize = 400_000;
 
-/// Longest name of a variant in characters, as in scenarios.
+/// Maximum length of a variant's name in characters, as in scenarios.
 const MAX_NAME: usize = 100;
 
 /// Evenly spaced values of one number.
@@ -324,7 +324,7 @@ fn word(value: &Value, index: usize) -> String {
     }
 }
 
-/// JSON as part of a name: a word, a number or a list of words as it is, anything else by its first key and its index.
+/// JSON as part of a name: words, numbers and short lists of words as they are, others with an index.
 fn word_of_json(json: &serde_json::Value, index: usize) -> String {
     use serde_json::Value as Json;
     match json {

@@ -9,7 +9,7 @@ use crate::layout::POINTER;
 use crate::schema::document::DocumentSchema;
 use crate::{Layout, SpecError};
 
-/// The problems of JSON as a layout, with pointers into it.
+/// The problems of JSON read as a layout, with pointers into it.
 pub(super) fn problems(json: &Json) -> Vec<Problem> {
     static SCHEMA: LazyLock<DocumentSchema> = LazyLock::new(|| DocumentSchema::of::<Layout>("layout", "Layout"));
     let refused = SCHEMA.problems(json).problems;
@@ -29,7 +29,7 @@ pub(super) fn beyond_schema(layout: &Layout) -> Vec<Problem> {
 }
 
 impl Layout {
-    /// Checks a layout built in code by the rules for layouts in documents.
+    /// Checks a layout built in code against the rules for layouts in documents.
     ///
     /// # Errors
     /// [`SpecError::Document`] under the name `layout`, with all problems.

@@ -107,7 +107,7 @@ pub enum Count {
     Drawn(Source),
 }
 
-/// Longest document, in bytes, for which problems beyond the schema's are searched if the schema refuses it.
+/// Maximum size in bytes of a document that is searched for further problems after the schema has refused it.
 const MOST_COPIED: usize = 1 << 17;
 
 impl TaskSpec {
@@ -129,7 +129,7 @@ impl TaskSpec {
         document.upgrade(&version::TASK)?;
         let refused = TaskDocument::schema().problems(&document.value);
         if !refused.problems.is_empty() {
-            // Other problems are searched in a copy, which would take too much memory for a large document.
+            // The search for other problems needs a copy, which would take too much memory for a large document.
             let Listed { mut problems, more } = refused;
             if text.len() <= MOST_COPIED {
                 problems = check::partial::problems(&document.value, problems, classes);
@@ -187,7 +187,7 @@ impl TaskSpec {
         &self.world
     }
 
-    /// The templates of objects with their own places.
+    /// The templates of the objects outside groups, each with a place of its own.
     pub fn fixtures(&self) -> &[Template<Object>] {
         &self.fixtures
     }
@@ -197,7 +197,7 @@ impl TaskSpec {
         &self.groups
     }
 
-    /// Whether it gives the agent's start.
+    /// Whether the world template sets the agent's start.
     pub fn says_start(&self) -> bool {
         self.document.world.pointer("/agent_params/coordinates").is_some()
     }

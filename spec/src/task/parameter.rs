@@ -102,7 +102,7 @@ fn given<'de, D: Deserializer<'de>>(value: D) -> Result<Option<Value>, D::Error>
     Value::deserialize(value).map(Some)
 }
 
-/// Any JSON; the parameter's type decides which.
+/// Any JSON; the parameter's type determines what is allowed.
 fn any_value(_: &mut SchemaGenerator) -> Schema {
     Schema::from(true)
 }
@@ -212,7 +212,7 @@ fn only_difference(found: &serde_json::Value, choice: &serde_json::Value, pointe
 }
 
 impl Parameter {
-    /// Whether it affects this element, or its fine one, and no other.
+    /// Whether it affects this element, or the finer one within it, and no other.
     pub fn affects_only(&self, element: Element) -> bool {
         !self.affects.is_empty() && self.affects.iter().all(|touched| element.covers(*touched))
     }
@@ -296,7 +296,7 @@ impl Parameter {
         vec![Problem::new("spec/value", pointer, value.to_string(), expected).suggest(word, choices)]
     }
 
-    /// The problems of JSON as a value of this type, if the type has parts; pointers are within the value.
+    /// The problems of JSON read as a value of this type, if the type has parts; pointers are within the value.
     fn type_problems(&self, json: &serde_json::Value) -> Vec<Problem> {
         static DISTRIBUTION: LazyLock<DocumentSchema> =
             LazyLock::new(|| DocumentSchema::of::<Distribution<Number>>("distribution", "Distribution"));

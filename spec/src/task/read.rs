@@ -24,7 +24,7 @@ pub struct Readers {
 }
 
 impl Readers {
-    /// Whether it is read only by distributions that are parameters or draw parameters, so that it changes nothing else.
+    /// Whether only distributions read it: those of randomized parameters, or the values of distribution parameters.
     pub fn are_draws_alone(&self) -> bool {
         !self.worlds && !self.draws.is_empty()
     }

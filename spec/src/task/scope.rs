@@ -9,7 +9,7 @@ use crate::distribution::{Case, Distribution, Number};
 use crate::error::first_of;
 use crate::value::{ParameterType, Value};
 
-/// Most combinations of the draws that a look-up reads.
+/// Maximum number of combinations of the draws that a look-up reads.
 const MOST_WAYS: usize = 4096;
 
 /// Known values of a task's parameters: those of a variant, and those of drawn parameters as far as known.
@@ -69,7 +69,7 @@ impl<'a> Scope<'a> {
             })
     }
 
-    /// The number that a literal, a reference or a look-up stands for.
+    /// The value of a literal, a reference or a look-up.
     pub(crate) fn number(&self, number: &Number) -> Result<f64, Unsettled> {
         match number {
             Number::Literal(number) => Ok(*number),
@@ -203,7 +203,7 @@ pub(crate) fn mixed(mut outcomes: Vec<(Distribution, f64)>) -> Distribution {
 }
 
 impl Parameter {
-    /// The value that a key of a look-up over this parameter stands for.
+    /// The value of this parameter that a look-up's key denotes.
     pub(crate) fn at_key(&self, key: &str) -> Option<Value> {
         match self.kind {
             ParameterType::Boolean | ParameterType::Integer | ParameterType::Number => {

@@ -52,8 +52,8 @@ impl Variant {
         format!("{}#{}", self.task.name(), self.name)
     }
 
-    /// A hash of everything that determines its worlds and distances: the task's document in the current version without
-    /// descriptions and variants, and the values of this variant. Variants with the same hash have the same worlds.
+    /// A hash of everything that determines its worlds and distances: the task's document in the current version,
+    /// without descriptions and variants, and this variant's name and values. The same hash means the same worlds.
     ///
     /// # Example
     /// ```
@@ -140,7 +140,7 @@ impl Variant {
         settled.expect("loading the task checked that every reference names a number")
     }
 
-    /// The number that a literal or a reference stands for in this variant.
+    /// The value of a literal, a reference or a look-up in this variant.
     pub fn number(&self, number: &Number) -> f64 {
         let settled = self.scope().number(number);
         settled.expect("loading the task checked that every reference names a number")

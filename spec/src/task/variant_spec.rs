@@ -66,7 +66,7 @@ fn values_of_parameters(schema: &mut schemars::Schema) {
     }
 }
 
-/// For each parameter a list of values; the parameter's type decides which.
+/// For each parameter, a list of values; the parameter's type determines what is allowed.
 fn grid_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
     schemars::json_schema!({
         "type": "object",
@@ -76,12 +76,12 @@ fn grid_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
     })
 }
 
-/// Longest chain of variants that extend each other.
+/// Maximum length of a chain of variants that extend each other.
 pub(crate) const MAX_EXTENDED: usize = 100;
 
 /// The values of a variant: its own over those of the variants that it extends, over the defaults.
 ///
-/// `Err` if the chain of `extends` is broken or a cycle; invalid values are found by [`problems`].
+/// `Err` if the chain of `extends` is broken, cyclic or too long; [`problems`] finds invalid values.
 pub(crate) fn values_of(
     parameters: &IndexMap<String, Parameter>,
     variants: &Variants,
@@ -140,7 +140,7 @@ fn unknown_parent(origin: &str, parent: &str, variants: &Variants) -> Problem {
     .suggest(parent, known)
 }
 
-/// All problems of variants, except values of unknown parameters.
+/// All problems of variants, except those of values of unsound parameters.
 pub(crate) fn problems(
     parameters: &IndexMap<String, Parameter>,
     document: &IndexMap<String, VariantSpec>,
@@ -175,7 +175,7 @@ pub(crate) fn problems(
     problems
 }
 
-/// The parameters that variants may set, and what to expect instead of another name.
+/// The parameters that variants may set, and what to say was expected if another name is found.
 pub(super) fn variant_parameters(parameters: &IndexMap<String, Parameter>) -> (Vec<&String>, String) {
     let settable = parameters
         .iter()

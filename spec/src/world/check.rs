@@ -1,4 +1,4 @@
-//! Makes a [`World`] from a [`WorldDraft`] by checking its values by the rules of documents. Also reads and checks
+//! Turns a [`WorldDraft`] into a [`World`] by checking its values against the rules of documents. Also reads and checks
 //! single objects.
 
 use std::sync::{Arc, LazyLock};
@@ -32,7 +32,7 @@ impl Object {
         document.deserialize()
     }
 
-    /// Checks an object built in code by the rules for objects in documents.
+    /// Checks an object built in code against the rules for objects in documents.
     ///
     /// # Errors
     /// [`SpecError::Document`] under the name `object`, with all problems.
@@ -226,7 +226,7 @@ impl World {
     /// The world with the layout of its predefined map from a library, if it has one; it then needs no library.
     #[must_use]
     pub fn with_maps(mut self, maps: &MapLibrary) -> Self {
-        // Layouts follow the rules of a world's own regions, and no other rule depends on these.
+        // A library's layouts follow the same rules as a world's own regions, and no other rule depends on them.
         maps.apply(&mut self.draft);
         self.plan = self.draft.plan();
         self
@@ -271,7 +271,7 @@ fn name_taken(pointer: String, name: &str, first: usize) -> Problem {
     Problem::new("spec/duplicate-name", pointer, found, "a name of its own")
 }
 
-/// Checks a value by its schema; `more` are its other problems.
+/// Checks a value against its schema; `more` are its other problems.
 fn check(name: &str, value: &impl Serialize, schema: &DocumentSchema, more: Vec<Problem>) -> Result<(), SpecError> {
     let value = serde_json::to_value(value).expect("parts of a world have string keys only, which always serialise");
     let mut found = schema.problems(&value);

@@ -1,4 +1,4 @@
-//! [`WorldDraft`]: the fields of a world, open to code that sets them.
+//! [`WorldDraft`]: a world whose fields can be set freely, before it is checked.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -9,7 +9,7 @@ use crate::serde_defaults::is_default;
 use crate::version::WORLD_VERSION;
 
 fields! {
-    /// The fields of a world, free to be set. [`WorldDraft::check`] makes a [`World`](crate::World) of it.
+    /// A world whose fields can be set freely. [`WorldDraft::check`] turns it into a [`World`](crate::World).
     ///
     /// # Example
     /// ```
@@ -30,26 +30,27 @@ fields! {
         pub schema: Option<String> = None => Field::ours(Not("it names a schema for editors"))
                 .named("$schema")
                 .fixed("it names a schema for editors, and is no part of the world"),
-        /// The version of this form of document. Older ones are read, newer ones refused; without it, it is taken to be 1.
+        /// The version of this document format. Older versions are read, newer ones refused; if missing, 1 is assumed.
         #[schemars(range(min = 1, max = 1))]
         pub version: u32 = WORLD_VERSION => Field::ours(Not("it is the form of the document"))
-                .fixed("it is the form of the document, which has one"),
-        /// The seed of all random numbers in the running world: where wanderers go, which pulls of a bandit arm pay, where objects come
-        /// back. A sampled world has one of its task, seed and number, so that all variants of the task share it. Without it
-        /// the places of things decide.
+                .fixed("it is the version of the document format, and there is only one"),
+        /// The seed of all random numbers in the running world: where wanderers go, which pulls of a bandit arm pay,
+        /// where objects reappear. In a sampled world it is derived from the task, the sampling seed and the world's
+        /// number, so that all variants of the task share it. Without it, the initial positions of things determine
+        /// the random numbers.
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = 0, max = MAX_SEED))]
         pub seed: Option<u64> = None
             => Field::ours(Not("two worlds that differ in their seeds alone are two runs of one world"))
-                .fixed("a sampled world has that of its task, seed and number, so that all variants share it"),
+                .fixed("a sampled world derives it from its task, seed and number, so that all variants share it"),
         /// What the world is for.
         pub game_mode: GameMode = GameMode::default()
             => Field::original(Not("photographing objects is no decision process")),
-        /// Steps until the episode is truncated; 0 is never.
+        /// Steps until the episode is truncated; 0 means never.
         #[schemars(range(min = 0, max = 1_000_000_000))]
         pub max_steps: u32 = 0 => Field::original(Measured(&[Limit])),
-        /// Seconds of the world's own time until the episode is truncated, be it in the midst of an action that is held; 0 is never.
-        /// Of two limits the earlier holds. Unlike `max_steps` it does not depend on how long a step lasts.
+        /// Simulated seconds until the episode is truncated, even while an action is still being repeated; 0 means
+        /// never. Whichever limit comes first applies. Unlike `max_steps`, it does not depend on how long a step lasts.
         #[serde(skip_serializing_if = "is_default")]
         #[schemars(range(min = 0.0, max = 1e9))]
         pub max_seconds: f64 = 0.0 => Field::ours(Measured(&[Limit])).unit("s"),
@@ -65,15 +66,15 @@ fields! {
             => Field::original(Not("photographing objects is no decision process")),
         /// Rewards and endings beside those of the objects.
         pub rules: Rules = Rules::default() => Field::ours(AsPart),
-        /// What stands in the world. Objects that move do so one after the other in this order: where two meet, the first goes on.
+        /// What stands in the world. Moving objects move in this order: where two meet, the one listed first goes on.
         #[schemars(length(max = 100_000))]
         pub objects: Vec<Object> = Vec::new()
             => Field::original(Measured(&[Unmatched, Rewards, UnmatchedLooks]))
                 .in_parts("how many objects there are is the count of their group"),
-        /// How far it has come, for a world that was written down while it ran.
+        /// The progress of the episode, in a world that was saved while it ran.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub progress: Option<Progress> = None
-            => Field::ours(Not("it is how far a world has come, not which world it is"))
+            => Field::ours(Not("it is the progress of a run, not a property of the world"))
                 .fixed("a sampled world has not begun"),
     }
 }
@@ -95,7 +96,7 @@ fields! {
     #[serde(default, deny_unknown_fields)]
     #[schemars(extend("examples" = [{ "zoom": 2, "yaw_subdivisions": 8, "vertical_subdivisions": 1 }]))]
     pub struct ImageParams {
-        /// Distance of the camera as a factor on that from which the object just fits into the picture.
+        /// Camera distance, as a multiple of the distance at which the object just fits into the picture.
         #[schemars(range(min = 0.1, max = 100.0))]
         pub zoom: f64 = 2.0 => Field::original(AsPart),
         /// Views around each object.

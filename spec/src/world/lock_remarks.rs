@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use super::World;
 use crate::layout::Plan;
 
-/// Most doors for which worlds are checked, because the check compares all doors with each other.
+/// Maximum number of doors in a world that is checked, because the check compares all doors with each other.
 const MOST_DOORS: usize = 1000;
 
 /// The part of a layout that a locked door blocks.
@@ -17,7 +17,7 @@ enum Bar {
     Cell(usize),
 }
 
-/// The remarks, each after the pointer to its subject.
+/// The remarks, as pairs of a pointer to the subject and a text.
 pub(super) fn lock_remarks(world: &World) -> Vec<(String, String)> {
     let doors = world.objects.iter().filter(|object| object.door.is_some()).count();
     if doors == 0 || doors > MOST_DOORS {

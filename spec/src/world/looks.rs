@@ -183,7 +183,7 @@ impl Covering {
     }
 }
 
-/// Lets a part of a world be written as a single word, which is one of its keys, or with all its keys.
+/// Lets a part of a world be written as a single word, the value of its main key, or as an object with all its keys.
 macro_rules! word_or_parts {
     ($type:ident, $form:ident, $word:ident, $expecting:literal, $of:expr) => {
         impl Serialize for $type {

@@ -52,7 +52,7 @@ use crate::version;
 /// Largest seed of a world or an object, 2⁵³ − 1: the largest integer that every JSON reader represents exactly.
 pub const MAX_SEED: u64 = (1 << 53) - 1;
 
-/// Most sample points of one image: 4096 × 4096 pixels with 2 × 2 points each.
+/// Maximum number of sample points of one image: 4096 × 4096 pixels with 2 × 2 points each.
 pub const MAX_POINTS: u64 = 1 << 26;
 
 /// One fully concrete world: what a reset takes.

@@ -81,10 +81,10 @@ impl Place for Progress {}
 /// The largest integer that every JSON reader represents exactly: 2⁵³ − 1.
 const MOST: u64 = (1 << 53) - 1;
 
-/// Most draws of one kind: leaves room for as many more.
+/// Maximum number of draws of one kind; leaves room for as many again.
 const MOST_DRAWN: u64 = 1 << 31;
 
-/// Leaves room for as many more.
+/// Maximum number of time steps; leaves room for as many again.
 const MOST_TICKS: u64 = 1 << 52;
 
 /// An event, as the state vector tells it.

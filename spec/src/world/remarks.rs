@@ -155,7 +155,7 @@ impl World {
     }
 }
 
-/// Most pairs of polygon sides to compare in one world.
+/// Maximum number of pairs of polygon sides to compare in one world.
 const MOST_PAIRS: usize = 2_000_000;
 
 /// The fault of a polygon; `left` is the number of pairs of sides that may still be compared.

@@ -23,8 +23,8 @@ impl World {
     }
 }
 
-/// The leaf-by-leaf compared fields of a world or an object: for each comparison a text with one line of JSON per field, in the
-/// order of the table. Equal fields have equal texts.
+/// The fields of a world or an object that are compared leaf by leaf: for each comparison, a text with one line of JSON
+/// per field, in the order of the table. Equal fields have equal texts.
 #[derive(Debug)]
 pub struct LeafTexts([Vec<u8>; Comparison::ALL.len()]);
 

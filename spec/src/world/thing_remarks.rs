@@ -2,7 +2,7 @@
 
 use super::{ActionModel, EndCondition, Object, Stimulus, World};
 
-/// The remarks, each after the pointer to its subject.
+/// The remarks, as pairs of a pointer to the subject and a text.
 pub(super) fn thing_remarks(world: &World) -> Vec<(String, String)> {
     let mut found = Vec::new();
     for (index, object) in world.objects.iter().enumerate() {
@@ -34,7 +34,7 @@ pub(super) fn thing_remarks(world: &World) -> Vec<(String, String)> {
     found
 }
 
-/// The remark on a door that nothing can open, after the key that it is about.
+/// The remark on a door that nothing can open, with the key that it concerns.
 fn door(world: &World, object: &Object) -> Option<(&'static str, String)> {
     let door = object.door.as_ref()?;
     let key = |tag: &String| has(world, tag, |object| object.portable.is_some());

@@ -14,7 +14,7 @@ use crate::distribution::{Distribution, Number};
 use crate::error::{Problem, first_of};
 use crate::value::{ParameterType, Value};
 
-/// Most placements of a group to check for room: families have thousands of variants.
+/// Maximum number of placements of a group to check for room: families have thousands of variants.
 const MOST_CASES: usize = 64;
 
 impl Check<'_> {
@@ -104,7 +104,7 @@ impl Check<'_> {
         }
     }
 
-    /// Checks cells of a layout: not mixed with other placements, in a world with a layout, and not around anything.
+    /// Checks placements on layout cells: not mixed with other placements, in a world with a layout, without `around`.
     fn cells(&mut self, root: &str, group: &Group) {
         let all = self.distributions_of(&group.placement);
         if !all.iter().any(Distribution::draws_cells) {
@@ -202,7 +202,7 @@ impl Check<'_> {
         found
     }
 
-    /// Index of the group that it faces.
+    /// Checks `turned` and `facing`; returns the index of the earlier group that the group faces, if any.
     fn facing(&mut self, root: &str, group: &Group, earlier: &[Group]) -> Option<usize> {
         let wanted = "a group to be placed around";
         if group.turned && group.around.is_none() {

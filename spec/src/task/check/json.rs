@@ -1,5 +1,5 @@
-//! Checks values that only the schema of their place can judge: parameters of type JSON, and draws from lists that contain
-//! objects, lists or `null`.
+//! Checks values that only the schema of their place can validate: parameters of type JSON, and draws from lists that
+//! contain objects, lists or `null`.
 
 use super::super::layouts;
 use super::super::template::{Hole, Source};
@@ -9,7 +9,7 @@ use crate::distribution::{Distribution, Number};
 use crate::value::{ParameterType, Value};
 
 impl Check<'_> {
-    /// Whether only the schema of its place can judge a source's values.
+    /// Whether only the schema of its place can validate a source's values.
     pub(super) fn is_json(&self, source: &Source, place: ParameterType) -> bool {
         match source {
             Source::Case(_) => source.leaves().iter().any(|(_, leaf)| self.is_json(leaf, place)),
@@ -104,8 +104,8 @@ impl Check<'_> {
     }
 }
 
-/// Whether only the schema of a place can judge a distribution's draws: they are listed, and either not plain values, or the
-/// place accepts no plain values.
+/// Whether only the schema of a place can validate a distribution's draws: the distribution lists them, and either the
+/// place is of type JSON or some of them are not plain values.
 fn is_for_schema(distribution: &Distribution<Number>, place: ParameterType) -> bool {
     let mut values = Vec::new();
     listed(distribution, "", &mut values);

@@ -1,4 +1,4 @@
-//! Turns a task's document into a checked task: checks references, types and ranges, which the schema cannot.
+//! Turns a task's document into a checked task: checks references, types and ranges, which the schema cannot check.
 
 mod cases;
 mod groups;
@@ -196,7 +196,7 @@ impl<'a> Check<'a> {
         }
     }
 
-    /// Whether a source depends on an unsound parameter, so that nothing can be said about it.
+    /// Whether a source depends on an unsound parameter and therefore cannot be checked.
     fn is_unsound(&self, source: &Source) -> bool {
         if self.unsound.parameters.is_empty() {
             return false;

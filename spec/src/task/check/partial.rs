@@ -111,7 +111,7 @@ impl Rest {
         }
     }
 
-    /// Puts a valid value in place of a refused one, below which nothing more is reported.
+    /// Replaces a refused value with a valid one; nothing more is reported below its pointer.
     fn replace(&mut self, pointer: String, sound: Json) -> Option<()> {
         *self.json.pointer_mut(&pointer)? = sound;
         self.silent.push(pointer);

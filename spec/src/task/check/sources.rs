@@ -216,7 +216,7 @@ impl Check<'_> {
         fits
     }
 
-    /// All distributions of a source: its own, or those that a parameter may be.
+    /// All distributions of a source: its own, or the possible values of a parameter of type distribution.
     pub(super) fn distributions_of(&self, source: &Source) -> Vec<Distribution<Number>> {
         match source {
             Source::Case(_) => {

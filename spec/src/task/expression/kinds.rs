@@ -61,8 +61,8 @@ impl Kind {
 pub(in crate::task) type Misfit = (String, String);
 
 impl Requirement {
-    /// The first part that cannot be compared, or the whole if it is not true or false. `kind_of` gives the type of a name;
-    /// `None` is not checked.
+    /// The first part that cannot be compared, or the whole if it is not true or false. `kind_of` gives the type of a
+    /// name; names without a type are not checked.
     pub(in crate::task) fn misfit(&self, kind_of: impl Fn(&str) -> Option<Kind>) -> Option<Misfit> {
         let check = Check {
             names: &self.names,
@@ -167,7 +167,7 @@ impl<F: Fn(&str) -> Option<Kind>> Check<'_, F> {
         Ok(Kind::Truth)
     }
 
-    /// Whether two things can be equal: things of one type, a colour and a colour's name, a text and one of its possible values.
+    /// Checks that two parts can be equal: of one type, a colour and a colour's name, or a text and one of its choices.
     fn alike(&self, a: (&Node, &Kind), b: (&Node, &Kind), symbol: &str) -> Result<(), Misfit> {
         match (a.1, b.1) {
             (Kind::Text(Some(first)), Kind::Text(Some(second))) => {

@@ -1,7 +1,7 @@
 //! [`Requirement`]: parses and evaluates a condition over parameters that a task states.
 //!
-//! Written here because existing crates do not fit (docs/decisions/0005-requirements.md): this one needs no memory beyond its
-//! text, cannot loop, and reports the character at which a text is wrong.
+//! Written here because existing crates do not fit (docs/decisions/0005-requirements.md): this one needs memory
+//! only in proportion to the text, cannot loop, and reports the character at which a text is wrong.
 
 mod kinds;
 mod token;
@@ -13,18 +13,19 @@ use crate::value::Value;
 pub(super) use kinds::Kind;
 use token::{Token, tokens};
 
-/// Longest text in characters.
+/// Maximum length of a condition in characters.
 const MAX_CHARACTERS: usize = 500;
 
-/// Greatest nesting of brackets and signs.
+/// Maximum nesting depth of brackets and signs.
 const MAX_DEPTH: usize = 32;
 
 /// A condition over parameters, such as `min_size < max_size and (count <= 5 or light >= 1)`.
 ///
-/// Numbers, `true`, `false`, texts in single quotes, and parameters of type number, integer, heading, boolean, string or color,
-/// or `name[0]` of a vector or point; `+ - * / %`, `min(a, b, …)`, `max(a, b, …)`, `abs(a)`, `< <= > >= == !=`, `and`, `or`,
-/// `not` and brackets. Colours can only be equal or not, to each other and to CSS names in quotes; `distance(a, b)` is the
-/// distance of two colours in Oklab ([`Color::distance`](crate::Color::distance)). A condition cannot loop, and does no I/O.
+/// It consists of numbers, `true`, `false`, texts in single quotes, parameters of type number, integer, heading,
+/// boolean, string or color, `name[0]` of a vector or point, `+ - * / %`, `min(a, b, …)`, `max(a, b, …)`, `abs(a)`,
+/// `< <= > >= == !=`, `and`, `or`, `not` and brackets. Colours can only be tested for equality, with each other and
+/// with CSS names in quotes; `distance(a, b)` is the distance between two colours in Oklab
+/// ([`Color::distance`](crate::Color::distance)). A condition cannot loop, and does no I/O.
 #[derive(Clone, Debug)]
 pub struct Requirement {
     text: String,
@@ -76,7 +77,7 @@ enum Operator {
     Join(fn(bool, bool) -> bool),
     /// Compares numbers.
     Compare(fn(f64, f64) -> bool),
-    /// Whether two things of one type are equal, or are not.
+    /// Tests two values of one type for equality (`true`) or inequality (`false`).
     Equal(bool),
     /// Arithmetic.
     Calculate(fn(f64, f64) -> f64),

@@ -3,7 +3,7 @@
 use crate::element::Element;
 
 /// Declares the parts: for each its subject, its element of the decision process, its name in tables, and its unit,
-/// which counts 1.
+/// the difference that counts as 1.
 macro_rules! comparisons {
     ($($(#[$doc:meta])* $part:ident: $element:ident, $name:literal, $unit:literal,)+) => {
         /// A part of the distance between two worlds.
@@ -30,7 +30,7 @@ macro_rules! comparisons {
                 }
             }
 
-            /// Its unit, which counts 1.
+            /// Its unit, the difference that counts as 1.
             pub const fn unit(self) -> &'static str {
                 match self {
                     $(Self::$part => $unit,)+

@@ -18,7 +18,7 @@ pub(crate) use place::{Place, Setter, word};
 pub struct Field {
     /// Its key.
     pub key: &'static str,
-    /// The unit of its numbers, for people to read; `None` if it has none.
+    /// The unit of its numbers, for display; `None` if they have none.
     pub unit: Option<&'static str>,
     /// Whether L2Explorer's reset files have it.
     pub is_original: bool,

@@ -16,7 +16,7 @@ pub(crate) trait Place: DeserializeOwned {
     /// The type of parameter for the whole of it; JSON, which fits every place, if it has no type of its own.
     const KIND: ParameterType = ParameterType::Json;
 
-    /// The whole of it from a value of that type. `None` if the value is not allowed here.
+    /// Makes the whole of it from a value of that type. `None` if the value is not allowed here.
     fn from_value(value: &Value) -> Option<Self> {
         match value.cast(ParameterType::Json)? {
             Value::Json(json) => Self::from_json(&json),
@@ -24,7 +24,7 @@ pub(crate) trait Place: DeserializeOwned {
         }
     }
 
-    /// The whole of it from JSON that the schema of the place allows.
+    /// Makes the whole of it from JSON that the schema of the place allows.
     fn from_json(json: &Json) -> Option<Self> {
         Self::deserialize(json).ok()
     }
