@@ -7,10 +7,10 @@
 use crate::SimilarityError;
 use crate::transport::check_costs;
 
-/// Most rows, and most columns, of an assignment.
+/// Maximum number of rows, and of columns, of an assignment.
 pub const MAX_ASSIGNED: usize = 4096;
 
-/// Marks "paired with none" in the buffers.
+/// Marks an unpaired row or column in the buffers.
 const NONE: usize = usize::MAX;
 
 /// Pairs rows with columns so that the sum of the costs is least, and reuses its memory for the next matrix.
@@ -40,7 +40,7 @@ pub struct Assignment {
     exchanged: Vec<f64>,
     column_of: Vec<usize>,
     row_of: Vec<usize>,
-    /// The price that each column is paid for being taken, at most 0; exactly 0 for columns that are not taken.
+    /// The dual price of each column, at most 0; exactly 0 for unpaired columns.
     price: Vec<f64>,
     free: Vec<usize>,
     reach: Vec<f64>,
@@ -159,7 +159,7 @@ impl Assignment {
             let line = &costs[row * columns..][..columns];
             let (mut nearest, mut nearest_at, mut nearest_is_free) = (f64::INFINITY, 0, false);
             for (position, &column) in self.open.iter().enumerate() {
-                // At least `least`, but for rounding.
+                // Only rounding could make it smaller than `least`.
                 let reach = (line[column] - self.price[column] + so_far).max(least);
                 if reach < self.reach[column] {
                     self.reach[column] = reach;

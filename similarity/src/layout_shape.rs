@@ -22,9 +22,10 @@ const COARSE: usize = 32;
 /// Path length if there is no path.
 const NO_WAY: u32 = (SIDE * SIDE) as u32;
 
-/// A layout prepared for comparison: a raster of 96 × 96 cells with the heights of the walls that reach into them, the path
-/// lengths between the cells nearest to 36 places in rows and columns, and marks: letters of cells and colours of walls. Places
-/// are shares of the arena's sides, so its size does not count. Details smaller than a cell of the raster are ignored.
+/// A layout prepared for comparison: a raster of 96 × 96 cells with the heights of the walls that reach into them, the
+/// path lengths between the cells nearest to 36 places in rows and columns, and marks: letters of cells and colours of
+/// walls. Places are relative to the arena's sides, so its size does not matter. Details smaller than a cell of the
+/// raster are ignored.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LayoutShape {
     /// Wall heights in metres; 0 without a wall.
@@ -77,8 +78,8 @@ impl LayoutShape {
             }
         }
         let ways = ways(&walls);
-        // Ten-thousandths of the sides, rounded down. The irrational offset keeps all ratios of small numbers, where layouts
-        // have their corners, away from the borders, at which rounding would decide.
+        // Ten-thousandths of the sides, rounded down. Corners of layouts lie at ratios of small numbers; the irrational
+        // offset keeps these away from the steps of `floor`, where rounding errors would decide.
         let whole = |share: f64| (share * 1e4 + std::f64::consts::FRAC_1_SQRT_2).floor();
         let share = |[x, y]: [f64; 2]| format!("{} {}", whole(x / arena[0]), whole(y / arena[1]));
         let letters = plan.cells.iter().filter_map(|cell| Some((cell.letter?, cell.center)));
@@ -137,10 +138,10 @@ impl LayoutShape {
     /// mover's distance (Wasserstein-1) of rasters of 32 × 32 cells. Each layout has a total mass of 1, distributed by how much
     /// of a cell its walls touch, and their heights.
     ///
-    /// A metric of wall positions, but not of their number or common height, which [`LayoutShape::walls_distance`] counts.
-    /// Moving a wall by a quarter of the arena costs a quarter of its share of the mass, while the Jaccard distance of two
-    /// positions that do not overlap is the same however near they are. A layout without walls has no mass to move and is √2
-    /// from every other. Not part of [`LayoutShape::distance`].
+    /// A metric on wall positions; it ignores the amount of wall and the common height, which
+    /// [`LayoutShape::walls_distance`] measures. Moving a wall by a quarter of the arena costs a quarter of its share
+    /// of the mass, while the Jaccard distance of two positions that do not overlap is the same however near they are.
+    /// A layout without walls has no mass to move and is √2 from every other. Not part of [`LayoutShape::distance`].
     ///
     /// Exact, by network simplex.
     ///
@@ -187,8 +188,8 @@ impl LayoutShape {
     }
 }
 
-/// How much nearer than half a cell, squared, a wall must come to the middle of a cell to touch it: walls on raster lines touch
-/// the cells on their own side only, whatever the rounding.
+/// Margin by which a wall's squared distance from the middle of a cell must be below that of half a cell to touch the
+/// cell: walls on raster lines touch only the cells on their own side, whatever the rounding.
 const ROUNDING: f64 = 1e-9;
 
 /// Whether a polygon contains a point, or comes nearer to it than half a cell.
@@ -211,9 +212,9 @@ fn touches(corners: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
     inside || least < 0.25 - ROUNDING
 }
 
-/// Steps from a cell to each other over cells that `may_enter` allows; [`NO_WAY`] to unreachable ones.
+/// Steps from a cell to every other one through cells that `may_enter` allows; [`NO_WAY`] to unreachable ones.
 ///
-/// Each layout needs dozens of these, and tests run it for many layouts without optimisation: hence no iterators.
+/// Avoids iterators for speed: each layout needs dozens of these searches, and tests run many of them unoptimised.
 fn steps(from: usize, may_enter: impl Fn(usize) -> bool) -> Vec<u32> {
     let mut steps = vec![NO_WAY; SIDE * SIDE];
     steps[from] = 0;

@@ -9,7 +9,7 @@ pub(crate) const CIE76_DIAMETER: f64 = 258.680_21;
 /// Euclidean distance in CIE L*a*b*: √(ΔL² + Δa² + Δb²). About 2.3 is just noticeable.
 ///
 /// A metric, from 0 to 258.68 within sRGB (blue to green), no unit. Exaggerates differences between strong colours;
-/// [`ciede2000`] corrects that but is no metric. Takes a few nanoseconds for colours already in L*a*b*.
+/// [`ciede2000`] corrects that but is not a metric. Takes a few nanoseconds for colours already in L*a*b*.
 ///
 /// Source: CIE 15 (1976); the same numbers as `skimage.color.deltaE_cie76` within 1e-9, see `tests/oracle/color.json`.
 ///

@@ -1,4 +1,4 @@
-//! CIEDE2000, the industry's formula for small colour differences.
+//! CIEDE2000, the industry-standard formula for small colour differences.
 
 use crate::color::lab::Lab;
 

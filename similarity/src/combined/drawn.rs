@@ -28,7 +28,7 @@ pub(super) struct DrawnMeasure {
     /// Whether points come from different families, or colours from both lists and densities; these can be compared by samples
     /// only.
     mixed: bool,
-    /// The measure of single colours, if the distance moves colours.
+    /// The measure of single colours, if distributions are compared by transporting colours.
     colors: Option<ColorMeasure>,
 }
 
@@ -154,7 +154,7 @@ fn usable(width: f64) -> bool {
     width > 0.0 && width.is_finite()
 }
 
-/// Whether a measure moves values, so that colours of lists are moved, too.
+/// Whether a measure is one of transport, so that lists of colours are compared by transport, too.
 fn asks_for_ways(measure: Option<MeasureName>) -> bool {
     use MeasureName::{Cie76, Ciede2000, Hyab, Oklab, Srgb, Wasserstein1, Wasserstein2};
     matches!(

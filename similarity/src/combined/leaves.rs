@@ -10,7 +10,7 @@ use serde_json::Value as Json;
 use crate::assignment::{Assignment, MAX_ASSIGNED};
 use crate::scalar::relative_difference;
 
-/// Metres between two points that count 1, as for objects.
+/// Distance between two points, in metres, that counts 1, as for objects.
 const METRES: f64 = 10.0;
 
 /// Numbers and words by their paths, in the order of the paths' ids.
@@ -142,7 +142,7 @@ impl Leaves {
     }
 }
 
-/// Whether its place in a list has no meaning: a wall, or a region, which is a list of points.
+/// Whether the position of an item in a list has no meaning: it is a wall, or a region, which is a list of points.
 fn is_thing(json: &Json) -> bool {
     let is_point = |json: &Json| json.as_array().is_some_and(|list| list.iter().all(Json::is_number));
     json.is_object()
@@ -224,7 +224,7 @@ impl Leaf {
     fn distance(&self, other: &Self) -> f64 {
         match (self, other) {
             (Self::Number(a), Self::Number(b)) => relative_difference(*a, *b),
-            // At most the distance by way of nothing.
+            // At most the sum of both points' distances from nothing.
             (Self::Point(a), Self::Point(b)) => {
                 let [x, y] = [0, 1].map(|axis| a[axis] - b[axis]);
                 ((x * x + y * y).sqrt() / METRES).min(self.size() + other.size())

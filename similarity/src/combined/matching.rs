@@ -10,10 +10,10 @@ use crate::combined::kinds::Kinds;
 use crate::combined::parts::{length, turn};
 use crate::combined::sketch::ObjectFeatures;
 
-/// Metres between objects that count 1.
+/// Distance between objects, in metres, that counts 1.
 pub(super) const UNIT_OF_PLACE: f64 = 10.0;
 
-/// Points of reward that count 1.
+/// Difference in reward that counts 1.
 pub(super) const UNIT_OF_REWARD: f64 = 100.0;
 
 impl ObjectFeatures {
@@ -21,7 +21,7 @@ impl ObjectFeatures {
         length(self.place, other.place)
     }
 
-    /// In Oklab; an object with its asset's own colours is 1 from any other.
+    /// In Oklab; 1 between a coloured object and one with its asset's own colours.
     pub(super) fn color_distance(&self, other: &Self) -> f64 {
         match (self.color, other.color) {
             (Some(a), Some(b)) if a.0 == b.0 => 0.0,
@@ -49,15 +49,15 @@ impl ObjectFeatures {
 struct Buffers {
     costs: Vec<f64>,
     assignment: Assignment,
-    /// Which of the larger set are matched.
+    /// Which objects of the larger set are matched.
     is_met: Vec<bool>,
 }
 
 /// Visits each object of one class in two worlds once: all of the smaller set with a match, the rest alone. The matching has
 /// the least sum of costs; ties are broken by the objects alone, not by the order of the worlds.
 ///
-/// Pay decides only between matchings that are equal otherwise: else a world with all pay reversed would look like one whose
-/// objects changed places.
+/// Pay decides only between otherwise equal matchings; if it counted, a world with all pay reversed would look like one
+/// whose objects changed places.
 pub(super) fn each_match<'a>(
     a: &'a [ObjectFeatures],
     b: &'a [ObjectFeatures],

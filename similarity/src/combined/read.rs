@@ -1,4 +1,4 @@
-//! Resets the fields of an object that the simulator ignores to their defaults, so that they count nothing.
+//! Resets the fields of an object that the simulator ignores to their defaults, so that they do not count.
 
 use driftworld_spec::{MotionModel, Object, Stimulus, Style, Surface};
 

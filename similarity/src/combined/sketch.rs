@@ -124,7 +124,7 @@ impl Sketcher {
             zones: [Comparison::Zones, Comparison::ZonePay, Comparison::ZoneLooks].map(|part| self.leaves(part)),
             step_reward: rules.step_reward / step_seconds + rules.reward_per_second,
             rules: self.leaves(Comparison::ShapingAndEndings),
-            // To the microsecond: 100 steps of 0.3 s equal 300 of 0.1 s.
+            // Rounded to the microsecond, so that 100 steps of 0.3 s equal 300 of 0.1 s.
             limit: limits
                 .into_iter()
                 .filter(|seconds| *seconds > 0.0)

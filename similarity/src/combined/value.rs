@@ -20,9 +20,9 @@ pub(super) enum ValueMeasure {
     Difference { measure: &'static str, width: f64 },
     /// |ln a − ln b| over that of the range.
     LogRatio { width: f64 },
-    /// Difference over the larger of the two, divided by the most that the range or the choices allow.
+    /// Difference over the larger of the two, divided by the largest such ratio that the range or the choices allow.
     Relative { widest: f64 },
-    /// Turn over the widest that the range or the choices allow, at most half a circle.
+    /// Turn over the widest turn that the range or the choices allow, at most half a circle.
     Turn { widest: f64 },
     /// A distance of colours over that of the widest pair of choices.
     Color {
@@ -261,7 +261,7 @@ fn range(parameter: &Parameter, scale: impl Fn(f64) -> f64) -> f64 {
     }
 }
 
-/// From this number of choices, pairs are compared on all cores.
+/// From this number of choices on, pairs are compared on all cores.
 const FEW_CHOICES: usize = 500;
 
 /// The distance of the widest pair of choices, by `apart`. 1 if there are fewer than two.

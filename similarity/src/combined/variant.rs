@@ -14,14 +14,16 @@ use crate::{MetricProperties, SimilarityError};
 /// The distance of two variants of one task: a sum over its parameters, where 1 is one parameter moved over its whole declared
 /// range.
 ///
-/// Every parameter uses the measure and weight that the task gives it under `compare`, by default weight 1 and its type's
-/// measure: numbers by difference over the declared range, headings by the turn, colours in Oklab, points and vectors by
-/// Euclidean length, layouts by their shapes in the task's arena, each over the widest pair of choices, anything else as the
-/// same or not. Randomized parameters are compared by distribution, over the widest pair of distributions that the declared
-/// ranges and choices allow: Wasserstein-1 of numbers, on the circle for headings, in Oklab for colours from a continuum, share
-/// by share for shares, Wasserstein-2 for points, total variation for words and for colours from lists. Parameters that only
-/// such distributions read count through them and not a second time. A parameter that nothing reads in a variant (`read_if`)
-/// counts with its default. Fixed parameters cannot differ and are left out.
+/// Every parameter uses the measure and weight that the task gives it under `compare`, by default weight 1 and its
+/// type's measure: the difference of numbers, the turn between headings, the distance of colours in Oklab, the
+/// Euclidean length for points and vectors, the difference in shape of layouts in the task's arena. Each is divided by
+/// the most that the declared range or the choices allow. Values of other types are the same or not. Randomized
+/// parameters are compared by their distributions: Wasserstein-1 for numbers, on the circle for headings, in Oklab for
+/// colours from a continuum, share by share for shares, Wasserstein-2 for points, total variation for words and for
+/// colours from lists. Each is divided by the distance of the widest pair of distributions that the declared ranges
+/// and choices allow. Parameters that are read only by such distributions count through them, and not a second time. A
+/// parameter that nothing reads in a variant (`read_if`) counts with its default. Fixed parameters cannot differ and
+/// are left out.
 ///
 /// Equal values contribute exactly 0, so variants that differ only in pay are 0 apart in all elements but the reward, and
 /// adding a parameter that is the same in both changes no number. Normalisation depends only on what the task declares, on no
@@ -67,7 +69,7 @@ struct Compared {
     by: By,
 }
 
-/// The coarse elements that a parameter counts for: one only once, even if the parameter lists a fine element beside it.
+/// The coarse elements that a parameter counts for. One that is listed along with a finer element of it counts once.
 fn counts_for(affects: &[Element]) -> Vec<Element> {
     let is_said = |element: &&Element| **element == element.coarse() || !affects.contains(&element.coarse());
     affects.iter().filter(is_said).map(|element| element.coarse()).collect()
@@ -162,8 +164,8 @@ impl VariantMeasure {
         self.task.is_same_as(variant.task())
     }
 
-    /// Upper bound on the distance of two variants of the task: the sum over parameters of the whole declared range. 0 for a
-    /// task without parameters that count, infinite if the distributions of one have no finite distance.
+    /// Upper bound on the distance between two variants of the task: all parameters moved over their whole declared
+    /// ranges. 0 for a task without parameters that count, infinite if the distributions of one have no finite bound.
     pub fn diameter(&self) -> f64 {
         let counts = |compared: &Compared| {
             let weights = compared.affects.iter().map(|element| self.weights.of(*element));

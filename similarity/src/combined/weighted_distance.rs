@@ -63,7 +63,7 @@ impl Part {
 }
 
 impl Distance {
-    /// A distance that belongs to no single element: of what a learner can reach or do. It has no parts.
+    /// A distance that belongs to no single element, such as that of what a learner can reach or do. It has no parts.
     pub fn whole(total: f64) -> Self {
         Self {
             total,
@@ -72,7 +72,7 @@ impl Distance {
         }
     }
 
-    /// Adds up parts; parts of one name are adjacent, with the same number for several elements.
+    /// Adds up parts; parts of one name must be adjacent, with the same number for each of their elements.
     pub fn new(mut parts: Vec<Part>, weights: &Weights) -> Self {
         let elements = Element::ALL.map(|element| {
             let own = || parts.iter().filter(|part| part.element == element && part.weight > 0.0);
@@ -108,12 +108,12 @@ impl Distance {
         self
     }
 
-    /// The distance in one element, for a fine one that of its coarse one; `None` if nothing could differ.
+    /// The distance in one element (for a fine element, in its coarse one); `None` if nothing could differ.
     pub fn element(&self, element: Element) -> Option<f64> {
         self.elements[position(element)]
     }
 
-    /// The part of one element, 0 where nothing of it could differ; without an element the whole.
+    /// The distance in one element, 0 if nothing in it could differ; without an element, the total.
     pub fn within(&self, element: Option<Element>) -> f64 {
         element.map_or(self.total, |element| self.element(element).unwrap_or(0.0))
     }

@@ -26,7 +26,7 @@ use crate::distribution::Method;
 /// Objects are matched once within each class, at the least total cost over all features; unmatched ones count in full: their
 /// presence in the state, their looks in the observation, their pay in the reward. So the order of objects in a document does
 /// not matter, and adding the same object to both worlds changes nothing unless it is a better match. Fields that nothing
-/// reads, such as the reward of an object without a stimulus, count nothing.
+/// reads, such as the reward of an object without a stimulus, do not count.
 ///
 /// Objects are matched by place, looks and behaviour; pay only breaks ties. So "the red ones pay, the blue ones cost" and its
 /// reverse differ in pay and not in places.
@@ -283,7 +283,8 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 64)))]
 
-        /// Looks count by what is visible: a part that repeats the style's own value, or that nothing reads, counts nothing.
+        /// Looks count by what is visible: a part that repeats the style's own value, or that nothing reads, is
+        /// ignored.
         #[test]
         fn looks_count_only_where_visible(
             looks in looks(), other in looks(), inside in any::<bool>(), fog in prop::option::of(Just(12.0)),

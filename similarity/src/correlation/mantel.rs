@@ -8,10 +8,10 @@ use super::spearman::without_rounding;
 use super::{Correlation, MIN_CORRELATED, pearson, ranks};
 use crate::{DistanceMatrix, SimilarityError};
 
-/// Most relabellings per test.
+/// Maximum number of relabellings per test.
 pub const MAX_RELABELLINGS: u64 = 1_000_000;
 
-/// Most items per test.
+/// Maximum number of items per test.
 pub const MAX_MANTEL_ITEMS: usize = 2_000;
 
 /// Correlations closer than this count as equal: the order of additions changes them by less.
@@ -174,7 +174,7 @@ struct Table {
     method: Correlation,
     /// `(items, items)`, row-major: the distance, or for Spearman's its rank index among the different distances.
     distances: Vec<f64>,
-    /// Number of different distances, if rank indices stand for distances.
+    /// Number of different distances, if `distances` holds rank indices.
     places: usize,
     pairs: Vec<(usize, usize)>,
     /// The values, or for Spearman's their ranks.
@@ -182,7 +182,7 @@ struct Table {
 }
 
 impl Table {
-    /// For pairs that can be correlated.
+    /// Prepares the data; the pairs must have been checked.
     fn new(matrix: &DistanceMatrix, pairs: &[PairValue], method: Correlation) -> Self {
         let mut items: Vec<usize> = pairs.iter().flat_map(|pair| [pair.from, pair.to]).collect();
         items.sort_unstable();
@@ -233,8 +233,8 @@ impl Table {
     }
 }
 
-/// Replaces every number by how many different ones are below it; returns how many different ones there are. Numbers are equal
-/// as in [`ranks`].
+/// Replaces every number by the count of different numbers below it; returns the count of different numbers. Equality
+/// is that of [`ranks`].
 fn place_among_equals(numbers: &mut [f64]) -> usize {
     let merged = without_rounding(numbers);
     numbers.copy_from_slice(&merged);
@@ -247,7 +247,7 @@ fn place_among_equals(numbers: &mut [f64]) -> usize {
     different.len()
 }
 
-/// Replaces rank indices by ranks: as [`ranks`], without sorting again for every relabelling.
+/// Replaces rank indices by ranks, like [`ranks`], but without sorting again for every relabelling.
 fn rank_places(numbers: &mut [f64], places: usize) {
     let mut counts = vec![0_u32; places + 1];
     // Rank indices are whole numbers below `places`.

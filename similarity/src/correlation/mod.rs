@@ -14,7 +14,7 @@ pub use spearman::{ranks, spearman};
 
 use crate::SimilarityError;
 
-/// Fewest pairs that can be correlated: two always lie on a straight line.
+/// Minimum number of pairs that can be correlated: two always lie on a straight line.
 pub const MIN_CORRELATED: usize = 3;
 
 /// A correlation coefficient.

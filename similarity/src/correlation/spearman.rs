@@ -62,8 +62,8 @@ const ROUNDING: f64 = 1e-15;
 
 /// Replaces each number by the least of those that count as equal to it.
 ///
-/// Compared with the least of a group and not from neighbour to neighbour, so that no chain of small steps makes distant
-/// numbers equal; and not by rounding each number, which would separate neighbours on either side of a rounding edge.
+/// Numbers are compared with the least of their group, not with their neighbours, so that no chain of small steps makes
+/// distant numbers equal. They are not rounded, which would separate neighbours on either side of a rounding edge.
 pub(super) fn without_rounding(values: &[f64]) -> Vec<f64> {
     let mut order: Vec<usize> = (0..values.len()).collect();
     order.sort_by(|a, b| values[*a].total_cmp(&values[*b]));

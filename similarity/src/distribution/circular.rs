@@ -6,10 +6,11 @@ use super::gap::Power;
 use super::law::{self, Law, rising};
 use super::measured::Measured;
 
-/// Widest stretch, in degrees, over which a curved cumulative function is first taken as linear; then half of it.
+/// Widest stretch, in degrees, over which the first pass takes a curved cumulative function as linear; the second pass
+/// uses half of it.
 const COARSE: f64 = 0.5;
 
-/// Wasserstein-1 of two distributions of headings, each moved the shorter way round.
+/// Wasserstein-1 of two distributions of headings, with each heading moved the shorter way round.
 ///
 /// min over c of ∫ |F − G − c| over one turn; the best c is the median of F − G. A metric in `0..=180` degrees. Numbers are
 /// taken as headings in degrees, reduced to one turn. `None` if either draws no numbers, or spreads them over more than 200

@@ -21,7 +21,7 @@ impl Power {
         }
     }
 
-    /// The mean along a straight line from one gap to another.
+    /// The mean of the integrand along a straight line from one gap to another.
     pub(super) fn along(self, from: f64, to: f64) -> f64 {
         match self {
             Self::Absolute if from * to >= 0.0 => f64::midpoint(from.abs(), to.abs()),
@@ -32,7 +32,8 @@ impl Power {
     }
 }
 
-/// The integral of F − G over the line: exact if both are piecewise linear with steps, otherwise by quadrature.
+/// The integral of |F − G| or (F − G)² over the line: exact if both are piecewise linear with steps, else by
+/// quadrature.
 pub(super) fn integral(a: &Law, b: &Law, power: Power) -> Measured {
     let knots = rising(a.knots_and_atoms().chain(b.knots_and_atoms()).collect());
     let (mut steps_a, mut steps_b) = (Steps::new(a), Steps::new(b));

@@ -27,8 +27,9 @@ pub fn jensen_shannon(a: &Distribution, b: &Distribution) -> Option<Measured> {
 
 /// ½ KL(P ‖ M) + ½ KL(Q ‖ M) in bits, with the even mixture M of the two: how much a draw reveals about its source.
 ///
-/// In `0..=1` bits; symmetric, but not a metric. Takes what [`total_variation`](super::total_variation()) takes. Exact for
-/// everything flat or stepped, otherwise by quadrature, mostly within 1e-9, at 13 to 700 points between neighbouring knots.
+/// In `0..=1` bits; symmetric, but not a metric. Accepts what [`total_variation`](super::total_variation()) accepts.
+/// Exact for everything flat or stepped, otherwise by quadrature, mostly within 1e-9, at 13 to 700 points between
+/// neighbouring knots.
 ///
 /// Source: Lin 1991, "Divergence measures based on the Shannon entropy".
 pub fn jensen_shannon_divergence(a: &Distribution, b: &Distribution) -> Option<Measured> {

@@ -9,11 +9,12 @@ use super::part::log_beta;
 
 /// Σ p ln(p / q), for densities ∫ f ln(f / g), in nats: `a` is the true distribution, `b` the assumed one.
 ///
-/// A divergence in `0..=∞`: not symmetric, no triangle inequality, and infinite as soon as `a` draws what `b` cannot. Provided
-/// only for parity with methods that use it (self-paced curricula). Takes what [`total_variation`](super::total_variation())
-/// takes, and two `gaussian`s of the plane or two `dirichlet`s of one length. Closed for normal, log-normal, exponential, beta
-/// (with the same ends), Poisson, geometric, gaussian and Dirichlet pairs and for everything flat or stepped; otherwise by
-/// quadrature, mostly within 1e-9 of its size, at 13 to 700 points between neighbouring knots.
+/// A divergence in `0..=∞`: not symmetric, no triangle inequality, and infinite as soon as `a` draws what `b` cannot.
+/// Provided only for parity with methods that use it (self-paced curricula). Accepts what
+/// [`total_variation`](super::total_variation()) accepts, and two `gaussian`s of the plane or two `dirichlet`s of one
+/// length. Closed for normal, log-normal, exponential, beta (with the same ends), Poisson, geometric, gaussian and
+/// Dirichlet pairs and for everything flat or stepped; otherwise by quadrature, mostly within 1e-9 of its size, at 13
+/// to 700 points between neighbouring knots.
 ///
 /// Source: Kullback & Leibler 1951, "On information and sufficiency".
 ///

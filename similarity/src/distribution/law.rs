@@ -7,13 +7,13 @@ use super::part::Part;
 use super::quadrature::Node;
 use super::values::share;
 
-/// A distribution of counts with more single numbers is not split.
+/// Maximum number of single numbers of a distribution of counts; with more, it is not split.
 const MOST_ATOMS: usize = 65_536;
 
-/// Longer runs of whole numbers are kept as runs.
+/// Longest run of whole numbers that is split into single numbers.
 const LONGEST_RUN: f64 = 4096.0;
 
-/// A distribution spread over more turns cannot be taken as headings.
+/// Maximum number of turns over which a distribution of headings may spread.
 const MOST_TURNS: f64 = 200.0;
 
 /// Equally likely whole numbers: those from `low` to `high`, each with the same probability.
@@ -33,7 +33,7 @@ pub(super) struct Law {
     pub(super) parts: Vec<Part>,
 }
 
-/// Whether it draws only headings.
+/// Whether it draws headings; for a mixture, whether any of its parts does.
 pub(crate) fn draws_headings(distribution: &Distribution) -> bool {
     match distribution {
         Distribution::VonMises { .. } => true,
@@ -278,7 +278,7 @@ fn turned(degrees: f64) -> f64 {
     if turned >= 360.0 { 0.0 } else { turned }
 }
 
-/// Sorts numbers and removes duplicates and NaN.
+/// Sorts numbers, and removes duplicates and numbers that are not finite.
 pub(super) fn rising(mut numbers: Vec<f64>) -> Vec<f64> {
     numbers.retain(|x| x.is_finite());
     numbers.sort_by(f64::total_cmp);

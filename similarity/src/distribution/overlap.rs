@@ -48,12 +48,12 @@ fn over_numbers(a: &Law, b: &Law, circle: bool, term: impl Fn(f64, f64) -> f64) 
     }
 }
 
-/// Maps a knot to 0..360; copies outside are dropped.
+/// Maps a finite knot to 0..360; drops infinite ones.
 fn onto_the_circle(knot: f64) -> Option<f64> {
     knot.is_finite().then(|| knot.rem_euclid(360.0))
 }
 
-/// The integral between two neighbouring knots, with its error; 0 where a mass or a formula covers it.
+/// The integral between two neighbouring knots, with its error, which is 0 if the masses decide it alone.
 fn over_stretch(a: &Law, b: &Law, [low, high]: [f64; 2], term: &impl Fn(f64, f64) -> f64) -> (f64, f64) {
     let mass = |law: &Law| {
         let below = law.cumulative_of_parts(high) - law.cumulative_of_parts(low);
@@ -76,7 +76,7 @@ fn over_stretch(a: &Law, b: &Law, [low, high]: [f64; 2], term: &impl Fn(f64, f64
             let (mut sum, mut error) = (0.0, 0.0);
             let (mut of_a, mut of_b) = (mass(a), mass(b));
             if of_a + of_b < 1e-17 {
-                // Far out, where every term but one against zero probability is negligible.
+                // Far out in the tails, every term is negligible unless one of the probabilities is 0.
                 return (0.0, 1e-17);
             }
             let crossings = split_at_signs(&[low, high], |x| {
@@ -89,7 +89,7 @@ fn over_stretch(a: &Law, b: &Law, [low, high]: [f64; 2], term: &impl Fn(f64, f64
                         return [0.0; 3];
                     }
                     let found = [term(p, q), libm::exp(p), libm::exp(q)];
-                    // Finite: not so near to a steep end that the density overflows; the mass there is added below.
+                    // Skips points so near to a steep end that the density overflows; their mass is added below.
                     if found.iter().all(|x| x.is_finite()) {
                         found
                     } else {
@@ -137,7 +137,7 @@ fn over_atoms(a: &Law, b: &Law, term: &impl Fn(f64, f64) -> f64) -> f64 {
     sum
 }
 
-/// Runs of whole numbers, except those that are single numbers of either law.
+/// Sums the term over runs of whole numbers, except numbers that are also atoms of either law.
 fn over_runs(a: &Law, b: &Law, term: &impl Fn(f64, f64) -> f64) -> f64 {
     let ends = a.runs.iter().chain(&b.runs).flat_map(|run| [run.low, run.high + 1.0]);
     let mut singles: Vec<f64> = a.atoms.iter().chain(&b.atoms).map(|atom| atom.0).collect();

@@ -6,7 +6,7 @@ use driftworld_spec::Distribution;
 
 use super::quadrature::{Node, integrate};
 
-/// Standard deviations from the mean outside which a normal number lies with a probability below 1e-18.
+/// Distance from the mean, in standard deviations, beyond which a normal distribution has a probability below 1e-18.
 const REACH: f64 = 9.0;
 
 /// Standard deviations at which a normal density is split into stretches.
@@ -226,7 +226,7 @@ fn log_bell_of_headings(turned: f64, kappa: f64) -> f64 {
     -2.0 * kappa * half * half
 }
 
-/// Standard deviation, in degrees, of the normal distribution that a concentration approximates.
+/// Standard deviation, in degrees, of the normal distribution that approximates headings of this concentration.
 fn deviation_of_headings(kappa: f64) -> f64 {
     (1.0 / kappa.max(0.1).sqrt()).to_degrees()
 }

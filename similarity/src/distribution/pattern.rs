@@ -1,5 +1,5 @@
-//! Distances between placements: where each object may stand, the distance that objects keep, and whether a list of places is
-//! taken in turn.
+//! Distances between placements: where each object may stand, the minimum distance between objects, and whether a list
+//! of places is taken in turn.
 
 use driftworld_spec::{Distribution, Order};
 
@@ -7,7 +7,7 @@ use super::measured::Measured;
 use super::planar_transport::{planar_wasserstein_1, planar_wasserstein_2};
 use super::values::grid_centres;
 
-/// Most objects whose places are compared one by one, if places are taken in turn.
+/// Maximum number of objects compared one by one if places are taken in turn.
 const MOST_IN_TURN: usize = 10_000;
 
 /// Wasserstein-1 between the places of objects; otherwise as [`placement_wasserstein_2`].
@@ -15,8 +15,8 @@ pub fn placement_wasserstein_1(a: &Distribution, b: &Distribution) -> Option<Mea
     placed(a, b, planar_wasserstein_1)
 }
 
-/// The distance of two placements of a group, in metres: how far each object's place has to move (root mean square), plus the
-/// difference in the distance that objects keep.
+/// The distance between two placements of a group, in metres: how far each object's place has to move (root mean
+/// square), plus the difference between the minimum distances that objects keep.
 ///
 /// If both draw each object's place independently, this is [`planar_wasserstein_2`] plus the difference of the distances that
 /// `poisson_disc` keeps. If one takes its places in turn, the first object is compared with the first, the second with the
@@ -56,7 +56,7 @@ fn placed(
     })
 }
 
-/// The distance of each of a list of places from the same distribution: exact, because one of the two is a single place.
+/// The distance between a list of places and one distribution: exact, because each place is compared alone.
 fn one_in_turn(places: &[[f64; 2]], drawn: &Distribution) -> Option<Measured> {
     let moments = drawn.planar_moments()?;
     let spread = moments.covariance[0][0] + moments.covariance[1][1];
@@ -73,7 +73,7 @@ fn squared(a: [f64; 2], b: [f64; 2]) -> f64 {
     x * x + y * y
 }
 
-/// The number of objects after which two lists both start again, at most [`MOST_IN_TURN`].
+/// The number of objects after which both lists start again together, at most [`MOST_IN_TURN`].
 fn common_round(a: usize, b: usize) -> usize {
     let (mut divisor, mut rest) = (a, b);
     while rest > 0 {

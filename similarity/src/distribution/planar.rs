@@ -5,7 +5,7 @@ use driftworld_spec::Distribution;
 /// Bures–Wasserstein distance of mean and covariance: √(|m₁ − m₂|² + tr A + tr B − 2 tr √(√A B √A)), in metres.
 ///
 /// A metric on moments, so a pseudometric on distributions; equal to Wasserstein-2 between normal distributions, and a lower
-/// bound of it otherwise. `None` if either draws no points. Source: Gelbrich 1990.
+/// bound on it otherwise. `None` if either draws no points. Source: Gelbrich 1990.
 pub fn bures_wasserstein(a: &Distribution, b: &Distribution) -> Option<f64> {
     let (a, b) = (a.planar_moments()?, b.planar_moments()?);
     if a == b {

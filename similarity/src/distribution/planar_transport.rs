@@ -14,10 +14,10 @@ const STAND_INS: usize = 256;
 
 /// Wasserstein-1 of two distributions of points, in metres.
 ///
-/// A metric in `0..`, except by samples. Closed if one is the other shifted, and for concentric discs; by quadrature for
-/// concentric discs, rings and round gaussians; otherwise from 256 evenly spread points of each, matched at the least cost,
-/// which is accurate within some percent of the spreads. `poisson_disc` is taken without its distance. `None` if either draws
-/// no points.
+/// A metric in `0..`, except when estimated from samples. Closed if one is the other shifted, and for concentric discs;
+/// by quadrature if rings or round gaussians are concentric with each other or with a disc; otherwise from 256 evenly
+/// spread points of each, matched at the least cost, which is accurate to within a few percent of the spreads. Ignores
+/// the minimum distance of `poisson_disc`. `None` if either draws no points.
 ///
 /// Source: Villani 2009, "Optimal Transport: Old and New", chapter 6.
 ///
@@ -51,12 +51,12 @@ pub fn planar_wasserstein_1(a: &Distribution, b: &Distribution) -> Option<Measur
 
 /// Wasserstein-2 of two distributions of points: the root mean square distance that each point has to move, in metres.
 ///
-/// A metric in `0..`, except by samples; never below [`bures_wasserstein`](super::bures_wasserstein()) nor
-/// [`planar_wasserstein_1`]. Closed for two of one family (boxes, discs, gaussians, rings of one proportion) and for anything
-/// against a single point; axis by axis for boxes, axis-aligned gaussians and grids, as exact as
-/// [`wasserstein_2`](super::wasserstein_2()); by quadrature for discs, rings and round gaussians; otherwise from 256 evenly
-/// spread points of each, matched at the least cost. `poisson_disc` is taken without its distance. `None` if either draws no
-/// points.
+/// A metric in `0..`, except when estimated from samples; never below [`bures_wasserstein`](super::bures_wasserstein())
+/// nor [`planar_wasserstein_1`]. Closed for two of one family (boxes, discs, gaussians, rings of one proportion) and
+/// for anything against a single point; axis by axis for boxes, axis-aligned gaussians and grids, as exact as
+/// [`wasserstein_2`](super::wasserstein_2()); by quadrature for discs, rings and round gaussians; otherwise from 256
+/// evenly spread points of each, matched at the least cost. Ignores the minimum distance of `poisson_disc`. `None` if
+/// either draws no points.
 ///
 /// Source: Peyré & Cuturi 2019, "Computational Optimal Transport", remarks 2.31 and 2.34.
 pub fn planar_wasserstein_2(a: &Distribution, b: &Distribution) -> Option<Measured> {

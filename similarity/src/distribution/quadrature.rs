@@ -1,7 +1,7 @@
 //! Integrates functions that are smooth between two ends but may be steep at them.
 //!
-//! Own code: available libraries pass a plain number to the function, which loses the digits that an unbounded density needs
-//! next to an end other than 0.
+//! Implemented here because available libraries pass a plain number to the function, which loses the digits that an
+//! unbounded density needs next to an end other than 0.
 
 use std::f64::consts::FRAC_PI_2;
 use std::sync::OnceLock;
@@ -110,7 +110,7 @@ pub(crate) fn integrate<const N: usize>(
     (value, error)
 }
 
-/// Points of a stretch, as shares of it, at which a change of sign is looked for: denser near the ends.
+/// Positions in a stretch, as shares of its length, sampled to find sign changes: denser near the ends.
 const LOOKS: [f64; 13] = [
     1e-7,
     1e-3,

@@ -15,7 +15,7 @@ pub(super) fn scatter(distribution: &Distribution, count: usize) -> Option<Vec<[
     units.map(|unit| point(distribution, unit)).collect()
 }
 
-/// The point for two random numbers. `poisson_disc` is taken without its distance.
+/// The point for two random numbers. Ignores the minimum distance of `poisson_disc`.
 fn point(distribution: &Distribution, [u, v]: [f64; 2]) -> Option<[f64; 2]> {
     let among = |count: usize| {
         let at = u * count as f64;
@@ -63,7 +63,7 @@ fn point(distribution: &Distribution, [u, v]: [f64; 2]) -> Option<[f64; 2]> {
     })
 }
 
-/// The entry that a random number chooses among `count`, and the rest of the number, in 0..1.
+/// The entry that a random number chooses among `count`, and the remainder of that number, rescaled to 0..1.
 pub(super) fn chosen(count: usize, weights: Option<&[f64]>, u: f64) -> (usize, f64) {
     let weight = |k: usize| weights.map_or(1.0, |weights| weights[k]);
     let mut left = u * (0..count).map(weight).sum::<f64>();

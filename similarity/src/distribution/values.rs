@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use driftworld_spec::{Distribution, Value};
 
-/// Most values that are enumerated.
+/// Maximum number of values to enumerate.
 const MOST_VALUES: f64 = 100_000.0;
 
 /// Probability of entry `k` of `count`, by weight if there are weights.

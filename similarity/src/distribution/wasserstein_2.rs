@@ -11,12 +11,12 @@ use super::shape::Shape;
 /// Wasserstein-2 of two distributions of numbers, the root mean square distance that each number has to move: √∫ (F⁻¹(u) −
 /// G⁻¹(u))² du, in the unit of the numbers.
 ///
-/// A metric in `0..`, never below Wasserstein-1. A Bernoulli counts as 0 and 1. `None` if either draws no numbers, draws
-/// headings, or has more than 65,536 different counts. Closed if both differ only in shift and scale (normal, uniform,
-/// exponential, triangular, beta and truncated normal of one shape): the hypotenuse of the differences of mean and standard
-/// deviation; for two log-normals, for anything against a constant, and for everything flat or stepped. Otherwise by quadrature
-/// over the quantiles, mostly within 1e-7, at 13 to 700 points between neighbouring knots. Whole numbers out of more than 4,096
-/// count as evenly spread.
+/// A metric in `0..`, never below Wasserstein-1. A Bernoulli counts as 0 and 1. `None` if either draws no numbers,
+/// draws headings, or has more than 65,536 different counts. Closed if both differ only in shift and scale (normal,
+/// uniform, exponential, triangular, beta and truncated normal of one shape): the hypotenuse of the differences of mean
+/// and standard deviation; for two log-normals, for anything against a constant, and for everything flat or stepped.
+/// Otherwise by quadrature over the quantiles, mostly within 1e-7, at 13 to 700 points between neighbouring knots.
+/// Uniform integers with more than 4,096 possible values are treated as continuous.
 ///
 /// Source: Peyré & Cuturi 2019, "Computational Optimal Transport", remarks 2.30 and 2.31. `ot.wasserstein_1d(p=2)` is the
 /// square.

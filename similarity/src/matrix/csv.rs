@@ -50,18 +50,18 @@ impl DistanceMatrix {
     pub fn from_csv(text: &str) -> Result<Self, SimilarityError> {
         let mut rows = Rows::of(text);
         let Some(heading) = rows.next().transpose()? else {
-            return Err(bad(1, "no lines", "a line of labels behind an empty cell"));
+            return Err(bad(1, "no lines", "a line of labels after an empty cell"));
         };
         if heading.cells.len() < 2 || !heading.cells[0].is_empty() {
             let found = format!("{:?} in the first cell of {}", heading.cells[0], heading.cells.len());
-            return Err(bad(heading.line, found, "a line of labels behind an empty cell"));
+            return Err(bad(heading.line, found, "a line of labels after an empty cell"));
         }
         let labels: Vec<String> = heading.cells[1..]
             .iter()
             .map(|label| unguarded(label).to_owned())
             .collect();
         let n = Self::bounded(labels.len())?;
-        // Line by line: a table takes less memory than its text.
+        // Parses line by line: the numbers take less memory than the text of their cells.
         let mut values: Vec<f64> = Vec::new();
         let (mut read, mut last) = (0, heading.line);
         for row in rows {
@@ -142,7 +142,7 @@ impl<'t> Rows<'t> {
             }
         }
         if quoted {
-            return Some(Err(bad(begun, "quotes that do not end", "a second quote")));
+            return Some(Err(bad(begun, "an unclosed quote", "a closing quote")));
         }
         keep(&mut cells, &mut cell);
         Some(Ok(Row { line: begun, cells }))
@@ -229,12 +229,12 @@ mod tests {
     #[test]
     fn bad_csv_error_names_the_place() {
         for row in r#"
- => 1: found no lines, expected a line of labels behind an empty cell
+ => 1: found no lines, expected a line of labels after an empty cell
 ,a,b|a,0,1| => 2: found 1 lines below the labels, expected 2, one for each label
 ,a,b|a,0|b,1,0| => 2: found 2 cells, expected 3: a label and 2 numbers
 ,a,b|a,0,1|c,1,0| => 3: found the label "c", expected "b", as in the first line
 ,a,b|a,0,far|b,1,0| => 2: found "far", expected a number
-,"a| => 1: found quotes that do not end, expected a second quote"#
+,"a| => 1: found an unclosed quote, expected a closing quote"#
             .lines()
             .skip(1)
         {

@@ -5,9 +5,9 @@
 
 use crate::split_mix::SplitMix64;
 
-/// Most steps between two restarts.
+/// Maximum number of steps between two restarts.
 const MAX_STEPS: usize = 160;
-/// How often it restarts from the best vector found.
+/// Maximum number of runs; each later one starts from the vector found by the previous one.
 const MAX_RESTARTS: usize = 12;
 /// Largest error of `A v = λ v`, relative to the largest `λ`.
 const PRECISION: f64 = 1e-12;
@@ -21,7 +21,7 @@ pub(crate) fn largest(
     multiply: &impl Fn(&[f64], &mut [f64]),
     against: &[Vec<f64>],
 ) -> Option<(f64, Vec<f64>)> {
-    // A new start each time: the old one has no component left in an eigenspace that it has already led into.
+    // Each eigenvector gets a new start: the old one has no component left in an eigenspace that it already led into.
     let mut rng = SplitMix64(against.len() as u64);
     let mut start: Vec<f64> = (0..n).map(|_| rng.unit() - 0.5).collect();
     let mut best = None;
@@ -75,7 +75,7 @@ fn climb(n: usize, multiply: &impl Fn(&[f64], &mut [f64]), against: &[Vec<f64>],
             .fold(0.0_f64, |a, b: &f64| a.max(b.abs()));
         let ended = steps == most || rest <= 1e-14 * scale;
         if ended || steps % 8 == 0 {
-            // Of each eigenvector of the small matrix, only the last entry is needed for the error.
+            // The error needs only the last entry of each eigenvector of the small matrix.
             let mut last = vec![vec![0.0; steps]];
             last[0][steps - 1] = 1.0;
             let values = tridiagonal(&diagonal, &beside, &mut last);
@@ -196,7 +196,7 @@ fn remove(vector: &mut [f64], directions: &[Vec<f64>]) {
     }
 }
 
-/// The vector or its negative: the one whose first entry of (within rounding) largest size is positive.
+/// The vector or its negative, so that the first entry of (up to rounding) the largest magnitude is positive.
 fn with_fixed_sign(vector: Vec<f64>) -> Vec<f64> {
     let largest = vector.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
     let leads = vector.iter().find(|value| value.abs() >= largest * (1.0 - 1e-9));

@@ -19,7 +19,7 @@ pub struct PlanarMap {
 /// not Euclidean are approximated; `explained` says how well. Signs are fixed: on each axis, the item farthest from 0, the
 /// first of equals, is on the positive side. Time `O(n²)` for each of some dozens of steps.
 ///
-/// Same points as by `numpy.linalg.eigh` up to signs, within 1e-9, see `tests/oracle/mds.json`.
+/// Matches the points from `numpy.linalg.eigh` up to signs, within 1e-9; see `tests/oracle/mds.json`.
 ///
 /// # Example
 /// ```

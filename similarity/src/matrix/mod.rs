@@ -13,10 +13,10 @@ use crate::{MetricProperties, SimilarityError};
 
 pub use mds::{PlanarMap, classical_map};
 
-/// Most items in a matrix.
+/// Maximum number of items in a matrix.
 pub const MAX_ITEMS: usize = 20_000;
 
-/// The largest distance: sums over any matrix stay finite.
+/// Largest distance allowed, so that sums over any matrix stay finite.
 pub const MAX_DISTANCE: f64 = 1e100;
 
 /// All distances among labelled items: symmetric, finite, at least 0, and 0 on the diagonal.
@@ -36,7 +36,7 @@ fn rows<S: serde::Serializer>(values: &Array2<f64>, serializer: S) -> Result<S::
 impl DistanceMatrix {
     /// Measures every pair once, in parallel; `measure` takes two indices, the first below the second.
     ///
-    /// The matrix counts as one of a [`MetricProperties::Distance`] unless [`DistanceMatrix::with_properties`] says more.
+    /// Declared a mere [`MetricProperties::Distance`] unless [`DistanceMatrix::with_properties`] says more.
     ///
     /// # Errors
     /// The error of `measure` for the first failing pair in row order; [`SimilarityError::NotADistance`] for an invalid number;
@@ -76,7 +76,7 @@ impl DistanceMatrix {
     }
 
     /// A matrix of given distances: `(items, items)`, symmetric up to rounding, 0 on the diagonal. If the two halves differ by
-    /// less than a thousand-millionth, the upper one is kept.
+    /// at most 1e-9 of the larger value, the upper one is kept.
     ///
     /// # Errors
     /// [`SimilarityError::BadMatrix`] for another shape, a repeated label, a diagonal that is not 0, or halves that differ;

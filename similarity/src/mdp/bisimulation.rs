@@ -7,7 +7,7 @@ use super::certain_sums::CertainSums;
 use super::process::{Mdp, no_such_state};
 use crate::SimilarityError;
 
-/// Most pairs that [`bisimulation`] visits: with 6 actions some 3 GiB.
+/// Maximum number of pairs that [`bisimulation`] visits; with 6 actions, they take about 3 GiB.
 pub const MAX_PAIRS: usize = 1 << 24;
 
 /// The distance of two states of two deterministic processes: the bounds are equal, but for rounding, if all reachable pairs
@@ -30,10 +30,10 @@ pub struct Bisimulation {
 /// rewards: 0 between states from which every sequence of actions pays the same. Between worlds with the same transitions, each
 /// state is paired with itself, so there are as many pairs as states.
 ///
-/// `starts`: a state of the first and one of the second process. `discount`: `c`, 0 to 0.9999. `max_pairs`: how many pairs to
-/// visit, 1 to [`MAX_PAIRS`]; nearest first. Pairs that are not visited count as 0 in the lower bound and as the largest
-/// difference of two rewards in the upper: the gap is at most that difference times `c` to the power of the steps that all were
-/// followed.
+/// `starts`: a state of the first and one of the second process. `discount`: `c`, 0 to 0.9999. `max_pairs`: how many
+/// pairs to visit, 1 to [`MAX_PAIRS`]; nearest first. Pairs that are not visited count as 0 in the lower bound and as
+/// the largest difference of two rewards in the upper: the gap is at most that difference times `cᵏ`, where `k` is the
+/// number of steps for which all action sequences were followed.
 ///
 /// Exact within rounding (some 1e-15 of the largest difference over `1 − c`): by policy iteration, for any discount. Memory
 /// `O(pairs · actions)`, and as much time for each iteration.
@@ -184,7 +184,7 @@ impl Reached {
         !self.next[..self.pairs * steps].contains(&(self.pairs as u32))
     }
 
-    /// The costs, with this one for steps to pairs that were not visited.
+    /// The costs, with this one for each step from the place of the pairs that were not visited.
     fn with_beyond(&self, cost: f64, actions: usize) -> Vec<f64> {
         let mut costs = self.costs.clone();
         let last = costs.len() - actions;

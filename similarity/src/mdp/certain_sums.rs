@@ -17,7 +17,7 @@ impl CertainSums<'_> {
     /// The largest sum from each place, `v(i) = max (cost + discount · v(next))`, and a bound on its error.
     ///
     /// Policy iteration (Howard 1960): choose one step per place, add up its path exactly (it ends in a cycle), choose better
-    /// steps, until there is none. Costs scaled by `1 − discount` make `v` a mean; sums are exact within rounding over
+    /// steps, until there are none. Costs scaled by `1 − discount` make `v` a mean; sums are exact within rounding over
     /// `1 − discount`.
     pub(super) fn solve(self) -> (Vec<f64>, f64) {
         let places = self.next.len() / self.steps;

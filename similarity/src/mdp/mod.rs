@@ -11,12 +11,12 @@ pub use w1::w1_mdp;
 
 #[cfg(test)]
 mod drawn {
-    //! Small decision processes for the laws.
+    //! Small random decision processes for property tests.
 
     use super::Mdp;
     use proptest::prelude::*;
 
-    /// `states` states and actions, rewards of −2 to 2 in eighths.
+    /// Processes with these numbers of states and actions, and rewards from −2 to 2 in steps of 1/8.
     pub(super) fn process(states: usize, actions: usize) -> impl Strategy<Value = Mdp> {
         let rewards = prop::collection::vec((-16_i8..=16).prop_map(|k| f64::from(k) / 8.0), states * actions);
         (prop::collection::vec(0..states as u32, states * actions), rewards)

@@ -2,7 +2,7 @@
 
 use crate::SimilarityError;
 
-/// Most states of an [`Mdp`].
+/// Maximum number of states of an [`Mdp`].
 pub const MAX_MDP_STATES: usize = 1 << 24;
 
 /// Largest absolute reward.

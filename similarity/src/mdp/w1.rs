@@ -2,7 +2,7 @@
 
 use crate::SimilarityError;
 
-/// Differences below this are rounding errors, as from summing over different numbers of steps.
+/// Differences below this are rounding errors, such as those from summing over different numbers of steps.
 const ROUNDING: f64 = 1e-12;
 
 /// W₁-MDP of two deterministic processes, state by state: the mean distance between the outcomes of the same action in both.
@@ -17,13 +17,13 @@ const ROUNDING: f64 = 1e-12;
 /// action, by their index in `rewards`. With a metric between successors it is a metric on the processes' counted states; a
 /// shift of both rewards does not change it.
 ///
-/// Source: the Wasserstein-1 distance between what transitions lead to and pay is the W₁-MDP distance of Birkbeck, Sobey,
-/// Cerutti, Flynn and Norman 2024, "CHIRPs: change-induced regret proxy metrics for lifelong reinforcement learning"; theirs
-/// has the outcomes of all states and actions in one heap and a Euclidean ground. Same numbers as by `SciPy`'s linear programs,
-/// see `tests/oracle/mdp.json`.
+/// Source: the Wasserstein-1 distance between what transitions lead to and pay is the W₁-MDP distance of Birkbeck,
+/// Sobey, Cerutti, Flynn and Norman 2024, "CHIRPs: change-induced regret proxy metrics for lifelong reinforcement
+/// learning"; theirs pools the outcomes of all states and actions and uses a Euclidean ground distance. Matches
+/// `SciPy`'s linear programs, see `tests/oracle/mdp.json`.
 ///
 /// # Errors
-/// [`SimilarityError::Shape`] for lists of rewards that differ in length, or are no multiple of the number of states.
+/// [`SimilarityError::Shape`] for lists of rewards whose lengths differ or are not a multiple of the number of states.
 ///
 /// # Example
 /// ```

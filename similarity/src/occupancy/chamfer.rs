@@ -5,7 +5,7 @@ use super::distance_transform::nearest_squared;
 use crate::SimilarityError;
 
 /// Mean distance in metres from a taken cell to the nearest that is taken in the other grid, averaged over both directions: ½
-/// (mean over A of d(a, B) + mean over B of d(b, A)). Uses means, and distances that are not squared.
+/// (mean over A of d(a, B) + mean over B of d(b, A)). Uses means and unsquared distances.
 ///
 /// Between the centres of cells, within a plane. A distance in `0..=` the grid's diameter, not a metric: the triangle
 /// inequality may fail. Two empty planes are 0 apart; if only one is empty, each cell of the other counts the diameter in both
@@ -30,8 +30,8 @@ pub fn grid_chamfer_distance(a: &BitGrid, b: &BitGrid) -> Result<f64, Similarity
     Ok(f64::midpoint(mean(&ways(a, b)?), mean(&ways(b, a)?)))
 }
 
-/// The distance in metres from each taken cell of `a` to the nearest of `b`. If only the plane of `b` is empty, each counts the
-/// diameter; if only that of `a` is, the diameter once.
+/// The distance in metres from each taken cell of `a` to the nearest of `b`. If only the plane of `b` is empty, each
+/// cell counts the diameter; if only that of `a` is empty, the plane adds the diameter once.
 pub(super) fn ways(a: &BitGrid, b: &BitGrid) -> Result<Vec<f64>, SimilarityError> {
     let shape = a.shape();
     shape.check(b.shape())?;

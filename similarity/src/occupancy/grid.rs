@@ -3,7 +3,7 @@
 use super::bit_grid::BitGrid;
 use crate::SimilarityError;
 
-/// Most cells of a grid, all planes together.
+/// Maximum number of cells in a grid, all planes together.
 pub const MAX_CELLS: usize = 1 << 20;
 
 /// Side of a cell in metres, unless that makes too many cells.
@@ -116,8 +116,8 @@ impl Grid {
     /// `masses`: `(planes, rows, columns)`, at least 0, any unit; row 0 is the southernmost.
     ///
     /// # Errors
-    /// [`SimilarityError::Shape`] if their number differs from the cells', [`SimilarityError::BadMass`] for one that is
-    /// negative or not finite (1e200 at most).
+    /// [`SimilarityError::Shape`] if the number of masses differs from the number of cells,
+    /// [`SimilarityError::BadMass`] for a mass that is negative, not finite or above 1e200.
     pub fn new(shape: GridShape, masses: Vec<f64>) -> Result<Self, SimilarityError> {
         SimilarityError::check_length("cells", masses.len(), shape.num_cells())?;
         crate::transport::sum_of_masses("cells", &masses)?;

@@ -4,7 +4,7 @@
 use super::items::{Ends, Items};
 use crate::SimilarityError;
 
-/// Most items for which the best path is searched exactly. It takes 4 MB and some milliseconds; each further item doubles both.
+/// Maximum number of items for an exact search, which takes 4 MB and some milliseconds; one more item doubles both.
 pub const MAX_EXACT: usize = 15;
 
 pub(super) fn order(items: &Items) -> Result<Vec<usize>, SimilarityError> {

@@ -8,8 +8,8 @@ use super::two_opt;
 /// Lengths that differ by at most this share are equal.
 const EQUAL: f64 = 1e-9;
 
-/// Exact for few items; beyond, the shorter of the paths that two-opt and the search for small largest steps find; ties go to
-/// the smaller largest step.
+/// Exact for few items. For more, the two-opt path, unless the search for small largest steps finds a path that is no
+/// longer and has a smaller largest step.
 pub(super) fn order(items: &Items) -> Vec<usize> {
     if items.len() > MAX_EXACT {
         let short = two_opt::order(items);

@@ -90,8 +90,8 @@ impl<'a> Items<'a> {
     }
 }
 
-/// Ranks by rising value. Values closer than a thousand-millionth of their span count as equal, so that rounding breaks no tie;
-/// then the name decides.
+/// Ranks by rising value. Values are compared in steps of 1e-9 of their span, so that rounding errors break no ties;
+/// the names decide between equal values.
 pub(super) fn by_rising(values: &[f64]) -> Vec<usize> {
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
     let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);

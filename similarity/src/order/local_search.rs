@@ -3,7 +3,7 @@
 //!
 //! The moves are 2-opt (reverse a stretch) and Or-opt (move up to three neighbours), tried only towards near items (Bentley
 //! 1992), and only from items near a recent change (don't-look bits). A shake swaps two short stretches, and is undone unless
-//! the search improves on it.
+//! the search then finds a cheaper path.
 
 use rayon::prelude::*;
 
@@ -89,7 +89,7 @@ impl<'a, C: Fn(usize, usize) -> f64 + Sync> Search<'a, C> {
         }
     }
 
-    /// Makes improving moves until there is none. Returns the total gain.
+    /// Makes improving moves until there are none. Returns the total gain.
     fn settle(&mut self) -> f64 {
         let mut gained = 0.0;
         while let Some(item) = self.waiting.pop() {

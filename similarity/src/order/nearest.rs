@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::items::{Ends, Items};
 
-/// Most items from which a walk is tried.
+/// Maximum number of items to try as the start of a walk.
 const MAX_STARTS: usize = 256;
 
 pub(super) fn order(items: &Items) -> Vec<usize> {

@@ -28,7 +28,7 @@ impl Tour {
         self.places[item] as usize
     }
 
-    /// The item at a place, which may be up to two rounds too large.
+    /// The item at a place; places beyond the last wrap around.
     pub(super) fn at(&self, place: usize) -> usize {
         self.items[self.wrapped(place)] as usize
     }

@@ -39,8 +39,8 @@ impl Direction {
         }
     }
 
-    /// Half the length between the two, which is `√((1 − r) / 2)` with Pearson's correlation `r` and keeps the digits that
-    /// `1 − r` loses.
+    /// Half the distance between the two, which is `√((1 − r) / 2)` with Pearson's correlation `r` and keeps the digits
+    /// that `1 − r` loses.
     ///
     /// 0 to 1: 0 if one list is the other times a factor above 0 plus a constant, 1 if one falls exactly as the other rises. A
     /// constant list is ½ from any that is not, and 0 from another constant one. Distances within rounding are returned as 0,

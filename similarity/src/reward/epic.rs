@@ -124,11 +124,11 @@ impl SampledReward {
     /// EPIC: the distance of two rewards up to equivalence of their optimal policies, under any dynamics. Both must be measured
     /// on the same samples.
     ///
-    /// Both are brought into their canonical shape; then it is `√((1 − r) / 2)`, `r` Pearson's correlation over the
-    /// transitions. 0 to 1: 0 between rewards that differ by potential shaping of this discount, by a factor above 0 and by a
-    /// shift, and 1 between a reward and its reverse. A reward that is constant, but for shaping, has no preference: it is 0
-    /// from another such reward and ½ from any other. Distances within rounding are exactly 0: up to 32 · 2⁻⁵² times (largest
-    /// reward / standard deviation of the canonical one), both rewards' added up.
+    /// Both are brought into their canonical shape; the distance is `√((1 − r) / 2)` with Pearson's correlation `r`
+    /// over the transitions. 0 to 1: 0 between rewards that differ by potential shaping of this discount, by a factor
+    /// above 0 and by a shift, and 1 between a reward and its reverse. A reward that is constant, but for shaping, has
+    /// no preference: it is 0 from another such reward and ½ from any other. Distances within rounding are exactly 0:
+    /// up to 32 · 2⁻⁵² times (largest reward / standard deviation of the canonical one), summed over both rewards.
     ///
     /// A pseudometric for any samples. It differs from the distance over the sampled distributions by about `1 / √samples`.
     /// Differences where there is no sample go unnoticed.

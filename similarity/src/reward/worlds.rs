@@ -16,11 +16,11 @@ const DRAWS: usize = 96;
 
 /// The distance between the rewards of two worlds, in `0..=1`: EPIC, which ignores rewards that no choice affects.
 ///
-/// A state is the agent's place and the set of used-up objects; an action triggers one object, or none. A world pays for it the
-/// object's reward (times its odds), `order_penalty` if out of turn, and its shaping. Both worlds' rewards are evaluated on the
-/// same 256 transitions, each of which may lead anywhere; objects are matched as in distances of worlds, and an object that
-/// only one world has pays nothing in the other. So 0 is the same reward up to a constant, a factor above 0 and potential
-/// shaping; about 0.7 (√½) are unrelated rewards; 1 is the reverse.
+/// A state is the agent's place and the set of used-up objects; an action triggers one object, or none. For it, a world
+/// pays the object's reward (times its odds), or `order_penalty` if out of turn, plus its shaping. Both worlds' rewards
+/// are evaluated on the same 256 transitions, each of which may lead anywhere; objects are matched as in distances of
+/// worlds, and an object that only one world has pays nothing in the other. So 0 means the same reward up to a
+/// constant, a factor above 0 and potential shaping, about 0.7 (√½) unrelated rewards, and 1 the reverse.
 ///
 /// It ignores the reward per second, which is a constant, and how hard a reward is to reach. The discount is that of the
 /// worlds' shaping, the larger of two, by default 0.99. A pseudometric among worlds whose objects are matched alike.
@@ -79,7 +79,7 @@ fn draw(objects: usize, reach: [f64; 2]) -> Result<RewardSamples<State, Choice>,
         place: reach.map(|reach| (2.0 * rng.unit() - 1.0) * reach),
         gone: (0..objects).map(|_| rng.below(2) == 1).collect(),
     };
-    // Every object is as likely as none.
+    // Each object is as likely as no object at all.
     let choice = |rng: &mut SplitMix64| {
         let drawn = rng.below(objects as u64 + 1) as usize;
         (drawn < objects).then_some(drawn)

@@ -1,6 +1,6 @@
 //! Difference of two headings.
 
-/// The lesser angle between two headings: min(t, 360 − t) with t = |a − b| mod 360.
+/// The smaller angle between two headings: min(t, 360 − t) with t = |a − b| mod 360.
 ///
 /// A metric between headings within one turn, in degrees, in `0..=180`; 370° is the same heading as 10°. Headings must be
 /// finite. Takes a few nanoseconds.

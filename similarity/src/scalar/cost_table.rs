@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::{MetricProperties, SimilarityError};
 
-/// Most choices in a table.
+/// Maximum number of choices in a table.
 pub const MAX_CHOICES: usize = 1000;
 
 /// A checked table of distances between choices: costs are finite and at least 0, 0 on the diagonal, and symmetric.

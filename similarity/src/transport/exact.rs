@@ -5,7 +5,7 @@ use super::network_simplex::solve;
 use super::plan::{Move, TransportPlan};
 use crate::SimilarityError;
 
-/// Most origins, and most destinations, with mass.
+/// Maximum number of origins, and of destinations, with mass.
 pub const MAX_TRANSPORTED: usize = 4096;
 
 /// The cheapest way to move masses from origins to destinations: min Σ P·C over plans P ≥ 0 with the given row and column sums.
@@ -139,12 +139,12 @@ mod tests {
             let to: Vec<f64> = to.iter().map(|mass| mass * sum(&from) / sum(&to)).collect();
             let plan = optimal_transport(&from, &to, &numbers[..from.len() * to.len()]).unwrap();
             for (index, mass) in from.iter().enumerate() {
-                let gone = plan.moves.iter().filter(|step| step.from == index).map(|step| step.mass);
-                prop_assert!((gone.sum::<f64>() - mass).abs() < 1e-12);
+                let sent = plan.moves.iter().filter(|step| step.from == index).map(|step| step.mass);
+                prop_assert!((sent.sum::<f64>() - mass).abs() < 1e-12);
             }
             for (index, mass) in to.iter().enumerate() {
-                let come = plan.moves.iter().filter(|step| step.to == index).map(|step| step.mass);
-                prop_assert!((come.sum::<f64>() - mass).abs() < 1e-12);
+                let received = plan.moves.iter().filter(|step| step.to == index).map(|step| step.mass);
+                prop_assert!((received.sum::<f64>() - mass).abs() < 1e-12);
             }
         }
     }

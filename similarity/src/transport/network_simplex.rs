@@ -12,9 +12,9 @@ const ROUND: usize = 64;
 ///
 /// All units are above 0 and both sides have the same number; `costs`: `(sources, sinks)`, finite, row after row.
 ///
-/// Network simplex over a short list of arcs: block search (as in LEMON, Király and Kovács 2012) chooses the entering arc. If
-/// the list has none, all arcs are priced, and those that would lower the cost join the list, until there is none: the prices
-/// then prove that the plan is optimal.
+/// Network simplex over a short list of arcs: block search (as in LEMON, Király and Kovács 2012) chooses the entering
+/// arc. If the list has none, all arcs are priced, and those that would lower the cost join the list. Once no arc
+/// would, the prices prove that the plan is optimal.
 pub(super) fn solve(sources: &[i64], sinks: &[i64], costs: &[f64]) -> Vec<(usize, usize, i64)> {
     let mut moves: Vec<_> = cheapest_tree(sources, sinks, costs).arcs().collect();
     moves.retain(|(.., units)| *units > 0);
@@ -56,7 +56,7 @@ fn cheapest_tree(sources: &[i64], sinks: &[i64], costs: &[f64]) -> SpanningTree 
 struct Search {
     /// Index in the list at which the search continues.
     next: usize,
-    /// A reduced cost must be below the negative of this to be no rounding error.
+    /// Reduced costs that are not below the negative of this may be rounding errors and are ignored.
     tolerance: f64,
     pivots: usize,
     round: usize,

@@ -106,8 +106,8 @@ impl WorldMeasure {
         }
     }
 
-    /// Which laws the measure satisfies, for occupancy among worlds of one arena, see [`WorldMeasure::properties_among`]. None
-    /// is a metric, because each considers only part of a world.
+    /// Which laws the measure satisfies; for occupancy, only among worlds of one arena, see
+    /// [`WorldMeasure::properties_among`]. None is a metric, because each considers only part of a world.
     pub fn properties(self) -> MetricProperties {
         match self {
             Self::Chamfer => MetricProperties::Distance,

@@ -6,7 +6,7 @@ use driftworld_spec::World;
 
 use crate::{SimilarityError, ospa};
 
-/// Metres that a missing object counts; distances of worlds use the same unit for an object's place.
+/// Distance in metres counted for a missing object; distances of worlds use the same unit for an object's place.
 const CUT_OFF: f64 = 10.0;
 
 /// [`ospa`] of the objects of two worlds.

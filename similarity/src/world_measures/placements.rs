@@ -8,7 +8,7 @@ use crate::combined::{Distance, Part, Weights};
 use crate::distribution::Method;
 use crate::{SimilarityError, earth_movers_distance};
 
-/// Metres that count 1, as in distances of worlds.
+/// Distance in metres that counts as 1, as in distances of worlds.
 const METRES: f64 = 10.0;
 
 /// Where the objects of each class stand in many worlds of one variant: the actual distribution of places, after walls and
@@ -38,8 +38,9 @@ impl Placements {
     /// that turns one distribution into the other (Wasserstein-1 of all places together, exact). A class that only one has
     /// counts 1.
     ///
-    /// Classes are added up. The number of objects in a class does not count: more of them in the same places are 0 apart. A
-    /// metric between sets of places; all else in the worlds is ignored. `weights`: for the weight of the state.
+    /// Classes are added up. The number of objects in a class does not count: more of them in the same places are 0
+    /// apart. A metric between sets of places of the same classes; if the classes differ, the triangle inequality may
+    /// fail. All else in the worlds is ignored. `weights`: supplies the weight of the state.
     ///
     /// # Errors
     /// [`SimilarityError::Empty`] if one has no world, [`SimilarityError::TooMany`] above

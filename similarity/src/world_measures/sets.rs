@@ -7,8 +7,9 @@ use crate::SimilarityError;
 use crate::combined::{Distance, Part, Weights};
 use crate::distribution::Method;
 
-/// The mean of [`WorldMeasure::between`] over pairs, the first with the first and so on, as a distance in the measure's element
-/// alone; worlds without a partner are left out. `weights`: for the weight of the element. 1 is one of the measure's units.
+/// The mean of [`WorldMeasure::between`] over pairs, the first with the first and so on, as a distance in the measure's
+/// element alone; worlds without a partner are left out. `weights`: supplies the weight of the element. One unit of the
+/// measure counts as 1.
 ///
 /// # Errors
 /// [`SimilarityError::Empty`] if there is no pair, and as [`WorldMeasure::between`].

@@ -1,4 +1,4 @@
-//! Distances of variants of one task: by types, by measures of their own, by elements.
+//! Tests of distances between variants of one task: by parameter types, by declared measures, by elements.
 
 mod asked_measures;
 
@@ -102,7 +102,7 @@ fn element_weights_scale_the_total() {
     assert_eq!((distance.total, distance.element(Element::R)), (0.0, Some(1.0)));
 }
 
-/// The distance of two variants in the parameter `p`, as the task declares it.
+/// Checks the distance of two variants in the parameter `p`, as the task declares it.
 fn check(parameter: &str, other: &str, measure: &str, expected: f64) {
     let text = format!(
         r#"{{ "name": "t", "parameters": {{ "p": {{ "affects": ["O"], {parameter} }} }}, "variants": {{ "a": {{}}, "b": {{ "p": {other} }} }} }}"#
