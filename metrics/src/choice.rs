@@ -1,6 +1,6 @@
 //! A macro for enums whose values are words in files and on command lines: it adds names, a list and a parser.
 
-/// Declares a `Copy` enum whose variants each stand for one word, with `ALL`, `name()`, `Display`, `FromStr` and serde.
+/// Declares a `Copy` enum with one word per variant, and its `ALL`, `name()`, `Display`, `FromStr` and serde traits.
 macro_rules! choice {
     ($(#[$meta:meta])* $name:ident, $what:literal { $($(#[$variant_meta:meta])* $variant:ident = $word:literal),+ $(,)? }) => {
         $(#[$meta])*
@@ -13,7 +13,7 @@ macro_rules! choice {
             /// Every value, in documented order.
             pub const ALL: &'static [Self] = &[$(Self::$variant),+];
 
-            /// The word that stands for this value in files and on the command line.
+            /// The word for this value in files and on the command line.
             pub const fn name(self) -> &'static str {
                 match self {
                     $(Self::$variant => $word),+

@@ -12,7 +12,7 @@ pub const MAX_WINDOW_LENGTH: usize = 10_000;
 /// Performances must be below this magnitude, so that no sum or quotient of them overflows.
 const MAX_PERFORMANCE: f64 = 1e100;
 
-/// Whether a number is below that in magnitude; false for NaN.
+/// Whether a number is below [`MAX_PERFORMANCE`] in magnitude; false for NaN.
 pub(crate) fn is_bounded(value: f64) -> bool {
     value.abs() < MAX_PERFORMANCE
 }
@@ -139,9 +139,9 @@ choice! {
 choice! {
     /// Which definitions the metrics follow where the reference's program departs from its own documentation.
     ///
-    /// Under `published`, task parameters split regimes; saturation uses data that were smoothed once; the last tenth of a
-    /// regime is computed in integers; if several tasks were learned between two evaluations of another, each gets the
-    /// transfer; and files are not rounded.
+    /// Under `published`, task parameters split regimes; saturation uses data that were smoothed once; the last tenth
+    /// of a regime is computed in integers; if several tasks were learned between two evaluations of another, transfer
+    /// is credited to each of them; and values in files are not rounded.
     #[derive(Default)]
     Definitions, "definitions" {
         /// The behaviour of l2metrics 3.1, including its peculiarities (default).
@@ -194,29 +194,29 @@ impl DataRange {
 /// Ranges by task, lower-case names.
 pub type DataRanges = IndexMap<String, DataRange>;
 
-/// Rewards in a task of agents that know nothing of it, and of one that knows everything, in the log's unit.
+/// Rewards in a task, in the log's unit: of agents that know nothing about it, and of one that knows everything.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Anchors {
-    /// The best agent that knows nothing, such as one that acts at random or one that stands still: scaled to 1.
+    /// Reward of the best agent that knows nothing, such as one that acts at random or stands still: scaled to 1.
     pub floor: f64,
-    /// An expert's: scaled to 101.
+    /// Reward of an expert: scaled to 101.
     pub ceiling: f64,
     /// Rewards of agents that cannot distinguish the task from others that look alike, for each set of such tasks.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub unlabelled: Vec<Unlabelled>,
 }
 
-/// Rewards in a task of the best known agents that cannot distinguish it from others, in the log's unit. They are the best on
-/// average over all of these tasks, and may be bad in this one.
+/// Rewards in a task, in the log's unit, of the best known agents that cannot distinguish it from others. These agents
+/// are the best on average over all of these tasks, and may be bad in this one.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Unlabelled {
     /// The tasks that look alike, including this one: lower-case names as in logs.
     pub among: Vec<String>,
-    /// An agent that acts alike in all of them.
+    /// Reward of an agent that acts alike in all of them.
     pub fixed: f64,
-    /// An agent that may infer the task within an episode.
+    /// Reward of an agent that may infer the task within an episode.
     pub finds_out: f64,
 }
 
@@ -286,11 +286,11 @@ impl Default for Options {
 }
 
 impl Options {
-    /// Checks constraints that the types cannot express: window length and data ranges.
+    /// Checks constraints that the types cannot express: window length, noise, scales and data ranges.
     ///
     /// # Errors
-    /// [`MetricsError::BadOption`] for a window of 0 or over [`MAX_WINDOW_LENGTH`], or a range that is not finite or
-    /// has its minimum above its maximum.
+    /// [`MetricsError::BadOption`] for a window of 0 or over [`MAX_WINDOW_LENGTH`], a number that is not below 1e100 in
+    /// magnitude, a negative standard deviation, or a range with its minimum above its maximum.
     pub(crate) fn check(&self) -> Result<(), MetricsError> {
         if let Some(length) = self.window_length
             && !(1..=MAX_WINDOW_LENGTH).contains(&length)

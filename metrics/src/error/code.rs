@@ -3,7 +3,7 @@
 use super::MetricsError;
 
 impl MetricsError {
-    /// The line of the file, from 1; `None` if the error is about no line.
+    /// The line of the file, from 1; `None` if the error does not concern a line.
     pub fn line(&self) -> Option<u64> {
         match self {
             Self::Json { line, .. } => Some(*line as u64),

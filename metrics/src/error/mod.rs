@@ -174,7 +174,7 @@ pub enum MetricsError {
         expected: &'static str,
     },
 
-    /// A limit of this crate was passed; limits keep a broken log from taking all memory.
+    /// A limit of this crate was exceeded; limits keep a broken log from taking all memory.
     #[error("{}: found {found} {what}, expected at most {limit}", path.shown())]
     TooLarge {
         /// The file or directory.
@@ -228,7 +228,7 @@ pub enum MetricsError {
         found: String,
     },
 
-    /// A data file has two columns of one name.
+    /// A data file has two columns of the same name.
     #[error("{}:1: found the column {column} twice, expected every column \
          once", path.shown(), column = one_line(column))]
     RepeatedColumn {
@@ -238,7 +238,7 @@ pub enum MetricsError {
         column: String,
     },
 
-    /// A data file of a log that is to be resumed has other columns than the next record.
+    /// A data file of a log to be resumed has different columns from the next record.
     #[error(
         "{}:1: found the columns {found}, expected {expected} to continue this log; \
          only logs of format 1.1 written by one writer can be continued; start a new one", path.shown(),

@@ -15,7 +15,7 @@ pub(crate) struct Budget {
     pub(crate) learned: usize,
     /// Learning experiences before deployment.
     pub(crate) before: usize,
-    /// The worlds of the learning that counts, by seed and index; `None` if any is not logged.
+    /// The worlds of the learning experiences that count, by seed and index; `None` if any is not logged.
     pub(crate) worlds: Option<BTreeSet<(String, u64)>>,
 }
 
@@ -35,7 +35,7 @@ impl Budget {
         }
     }
 
-    /// The budget of everything that an expert learned.
+    /// The budget of an expert's whole training.
     pub(crate) fn of_expert(log: &Log) -> Self {
         let learned = complete_learning(log);
         let (deployed, before): (Vec<usize>, Vec<usize>) =

@@ -81,9 +81,9 @@ pub fn logged_word(name: &str) -> String {
     }
 }
 
-/// Sets the tasks that each learning regime counts for: its own; for a drift, those of its ends that it comes near to and that
-/// the lifetime has otherwise. A drift from an already learned task to another counts only as learning of the other: its effect
-/// on the first is what learning the other does.
+/// Sets the tasks that each learning regime counts for: its own; for a drift, those of its ends that it comes near and
+/// that also occur elsewhere in the lifetime. A drift from an already learned task to another counts only as learning
+/// the other: its effect on the first task is an effect of learning the other.
 pub(super) fn set_learned(regimes: &mut [Regime], tasks: &[String]) {
     let tasks: IndexSet<&str> = tasks.iter().map(String::as_str).collect();
     let mut known: IndexSet<String> = IndexSet::new();

@@ -10,9 +10,10 @@ use crate::preprocess;
 use crate::{BlockSubtype, MetricsError, Options};
 
 impl Lifetime {
-    /// Takes the complete rows that have a number in the performance column, forms regimes, and preprocesses them: smoothing,
-    /// clamping, normalisation, in that order. [`experts_serving`](crate::experts_serving) decides which experts a task is
-    /// compared with; others are ignored. Several logs of one task are several runs of its expert.
+    /// Takes the complete rows that have a number in the performance column, forms regimes, and preprocesses them:
+    /// smoothing, clamping, normalisation and noise, in that order. [`experts_serving`](crate::experts_serving) decides
+    /// which experts a task is compared with; others are ignored. Several logs of one task count as several runs of its
+    /// expert.
     ///
     /// # Errors
     /// [`MetricsError::UnknownColumn`], [`MetricsError::NoUsableRows`], [`MetricsError::TooManyRegimes`],

@@ -9,7 +9,7 @@ use super::usable::Usable;
 use crate::log::TaskParams;
 use crate::{BlockSubtype, BlockType, Definitions, MetricsError, Options};
 
-/// Most regimes in a lifetime; the Theil–Sen slope compares every pair of a task's.
+/// Maximum number of regimes in a lifetime; the Theil–Sen slope compares every pair of regimes of a task.
 pub const MAX_REGIMES: usize = 10_000;
 
 /// A maximal run of rows with the same block number, block type, subtype and task.
@@ -39,8 +39,8 @@ pub struct Regime {
     pub task_params: TaskParams,
     /// Its ends, if the variant changes gradually.
     pub drift: Option<Drift>,
-    /// The tasks that it counts as learning of, for maintenance and transfer: its own, or in a drift those that it passes.
-    /// Empty for an evaluation.
+    /// The tasks that it counts as training on, for maintenance and transfer: its own, or in a drift those that it
+    /// passes. Empty for an evaluation.
     pub learns: Vec<String>,
     /// Its rows in the log that it was formed from; those of a shuffled block need not ascend.
     pub(crate) rows: Vec<usize>,
@@ -165,8 +165,8 @@ pub(crate) fn form(run_id: &str, usable: &Usable<'_>, options: &Options) -> Resu
     Ok(regimes)
 }
 
-/// Environment steps up to the end of each row that counts, in the order of the rows; a shuffled block has them in another
-/// order than its regimes.
+/// Environment steps up to the end of each usable row, in the order of `usable.indices`. Steps accumulate in the order
+/// of the log, which is a different one in shuffled blocks.
 fn cumulated_steps(usable: &Usable<'_>) -> Option<Vec<f64>> {
     let steps = usable.rows.metric("episode_step_count")?;
     let mut places: Vec<usize> = (0..usable.indices.len()).collect();

@@ -22,7 +22,7 @@ pub struct SteLog {
 }
 
 impl SteLog {
-    /// Wraps a log as an expert's.
+    /// Wraps the log of an expert.
     ///
     /// # Errors
     /// [`MetricsError::NotSingleTask`] unless it trains exactly one task.
@@ -109,7 +109,7 @@ impl SteRun {
     }
 }
 
-/// The experts that a task is compared with: positions in `trained`, the tasks that the experts trained, with their variants.
+/// The experts that a task is compared with, as positions in `trained`: the experts' tasks, with their variants.
 ///
 /// Experts of the task's own name; if there are none, those of its variants: `ferry_red` and `ferry_blue` serve `ferry`. This
 /// applies to a task that was logged without a variant, and to one that lost it because variants do not count. A variant is

@@ -22,7 +22,7 @@ pub(crate) struct Usable<'a> {
 
 /// The rows that count: complete, with a number in the performance column, and not from before deployment, which prepares a
 /// lifetime and is not part of it. Rows from before deployment have the task parameter `phase` with the value `pre_deployment`.
-/// Messages call the log `name`.
+/// `name` is the log's name in messages.
 pub(crate) fn usable_rows<'a>(log: &'a Log, name: &str, column: &str) -> Result<Usable<'a>, MetricsError> {
     let mut usable = complete_rows(log, name, column)?;
     let performance = usable.performance;
@@ -35,7 +35,7 @@ pub(super) fn is_deployed(params: &TaskParams) -> bool {
     params.get(PHASE.0).is_none_or(|phase| phase != PHASE.1)
 }
 
-/// Like [`usable_rows`], but keeps complete rows without a number; at least one row has a number.
+/// Like [`usable_rows`], but keeps complete rows without a number; an error if no row has a number.
 pub(crate) fn complete_rows<'a>(log: &'a Log, name: &str, column: &str) -> Result<Usable<'a>, MetricsError> {
     let declared = log.logger_info.metrics_columns();
     let performance = (declared.iter().any(|name| name == column))

@@ -18,7 +18,7 @@ const SEED: &str = "seed";
 pub(crate) struct World {
     /// Id of the task's logged name, with its variant: equal numbers in two variants are different worlds.
     pub(crate) task: u32,
-    /// Id of seed and index, the same for all tasks.
+    /// Id of the pair of seed and index, shared by all tasks.
     pub(crate) number: u32,
 }
 

@@ -187,7 +187,7 @@ fn own_columns(log: &Log) -> impl Iterator<Item = &str> {
     log.rows.metric_names().chain(log.rows.text_names())
 }
 
-/// A cell of such a column: a number as the shortest text that reads back exactly, or empty without one.
+/// A cell of a non-standard column: a number as the shortest text that reads back exactly, or empty without one.
 fn own_cell(row: Row, name: &str) -> String {
     match row.metric(name) {
         Some(number) if number.is_nan() => String::new(),

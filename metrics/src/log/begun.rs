@@ -13,8 +13,8 @@ use crate::MetricsError;
 
 /// Reads the two info files of the log in `dir`; `None` if no log was started.
 ///
-/// That is so if there is no such directory, if it is empty, or if it holds only the leftovers of a log that was interrupted
-/// before its first row: [`LogWriter::create`](crate::LogWriter::create) accepts such a directory.
+/// No log was started if the directory does not exist, is empty, or holds only the leftovers of a log interrupted while
+/// it was created: [`LogWriter::create`](crate::LogWriter::create) accepts such a directory.
 ///
 /// # Errors
 /// [`MetricsError::MissingFile`] and [`MetricsError::Json`] if there are rows but an info file is missing or torn,

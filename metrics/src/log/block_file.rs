@@ -1,4 +1,4 @@
-//! [`BlockFile`]: appends rows to a data file, and detects if it is truncated, removed or replaced meanwhile.
+//! [`BlockFile`]: appends rows to a data file, and detects whether it was truncated, removed or replaced meanwhile.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{ErrorKind, Read, Write};
@@ -39,14 +39,14 @@ impl Written {
         digest: Some(Digest::NEW),
     };
 
-    /// Fails if the file at this path is missing, is another, or differs in length.
+    /// Fails if the file at this path is missing, is a different file, or differs in length.
     ///
-    /// Some file systems change file ids while nobody has the file open: under another id, it is the same file if its bytes are
-    /// the same.
+    /// Some file systems change the id of a file while nobody has it open: under another id, it counts as the same file
+    /// if its bytes are the same.
     pub(super) fn check(&self, folder: &LogFolder, inside: &Path) -> Result<(), MetricsError> {
         let path = folder.place(inside);
         let found = match fs::metadata(&path) {
-            // The target of a link, such as a pipe, may keep nothing.
+            // A link may lead to something that stores nothing, such as a pipe.
             Ok(found) if !found.is_file() && !found.is_dir() => return Ok(()),
             Ok(found) if found.is_dir() => "a directory".to_owned(),
             Ok(found) if found.len() != self.bytes => counted(&path, found.len()),
@@ -98,8 +98,8 @@ pub(super) struct BlockFile {
 }
 
 impl BlockFile {
-    /// Opens a data file for appending, and writes its header if it is new. `before` is what this log's writers have put there
-    /// already.
+    /// Opens a data file for appending, and writes its header if it is new. `before` is what this log's writers have
+    /// already written there.
     pub(super) fn open(
         folder: &LogFolder,
         inside: PathBuf,
@@ -160,7 +160,7 @@ impl BlockFile {
         }
     }
 
-    /// Appends one line in one call. Removes a partial write again.
+    /// Appends one line in one call; undoes a partial write.
     fn append(&mut self, folder: &LogFolder, line: &[u8]) -> Result<(), MetricsError> {
         if let Err(source) = self.file.write_all(line) {
             // If even this fails, the torn line stays, and the reader reports it.
@@ -191,7 +191,7 @@ impl Digest {
 
     /// The digest of a file; `None` if it cannot be read.
     fn of(path: &Path) -> Option<Self> {
-        // Just written by us, not by driftworld-files: it is our own file.
+        // Opened directly, not by driftworld-files: it is our own file, just written.
         let (mut file, mut piece, mut digest) = (File::open(path).ok()?, vec![0; 1 << 16], Self::NEW);
         loop {
             match file.read(&mut piece).ok()? {

@@ -9,13 +9,13 @@ use super::json_file::{MAX_JSON_VALUES, fault};
 use super::record::{TaskParams, is_worker_id};
 use crate::{LogLine, MetricsError};
 
-/// Most characters of a cell quoted in a message.
+/// Maximum number of characters of a cell quoted in a message.
 const MAX_QUOTED: usize = 60;
 
-/// Most names that a message lists.
+/// Maximum number of names that a message lists.
 const LISTED: usize = 20;
 
-/// A cell with its place in the file, which makes the error if its text is wrong.
+/// A cell with its place in the file, for the error if its text is wrong.
 #[derive(Clone, Copy)]
 pub(super) struct Cell<'a> {
     pub(super) path: &'a Path,
@@ -26,7 +26,7 @@ pub(super) struct Cell<'a> {
 
 impl Cell<'_> {
     pub(super) fn whole_number(self) -> Result<u64, MetricsError> {
-        // Data frames write integers as 3.0 in columns with missing values.
+        // Data-frame libraries write integers as 3.0 in columns with missing values.
         let zeros = |rest: &str| !rest.is_empty() && rest.bytes().all(|byte| byte == b'0');
         let whole = self
             .text
@@ -62,7 +62,7 @@ impl Cell<'_> {
             .map_err(|_| self.error("a time stamp as in 20200913T122640.000000"))
     }
 
-    /// A JSON object; an empty cell counts as an empty one.
+    /// A JSON object; an empty cell counts as an empty object.
     pub(super) fn params(self) -> Result<TaskParams, MetricsError> {
         match self.text {
             "" => Ok(TaskParams::default()),

@@ -25,7 +25,7 @@ const PIECE: usize = 1 << 16;
 
 /// Adds every row to the table in file order; returns the header.
 ///
-/// Faults of rows go to `faults`; faults that make the file unreadable are the error.
+/// Faults of single rows are added to `faults`; a fault that makes the file unreadable is returned as the error.
 pub(super) fn read<'a>(
     path: &'a Path,
     metrics_columns: &[String],
@@ -108,7 +108,7 @@ struct Source {
     file: File,
     /// Bytes up to the end of the last whole row.
     whole: u64,
-    /// The fault of the remainder.
+    /// The fault to report for the bytes after the last whole row, if there are any.
     torn: Option<MetricsError>,
 }
 

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use super::regular_file;
 use crate::MetricsError;
 
-/// Most entries (files and directories together) in a log directory.
+/// Maximum number of entries (files and directories together) in a log directory.
 pub const MAX_LOG_FILES: usize = 200_000;
 
 /// Maximum depth of the search; the format needs two levels.
@@ -89,7 +89,7 @@ impl Search {
                     }
                 }
                 Ok(found) if found.is_dir() => self.to_search.push(Folder { path, depth, is_linked }),
-                // A name with an extension linked to a file of some other kind.
+                // Broken links with an extension are ignored: they led to a file of some other kind.
                 Err(_) if path.extension().is_none() && !is_hidden(&path) => {
                     return Err(regular_file::lost_link(&path));
                 }
@@ -107,7 +107,7 @@ fn is_hidden(path: &Path) -> bool {
         .is_some_and(|name| name.to_string_lossy().starts_with('.'))
 }
 
-/// Removes paths to files that another path reaches, those with a link first.
+/// Keeps one path to each file, preferably one without links.
 fn each_once(mut files: Vec<(PathBuf, bool)>) -> Vec<PathBuf> {
     if files.iter().any(|(_, is_linked)| *is_linked) {
         let place = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());

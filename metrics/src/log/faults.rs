@@ -2,7 +2,7 @@
 
 use crate::MetricsError;
 
-/// Most faults of a log that are listed.
+/// Maximum number of faults of a log that are listed.
 pub const MAX_LISTED: usize = 100;
 
 /// Collects faults as they are found.

@@ -25,7 +25,7 @@ pub(super) fn encoded(place: &Path, name: &str) -> Result<String, MetricsError> 
         }
     }
     if encoded.is_empty() {
-        // No name has this encoding, and it decodes to the empty name.
+        // No other name is encoded like this, and it decodes to the empty name.
         encoded.push('%');
     }
     if encoded.len() > MAX_BYTES {

@@ -1,4 +1,4 @@
-//! Parses the header of a data file, and checks the cells of each row by their columns.
+//! Parses the header of a data file, and checks the cells of each row against their columns.
 
 use std::path::Path;
 

@@ -2,7 +2,7 @@
 
 use std::fs::Metadata;
 
-/// The device and file id of a file or directory, whatever its name. Equal for all on systems without such numbers.
+/// The device and file id of a file or directory, whatever its name. On systems without such ids, all are equal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Identity(u64, u64);
 

@@ -14,13 +14,14 @@ use crate::MetricsError;
 /// Largest side file that is read, in bytes.
 pub const MAX_JSON_BYTES: u64 = 16 << 20;
 
-/// Most values in a side file: numbers, texts, lists, objects and the like. Each takes at least a hundred bytes in memory.
+/// Maximum number of values in a side file: numbers, texts, lists, objects and so on. Each takes at least a hundred
+/// bytes in memory.
 pub const MAX_JSON_VALUES: u64 = 1_000_000;
 
 /// Reads a file that holds one JSON object.
 ///
 /// # Errors
-/// [`MetricsError::MissingFile`], [`MetricsError::NotAFile`], [`MetricsError::TooLarge`] over 16 MiB and over a million
+/// [`MetricsError::MissingFile`], [`MetricsError::NotAFile`], [`MetricsError::TooLarge`] over 16 MiB or over a million
 /// values, [`MetricsError::Json`] with line and column.
 pub(super) fn read_object(path: &Path, expected: &'static str) -> Result<Map<String, Value>, MetricsError> {
     let text = regular_file::text(path, MAX_JSON_BYTES)?.ok_or_else(|| MetricsError::missing_file(path, expected))?;
@@ -35,7 +36,7 @@ pub(super) fn read_object(path: &Path, expected: &'static str) -> Result<Map<Str
         Ok(_) => Err(wrong((1, 1), format!("found no object, expected {expected}"))),
         Err((_, Some(Stop::TooMany))) => Err(MetricsError::too_large(
             path,
-            "values or more of JSON",
+            "JSON values or more",
             MAX_JSON_VALUES + 1,
             MAX_JSON_VALUES,
         )),
@@ -51,7 +52,7 @@ pub(super) fn read_object(path: &Path, expected: &'static str) -> Result<Map<Str
     }
 }
 
-/// The fault of an unreadable text, in the same words as for documents.
+/// Describes why a text is unreadable, in the same words as for documents.
 pub(super) fn fault(text: &str, error: &serde_json::Error, stop: Option<Stop>) -> String {
     match (stop, twice(text)) {
         (Some(Stop::LongKey), _) => {
@@ -83,11 +84,11 @@ pub(crate) fn write_json(path: &Path, value: &impl Serialize) -> Result<(), Metr
     write_info(path, value, true)
 }
 
-/// Like [`write_json`]; without `syncs` straight into the file, for a log that is thrown away.
+/// Like [`write_json`]; without `syncs`, writes straight into the file, for a log that will be thrown away.
 pub(super) fn write_info(path: &Path, value: &impl Serialize, syncs: bool) -> Result<(), MetricsError> {
     let mut bytes = serde_json::to_vec_pretty(value).map_err(|error| MetricsError::Io {
         path: path.to_owned(),
-        doing: "put this value into JSON",
+        doing: "encode this value as JSON",
         source: error.into(),
     })?;
     bytes.push(b'\n');
@@ -128,7 +129,7 @@ mod tests {
         fs::write(&path, format!("{{\"a\": [{}0]}}", "0,".repeat(1_200_000))).unwrap();
         let message = read_object(&path, "an object").unwrap_err().to_string();
         assert!(
-            message.ends_with("found 1000001 values or more of JSON, expected at most 1000000"),
+            message.ends_with("found 1000001 JSON values or more, expected at most 1000000"),
             "{message}"
         );
     }

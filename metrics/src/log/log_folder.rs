@@ -10,14 +10,14 @@ use super::identity::Identity;
 use super::{logger_info, scenario_info};
 use crate::MetricsError;
 
-/// An open directory handle, so that the lock ends with the writer, however it ends.
+/// Holds the directory open, so that its lock ends with the writer, however the writer ends.
 #[derive(Debug)]
 pub(super) struct LogFolder {
     /// The path as the user gave it, for messages.
     shown: PathBuf,
     /// The absolute path: the process may change its working directory.
     place: PathBuf,
-    /// Never read: the system releases the lock when it is closed. `None` if directories cannot be opened.
+    /// Never read; held for its lock, which the system releases on closing. `None` if directories cannot be opened.
     _held: Option<File>,
     /// Identity of the open directory.
     identity: Option<Identity>,
@@ -124,15 +124,15 @@ impl LogFolder {
 /// Locks a directory against a second writer while the returned file is open. On systems without such locks, there is no
 /// protection.
 ///
-/// Locks the directory because it exists before any file of the log, and no file replaces it. Only where locks are advisory:
-/// elsewhere they would block readers, too.
+/// The lock is on the directory because that exists before any file of the log and, unlike files, is never replaced. It
+/// is taken only where locks are advisory: elsewhere it would block readers, too.
 ///
 /// `try_lock`: [`File::try_lock`], or [`File::try_lock_shared`], which excludes writers but allows other readers.
 pub(super) fn lock(dir: &Path, try_lock: fn(&File) -> Result<(), TryLockError>) -> Result<Option<File>, MetricsError> {
     if !cfg!(unix) {
         return Ok(None);
     }
-    // A folder to lock, not by driftworld-files: that opens regular files only.
+    // A folder, not by driftworld-files: that opens regular files only.
     let file = File::open(dir).map_err(MetricsError::io(dir, "open this directory"))?;
     match try_lock(&file) {
         Err(TryLockError::WouldBlock) => Err(MetricsError::InUse(dir.to_owned())),

@@ -50,7 +50,7 @@ impl LoggerInfo {
         &self.log_format_version
     }
 
-    /// Reads the file from a log directory. A file without a version is of 1.0, which did not require it.
+    /// Reads the file from a log directory. A file without a version counts as 1.0, which did not require one.
     pub(super) fn read(dir: &Path) -> Result<Self, MetricsError> {
         let object = json_file::read_object(&dir.join(FILE_NAME), EXPECTED_FILE)?;
         let columns = object.get("metrics_columns").ok_or_else(|| wrong_columns("nothing"))?;

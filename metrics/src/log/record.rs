@@ -67,8 +67,8 @@ pub struct Record {
     pub timestamp: Timestamp,
     /// The numbers: at least every metrics column of the log, the same names in every record. NaN means "no value".
     pub metrics: IndexMap<String, f64>,
-    /// Text columns beside the numbers: the same names in every record, distinct from the numbers' names. They are not declared
-    /// as metrics columns.
+    /// Text columns: the same names in every record, distinct from the numbers' names. They are not declared as metrics
+    /// columns.
     pub texts: IndexMap<String, String>,
 }
 
@@ -117,7 +117,7 @@ impl Record {
         self
     }
 
-    /// This record by this worker.
+    /// This record with this worker id.
     #[must_use]
     pub fn with_worker(mut self, worker_id: impl Into<String>) -> Self {
         self.worker_id = worker_id.into();

@@ -28,7 +28,7 @@ impl LogWriter {
     /// [`MetricsError::OtherColumns`] for a data file of format 1.0 or one with columns of its own.
     pub fn resume(dir: impl AsRef<Path>) -> Result<Self, MetricsError> {
         let dir = dir.as_ref();
-        // Reports a path that is no directory first.
+        // First reports a path that is not a directory.
         data_files::find(dir)?;
         let folder = LogFolder::lock(dir)?;
         let files = data_files::find(dir)?;

@@ -93,8 +93,8 @@ impl ScenarioInfo {
 }
 
 impl ScenarioInfo {
-    /// Whether a block of our own scenario may skip numbers of experiences: its regimes have budgets of decisions, and one of
-    /// them ends here, or they are mixed and any may have ended.
+    /// Whether a block of our own scenario may skip experience numbers: its regimes have budgets of decisions, and
+    /// either one of them ends here, or they are mixed and any may have ended.
     pub(super) fn leaves_numbers_unused(&self, block: u64, regime_ends: bool) -> bool {
         let Some(block) = self
             .extra
@@ -108,7 +108,7 @@ impl ScenarioInfo {
         has_budgets && (regime_ends || block.get("mix").is_some())
     }
 
-    /// Warns of each of the three fields that is missing.
+    /// Warns about each of the three fields that is missing.
     pub(super) fn warn_of_missing(&self, warnings: &mut Vec<LogWarning>) {
         let mut warn = |field: &'static str, is_missing: bool, expected: fn() -> String| {
             let reported = |warning: &LogWarning| matches!(warning, LogWarning::ScenarioInfo { field: other, .. } if *other == field);
@@ -120,7 +120,7 @@ impl ScenarioInfo {
                 });
             }
         };
-        // Our own scenarios may give them; their author left out those that are missing.
+        // Optional in our own scenarios: the author left out those that are missing.
         let ours = self
             .extra
             .get("scenario")

@@ -2,12 +2,12 @@
 
 use std::collections::HashMap;
 
-/// Most different texts remembered; a log has few, but one with more can still be read.
+/// Maximum number of distinct texts remembered; a log has few, but one with more can still be read.
 const REMEMBERED: usize = 65_536;
 
 /// A column that stores each of its values once.
 ///
-/// [`values`](Self::values) may contain a value twice if a log has very many different ones, so rows with the same id are
+/// [`values`](Self::values) may contain a value twice if a log has very many distinct ones: rows with the same id are
 /// equal, and rows with different ids usually are not.
 #[derive(Debug, Clone, Default)]
 pub struct SharedColumn<T> {

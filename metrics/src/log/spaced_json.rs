@@ -21,7 +21,7 @@ impl serde_json::ser::Formatter for Spaced {
     }
 }
 
-/// The object as text, with its keys in their own order.
+/// The object as text, keeping the order of its keys.
 pub(crate) fn spaced_json(object: &Map<String, Value>) -> String {
     let mut text = Vec::new();
     let mut serializer = serde_json::Serializer::with_formatter(&mut text, Spaced);

@@ -35,8 +35,8 @@ pub(super) fn copy(log_dir: &Path, data_files: &[PathBuf], to: &Path) -> Result<
         let target = to.join(inside);
         let parent = target.parent().unwrap_or(to);
         fs::create_dir_all(parent).map_err(MetricsError::io(parent, "make this directory"))?;
-        // Not the system's copy, which would keep the mode and ignore the umask. Files just found, not by driftworld-files:
-        // they are the log's own.
+        // Not the system's copy, which would keep the mode and ignore the umask. Opened directly,
+        // not by driftworld-files: these are the log's own files, just found.
         let copied = fs::File::open(file).and_then(|mut from| {
             let mut to = fs::File::create(&target)?;
             std::io::copy(&mut from, &mut to)?;
@@ -66,7 +66,7 @@ pub(super) fn give_name(new: &Path, task_dir: &Path, run: &str) -> Result<PathBu
 
 /// Moves a run out of sight, to be removed with the temporary directory.
 pub(super) fn take_away(run: &Path, temporary: &ScratchFolder) -> Result<(), MetricsError> {
-    // As in the data folder: no two have the same name.
+    // The same path as in the data folder, so that no two have the same name.
     let names = [run.parent().and_then(Path::file_name), run.file_name()];
     let grave: PathBuf = std::iter::once(temporary.path())
         .chain([Path::new("old")])
@@ -100,7 +100,7 @@ pub(super) fn directories(dir: &Path) -> Result<Vec<PathBuf>, MetricsError> {
     Ok(found)
 }
 
-/// Refuses a link in a task's place, which would lead out of the data folder.
+/// Refuses a link in place of a task's directory: it would lead out of the data folder.
 pub(super) fn own_directory(dir: &Path) -> Result<(), MetricsError> {
     let kind = fs::symlink_metadata(dir).map_err(MetricsError::io(dir, "look at this directory"))?;
     if kind.is_dir() {

@@ -10,13 +10,13 @@ use super::rows::{Cells, Rows};
 use super::shared_column::{Seen, SharedColumn};
 use crate::{LogLine, MetricsError};
 
-/// Most records in one log.
+/// Maximum number of records in one log.
 pub const MAX_RECORDS: usize = 10_000_000;
 
-/// Most columns in the data files of one log.
+/// Maximum number of columns in the data files of one log.
 pub const MAX_COLUMNS: usize = 1_000;
 
-/// Most cells of metrics and undeclared columns, over all rows.
+/// Maximum number of cells in metrics and undeclared columns, over all rows.
 pub const MAX_CELLS: u64 = 500_000_000;
 
 /// Whether undeclared text columns are kept.

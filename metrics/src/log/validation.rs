@@ -158,7 +158,7 @@ impl Check {
         for path in files {
             match data_file::read(path, logger_info.metrics_columns(), table, &mut self.faults) {
                 Ok(header) => headers.push((path, header)),
-                // The log as a whole is too large: going on is pointless.
+                // The log as a whole is too large: continuing is pointless.
                 Err(error @ MetricsError::TooLarge { .. }) if table.is_full() => return Err(error),
                 Err(error) => self.faults.add(error)?,
             }
@@ -195,7 +195,7 @@ impl Check {
         Ok(())
     }
 
-    /// Numbers never fall within a file; falling time stamps cause a warning per file.
+    /// Checks that numbers never decrease within a file; decreasing time stamps cause one warning per file.
     fn order_in_files(&mut self, table: &Table<'_>) -> Result<(), MetricsError> {
         let rows = &table.rows;
         for (_, mut range) in table.files() {
@@ -226,7 +226,7 @@ impl Check {
         Ok(())
     }
 
-    /// Rows are in a folder for their worker and block; others cause a warning per file.
+    /// Checks that rows are in the folder of their worker and block; others cause one warning per file.
     fn folders(&mut self, dir: &Path, table: &Table<'_>) {
         let rows = &table.rows;
         for (path, mut range) in table.files() {
@@ -257,7 +257,7 @@ impl Check {
         }
     }
 
-    /// Exactly one complete row for each experience of a worker, the last; its final experience may be unfinished.
+    /// Each experience of a worker has exactly one complete row, its last; the worker's last experience may have none.
     fn completions(&mut self, table: &Table<'_>) -> Result<(), MetricsError> {
         let rows = &table.rows;
         let key = |row: usize| (rows.workers().ids()[row], rows.exp_nums()[row]);
@@ -295,8 +295,8 @@ impl Check {
         Ok(())
     }
 
-    /// Experience numbers increase by one, over all workers; gaps cause one warning per log. A regime that ends with its budget
-    /// of decisions leaves numbers unused.
+    /// Experience numbers increase by one, over all workers; gaps cause one warning per log, except where a regime with
+    /// a budget of decisions may leave numbers unused.
     fn missing(&mut self, table: &Table<'_>, scenario: &ScenarioInfo) {
         let numbers = table.rows.exp_nums();
         let (blocks, tasks) = (table.rows.block_nums(), table.rows.task_names().ids());
@@ -363,7 +363,7 @@ impl Check {
         Ok(())
     }
 
-    /// Warns once of each unconventional name, in the order of the rows.
+    /// Warns once about each unconventional name, in the order of the rows.
     fn task_names(&mut self, rows: &Rows) {
         let names = rows.task_names();
         let mut odd: Vec<bool> = (names.values().iter())

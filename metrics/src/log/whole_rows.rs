@@ -8,7 +8,7 @@ use std::path::Path;
 
 use crate::{LogLine, MetricsError};
 
-/// Fewest tabs in a line that looks like a row: those of a row of any version.
+/// Minimum number of tabs in a line that looks like a row: every row of any version has at least as many.
 const TABS_OF_A_ROW: usize = 8;
 
 /// The whole rows at the start of a file.
@@ -18,15 +18,15 @@ pub(super) struct WholeRows {
     pub(super) bytes: u64,
     /// Number of lines in them.
     pub(super) lines: u64,
-    /// Whether lines that look like rows follow: then it is no torn row, but a quote that was never closed and swallowed the
-    /// rows after it.
+    /// Whether lines that look like rows follow: then the remainder is not a torn row, but a quote was never closed and
+    /// swallowed the rows after it.
     pub(super) swallowed: bool,
-    /// Whether lines that end with a carriage return alone follow, which is no torn row either.
+    /// Whether lines that end with a lone carriage return follow: then the remainder is not a torn row either.
     pub(super) returns: bool,
 }
 
 impl WholeRows {
-    /// The fault of the remainder; the piece that was read starts at this line of its file.
+    /// The fault to report for the remainder; what was read starts at line `first_line` of its file.
     pub(super) fn fault(self, path: &Path, first_line: u64) -> MetricsError {
         let (path, line) = (path.to_owned(), first_line + self.lines);
         let wrong = match self {
@@ -44,7 +44,7 @@ enum Place {
     CellStart,
     Cell,
     Quotes,
-    /// After a quote within quotes: the end of the cell, or the first of two that stand for one.
+    /// After a quote within quotes: it ends the cell, or is the first of two that encode one.
     QuoteInQuotes,
 }
 

@@ -14,9 +14,9 @@ use crate::log::BlockType;
 /// Writes records to a log directory, each flushed to the operating system as soon as it is written.
 ///
 /// The rules of the format are checked for every record: block and experience numbers never decrease, every record has the same
-/// metrics, a worker completes an experience once, and a worker's rows with one block number have one block type. Opens one
-/// file at a time, and syncs it to disk when it switches to the next: a power failure loses at most rows of the last block. A
-/// second writer on the directory is refused where the system can detect it.
+/// metrics, a worker completes an experience once, and a worker's rows with one block number have one block type. Keeps
+/// one file open at a time, and syncs it to disk when it switches to the next: a power failure loses at most rows of
+/// the last block. A second writer on the directory is refused where the system can detect it.
 ///
 /// Before each record, and at the end, it checks that the directory and the files are still those that it wrote, with the same
 /// lengths: if one was removed, renamed, replaced or truncated meanwhile, it fails and never recreates anything.
@@ -113,7 +113,7 @@ impl LogWriter {
         self.folder.shown()
     }
 
-    /// The columns beside the standard ones, of metrics and of texts, in order; `None` before the first record.
+    /// The non-standard columns, of metrics and of texts, in order; `None` before the first record.
     pub fn columns(&self) -> Option<&[String]> {
         self.progress.columns.as_deref()
     }
@@ -238,7 +238,7 @@ impl LogWriter {
 }
 
 impl Progress {
-    /// The rules between a record and earlier ones.
+    /// Checks a record against earlier ones.
     fn check(&self, record: &Record) -> Result<(), MetricsError> {
         let order = |field: &str, found: u64, last: u64| {
             if found < last {
@@ -294,7 +294,7 @@ fn data_path(worker_id: &str, block_num: u64, block_type: BlockType) -> PathBuf 
         .join(data_files::FILE_NAME)
 }
 
-/// The rules for a record by itself.
+/// Checks a record by itself.
 fn check_cells(record: &Record) -> Result<(), MetricsError> {
     if !is_worker_id(&record.worker_id) {
         let expected = "letters, digits, _, - and ., not only dots".to_owned();

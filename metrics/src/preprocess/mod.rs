@@ -19,7 +19,7 @@ pub(crate) fn anchors(task: &str, options: &Options) -> Option<Anchors> {
     given_anchors(task, options).filter(|anchors| anchors.ceiling > anchors.floor)
 }
 
-/// A caution about tasks whose given ceiling is not above the floor: they are not scaled by them.
+/// A caution about tasks whose given ceiling is not above the floor: they are scaled by their own range instead.
 pub(crate) fn caution_of_scales(lifetime: &Lifetime, options: &Options) -> Option<String> {
     let flat = |task: &String| {
         let Anchors { floor, ceiling, .. } = given_anchors(task, options)?;
@@ -45,8 +45,8 @@ fn given_anchors(task: &str, options: &Options) -> Option<Anchors> {
     of_task.map(|(_, anchors)| anchors.clone()).reduce(hull)
 }
 
-/// The range given for a task, under the name used for scoring: its own range, or else its floor and ceiling; `None` if nothing
-/// was given, or no floor and ceiling of this task.
+/// The range given for a task, under the name used for scoring: its range in `data_range`, which must then have one; if
+/// `data_range` is not given, its floor and ceiling, or `None` without these.
 ///
 /// If variants do not count, the range of a task is the hull of its variants' ranges.
 pub(crate) fn given_range(

@@ -39,8 +39,9 @@ pub(crate) fn smoothed(values: &[f64], window_length: Option<usize>, method: Smo
     if length < 3 || total <= 0.0 {
         return values.to_vec();
     }
-    // Normalises the weights before adding, as the reference does: windows that tie in exact arithmetic, as on a plateau of
-    // clamped data, then have its bits and its first maximum. It adds windows of more than 11 in a processor-dependent order.
+    // Normalises the weights before adding, as the reference does: windows that tie in exact arithmetic, as on a
+    // plateau of clamped data, then have the reference's bits, and so its first maximum. For windows longer than 11,
+    // the reference's order of addition depends on the processor.
     let shares: Vec<f64> = weights.iter().map(|weight| weight / total).collect();
     let mirrored: Vec<f64> = (values[1..length].iter().rev())
         .chain(values)
@@ -57,7 +58,7 @@ const SIDE_BY_SIDE: usize = 16;
 
 /// The weighted sum of each window, from the first place where it fits to the last.
 ///
-/// Each is added from its first value to its last on its own: no bit depends on its neighbours.
+/// Each sum adds its values from the first to the last, so that its bits do not depend on its neighbours.
 fn moving_sums(values: &[f64], weights: &[f64]) -> Vec<f64> {
     let num = values.len() + 1 - weights.len();
     let mut sums = Vec::with_capacity(num + SIDE_BY_SIDE);

@@ -9,10 +9,10 @@ use crate::MetricsError;
 use crate::choice::choice;
 use crate::statistics::quantile;
 
-/// Most resamples per interval.
+/// Maximum number of resamples per interval.
 pub const MAX_RESAMPLES: u32 = 1_000_000;
 
-/// Most scores drawn per interval, over all resamples: about a minute's work.
+/// Maximum number of scores drawn per interval, over all resamples: about a minute's work.
 pub const MAX_SCORES_DRAWN: u64 = 10_000_000_000;
 
 choice! {

@@ -29,8 +29,8 @@ impl Estimate {
     }
 }
 
-/// Aggregates of a table with their percentile bootstrap intervals, all from the same resamples, and below [`FEW_RUNS`] runs
-/// Student's.
+/// Aggregates of a table with their percentile bootstrap intervals, all from the same resamples; with fewer than
+/// [`FEW_RUNS`] runs, also with Student's t intervals.
 ///
 /// Time `O(resamples · scores)`: 50,000 resamples of 10 runs of 10 strata take about a tenth of a second.
 ///
@@ -81,9 +81,10 @@ pub fn estimate<const N: usize>(
     Ok(estimates)
 }
 
-/// A confidence interval. With the default options the bootstrap's contains the value for infinitely many runs in about 92 of
-/// 100 repetitions with 20 runs, in 87 with 9, in 82 with 5, in 76 with 3: few runs underestimate their own variation.
-/// Student's does in 95, if runs are normal. `metrics/tests/repeats_coverage.rs` simulates both.
+/// A confidence interval. With the default options, a bootstrap interval contains the value for infinitely many runs in
+/// about 92 of 100 repetitions with 20 runs, in 87 with 9, in 82 with 5, in 76 with 3: few runs underestimate their own
+/// variation. Student's t interval contains it in 95, if runs are normal. `metrics/tests/repeats_coverage.rs` simulates
+/// both.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Interval {
     /// Lower end, in the unit of the value.

@@ -13,9 +13,9 @@ use crate::MetricsError;
 pub struct Improvement {
     /// Mean of the strata's probabilities: 0.5 if neither is better, 1 if every run of A beats every run of B.
     pub probability: Estimate,
-    /// P-value of a permutation test: the share of ways to divide all runs between the two agents, as whole runs, in which the
-    /// mean probability is as far from 0.5. Calling agents different at 0.05 or less is wrong for at most 5 % of equal ones,
-    /// whatever the correlation within runs. `None` for one run of each.
+    /// P-value of a permutation test: the share of ways to divide all runs between the two agents, as whole runs, in
+    /// which the mean probability is at least as far from 0.5. Calling agents different at 0.05 or less is wrong for at
+    /// most 5 % of equal ones, whatever the correlation within runs. `None` for one run of each.
     #[serde(default)]
     pub p_value: Option<f64>,
     /// The smallest possible p-value with this number of runs: 0.1 for three of each.

@@ -3,7 +3,7 @@
 use super::Interval;
 use super::student::student_reach;
 
-/// With at least this number of runs, only the bootstrap makes intervals.
+/// From this number of runs on, only bootstrap intervals are computed.
 pub const FEW_RUNS: usize = 10;
 
 /// The jackknife's estimate of the variance, and its degrees of freedom, from the values with each run of one agent left out in

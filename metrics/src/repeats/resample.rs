@@ -47,7 +47,7 @@ impl Resample {
         }
     }
 
-    /// Leaves out one run and counts each other once; false if no score is left.
+    /// Leaves out one run and counts every other run once; false if no score is left.
     pub(super) fn leave_out(&mut self, run: usize) -> bool {
         for slot in self.strata.iter().flatten() {
             self.counts[slot.position as usize] = u32::from(slot.run as usize != run);

@@ -6,16 +6,16 @@ use super::Resampling;
 use crate::MetricsError;
 use crate::options::is_bounded;
 
-/// Most runs in a table.
+/// Maximum number of runs in a table.
 pub const MAX_RUNS: usize = 10_000;
 
-/// Most strata in a table.
+/// Maximum number of strata in a table.
 pub const MAX_STRATA: usize = 10_000;
 
-/// Most scores in a table, over all runs and strata.
+/// Maximum number of scores in a table, over all runs and strata.
 pub const MAX_SCORES: usize = 1_000_000;
 
-/// Most names listed in a caution; the others are counted.
+/// Maximum number of names listed in a caution; the others are counted.
 const NAMES_SHOWN: usize = 5;
 
 /// Scores of repeated runs. A *stratum* is scored in every run: a task or a pair of tasks; a *run* is one lifetime of the
@@ -150,7 +150,7 @@ impl ScoreTable {
         ))
     }
 
-    /// Whether resampling can give another table at all.
+    /// Whether resampling can give a different table at all.
     pub(super) fn varies(&self, resampling: Resampling) -> bool {
         match resampling {
             Resampling::Strata => self.strata.values().any(|scores| scores.len() > 1),

@@ -19,7 +19,7 @@ pub struct AsLogged {
 /// Columns that show how good an agent is without scaling.
 const TELLING: [&str; 2] = ["reward", "success"];
 
-/// The scored column, then `reward` and `success`, each once and if the log has it.
+/// The scored column, then `reward` and `success`; each once, and only if the log has it.
 pub(crate) fn as_logged(log: &Log, options: &Options) -> Result<IndexMap<String, AsLogged>, MetricsError> {
     let mut found = IndexMap::new();
     for column in std::iter::once(options.perf_measure.as_str()).chain(TELLING) {

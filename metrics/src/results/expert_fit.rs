@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::lifetime::{Budget, Lifetime, SteRun, budgets};
 use crate::{Log, Options, VariantMode};
 
-/// One value of a lifetime and of an expert.
+/// The same quantity for a lifetime and for an expert.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct BesideExpert<T> {
     /// The lifetime's.
@@ -26,7 +26,7 @@ pub struct ExpertFit {
     pub learned: BesideExpert<usize>,
     /// Learning experiences before deployment, of any task: a lifetime and its experts should share them.
     pub before_deployment: BesideExpert<usize>,
-    /// Different worlds of the learning, by seed and index; `None` if either log does not give them.
+    /// Distinct worlds of the learning experiences, by seed and index; `None` if either log does not give them.
     pub worlds: Option<BesideExpert<usize>>,
     /// Worlds that both learned in.
     pub shared_worlds: Option<usize>,

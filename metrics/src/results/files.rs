@@ -16,7 +16,7 @@ use crate::{MetricsError, Options};
 pub struct Settings {
     /// Directory of the log, as the user gave it.
     pub log_dir: String,
-    /// The options; their fields stand at the top level of the JSON.
+    /// The options; their fields are at the top level of the JSON.
     #[serde(flatten)]
     pub options: Options,
 }

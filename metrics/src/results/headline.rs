@@ -35,7 +35,7 @@ impl Direction {
         matches!(self, Self::Higher | Self::HigherThan(_))
     }
 
-    /// Whether a value is good or bad, only by its side of no effect; unclear if it is on neither.
+    /// Whether a value is good or bad, judged only by its side of the neutral value; unclear if it is on neither side.
     pub fn side(self, value: f64) -> Reading {
         match self.neutral().and_then(|neutral| value.partial_cmp(&neutral)) {
             None | Some(Ordering::Equal) => Reading::Unclear,

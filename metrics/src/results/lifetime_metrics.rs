@@ -93,7 +93,7 @@ pub struct LifetimeMetrics {
     pub definitions: Definitions,
 }
 
-/// The readings from the rows of the whole JSON.
+/// Extracts the readings from the rows of the JSON of [`LifetimeMetrics::whole`].
 fn readings_of_rows<'de, D: Deserializer<'de>>(rows: D) -> Result<IndexMap<String, Reading>, D::Error> {
     #[derive(Deserialize)]
     struct Row {
@@ -215,8 +215,8 @@ impl LifetimeMetrics {
         parts(&self.task_metrics, &self.contrasts, name)
     }
 
-    /// The values of a metric from a learned task to each other, in order of the later evaluation, also of a contrast of
-    /// transfer that was not requested.
+    /// The values of a metric from a learned task to every other, in order of the later evaluation; also those of a
+    /// contrast of transfer that was not requested.
     pub fn pairs(&self, task: &str, name: &str) -> Option<&PairValues> {
         pairs(&self.task_metrics, &self.contrasts, task, name)
     }
@@ -272,8 +272,8 @@ pub(crate) fn parts<'a>(
 
 /// A lifetime as JSON: the fields of [`LifetimeMetrics`], then `readings`, the row of each metric that has a value in the table
 /// of the lifetime; `null`, the null bands; `contrasts`, those of transfer between tasks if only ratios were requested;
-/// `reached`, the evaluation results of each task; `curves`, the measures of each evaluation curve; and with experts `experts`,
-/// whether they are like for like.
+/// `reached`, the evaluation results of each task; `curves`, the measures of each evaluation curve; `cautions`, if
+/// there are any; and with experts `experts`, whether they are like for like.
 #[derive(Debug, Clone, Serialize)]
 pub struct WholeLifetime<'a> {
     #[serde(flatten)]

@@ -27,12 +27,12 @@ pub struct NullBand {
     pub low: f64,
     /// Upper end of the central 95 % of permuted values.
     pub high: f64,
-    /// Twice the smaller share of values, including the lifetime's own, at least as far below or above; at most 1.
+    /// Two-sided p-value: twice the smaller share of values at least as low or as high, its own included; at most 1.
     pub p: f64,
     /// The unit of permutation.
     pub exchanged: Exchanged,
-    /// Standard error of the value, from those of its evaluations over worlds, taken as independent: an agent would earn
-    /// something else in other worlds. `None` if one of them is unknown, or there are more than 2,000 evaluations.
+    /// Standard error of the value, from those of its evaluations over worlds, taken as independent: other worlds
+    /// would give other scores. `None` if one of them is unknown, or there are more than 2,000 evaluations.
     #[serde(default)]
     pub standard_error: Option<f64>,
 }

@@ -7,7 +7,7 @@ use super::{Headline, LifetimeMetrics};
 use crate::repeats::{lifetimes_for, smallest_effect, welch_power};
 use crate::statistics::variance;
 
-/// What a number of lifetimes can show of one metric, by a two-sided Welch's t test at 5 %.
+/// What a number of lifetimes can show about one metric, by a two-sided Welch's t test at 5 %.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MetricPower {
     /// The metric.

@@ -46,7 +46,7 @@ pub struct Reached {
     /// if there are no such shares.
     #[serde(default)]
     pub shares: Vec<f64>,
-    /// Reward of an agent that knows nothing of the task, if known.
+    /// Reward of an agent that knows nothing about the task, if known.
     #[serde(default)]
     pub floor: Option<f64>,
     /// Reward of an agent that knows the task, if known and above the floor.

@@ -5,11 +5,11 @@ use serde::{Deserialize, Serialize};
 use super::{Direction, NullBand};
 use crate::repeats::Interval;
 
-/// Largest `p` of a named effect.
+/// Largest p-value at which an effect is named.
 pub const LARGEST_P: f64 = 0.05;
 
-/// Least share of the effects of tasks, or of pairs of them, that must agree with the lifetime's value; below it, the effect is
-/// mixed.
+/// Minimum share of the effects of tasks, or of pairs of them, that must agree with the lifetime's value; below it, the
+/// effect is mixed.
 pub const AGREEING_PART: f64 = 0.75;
 
 /// The reading of a metric's value.

@@ -7,7 +7,7 @@ use super::{LifetimeMetrics, Value, Values};
 use crate::log::line;
 use crate::{BlockSubtype, BlockType, Regime};
 
-/// Characters of the task parameters that the table shows.
+/// Number of characters of the task parameters that the table shows.
 const SHOWN_PARAMS: usize = 25;
 
 /// Columns that identify the regime.
@@ -20,7 +20,7 @@ const IDENTITY: [&str; 6] = [
     PARAMS,
 ];
 
-/// The one of them that may be absent.
+/// The only one of these columns that may be absent.
 const PARAMS: &str = "task_params";
 
 /// The column with the lifetime's name.

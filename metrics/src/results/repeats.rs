@@ -51,8 +51,8 @@ pub struct ComparedMetric {
 
 /// Every metric that has a value in some lifetime, over all of them, in the order of the headlines.
 ///
-/// Variation is analysed task by task: a task's values in the lifetimes are one stratum; for transfer, the first value of each
-/// pair of tasks; for a metric that has values for lifetimes only, these.
+/// Variation is analysed task by task: a task's values in the lifetimes are one stratum; for transfer, the first values
+/// of a pair of tasks; for a metric that has values for lifetimes only, those values.
 ///
 /// # Errors
 /// Those of [`estimate`](crate::repeats::estimate()) and [`ScoreTable::from_runs`].

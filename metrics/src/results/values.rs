@@ -21,7 +21,7 @@ pub enum Value {
     Numbers(Vec<f64>),
     /// Groups of numbers.
     Runs(Vec<Vec<f64>>),
-    /// A list of numbers for each of other tasks.
+    /// A list of numbers for each of the other tasks.
     Pairs(PairValues),
     /// A list of numbers, some of which could not be computed: these are `null` in JSON.
     Gapped(Vec<Option<f64>>),
@@ -90,7 +90,7 @@ impl Values {
         }
     }
 
-    /// A list of numbers for each of other tasks.
+    /// A list of numbers for each of the other tasks.
     pub fn pairs(&self, name: &str) -> Option<&PairValues> {
         match self.get(name)? {
             Value::Pairs(pairs) => Some(pairs),

@@ -16,7 +16,7 @@ pub struct Assessment<'a> {
     regimes: Vec<Values>,
     tasks: IndexMap<String, Values>,
     whole: Values,
-    /// Lifetime values that a metric set to a non-finite number; they are not aggregated from the tasks' either.
+    /// Lifetime values that a metric set to a non-finite number; they are not aggregated from the tasks' values either.
     none: IndexSet<String>,
     /// Whether performances that differ only by rounding count as equal.
     pub(super) resolves_ties: bool,
@@ -41,8 +41,8 @@ impl<'a> Assessment<'a> {
         }
     }
 
-    /// How much performances among these may differ and still count as equal: a billionth of the largest, or 0 if rounding
-    /// decides.
+    /// The difference up to which these performances count as equal: a billionth of the largest magnitude, or 0 if
+    /// rounding decides between them.
     pub(super) fn slack(&self, values: &[f64]) -> f64 {
         let largest = || values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
         if self.resolves_ties { ROUNDING * largest() } else { 0.0 }
@@ -104,8 +104,8 @@ impl<'a> Assessment<'a> {
         }
     }
 
-    /// Sets the lifetime's value to the mean or median of tasks' values, which may be infinite, as quotients with divisor 0: if
-    /// the result is not finite, the lifetime has no value, as in the reference. NaN is skipped.
+    /// Sets the lifetime's value to the mean or median of tasks' values, which may be infinite, such as quotients with
+    /// divisor 0: if the result is not finite, the lifetime has no value, as in the reference. NaN is skipped.
     pub(super) fn set_lifetime_of(&mut self, name: &str, of_tasks: Vec<f64>) {
         let known = of_tasks.into_iter().filter(|value| !value.is_nan()).collect();
         self.set_lifetime(name, self.aggregate(known));

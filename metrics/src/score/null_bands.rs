@@ -16,7 +16,7 @@ pub const NULL_PERMUTATIONS: usize = 1000;
 /// Seed of the permutations; fixed, so that a lifetime gets the same bands wherever it is scored.
 const SEED: u64 = 0;
 
-/// The null bands of a lifetime, and the values that they were made of.
+/// The null bands of a lifetime, and the permuted values behind them.
 #[derive(Default)]
 pub(super) struct NullBands {
     pub(super) bands: IndexMap<String, NullBand>,

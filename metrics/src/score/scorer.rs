@@ -190,7 +190,7 @@ fn readings(
     all.into_iter().filter_map(reading).collect()
 }
 
-/// The caution about tasks that were never learned: there is nothing to keep, and what maintenance is without them.
+/// The caution about tasks that were never learned, in which there is nothing to keep; gives maintenance without them.
 fn never_learned(
     reached: &IndexMap<String, Reached>,
     tasks: &IndexMap<String, Values>,

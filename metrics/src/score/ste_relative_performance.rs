@@ -36,8 +36,8 @@ impl Metric for SteRelativePerformance {
     }
 }
 
-/// A caution about tasks in which the lifetime or an expert gathered nothing or less: a ratio is meaningless there, and of two
-/// losses the larger one looks better. The difference of the means is meaningful.
+/// A caution about tasks in which the lifetime or an expert gathered 0 or less in total: a ratio is meaningless there,
+/// and of two losses the larger one looks better. The difference of the means is meaningful.
 pub(super) fn caution(lifetime: &Lifetime) -> Option<String> {
     let mut found = Vec::new();
     for task in lifetime.tasks() {

@@ -22,7 +22,7 @@ impl Metric for TerminalPerformance {
     }
 }
 
-/// The mean over the end of one performance per experience, at least one, and the experiences before the middle of that end.
+/// The mean over the end of a regime, at least one experience, and the number of experiences before the end's middle.
 ///
 /// QUIRK: the end begins at the whole part of `(1 − 0.1) · n` in floating point. Under the published definitions it is the
 /// whole part of nine tenths. The two never differ below a million experiences, as a test shows.

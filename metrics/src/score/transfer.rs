@@ -160,7 +160,7 @@ type Gaps<'a> = BTreeMap<(usize, usize), Gap<'a>>;
 ///
 /// QUIRK: each later evaluation holds one value per direction. If several tasks were learned since the evaluation before, all
 /// of them contributed, but only the last pair in permutation order gets the value: tasks in the order in which they first
-/// appear among the assessed regimes. Under the published definitions each of them gets it.
+/// appear among the assessed regimes. Under the published definitions, each of them gets the value.
 fn gaps<'a>(lifetime: &'a Lifetime, options: &Options) -> [Gaps<'a>; 2] {
     let places = Places::of(lifetime);
     let (mut forward, mut backward) = (Gaps::new(), Gaps::new());

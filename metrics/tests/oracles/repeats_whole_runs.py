@@ -1,10 +1,11 @@
-"""Probability of improvement where whole runs are drawn, by numpy; writes repeats_whole_runs.json beside this file.
+"""Probability of improvement with whole runs resampled, by numpy; writes repeats_whole_runs.json beside this file.
 
 Usage: python repeats_whole_runs.py   (a few seconds)
-Made with the version that the JSON names. Scores are (runs, strata); null where a run lacks the score of a stratum.
+The JSON names the numpy version used. Scores are (runs, strata); null where a run lacks the score of a stratum.
 
-Each agent's runs are drawn once per resample, for all strata. A stratum of which either agent drew no score is left out of that
-resample's mean, and the stratum's own interval is that of the other resamples; a resample without any stratum does not count.
+Each agent's runs are drawn once per resample, for all strata together. If either agent drew no score in a stratum, the
+resample's mean leaves that stratum out, and the stratum's own interval leaves that resample out; a resample without any
+stratum does not count.
 """
 
 import json
@@ -37,7 +38,7 @@ def probabilities(counts_a, counts_b, a, b):
 
 
 def of_strata_and_mean(found):
-    """The columns of strata, then the mean over those that there are."""
+    """The columns of strata, then the mean over those that are not NaN."""
     present = ~np.isnan(found)
     found = found[present.any(axis=1)]
     mean = np.nansum(found, axis=1) / (~np.isnan(found)).sum(axis=1)
@@ -49,7 +50,7 @@ def ends(values):
 
 
 def like_a_run(num_runs, num_strata, shift):
-    """Scores whose run moves all strata alike, as the seed of a lifetime does."""
+    """Scores with an offset per run that is the same in all strata, like the effect of a lifetime's seed."""
     return shift + draw.normal(size=(num_runs, 1)) + 0.4 * draw.normal(size=(num_runs, num_strata))
 
 
