@@ -123,7 +123,7 @@ pub enum CurriculumError {
     StepsGivenUp {
         /// The first variant of the sequence.
         anchor: String,
-        /// The most steps found.
+        /// The steps of the longest sequence found before the limit.
         found: usize,
         /// The requested steps.
         wanted: Steps,

@@ -50,7 +50,7 @@ impl Living {
             },
             stop: &self.stop,
             catalogue: Catalogue::default(),
-            jobs: NonZeroUsize::new(self.jobs).expect("somebody has to live it"),
+            jobs: NonZeroUsize::new(self.jobs).expect("at least one job"),
             repeated_evaluations: self.repeated,
         })
     }

@@ -148,7 +148,7 @@ pub(crate) struct Address {
     pub(crate) index: u64,
     /// The object's number in its group.
     pub(crate) object: u64,
-    /// How often the world was drawn again.
+    /// Number of times that the world was redrawn.
     pub(crate) attempt: u32,
 }
 

@@ -1,8 +1,9 @@
 //! Draws values and places from the declared distributions.
 //!
-//! Numbers are drawn by inversion: one random number through the distribution's quantile. Two variants under one seed share
-//! random numbers: where one draws high, so does the other. Points of discs and rings come from `rand_distr`, whose rejection
-//! needs no transcendental function; everything else uses `libm`, so that the bits are the same on every platform.
+//! Numbers are drawn by inversion: the quantile function maps one random number to the value. Two variants under one
+//! seed share random numbers: where one draws high, so does the other. Points of discs and rings come from
+//! `rand_distr`, whose rejection sampling needs no transcendental function; everything else uses `libm`, so that the
+//! bits are the same on every platform.
 
 use std::borrow::Cow;
 
@@ -22,7 +23,7 @@ pub(crate) fn draw<'a>(distribution: &'a Distribution, rng: &mut Rng) -> Cow<'a,
             Cow::Owned(Value::Vector(shares(alpha, &units)))
         }
         colors if colors.draws_colors() => {
-            // Always draws all three numbers: a variant whose channels vary together then shares its first with other variants.
+            // Always draws three numbers: a variant whose channels vary together then shares the first with others.
             let units = [rng.unit(), rng.unit(), rng.unit()];
             Cow::Owned(Value::Color(
                 colors.color_at(units).expect("three random numbers decide a colour"),

@@ -25,7 +25,7 @@ pub enum Switch {
     },
 }
 
-/// The way from one variant to another: of one task, or of any two tasks if whole variants [switch](Switch::Task).
+/// A path from one variant to another of the same task, or of any other task if whole variants [switch](Switch::Task).
 ///
 /// Numbers, points, vectors and the numbers of distributions of one family are interpolated linearly; headings take the shorter
 /// way round, or the way through their range; colours, including those of distributions, are interpolated in Oklab, so that they

@@ -1,4 +1,4 @@
-//! [`GeneratorError`]: errors of sampling a world, interpolating variants and searching for a distance.
+//! [`GeneratorError`]: errors raised while sampling a world, interpolating variants or searching for a distance.
 
 use std::fmt::{Display, Formatter, Result};
 
@@ -17,7 +17,7 @@ pub enum GeneratorError {
     OutOfRange {
         /// The world.
         world: WorldId,
-        /// Where the value was to go: a pointer into the spec.
+        /// Where the value belongs: a pointer into the spec.
         place: String,
         /// The drawn number.
         found: f64,
@@ -38,7 +38,7 @@ pub enum GeneratorError {
         group: String,
         /// The object's number within the group, from 1.
         object: u32,
-        /// Number of objects that the group was to have.
+        /// Number of objects that the group should have.
         count: u32,
         /// Number of places tried.
         tries: u32,
@@ -90,7 +90,7 @@ pub enum GeneratorError {
         world: WorldId,
         /// Number of objects drawn.
         found: usize,
-        /// Most objects of a world.
+        /// Maximum number of objects in a world.
         limit: usize,
     },
     /// The drawn values do not fit together in one world, such as large images with much supersampling.
@@ -112,7 +112,7 @@ pub enum GeneratorError {
         /// The second variant.
         to: String,
     },
-    /// A variant on the way of a drift is invalid.
+    /// A variant along a drift is invalid.
     #[error("on the way of the drift: {0}")]
     Between(#[source] SpecError),
     /// A search for a distance has no parameter to change.

@@ -4,7 +4,7 @@ use driftworld_spec::{
     ChannelSpread, Channels, Color, Distribution, Number, Parameter, ParameterType, Spread, Value, Variant,
 };
 
-/// The value between two, or `None` if they cannot be interpolated. `listed`: the domain is a list of choices.
+/// Interpolates between two values; `None` if that is impossible. `listed`: the domain is a list of choices.
 pub(crate) fn interpolate(
     parameter: &Parameter,
     listed: bool,
@@ -30,7 +30,7 @@ pub(crate) fn interpolate(
         _ if listed => None,
         (Value::Number(from), Value::Number(to)) if parameter.kind == ParameterType::Heading => {
             if let Some([low, high]) = parameter.range.filter(|[low, high]| high - low < 360.0) {
-                // Within the arc that the parameter declares, which may be the longer way.
+                // Stay within the arc that the parameter declares, even if it is the longer way round.
                 let along = |degrees: f64| (degrees - low).rem_euclid(360.0).min(high - low);
                 return Some(Value::Number(
                     (low + straight(along(*from), along(*to))).rem_euclid(360.0),
@@ -121,7 +121,7 @@ fn comparable(distribution: &Distribution, other: &Distribution) -> Distribution
     }
 }
 
-/// Corrects a distribution of colours between two of its family: interpolates colours in Oklab, and hues the shorter way round.
+/// Corrects an interpolated distribution of colours: interpolates colours in Oklab, and hues the shorter way round.
 fn colored(between: Distribution, from: &Distribution, to: &Distribution, t: f64) -> Distribution {
     use Distribution::{ColorHsv, ColorNormal, ColorPerturb, ColorUniform, Mixture};
     let color = |a: &Channels, b: &Channels| {

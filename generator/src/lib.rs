@@ -1,4 +1,4 @@
-//! Turns a variant, a seed and an index into a concrete world; interpolates variants, and finds variants at a wanted distance.
+//! Turns a variant, a seed and an index into a concrete world; interpolates variants, and finds them at a distance.
 
 mod at_distance;
 mod cells;

@@ -11,8 +11,8 @@ use crate::draw::{self, Place};
 use crate::spatial_hash::SpatialHash;
 use crate::stream::Rng;
 
-/// Most places to try for one object. If places are taken in turn with jitter in their cells: most in its own cell, and as many
-/// again in all others together.
+/// Maximum number of places to try for one object. If places are taken in turn and jittered in their cells: this many
+/// in the object's own cell, and as many again in all other cells together.
 pub(crate) const TRIES: u32 = 1000;
 
 /// Everything that placing an object depends on: free space, the agent's start, and the objects placed before.
@@ -171,7 +171,8 @@ impl<'a> PlacementContext<'a> {
 
     /// Finds and takes a free place for an object; else returns the number of tries, and why no place was free.
     ///
-    /// `turns` tracks which places of a `points` or `grid` in turn are left by earlier objects around the same anchor.
+    /// `turns` tracks which places of a `points` or `grid` taken in turn earlier objects around the same anchor have
+    /// left.
     pub(crate) fn find(
         &mut self,
         request: &Request,
@@ -210,8 +211,9 @@ impl<'a> PlacementContext<'a> {
         Ok(cells)
     }
 
-    /// Whether a placement in cells explicitly uses the ways through doorways: by its kind, by letters, or because no other cells
-    /// are left. Placements of other kinds give coordinates in metres, which counts as explicit.
+    /// Whether a placement explicitly allows objects to block doorways: by its kind of cells, by letters, or because
+    /// only cells in doorways are left. Placements that are not in cells give coordinates in metres, which counts as
+    /// explicit.
     pub(crate) fn asks_for_doorways(&self, placement: &Distribution, cells: Option<&Cells>, mouth: f64) -> bool {
         match placement {
             Distribution::Cells {
@@ -225,7 +227,7 @@ impl<'a> PlacementContext<'a> {
         }
     }
 
-    /// Like [`PlacementContext::find`], in a cell of a layout. The middle of a cell is never too near to a wall.
+    /// Like [`PlacementContext::find`], in a cell of a layout. The middle of a cell never counts as too near to a wall.
     pub(crate) fn find_in_cells(
         &mut self,
         request: &Request,

@@ -4,25 +4,25 @@ use std::sync::OnceLock;
 
 use crate::stream::{Stream, unit};
 
-/// Most dimensions of Sobol's sequence; parameters beyond them are drawn independently.
+/// Maximum number of dimensions of the Sobol sequence; parameters beyond them are drawn independently.
 pub(crate) const MAX_DIMENSIONS: usize = 100;
 
 /// How the worlds of a variant cover the ranges of randomized parameters.
 ///
-/// Applies to randomized parameters that up to three random numbers decide; colours take one per channel. They take dimensions in
-/// the task's order of declaration, so that a new parameter shifts the dimensions of those declared after it. Choices, mixtures,
-/// Dirichlet shares and draws inside groups stay independent, as do parameters beyond 100 dimensions and worlds that are drawn
-/// again because of a requirement.
+/// Applies to randomized parameters that take at most three random numbers; colours take one per channel. They take
+/// dimensions in the task's order of declaration, so that a new parameter shifts the dimensions of those declared after
+/// it. Choices, mixtures, Dirichlet shares and draws inside groups stay independent, as do parameters beyond 100
+/// dimensions and worlds that are drawn again because of a requirement.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Sequence {
     /// Each world draws independently.
     #[default]
     Independent,
-    /// World `index` is point number `index` of Sobol's sequence, scrambled by the seed: any 2^k worlds starting at a multiple of
-    /// 2^k spread evenly in each parameter, and in most pairs of parameters.
+    /// World `index` is point number `index` of the Sobol sequence, scrambled by the seed: any 2^k worlds starting at a
+    /// multiple of 2^k spread evenly in each parameter, and in most pairs of parameters.
     Sobol,
-    /// A Latin hypercube over the worlds `first..first + count`: each parameter has exactly one world in each of `count` equal
-    /// shares of its probability.
+    /// A Latin hypercube over the worlds `first..first + count`: each parameter has exactly one world in each of
+    /// `count` strata of equal probability.
     LatinHypercube {
         /// The first world.
         first: u64,
@@ -32,7 +32,7 @@ pub enum Sequence {
 }
 
 impl Sequence {
-    /// The number in 0..1 of a dimension for a world; `None` if it is to be drawn independently.
+    /// A world's number in 0..1 along a dimension; `None` if it is to be drawn independently.
     pub(crate) fn unit(self, stream: &Stream, dimension: usize, index: u64) -> Option<f64> {
         match self {
             Self::Independent => None,
@@ -51,7 +51,7 @@ impl Sequence {
     }
 }
 
-/// Point `index` of Sobol's sequence along a dimension, as 64 bits; the direction numbers are those of Joe and Kuo (2008).
+/// Point `index` of the Sobol sequence along a dimension, as 64 bits, with the direction numbers of Joe and Kuo (2008).
 fn sobol(dimension: usize, index: u64) -> u64 {
     static DIRECTIONS: OnceLock<Vec<Vec<u64>>> = OnceLock::new();
     let directions = DIRECTIONS.get_or_init(|| {
@@ -66,7 +66,7 @@ fn sobol(dimension: usize, index: u64) -> u64 {
     point
 }
 
-/// Owen's scrambling by hashing from the highest bit down, which preserves nets.
+/// Owen scrambling by hashing from the highest bit down, which preserves digital nets.
 ///
 /// Source: Laine and Karras 2011, in the form of Burley 2020, widened to 64 bits.
 fn scramble(point: u64, seed: u64) -> u64 {

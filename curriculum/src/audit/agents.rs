@@ -54,7 +54,7 @@ pub(super) fn learns_while_frozen() -> impl FnMut(&Meeting) -> f64 {
 }
 
 /// Knows only the number of the experience in its block, and the sequence of actions that paid best at that number. It repeats
-/// a sequence that paid more than most, and replaces one that did not.
+/// a sequence that paid more than the mean, and replaces one that did not.
 pub(super) fn by_number(run: u32, whose: u32) -> impl FnMut(&Meeting) -> f64 {
     let mut best: BTreeMap<u64, (f64, u64)> = BTreeMap::new();
     move |meeting| {

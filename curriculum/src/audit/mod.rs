@@ -52,7 +52,7 @@ impl Default for AuditOptions {
 /// The share of lifetimes of an agent that never changes which a metric may call "good".
 const FALSE_POSITIVES: f64 = 0.05;
 
-/// The probability of a count below which an audit calls it wrong: each audit counts several metrics.
+/// A count less probable than this fails the audit; it is small because each audit counts several metrics.
 const SURPRISE: f64 = 0.001;
 
 /// The confidence at which an audit rejects a mean ratio: three standard errors with many lifetimes, more if few lifetimes
@@ -254,7 +254,8 @@ impl Room<'_> {
     }
 }
 
-/// The experiences of a variant in which an agent learns two thirds: a third of those of the first variant learned.
+/// Number of experiences of a variant after which an agent has learned about two thirds: a third of the first learning
+/// block.
 fn pace(plan: &Plan) -> f64 {
     let is_learning = |block: &&driftworld_spec::Block| block.kind == driftworld_spec::BlockKind::Learning;
     let first = plan.scenario().blocks.iter().find(is_learning);

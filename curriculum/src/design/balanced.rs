@@ -56,7 +56,7 @@ mod tests {
     use super::*;
     use std::collections::BTreeMap;
 
-    /// The counts of the most and the least frequent of `all` possible items.
+    /// The counts of the least and the most frequent of `all` possible items.
     fn counts<T: Ord>(items: impl Iterator<Item = T>, all: usize) -> (usize, usize) {
         let mut seen: BTreeMap<T, usize> = BTreeMap::new();
         for item in items {

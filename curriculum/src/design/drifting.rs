@@ -26,7 +26,7 @@ pub(super) fn lessons(
     drifting: Drifting,
 ) -> Result<Vec<Vec<Regime>>, CurriculumError> {
     let ways = path.len().saturating_sub(1) as u64;
-    // Over all drifts together: no layout is repeated, whichever variants share their worlds.
+    // Counted over all drifts together, so that no layout is repeated even if variants share their worlds.
     let mut taken = 0;
     let mut lessons = Vec::new();
     // Lengths are counted in units: each drift has as many as there are blocks, and each block as many as there are drifts.

@@ -5,7 +5,7 @@ use driftworld_spec::ScenarioForm;
 use super::balanced::balanced_order;
 use crate::CurriculumError;
 
-/// The most learning blocks of a scenario.
+/// Maximum number of learning blocks in a scenario.
 pub const MAX_BLOCKS: u32 = 10_000;
 
 /// Default number of rounds in the forms with recurring tasks.

@@ -132,19 +132,19 @@ pub fn design(variants: &[Choice], options: &Design) -> Result<Scenario, Curricu
 /// before deployment, between the same evaluations.
 ///
 /// `order` is the control's order of the variants, by their places in `variants`. Every variant is learned as often as in the
-/// design itself: if the blocks are no whole number of rounds, those learned an extra time in the design are learned an extra
-/// time here, before the first round, or after the last if one of them would otherwise occur twice in a row or the control would
-/// equal the design. The reversed order is the design backwards. Two variants in turn, an odd number of times, have only one
-/// order.
+/// design itself: if the blocks do not make a whole number of rounds, variants learned an extra time in the design are
+/// learned an extra time here, before the first round, or after the last if one of them would otherwise occur twice in
+/// a row or the control would equal the design. The reversed order is the design backwards. Two variants in turn, an
+/// odd number of times, have only one order.
 ///
 /// # Errors
-/// As [`design`]; [`CurriculumError::BadForm`] for the permuted form, which draws its own order, and for an `order` that is no
-/// permutation of the variants.
+/// As [`design`]; [`CurriculumError::BadForm`] for the permuted form, which draws its own order, and for an `order`
+/// that is not a permutation of the variants.
 pub fn design_control(variants: &[Choice], order: &[usize], options: &Design) -> Result<Scenario, CurriculumError> {
     arranged(variants, options, Some(order))
 }
 
-/// Most regimes in a design. A document cannot hold more: each has at least five values.
+/// Maximum number of regimes in a design. A document cannot hold more: each has at least five values.
 const MAX_REGIMES: usize = 400_000;
 
 fn arranged(variants: &[Choice], options: &Design, control: Option<&[usize]>) -> Result<Scenario, CurriculumError> {

@@ -9,10 +9,10 @@ use super::choice::changes;
 use super::picked::{Picked, apart, distances, farthest, is_alone, measure_of};
 use crate::CurriculumError;
 
-/// Most variants of a probe: all pairs are compared.
+/// Maximum number of variants in a probe, because all pairs are compared.
 pub const MAX_PROBED: usize = 200;
 
-/// Least number of variants by default.
+/// Minimum number of variants by default.
 const DEFAULT_COUNT: usize = 4;
 
 /// Two variants at most this far apart count as equal.

@@ -6,7 +6,7 @@ use super::picked::Picked;
 use super::walk::{MOST_COMPARISONS, Walk};
 use crate::CurriculumError;
 
-/// The most steps of a sequence.
+/// Maximum number of steps in a sequence.
 pub const MAX_STEPS: u32 = 1000;
 
 /// The sequence to find.
@@ -16,7 +16,7 @@ pub struct Steps {
     pub distance: f64,
     /// Allowed deviation from `distance`, at least 0 and below it.
     pub tolerance: f64,
-    /// How many steps: one fewer than variants. At most [`MAX_STEPS`].
+    /// Number of steps, one less than the number of variants; at most [`MAX_STEPS`].
     pub count: u32,
     /// The only element that changes and is measured; `None` for all elements together.
     pub element: Option<Element>,

@@ -18,7 +18,7 @@ pub enum Split {
     Test,
 }
 
-/// Distance between the first worlds of two variants: no lifetime learns more of one.
+/// Distance between the first world indices of two variants: no lifetime learns a variant in more worlds.
 const SPAN: u64 = MAX_EXPERIENCES as u64 * MAX_BLOCKS as u64;
 
 /// Size of seeds in bits: every JSON reader keeps them exact.

@@ -11,10 +11,10 @@ use super::picked::{Picked, apart, farthest, is_alone, measure_of};
 use super::steps::Steps;
 use crate::CurriculumError;
 
-/// Most variants from which the search tries to extend the path.
+/// Maximum number of variants from which the search tries to extend the path.
 const MOST_TRIES: u32 = 4000;
 
-/// Most comparisons of two variants per search.
+/// Maximum number of comparisons of two variants per search.
 pub(super) const MOST_COMPARISONS: u64 = 4_000_000;
 
 /// Bisection steps on the line to one target.

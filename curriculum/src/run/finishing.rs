@@ -8,7 +8,7 @@ use serde::Serialize;
 /// Steps after which the planner gives up in a world without a step limit.
 const PATIENCE: u32 = 10_000;
 
-/// Most worlds that are listed.
+/// Maximum number of failed worlds that are listed.
 const MOST_TOLD: usize = 100;
 
 /// In how many worlds the built-in planner reached success.

@@ -13,18 +13,18 @@ const WORLDS: u64 = 16;
 const REMEMBERED: usize = 4096;
 const REMEMBERED_WORLDS: usize = 256;
 
-/// A distance in all, and in each element: state, action, transition, reward, observation.
+/// A distance in total, and in each element: state, action, transition, reward, observation.
 pub(super) type Gap = [f64; 6];
 
 /// The gap before anything was learned: NaN, the log format's missing value.
 pub(super) const UNKNOWN: Gap = [f64::NAN; 6];
 
-/// An element in which nothing could differ counts as equal.
+/// Converts a distance to a gap; an element in which nothing could differ counts as equal.
 fn gap_of(distance: &Distance) -> Gap {
     std::array::from_fn(|place| distance.within(place.checked_sub(1).map(|element| Element::ALL[element])))
 }
 
-/// What gaps are measured between: variants, or single worlds.
+/// One side of a gap: a variant, or a single world.
 #[derive(Clone, Copy)]
 pub(super) enum Subject<'a> {
     Variant(&'a Variant),

@@ -7,7 +7,7 @@ use std::sync::mpsc;
 use std::sync::{Mutex, PoisonError};
 use std::thread;
 
-/// Most items by which a thread may be ahead of the oldest unfinished one: bounds the number of waiting results.
+/// Maximum number of undelivered items per thread: bounds the number of waiting results.
 const AHEAD: usize = 16;
 
 /// Processes every item of a range, one worker per thread, and delivers the results in order; ends early if `take` says so.

@@ -228,8 +228,8 @@ impl Plan {
         })
     }
 
-    /// The experience that may follow once the budget of the regime of experience `number` is spent: after the regime, or the
-    /// next of a shuffled block.
+    /// The number of the next experience to consider once the budget of experience `number`'s regime is spent: the
+    /// first after the regime, or the next one in a shuffled block.
     pub fn after(&self, number: u64) -> u64 {
         let planned = &self.regimes[self.regime_of(number)];
         let end = planned.first + u64::from(planned.count);
@@ -254,8 +254,8 @@ impl Plan {
         }
     }
 
-    /// The evaluations that are repeated at the end of the block of `from`, in ascending order: the first from there on, or
-    /// some chosen by its seeds.
+    /// The evaluations that are repeated at the end of the block of `from`, in ascending order: the first ones from
+    /// `from` on, or some chosen by the block's seeds.
     pub(super) fn repeated(&self, from: u64, repeats: Repeats) -> Vec<u64> {
         let index = self.regime_of(from);
         let planned = &self.regimes[index];
@@ -482,7 +482,7 @@ impl Finder<'_, '_> {
     }
 }
 
-/// The name of a variant in a log: letters and digits of the task's name, an underscore, those of the variant's.
+/// The name of a variant in a log: letters and digits of the task's name, an underscore, and those of the variant's.
 ///
 /// The format requires `task_variant` with letters and digits only: `find_objects` and `red` become `findobjects_red`. A name
 /// without any becomes `x`.

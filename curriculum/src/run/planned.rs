@@ -68,13 +68,14 @@ impl Planned {
         }
     }
 
-    /// The label of experience `number`: in a drift that of the nearer end by progress; at the middle the one that it leads to.
+    /// The label of experience `number`: in a drift, that of the nearer end according to the schedule, and in the
+    /// middle that of the end that it leads to; if whole variants switch, that of the experience's own variant.
     pub(super) fn label(&self, number: u64) -> Option<&Label> {
         let [from, to] = self.labels.as_ref()?;
         Some(if self.is_near_its_beginning(number) { from } else { to })
     }
 
-    /// The name of the variant of experience `number`: in a drift of the nearer end.
+    /// The name of experience `number`'s variant: in a drift, that of the nearer end, as for its label.
     pub(super) fn nearest(&self, number: u64) -> String {
         let [from, to] = self.ends();
         if self.is_near_its_beginning(number) { from } else { to }

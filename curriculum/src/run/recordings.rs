@@ -16,10 +16,10 @@ use crate::CurriculumError;
 /// Name of the files, each beside a `data-log.tsv`.
 pub const RECORDINGS_FILE: &str = "actions.jsonl";
 
-/// The largest file that is read, in bytes.
+/// Maximum size of a file that is read, in bytes.
 pub const MAX_RECORDINGS_BYTES: u64 = 1 << 32;
 
-/// Most files open at a time, one per worker of a block.
+/// Maximum number of files open at a time, one per worker of a block.
 const MAX_OPEN: usize = 64;
 
 /// The recordings of a log being written.
@@ -38,7 +38,7 @@ struct OpenFile {
     file: File,
     length: u64,
     lines: RecordingLines,
-    /// The next experience, or a later one.
+    /// Lower bound on the number of the next experience.
     next: u64,
 }
 
@@ -89,7 +89,7 @@ impl Recordings {
         if self.open.first().is_some_and(|open| !open.inside.ends_with(&name)) || self.open.len() == MAX_OPEN {
             self.sync()?;
         }
-        // A row that was refused left its recording: its number occurs again.
+        // If a row was refused, its recording is in the file already and its number occurs again: reopening removes it.
         self.open
             .retain(|open| open.inside != inside || open.next <= experience);
         let known = self.open.iter().position(|open| open.inside == inside);
@@ -175,7 +175,7 @@ fn kept(path: &Path, experience: u64) -> Result<(u64, RecordingLines), Curriculu
     let wrong = |source| wrong(path, source);
     let reader = match RecordingReader::new(BufReader::new(file)) {
         Ok(reader) => reader,
-        // Its first line was being written.
+        // The run was stopped while it wrote the first line.
         Err(_) if length < RecordingLines::header().len() as u64 => return Ok((0, RecordingLines::default())),
         Err(error) => return Err(wrong(error)),
     };

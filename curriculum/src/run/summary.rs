@@ -81,7 +81,7 @@ pub struct RegimeSummary {
     pub success_rate: f64,
 }
 
-/// Most skipped experiences that a summary lists.
+/// Maximum number of skipped experiences that a summary lists.
 const MOST_NAMED: usize = 100;
 
 impl Summary {

@@ -10,7 +10,7 @@ use super::finishing::Finished;
 use super::plan::Plan;
 use super::planned::Planned;
 
-/// Most experiences of a drift whose variants are checked, and most failures that are listed.
+/// Maximum number of experiences of a drift whose variants are checked, and of failures that are listed.
 const MOST_ON_THE_WAY: u32 = 100_000;
 const MOST_TOLD: usize = 100;
 

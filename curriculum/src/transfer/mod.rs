@@ -20,9 +20,9 @@ use pooling::pooled;
 pub struct TransferOptions {
     /// The measure of transfer; the lifetimes must have been scored with it. `Both` counts as `Contrast`.
     pub measure: TransferMethod,
-    /// Most relabellings in the test, 1 to [`MAX_RELABELLINGS`](driftworld_similarity::MAX_RELABELLINGS).
+    /// Maximum number of relabellings in the test, 1 to [`MAX_RELABELLINGS`](driftworld_similarity::MAX_RELABELLINGS).
     pub relabellings: u64,
-    /// Seed of the relabellings, if there are more.
+    /// Seed for drawing relabellings at random, if more are possible.
     pub seed: u64,
 }
 

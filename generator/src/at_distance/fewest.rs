@@ -7,21 +7,21 @@ use super::reach::{Reach, Way};
 use super::space::Space;
 use super::{Found, FreeParameters, Search};
 
-/// Budgets in measured variants: most on straight ways and most in scans behind requirements, each per number of changed
-/// parameters, and the total beyond which no larger number of changes is tried.
+/// Budgets in measured variants: for straight ways, and for scans where requirements cut these off, each per number of
+/// changed parameters; and the total beyond which no larger number of changes is tried.
 const MOST_LOOKS: usize = 24_000;
 const MOST_SCANNED: usize = 24_000;
 const MOST_IN_ALL: usize = 200_000;
 
-/// Fewest variants to measure for each set of parameters whose straight way is cut off.
+/// Minimum number of variants to measure for each set of parameters whose straight way is cut off.
 const FEWEST_SCANNED: usize = 500;
 
-/// Most points to compute where distances add up, per number of changed parameters; most and fewest per way.
+/// Maximum number of points to compute where distances add up, per number of changed parameters; and limits per way.
 const MOST_ON_LEVELS: usize = 40_000;
 const MOST_POINTS: usize = 400;
 const FEWEST_POINTS: usize = 24;
 
-/// Most variants to measure in search of a better answer once there is one.
+/// Maximum number of variants to measure in search of a better answer once there is one.
 const MOST_FOR_BETTER: usize = 6_000;
 
 /// Shares of ranges that differ by less count as equal.
@@ -155,7 +155,7 @@ fn changed(from: &Variant, to: &Variant) -> Vec<String> {
     different.map(|(name, _)| name.clone()).collect()
 }
 
-/// Sum of the changes of parameters as shares of their ranges; another choice counts 1.
+/// Sum of the changes of parameters as shares of their ranges; a different choice counts as 1.
 fn total_change(from: &Variant, to: &Variant) -> f64 {
     let share = |name: &String| {
         let parameter = from.task().parameters().get(name)?;

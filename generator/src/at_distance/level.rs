@@ -10,7 +10,7 @@ use super::reach::Way;
 use super::space::Space;
 use super::{Changes, Found, Free, Search, with};
 
-/// Parts in which the range of a number is measured, and those of each range of a vector.
+/// Number of parts into which the range of a number is divided for measuring, and each range of a vector.
 const PARTS: usize = 128;
 const PARTS_OF_VECTOR: usize = 6;
 

@@ -17,10 +17,10 @@ use space::Space;
 pub use subject::Subject;
 use subject::{Free, FreeParameters, parameters_of};
 
-/// Most combinations of choices to try.
+/// Maximum number of combinations of choices to try.
 const MOST_COMBINATIONS: usize = 4096;
 
-/// Most variants to measure where requirements cut off the straight way, and fewest per combination.
+/// Maximum number of variants to measure where requirements cut off the straight way, and minimum per combination.
 const MOST_LOOKS: usize = 60_000;
 const FEWEST_LOOKS: usize = 1500;
 
@@ -39,8 +39,8 @@ pub struct Found {
 /// the numbers move together towards the farthest ends of their ranges. If requirements cut that way off, or a number decides
 /// what is read, each number moves separately. Among answers that change equally few parameters, takes the one with the smallest
 /// changes as shares of their ranges. A parameter that nothing reads in the answer stays as it is in `from`, unless a requirement
-/// forbids that. The same arguments always find the same variant. Calls `distance` some hundred times; some ten thousand times if
-/// requirements cut ways off. `distance` must return numbers from 0, and 0 for `from`.
+/// forbids that. The same arguments always find the same variant. Calls `distance` a few hundred times, or tens of
+/// thousands of times if requirements cut ways off. `distance` must never be negative, and must be 0 for `from`.
 ///
 /// # Errors
 /// [`GeneratorError::NothingToVary`] if the subject has no parameter that could change; [`GeneratorError::TooFar`] with the

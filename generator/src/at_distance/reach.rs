@@ -15,16 +15,16 @@ use super::{Changes, Free, FreeParameters, MOST_COMBINATIONS, Search, with};
 /// Widest range of integers that are tried one by one.
 const WIDEST_LIST: f64 = 128.0;
 
-/// Most sets of parameters to consider per size.
+/// Maximum number of sets of parameters to consider per size.
 const MOST_SETS: usize = 100_000;
 
 /// Sums that differ by less count as equal.
 const ROUNDING: f64 = 1e-9;
 
-/// Share by which the reach of a way may exceed the distance of its last point from which worlds can be drawn.
+/// Share by which the reach of a way may exceed the distance at its last point whose worlds can be drawn.
 const NEARLY: f64 = 1e-4;
 
-/// Parts in which the range of a number that may decide what is read is measured; and those of each of two such ranges.
+/// Parts in which to measure the range of a number that may decide what is read; and each range if there are two.
 const PARTS: usize = 32;
 const PARTS_OF_TWO: usize = 8;
 
@@ -165,7 +165,7 @@ fn ways_of<'a, D: FnMut(&Variant) -> f64>(
     }
 }
 
-/// All combinations of choices with the sums of their distances, as far as `may_be` accepts the sums.
+/// All combinations of choices with the sums of their distances, if `may_be` accepts these.
 fn products(members: &[&Candidate], may_be: impl Fn(f64) -> bool) -> Vec<(Changes, f64)> {
     let mut all = vec![(Changes::new(), 0.0)];
     for member in members {

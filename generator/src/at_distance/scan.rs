@@ -25,10 +25,10 @@ const STARTS: usize = 12;
 /// Number of times the small steps are halved.
 const FINENESS: u32 = 30;
 
-/// Number of pairs of points on either side of the wanted distance to try.
+/// Four times the number of points on either side of the wanted distance that are tried in pairs.
 const PAIRS: usize = 24;
 
-/// Most axes for which diagonals are also tried.
+/// Maximum number of axes for which diagonals are also tried.
 const MOST_DIAGONAL: usize = 8;
 
 /// Directions of small steps: along each axis and, if there are few axes, along the diagonals of each pair.

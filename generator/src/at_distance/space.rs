@@ -1,4 +1,4 @@
-//! [`Space`]: the numbers that may move, and the changes that a point of them stands for.
+//! [`Space`]: the numbers that may move, and the changes that a point in their space represents.
 
 use driftworld_spec::{Domain, ParameterType, Value, Variant};
 
@@ -77,7 +77,7 @@ impl<'a> Space<'a> {
         self.axes.iter().map(|axis| axis.here).collect()
     }
 
-    /// The changes that a point stands for.
+    /// The changes that a point represents.
     pub(super) fn changes(&self, point: &[f64]) -> Changes {
         let mut changes = Changes::new();
         for (axis, number) in self.axes.iter().zip(point) {
@@ -116,15 +116,15 @@ impl<'a> Space<'a> {
         self.axes[axis].at(part, parts)
     }
 
-    /// Points through which to draw lines along one axis: a grid over all other axes, coarser the more axes there are. `most`:
-    /// most parts per axis.
+    /// Points through which to draw lines along one axis: a grid over all other axes, coarser the more axes there are,
+    /// with at most `most` parts per axis.
     pub(super) fn anchors(&self, along: usize, most: usize) -> Vec<Point> {
         let most = most.min(match self.axes.len() {
             0..=2 => 16,
             3 => 6,
             4 => 3,
             5 => 2,
-            // Too many for a grid: lines through the variant itself, the middle and both corners.
+            // Too many for a grid: lines through the middle and two opposite corners.
             _ => {
                 let of = |part: usize| (0..self.axes.len()).map(|axis| self.at(axis, part, 2)).collect();
                 return vec![of(0), of(1), of(2)];

@@ -5,7 +5,7 @@ use driftworld_spec::{Domain, Parameter, ParameterType, Value, Variant};
 use super::{Changes, Found, Free, Search, with};
 use crate::interpolation::interpolate;
 
-/// Most corners of the ranges to try if distances do not add up.
+/// Maximum number of corners of the ranges to try if distances do not add up.
 const MOST_CORNERS: usize = 81;
 
 /// Bisection steps towards the border of the allowed region.

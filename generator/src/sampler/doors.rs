@@ -55,7 +55,7 @@ impl Sampler {
         plan.doorways.iter().enumerate().map(door).collect()
     }
 
-    /// The keys of these doors, which are those of the world's doorways. No key lies behind its own door: from the agent's start,
+    /// The keys of `doors`, as returned by [`Sampler::doors`]. No key lies behind its own door: from the agent's start,
     /// all doors can be opened one after the other.
     pub(super) fn keys(&self, doors: &[Object], draft: &mut Draft) -> Result<Vec<Object>, GeneratorError> {
         let locked = |door: &Object| door.door.as_ref().and_then(|door| door.key.clone());

@@ -19,7 +19,7 @@ impl Sampler {
         draft: &mut Draft,
     ) -> Result<(), GeneratorError> {
         let index = draft.index;
-        // Each anchor has its own random numbers, so that one more object around it moves nothing around another.
+        // Each anchor has its own random numbers, so that adding an object around it moves none around others.
         let first = anchor_number << 32;
         let count = count_of(group, first, draft);
         let found = draft.world.objects.len().saturating_add(count as usize);

@@ -18,7 +18,7 @@ use crate::{GeneratorError, WorldId};
 use doors::stands_in_door;
 use groups::Draft;
 
-/// Most draws of a world's randomized parameters; then an unmet requirement is an error.
+/// Maximum number of draws of a world's randomized parameters; a requirement still unmet then is an error.
 pub(crate) const ATTEMPTS: u32 = 1000;
 
 /// Draws the worlds of one variant under one seed, with random access.
@@ -100,7 +100,7 @@ impl Sampler {
         self
     }
 
-    /// Takes the layouts of predefined maps from a library; each world contains its own.
+    /// Takes the layouts of predefined maps from a library and writes each world's layout into the world.
     #[must_use]
     pub fn with_maps(mut self, maps: Arc<MapLibrary>) -> Self {
         self.maps = Some(maps);
@@ -375,7 +375,7 @@ impl Sampler {
     }
 }
 
-/// Whether a layout is an open field: bit for bit the arena without a layout.
+/// Whether a layout is an open field, which yields bit for bit the arena without a layout.
 fn is_open(layout: &Layout) -> bool {
     layout.walls.as_ref().is_some_and(Vec::is_empty)
 }

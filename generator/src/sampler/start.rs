@@ -1,5 +1,5 @@
-//! Places the agent in a cell of a layout. Starts that are a point or a distribution of points are filled in elsewhere, as
-//! holes of the world.
+//! Places the agent in a cell of a layout. A start given as a point or a distribution of points is not handled here: it
+//! is a hole in the world's template, filled like any other.
 
 use driftworld_spec::{CellKind, Distribution, Legend, WorldDraft};
 
