@@ -109,7 +109,7 @@ mod tests {
             ReportError::Gif(gif::EncodingError::OutOfMemory),
             ReportError::FilmSize {
                 found: "a picture of 2 × 3 pixels".to_owned(),
-                expected: "2 × 2, as the film's first".to_owned(),
+                expected: "2 × 2, the size of the film".to_owned(),
             },
             ReportError::UnknownFigure {
                 found: "pie".to_owned(),

@@ -1,11 +1,11 @@
-//! Makes text from outside fit for display. Writers escape it for their own formats.
+//! Sanitises external text for display. Writers escape it for their own formats.
 
 use driftworld_text::printable;
 
-/// Most characters shown of a name.
+/// Maximum number of characters shown of a name.
 const LONGEST: usize = 48;
 
-/// Most characters shown of a sentence.
+/// Maximum number of characters shown of a sentence.
 const LONGEST_SENTENCE: usize = 1000;
 
 /// A name for display: in one line, cut to a readable length, with characters escaped that break a page, are invisible or reverse

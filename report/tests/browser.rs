@@ -1,7 +1,8 @@
-//! The page in a real browser: no complaints, nothing wider than a phone, ink in light and in the dark. The page's text is `page.rs`'s.
+//! Opens the page in a real browser: no console messages, nothing wider than the screen, even on a phone, and figures
+//! drawn in the light and in the dark colour scheme. The page's text is tested in `page.rs`.
 //!
-//! The browser is Chromium under one of its usual names, or what `DRIFTWORLD_BROWSER` names. Where there is none the tests say that
-//! they are skipped; with `DRIFTWORLD_REQUIRE_BROWSER=1` they fail there.
+//! The browser is Chromium under one of its usual names, or the one that `DRIFTWORLD_BROWSER` names. Without a browser
+//! the tests print that they are skipped; with `DRIFTWORLD_REQUIRE_BROWSER=1` they fail.
 
 #![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
 
@@ -28,7 +29,7 @@ fn browser() -> Option<PathBuf> {
         "DRIFTWORLD_REQUIRE_BROWSER=1: found none of {NAMES:?} in PATH; install one, or name one in DRIFTWORLD_BROWSER"
     );
     if found.is_none() {
-        // Not by println, which the test harness keeps to itself where tests pass.
+        // Not with println!, whose output the test harness hides when a test passes.
         let _ = writeln!(std::io::stderr(), "SKIPPED: no browser in PATH; set DRIFTWORLD_BROWSER");
     }
     found
@@ -89,7 +90,7 @@ impl Desk {
         output
     }
 
-    /// The document after everything in it has run, and what the browser said of it.
+    /// The document after all its scripts have run, and the console messages that the browser logged.
     fn dom(&self, name: &str) -> (String, Vec<String>) {
         let output = self.open(name, [1200, 900], Scheme::Light, &["--dump-dom"]);
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -118,7 +119,7 @@ fn decode(file: &Path) -> (usize, Vec<[u8; 3]>) {
 }
 
 #[test]
-fn the_browser_has_nothing_to_complain_about() {
+fn page_logs_no_console_messages() {
     let Some(desk) = Desk::with(&Life::default().live().page()) else {
         return;
     };
@@ -126,12 +127,12 @@ fn the_browser_has_nothing_to_complain_about() {
     assert_eq!(console, Vec::<String>::new());
     assert_eq!(dom.matches("<figure>").count(), 5, "the plots are there");
     assert!(dom.contains("<h1>first</h1>"));
-    // Whether complaints would be heard at all.
+    // Checks that a script error would be noticed at all.
     desk.put("bad.html", "<!DOCTYPE html><script>missing()</script>");
     assert_eq!(desk.dom("bad.html").1.len(), 1, "a page with a fault is noticed");
 }
 
-/// Opens the page in a frame as wide as a phone, and writes down what it measures.
+/// Opens the page in frames of several widths, from a phone's to a wide screen's, and records measurements of each.
 const MEASURE: &str = r#"<!DOCTYPE html><body><script>
 function measure(frame) {
   const page = frame.contentDocument, out = [];
@@ -146,7 +147,7 @@ function measure(frame) {
   out.push("smallest=" + smallest.toFixed(1));
   const beyond = [...page.querySelectorAll("body *")].filter(part => !part.closest(".scroll, svg, .hidden, thead")
     && part.getBoundingClientRect().right > frame.clientWidth + 0.5);
-  // Tables that stand row under row on a phone must not need to be scrolled there, and no word of judgement is broken.
+  // Stacked tables must not need sideways scrolling on a phone, and no verdict may wrap onto a second line.
   const tables = [...page.querySelectorAll(".scroll")].filter(box => box.querySelector(".stacked"));
   const phone = frame.clientWidth < 800;
   out.push("tables=" + tables.length);
@@ -167,7 +168,7 @@ for (const width of [320, 360, 414, 799, 800, 1000, 1400]) {
 </script></body>"#;
 
 #[test]
-fn nothing_is_wider_than_the_screen_and_every_word_can_be_read() {
+fn page_fits_every_screen_width_and_its_text_is_legible() {
     let check = |page: &str, drawings: &str, tables: &str| {
         let Some(desk) = Desk::with(page) else {
             return;
@@ -193,7 +194,7 @@ fn nothing_is_wider_than_the_screen_and_every_word_can_be_read() {
             assert!(value("smallest").parse::<f64>().unwrap() >= 7.8, "{line}");
         }
     };
-    // In the quick tier not alone: it is one of the two on the next page.
+    // The quick tier skips this page on its own: the same lifetime is one of the two on the next page.
     if crate::tier::quick_or_full(false, true) {
         check(&Life::default().live().page(), "5", "1");
     }
@@ -209,16 +210,16 @@ fn nothing_is_wider_than_the_screen_and_every_word_can_be_read() {
     check(&life.live().page(), "5", "1");
 }
 
-/// Heights, in pixels: of the room for a figure, and of the names on top of it.
+/// Heights in pixels: the band reserved for each figure, and the legend at the top of the figure.
 const BAND: u32 = 900;
 const LEGEND: usize = 64;
 
 #[test]
-fn figures_have_ink_in_light_and_in_the_dark_and_on_a_phone() {
+fn figures_are_drawn_in_both_colour_schemes_and_on_a_phone() {
     let Some(desk) = Desk::with(&Life::default().live().page()) else {
         return;
     };
-    // Each figure alone, in a band of its own, so that neither legends nor tables are counted as its ink.
+    // Each figure is shown alone in its own band, so that the rest of the page is not counted as its pixels.
     for (name, wide) in [("plots.html", 1200), ("phone.html", 360)] {
         let frame = format!(
             r#"<body style="margin:0"><iframe src="page.html" style="width:{wide}px;height:{}px;border:0"></iframe><script>
@@ -244,7 +245,7 @@ fn figures_have_ink_in_light_and_in_the_dark_and_on_a_phone() {
     };
     let pages = [("plots.html", [1200, 5 * BAND]), ("phone.html", [500, 5 * BAND])];
     for (number, scheme) in [Scheme::Light, Scheme::Dark].into_iter().enumerate() {
-        // In the quick tier each scheme and each width once.
+        // The quick tier checks each scheme and each width once.
         let skipped = crate::tier::quick_or_full(1 - number, 2);
         for (_, (name, size)) in pages.into_iter().enumerate().filter(|(page, _)| *page != skipped) {
             let (width, pixels) = desk.screenshot(name, size, scheme);
@@ -259,7 +260,7 @@ fn figures_have_ink_in_light_and_in_the_dark_and_on_a_phone() {
             for (figure, rows) in pixels.chunks_exact(band).enumerate() {
                 let count = |color: [u8; 3]| rows[LEGEND * width..].iter().filter(|pixel| **pixel == color).count();
                 let found: Vec<usize> = tasks(scheme).into_iter().map(count).collect();
-                // The comparison with experts is of the first task alone.
+                // The comparison with experts shows only the first task.
                 let expected = if figure == 3 { 1 } else { 3 };
                 assert!(
                     found.iter().filter(|count| **count > 30).count() >= expected,

@@ -1,7 +1,7 @@
 //! Renders texts with subpixel letter positions, as in the font.
 //!
-//! The plotting library draws each letter at a whole pixel and ignores its left side bearing, so that words fell apart ("ob
-//! jects").
+//! The plotting library itself draws each letter at a whole pixel and ignores its left side bearing, which makes words
+//! fall apart ("ob jects").
 
 use std::sync::LazyLock;
 
@@ -16,7 +16,7 @@ static FONT: LazyLock<FontRef<'static>> = LazyLock::new(|| {
 /// Width of the outline around letters, as a share of their size.
 const RIM: f32 = 0.11;
 
-/// The library measures a font's size from its lowest to its highest line.
+/// Converts a letter size to `ab_glyph`'s scale, which measures a font from its lowest to its highest line.
 fn scale(size: f32) -> PxScale {
     let em = FONT.units_per_em().unwrap_or(1000.0);
     PxScale::from(size * FONT.height_unscaled() / em)

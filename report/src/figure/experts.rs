@@ -8,11 +8,11 @@ use super::paper::{Area, Axes, Drawn, Entry, Paper, Sample, chart, curve};
 use super::scene::{Scene, roomy};
 use super::thinning;
 
-/// Further runs of an expert are left out.
+/// Maximum number of runs drawn of an expert.
 const MOST_RUNS: usize = 12;
 /// Pixel columns of all curves together; with more curves, each has fewer.
 const MOST_COLUMNS: usize = 16_000;
-/// Further borders between blocks are left out.
+/// Maximum number of borders drawn between blocks.
 const MOST_BORDERS: usize = 60;
 
 /// One task with its curves.

@@ -4,7 +4,7 @@ use plotters::prelude::*;
 
 use super::paper::{Area, Paper};
 
-/// Further panels of a figure are left out.
+/// Maximum number of panels drawn in a figure.
 pub(super) const MOST_PANELS: usize = 24;
 
 /// A grid of panels.

@@ -22,7 +22,7 @@ pub(super) type Area<DB> = DrawingArea<DB, Shift>;
 pub(super) type Chart<'a, DB> = ChartContext<'a, DB, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 pub(super) type Drawn<DB, T = ()> = Result<T, DrawingAreaErrorKind<<DB as DrawingBackend>::ErrorType>>;
 
-/// Dots of the drawing per layout pixel along one side: the library only draws at whole numbers.
+/// Dots of the drawing per layout pixel along one side: the library only draws at whole coordinates.
 const DOTS: i32 = 2;
 /// Heights, in pixels of the layout.
 const TITLE: i32 = 34;

@@ -11,9 +11,9 @@ use super::{FigureOptions, Unit};
 use crate::words::shown;
 use crate::{ReportError, extent};
 
-/// Further tasks are left out of curves, because more cannot be told apart.
+/// Maximum number of tasks with curves, because more cannot be told apart.
 pub(super) const MOST_TASKS: usize = 28;
-/// Further stretches are thinned out: each is a line of its own.
+/// With more stretches than this, they are thinned out: each is a line of its own.
 const MOST_STRETCHES: usize = 1200;
 
 /// A lifetime, ready to be drawn.
@@ -153,7 +153,7 @@ impl<'a> Scene<'a> {
         kept
     }
 
-    /// Width of a column, at least one experience, so that adjacent blocks are joined.
+    /// Width of a column on the horizontal axis, at least 0.5, so that adjacent blocks are joined.
     pub(super) fn gap(&self, columns: i32) -> f64 {
         ((self.span.end - self.span.start) / f64::from(columns)).max(0.5)
     }

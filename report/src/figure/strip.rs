@@ -8,7 +8,7 @@ use super::vectors;
 use crate::{ReportError, extent};
 
 const SIZE: (i32, i32) = (220, 30);
-/// Further marks are thinned out evenly.
+/// Maximum number of marks; more are thinned out evenly.
 const MOST_MARKS: usize = 60;
 
 /// Indices of the marks to draw: all, or an even selection that includes the first and the last.

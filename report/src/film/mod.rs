@@ -19,7 +19,7 @@ pub enum FilmKind {
 }
 
 impl FilmKind {
-    /// The kind of film with a file extension: `gif`, `apng`.
+    /// The kind of film for a file extension, `gif` or `apng`.
     pub fn of_ending(ending: &str) -> Option<Self> {
         [("gif", Self::Gif), ("apng", Self::Apng)]
             .into_iter()
@@ -119,7 +119,7 @@ fn expect_size(picture: &Picture, [width, height]: [u32; 2]) -> Result<(), Repor
     }
     Err(ReportError::FilmSize {
         found: format!("a picture of {} × {} pixels", picture.width, picture.height),
-        expected: format!("{width} × {height}, as the film's first"),
+        expected: format!("{width} × {height}, the size of the film"),
     })
 }
 

@@ -1,5 +1,5 @@
-//! [`Palette`]: reduces many colours to a few. Boxes of colours are split in two where that removes most of the error, until
-//! there are as many as wanted.
+//! [`Palette`]: reduces many colours to a few. The box of colours with the largest error is split in two, until there
+//! are as many boxes as wanted.
 //!
 //! Source: Wan, Wong and Prusinkiewicz 1988, variance-based cuts, each at the mean.
 
@@ -102,7 +102,7 @@ impl Cell {
                 within.iter().map(value).sum()
             };
             let mean = moment(1) / weight;
-            // All values are equal, but the sums may leave a small rest.
+            // If all values are equal, rounding may still leave a small remainder.
             let is_one = within.iter().all(|(color, _)| color[channel] == within[0].0[channel]);
             let error = if is_one { 0.0 } else { moment(2) - mean * mean * weight };
             if error > cell.error {

@@ -174,7 +174,7 @@ fn blocks_of(lifetime: &Lifetime, kind: BlockType) -> (usize, usize) {
     })
 }
 
-/// The amount of sleep in the figures, if there is any.
+/// A sentence on the number of sleep blocks in the figures, if there are any.
 fn asleep_blocks(lifetime: &Lifetime) -> String {
     let [learning, evaluation] = [BlockType::Train, BlockType::Test].map(|kind| blocks_of(lifetime, kind).1);
     when(learning + evaluation > 0, || {

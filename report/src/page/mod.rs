@@ -218,7 +218,8 @@ fn breakable(name: &str) -> Markup {
     html! { @for part in name.split_inclusive(['_', '#', '-']) { (part) wbr; } }
 }
 
-/// Sanitises a sentence from outside: control characters become spaces, and it may be longer than a name.
+/// Sanitises a sentence from outside: control characters become spaces, and what exceeds a limit is cut. The limit is
+/// larger than that for names.
 fn calm(text: &str) -> String {
     /// Most characters shown.
     const LONGEST: usize = 600;

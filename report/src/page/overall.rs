@@ -22,7 +22,7 @@ pub struct Comparison {
     pub metrics: Vec<ComparedMetric>,
 }
 
-/// Both parts, if there are any.
+/// The values over all lifetimes and the comparisons, if there are any.
 pub(super) fn section(overall: &[RepeatedMetric], comparisons: &[Comparison], intervals: &BootstrapOptions) -> Markup {
     let percent = format!("{} %", short(intervals.confidence * 100.0, 2));
     html! {

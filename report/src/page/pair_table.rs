@@ -9,7 +9,7 @@ use super::verdict::{self, Verdict};
 use super::{breakable, number};
 use crate::words::shown;
 
-/// Further tasks are only in the metrics files.
+/// Maximum number of tasks in a table; the metrics files have all of them.
 const MOST_TASKS: usize = 24;
 
 /// A table for each pair metric with values. `called` maps a task's log name to its display name.

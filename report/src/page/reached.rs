@@ -12,7 +12,7 @@ use crate::words::shown;
 /// Standard errors by which an evaluation after learning must exceed the first one to count as a gain.
 const CLEAR: f64 = 2.0;
 
-/// Further tasks are only in the metrics files.
+/// Maximum number of rows shown; the metrics files have all tasks.
 const MOST_ROWS: usize = 200;
 
 /// `called` maps a task's log name to its display name.

@@ -8,7 +8,7 @@ use maud::{Markup, html};
 use super::{count, number, verdict};
 use crate::words::shown;
 
-/// Most rows shown; the metrics files have all tasks.
+/// Maximum number of rows shown; the metrics files have all tasks.
 const MOST_ROWS: usize = 200;
 
 /// `called` maps a task's log name to its display name.

@@ -61,7 +61,7 @@ pub(super) fn good_from(name: &str, direction: Direction) -> String {
     }
 }
 
-/// The closest measure of the literature, and how it differs.
+/// The closest measure in the literature, and how it differs.
 pub(super) fn in_papers(name: &str) -> Option<&'static str> {
     match name {
         "avg_eval_perf" => Some("average performance over the lifetime; ACC, in the first table, is that at its end"),

@@ -14,7 +14,7 @@ use crate::extent;
 const SIZE: (i32, i32) = (2000, 1600);
 /// Margins without items: left and right, above, and below.
 const MARGINS: [i32; 3] = [220, 240, 120];
-/// The size of the items' names, and the height above which they may not be, in pixels of the image.
+/// The letter size of the items' names, and the height at the top that they keep free, in pixels of the image.
 const TEXT: f32 = 13.0;
 const TITLES: f32 = 66.0;
 /// With more items only the ends are named.
@@ -146,8 +146,8 @@ struct Name {
     leader: Option<[[f32; 2]; 2]>,
 }
 
-/// The position in the order and the name of each item, beside its point where nothing is covered; for all items, or the two
-/// ends. Names without room beside their points stand farther away, with a line.
+/// Places each item's label (its position in the order, and its name), for all items or only the two ends: beside its
+/// point if nothing is covered there, otherwise farther away, with a line to the point.
 fn names(matrix: &DistanceMatrix, ordering: &Ordering, path: &[[f32; 2]], ends_only: bool) -> Vec<Name> {
     let last = path.len().saturating_sub(1);
     let task = common_task(matrix.labels());

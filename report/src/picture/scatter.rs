@@ -2,7 +2,7 @@
 
 #![expect(
     clippy::disallowed_methods,
-    reason = "ticks and arrows of a figure, rounded to what is drawn"
+    reason = "the logarithm only counts the digits of tick labels"
 )]
 
 use super::{Drawing, FAINT, INK, Level, Rgb, Side, corner, letters, middle, round_step, text_width, words};

@@ -62,7 +62,7 @@ struct Cell<'a> {
 }
 
 impl<'a> Cell<'a> {
-    /// A title too wide for its image moves the part after its colon into the words below.
+    /// Makes a cell. If the title is too wide for its image, the part after its colon moves into the words below.
     fn of(row: &'a SheetRow, width: u32) -> Self {
         let title = driftworld_text::printable(&row.title).into_owned();
         let mut words = driftworld_text::printable(&row.words).into_owned();
@@ -109,7 +109,7 @@ impl<'a> Cell<'a> {
     }
 }
 
-/// A text in lines of at most this width, up to the largest number of lines. A separator never ends a line.
+/// Breaks a text into at most `MOST_LINES` lines of at most this width. A separator never ends a line.
 fn lines(text: &str, size: f32, width: f32) -> Vec<String> {
     let mut lines = text_lines(text, size, width);
     for line in &mut lines {
