@@ -8,10 +8,10 @@ use rayon::prelude::*;
 use crate::Failure;
 use crate::failure::within;
 
-/// Most pairs of worlds, also for pictures and dynamics.
+/// Maximum number of pairs of worlds, also for pictures and dynamics.
 pub const MAX_BEHAVIOR_WORLDS: u64 = 1_000;
 
-/// Points of regret that count 1.
+/// Points of regret that count as a distance of 1.
 pub(crate) const POINTS: f64 = 100.0;
 
 /// The runs of the experts in one pair of worlds.
@@ -28,17 +28,17 @@ pub struct ExpertPair {
 }
 
 impl ExpertPair {
-    /// How much less the expert of `b` earns in the world of `a` than that world's own, in points; negative if it earns more.
+    /// How many points `b`'s expert earns less in `a`'s world than that world's own expert; negative if more.
     pub fn regret_in_a(&self) -> f64 {
         self.a_in_a.earned - self.b_in_a.earned
     }
 
-    /// How much less the expert of `a` earns in the world of `b` than that world's own, in points; negative if it earns more.
+    /// How many points `a`'s expert earns less in `b`'s world than that world's own expert; negative if more.
     pub fn regret_in_b(&self) -> f64 {
         self.b_in_b.earned - self.a_in_b.earned
     }
 
-    /// Success rate of the own experts minus that of the others, −1 to 1.
+    /// Success rate of the worlds' own experts minus that of the others, −1 to 1.
     pub fn success_difference(&self) -> f64 {
         let count = |run: ExpertRun| f64::from(u8::from(run.success));
         (count(self.a_in_a) - count(self.b_in_a) + count(self.b_in_b) - count(self.a_in_b)) / 2.0
@@ -54,7 +54,7 @@ pub struct BehaviorOutcome {
     pub regret_in_a: f64,
     /// How much less the expert of `a` earns in worlds of `b`.
     pub regret_in_b: f64,
-    /// Success rate of own experts minus that of the others, on average: −1 to 1.
+    /// Success rate of the worlds' own experts minus that of the others, on average: −1 to 1.
     pub success_difference: f64,
     /// `(worlds,)`: pair by pair.
     pub pairs: Vec<ExpertPair>,
@@ -62,9 +62,9 @@ pub struct BehaviorOutcome {
 
 /// Runs the experts of two variants in each other's worlds.
 ///
-/// `worlds` worlds of each, 1 to [`MAX_BEHAVIOR_WORLDS`], are drawn under one seed, and world `i` of one variant is paired with
-/// world `i` of the other. [`Expertise::abroad`] describes the knowledge of an expert in a foreign world: where everything is,
-/// but of rewards only what it would get at home.
+/// Draws `worlds` worlds of each variant, 1 to [`MAX_BEHAVIOR_WORLDS`], under one seed, and pairs world `i` of one with
+/// world `i` of the other. In a foreign world an expert knows where everything is, but expects the rewards of its own
+/// world; [`Expertise::abroad`] describes this in detail.
 ///
 /// The distance is symmetric, and 0 from a variant to itself. It may be 0 between different variants, and violate the triangle
 /// inequality. An expert visits what pays, nearest first: that is not optimal, and if another's route happens to be better, the

@@ -32,7 +32,7 @@ impl Clock {
     /// The system's clock, or the time in `DRIFTWORLD_CLOCK`, which then stamps every row.
     ///
     /// # Errors
-    /// [`ClockError`] if that is no valid time.
+    /// [`ClockError`] if that is not a valid time.
     pub fn from_environment() -> Result<Self, ClockError> {
         match std::env::var_os(VARIABLE) {
             None => Ok(Self::System),
@@ -48,7 +48,7 @@ impl Clock {
         })
     }
 
-    /// The time now. A system clock outside the valid years gives the nearest valid stamp.
+    /// The current time. A system clock outside the valid years gives the nearest valid stamp.
     #[expect(clippy::missing_panics_doc, reason = "the range is that of the type")]
     pub fn now(self) -> Timestamp {
         match self {

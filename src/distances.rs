@@ -98,16 +98,16 @@ pub enum Side {
 pub struct Sample {
     /// The measure; by default the one declared by the variants' common task (parameters if it declares none), else worlds.
     pub by: Option<By>,
-    /// Worlds of each, from 1; by default [`NUM_WORLDS`]; [`NUM_SLOW_WORLDS`] by pictures and dynamics, [`NUM_PLACED_WORLDS`]
-    /// by placements. If absent, variants of one task are compared by what they declare.
+    /// Worlds per side, from 1; by default [`NUM_WORLDS`], [`NUM_SLOW_WORLDS`] by pictures and dynamics,
+    /// [`NUM_PLACED_WORLDS`] by placements. If given, [`between`] never defaults to parameters.
     pub worlds: Option<u64>,
     /// The seed; default 0.
     pub seed: u64,
-    /// The index of the first; default 0.
+    /// The index of the first world; default 0.
     pub index: u64,
-    /// The unit; shares exist only by parameters.
+    /// The unit; [`Scale::Share`] is possible for parameters only.
     pub scale: Scale,
-    /// The source of the worlds' assets, by pictures, dynamics and behavior; default the built-in ones.
+    /// The worlds' assets, which pictures, dynamics and behavior depend on; by default the built-in ones.
     pub catalogue: Catalogue,
 }
 
@@ -203,16 +203,16 @@ pub struct Compared {
     pub distance: Distance,
     /// The measure.
     pub by: By,
-    /// The measure, the number of worlds, and further notes on the number, as text.
+    /// The measure, the number of worlds, and further notes on the distance, as text.
     pub description: String,
 }
 
 /// The distance of two variants or worlds.
 ///
-/// Two variants of one task are compared by the measure that their task declares, by default parameters, unless `sample`
-/// requests another; two worlds directly; anything else by worlds drawn under one seed, the first with the first and so on.
-/// `lay_over` overrides the weights that the task declares. `behavior` and `dynamics:bisimulation` compare the whole decision
-/// process: they have no elements and no weights.
+/// Two variants of one task are compared by the measure that their task declares, by default parameters, unless
+/// `sample` requests another; two worlds directly; anything else by worlds drawn under one seed and paired by index.
+/// `lay_over` overrides the weights that the task declares. `behavior` and `dynamics:bisimulation` compare the whole
+/// decision process: they have no elements and no weights.
 ///
 /// # Errors
 /// [`DistancesError::Generator`] for worlds that cannot be drawn, [`DistancesError::Similarity`] from `lay_over`,

@@ -39,12 +39,12 @@ pub enum DocumentError {
 #[expect(clippy::option_option, reason = "whether it may be read, and whether it was")]
 static STANDARD_INPUT: Mutex<Option<Option<Result<String, String>>>> = Mutex::new(None);
 
-/// Makes `-` and `/dev/stdin` stand for the text of standard input, which is read once and cached.
+/// Makes `-` and `/dev/stdin` mean standard input, which is read once and cached.
 pub(crate) fn accept_standard_input() {
     *STANDARD_INPUT.lock().unwrap_or_else(PoisonError::into_inner) = Some(None);
 }
 
-/// Whether a path means standard input, in the command.
+/// Whether a path means standard input; always false unless the command accepts standard input.
 pub(crate) fn is_standard_input(path: &Path) -> bool {
     let is_meant = path == Path::new("-") || path == Path::new("/dev/stdin");
     is_meant && STANDARD_INPUT.lock().unwrap_or_else(PoisonError::into_inner).is_some()
@@ -255,7 +255,7 @@ pub fn check(
         }
         Kind::L2ExplorerWorld => {
             let read = World::from_l2explorer(name, text);
-            // The original draws unknown classes, too.
+            // The original accepts unknown classes, too, so they are only warned about.
             if let Ok((world, _)) = &read {
                 let unknown = world.unknown_classes(classes).into_iter();
                 let unknown =
@@ -275,7 +275,7 @@ pub fn check(
     }
 }
 
-/// Warns if the agent of a valid world starts inside a solid object: only the catalogue knows bodies.
+/// Warns if the agent of a valid world starts inside a solid object, whose body only the catalogue defines.
 pub fn start_inside(name: &str, text: &str, catalogue: &Catalogue) -> Option<String> {
     let world = World::from_json(name, text).ok()?;
     let warnings = Environment::with_catalogue(world, catalogue.clone()).warnings();

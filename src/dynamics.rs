@@ -4,16 +4,16 @@ use driftworld_env::{Abstraction, Catalogue, EnvError, WorldAbstraction};
 use driftworld_similarity::{Bisimulation, Mdp, SimilarityError};
 use driftworld_spec::World;
 
-/// Points that count 1.
+/// Difference in points that counts as a distance of 1.
 const POINTS: f64 = 100.0;
 
-/// Metres that count 1.
+/// Difference in metres that counts as a distance of 1.
 const METRES: f64 = 10.0;
 
 /// Discount of the bisimulation.
 const DISCOUNT: f64 = 0.9;
 
-/// Most pairs of states that the bisimulation visits. With fewer than all, its bounds differ.
+/// Maximum number of state pairs that the bisimulation visits. If there are more, its lower and upper bounds differ.
 const MAX_PAIRS: usize = 1 << 17;
 
 /// The sides of the area around the origin that contains both arenas.
@@ -35,10 +35,11 @@ pub(crate) fn tables(world: &World, area: [f64; 2], catalogue: &Catalogue) -> Re
 /// The mean difference between the outcomes of one action in two worlds tabulated over the same cells: 1 is 100 points, 10 m,
 /// half a turn, or an end of the episode in only one world. Returns the share due to rewards and the share due to successors.
 ///
-/// The mean is over all actions and over the states that actions lead to from the start of either world. The agent's place
-/// after an action is compared by position and not by cell, so that small changes count a little. Where it has no room in one
-/// world, it stays there, unpaid. Shorter time steps with proportionally longer holds change no straight path; they change a
-/// curve by some centimetres, because an agent turns before it moves in each time step.
+/// The mean is over all actions and over the states that actions lead to from the start of either world. The agent's
+/// place after an action is compared by position and not by cell, so that small changes count a little. If a state has
+/// no room for the agent in one world, the agent stays there without reward. Shorter time steps with proportionally
+/// larger frame skips do not change straight paths; they change curves by centimetres, because an agent turns before it
+/// moves in each time step.
 ///
 /// Symmetric, and 0 for equal worlds. The averaged states depend on the pair, so the triangle inequality may fail. Ignores what
 /// tables do not contain: looks, time limits, and the consequences of taking or pushing things beyond one action.
@@ -51,7 +52,7 @@ pub(crate) fn w1(a: &WorldAbstraction, b: &WorldAbstraction) -> Result<(f64, f64
 }
 
 /// The bisimulation distance between the starts of two worlds tabulated over the same cells, as a share of 100 points: the
-/// largest difference in discounted rewards under equal actions. By cells, so it ignores changes within one.
+/// largest difference in discounted rewards under equal actions. By cells, so it ignores changes within a cell.
 pub(crate) fn bisimulation(a: &WorldAbstraction, b: &WorldAbstraction) -> Result<Bisimulation, SimilarityError> {
     let starts = (a.start, b.start);
     driftworld_similarity::bisimulation(&process(a)?, &process(b)?, starts, DISCOUNT, MAX_PAIRS)

@@ -14,7 +14,7 @@ use crate::Failure;
 use crate::film::{FilmModality, FilmOptions, FilmView};
 use crate::modality::{number_color, to_rgb};
 
-/// The events of one step as text, and their importance: 0 for a step on the way.
+/// The events of one step as text, and their importance: 0 if there are none.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Deed {
     pub(crate) words: Vec<String>,
@@ -42,10 +42,10 @@ pub(crate) fn recorded(
     Ok(recorder.recording(&environment, ended_by))
 }
 
-/// A recorded episode as rows of a sheet: the agent's view, and the map with the path since the row before, or one of them. At
-/// an event, the view is what the agent saw when it acted, and the map is after that.
+/// A recorded episode as rows of a sheet: the agent's view, the map with the path since the previous row, or both. At
+/// an event, the view shows what the agent saw when it acted, and the map shows the result.
 ///
-/// The start and the end are among the rows, and as many events as fit into `most` rows; if there are few, steps in between.
+/// Contains the start, the end, and as many events as fit into `most` rows; if there are few, also steps in between.
 pub(crate) fn rows(
     recording: &Recording,
     catalogue: &Catalogue,
@@ -60,7 +60,7 @@ pub(crate) fn rows(
         deeds.push(deed(replay.environment().world(), &step));
         last = Some(step);
     }
-    // Repeated, bit for bit, for the pictures of the chosen steps.
+    // Replays the episode, bit for bit, to draw the chosen steps.
     replay.restart();
     let (mut rows, mut way, mut taken) = (Vec::new(), vec![replay.environment().agent().position], 0);
     for number in chosen(&deeds, most) {
@@ -144,7 +144,7 @@ fn said(world: &World, event: &Event) -> String {
         Some(Effect::PickedUp) => format!("picks up the {class}"),
         Some(Effect::PutDown) => format!("puts down the {class}"),
         None => {
-            // A plain shape is better named by its purpose.
+            // A tag says what an object is for, which is better than the name of a plain shape.
             let name = event.tag.as_deref().unwrap_or(class);
             let alike = |other: &&Object| match &event.tag {
                 Some(tag) => other.tag.as_deref() == Some(&**tag),
@@ -184,7 +184,7 @@ fn title(step: usize, deed: &Deed) -> String {
     }
 }
 
-/// A number with its sign and one decimal, so that its width stays constant; smaller ones with the decimals needed.
+/// A number with its sign and one decimal, so that its width stays constant; small numbers with the decimals needed.
 pub(crate) fn number(value: f64, plus: &str) -> String {
     let size = amount(value.abs());
     let text = match value.abs() {
@@ -195,7 +195,7 @@ pub(crate) fn number(value: f64, plus: &str) -> String {
     format!("{}{text}", if value < 0.0 { "−" } else { plus })
 }
 
-/// The time, the return, carried objects, and why the episode ended, as one text in which no line breaks inside a fact.
+/// The [`facts`] as one text whose lines do not break inside a fact.
 pub(crate) fn words(environment: &Environment, end: Option<&Step>) -> String {
     let facts: Vec<String> = facts(environment, end).iter().map(|fact| whole(fact)).collect();
     // Lines may break after the dot.
@@ -303,7 +303,7 @@ mod tests {
         }
     }
 
-    /// An agent that burns in an example's lava is in it, and the caption says so; without energy limits there is no energy.
+    /// The caption names the agent's zone and its remaining energy; without an energy limit it shows no energy.
     #[test]
     fn captions_show_zones_and_remaining_energy() {
         let mut draft = WorldDraft::default();

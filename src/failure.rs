@@ -14,7 +14,8 @@ pub type Cause = Arc<dyn Error + Send + Sync>;
 /// Receives warnings during an operation, from any thread.
 pub type Warn<'a> = &'a (dyn Fn(String) + Sync);
 
-/// Encloses the name of an argument in a text. It has no meaning in other texts, unless it encloses an argument's name.
+/// Encloses the name of an argument in a text. Elsewhere it is an ordinary character, unless it encloses what looks
+/// like such a name.
 const MARK: char = '\u{1}';
 
 /// The name of an argument in the text of a failure, such as `window_length`: the command writes `--window-length`, Python
@@ -105,7 +106,7 @@ impl From<String> for FailureText {
 }
 
 impl Failure {
-    /// The exit code of a command that fails so.
+    /// The exit code of a command that fails with this.
     pub(crate) fn exit_code(&self) -> u8 {
         match self {
             Self::Input(..) => 1,
@@ -131,7 +132,7 @@ impl Failure {
         Self::usage(format!("{}: {what}", argument(name)))
     }
 
-    /// An error with another text.
+    /// A failure with its own text, caused by an error.
     pub(crate) fn because(text: impl Into<String>, error: impl Error + Send + Sync + 'static) -> Self {
         Self::Input(FailureText(text.into()), Some(Arc::new(error)))
     }

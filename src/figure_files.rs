@@ -32,7 +32,7 @@ impl Files {
             1 => drawn.run_id.clone(),
             number => format!("{}_{number}", drawn.run_id),
         };
-        // Among one more name than there are, one is free.
+        // Of one more candidate than there are names in use, one is free.
         let mut names = (1..=self.names.len() + 1).map(numbered);
         let name = names.find(|name| !self.names.contains(name)).unwrap_or_default();
         for (ending, bytes) in &drawn.files {
@@ -70,7 +70,7 @@ pub(crate) fn drawn(
         files.push((format!("{}.png", figure.name()), figures.png(figure)?));
         files.push((format!("{}.svg", figure.name()), figures.svg(figure)?.into_bytes()));
     }
-    // Names of several logs may be paths.
+    // With several logs, a lifetime's name may be a path.
     let run_id = lifetime.run_id().replace(['/', '\\'], "_");
     Ok(Drawn { run_id, files })
 }

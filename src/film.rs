@@ -16,7 +16,7 @@ use crate::{Failure, argument, output_file};
 /// Largest width and height of the agent's view, and of the map, in pixels.
 pub const MAX_FILM_SIZE: u32 = 2048;
 
-/// Narrower frames have no captions, which would be cut and higher than the picture.
+/// Narrower frames have no captions, which would be cut off and taller than the picture.
 const LEAST_CAPTIONED: u32 = 100;
 
 /// Rows of a sheet.
@@ -65,7 +65,7 @@ pub struct FilmOptions {
     #[arg(long, value_enum, default_value_t = FilmView::Both)]
     pub view: FilmView,
     /// Height of the pictures in pixels.
-    // 1 to MAX_FILM_SIZE. The map is as oblong as its arena.
+    // 1 to MAX_FILM_SIZE. The map has its arena's aspect ratio.
     #[arg(long, default_value_t = 240, value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_FILM_SIZE)))]
     pub size: u32,
     /// What the agent's view shows; the map has no modalities.
@@ -81,7 +81,7 @@ pub struct FilmOptions {
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub every: u32,
     /// Leave out the line above the pictures: time, return, what is carried, what happened.
-    // Without captions a sheet says the step. Frames of a film that are less than 100 pixels wide have none.
+    // Without captions, a sheet shows only the step. Frames of a film that are narrower than 100 pixels have none.
     #[arg(long = "no-captions", action = ArgAction::SetFalse)]
     pub captions: bool,
     /// Where to render: cpu, gpu, or auto (gpu if there is one).
@@ -175,8 +175,8 @@ impl FilmOptions {
     }
 }
 
-/// Repeats an episode and passes on its frames, each with the number of steps before it; then checks that the result is as
-/// recorded.
+/// Replays an episode and passes each frame to `take`, with the number of steps before it; then checks that the result
+/// is as recorded.
 ///
 /// # Errors
 /// A step that is no longer possible, or a reward or ending that differs from the recording; errors of `take`.
@@ -211,7 +211,7 @@ pub fn film(
     Ok(replay.check()?)
 }
 
-/// The captions above the frames of a film: computed before the first frame is drawn, because all have room for the longest.
+/// The captions above the frames of a film: computed before the first frame, because each has room for the longest.
 #[derive(Default)]
 struct Captions {
     /// By the number of steps before the frame, ascending.
@@ -220,7 +220,7 @@ struct Captions {
 }
 
 impl Captions {
-    /// The captions of an episode, which is run for them from its start, without pictures.
+    /// Replays an episode from its start, without pictures, to collect its captions.
     fn of(replay: &mut Replay<'_>, recording: &Recording, options: &FilmOptions) -> Result<Self, Failure> {
         let last = recording.actions.len();
         let steps_of_a_second = (1.0 / recording.seconds_per_step()).ceil() as usize;
@@ -305,7 +305,7 @@ pub fn expect_film(path: &Path) -> Result<(), Failure> {
 /// simulated time, but no faster than viewers show. `watch` gets the number of finished frames.
 ///
 /// # Errors
-/// As [`film`], and if the file cannot be written: then there is none.
+/// As [`film`], and if the file cannot be written. After an error there is no file.
 pub fn write_film(
     path: &Path,
     recording: &Recording,

@@ -25,7 +25,7 @@ pub use driftworld_report as report;
 pub use driftworld_similarity as similarity;
 pub use driftworld_spec as spec;
 
-// Without `cfg`: what the workbench needs in a browser, where there are no files, no terminal and no figures (`studio/wasm/`).
+// The workbench in a browser (`studio/wasm/`) needs the modules without `cfg`: there are no files, terminal or figures.
 pub mod behavior;
 #[cfg(not(target_family = "wasm"))]
 mod checksum;

@@ -9,7 +9,7 @@ use crate::Failure;
 /// The largest library in bytes.
 pub const MAX_LIBRARY_BYTES: u64 = 1 << 30;
 
-/// The built-in assets, with these libraries in front of them, the last one first.
+/// The built-in assets, overridden by these libraries; later ones override earlier ones.
 pub(crate) fn catalogue(paths: &[PathBuf]) -> Result<Catalogue, Failure> {
     let mut catalogue = Catalogue::default();
     for path in paths {

@@ -14,14 +14,14 @@ use driftworld_text::ShownPath;
 /// Maximum depth of the search below a folder that is no log itself.
 const MOST_LEVELS: usize = 4;
 
-/// Most logs in one search.
+/// Maximum number of logs in one search.
 const MOST_LOGS: usize = 10_000;
 
-/// Most folders searched for logs.
+/// Maximum number of folders searched for logs.
 const MOST_FOLDERS: usize = 200_000;
 
-/// The state of a search for logs. A link below the starting folder is followed only if it leads directly to a log: one to `/`
-/// would search the whole machine, one to a parent folder would never end.
+/// The state of a search for logs. A link below the starting folder is followed only if it leads directly to a log:
+/// following a link to `/` would search the whole machine, and following one to a parent folder would never end.
 #[derive(Default)]
 struct Search {
     found: Vec<PathBuf>,
@@ -56,7 +56,7 @@ pub(crate) fn below(arguments: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     Ok(each_once(found))
 }
 
-/// All logs among the arguments, in order, each once. A folder that is no log, but has logs below, is refused with advice.
+/// The arguments, which must all be logs, in order, each once. A folder with logs only below is refused with advice.
 pub(crate) fn named(arguments: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     if let Some(folder) = arguments.iter().find(|folder| !is_log(folder)) {
         let below = search(folder)?;

@@ -1,4 +1,4 @@
-//! Maps the names of tasks in a log, which hold letters and digits only, to `task#variant` as in its scenario.
+//! Maps the names of tasks in a log, such as `findobjects_red`, to `task#variant` as in its scenario.
 
 use std::collections::BTreeMap;
 
@@ -6,8 +6,8 @@ use driftworld_curriculum::log_name;
 use driftworld_metrics::Log;
 use serde_json::Value;
 
-/// The names of the tasks of a log's scenario, by their log names; empty without a scenario. Names shared by two of them are
-/// left out.
+/// The names of the variants in a log's scenario, by their log names; empty without a scenario. Log names shared by two
+/// variants are left out.
 pub(crate) fn called_in(log: &Log) -> BTreeMap<String, String> {
     log.scenario_info.extra.get("scenario").map(called).unwrap_or_default()
 }
@@ -18,7 +18,7 @@ fn called(scenario: &Value) -> BTreeMap<String, String> {
     let regimes = blocks.filter_map(|block| block.get("regimes")?.as_array()).flatten();
     for regime in regimes {
         let word = |key: &str| regime.get(key).and_then(Value::as_str);
-        // A drift has both of its ends in its name, which is kept.
+        // The log name of a drift contains both of its ends, and is kept.
         let variant = word("name").or_else(|| word("variant"));
         let (Some(task), Some(variant), None) = (word("task"), variant, regime.get("drift")) else {
             continue;

@@ -5,20 +5,20 @@ use driftworld_report::picture::Rgb;
 
 use crate::map_drawing::map_size;
 
-/// Height in pixels of the pictures that are counted.
+/// Height in pixels of the pictures whose pixels are counted.
 const HEIGHT: u32 = 192;
 /// Colours closer than this, in levels of 0 to 255, count as one.
 const NEAR: i32 = 48;
-/// Squared distance within which light and shadow change a paint.
+/// Squared distance by which light and shadow may change the colour of a paint.
 const SHADE: i32 = 96 * 96;
-/// Most colours in a swatch.
+/// Maximum number of colours in a swatch.
 const MOST: usize = 3;
 /// Rims of doors and keys.
 const RIM: Rgb = [20, 24, 30];
 
 /// A scene whose groups of things are rendered from above, each alone.
 pub(crate) struct MapColors {
-    /// The scene with only a speck on its ground.
+    /// The scene without its objects, except for a speck that keeps the scale.
     scene: Scene,
     bare: Image,
 }
@@ -34,7 +34,7 @@ impl MapColors {
             }
             item.visible = false;
         }
-        // A map includes things outside the arena: with a speck at the same distance, all pictures have one scale.
+        // A map extends to objects outside the arena: a speck as far out as they are gives all pictures the same scale.
         if let Some(mut speck) = scene.items.first().cloned() {
             speck.scale = 1e-3;
             (speck.visible, speck.position) = (true, far);
@@ -47,8 +47,8 @@ impl MapColors {
         }
     }
 
-    /// The colours of these items, the most visible first: one if they look alike, at most three. Empty if nothing of them is
-    /// visible.
+    /// The colours of these items, the most visible first: one if they look alike, at most three. Empty if none of them
+    /// is visible.
     pub(crate) fn of_group(&self, members: &[usize]) -> Vec<Rgb> {
         let mut groups: Vec<(Rgb, usize)> = Vec::new();
         for (color, pixels) in self.of_members(members) {
@@ -91,7 +91,7 @@ impl MapColors {
         }
         let with_color = |(index, pixels): (&usize, &Vec<Rgb>)| {
             let shaded = median(pixels)?;
-            // The paint's own colour, if it is what is seen: unlike a trunk below leaves.
+            // Uses the object's own paint if that is the visible colour; a trunk below leaves is not visible.
             let paint = scene.items[*index]
                 .color
                 .map(|paint| paint.map(|share| (share * 255.0) as u8));

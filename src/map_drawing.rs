@@ -42,7 +42,7 @@ pub(crate) struct Moves {
 }
 
 impl Moves {
-    /// A world at its start.
+    /// No movements: the agent at its start.
     pub(crate) fn none(world: &World) -> Self {
         let agent = &world.agent_params;
         Self {
@@ -81,7 +81,7 @@ pub(crate) fn map_size(scene: &Scene, height: u32) -> [u32; 2] {
     [((height as f32 * aspect).round() as u32).max(1), height]
 }
 
-/// The ground from above with everything on it, in neutral light, with smooth edges if allowed.
+/// The ground from above with everything on it, in neutral light, with smooth edges unless the picture is very large.
 pub(crate) fn ground(scene: &Scene, size: [u32; 2]) -> Picture {
     let scene = scene.clone().in_neutral_light();
     let Ok(picture) = Picture::smooth(size, |[width, height]| {
@@ -160,7 +160,7 @@ pub(crate) fn annotated(world: &World, scene: &Scene, moves: &Moves, ground: Pic
         let own = all
             .iter()
             .find(|(at, _)| points.first().is_some_and(|start| apart(*at, *start) < 0.5));
-        // A thing smaller than a pixel leaves its pixel unmarked.
+        // Leaves the pixel of an object uncovered even if the object is smaller than a pixel.
         let rim = |radius: f32| radius.max(1.5) + 1.5 * thin;
         let points = own.map_or_else(|| points.clone(), |(_, radius)| from_rim(&points, rim(*radius)));
         map.line(points.clone(), 3.0 * thin, INK);
@@ -194,7 +194,7 @@ fn apart(one: [f32; 2], other: [f32; 2]) -> f32 {
     (one[0] - other[0]).hypot(one[1] - other[1])
 }
 
-/// The part of a path outside a disc around its start, which would hide it; empty for a shorter path.
+/// The part of a path outside a disc around its start, so that the path does not hide what is there; may be empty.
 fn from_rim(points: &[[f32; 2]], radius: f32) -> Vec<[f32; 2]> {
     let Some(start) = points.first().copied() else {
         return Vec::new();
@@ -219,7 +219,7 @@ fn from_rim(points: &[[f32; 2]], radius: f32) -> Vec<[f32; 2]> {
     rest
 }
 
-/// A plus or a minus beside a thing with this centre and radius, at the corner where it covers the least of all things.
+/// A plus or a minus beside an object with this centre and radius, at the corner where it covers other objects least.
 fn sign(map: &mut Drawing, [x, y]: [f32; 2], radius: f32, pay: f64, size: u32, things: &[([f32; 2], f32)]) {
     let (text, color) = if pay > 0.0 { ("+", PAYS) } else { ("−", COSTS) };
     let letters = (size as f32 / 17.0).clamp(9.0, 30.0);
@@ -383,7 +383,7 @@ mod tests {
             }
         }
 
-        /// Paths start beside their object: it is as visible as without, and so is the end.
+        /// Paths start beside their object, which stays visible, and their end is drawn.
         #[test]
         fn paths_hide_none_of_their_objects(angle in 0.0..6.2_f32, far in 4.0..20.0_f32, size in 64_u32..400) {
             let world = world(60.0, vec![object("geometric", [1.0, 2.0], 0.0, 0.0)]);

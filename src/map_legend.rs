@@ -47,7 +47,7 @@ impl Entry {
 
 #[derive(Clone, Debug, PartialEq)]
 enum Mark {
-    /// One to three.
+    /// One to three colours.
     Colors(Vec<Rgb>),
     Zone(Rgb),
     Arrow,
@@ -166,7 +166,7 @@ fn effects(zone: &Zone) -> Vec<String> {
     words
 }
 
-/// The name of a group of objects: a plain shape is better named by its purpose.
+/// The name of a group of objects: their tag, which says what they are for, else their shape or class.
 pub(crate) fn named(object: &Object) -> String {
     let class = object.class.to_lowercase();
     let shape = match (class.as_str(), object.model.0.trim().to_lowercase().as_str()) {
@@ -189,8 +189,8 @@ fn at(picture: &Picture, [x, y]: [f32; 2]) -> Rgb {
     [picture.rgb[start], picture.rgb[start + 1], picture.rgb[start + 2]]
 }
 
-/// The legend in a column of this height, with scale and north at its foot; entries without room are counted in the last line,
-/// the agent's first. If there is no room for two lines, there is no text.
+/// The legend in a column of this height, with scale and north at its foot. Entries that do not fit, the agent's first,
+/// are counted in the last line. If only one line fits and there are more entries, there is no text.
 fn legend(entries: &[Entry], letters: f32, height: u32, places: &Places) -> Drawing {
     let line = (letters * 1.45).round();
     let bar = Bar::of(places, (0.3 * places.size[0]).min(LONGEST_BAR));

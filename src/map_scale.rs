@@ -1,7 +1,7 @@
 //! Scale and north of a map: converts metres to pixels, and draws a labelled bar and an arrow in the corners where they cover
 //! least.
 
-#![expect(clippy::disallowed_methods, reason = "where lines and words stand on a map")]
+#![expect(clippy::disallowed_methods, reason = "only positions of lines and labels on a map")]
 
 use driftworld_env::{Scene, top_down_scale};
 use driftworld_report::picture::{Drawing, Level, Rgb, Side, TextLine, text_width};
@@ -36,7 +36,8 @@ impl Places {
 /// Corners of a map as (right, bottom), the bar's default first, north's last.
 pub(crate) const CORNERS: [[bool; 2]; 4] = [[false, true], [true, true], [false, false], [true, false]];
 
-/// The corner where a box of this size covers least; removes it from the list.
+/// Takes from the list the corner where a box of this size covers the least weight of marks; returns the box's top left
+/// pixel.
 pub(crate) fn freest(
     corners: &mut Vec<[bool; 2]>,
     size: [f32; 2],

@@ -6,7 +6,7 @@ use driftworld_text::first_of;
 
 use crate::{Failure, argument, tasks};
 
-/// Most labels in a message.
+/// Maximum number of labels in a message.
 const MOST_LISTED: usize = 20;
 
 /// How an order is found.
@@ -44,7 +44,7 @@ impl OrderRequest {
         Ok((method, ordering))
     }
 
-    /// Like [`Self::order`], starting at whichever of some items gives the shortest path, if neither end is given.
+    /// Like [`Self::order`], but if no start is given, starts at whichever of `firsts` gives the shortest path.
     pub(crate) fn order_from(
         &self,
         matrix: &DistanceMatrix,

@@ -71,8 +71,8 @@ impl RecordedEpisodes {
         Ok(this)
     }
 
-    /// The episodes with rows, or those in the file: numbers, and in a log the worker. Block by block, so that each file is
-    /// read once.
+    /// The numbers of the episodes with rows, each with its worker, or of those in the file of recordings. Ordered by
+    /// block, so that each file is read once.
     pub fn all(&self) -> Vec<(u64, Option<String>)> {
         let Some(rows) = &self.rows else {
             let numbers: BTreeSet<u64> = self.listed().map(|origin| origin.experience).collect();
@@ -115,7 +115,7 @@ impl RecordedEpisodes {
         }
     }
 
-    /// Repeats an episode, and compares it with its recording and, if there is one, with its row in the log.
+    /// Replays an episode, and compares it with its recording and, if there is one, with its row in the log.
     ///
     /// # Errors
     /// The difference.

@@ -7,7 +7,7 @@ use driftworld_generator::Sampler;
 use driftworld_spec::{Legend, TaskSpec, World, did_you_mean};
 use rayon::prelude::*;
 
-/// Most worlds checked per variant.
+/// Maximum number of worlds checked per variant.
 pub(crate) const MOST_LOOKED_THROUGH: u64 = 100;
 
 /// A remark on some worlds of a task.

@@ -14,7 +14,7 @@ use crate::documents::{self, DocumentError, Kind};
 use crate::tasks::{self, TaskError};
 use crate::worlds;
 
-/// Most files read to find a world with a name similar to a missing one's.
+/// Maximum number of files read to find a world whose name is similar to that of a missing one.
 const MOST_READ: usize = 8;
 
 /// Receives warnings.
@@ -26,7 +26,7 @@ pub struct ScenarioFile {
     /// The scenario.
     pub scenario: Scenario,
     path: PathBuf,
-    /// Whether the file is the original's; then its maps are, too.
+    /// Whether the file, and therefore its world files, are in the original's format.
     pub original: bool,
 }
 
@@ -57,7 +57,7 @@ impl ScenarioFile {
             }
             scenario
         } else {
-            // With the tasks that can be found, so that all of their missing variants are reported at once.
+            // Checks against the tasks that can be found, so that all of their missing variants are reported at once.
             Scenario::from_json_with(&name, text, |task| task_from(path, task).ok())?
         };
         Ok(Self {
@@ -82,7 +82,7 @@ impl ScenarioFile {
         Contents::of_text(&text) == Some(Contents::Scenario)
     }
 
-    /// The scenario with everything that it names.
+    /// Plans the scenario with everything that it names.
     ///
     /// # Errors
     /// As [`Plan::with_undrawable`].
@@ -90,7 +90,7 @@ impl ScenarioFile {
         self.plan_named(missing, undrawable, warn).map(|(plan, _)| plan)
     }
 
-    /// Like [`Self::plan`], and returns what was found, by the scenario's names for it.
+    /// Like [`Self::plan`], but also returns the tasks and world files found, by their names in the scenario.
     ///
     /// # Errors
     /// As [`Plan::with_undrawable`].
@@ -212,7 +212,7 @@ impl ScenarioFile {
     }
 }
 
-/// What a scenario names, by its names: the plan can be made from this again, even if the files change.
+/// The tasks and world files that a scenario names, so that it can be planned again even if the files change.
 #[derive(Clone, Debug, Default)]
 pub struct Named {
     /// Its tasks.
@@ -222,7 +222,7 @@ pub struct Named {
 }
 
 impl Named {
-    /// Plans the scenario with these.
+    /// Plans the scenario with these tasks and world files.
     ///
     /// # Errors
     /// As [`Plan::with_undrawable`], also if something is missing.
@@ -262,7 +262,7 @@ pub enum Missing {
 }
 
 impl Missing {
-    /// Whether another world may replace it.
+    /// [`Self::StandIn`] if another world may replace it, else [`Self::Refused`].
     pub fn may_stand_in(may: bool) -> Self {
         if may { Self::StandIn } else { Self::Refused }
     }

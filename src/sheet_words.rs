@@ -53,14 +53,14 @@ pub(crate) fn below_all(bases: &[String], places: &[String], usual: Option<&Stri
     (!said.is_empty()).then(|| said.join(" "))
 }
 
-/// Describes a picture that is not in colours.
+/// Says what a picture shows instead of colours.
 pub(crate) fn modality_words(modality: Modality) -> &'static str {
     match modality {
         Modality::Rgb => "",
-        Modality::Depth => "Shown in depth: the agent sees no colours.",
-        Modality::Segmentation => "Shown in reward categories: the agent sees no colours.",
-        Modality::Class => "Shown by classes, a colour for each: the agent sees no other colours.",
-        Modality::Instance => "Shown by objects, a colour for each: the agent sees no other colours.",
+        Modality::Depth => "Shown as depth: the agent sees no colours.",
+        Modality::Segmentation => "Shown as reward categories: the agent sees no colours.",
+        Modality::Class => "Shown as classes, one colour each: the agent sees no other colours.",
+        Modality::Instance => "Shown as objects, one colour each: the agent sees no other colours.",
     }
 }
 
@@ -86,7 +86,7 @@ pub(crate) fn placed(shown: &Shown, choice: Choice, look: Look) -> String {
     format!("{world}, {turn}")
 }
 
-/// The values of a variant that differ from another's, with the other's in brackets; none is cut.
+/// The values of a variant that differ from another's, with the other's in brackets, in full.
 pub(crate) fn differences(base: &Variant, variant: &Variant) -> String {
     let parameters = variant.task().parameters();
     let short = |name: &str, value: &Value| {
@@ -110,7 +110,7 @@ pub(crate) fn differences(base: &Variant, variant: &Variant) -> String {
     parts.join(", ") + if parts.is_empty() { "" } else { "." }
 }
 
-/// What looks the same in the pictures of two variants, and what is outside them.
+/// Says that two variants look the same in the pictures, and which elements differ without being visible there.
 pub(crate) fn alike(base: &Variant, variant: &Variant, [view, map]: [bool; 2]) -> String {
     let what = match (view, map) {
         (true, true) => "Looks the same, and so does the map",

@@ -6,7 +6,7 @@ use driftworld_spec::{MotionModel, World};
 
 use crate::Failure;
 
-/// Pixels along each side of the pictures that are counted.
+/// Width and height of the pictures whose pixels are counted.
 const SIDE: u32 = 64;
 
 /// Columns at each side that do not count: things there are cut off, or easily overlooked.
@@ -15,7 +15,7 @@ const MARGIN: u32 = SIDE / 8;
 /// An object with at least this many pixels counts as visible: a thousandth of the picture, a cube of 1 m from 30 m.
 pub(crate) const ENOUGH: u32 = SIDE * SIDE / 1000;
 
-/// The subjects of a picture: objects that pay, cost, move or are used; if there are none, all objects.
+/// The subjects of a picture: objects that pay, move, are used or ordered; else that cost or can be pushed; else all.
 pub(crate) fn subjects(world: &World) -> Vec<usize> {
     let objects = || world.objects.iter().enumerate();
     let chosen = |is_subject: &dyn Fn(&driftworld_spec::Object) -> bool| -> Vec<usize> {

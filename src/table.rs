@@ -71,8 +71,8 @@ fn fitted(headings: Vec<String>, rows: Vec<Vec<String>>, numbers: &[usize], widt
     lines.join("\n")
 }
 
-/// A table that does not fit as it is: without empty columns; else with the last column below each row; else each row as a
-/// list.
+/// A table that is too wide: drops empty columns if there are any, else moves the last column below each row, else
+/// turns each row into a list.
 fn narrow(headings: &[String], rows: &[Vec<String>], numbers: &[usize], width: usize) -> String {
     let says = |column: &usize| rows.iter().any(|row| !matches!(row[*column].as_str(), "" | "-"));
     let kept: Vec<usize> = (0..headings.len()).filter(says).collect();
@@ -120,7 +120,7 @@ fn widths(headings: &[String], rows: &[Vec<String>], width: Option<usize>) -> Op
     if least.iter().sum::<usize>() > room {
         return None;
     }
-    // The widest columns shrink first, all to one width.
+    // The widest columns shrink first, all to the same width.
     let under = |cap: usize| -> Vec<usize> {
         let pairs = natural.iter().zip(&least);
         pairs.map(|(natural, least)| (*natural).min(cap.max(*least))).collect()

@@ -27,7 +27,7 @@ macro_rules! families {
     };
 }
 
-/// A group of tasks: what they require, and each with its name and text.
+/// A group of tasks: what they require, and the name and text of each.
 pub type Group = (&'static str, &'static [(&'static str, &'static str)]);
 
 /// More tasks, by what they require. The files are in `examples/worlds/`.
@@ -70,7 +70,7 @@ pub enum TaskError {
     /// The document is invalid, or has no such variant.
     #[error(transparent)]
     Spec(#[from] SpecError),
-    /// The name stands for a family or a pattern, but one variant is needed.
+    /// The name matches several variants, as a family or a pattern, but one variant is needed.
     #[error(
         "{}: found a name of {count} variants, expected one of them, such as {first}",
         printable(name)
@@ -78,7 +78,7 @@ pub enum TaskError {
     Several {
         /// The name asked for.
         name: String,
-        /// How many variants it stands for.
+        /// The number of variants that it matches.
         count: usize,
         /// The first of them.
         first: String,
@@ -274,7 +274,7 @@ fn is_document(path: &Path) -> bool {
     path.exists() && !path.is_dir()
 }
 
-/// The names with their tasks: a variant, a family or a pattern may follow a name with a task without repeating it, as in
+/// Completes names without a task: after a name with a task, a variant, a family or a pattern may omit that task, as in
 /// `find_objects#red dusk`.
 pub(crate) fn with_tasks(names: &[String]) -> Vec<String> {
     let mut known: Vec<(String, Arc<TaskSpec>)> = Vec::new();
@@ -286,7 +286,7 @@ pub(crate) fn with_tasks(names: &[String]) -> Vec<String> {
         }
         match task(of) {
             Ok(spec) => known.push((of.to_owned(), spec)),
-            // After a task, a word is one of its variants, misspelt; unless it is similar to the name of a task, or a path.
+            // After a task, an unknown word is a misspelt variant of it, unless it is a path or like a task's name.
             Err(TaskError::Unknown { .. }) if own.is_none() && is_word(name) => {
                 if let Some((task, _)) = known.last() {
                     return format!("{task}#{name}");

@@ -8,7 +8,7 @@ use serde_json::value::RawValue;
 /// The keys of an object.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct TopLevel {
-    /// Each with whether its value is a list; of repeated keys the last counts.
+    /// Whether the value of each key is a list; of repeated keys, the last one counts.
     keys: BTreeMap<String, bool>,
 }
 

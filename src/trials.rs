@@ -5,10 +5,10 @@ use driftworld_text::when;
 
 use crate::table::table;
 
-/// Most failures listed.
+/// Maximum number of failures listed.
 const MOST_TOLD: usize = 10;
 
-/// How often drawing failed, a row for each variant or regime; with the reason of the first failures.
+/// A table of how often drawing failed, with a row for each variant or regime, then the reasons of the first failures.
 pub(crate) fn shown(trials: &[Trial]) -> String {
     let share = |failed: u64, of: u64| match failed {
         0 => "0".to_owned(),

@@ -3,10 +3,10 @@
 use driftworld_spec::{Layout, RoomDoors, Value};
 use driftworld_text::counted;
 
-/// Longest value whose structure is unknown here.
+/// Maximum length, in characters, of values other than numbers and layouts; longer ones are cut.
 const LONGEST: usize = 40;
 
-/// A short form of a value: numbers with four digits, layouts by their parts.
+/// A short form of a value: numbers with four significant digits, layouts by their parts.
 pub(crate) fn short(value: &Value) -> String {
     match value {
         Value::Number(number) => rounded(*number),
@@ -24,7 +24,7 @@ fn bracketed(numbers: &[f64]) -> String {
     cut(&format!("[{}]", numbers.join(", ")))
 }
 
-/// Lists of words as such; anything else as JSON.
+/// Texts and lists of texts without JSON's syntax, `null` as `none`; anything else as JSON.
 fn json_words(json: &serde_json::Value) -> String {
     match json {
         serde_json::Value::Null => "none".to_owned(),

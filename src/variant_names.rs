@@ -15,7 +15,7 @@ const MAX_INFO_BYTES: u64 = 64 << 20;
 pub(crate) struct VariantNames(BTreeMap<String, String>);
 
 impl VariantNames {
-    /// From the logs in these folders; logs of other programs have no names, which is no error.
+    /// From the logs in these folders; logs of other programs lack these names, which is not an error.
     pub(crate) fn of_logs<P: AsRef<Path>>(folders: &[P]) -> Self {
         let mut names = BTreeMap::new();
         for folder in folders {

@@ -154,13 +154,13 @@ fn letters(width: u32) -> f32 {
     (width as f32 / 28.0).clamp(8.0, 15.0)
 }
 
-/// Share of the overview's half that is left free along its edges.
+/// Share of half the overview's width and height that is left free along each edge.
 const RIM_OF_OVERVIEW: f32 = 0.04;
 
-/// Half the height at 1 m of a close-up from its default distance: an angle of 42°.
+/// Tangent of half the field of view of a close-up from its default distance: the field of view is 42°.
 const CLOSE_UP_TANGENT: f32 = 0.384;
 
-/// A close-up with fewer pixels, out of 4,096, shows nothing.
+/// An object is shown in a close-up only if it has clearly more pixels than this, out of 4,096.
 const LEAST_CLOSE_UP: u32 = 80;
 
 /// Camera rotations that are tried, in degrees clockwise.
@@ -201,7 +201,7 @@ impl<'a> Views<'a> {
     pub(crate) fn with_catalogue(world: &'a World, catalogue: &Catalogue, size: u32, turn: f32) -> Self {
         Self {
             world,
-            // With doors open if they start open.
+            // The environment's scene, in which doors that start open are open.
             scene: Environment::with_catalogue(world.clone(), catalogue.clone())
                 .scene()
                 .clone(),
@@ -211,7 +211,7 @@ impl<'a> Views<'a> {
         }
     }
 
-    /// With another renderer than the processor's.
+    /// Uses another renderer than the CPU's.
     pub(crate) fn drawn_by(self, renderer: Renderer) -> Self {
         Self {
             renderer: Rc::new(RefCell::new(renderer)),
@@ -351,8 +351,8 @@ impl<'a> Views<'a> {
         [0.0, 90.0, 180.0, 270.0].into_iter().map(look).collect()
     }
 
-    /// Close-ups of the object of each name that is nearest to the agent, with its name. Objects that are not visible from
-    /// nearby are left out.
+    /// For each name of objects, the name and a close-up of the object nearest to the agent, preferring rewarding ones.
+    /// Objects that are not visible from nearby are left out.
     pub(crate) fn close_ups(&self, most: usize) -> Result<Vec<(String, Picture)>, Failure> {
         let start = self.world.agent_params.coordinates;
         let far = |index: &usize| {
@@ -430,7 +430,7 @@ impl<'a> Views<'a> {
         map_legend::map_with_legend(self.world, &self.scene, moves, self.size)
     }
 
-    /// A colour picture with smooth edges: rendered at twice the size if allowed.
+    /// A colour picture with smooth edges: rendered at twice the size unless it is very large.
     fn smooth(&self, scene: &Scene, camera: &Camera, width: u32) -> Result<Picture, Failure> {
         Picture::smooth([width, self.size], |[width, height]| {
             Ok(self.frame(scene, camera, width, height)?.rgb)

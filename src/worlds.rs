@@ -37,7 +37,7 @@ fn world_file(path: &Path, l2explorer: bool, maps: &MapLibrary) -> Result<(World
     }
 }
 
-/// Whether an argument names a world file rather than a task: a JSON file whose top level has no `"parameters"` or `"name"`.
+/// Whether an argument names a world file, not a task: a JSON object without `name`, `parameters` and `groups`.
 pub(crate) fn is_world_file(name: &str) -> bool {
     let path = Path::new(name);
     let Ok(text) = documents::text(path) else {
@@ -47,7 +47,7 @@ pub(crate) fn is_world_file(name: &str) -> bool {
     TopLevel::of(&text).is_some_and(|keys| !keys.has_any(&["name", "parameters", "groups"]))
 }
 
-/// Refuses a folder, and a file that is recognised as neither a world nor a task spec.
+/// Refuses a folder, and a file recognised as another kind of document than a world or a task spec.
 pub(crate) fn expect_world_or_task(name: &str) -> Result<(), Failure> {
     let path = Path::new(tasks::split(name).0);
     let shown = || Contents::of_text(&documents::text(path).ok()?);

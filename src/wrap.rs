@@ -5,7 +5,7 @@ use unicode_width::UnicodeWidthStr;
 
 use crate::style;
 
-/// Narrower widths are ignored, in columns.
+/// Minimum width in columns; narrower terminals count as this wide.
 const NARROWEST: usize = 40;
 
 /// The columns of standard output: from `COLUMNS`, else the terminal's; `None` if lines may have any length.

@@ -1,4 +1,4 @@
-//! `driftworld distance`: the distance of two variants or two worlds, element by element.
+//! `driftworld distance`: the distance between two variants or two worlds, element by element.
 
 use crate::distances::{By, Compared, Sample, Scale, Side, between};
 use crate::similarity::{Distance as Measured, Part};

@@ -34,7 +34,7 @@ impl Doctor {
     }
 }
 
-/// How to get a graphics card to draw with; empty if there is one, or a software renderer in its place.
+/// Why there is no graphics adapter, with hints; empty if there is one (a card or a software driver).
 fn missing(report: &RendererReport) -> Vec<String> {
     let Some(reason) = &report.no_adapter else {
         return Vec::new();
@@ -211,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn a_machine_without_vulkan_is_told_what_to_install() {
+    fn machine_without_vulkan_gets_hints_on_what_to_install() {
         let empty = tempfile::tempdir().expect("a folder");
         let hints = vulkan_hints(&[empty.path()], &[empty.path()]);
         assert!(

@@ -1,4 +1,4 @@
-//! `driftworld elements`: measures which elements of the decision process variants change, beside the task's claims.
+//! `driftworld elements`: measures which elements of the decision process variants change, beside those declared.
 
 use clap::Args;
 use driftworld_text::joined_or;

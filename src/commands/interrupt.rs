@@ -38,7 +38,7 @@ pub(crate) struct Interrupt(());
 
 impl Interrupt {
     /// Turns the first interrupt, termination or hang-up into a cancellation request; after 1.5 seconds, or at the next signal,
-    /// the process exits with these words and the signal's exit code.
+    /// the process exits with this message and the signal's exit code.
     pub(crate) fn listen(words: impl Into<String>) -> Self {
         *parting() = Some(words.into());
         #[cfg(not(unix))]
@@ -86,7 +86,7 @@ fn silence() {
     IDLE.store(true, Ordering::SeqCst);
 }
 
-/// Marks that a command runs as a program. Dropping it ends signal handling, and nothing exits the process any more.
+/// Marks that a command runs as a program. Dropping it cancels a pending exit; later signals have their default action.
 pub(super) struct Watch(());
 
 /// Starts signal handling.
@@ -140,7 +140,7 @@ mod system {
     /// A hang-up is ignored if the parent process ignored it, as with `nohup`.
     fn signals() -> Vec<i32> {
         let mut signals = vec![SIGINT, SIGTERM];
-        // The system's own file, not by driftworld-files: no user names it.
+        // A file of the system, not by driftworld-files: no user names it.
         let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
         let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
         let ignored = ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());

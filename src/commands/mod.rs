@@ -1,6 +1,6 @@
 //! The `driftworld` command: its subcommands, one file each, and error reporting.
 //!
-//! [`run`] is the whole command, and prints. The rest of the library never does.
+//! [`run`] is the whole command, including its output. The rest of the library never prints.
 
 mod agent;
 mod assets;
@@ -61,10 +61,11 @@ static WORDS: Mutex<Vec<OsString>> = Mutex::new(Vec::new());
 
 /// Runs the command like the `driftworld` program, and prints its output; `args` begins with the program's name.
 ///
-/// Returns the exit code: 0 for success, 1 for invalid input or an invalid place for the output, 2 for invalid arguments. If
-/// the reader of the output goes away, as with `| head`, the process ends; so it does within two seconds of an interrupt, a
-/// termination or a hang-up, leaving no partial files: with a message if the work can be resumed or repeated, else by the
-/// signal. Either way the exit code is 128 plus the signal's number: 130 for an interrupt, as in shells.
+/// Returns the exit code: 0 for success, 1 for invalid input or an invalid place for the output, 2 for invalid
+/// arguments. If the reader of the output goes away, as with `| head`, the process ends. It also ends within two
+/// seconds of an interrupt, a termination or a hang-up, leaving no partial files: with a message if the work can be
+/// resumed or repeated, otherwise by the signal. Either way the exit code is 128 plus the signal's number: 130 for an
+/// interrupt, as in shells.
 pub fn run(args: impl IntoIterator<Item = OsString>) -> u8 {
     /// Signals belong to the process, so one command runs at a time.
     static RUNNING: Mutex<()> = Mutex::new(());

@@ -39,7 +39,7 @@ fn written() -> MutexGuard<'static, Vec<(PathBuf, String)>> {
 /// Records that a file or a folder was written; `what` is a short description, or empty. A line `wrote FILE` is printed at the
 /// end of the command.
 pub(crate) fn wrote(path: &Path, what: impl Into<String>) {
-    // Standard output has been seen already; a device is no file, and may be another name for standard output.
+    // Standard output has been seen already; a device is not a file, and may be another name for standard output.
     if !is_stdout(path) && !path.starts_with("/dev") {
         written().push((path.to_owned(), what.into()));
     }
@@ -133,8 +133,8 @@ pub(crate) fn json(value: &impl Serialize) -> Result<(), Failure> {
     print_json(&(serde_json::to_string_pretty(value)? + "\n"))
 }
 
-/// Prints a message that is not a result on standard error, with unprintable characters escaped. A reader that has gone is no
-/// error: the work continues.
+/// Prints a message that is not a result on standard error, with unprintable characters escaped. If the
+/// reader has gone, the work continues.
 pub(crate) fn note(text: impl AsRef<str>) {
     let text = wrap_lines(&printable_lines(text.as_ref()), columns_of_stderr());
     let text = match Style::of_message(&text).filter(|_| style::of_stderr()) {

@@ -16,7 +16,7 @@ use crate::modality::{self, metres_per_level};
 use crate::numbers::documented;
 use crate::worlds::WorldRequest;
 
-/// Longest part of a file name that comes from the document.
+/// Maximum length of each part of a file name that comes from the document.
 const LONGEST_NAME: usize = 40;
 
 /// Photograph every object of a world from all sides.
@@ -212,7 +212,7 @@ fn file_name(view: &View, object: &Object, kind: Modality, objects: usize) -> St
     )
 }
 
-/// Whole degrees, or degrees and hundredths: views are never closer.
+/// Whole degrees without decimals, others with two: no two views are closer than that.
 fn degrees(angle: f32, digits: usize) -> String {
     if angle.fract() == 0.0 {
         return format!("{angle:0digits$}");

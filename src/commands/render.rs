@@ -59,7 +59,7 @@ pub(crate) struct Render {
     json: bool,
 }
 
-/// Most pixels of all views of `--view episode` together; each takes some fifteen bytes of memory.
+/// Maximum number of pixels of all views of `--view episode` together; each takes about fifteen bytes of memory.
 const MAX_EPISODE_PIXELS: u64 = 67_108_864;
 
 /// Which picture of a world.
@@ -144,7 +144,7 @@ impl Render {
         Ok(sheet(&rows, 1))
     }
 
-    /// Two frames side by side.
+    /// Frames of an agent's episode, two per row.
     fn episode(&self, world: &World, catalogue: &Catalogue) -> Result<Drawing, Failure> {
         let frames = u64::from(self.frames.unwrap_or(8));
         if frames * u64::from(self.size).pow(2) > MAX_EPISODE_PIXELS {
@@ -209,7 +209,7 @@ impl Render {
     }
 }
 
-/// The most warnings that are printed.
+/// Maximum number of warnings that are printed.
 const MOST_WARNINGS: usize = 10;
 
 /// Warns of requests in the world that may surprise its author.

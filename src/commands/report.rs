@@ -1,4 +1,4 @@
-//! `driftworld report`: writes lifetimes on one page, with their figures as files.
+//! `driftworld report`: writes a report on lifetimes as one page, and optionally their figures as files.
 
 use std::path::PathBuf;
 use std::sync::PoisonError;
@@ -129,7 +129,7 @@ fn command_line() -> String {
     let given = super::WORDS.lock().unwrap_or_else(PoisonError::into_inner).clone();
     let mut given = given.into_iter().skip(1);
     while let Some(next) = given.next() {
-        // The places of the page and the figures do not affect the contents.
+        // The paths of the page and the figures do not affect the contents.
         if ["-o", "--output", "--plots"].iter().any(|option| next == *option) {
             given.next();
         } else {

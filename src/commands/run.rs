@@ -22,7 +22,7 @@ use super::interrupt::Interrupt;
 use super::{Failure, output};
 use crate::table::table;
 
-/// Most experiences that run in parallel.
+/// Maximum number of experiences that run in parallel.
 const MAX_JOBS: usize = 256;
 
 /// Run an agent through a curriculum, and log every experience.
@@ -231,7 +231,7 @@ pub(crate) struct LifetimeRun<'a> {
     pub(crate) plan: &'a Plan,
     pub(crate) agent: NamedAgent,
     pub(crate) logs: &'a Path,
-    /// Whether to resume the log, if there is one; otherwise its folder is empty.
+    /// Whether to resume the log, if there is one; otherwise its folder must be empty.
     pub(crate) resumes: bool,
     pub(crate) jobs: NonZeroUsize,
     pub(crate) catalogue: Catalogue,
@@ -338,7 +338,7 @@ impl LifetimeRun<'_> {
     }
 }
 
-/// Whether the log was lost: then there is nothing whole to continue.
+/// Whether the log was lost, so that there is nothing intact to continue.
 fn is_loss(error: &CurriculumError) -> bool {
     matches!(
         error,

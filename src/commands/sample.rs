@@ -17,7 +17,7 @@ use crate::{Failure, worlds};
 
 use super::{output, overwrite};
 
-/// Most worlds drawn at once while streaming.
+/// Maximum number of worlds drawn at once while streaming.
 const CHUNK: u64 = 1024;
 
 /// Approximate limit of objects in memory while streaming: worlds with many objects are drawn in smaller chunks.
@@ -119,7 +119,7 @@ impl std::str::FromStr for Shard {
 }
 
 impl Shard {
-    /// Its part of `first..first + count`; the first parts are longer by one if it does not divide evenly.
+    /// Its part of `first..first + count`; some parts are longer by one if it does not divide evenly.
     fn of(self, first: u64, count: u64) -> std::ops::Range<u64> {
         let start = |part: u64| first + (u128::from(count) * u128::from(part) / u128::from(self.parts)) as u64;
         start(self.part - 1)..start(self.part)

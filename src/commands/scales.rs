@@ -56,7 +56,7 @@ impl Scales {
     }
 }
 
-/// A row per variant of each set that looks alike; `None` unless requested.
+/// A row per variant of each set of variants that look alike; `None` unless requested.
 fn unlabelled(found: &ScalesFile) -> Option<String> {
     let mut rows = Vec::new();
     for set in &found.unlabelled {

@@ -14,7 +14,7 @@ use crate::documents;
 use crate::scenarios::is_original;
 use crate::sheet_words::Worlds;
 
-/// Most variants in one picture.
+/// Maximum number of variants in one picture.
 const MOST_VARIANTS: usize = 60;
 
 /// Draw a world of each of several variants in one picture.
@@ -118,7 +118,7 @@ fn of_regime<'a>(
     }
 }
 
-/// The variants that a scenario learns, including repeats; for a drift both ends.
+/// The variants learned in a scenario, including repeats; for a drift, both ends.
 fn learned(file: &Path) -> Result<Vec<Shown>, Failure> {
     let text = documents::text_of(file, &[Contents::Scenario])?;
     if is_original(&text) {

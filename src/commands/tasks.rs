@@ -50,7 +50,7 @@ impl Tasks {
     }
 }
 
-/// Most variants per task in the list of tasks.
+/// Maximum number of variants per task in the list of tasks.
 const LISTED: usize = 6;
 
 fn list(as_json: bool) -> Result<(), Failure> {
@@ -161,7 +161,7 @@ fn differing(variant: &Variant) -> String {
     differing.collect::<Vec<_>>().join(", ")
 }
 
-/// A value as in captions; lines break neither beside a number, nor after the commas of a place.
+/// A value as in captions, without line breaks beside numbers or after the commas of a place.
 fn in_few_words(value: &Value, parameter: &Parameter) -> String {
     let typed = parameter.typed(value);
     let value = typed.as_ref().unwrap_or(value);
@@ -189,7 +189,7 @@ fn role(role: Role) -> &'static str {
     }
 }
 
-/// Most choices listed.
+/// Maximum number of choices listed.
 const MOST_CHOICES: usize = 8;
 
 /// Short description of a parameter's domain.

@@ -73,7 +73,7 @@ pub(crate) struct Validate {
 /// The kinds that are checked. Other recognised kinds are refused.
 const DOCUMENTS: [Contents; 4] = [Contents::Task, Contents::World, Contents::Scenario, Contents::Maps];
 
-/// Most worlds per variant that the planner tries.
+/// Maximum number of worlds per variant that the planner tries.
 const MOST_TRIED: u64 = 100;
 
 /// The result for one file.
@@ -116,7 +116,7 @@ impl Validate {
     /// The verdicts on a file, or on the files of a folder, including unreadable ones.
     fn judge(&self, path: &Path, classes: &Classes) -> Vec<Verdict> {
         let files = match Contents::of_folder(path) {
-            // Files inside a log are no documents of ours; `logs validate` checks them.
+            // Files inside a log are not documents to check here; `logs validate` checks them.
             Some(Contents::Log) => Ok(vec![path.to_owned()]),
             _ => worlds::json_files(path),
         };

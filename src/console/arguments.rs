@@ -14,7 +14,7 @@ pub(super) enum Picture {
     Map,
 }
 
-/// Most steps per command.
+/// Maximum number of steps per command.
 const MOST_STEPS: u32 = 100_000;
 
 /// Splits a line at spaces; quoted text is one word.

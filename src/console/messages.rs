@@ -50,8 +50,8 @@ impl Session<'_> {
 
 /// The messages of a text: one message, one with its channel (`{"channel", "message"}`), or a list of these under `tests`.
 ///
-/// A message without a channel goes to the one that knows its action. Text that is no message is passed on unchanged, to be
-/// refused.
+/// A message without a channel goes to the channel that knows its action. Text that is not a message is passed on
+/// unchanged, and is then refused.
 fn messages(text: &str) -> Vec<(Channel, String)> {
     let Ok(mut json) = serde_json::from_str::<Value>(text) else {
         return vec![(Channel::Reset, text.to_owned())];
@@ -78,7 +78,7 @@ fn message(mut json: Value) -> (Channel, String) {
     (channel.unwrap_or(Channel::Reset), json.to_string())
 }
 
-/// A message to the client as a line: remarks as text, others as JSON after their channel.
+/// A message to the client as a line: debug messages as text, others as JSON after their channel.
 pub(super) fn shown(message: &Outgoing) -> String {
     if let ("debug_message", Some(payload)) = (message.action, &message.payload) {
         let field = |key: &str| payload[key].as_str().unwrap_or_default();

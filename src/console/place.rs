@@ -1,4 +1,4 @@
-//! Restricts the console's output to one folder, whatever the name.
+//! Confines the console's output files to one folder, whatever name is given.
 
 use std::path::{Component, Path, PathBuf};
 
@@ -7,7 +7,7 @@ use driftworld_text::ShownPath;
 use super::session::said;
 use crate::output_file;
 
-/// A folder for files named by commands and messages.
+/// The folder for files whose names come from commands and messages.
 pub(super) struct Folder(PathBuf);
 
 impl Folder {
@@ -22,7 +22,7 @@ impl Folder {
         Ok(path)
     }
 
-    /// The path of a name, if it is inside and no link leads out.
+    /// The path of a name inside the folder; refuses links, folders and other extensions.
     fn inside(&self, name: &str, ending: &str) -> Result<PathBuf, String> {
         let refuse = |found: &str| {
             Err(format!(

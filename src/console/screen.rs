@@ -7,7 +7,7 @@ use crate::env::{CATEGORY_BUILDING, CATEGORY_MAP, CATEGORY_NEGATIVE, CATEGORY_NE
 
 use crate::spec::Modality;
 
-/// Width if the terminal's is unknown.
+/// Width in columns if the terminal's width is unknown.
 const USUAL_COLUMNS: u32 = 80;
 
 /// From dark to bright.

@@ -16,10 +16,10 @@ use crate::Failure;
 use crate::Warn;
 use crate::worlds::WorldRequest;
 
-/// Most snapshots kept.
+/// Maximum number of snapshots kept.
 const MOST_SNAPSHOTS: usize = 100;
 
-/// Most lines of output per command.
+/// Maximum number of output lines per command.
 pub(super) const MOST_LINES: usize = 500;
 
 /// A running world with the console's state.
@@ -37,12 +37,12 @@ pub(crate) struct Session<'a> {
     pub(super) screen: Screen,
 }
 
-/// The result of a line.
+/// The result of executing a line.
 pub(crate) enum Reply {
     Said(String),
     /// A JSON document.
     Json(String),
-    /// A picture as letters, or with our own colour codes.
+    /// A picture made of letters, or of our own colour codes.
     Picture(String),
     Quit,
 }
@@ -92,7 +92,7 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Executes a line. An error changes nothing, except for messages of a file before the refused one.
+    /// Executes a line. An error changes nothing, except that the accepted messages of a file still take effect.
     pub(crate) fn execute(&mut self, line: &str) -> Result<Reply, String> {
         let line = line.trim();
         let (name, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));

@@ -93,7 +93,7 @@ impl DesignRequest {
                 probe(&task, &pool, &anchor, element, self.variants)?
             };
             let matrix = distances(&picked, Some(element))?;
-            // A requested method or end, or the order of a hypothesis: by default the outward one.
+            // A requested method or end decides, else the requested order, by default outward.
             let order = if self.ordering.method.is_some() || self.ordering.end.is_some() {
                 self.ordering.order(&matrix, self.design.seed)?.1.indices
             } else {
@@ -181,7 +181,7 @@ impl DesignRequest {
         named.iter().all(|name| tasks::split(name).1.is_some())
     }
 
-    /// The default candidates for the first variant: those of the first argument, if there are others.
+    /// The default candidates for the first variant: those of the first argument; none for a random order.
     fn firsts(&self, named: &[(String, Variant)]) -> Vec<usize> {
         let (Some(first), true) = (self.tasks.first(), self.ordering.method != Some(Method::Random)) else {
             return Vec::new();
@@ -191,7 +191,7 @@ impl DesignRequest {
         (0..many.min(named.len())).collect()
     }
 
-    /// The task of all variants, under the name used; its variants; and the first one.
+    /// The common task of all variants, under the name used; the variants; and the one to start from.
     fn one_task(&self, named: &[(String, Variant)]) -> Result<(String, Vec<Variant>, Variant), Failure> {
         let (task, first) = &named[0];
         if let Some((other, _)) = named.iter().find(|(other, _)| other != task) {

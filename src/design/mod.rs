@@ -39,7 +39,7 @@ pub struct Designed {
 }
 
 impl Designed {
-    /// Draws the blocks of the first scenario over the experiences into a PNG file.
+    /// Plots the blocks of the first scenario against its experiences, as a PNG file.
     ///
     /// # Errors
     /// [`Failure`] if it cannot be written.
@@ -51,10 +51,10 @@ impl Designed {
     }
 }
 
-/// Most regimes of all lifetimes designed together.
+/// Maximum number of regimes of all lifetimes designed together.
 const MAX_REGIMES: usize = 4_000_000;
 
-/// Refuses lifetimes that would not fit in memory, judging by the scenarios of the first.
+/// Refuses lifetimes that would not fit in memory, judging by the scenarios of the first lifetime.
 fn refuse_too_many<'a>(lifetimes: usize, first: impl Iterator<Item = &'a Scenario>) -> Result<(), Failure> {
     let regimes: usize = first
         .flat_map(|scenario| &scenario.blocks)
@@ -69,8 +69,8 @@ fn refuse_too_many<'a>(lifetimes: usize, first: impl Iterator<Item = &'a Scenari
     )))
 }
 
-/// Designs a curriculum. Draws a few worlds of everything, and checks every variant along a drift: a design that could not be
-/// run is refused.
+/// Designs a curriculum. Draws a few worlds of each regime, and checks that every experience of a drift has a variant:
+/// a design that could not be run is refused.
 ///
 /// # Errors
 /// [`Failure`] if a task is missing or invalid, the design is impossible, or the request contradicts itself.
@@ -115,7 +115,7 @@ pub fn design(request: &DesignRequest) -> Result<Designed, Failure> {
     for &kind in Control::ALL.iter().filter(|_| request.controls) {
         let order = control(&chosen.matrix, &chosen.order, kind, options.seed)?;
         let name = format!("{}-{}", options.name, kind.name());
-        // By their places in the design's own order.
+        // As positions in the design's own order.
         let place = |index: &usize| chosen.order.iter().position(|own| own == index);
         let order: Vec<usize> = order.iter().filter_map(place).collect();
         controls.push(design_control(

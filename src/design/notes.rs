@@ -46,7 +46,7 @@ impl DesignRequest {
         Ok(notes)
     }
 
-    /// The held-out variants; they may be named without their task, if it is one of those that are learned.
+    /// The held-out variants; their names may omit the task if it is one of the learned tasks.
     pub(super) fn held_out(&self) -> Result<Vec<(String, driftworld_spec::Variant)>, Failure> {
         let all = tasks::with_tasks(&[self.tasks.as_slice(), &self.hold_out].concat());
         let found = tasks::variants_of(&all[self.tasks.len()..]);

@@ -6,7 +6,7 @@ use super::{Chosen, DesignRequest, Evidence};
 use crate::Failure;
 use crate::elements::Optimum;
 
-/// More variants than these are compared with their neighbours only.
+/// Above this number of variants, each is compared with its neighbours only.
 const MOST_WITH_ALL: usize = 8;
 
 /// Pairs of worlds in which experts are exchanged.

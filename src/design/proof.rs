@@ -32,7 +32,7 @@ impl DesignRequest {
         let own = asked(base)?;
         let mut others = variants.iter().map(asked);
         let are_alike = others.try_fold(true, |alike, other| Ok::<_, Failure>(alike && other? == own))?;
-        // If the images differ, the comparison uses what the worlds ask for.
+        // If the variants' modalities differ, the comparison uses those of the worlds.
         let compared = self.modalities.clone().or_else(|| are_alike.then(|| own.clone()));
         let modalities = self.modalities.clone().unwrap_or(own);
         let request = ElementsRequest {

@@ -10,24 +10,24 @@ use driftworld_spec::{By, Element, Modality, ScenarioForm};
 use crate::ordering::OrderRequest;
 use crate::{Failure, argument, libraries, within};
 
-/// Most lifetimes per design.
+/// Maximum number of lifetimes per design.
 pub const MAX_LIFETIMES: u64 = 10_000;
 
-/// Most worlds per regime that are drawn as a check.
+/// Maximum number of worlds per regime that are drawn as a check.
 pub const MAX_TRIED: u32 = 1_000_000;
 
 /// An order of variants by purpose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DesignOrder {
-    /// Small steps: the shortest path from the first; ties go to the smaller largest step.
+    /// Small steps: the shortest path from the first; of equally short ones, the one whose largest step is smallest.
     Gradual,
-    /// By growing distance from the first: different ones come last.
+    /// By growing distance from the first: the most different ones come last.
     Outward,
     /// The longest path from the first: neighbours are as different as possible.
     Abrupt,
     /// The shortest path from the first: neighbours are as similar as possible.
     Path,
-    /// Always the one farthest from all before.
+    /// Greedy: each next one is the farthest from all before it.
     Farthest,
     /// In the given order, whatever their distances.
     Named,
@@ -60,18 +60,18 @@ impl DesignOrder {
 /// The options for designing a curriculum.
 #[derive(Clone, Debug, Default)]
 pub struct DesignRequest {
-    /// Variants, or tasks, which stand for all their variants.
+    /// Variants, or tasks; a task means all its variants.
     pub tasks: Vec<String>,
     /// The options of the ordering method.
     pub ordering: OrderRequest,
-    /// The order, instead of a method's.
+    /// An order by purpose, instead of an ordering method.
     pub order: Option<DesignOrder>,
     /// The measure for ordering variants: by default the one that their task declares, or worlds if there are several tasks.
     /// Probes and steps are measured by parameters.
     pub by: Option<By>,
-    /// Probes one element: variants that differ from the start in it and in nothing else.
+    /// The element to probe: chooses variants that differ from the start in this element only.
     pub probe: Option<Element>,
-    /// Image kinds of a probe's learner; by default those that the task's worlds ask for.
+    /// The modalities of a probe's learner; by default those of the task's worlds.
     pub modalities: Option<Vec<Modality>>,
     /// Number of variants in the probe; by default all declared ones, and at least 4.
     pub variants: Option<usize>,
@@ -81,7 +81,7 @@ pub struct DesignRequest {
     pub tolerance: Option<f64>,
     /// Number of steps: one fewer than variants; default [`DEFAULT_STEPS`](super::DEFAULT_STEPS).
     pub steps: Option<u32>,
-    /// Number of lifetimes, each in its own worlds and, in the permuted form, which is then the default, in its own order.
+    /// Number of lifetimes. Each has its own worlds and, in the permuted form (then the default), its own order.
     pub lifetimes: Option<u64>,
     /// Variants, or tasks, that are evaluated but never learned.
     pub hold_out: Vec<String>,
@@ -91,7 +91,7 @@ pub struct DesignRequest {
     pub controls: bool,
     /// Worlds per regime that are drawn as a check; 0 for none.
     pub worlds: u32,
-    /// Asset libraries whose classes the tasks use, in front of the built-in assets, the last one first.
+    /// Asset libraries whose classes the tasks use. Later ones take precedence, built-in ones come last.
     pub libraries: Vec<PathBuf>,
     /// The blocks.
     pub design: Design,
@@ -125,7 +125,7 @@ impl DesignRequest {
         libraries::catalogue(&self.libraries)
     }
 
-    /// Refuses contradictory options, as [`design`](super::design) does first.
+    /// Refuses contradictory options; [`design`](super::design) calls it first.
     ///
     /// # Errors
     /// [`Failure::Usage`].
@@ -208,7 +208,7 @@ impl DesignRequest {
         Ok(())
     }
 
-    /// Refuses an order together with the form whose order is random.
+    /// Refuses an explicit order together with the permuted form, whose order is random.
     fn check_permuted(&self) -> Result<(), Failure> {
         match self
             .order_given()
@@ -223,9 +223,9 @@ impl DesignRequest {
         }
     }
 
-    /// The first option that determines the first variants.
+    /// The name of the first given option that determines the order.
     fn order_given(&self) -> Option<&'static str> {
-        // The start of a probe or of steps is what is varied, not what comes first.
+        // The start of a probe or of steps is the variant that is varied; it does not determine the order.
         let is_varied = self.probe.is_some() || self.step_distance.is_some();
         let ordered = [
             ("order", self.order.is_some()),

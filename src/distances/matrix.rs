@@ -1,4 +1,4 @@
-//! All distances among variants, under their names.
+//! All distances among variants, labelled with their names.
 
 use driftworld_similarity::{DistanceMatrix, Placements, SimilarityError, VariantMeasure, Weights, Worlds};
 use driftworld_spec::{By, Variant, World};
@@ -7,11 +7,11 @@ use rayon::prelude::*;
 use super::pairs::{Means, Pairs, world_measure};
 use super::{DistancesError, NAME_IT, Sample, Scale};
 
-/// All distances among variants, under their names; computed in parallel.
+/// All distances among variants, labelled with their names; computed in parallel.
 ///
 /// By parameters, with the weights that the task declares, overridden by `lay_over`; the matrix is a metric if the task's
-/// measures are. By other measures, worlds of each are drawn as in `sample`, and the first is compared with the first and so
-/// on. So the distance of two variants depends only on them and on `sample`, not on the rest of the list. If `sample` gives no
+/// measures are. By other measures, worlds of each variant are drawn as in `sample` and paired by index, so the
+/// distance of two variants depends only on them and on `sample`, not on the rest of the list. If `sample` gives no
 /// measure, the variants' task decides.
 ///
 /// # Errors
@@ -37,7 +37,7 @@ pub fn variant_matrix(
     variant_matrix_while(variants, sample, lay_over, || true)
 }
 
-/// Like [`variant_matrix`], for variants with the names of their tasks, under labels such as `find_objects#red`.
+/// Like [`variant_matrix`], for variants with the names of their tasks; labels look like `find_objects#red`.
 ///
 /// # Errors
 /// As [`variant_matrix`].
@@ -50,7 +50,7 @@ pub fn labelled_matrix(
     variant_matrix(&variants.iter().map(label).collect::<Vec<_>>(), sample, lay_over)
 }
 
-/// Like [`labelled_matrix`], but cancelled as soon as `go_on`, which is called before each pair, returns false.
+/// Like [`variant_matrix`], but cancelled as soon as `go_on`, which is called before each pair, returns false.
 ///
 /// # Errors
 /// As [`variant_matrix`]; [`DistancesError::Interrupted`] if it was cancelled.

@@ -15,13 +15,13 @@ use crate::picture_distance::{ACROSS, PictureDistanceError, Pose, Views, poses};
 /// The numbers of one comparison: one per entry of [`parts`], or as many as the remark needs.
 pub(super) type Values = Vec<f64>;
 
-/// The measure of two worlds with this name, if it is one of `similarity`'s.
+/// The `similarity` crate's measure of two worlds with this name, if it has one.
 pub(super) fn world_measure(by: By) -> Option<WorldMeasure> {
     let measure = by.name().split_once(':').map(|(_, measure)| measure);
     WorldMeasure::from_name(by.subject(), measure)
 }
 
-/// Name, element and unit of each number of a measure; empty if it is about the whole process.
+/// Name, element and unit of each number of a measure; empty if it compares the whole decision process.
 fn parts(by: By) -> Vec<(&'static str, Element, &'static str)> {
     if let Some(measure) = world_measure(by) {
         return vec![(by.subject(), measure.element(), measure.label())];
@@ -62,7 +62,7 @@ enum Ready {
 }
 
 impl<'a> Pairs<'a> {
-    /// Prepares worlds in parallel; by parameters, worlds and placements there is nothing to compare here.
+    /// Prepares worlds in parallel. Comparisons by parameters, worlds and placements are made elsewhere.
     pub(super) fn new(by: By, worlds: &'a [World], catalogue: &Catalogue) -> Result<Self, DistancesError> {
         let catalogue = catalogue.clone();
         let ready = match by.subject() {
@@ -190,7 +190,7 @@ impl Means {
         self.sums[k] / self.count as f64
     }
 
-    /// Further notes on the number, starting with a comma or a semicolon; often empty.
+    /// Further notes on the distance, starting with a comma or a semicolon; often empty.
     pub(super) fn remark(&self) -> String {
         match self.by.subject() {
             _ if self.by == By::BehaviorSuccess => {

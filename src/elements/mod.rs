@@ -17,7 +17,7 @@ pub use request::{DEFAULT_ELEMENTS_WORLDS, ElementsRequest, MAX_ELEMENTS_WORLDS}
 
 use crate::{Failure, libraries, tasks};
 
-/// Most worlds in which a parameter is tested for having no effect.
+/// Maximum number of worlds in which a parameter is tested for having no effect.
 const IDLE_WORLDS: u64 = 8;
 
 /// A parameter counts as having no effect only after this many times the usual steps.
@@ -62,7 +62,7 @@ pub fn elements_of(task: &Arc<TaskSpec>, request: &ElementsRequest) -> Result<El
     Ok(outcome)
 }
 
-/// Compares some variants of one task with the first of them: the differences of each.
+/// Compares variants of one task with the first of them.
 ///
 /// # Errors
 /// [`Failure`] if a world cannot be drawn.
@@ -149,7 +149,7 @@ impl Trial {
         Ok(outcome)
     }
 
-    /// The parameters that differ without effect: resetting one alone changes nothing.
+    /// The parameters that differ without effect: resetting them to the base's values changes nothing.
     fn idle(&self, base: &Variant, other: &Variant, outcome: &VariantElements) -> Result<Vec<String>, Failure> {
         let names = &outcome.parameters;
         let is_alike = outcome.measured.is_empty();
@@ -169,7 +169,7 @@ impl Trial {
             ..*self
         };
         let mut idle: Vec<String> = Vec::new();
-        // One after the other, the last first: of two equivalent ones, one is needed.
+        // Resets one after the other, the last first: of two equivalent ones, only one is without effect.
         for name in names.iter().rev() {
             let back = idle.iter().chain([name]);
             let values: Vec<_> = back

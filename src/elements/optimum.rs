@@ -1,4 +1,4 @@
-//! [`Optimum`]: whether a variant calls for other behaviour than the base variant.
+//! [`Optimum`]: whether a variant calls for different behaviour from the base variant.
 
 use driftworld_env::Catalogue;
 use driftworld_spec::Variant;
@@ -7,10 +7,10 @@ use serde::{Deserialize, Serialize};
 use crate::Failure;
 use crate::behavior::{BehaviorOutcome, ExpertPair, behavior};
 
-/// Most pairs of worlds in which experts are exchanged.
+/// Maximum number of pairs of worlds in which experts are exchanged.
 const MOST_WORLDS: u64 = 16;
 
-/// Least regret, in points, that counts as another optimum.
+/// Smallest regret, in points, that counts as a change of the optimum.
 const LEAST_REGRET: f64 = 1.0;
 
 /// The loss of the base variant's expert in worlds of this one, and the reverse.
@@ -21,7 +21,7 @@ pub struct Optimum {
     pub turned: bool,
     /// How much less the base's expert earns here than this variant's own, in points, on average.
     pub regret: f64,
-    /// How much less this variant's expert earns there than the base's own.
+    /// How much less this variant's expert earns in the base's worlds than the base's own, in points, on average.
     pub regret_in_base: f64,
     /// Pairs of worlds in which experts were exchanged.
     pub worlds: u64,

@@ -14,18 +14,18 @@ pub struct ElementsOutcome {
     pub task: String,
     /// The base variant that all others were compared with.
     pub base: String,
-    /// The learner's image kinds; absent if they are those that the worlds ask for.
+    /// The learner's modalities; absent if they are those of the worlds.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub modalities: Option<Vec<Modality>>,
     /// Pairs of worlds for each variant.
     pub worlds: u64,
     /// The seed of the worlds.
     pub seed: u64,
-    /// Most steps per episode.
+    /// Maximum number of steps per episode.
     pub steps: u32,
     /// The variants, in declaration order.
     pub variants: Vec<VariantElements>,
-    /// Declared effects of parameters that none of the variants shows.
+    /// Effects that parameters declare but none of the variants shows.
     #[serde(skip_serializing_if = "Vec::is_empty", default)]
     pub in_vain: Vec<InVain>,
 }
@@ -54,10 +54,10 @@ pub struct VariantElements {
     pub measured: Vec<Measured>,
     /// Elements measured but not declared.
     pub contradictions: Vec<Contradiction>,
-    /// Parameters that differ without effect: resetting one alone changes nothing.
+    /// Parameters that differ without effect: resetting them to the base's values changes nothing.
     pub idle: Vec<String>,
-    /// Whether the optimal behaviour changes, for a variant that changes the reward; absent for others, and for drawn worlds
-    /// that are compared for a probe.
+    /// Whether the optimal behaviour changes, for a variant that changes the reward; absent for others, and if the
+    /// variants of a probe are compared.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub optimum: Option<Optimum>,
     /// How much was tested.
@@ -71,7 +71,7 @@ pub struct VariantElements {
 pub struct Measured {
     /// The element.
     pub element: Element,
-    /// The first case.
+    /// The first case in which it differed.
     pub witness: Witness,
 }
 
@@ -91,7 +91,7 @@ pub struct Contradiction {
 pub enum Verdict {
     /// Everything measured is declared.
     Sound,
-    /// The same, but some parameters have no effect.
+    /// Everything measured is declared, but some parameters have no effect.
     Idle,
     /// Something was measured that is not declared.
     Contradicted,
@@ -134,8 +134,8 @@ impl ElementsOutcome {
         self.idle().chain(self.declared_in_vain())
     }
 
-    /// Records what the parameters of a task declare but none of its variants shows. If states differ in kind, or nothing
-    /// differs, nothing more can be concluded.
+    /// Records the effects that a task's parameters declare but none of its variants shows. Variants whose states
+    /// differ, or in which nothing differs, allow no such conclusion and are skipped.
     pub(super) fn note_in_vain(&mut self, task: &TaskSpec) {
         for (name, parameter) in task.parameters() {
             let shows = |variant: &&VariantElements| {
@@ -267,7 +267,7 @@ fn message_of(
     )
 }
 
-/// Where a witness occurred: `in world 3, step 17 of the expert, `.
+/// Where a witness occurred: `in world 3, step 17 (expert), `.
 fn place(witness: &Witness) -> String {
     let policy = witness.policy.map_or("agent", Policy::name);
     match (witness.world, witness.step) {

@@ -14,7 +14,7 @@ use crate::{Failure, tasks, within};
 /// Default number of pairs of worlds.
 pub const DEFAULT_ELEMENTS_WORLDS: u64 = 32;
 
-/// Most pairs of worlds.
+/// Maximum number of pairs of worlds.
 pub const MAX_ELEMENTS_WORLDS: u64 = 1_000;
 
 /// What is tried: the arguments of `driftworld elements`. There are 1 to [`MAX_ELEMENTS_WORLDS`] pairs of worlds, and 1 to

@@ -1,4 +1,4 @@
-//! Claims of tasks compared with measurements; the claims of the built-in tasks are true.
+//! Compares the claims of tasks with measurements.
 
 use super::*;
 

@@ -32,7 +32,7 @@ pub struct ReportRequest {
     pub figures: Vec<Figure>,
     /// How they are drawn.
     pub figure_options: FigureOptions,
-    /// A folder for the figures, too.
+    /// A folder to which the figures are written, too.
     pub plots: Option<PathBuf>,
     /// The command line to show on the page.
     pub command: Option<String>,
@@ -64,7 +64,7 @@ pub struct Page {
 /// Writes the page of lifetimes. `warn` receives warnings for each log.
 ///
 /// # Errors
-/// [`Failure`] if a log cannot be read or scored (it names all of them), or a figure cannot be written.
+/// [`Failure`] if a log cannot be read or scored (the failure names every such log), or a figure cannot be written.
 pub fn write_report(request: &ReportRequest, warn: Warn<'_>) -> Result<Page, Failure> {
     let asked = &request.scoring;
     let logs = log_folders::below(&asked.logs)?;
@@ -124,7 +124,7 @@ pub fn write_report(request: &ReportRequest, warn: Warn<'_>) -> Result<Page, Fai
         overall,
         intervals: asked.intervals,
         comparisons,
-        // One lifetime has one scale.
+        // A single lifetime has only one scale.
         warnings: own_scale(options).filter(|_| logs.len() > 1).into_iter().collect(),
         options: serde_json::to_value(options)?,
         command: request.command.clone(),

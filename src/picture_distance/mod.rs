@@ -76,7 +76,7 @@ pub struct PictureParts {
 }
 
 impl Views {
-    /// Renders them on the processor: the same bytes on every machine.
+    /// Renders the views on the CPU, which gives the same bytes on every machine.
     ///
     /// # Errors
     /// [`PictureDistanceError::World`] if a picture cannot be rendered.

@@ -18,7 +18,7 @@ pub struct Pose {
 ///
 /// The rectangle around the centre that all arenas share is divided into 4 × 4 cells; an agent stands at the centre of each
 /// cell and looks in 4 directions, the first north. Cells whose centre is blocked in any world (by a wall, a forbidden region,
-/// a solid object) are left out. Cell by cell from the south-west, row by row.
+/// a solid object) are left out. Ordered row by row from the south-west.
 ///
 /// # Errors
 /// [`PictureDistanceError::NoPlace`]; [`PictureDistanceError::World`] for worlds that cannot be started.

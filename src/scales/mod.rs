@@ -23,7 +23,7 @@ use crate::{Failure, libraries, numbers, tasks};
 /// Default number of worlds per agent.
 pub const DEFAULT_SCALES_WORLDS: u64 = 50;
 
-/// Most worlds per agent.
+/// Maximum number of worlds per agent.
 pub const MAX_SCALES_WORLDS: u64 = 10_000;
 
 /// The agents for the floor: they know nothing of a variant.
@@ -72,9 +72,9 @@ fn names(set: &str) -> Result<Vec<String>, Infallible> {
 /// map. The better of the first two is the floor, the third the ceiling. `progress` is called after each variant.
 ///
 /// For each set of variants in `unlabelled`, further agents run in all of them: one that stands still, one that acts at random,
-/// the expert of each variant held fixed, and that expert until a reward reveals another variant of the set. The ceilings are
-/// the highest means over the set: among agents that act alike in all variants, and among all. They are the best known agents;
-/// better ones are not excluded.
+/// the expert of each variant held fixed, and that expert until a reward reveals another variant of the set. The
+/// ceilings are the highest means over the set: among agents that act alike in all variants, and among all. These are
+/// the best known agents; better ones may exist.
 ///
 /// # Errors
 /// [`Failure`] if a task or variant is missing or invalid, a world cannot be drawn, or the number of worlds is out of range.

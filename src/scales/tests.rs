@@ -1,4 +1,4 @@
-//! Scales: which agent gives which end, files, and standard errors.
+//! Tests which agents give the floor and the ceiling, scales files, and standard errors.
 
 use super::*;
 

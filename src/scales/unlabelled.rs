@@ -77,7 +77,7 @@ impl Ignorant {
         }
     }
 
-    /// Its reward in one of these worlds, which are one of each variant, and whether it succeeds.
+    /// Runs it in one of these worlds, one of each variant; returns its reward and whether it succeeds.
     fn run(self, worlds: &[World], place: usize, seed: u64, expertise: &Expertise) -> Result<(f64, bool), Failure> {
         let (abroad, catalogue) = (&worlds[place], &expertise.catalogue);
         let found = match self {
@@ -148,7 +148,7 @@ fn alike<'a>(
     Ok(sets)
 }
 
-/// The set with these names, which must look alike.
+/// The set of variants with these names, which must look alike.
 fn named<'a>(
     names: &[String],
     variants: &'a [(String, Variant)],
@@ -157,7 +157,7 @@ fn named<'a>(
 ) -> Result<Vec<&'a Variant>, Failure> {
     let wrong = |text: String| Failure::in_argument("unlabelled", text);
     let mut set: Vec<&Variant> = Vec::new();
-    // They may be named without their tasks.
+    // The names may omit their tasks.
     let all = tasks::with_tasks(&[request.tasks.as_slice(), names].concat());
     for (_, variant) in tasks::variants_of(&all[request.tasks.len()..])? {
         let known = variants.iter().find(|(_, known)| known.id() == variant.id());
@@ -226,7 +226,7 @@ fn unpaid(world: &World) -> Result<World, Failure> {
     Ok(bare?)
 }
 
-/// The agent's first view, in the images that the world asks for.
+/// The agent's first view: colours and, if the world's agent sees them, reward categories.
 fn first_picture(world: &World, catalogue: &Catalogue) -> (Vec<u8>, Vec<u8>) {
     let shows_pay = world.agent_params.modalities.contains(&Modality::Segmentation);
     let mut environment = Environment::with_catalogue(world.clone(), catalogue.clone());

@@ -14,7 +14,7 @@ use crate::{Failure, argument};
 #[derive(Clone, Debug, Serialize)]
 #[non_exhaustive]
 pub struct Comparison {
-    /// How the intervals were made.
+    /// How the intervals were computed.
     pub intervals: BootstrapOptions,
     /// Each metric over the lifetimes.
     pub repeats: Vec<RepeatedMetric>,
@@ -56,7 +56,7 @@ impl Comparison {
     }
 }
 
-/// The first tasks of lifetimes.
+/// The names of the first few tasks of lifetimes.
 fn tasks(lifetimes: &[LifetimeMetrics]) -> String {
     let names = lifetimes
         .iter()

@@ -96,8 +96,8 @@ impl Experts {
     }
 }
 
-/// For each task, the experts designed with the lifetime, by the name of its scenario, if there are any: several lifetimes may
-/// be scored with the experts of all.
+/// For each task, keeps only the experts designed with the lifetime, recognised by the name of its scenario, if there
+/// are any: several lifetimes may be scored together, with the experts of all.
 fn of_the_lifetime(log: &Log, experts: Vec<SteLog>) -> Vec<SteLog> {
     let Some(own) = scenario_name(log).map(|name| format!("{name}-")) else {
         return experts;

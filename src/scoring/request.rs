@@ -18,7 +18,7 @@ use crate::{Failure, argument, log_folders};
 pub struct ScoringRequest {
     /// Folders of logs; by default those of the settings file.
     pub logs: Vec<PathBuf>,
-    /// Whether to take all logs in the folders, also up to four levels below; links are not searched.
+    /// Whether to take all logs in the folders and up to four levels below them; links are not searched.
     pub recursive: bool,
     /// Folders of another agent's logs, or folders that contain them, to compute the probability that a lifetime of the first
     /// is better.
@@ -27,9 +27,9 @@ pub struct ScoringRequest {
     pub settings: ScoringSettings,
     /// Whether to scale each task by its range over all lifetimes, not each lifetime by its own; always so with `against`.
     pub common_ranges: bool,
-    /// Computes how many lifetimes show a difference of this size, in each metric's own unit; needs several lifetimes.
+    /// Difference, in each metric's own unit, to compute how many lifetimes show it; needs several lifetimes.
     pub power: Option<f64>,
-    /// How intervals over several lifetimes are made.
+    /// How intervals over several lifetimes are computed.
     pub intervals: BootstrapOptions,
 }
 
@@ -120,7 +120,7 @@ pub struct ScoringSettings {
     pub scales: Option<Scales>,
     /// Normal noise on every performance of the lifetime, in normalised units.
     pub noise: Option<Noise>,
-    /// Whether to follow the published definitions where the reference's program departs from them.
+    /// Whether to follow the published definitions where the reference implementation departs from them.
     pub strict_definitions: bool,
 }
 

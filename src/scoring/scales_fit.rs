@@ -7,7 +7,7 @@ use driftworld_text::first_of;
 
 use super::experts::{scored_name, tasks};
 
-/// Most names listed.
+/// Maximum number of names listed.
 const MOST_NAMES: usize = 5;
 
 /// Warnings about the scales of this log.
@@ -41,7 +41,7 @@ pub(super) fn unfit_scales(log: &Log, options: &Options) -> Vec<String> {
     found
 }
 
-/// A warning if tasks of a log are known to look alike, but were measured with other tasks only.
+/// A warning if tasks of a log are known to look alike, but were only measured in sets with tasks that the log lacks.
 fn alike_with_others(scales: &Scales, tasks: &[String]) -> Option<String> {
     let mut alone: Vec<&str> = Vec::new();
     for (name, anchors) in scales.iter().filter(|(name, _)| tasks.contains(name)) {

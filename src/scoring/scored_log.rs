@@ -54,7 +54,7 @@ impl ScoredLog {
     }
 }
 
-/// Adds advice if the missing column was requested, or is the default.
+/// Adds the option's name and a similar column, if there is one, to the error for a missing column.
 fn without_column(error: MetricsError) -> Failure {
     let MetricsError::UnknownColumn { column, available, .. } = &error else {
         return error.into();

@@ -39,7 +39,7 @@ const CURVE: Action = Action::Continuous([5.0, 15.0, 0.0]);
 /// Environments for measuring memory.
 const NUM_MEASURED: usize = 512;
 
-/// Steps, with physics, rewards and pictures, and resets, per second.
+/// Measures steps per second, with physics, rewards and pictures, and resets per second.
 pub(crate) fn measure(round: Duration, renderer: RendererKind) -> Result<Figures, Failure> {
     if Renderer::new(renderer)?.kind() == RendererKind::Gpu {
         return measure_graphics(round);
@@ -89,7 +89,7 @@ pub(crate) fn measure(round: Duration, renderer: RendererKind) -> Result<Figures
     Ok(figures)
 }
 
-/// Steps with pictures from a graphics card, per second, in batches; all threads step.
+/// Measures steps per second in batches on all threads, with pictures from a graphics card.
 fn measure_graphics(round: Duration) -> Result<Figures, Failure> {
     let square = arena(ARENA_20, [84, 84])?;
     let colors = in_color(square.clone())?;
@@ -155,8 +155,8 @@ fn steps(mut batch: Batch, round: Duration) -> Result<f64, Failure> {
     Ok(rate(round, |_| batch.step(&actions))? * num_envs as f64)
 }
 
-/// Memory per environment that many of them add to the process, including images in all modalities of the bench; `None` if the
-/// system does not report it.
+/// Memory that each of many environments adds to the process, including images in all modalities of the bench; `None`
+/// if the system does not report it.
 fn kilobytes_per_environment(world: &World) -> Result<Option<u64>, Failure> {
     let Some(before) = resident() else { return Ok(None) };
     let batch = batch(world, NUM_MEASURED, 1, RendererKind::Cpu)?;
@@ -167,7 +167,7 @@ fn kilobytes_per_environment(world: &World) -> Result<Option<u64>, Failure> {
 
 /// Resident memory of this process in kilobytes, on Linux.
 fn resident() -> Option<u64> {
-    // The system's own, not by driftworld-files: no user names it.
+    // A file of the system, not by driftworld-files: users do not name it.
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|line| line.starts_with("VmRSS:"))?;
     line.split_whitespace().nth(1)?.parse().ok()

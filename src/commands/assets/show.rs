@@ -44,18 +44,18 @@ pub(crate) struct Show {
 /// Height and width in metres at which a model is drawn, whatever its own size.
 const SHOWN_SIZE: f32 = 4.0;
 
-/// Pixels along each side of a picture; for one among those of all classes.
+/// Pixels along each side of a picture: for the models of one class, and in the overview of all classes.
 const SIZE: u32 = 220;
 const ALBUM_SIZE: u32 = 44;
 
-/// Unnamed models shown per class when showing all classes; also the number of classes side by side.
+/// In the overview of all classes: the number of unnamed models shown per class, and of classes side by side.
 const ALBUM_MODELS: usize = 7;
 const ALBUM_COLUMNS: usize = 2;
 
 /// Pictures side by side.
 const COLUMNS: usize = 7;
 
-/// Most models per sheet.
+/// Maximum number of models per sheet.
 const MOST_MODELS: usize = 210;
 
 impl Show {

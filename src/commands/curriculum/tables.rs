@@ -63,7 +63,7 @@ fn steps(picked: &[Picked], wanted: &Steps) -> Result<String, Failure> {
     ))
 }
 
-/// The values of each variant that was made, on one line; empty if none was made.
+/// The values of each variant that was created, one line per variant; empty if none was created.
 fn made_values<'a>(picked: impl IntoIterator<Item = &'a Picked>) -> String {
     let mut lines = String::new();
     for one in picked.into_iter().filter(|one| one.is_made()) {
@@ -102,7 +102,7 @@ fn exact(distance: f64) -> String {
     }
 }
 
-/// What a scenario learns after deployment, on one line: names, and the length of the path.
+/// What is learned in a scenario's deployment phase, on one line: names, and the length of the path.
 pub(super) fn path(scenario: &Scenario, matrix: &DistanceMatrix) -> String {
     let learning = |block: &&Block| block.kind == BlockKind::Learning && block.phase == Phase::Deployment;
     let blocks = scenario.blocks.iter().filter(learning);
@@ -154,7 +154,7 @@ fn place(matrix: &DistanceMatrix, regime: &Regime, experience: u32) -> Option<(u
     })
 }
 
-/// The distance of two places; unknown if one is between variants.
+/// The distance between two places; unknown if one is between variants.
 fn step(matrix: &DistanceMatrix, from: (usize, usize, f64), to: (usize, usize, f64)) -> Option<f64> {
     if from == to {
         return Some(0.0);
@@ -162,7 +162,7 @@ fn step(matrix: &DistanceMatrix, from: (usize, usize, f64), to: (usize, usize, f
     (from.0 == from.1 && to.0 == to.1).then(|| matrix.get(from.0, to.0))
 }
 
-/// The variants that a scenario learns, in a line.
+/// The variants learned in a scenario, on one line.
 pub(super) fn learned(scenario: &Scenario) -> String {
     let learning = scenario.blocks.iter().filter(|block| block.kind == BlockKind::Learning);
     let name = |regime: &Regime| match &regime.drift {

@@ -30,7 +30,7 @@ impl Change {
 }
 
 /// One row per variant: its first reward, how much of it was transferred, learned and forgotten, its last reward, and the
-/// reward of each agent in `beside`; below in words where transfer and forgetting were largest.
+/// reward of each agent in `beside`. Sentences below it name the largest transfer and the largest forgetting.
 pub(super) fn effects_table(summary: &Summary, beside: &[(String, Summary)]) -> String {
     let mut headings = vec![
         "variant",
@@ -77,8 +77,8 @@ fn evaluations_of<'a>(summary: &'a Summary, variant: &'a str) -> impl DoubleEnde
     of_kind(summary, BlockKind::Evaluation).filter(move |regime| regime.variant == variant)
 }
 
-/// Every variant that was learned, in the order of first blocks, and was evaluated around it: in whole points of reward, so
-/// that the parts shown add up.
+/// One row per variant evaluated before and after its first learning block, in the order of these blocks. Rewards are
+/// in whole points, so that the parts shown add up.
 fn rows(summary: &Summary, beside: &[(String, Summary)]) -> Vec<Vec<String>> {
     let mut rows: Vec<Vec<String>> = Vec::new();
     for block in of_kind(summary, BlockKind::Learning) {

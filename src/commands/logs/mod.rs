@@ -23,7 +23,7 @@ pub(crate) struct Logs {
 
 #[derive(Subcommand)]
 enum What {
-    // No words here: they would take the place of the long ones that stand with each command.
+    // No doc comments here: they would replace the long ones of the commands.
     Validate(validate::Validate),
     Aggregate(aggregate::Aggregate),
 }

@@ -172,7 +172,7 @@ impl Metrics {
 
 /// Stores the logs in the folder.
 ///
-/// If several logs of one task replace stored ones, only the first does: the others are its further runs.
+/// If several logs of one task replace stored ones, only the first replaces them; the others are added as further runs.
 fn store(logs: &[PathBuf], mode: SteStoreMode, data: &Path) -> Result<(), Failure> {
     let mut replaced: Vec<String> = Vec::new();
     for log in logs {

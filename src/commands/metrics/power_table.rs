@@ -1,4 +1,4 @@
-//! Table of what the given number of lifetimes can show.
+//! Table of the statistical power of the given lifetimes.
 
 use crate::metrics::{MAX_POWER_LIFETIMES, MetricPower};
 use crate::table::table;

@@ -10,7 +10,7 @@ use super::tables::{mean, number, with_error};
 use crate::table::without_empty;
 use crate::variant_names::VariantNames;
 
-/// Further tasks are in the JSON only.
+/// Maximum number of rows; further tasks are in the JSON only.
 const MOST_ROWS: usize = 40;
 
 /// Shown for a task that was never learned.
@@ -117,8 +117,8 @@ fn unlabelled(scores: &LifetimeMetrics, names: &VariantNames) -> Vec<String> {
     sets.into_iter().filter_map(line).collect()
 }
 
-/// A row per task that some of these lifetimes evaluate: means over lifetimes, and in how many it was never learned. `None`
-/// without any. `agent` is appended to the heading.
+/// A row per task that is evaluated in any of these lifetimes: means over them, and in how many it was never learned.
+/// `None` without any. `agent` is appended to the heading.
 pub(super) fn reached_by_several(agent: &str, lifetimes: &[LifetimeMetrics], names: &VariantNames) -> Option<String> {
     let mut tasks: BTreeMap<&str, Vec<&Reached>> = BTreeMap::new();
     for (name, task) in lifetimes.iter().flat_map(|lifetime| &lifetime.reached) {
@@ -208,7 +208,7 @@ pub(super) fn curves(scores: &LifetimeMetrics, names: &VariantNames) -> Option<S
     ))
 }
 
-/// Whether a task has its own expert: a ceiling in its place is 100 %, which would repeat the best evaluation.
+/// Whether a task's expert differs from its ceiling: shares of the ceiling would only repeat the best evaluation.
 fn has_own_expert(task: &Reached) -> bool {
     task.expert.is_some() && task.expert != task.ceiling
 }

@@ -68,7 +68,7 @@ fn summary(scores: &LifetimeMetrics, names: &VariantNames) -> String {
     parts.join("\n\n")
 }
 
-/// The band of a value, and its p.
+/// The null band of a value, and its p-value.
 fn beside_null(band: Option<NullBand>) -> [String; 2] {
     let Some(band) = band else {
         return [whole("no null"), String::new()];

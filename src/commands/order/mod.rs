@@ -152,7 +152,7 @@ impl Order {
         Ok((matrix, Some(by)))
     }
 
-    /// The default candidates for the first variant: those of the first argument, if there are others.
+    /// The default candidates for the first variant: the variants of the first argument.
     fn firsts(&self) -> Vec<usize> {
         let first = self.tasks.first().and_then(|first| tasks::variants(first).ok());
         (0..first.map_or(0, |variants| variants.len())).collect()

@@ -32,7 +32,7 @@ pub(super) struct Game {
     way: Vec<[f32; 2]>,
     last: Option<Step>,
     said: String,
-    /// Whether the world pauses while no key is held, because no action does nothing.
+    /// Whether the world pauses while no key is held, because there is no action that does nothing.
     waits: bool,
 }
 

@@ -1,4 +1,4 @@
-//! `driftworld transfer-report`: whether similar variants transferred more, from logs and distances.
+//! `driftworld transfer-report`: tests whether similar variants transferred more, from logs and distances.
 
 mod words;
 

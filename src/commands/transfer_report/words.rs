@@ -8,7 +8,7 @@ use driftworld_text::{counted, when};
 use crate::report::picture::{Panel, Point};
 use crate::table::table;
 
-/// Most pairs in the table; the others are counted.
+/// Maximum number of pairs in the table; the others are counted.
 const MOST_PAIRS: usize = 40;
 
 /// The whole report.
@@ -121,10 +121,10 @@ fn conclusion(report: &TransferReport) -> String {
     answers.join("\n")
 }
 
-/// Largest p of a named effect.
+/// Largest p-value at which an effect counts as shown.
 const SMALL: f64 = 0.05;
 
-/// Limits of the numbers.
+/// How to read the numbers, and their limits.
 fn notes(report: &TransferReport) -> Vec<String> {
     let mut notes = vec![
         "value: below 0, nearer variants transferred more; 0, distance predicted nothing. Spearman compares ranks, \
