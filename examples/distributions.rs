@@ -1,4 +1,4 @@
-//! Compare two distributions of a parameter by every measure of the library: what moves far and what merely overlaps less.
+//! Compare two distributions of a parameter by every measure of the library: some see a shift, others only overlap.
 #![expect(clippy::print_stdout, reason = "an example shows what it does")]
 
 use driftworld::similarity::distribution::{
@@ -6,7 +6,7 @@ use driftworld::similarity::distribution::{
 };
 use driftworld::spec::Distribution;
 
-/// A measure of two distributions; none where it is not defined for them.
+/// A measure of two distributions; `None` if it is undefined for them.
 type Measure = fn(&Distribution, &Distribution) -> Option<Measured>;
 
 fn main() {

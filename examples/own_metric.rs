@@ -1,4 +1,4 @@
-//! Score a lifetime by a metric of one's own beside the built-in ones: how much an agent forgets at worst.
+//! Score a lifetime by a custom metric alongside the built-in ones: how much an agent forgets at worst.
 #![expect(clippy::print_stdout, reason = "an example shows what it does")]
 
 use driftworld::metrics::{
@@ -6,7 +6,7 @@ use driftworld::metrics::{
     ScenarioInfo, Scorer, Timestamp, read_log,
 };
 
-/// The deepest that an evaluation of a task fell below the best before it.
+/// The furthest that an evaluation of a task fell below the best one before it.
 struct WorstForgetting;
 
 impl Metric for WorstForgetting {

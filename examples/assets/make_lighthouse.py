@@ -40,7 +40,7 @@ COLORS = {
 
 
 def tower():
-    """Positions (x right, y up, z to the front) and for each material its triangles."""
+    """Positions (x right, y up, z to the front), and the triangles of each material."""
     positions, triangles = [], {name: [] for name in COLORS}
     for radius, height, _ in PROFILE:
         for k in range(SEGMENTS):
@@ -57,7 +57,7 @@ def tower():
 
 
 def add_door(positions, triangles):
-    """A flat door that stands a little before the front of the tower."""
+    """A flat door, slightly in front of the tower."""
     first = len(positions)
     for x, y in [(-0.5, 0.45), (0.5, 0.45), (0.5, 2.1), (0.0, 2.5), (-0.5, 2.1)]:
         positions.append((x, y, 1.78 - 0.09 * y))

@@ -10,7 +10,7 @@ Apart from PPO, it shows the correct handling of autoreset NEXT_STEP:
 Afterwards `Curriculum.run_vector` evaluates it in worlds that it never learned from.
 
     python examples/python/cleanrl_ppo.py              # a few minutes on two cores
-    python examples/python/cleanrl_ppo.py --results    # what can be written down in results/
+    python examples/python/cleanrl_ppo.py --results    # also writes the result to results/
     python examples/python/cleanrl_ppo.py --quick      # does it run?
 
 Needs PyTorch (`pip install torch`).
@@ -181,7 +181,7 @@ class Learner:
                 self.optimizer.step()
 
 
-# --- the whole --------------------------------------------------------------------------------------------------------
+# --- the program ------------------------------------------------------------------------------------------------------
 
 
 def main() -> None:

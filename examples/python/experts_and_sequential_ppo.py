@@ -5,7 +5,7 @@ way round. The sky is the learner's only cue; one policy could solve both. The l
 and is frozen and evaluated in both before and after each block.
 
     python examples/python/experts_and_sequential_ppo.py               # experts, lifetime, scores and the report
-    python examples/python/experts_and_sequential_ppo.py --seeds 1 2 3 4 5 --results   # what can be written down in results/
+    python examples/python/experts_and_sequential_ppo.py --seeds 1 2 3 4 5 --results   # also writes to results/
     python examples/python/experts_and_sequential_ppo.py --quick       # does it run?
 
 The loop is `Curriculum.run_vector`: it runs the blocks, freezes the learner, checks that evaluations do not change it,
@@ -111,7 +111,7 @@ def scenario(
 
 
 def lifetime(learner: Learner, plan: dict[str, Any], folder: Path, arguments: argparse.Namespace) -> dict[str, Any]:
-    """Runs a scenario and logs every experience, or finds the finished log; returns the results and durations of its
+    """Runs a scenario and logs every experience, or finds the finished log; returns its duration and the results of its
     blocks.
     """
     agent, kept = folder.name, folder.with_suffix(".json")
@@ -138,8 +138,8 @@ def lifetime(learner: Learner, plan: dict[str, Any], folder: Path, arguments: ar
 
 
 def blocks_of(summary: driftworld.Summary, folder: Path) -> list[dict[str, Any]]:
-    """The results of each regime: mean reward, for learning that of its last 200 experiences, and the number of
-    experiences learned from.
+    """The results of each regime: the mean reward of its last 200 experiences, its success rate, and the number of
+    experiences learned from so far.
     """
     log = driftworld.read_log(folder)
     told, learned, first = [], 0, 0
@@ -286,7 +286,7 @@ def main() -> None:
 
 
 def said_of(seeds: list[int]) -> str:
-    """The number of lifetimes, and what it allows to conclude."""
+    """The number of lifetimes, and what can be concluded from it."""
     if len(seeds) == 1:
         return "One lifetime (n = 1): what it shows of this seed need not hold for another, and no difference can be told from luck."
     return f"n = {len(seeds)} lifetimes, each with worlds and a network of its own."

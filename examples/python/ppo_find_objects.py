@@ -4,7 +4,7 @@ The learner only gets the agent's view. It is compared with a random agent and w
 walks from cube to cube, both in the same environment.
 
     python examples/python/ppo_find_objects.py                               # one seed
-    python examples/python/ppo_find_objects.py --seeds 1 2 3 4 5 --results   # what can be written down in results/
+    python examples/python/ppo_find_objects.py --seeds 1 2 3 4 5 --results   # also writes the result to results/
     python examples/python/ppo_find_objects.py --quick                       # does it run?
 
 Seeds are independent: their environments share no world. All agents are evaluated in the same worlds, by

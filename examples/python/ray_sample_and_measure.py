@@ -160,7 +160,7 @@ def main() -> None:
             f"of each. The digest, `{answer['digest']}`, is the same whatever the number of workers.",
             settings={**vars(arguments), "ranges": RANGES, "answer": answer},
             variants=[f"{TASK}#blue"], seeds=[arguments.seed],
-            # Nothing to draw beyond the largest distance.
+            # Empty bins are left out.
             curve=[{"distance": MOST * (bin + 0.5) / BINS, "variants": count} for bin, count in enumerate(histogram) if count],
             seconds=watch.seconds, load_before=watch.load, axes=("distance", "variants"), labels=("distance from blue", f"variants in {MOST / BINS:.1f} of distance"),
             table=[{

@@ -26,7 +26,7 @@ EVALUATION_SEED = 1_000_000
 # Student's t for intervals of 95 %, for means of 2, 3, … 10 numbers.
 T_95 = (12.71, 4.30, 3.18, 2.78, 2.57, 2.45, 2.36, 2.31, 2.26)
 FOLDER = Path(__file__).parent / "results"
-# Settings of where and whether to store results; they differ between readers.
+# Settings of where and how to run, such as the folder of results; they differ between users and are not recorded.
 _WHERE = ("logs", "results", "quick", "again", "threads", "address")
 PACKAGES = ("driftworld", "gymnasium", "numpy", "torch", "stable-baselines3", "ray")
 

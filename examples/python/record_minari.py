@@ -1,4 +1,4 @@
-"""Episodes of two variants as a Minari data set, read back with the variant of each.
+"""Records episodes of two variants as a Minari data set, and reads them back with their variants.
 
     python examples/python/record_minari.py --episodes 20
 
@@ -21,19 +21,19 @@ def main() -> None:
     parser.add_argument(
         "--dataset",
         default="driftworld/find-objects/random-v0",
-        help="its id (default: %(default)s)",
+        help="id of the data set (default: %(default)s)",
     )
-    parser.add_argument("--episodes", type=int, default=10, help="how many (default: %(default)s)")
+    parser.add_argument("--episodes", type=int, default=10, help="number of episodes (default: %(default)s)")
     parser.add_argument(
         "--seed",
         type=int,
         default=0,
-        help="of worlds and actions (default: %(default)s)",
+        help="seed of worlds and actions (default: %(default)s)",
     )
     parser.add_argument(
         "--quick",
         action="store_true",
-        help="4 short episodes into a folder that is thrown away",
+        help="record 4 short episodes into a temporary folder",
     )
     asked = parser.parse_args()
     if asked.quick:

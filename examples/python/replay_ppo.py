@@ -1,14 +1,15 @@
-"""PPO that rehearses: the sequential learner with experience replay in the manner of CLEAR, beside the one without.
+"""PPO with experience replay in the style of CLEAR, compared with the same sequential learner without replay.
 
 After Rolnick et al. 2019 (arXiv:1811.11682): a reservoir keeps a uniform sample of all past experience; each update
 from new experience is paired with one from the same amount of old experience, by V-trace, and *cloning* keeps policy
-and values close to those at that time. The learner does not know where one task ends and another begins. Network,
-worlds, curriculum, counts and optimiser steps are those of `experts_and_sequential_ppo.py`, with whose logs this one is
-compared; missing logs are made first. Its experts rehearse as well, so that a comparison with them shows the effect of
-the order of tasks, not of the learner.
+and values close to what they were when the old experience was collected. The learner does not know where one task ends
+and another begins. Network, worlds, curriculum, counts and optimiser steps are those of
+`experts_and_sequential_ppo.py`. The logs of that program are used for comparison, and made first if they are missing.
+The experts here use replay as well, so that comparing with them shows the effect of the order of tasks, not of the
+learner.
 
-    python examples/python/replay_ppo.py               # lifetimes, scores and the report that compares
-    python examples/python/replay_ppo.py --seeds 1 2 3 4 5 --results     # what can be written down in results/
+    python examples/python/replay_ppo.py               # lifetimes, scores and a report that compares them
+    python examples/python/replay_ppo.py --seeds 1 2 3 4 5 --results     # also write the record into results/
     python examples/python/replay_ppo.py --quick       # does it run?
 
 Needs PyTorch (`pip install torch`).
@@ -36,8 +37,8 @@ from record import Record
 
 
 class ReplayLearner(Learner, CLEAR):
-    """PPO on new experience, V-trace and cloning on old: three passes over the new, and as many steps as in a fourth
-    pass on the old.
+    """PPO on new experience, V-trace and cloning on old: three passes over the new and, instead of a fourth, as many
+    optimiser steps on the old.
     """
 
     epochs = 3
@@ -67,7 +68,8 @@ def main() -> None:
         Record(
             title="PPO with experience replay",
             text="The learner, the worlds and the curriculum of `experts_and_sequential_ppo.py`, with a reservoir of 256 stretches of 64 steps "
-            "in the manner of CLEAR, and as many steps of the optimiser. Each learner is compared with experts of its own kind. "
+            "in the style of CLEAR, and the same number of optimiser steps. "
+            "Each learner is compared with experts of its own kind. "
             f"Evaluations by the {arguments.policy} policy. {said_of(arguments.seeds)} The curve is of the evaluations; the time is that of the "
             "lifetimes with replay alone.",
             settings={**vars(arguments), **OPTIONS, "optimiser_steps": steps}, variants=[f"{TASK}#{variant}" for variant in VARIANTS], seeds=arguments.seeds,

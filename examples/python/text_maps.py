@@ -5,7 +5,7 @@
 
 DeepMind Lab: the entity layer of a text level. `*` is a wall, `P` where an agent may start, `G` a goal of 10 points
 that ends the episode, `A` an apple of 1 point, `I` and `H` doors, which open when the agent comes to them. Cells are
-3.125 m wide, as there. A variations layer after an empty line is ignored: it only affects the look of rooms.
+3.125 m wide, as in DeepMind Lab. A variations layer after an empty line is ignored: it only affects the look of rooms.
 
 MiniGrid: what `env.unwrapped.pprint_grid()` gives, two characters a cell, the second its colour. `W` is a wall, `F` and
 two spaces are floor, `G` a goal of 1 point that ends the episode, `V` lava, which ends it as a failure, `K` a key, `A`
@@ -73,7 +73,7 @@ class Map:
         return [(at[0] + 0.5 - columns / 2) * self.cell, (rows / 2 - 0.5 - at[1]) * self.cell]
 
     def is_open(self, column: int, row: int) -> bool:
-        """Whether a cell lies on the map and is no wall."""
+        """Whether a cell lies on the map and is not a wall."""
         return 0 <= row < len(self.rows) and 0 <= column < len(self.rows[0]) and self.rows[row][column] not in "#*"
 
     def start(self) -> tuple[tuple[int, int], float] | None:
@@ -201,7 +201,7 @@ def minigrid(name: str, text: str) -> dict[str, Any]:
         # The environment's name may stand above its grid, which has no lower-case letters.
         if not line or (shown.startswith("<") and shown.endswith(">") and shown != shown.upper()):
             continue
-        # Trailing spaces of a line may be lost.
+        # Trailing spaces of a line may have been lost.
         pairs = [line[column : column + 2].ljust(2) for column in range(0, len(line), 2)]
         row = len(found.rows)
         cells = [cell_of_minigrid(found, pair, (column, row), (number + 1, 2 * column + 1)) for column, pair in enumerate(pairs)]

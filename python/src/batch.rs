@@ -456,7 +456,7 @@ fn word<T: FromStr>(option: &str, found: &str, expected: &str) -> Result<T> {
     Ok(found.parse().map_err(unknown)?)
 }
 
-/// Stands for every invalid row number: no table is this long.
+/// Represents every invalid row number; no table is this long.
 const NO_ROW: usize = usize::MAX;
 
 /// An action of up to three numbers; missing ones are 0.

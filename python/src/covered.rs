@@ -72,7 +72,7 @@ const OPTIONS: [EnvOption; 7] = [
     },
 ];
 
-/// The values of a variant's worlds for the keys of all options, and those that differ between its worlds.
+/// The values of a variant's worlds for the keys of all options, and the pointers of values drawn for each world.
 struct Said {
     name: String,
     task: String,
@@ -144,7 +144,7 @@ impl EnvOption {
     fn taken(&self, all: &[Said], is_given: bool, laid: &dyn Fn(&WorldDraft) -> WorldDraft) -> Option<Json> {
         let keys: Vec<String> = self.keys.iter().map(|key| key[1..].replace('/', ".")).collect();
         let told = |said: Vec<(&str, Json)>| json!({ "option": self.name, "key": keys.join(", "), "said": said });
-        // By values with the options: the first variant that has them, with its value without the options.
+        // Keyed by values with the options applied: the first variant with them, and its values without the options.
         let mut first: BTreeMap<(String, &str), (&str, Json)> = BTreeMap::new();
         for said in all {
             if is_given && said.drawn.iter().any(|pointer| self.covers(pointer)) {
@@ -170,7 +170,7 @@ impl EnvOption {
     }
 }
 
-/// Number of worlds of variants to compare before the variants count as the same.
+/// Number of worlds compared before two variants count as the same.
 const HIDDEN_WORLDS: u64 = 3;
 
 /// The first two variants whose worlds differ only in colours and light, if no image shows colours: `laid` applies all options
@@ -181,7 +181,7 @@ fn hidden(all: &[Said], laid: &dyn Fn(&WorldDraft) -> WorldDraft) -> Option<Json
         let drawn = (0..HIDDEN_WORLDS).map(|index| Some(laid(&sampler.world(index).ok()?.into_draft())));
         drawn.collect()
     };
-    // By values without colours: the first variant that has them, and its worlds.
+    // Keyed by the worlds without colours: the first variant with them, and its worlds.
     let mut first: BTreeMap<String, (&str, &Variant, Vec<WorldDraft>)> = BTreeMap::new();
     for said in all {
         let Some(variant) = &said.variant else { continue };
@@ -207,7 +207,7 @@ fn hidden(all: &[Said], laid: &dyn Fn(&WorldDraft) -> WorldDraft) -> Option<Json
     None
 }
 
-/// A world without the values that only colours show.
+/// A world without the values that only affect colours.
 fn without_colors(mut world: WorldDraft) -> WorldDraft {
     let (usual, environment) = (EnvironmentParams::default(), &mut world.environment_params);
     environment.bounding_wall_color = usual.bounding_wall_color;

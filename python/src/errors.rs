@@ -27,7 +27,7 @@ pub(crate) enum Error {
     Cause(Cause),
     /// A scenario refers to a task with an invalid document: the scenario's error, and the document's problems.
     InScenario(CurriculumError, SpecError),
-    /// An operation without a result, raised as this class.
+    /// A failed operation, raised as this class.
     Refused {
         class: &'static str,
         text: String,
@@ -75,7 +75,7 @@ impl From<PyErr> for Error {
     }
 }
 
-/// Classifies a failure by its cause if that is one of the crates' errors; otherwise it is about an argument.
+/// Classifies a failure by its cause. Without one, wrong usage is a `ValueError`; all else is a `DriftworldError`.
 impl From<Failure> for Error {
     fn from(failure: Failure) -> Self {
         let class = match failure.cause().as_deref() {
@@ -112,7 +112,7 @@ impl Error {
         let details = PyDict::new(py);
         let (class, text) = match self {
             Self::Cause(cause) => {
-                // The problem is that of the variant in between.
+                // The details are those of the invalid variant on the way of the drift.
                 if let Some(GeneratorError::Between(source)) = cause.downcast_ref() {
                     of_spec(&details, source)?;
                 }

@@ -1,5 +1,5 @@
-//! Runs long work on a separate thread while polling Python for signals, so that Ctrl-C can stop it. The worker pool is made anew
-//! after a fork.
+//! Runs long work on a separate thread while polling Python for signals, so that Ctrl-C can stop it. The worker pool is
+//! recreated after a fork.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
@@ -25,7 +25,7 @@ const MANY_ENVS: usize = 32;
 /// parent, and work in the child would wait forever.
 pub(crate) fn workers(_held: Python<'_>) -> PyResult<Arc<ThreadPool>> {
     static WORKERS: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
-    // Locked only while holding the GIL. Whoever forks also holds the GIL, so the child never inherits this locked.
+    // Locked only while holding the GIL. A forking thread also holds the GIL, so a child never inherits a locked mutex.
     let mut workers = WORKERS.lock().unwrap_or_else(PoisonError::into_inner);
     let here = process::id();
     if let Some((process, pool)) = &*workers

@@ -95,13 +95,14 @@ impl PyLogFile {
             .with_task_params(TaskParams::new(params))
             .with_worker(worker_id)
         };
-        // Locked only while not holding the GIL, so that no thread waits for the lock while holding the GIL.
+        // Locked only while holding the GIL, and unlocked before the GIL is released, so that no thread waits for the
+        // lock while holding the GIL.
         let mut writer = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let log = writer.as_mut().ok_or_else(|| {
             PyValueError::new_err("log: found it closed, expected an open one; begin another, or resume it")
         })?;
         if let Some(recording) = recording {
-            // Written first, so that at every interruption each row that should have a recording has it.
+            // Written before the row, so that an interruption never leaves a row without its recording.
             let recording = recording.get().of_row(&record);
             log.recordings
                 .append(&record.worker_id, (record.block_num, record.block_type), &recording)?;
@@ -186,7 +187,7 @@ fn scenario_info(said: Value) -> Result<ScenarioInfo> {
         None | Some(Value::Null) => Ok(None),
         Some(Value::String(word)) => Ok(Some(word)),
         Some(other) => Err(PyValueError::new_err(format!(
-            "scenario_info, {key}: found {other}, expected a word of the format; what is no word goes under another name"
+            "scenario_info, {key}: found {other}, expected a word of the format; store anything else under another key"
         ))),
     };
     let (complexity, difficulty, form) = (word("complexity")?, word("difficulty")?, word("scenario_type")?);

@@ -16,10 +16,10 @@ use crate::rounding::detach;
 /// Worlds per portion: Ctrl-C is checked between portions.
 const PORTION: u64 = 256;
 
-/// Most worlds per call, and most bytes of their texts.
+/// Maximum number of worlds per call, and maximum bytes of their texts.
 const MOST_WORLDS: u64 = 10_000_000;
 const MOST_BYTES: u128 = 16 << 30;
-/// From this many worlds on, the size of all is estimated from the first.
+/// Above this number of worlds, their total size is estimated from the first one.
 const ESTIMATED: u64 = 10_000;
 
 /// Draws worlds in portions without the GIL, and passes each on as converted by `make`.
@@ -94,10 +94,10 @@ pub(crate) fn numbers(start: u64, count: u64) -> PyResult<Range<u64>> {
     Ok(start..end)
 }
 
-/// Most threads.
+/// Maximum number of threads.
 const MOST_THREADS: u64 = 1024;
 
-/// A pool with this many threads; `None` for the pool of all long work.
+/// A pool with this many threads; for 0 `None`, which means the pool shared by all long work.
 fn pool(threads: u64) -> PyResult<Option<rayon::ThreadPool>> {
     if threads == 0 {
         return Ok(None);

@@ -19,7 +19,7 @@ use crate::document::{Whole, json_to_py};
 use crate::errors::{Error, Result, wrong};
 use crate::rounding::detach;
 
-/// Most bytes of frames per call.
+/// Maximum bytes of frames per call.
 const MAX_FRAME_BYTES: usize = 1 << 34;
 
 /// A recorded episode.

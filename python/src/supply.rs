@@ -19,7 +19,7 @@ use crate::variant::PyVariant;
 pub(crate) enum Stream {
     /// Worlds of these variants, one per episode, in a repeating order.
     Variants { variants: Arc<[Variant]>, turns: Turns },
-    /// Worlds on the way from one variant to another, which ends with episode number `episodes` − 1.
+    /// Worlds on the way from one variant to another, which ends with world number `episodes` − 1.
     Drift { drift: Arc<Drift>, episodes: u64 },
     /// The same world again and again, with its name.
     World { world: Arc<World>, name: String },
@@ -99,7 +99,7 @@ impl PyStream {
             switch,
             ..RegimeDrift::to("")
         };
-        // All with the same seed, so that every environment gets a new value in the same episode.
+        // The same seed for all, so that a value changes in the same episode in every environment.
         let drift = Arc::new(usually_rounded(|| Drift::declared(&declared, from, to, 0))?);
         Ok(Self(Stream::Drift { drift, episodes }))
     }

@@ -16,27 +16,27 @@ use crate::variant::PyVariant;
 
 /// A task: what its worlds have in common, and exactly what varies between them.
 ///
-/// Made by ``TaskSpec.load``, ``TaskSpec.from_json`` or ``TaskSpec.from_dict``. Never changes; equal when the documents say the
-/// same. Pickles.
+/// Made by ``TaskSpec.load``, ``TaskSpec.from_json`` or ``TaskSpec.from_dict``. Immutable; equal if the documents mean
+/// the same. Can be pickled.
 #[pyclass(name = "TaskSpec", module = "driftworld._native", frozen)]
 pub(crate) struct PyTask(pub(crate) Arc<TaskSpec>);
 
 #[pymethods]
 impl PyTask {
-    /// The task of a built-in name, such as ``"find_objects"``, or of a path; a variant behind ``#`` is left aside.
+    /// Loads the task with a built-in name, such as ``"find_objects"``, or at a path; ignores a variant after ``#``.
     #[staticmethod]
     fn load(name_or_path: &Bound<'_, PyAny>) -> Result<Self> {
         let name = name_of(name_or_path)?;
         Ok(Self(usually_rounded(|| tasks::task(&name))?))
     }
 
-    /// The task that a JSON text says; ``name`` is what messages call the text.
+    /// Reads a task from JSON text; messages refer to the text as ``name``.
     #[staticmethod]
     fn from_json(name: &str, text: &str) -> Result<Self> {
         Ok(Self(usually_rounded(|| TaskSpec::from_json(name, text))?))
     }
 
-    /// The task that a dictionary says; ``name`` is what messages call it.
+    /// Reads a task from a dictionary; messages refer to it as ``name``.
     #[staticmethod]
     #[pyo3(signature = (document, name="task spec"))]
     fn from_dict(document: &Bound<'_, PyDict>, name: &str) -> Result<Self> {
@@ -86,7 +86,7 @@ impl PyTask {
         specs(slf.py(), "_task_html")?.call1((slf,))
     }
 
-    /// The names of the variants that it declares, families unfolded; ``["default"]`` if it declares none.
+    /// The names of the variants that it declares, with families expanded; ``["default"]`` if it declares none.
     fn variant_names(&self) -> Vec<&str> {
         self.0.variant_names()
     }

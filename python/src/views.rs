@@ -49,7 +49,7 @@ fn view<'py, T: Element>(
     // SAFETY: the buffer belongs to the batch, which the array keeps alive as its base, and is created once: a batch writes
     // into its buffers and never replaces them.
     let view = unsafe { PyArray4::borrow_from_array(&array, batch.clone().into_any()) };
-    // Permanently: NumPy makes no array writable whose base is neither an array nor a buffer.
+    // This is permanent: NumPy cannot make an array writable again if its base is neither an array nor a buffer.
     Ok(view
         .readwrite()
         .make_nonwriteable()

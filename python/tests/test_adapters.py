@@ -26,7 +26,7 @@ PACKAGES = {
 
 
 @pytest.mark.parametrize("name, package", PACKAGES.items())
-def test_a_missing_library_is_named_with_what_to_install(
+def test_missing_library_error_says_what_to_install(
     name: str, package: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # Including its submodules, which other tests may have imported.
@@ -49,7 +49,7 @@ def in_a_loop(seed: int, num_envs: int, **options: Any) -> Any:
 @pytest.mark.learners
 @pytest.mark.parametrize("modalities", ["rgb", ["rgb", "state"]], ids=str)
 def test_sb3_vector_environment_matches_its_own_loop(modalities: Any) -> None:
-    pytest.importorskip("stable_baselines3", reason="the adapter is for it")
+    pytest.importorskip("stable_baselines3", reason="needs Stable-Baselines3")
     from driftworld.adapters.sb3 import DriftworldVecEnv
 
     options = {**SMALL, "modalities": modalities}
@@ -72,7 +72,7 @@ def test_sb3_vector_environment_matches_its_own_loop(modalities: Any) -> None:
 
 @pytest.mark.learners
 def test_sb3_observations_are_copies() -> None:
-    pytest.importorskip("stable_baselines3", reason="the adapter is for it")
+    pytest.importorskip("stable_baselines3", reason="needs Stable-Baselines3")
     from driftworld.adapters.sb3 import DriftworldVecEnv
 
     envs = DriftworldVecEnv(FIND, 2, **SMALL)
@@ -85,16 +85,16 @@ def test_sb3_observations_are_copies() -> None:
 
 @pytest.mark.learners
 def test_sb3_options_apply_to_all_or_to_each() -> None:
-    pytest.importorskip("stable_baselines3", reason="the adapter is for it")
+    pytest.importorskip("stable_baselines3", reason="needs Stable-Baselines3")
     from driftworld.adapters.sb3 import DriftworldVecEnv
 
     envs = DriftworldVecEnv(FIND, 3, render_mode="rgb_array", render_size=(24, 32), info="full", **SMALL)
     envs.seed(3)
     envs.set_options([{"variant": "red"}, {}, {"variant": "dusk"}])
     envs.reset()
-    told = [(info["variant_id"].partition("#")[2], info["seed"], info["index"]) for info in envs.reset_infos]
+    found = [(info["variant_id"].partition("#")[2], info["seed"], info["index"]) for info in envs.reset_infos]
     first, second, third = driftworld.spread_seeds(3, 3)
-    assert told == [("red", first, 0), ("default", second, 0), ("dusk", third, 0)]
+    assert found == [("red", first, 0), ("default", second, 0), ("dusk", third, 0)]
     envs.set_options({"variant": "near"})
     envs.reset()
     assert [info["variant_id"].partition("#")[2] for info in envs.reset_infos] == ["near"] * 3
@@ -163,7 +163,7 @@ def answers(envs: Any, method: str, *args: Any, **kwargs: Any) -> Any:
 @pytest.mark.learners
 @pytest.mark.parametrize("indices", [None, 1, -1, [0], [2, 0], [], range(3), [1, 1]], ids=str)
 def test_sb3_contract_matches_single_environments(indices: Any) -> None:
-    pytest.importorskip("stable_baselines3", reason="the adapter is for it")
+    pytest.importorskip("stable_baselines3", reason="needs Stable-Baselines3")
     ours, theirs = both()
     for name, args, kwargs in CALLS:
         found = [answers(envs, name, *args, indices=indices, **kwargs) for envs in (ours, theirs)]
@@ -197,7 +197,7 @@ def test_sb3_contract_matches_single_environments(indices: Any) -> None:
 
 @pytest.mark.learners
 def test_sb3_refuses_calls_without_effect_or_for_some_environments_only() -> None:
-    pytest.importorskip("stable_baselines3", reason="the adapter is for it")
+    pytest.importorskip("stable_baselines3", reason="needs Stable-Baselines3")
     ours, _ = both()
     for option in ("frame_skip", "variant", "max_steps", "modalities", "size", "actions", "task", "render_mode", "drift"):
         for indices in (None, [0]):
@@ -214,7 +214,7 @@ def test_sb3_refuses_calls_without_effect_or_for_some_environments_only() -> Non
 
 @pytest.mark.learners
 def test_sb3_monitor_counts_from_a_partial_reset() -> None:
-    pytest.importorskip("stable_baselines3", reason="the adapter is for it")
+    pytest.importorskip("stable_baselines3", reason="needs Stable-Baselines3")
     from driftworld.adapters.sb3 import make_vec_env
 
     envs = make_vec_env(FIND, num_envs=3, seed=0, max_steps=8, **SMALL)
@@ -232,7 +232,7 @@ def test_sb3_monitor_counts_from_a_partial_reset() -> None:
 @pytest.mark.filterwarnings("ignore::DeprecationWarning", "ignore::UserWarning")
 @pytest.mark.parametrize("algorithm", ["PPO", "DQN"])
 def test_sb3_learns_on_it(algorithm: str, tmp_path: Path) -> None:
-    sb3 = pytest.importorskip("stable_baselines3", reason="it learns")
+    sb3 = pytest.importorskip("stable_baselines3", reason="needs Stable-Baselines3")
     from driftworld.adapters.sb3 import make_vec_env
     from stable_baselines3.common.evaluation import evaluate_policy
 
@@ -254,7 +254,7 @@ def test_sb3_learns_on_it(algorithm: str, tmp_path: Path) -> None:
 @pytest.mark.filterwarnings("ignore::DeprecationWarning")
 @pytest.mark.parametrize("actions", ["normalized", "discrete"])
 def test_sb3_check_passes_without_warnings(env_id: str, actions: str) -> None:
-    pytest.importorskip("stable_baselines3", reason="the check is its")
+    pytest.importorskip("stable_baselines3", reason="needs Stable-Baselines3")
     from stable_baselines3.common.env_checker import check_env
 
     for modalities in ("rgb", ["rgb", "depth", "segmentation", "state"]):
@@ -263,7 +263,7 @@ def test_sb3_check_passes_without_warnings(env_id: str, actions: str) -> None:
 
 @pytest.mark.learners
 def test_torch_takes_observations_without_another_copy() -> None:
-    torch = pytest.importorskip("torch", reason="the views are its")
+    torch = pytest.importorskip("torch", reason="needs PyTorch")
     envs = gym.make_vec(FIND, num_envs=2, vectorization_mode="vector_entry_point", size=40)
     observations, _ = envs.reset(seed=0)
     for name, array in observations.items():
@@ -280,9 +280,9 @@ def test_torch_takes_observations_without_another_copy() -> None:
 # In a checkout that is on the path but not installed, Minari does not find the package.
 @pytest.mark.filterwarnings("ignore:Package driftworld is not installed:UserWarning")
 @pytest.mark.parametrize("modalities", ["rgb", ["rgb", "state"]], ids=str)
-def test_minari_reads_back_what_was_lived(modalities: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_minari_reads_back_recorded_episodes(modalities: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("MINARI_DATASETS_PATH", str(tmp_path))
-    minari = pytest.importorskip("minari", reason="the data set is its")
+    minari = pytest.importorskip("minari", reason="needs Minari")
     from driftworld.adapters.minari import collect
 
     options = {**SMALL, "modalities": modalities, "max_steps": 6}
@@ -293,20 +293,20 @@ def test_minari_reads_back_what_was_lived(modalities: Any, tmp_path: Path, monke
     assert [each["variant_id"] for each in metadata] == ["find_objects#red", "find_objects#blue", "find_objects#red"]
     assert [(each["world_seed"], each["world_index"]) for each in metadata] == [(8, 0), (8, 1), (8, 2)]
     again = dataset.recover_environment()
-    for episode, told in zip(dataset.iterate_episodes(), metadata, strict=True):
+    for episode, recorded in zip(dataset.iterate_episodes(), metadata, strict=True):
         observation, info = again.reset(
-            seed=int(told["world_seed"]),
-            options={"variant": told["variant_id"].partition("#")[2], "index": int(told["world_index"])},
+            seed=int(recorded["world_seed"]),
+            options={"variant": recorded["variant_id"].partition("#")[2], "index": int(recorded["world_index"])},
         )
-        assert info["world_hash"] == told["world_hash"]
-        lived = [observation] + [again.step(int(action))[0] for action in episode.actions]
-        for number, each in enumerate(lived):
+        assert info["world_hash"] == recorded["world_hash"]
+        replayed = [observation] + [again.step(int(action))[0] for action in episode.actions]
+        for number, each in enumerate(replayed):
             if isinstance(each, dict):
                 kept: Any = {name: array[number] for name, array in episode.observations.items()}
             else:
                 kept = episode.observations[number]
             assert first_difference(kept, each, f"observation {number}") is None
-        assert sum(episode.rewards) == pytest.approx(told["episode_return"])
+        assert sum(episode.rewards) == pytest.approx(recorded["episode_return"])
 
 
 class StandIn:
@@ -359,17 +359,17 @@ def test_puffer_buffers_match_the_environments(puffer: Any) -> None:
     buffers = {name: getattr(ours, name) for name in ("observations", "rewards", "terminals", "truncations")}
     assert infos == []
     assert np.array_equal(observations, theirs.reset(seed=2)[0])
-    told = []
+    episode_infos = []
     for number in range(12):
         actions = np.array([number % 3, 1, 2], dtype=np.int32)
         found, expected = ours.step(actions), theirs.step(actions)
         for name, one, other in zip(buffers, found, expected, strict=False):
             assert one is buffers[name]
             assert np.array_equal(one, other.astype(one.dtype)), name
-        told.extend(found[4])
-    assert len(told) == 6
-    assert {info["episode_length"] for info in told} == {5}
-    assert set(told[0]) == {"variant_id", "episode_return", "episode_length", "is_success"}
+        episode_infos.extend(found[4])
+    assert len(episode_infos) == 6
+    assert {info["episode_length"] for info in episode_infos} == {5}
+    assert set(episode_infos[0]) == {"variant_id", "episode_return", "episode_length", "is_success"}
     assert puffer(FIND, 1, seed=2).reset()[0].shape[0] == 1
 
 

@@ -35,12 +35,12 @@ def bare(env_id: str, **options: Any) -> Any:
 def walk(env: Any, seed: int | None, steps: int = 12) -> list[Any]:
     """The start of an episode: the reset, and steps with random actions from the seed."""
     env.action_space.seed(7)
-    told = [env.reset(seed=seed)]
+    results = [env.reset(seed=seed)]
     for _ in range(steps):
-        told.append(env.step(env.action_space.sample()))
-        if told[-1][2] or told[-1][3]:
+        results.append(env.step(env.action_space.sample()))
+        if results[-1][2] or results[-1][3]:
             break
-    return told
+    return results
 
 
 def run_python(program: str, **environment: str) -> subprocess.CompletedProcess[str]:
@@ -192,7 +192,7 @@ def test_unseeded_environment_draws_a_seed_and_keeps_it() -> None:
     assert other.reset()[1]["seed"] != first["seed"]
 
 
-def test_an_index_is_gone_to_and_gone_on_from() -> None:
+def test_reset_to_an_index_continues_from_it() -> None:
     env = bare(FIND, modalities="state")
     assert env.reset(seed=3, options={"index": 40})[1]["index"] == 40
     assert env.reset()[1]["index"] == 41
@@ -207,8 +207,8 @@ def test_variant_persists_and_queue_cycles() -> None:
     env = bare(FIND, modalities="state", info="full")
 
     def ids(resets: int, **options: Any) -> list[str]:
-        told = [env.reset(options=options)[1]] + [env.reset()[1] for _ in range(resets - 1)]
-        return [info["variant_id"].partition("#")[2] for info in told]
+        infos = [env.reset(options=options)[1]] + [env.reset()[1] for _ in range(resets - 1)]
+        return [info["variant_id"].partition("#")[2] for info in infos]
 
     assert ids(2, variant="dusk") == ["dusk", "dusk"]
     assert ids(5, queue=["red", "blue"]) == ["red", "blue", "red", "blue", "red"]
@@ -225,7 +225,7 @@ def test_given_world_lasts_one_episode(world_file: Path) -> None:
     assert env.reset()[1]["variant_id"] == "find_objects#default"
 
 
-def test_state_goes_on_to_the_last_bit(env_id: str) -> None:
+def test_restored_state_continues_bit_for_bit(env_id: str) -> None:
     env, other = bare(env_id, size=40), bare(env_id, size=40)
     walk(env, 5, steps=6)
     other.reset(options={"world": env.state()})
@@ -280,11 +280,11 @@ def test_too_many_steps_are_a_truncation() -> None:
         env.step(np.zeros(3, dtype=np.float32))
 
 
-@pytest.mark.parametrize("label, told", [("none", False), ("info", True)])
-def test_label_is_given_only_if_requested(label: str, told: bool) -> None:
+@pytest.mark.parametrize("label, expected", [("none", False), ("info", True)])
+def test_label_is_given_only_if_requested(label: str, expected: bool) -> None:
     env = bare(FIND, variant="red", modalities="state", task_label=label)
-    assert ("task_label" in env.reset(seed=0)[1]) is told
-    assert ("task_label" in env.step(env.action_space.sample())[4]) is told
+    assert ("task_label" in env.reset(seed=0)[1]) is expected
+    assert ("task_label" in env.step(env.action_space.sample())[4]) is expected
 
 
 def test_label_in_the_observation_is_one_hot() -> None:
@@ -297,13 +297,13 @@ def test_label_in_the_observation_is_one_hot() -> None:
 
 def test_drift_ends_at_its_target() -> None:
     env = bare(FIND, modalities="state", drift={"to": "dusk", "episodes": 4}, info="full")
-    told = [env.reset(seed=0)[1], *(env.reset()[1] for _ in range(5))]
+    infos = [env.reset(seed=0)[1], *(env.reset()[1] for _ in range(5))]
     alone = bare(FIND, variant="dusk", modalities="state", info="full").reset(seed=0, options={"index": 5})[1]
-    assert told[5]["world_hash"] == alone["world_hash"]
-    assert len({info["variant_id"] for info in told}) > 2
+    assert infos[5]["world_hash"] == alone["world_hash"]
+    assert len({info["variant_id"] for info in infos}) > 2
 
 
-def test_copies_and_pickles_go_on_as_the_original(env_id: str) -> None:
+def test_copies_and_pickles_continue_like_the_original(env_id: str) -> None:
     env = bare(env_id, size=40)
     walk(env, 2, steps=5)
     for other in (copy.deepcopy(env), pickle.loads(pickle.dumps(env))):
@@ -393,7 +393,7 @@ def test_gymnasium_imports_the_module_by_name() -> None:
     assert (done.stdout, done.stderr) == ("0\n", "")
 
 
-def test_importing_does_no_work_and_brings_nothing_large() -> None:
+def test_import_starts_no_thread_and_loads_no_large_package() -> None:
     large = ["torch", "pandas", "pygame", "matplotlib", "stable_baselines3", "ray", "minari", "scipy"]
     program = f"import sys, threading, driftworld; print([name for name in {large} if name in sys.modules], threading.active_count())"
     done = run_python(program)
@@ -416,7 +416,7 @@ print(peak() - before)
 
 
 def test_ten_thousand_resets_leak_nothing() -> None:
-    pytest.importorskip("resource", reason="memory is measured by a module of Unix")
+    pytest.importorskip("resource", reason="needs the Unix module resource")
     done = run_python(LEAK)
     assert done.returncode == 0, done.stderr
     # One image of 40 x 40 x 3 bytes kept at each reset would be 47,000 KiB.
@@ -431,7 +431,7 @@ def test_closed_environment_can_be_closed_again() -> None:
 
 
 def test_window_shows_the_rendered_image(monkeypatch: pytest.MonkeyPatch) -> None:
-    pygame = pytest.importorskip("pygame", reason="windows are pygame's")
+    pygame = pytest.importorskip("pygame", reason="needs pygame")
     monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
     env = bare(FIND, render_mode="human", size=40, render_size=(48, 64))
     env.metadata["render_fps"] = 1000
@@ -478,7 +478,7 @@ def test_gymnasium_wrappers_work(small: dict[str, Any], tmp_path: Path) -> None:
 
 
 def test_human_rendering_wraps_rgb_array(monkeypatch: pytest.MonkeyPatch) -> None:
-    pytest.importorskip("pygame", reason="HumanRendering is pygame's")
+    pytest.importorskip("pygame", reason="HumanRendering needs pygame")
     monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
     env = gym.wrappers.HumanRendering(gym.make(FIND, render_mode="rgb_array", size=40, render_size=(48, 64)))
     env.reset(seed=0)
@@ -508,8 +508,8 @@ def test_any_whole_number_from_0_is_a_seed(seed: int) -> None:
     again = env.reset(seed=env.unwrapped.np_random_seed)[1]
     assert again["world_hash"] == info["world_hash"]
     for given in (seed, [seed, 0]):
-        told = envs.reset(seed=given)[1]
-        assert told["world_hash"][0] == info["world_hash"] and told["seed"][0] == info["seed"]
+        infos = envs.reset(seed=given)[1]
+        assert infos["world_hash"][0] == info["world_hash"] and infos["seed"][0] == info["seed"]
         assert envs.unwrapped.np_random_seed[0] == seed
     assert driftworld.spread_seeds(seed, 1) == [info["seed"]]
     unseeded = gym.make(FIND, size=8)

@@ -10,7 +10,7 @@ import pytest
 from small_learners import Steps, package, small
 
 pytestmark = pytest.mark.learners
-torch: Any = pytest.importorskip("torch", reason="the learners are networks")
+torch: Any = pytest.importorskip("torch", reason="needs PyTorch")
 
 
 def module(name: str) -> Any:
@@ -125,7 +125,7 @@ def test_fisher_uses_the_last_observations_of_the_ending_task() -> None:
     expected = module("ewc").normalized(module("ewc").fisher(learner.network, seen))
     for name, values in learner.springs[0][0].items():
         assert torch.allclose(values, expected[name], rtol=1e-3, atol=1e-4)
-    assert not learner.rollout.active.any(), "and what was seen in it is no part of the next task"
+    assert not learner.rollout.active.any(), "its observations do not count for the next task"
 
 
 # --- PackNet ---
@@ -160,7 +160,7 @@ def test_packnet_shares_are_equal_and_the_largest_weights_are_kept() -> None:
         for name, rows in learner.owners.items():
             kept = rows == number
             if rows.dim() == 1:
-                assert (rows == 1).all(), "biases are the first task's"
+                assert (rows == 1).all(), "biases belong to the first task"
                 continue
             assert abs(int(kept.sum()) - rows.numel() / 3) <= 1
             lost = free[name] & ~kept
@@ -171,7 +171,7 @@ def test_packnet_shares_are_equal_and_the_largest_weights_are_kept() -> None:
         learner.begin(0, "d", 0)
 
 
-def test_packnet_acts_in_a_task_as_at_its_end() -> None:
+def test_packnet_acts_in_a_finished_task_as_it_did_at_its_end() -> None:
     learner = small("PackNet", max_tasks=2, policy="greedy")
     steps = Steps(learner, label="a")
     steps.take(40)
@@ -340,7 +340,7 @@ def test_resetting_the_optimiser_clears_moments_and_keeps_weights() -> None:
 # --- recurrent ---
 
 
-def test_sequences_are_replayed_as_acted() -> None:
+def test_replayed_sequences_match_the_outputs_when_acting() -> None:
     learner = small("RecurrentPPO")
     found = []
 

@@ -1,6 +1,4 @@
-"""The next episode can be set while episodes run: it takes effect from the next episode on, in one environment as in
-many.
-"""
+"""`set_next` during an episode takes effect from the next episode on, in single and in vector environments."""
 
 from __future__ import annotations
 
@@ -45,7 +43,7 @@ def drawn(chance: np.random.Generator) -> dict[str, Any]:
 
 @pytest.mark.parametrize("mode", ["next_step", "same_step"])
 @pytest.mark.parametrize("seed", range(3))
-def test_many_are_told_what_one_is_told(mode: str, seed: int) -> None:
+def test_set_next_in_a_vector_environment_equals_single_environments(mode: str, seed: int) -> None:
     chance = np.random.default_rng(seed)
     envs = many(3, mode)
     alone = [gym.make(FIND, max_episode_steps=4, **OPTIONS) for _ in range(3)]
@@ -165,7 +163,7 @@ def test_first_observation_of_one_environment_has_its_label() -> None:
 
 @pytest.mark.learners
 def test_sb3_learns_another_variant_without_a_reset() -> None:
-    pytest.importorskip("stable_baselines3", reason="the adapter is for it")
+    pytest.importorskip("stable_baselines3", reason="tests the Stable-Baselines3 adapter")
     from driftworld.adapters.sb3 import make_vec_env
     from stable_baselines3 import PPO
 
@@ -201,7 +199,7 @@ def test_sb3_learns_another_variant_without_a_reset() -> None:
 def test_sb3_issue_1790_options_reach_the_reset_that_ends_an_episode() -> None:
     # https://github.com/DLR-RM/stable-baselines3/issues/1790: if episodes end at each step, options only reach an
     # explicit reset; the reset within `step` drops them.
-    pytest.importorskip("stable_baselines3", reason="the thread is about it")
+    pytest.importorskip("stable_baselines3", reason="the linked issue is about Stable-Baselines3")
     from driftworld.adapters.sb3 import make_vec_env
 
     envs = make_vec_env(FIND, 2, seed=0, max_episode_steps=1, **OPTIONS)
@@ -226,7 +224,7 @@ def test_sb3_issue_1790_options_reach_the_reset_that_ends_an_episode() -> None:
 @pytest.mark.learners
 @pytest.mark.filterwarnings("ignore")
 def test_rllib_runner_continues_with_another_variant() -> None:
-    pytest.importorskip("ray.rllib", reason="the runner is its")
+    pytest.importorskip("ray.rllib", reason="the env runner is RLlib's")
     from ray.rllib.algorithms.ppo import PPOConfig
     from ray.rllib.core.rl_module.default_model_config import DefaultModelConfig
     from ray.rllib.env.single_agent_env_runner import SingleAgentEnvRunner

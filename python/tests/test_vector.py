@@ -307,7 +307,7 @@ def test_number_of_environments_out_of_range_is_refused(num_envs: int) -> None:
         native(FIND, num_envs, size=16, modalities="state")
 
 
-def test_copies_and_pickles_go_on_as_the_original() -> None:
+def test_copies_and_pickles_continue_like_the_original() -> None:
     ours = native(FIND, 3, size=40, max_episode_steps=5)
     ours.reset(seed=0, options={"queue": ["red", "blue"]})
     actions = [ours.action_space.sample() for _ in range(10)]

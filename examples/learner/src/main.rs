@@ -24,11 +24,11 @@ const ACTIONS: [[f64; 3]; 5] = [
 ];
 /// Time steps for which an action is held.
 const FRAME_SKIP: u32 = 5;
-/// Pixels of an image's side, and bytes of an image.
+/// Side of an image in pixels, and size of an image in bytes.
 const SIDE: usize = 32;
 const IMAGE: usize = SIDE * SIDE * 3;
 const NUM_ENVS: usize = 64;
-/// Seed of the worlds of evaluations; those of learning have the run's own.
+/// Seed of the evaluation worlds; the worlds learned from use the run's own seed.
 const TEST_SEED: u64 = 1_000_000;
 
 /// Steps of each environment between updates.
@@ -44,7 +44,7 @@ const ENTROPY: f64 = 0.03;
 const REWARD_SCALE: f64 = 0.01;
 const MAX_GRADIENT: f64 = 0.5;
 
-/// A world as the learner sees it, with a table of actions or others; each action is held.
+/// A world as the learner sees it, with this action space; each action is held for `FRAME_SKIP` time steps.
 fn world(variant: &Variant, seed: u64, index: u64, actions: ActionSpace) -> Result<World> {
     let world = driftworld_generator::sample(variant, seed, index)?;
     Ok(world.edit(|world| {
@@ -82,7 +82,7 @@ impl Layer {
     /// Normal weights of variance gain² / inputs, and no biases.
     fn new(name: &'static str, inputs: usize, outputs: usize, gain: f64, rng: &mut ChaCha8Rng) -> Result<Self> {
         let mut normal = || {
-            // The method of Box and Muller.
+            // The Box–Muller transform.
             let [a, b]: [f64; 2] = [1.0 - rng.random::<f64>(), rng.random()];
             (-2.0 * a.ln()).sqrt() * (std::f64::consts::TAU * b).cos() * gain / (inputs as f64).sqrt()
         };
@@ -139,13 +139,13 @@ impl Network {
         Ok((scores.broadcast_sub(&sums)?, value.apply(&hidden)?.squeeze(1)?))
     }
 
-    /// The same as numbers.
+    /// Like `forward`, but returns plain numbers.
     fn look(&self, images: &[u8]) -> Result<(Vec<f32>, Vec<f32>)> {
         let (log_policy, values) = self.forward(images)?;
         Ok((log_policy.flatten_all()?.to_vec1()?, values.to_vec1()?))
     }
 
-    /// A step of Adam down the gradient, which is shortened where it is long.
+    /// A step of Adam down the gradient, whose norm is clipped.
     fn step(&mut self, loss: &Tensor, rate: f64) -> Result<()> {
         let gradients = loss.backward()?;
         let of = |var: &Var| gradients.get(var).ok_or("the loss depends on all parameters");
@@ -158,7 +158,7 @@ impl Network {
         let [first, second] = [0.9_f64, 0.999].map(|decay| 1.0 - decay.powi(self.steps));
         for layer in &mut self.layers {
             for (var, [mean, square]) in layer.parameters.iter().zip(&mut layer.moments) {
-                // Detached, else the moments would keep what every gradient was computed from.
+                // Detached: otherwise the moments would keep the graph of every gradient alive.
                 let gradient = (of(var)? * scale)?.detach();
                 *mean = ((&*mean * 0.9)? + (&gradient * 0.1)?)?;
                 *square = ((&*square * 0.999)? + (gradient.sqr()? * 0.001)?)?;
@@ -170,7 +170,7 @@ impl Network {
         Ok(())
     }
 
-    /// Writes it as `export` of a learner in Python does.
+    /// Writes the network in the format of the Python learners' `export`.
     fn export(&self, path: &str) -> Result<()> {
         let mut tensors = Vec::new();
         for layer in &self.layers {
@@ -192,7 +192,7 @@ impl Network {
     }
 }
 
-/// Images `(side, side, 3)` with their pixels in the order of the network: 2 × 2 patches of 4 × 4 pixels after each other.
+/// Images `(side, side, 3)` with pixels in the network's order: 2 × 2 patches of 4 × 4 pixels, one after the other.
 fn patched(images: &[u8]) -> Vec<u8> {
     let mut ordered = Vec::with_capacity(images.len());
     for image in images.chunks_exact(IMAGE) {
@@ -222,7 +222,7 @@ fn draw(log_policy: &[f32], rng: &mut ChaCha8Rng) -> Vec<usize> {
     log_policy.chunks_exact(ACTIONS.len()).map(row).collect()
 }
 
-/// What all environments saw and did since the last update, step after step.
+/// What all environments saw and did since the last update, step by step.
 #[derive(Default)]
 struct Rollout {
     images: Vec<u8>,
@@ -230,12 +230,12 @@ struct Rollout {
     log_policy: Vec<f32>,
     values: Vec<f32>,
     rewards: Vec<f32>,
-    /// What the last image of an episode was worth that ran out of time; 0 after one that terminated.
+    /// At the end of an episode: the value of its last image if it ran out of time, 0 if it terminated.
     last_values: Vec<Option<f32>>,
 }
 
 impl Rollout {
-    /// Generalised advantages (Schulman et al. 2016, arXiv:1506.02438, eq. 16); `next` is what the present images are worth.
+    /// Generalised advantages (Schulman et al. 2016, arXiv:1506.02438, eq. 16); `next`: the current images' values.
     fn advantages(&self, next: &[f32]) -> Vec<f32> {
         let mut advantages = vec![0.0; self.values.len()];
         for env in 0..NUM_ENVS {
@@ -256,7 +256,7 @@ impl Rollout {
         &self.images[step * IMAGE..(step + 1) * IMAGE]
     }
 
-    /// PPO's loss of some steps: the clipped surrogate (eq. 7), half the squared error of values, and entropy.
+    /// PPO's loss on some steps: the clipped surrogate (eq. 7), half the squared error of values, and entropy.
     fn loss(&self, network: &Network, advantages: &[f32], part: &[usize]) -> Result<Tensor> {
         let column = |of: &dyn Fn(usize) -> f32| Tensor::from_iter(part.iter().map(|k| of(*k)), &Device::Cpu);
         let images: Vec<u8> = part.iter().flat_map(|k| self.image(*k)).copied().collect();
@@ -277,7 +277,7 @@ impl Rollout {
     }
 }
 
-/// Learns from so many decisions, in whole rollouts.
+/// Learns from at least this many decisions, in whole rollouts.
 fn learn(network: &mut Network, variant: &Variant, seed: u64, decisions: usize, rng: &mut ChaCha8Rng) -> Result<()> {
     let mut envs = environments(variant, seed)?;
     let (began, num_updates) = (Instant::now(), decisions.div_ceil(ROLLOUT * NUM_ENVS));
@@ -335,7 +335,7 @@ fn learn(network: &mut Network, variant: &Variant, seed: u64, decisions: usize, 
     Ok(())
 }
 
-/// The mean reward of the first 64 worlds of the test.
+/// The mean reward in the first 64 evaluation worlds.
 fn evaluate(network: &Network, variant: &Variant) -> Result<f64> {
     let mut envs = environments(variant, TEST_SEED)?;
     let mut rng = ChaCha8Rng::seed_from_u64(TEST_SEED);
@@ -352,7 +352,7 @@ fn evaluate(network: &Network, variant: &Variant) -> Result<f64> {
     Ok(mean(&returns))
 }
 
-/// What the planner earns there, which knows the map, goes at any speed and turns at any rate, and holds its actions as long.
+/// The planner's mean reward there. It knows the map, moves and turns at any rate, and holds its actions as long.
 fn ceiling(variant: &Variant) -> Result<f64> {
     let episode = |index| -> Result<f64> {
         let mut environment = Environment::new(world(variant, TEST_SEED, index, ActionSpace::Continuous)?);

@@ -90,8 +90,8 @@ except driftworld.SpecError as error:
 # %% [markdown]
 # ## Its worlds
 #
-# World number *i* under a seed is always the same, on every machine, and variants share their chance: with one seed the spheres lie
-# in the same places in all four.
+# World number *i* under a seed is always the same, on every machine, and variants share their random
+# numbers: with one seed the spheres lie in the same places in all four.
 
 # %%
 figure, axes = plt.subplots(2, 4, figsize=(12, 5.6), layout="constrained")
@@ -175,5 +175,5 @@ plt.show()
 # ## Your turn
 #
 # - `swapped` makes the green ones pay, too. Learn `day` first and `swapped` after it, as in the notebook `forgetting.py`.
-# - Draw a number anew in every world: `"role": "randomized"` with a `distribution` (`docs/task-specs.md`).
+# - Draw a new number in every world: `"role": "randomized"` with a `distribution` (`docs/task-specs.md`).
 # - Add walls, doors, keys, things to carry: `docs/worlds.md` shows each in a few lines.

@@ -1,4 +1,4 @@
-"""Driftworld: typed task specs to worlds, distances, curricula, and first-person environments.
+"""Driftworld: worlds, distances, curricula and first-person environments from typed task specs.
 
 Importing the package only registers the environments with Gymnasium.
 """

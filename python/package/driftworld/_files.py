@@ -23,7 +23,7 @@ def read_bytes(path: str | os.PathLike[str], kind: FileKind = "document") -> byt
     except OSError as error:
         if error.errno is None:
             raise
-        # In the words of Python's own functions.
+        # Worded like the errors of Python's own functions.
         raise OSError(error.errno, os.strerror(error.errno), os.fspath(path)) from None
 
 
@@ -44,6 +44,6 @@ def write_whole(path: Path, content: bytes) -> None:
     try:
         _native.write_file(path, content)
     except OSError as error:
-        # In the words of Python's own functions.
+        # Worded like the errors of Python's own functions.
         error.filename = str(path)
         raise

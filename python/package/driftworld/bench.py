@@ -72,7 +72,7 @@ def _rate(work: Callable[[], int], seconds: float) -> float:
 
 
 def _rates(works: Sequence[Callable[[], int]], seconds: float) -> list[float]:
-    """The rates of several works, measured in turns, so that a busy moment of the machine affects all of them."""
+    """The rates of several workloads, measured in turn, so that a busy moment of the machine affects all of them."""
     for work in works:
         work()
     rates: list[list[float]] = [[] for _ in works]

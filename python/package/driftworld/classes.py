@@ -10,11 +10,11 @@ from driftworld.envs.options import library_bytes
 
 
 def segmentation_classes(assets: str | PathLike[str] | Iterable[str | PathLike[str]] = ()) -> dict[str, int]:
-    """The number of each class in images of modality ``class``: the same in every world, in rising order.
+    """The number of each class in images of modality ``class``: the same in every world, in ascending order.
 
     Built-in classes have the numbers 1 to 29, and those of libraries follow from 32 on in the order of their names; a
-    library's models of a built-in class have that class's number. In addition, 0 means no object, and 31 stands for
-    every unknown class.
+    library's models of a built-in class have that class's number. In addition, 0 means no object, and 31 any unknown
+    class.
 
     Args:
         assets: Paths of asset libraries, as an environment takes them.

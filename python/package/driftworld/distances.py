@@ -36,8 +36,7 @@ SHOWN = 20
 
 Weights = Mapping[str, float]
 PathLike = str | os.PathLike[str]
-#: The methods that search for the best path from a first item; ``None`` stands for the method that fits the number of
-#: items.
+#: The methods that search for the best path from a first item; ``None`` selects a method by the number of items.
 SEEKING = frozenset([None, "nearest", "exact", "two-opt", "abrupt", "farthest", "target-step", "gradual", "outward"])
 Named = str | Variant | TaskSpec
 
@@ -206,7 +205,7 @@ class DistanceMatrix:
 
     ``np.asarray(matrix)`` is the array; ``matrix[0, 1]`` and ``matrix["task#a", "task#b"]`` are distances,
     ``matrix["task#a"]`` is a row. Like a data frame, it iterates over labels, and ``in`` tests for a label. Two
-    matrices are equal if labels and distances are.
+    matrices are equal if labels, distances and :attr:`is_metric` are.
 
     Args:
         labels: Names of the items, each once.
@@ -288,7 +287,7 @@ class DistanceMatrix:
         seed: int = 0,
         target_step: float | None = None,
     ) -> Order:
-        """The items in an order; see :func:`order`."""
+        """Orders the items; see :func:`order`."""
         ends = [
             None if label is None else self._index(option, label) for option, label in (("start", start), ("end", end))
         ]
@@ -467,7 +466,7 @@ def distance_matrix(
     The distance of a pair depends only on the two variants and on ``by``, not on the rest of the list.
 
     Args:
-        items: Names, variants and task specs; a task stands for all its variants, and each variant is taken once.
+        items: Names, variants and task specs; a task adds all its variants, and each variant is taken once.
         weights: As for :func:`distance`.
         by: As for :func:`distance`, by default as the variants' task declares; required for variants of several tasks.
         worlds: Number of worlds of each to compare, drawn under seed 0, 1 to 10,000; by default 16, 4 by pictures and

@@ -71,9 +71,9 @@ class Agent(Protocol):
     Besides these three methods an agent may have
 
     - ``name``, its name in logs; by default the class's name;
-    - ``begin(label, seed)``, called before each experience with the name of its variant if the scenario tells it, else
-      ``None``, and the seed of its random numbers: another one in every block, so that no world can be recognised by
-      it, unless ``paired_chance`` is used;
+    - ``begin(label, seed)``, called before each experience with the name of its variant if the scenario reveals it,
+      else ``None``, and the seed of its random numbers: unless ``paired_chance`` is used, it differs between blocks, so
+      that it does not identify a world;
     - ``policy``, how it chooses its actions in evaluations, such as ``"sampled"`` or ``"greedy"``; it is noted in the
       log;
     - ``save(path)`` and ``load(path)``: ``save`` is called after each learning block, with a path where nothing exists;
@@ -83,7 +83,7 @@ class Agent(Protocol):
     def act(self, observation: Any, info: dict[str, Any]) -> Any:
         """Returns an action for an observation; ``info`` comes from the last reset or step.
 
-        It has ``is_success``, and ``task_label`` if the scenario tells it; with ``info="full"`` also the world's
+        It has ``is_success``, and ``task_label`` if the scenario reveals it; with ``info="full"`` also the world's
         origin.
         """
 
@@ -163,7 +163,7 @@ class Lifetime:
         log: The folder of the log; by default the log is discarded.
         resume: Resume the log in the folder if there is one.
         check_frozen: Repeat some evaluations of each block, and refuse an agent that behaves differently.
-        record: Record each experience, beside its row.
+        record: Record each experience in addition to logging its row.
     """
 
     def __init__(
@@ -190,7 +190,7 @@ class Lifetime:
         """Runs the curriculum from the first experience that is not in the log to the last.
 
         Args:
-            made_with: Settings, beside the plan, that affect the lifetime, by name; a log can only be resumed with the
+            made_with: Settings besides the plan that affect the lifetime, by name; a log can only be resumed with the
                 same ones.
             rollout: Makes the :class:`Rollout`, given a function that saves the agent after a number of experiences.
         """
@@ -310,7 +310,7 @@ class Rollout:
         """
         chance = now.chance
         if not (now.learning or self._paired_chance):
-            # The same only when the experience is repeated: worlds recur in every block.
+            # Differs between blocks, in which worlds recur; the same when the experience is repeated within its block.
             print = hashlib.sha256(f"{now.block} {chance}".encode()).digest()
             chance = int.from_bytes(print[:8], "big")
         return None if now.label is None else now.label["name"], chance
@@ -335,8 +335,8 @@ class Rollout:
     def experience(
         self, number: int, world: _native.Stream, time: tuple[float, int, float]
     ) -> tuple[float, bool, int, float, bool, str | None]:
-        """Runs one experience in its world: reward, success, steps, seconds, whether a limit truncated it, and what
-        ended it.
+        """Runs one experience in its world; returns its reward, success, steps, seconds, whether a limit truncated it,
+        and what ended it.
 
         ``time`` is the world's time step in seconds, the number of time steps per action, and its limit of seconds, 0
         for none.

@@ -111,7 +111,7 @@ class LogWriter:
 
 @dataclass(frozen=True, eq=False)
 class Log:
-    """A log that was read: a table, like a data frame.
+    """A log read from disk: a table, like a data frame.
 
     ``len(log)`` is the number of rows; ``log["reward"]`` is a column; it iterates over column names, and ``in`` tests
     for one. Two logs are equal if their contents are, whatever the names of their folders.

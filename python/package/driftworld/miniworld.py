@@ -1,7 +1,7 @@
 """MiniWorld's published environments, under ids such as ``driftworld/MiniWorld-Hallway-v0``: its actions, images,
 rewards and limits, with worlds of Driftworld's task families.
 
-``miniworld.json`` describes each: by MiniWorld's names, Driftworld's ``task`` and ``variant``, what is ``laid`` over
+``miniworld.json`` describes each by MiniWorld's name: Driftworld's ``task`` and ``variant``, what is ``laid`` over
 the task's document (a value for each JSON pointer, null to remove one), the limit of ``steps`` (0 for none), the number
 of MiniWorld's ``actions``, what ``pays``, and whether a step is a ``fast`` one. ``like`` copies all entries of another
 name.
@@ -211,7 +211,7 @@ class MiniWorldEnv(DriftworldEnv):
         return shown, reward, terminated, truncated, info
 
     def _shown(self, seen: dict[str, Any]) -> Any:
-        """The observation of a MiniWorld agent; also notes what the rules need."""
+        """The observation of a MiniWorld agent; also updates the state that the rules need."""
         state, limit = seen["state"], self._published.steps
         self._carries = bool(state[0] > 0)
         self._steps = round((1.0 - float(state[4])) * limit) if limit else self._members.batch.episode_steps(0)

@@ -88,7 +88,7 @@ class Recording:
             size: Pixels along each side of the agent's view, and of the map; 1 to 2048.
             view: The ``"agent"``'s view, the map from ``"above"``, or ``"both"`` side by side.
             modality: The modality of the agent's view: ``"rgb"``, ``"depth"`` or ``"segmentation"``.
-            every: Number of steps for each frame.
+            every: Number of steps per frame.
             captions: A line above each frame: time, return, carried object, events.
             renderer: As for :class:`DriftworldEnv`.
             assets: Paths of the asset libraries that it was recorded with.

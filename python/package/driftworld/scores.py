@@ -288,9 +288,9 @@ def metrics(
         window_length: Length of the smoothing window, in experiences.
         clamp_outliers: Clip performances to the ranges given, or to the 0.1 and 0.9 quantiles of each task.
         data_range: The range of each task: ``{"findobjects_red": {"min": 0, "max": 10}}``.
-        scales: Floor and ceiling of tasks, as a file of ``driftworld scales`` or as ``{"findobjects_red": {"floor": 2,
-            "ceiling": 486}}``; not together with ``data_range``.
-        noise: Mean and standard deviation of normal noise on every performance.
+        scales: Floor and ceiling of tasks, as a file written by ``driftworld scales`` or as ``{"findobjects_red":
+            {"floor": 2, "ceiling": 486}}``; not together with ``data_range``.
+        noise: Mean and standard deviation of normal noise added to every performance.
         noise_seed: The seed of the noise.
         strict_definitions: Follow the published definitions where the reference program departs from them.
         load_settings: A JSON file of settings to start from.

@@ -133,7 +133,7 @@ def validate(
         kind: ``"task"``, ``"world"``, ``"scenario"``, ``"maps"``, ``"l2explorer-world"`` or ``"l2explorer-scenario"``;
             by default detected from the document's keys, like ``driftworld validate``.
         check: Raise an error instead of returning the problems.
-        assets: Paths of asset libraries, with classes that objects may have beside the built-in ones.
+        assets: Paths of asset libraries, with classes that objects may have besides the built-in ones.
 
     Suspicious but valid parts cause warnings.
 

@@ -98,7 +98,7 @@ class VectorRollout(Rollout):
         save: Saves the agent after a number of experiences.
     """
 
-    #: They share the same batches as at first: an agent's last bits may depend on the batch.
+    #: The first ones, so that repetitions run in the same batches: the last bits of outputs may depend on the batch.
     repeats_first = True
 
     def __init__(

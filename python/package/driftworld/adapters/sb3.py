@@ -139,7 +139,7 @@ class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where
         try:
             for options, mask in self._groups():
                 seeds = [seed if is_in else None for seed, is_in in zip(self._seeds, mask, strict=True)]
-                # Always with a mask, even one of all: like a single environment, each then gets a queue of its own.
+                # Always with a mask, even if it selects all: like a single environment, each then gets its own queue.
                 asked: dict[str, Any] = {**options, "reset_mask": mask}
                 observations, told = self.envs.reset(
                     seed=seeds if any(seed is not None for seed in seeds) else None, options=asked
@@ -252,7 +252,7 @@ _NEXT = ("variant", "index", "world", "queue")
 
 
 class _Monitor(VecMonitor):  # type: ignore[misc, unused-ignore] # Any where it is not installed.
-    """Starts counting an episode anew also if only some environments were reset."""
+    """Also restarts the episode counts of environments that are reset individually, by :meth:`env_method`."""
 
     def env_method(
         self,

@@ -61,7 +61,7 @@ class Agent:
     Raises:
         TypeError: If the model collects rollouts in its own way, like recurrent models.
         ValueError: If the model has a schedule and there is no ``total_timesteps``; if its environment normalizes or
-            stacks observations; if it has ``use_sde``; for other replay buffer options that do not support several
+            stacks observations; if it has ``use_sde``; for replay buffer options that do not support several
             environments.
     """
 
@@ -183,7 +183,7 @@ class _Collector:
         total: Decisions after which schedules stay at their final value.
     """
 
-    #: The attribute name of the model's buffer, and the other attributes that make up a rollout.
+    #: The collector's attributes that make up a rollout, and the attribute name of the model's buffer.
     kept: tuple[str, ...] = ()
     buffer = ""
 
@@ -200,7 +200,7 @@ class _Collector:
         vars(self).update({name: state[name] for name in self.kept})
 
     def act(self, seen: Any) -> NDArray[Any]:
-        """Actions with exploration; stores what learning needs of them."""
+        """Actions with exploration; stores what learning needs."""
         raise NotImplementedError
 
     def learn(

@@ -6,8 +6,8 @@
     shared = make_multiprocessing_curriculum(curriculum)
     env = GymnasiumSyncWrapper(env, env.task_space, shared.components)
 
-Version 0.7 does not install ``matplotlib`` and ``scipy``, lets NumPy raise at each underflow, and needs the schedule
-above. With NumPy 1.25, learning progress needs a subclass whose ``_sample_distribution`` is
+Version 0.7 does not install ``matplotlib`` and ``scipy``, makes NumPy raise an error at each underflow, and needs the
+schedule above. With NumPy 1.25, learning progress needs a subclass whose ``_sample_distribution`` is
 ``list(super()._sample_distribution())``.
 """
 
@@ -47,7 +47,7 @@ class DriftworldTaskEnv(TaskWrapper):  # type: ignore[misc, unused-ignore] # Any
 
     Raises:
         ValueError: If there is no variant, or a ceiling is not above 0.
-        TaskError: If the task has no variant of a name.
+        TaskError: If a name is not that of a variant of the task.
     """
 
     def __init__(self, env: gymnasium.Env[Any, Any], ceilings: Mapping[str, float]) -> None:

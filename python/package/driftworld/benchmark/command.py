@@ -16,7 +16,7 @@ from driftworld.benchmark.runner import STALE, Cell, learners_by_name, make_lear
 from driftworld.benchmark.sequence import Sequence
 from driftworld.benchmark.table import Results
 
-#: Default estimates: seconds that a decision takes one core, and bytes that a cell leaves on disk.
+#: Default estimates: core seconds per decision, and bytes on disk per finished cell.
 _SECONDS, _BYTES = 0.0002, 400_000
 
 _MINE = '''"""My learner."""

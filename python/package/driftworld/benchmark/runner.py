@@ -94,7 +94,7 @@ class Cell:
         return {"file": path.name, "sha256": hashlib.sha256(path.read_bytes()).hexdigest()}
 
     def _finished(self, report: Path) -> dict[str, Any]:
-        """The existing report, if it was made by the same cell."""
+        """The existing report; raises ``ValueError`` if it was made with another version of the learner's file."""
         found, own = _read(report), self.source()
         if own is not None and found.get("source", own) != own:
             raise ValueError(
@@ -251,7 +251,7 @@ def _live(cell: Cell, folder: Path) -> None:
 
 
 def digest(logs: Iterable[Path]) -> str:
-    """SHA-256 of the logs without time stamps: equal if two runs were equal to the bit."""
+    """SHA-256 of the logs without time stamps: equal if two runs are bit-identical."""
     print = hashlib.sha256()
     for log in logs:
         columns = read_log(log).columns

@@ -1,4 +1,4 @@
-"""Sequences of tasks: their order, length, observations and actions. Each is a JSON file of ``sequences/``."""
+"""Sequences of tasks: their order, length, observations and actions. Each is a JSON file in ``sequences/``."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from driftworld.curricula import Curriculum
 
 _FILES = files("driftworld.benchmark") / "sequences"
 
-#: More than the number of worlds that a task is learned in.
+#: Offset of world indices for a task that recurs: more than the number of worlds that a task is learned in.
 _WORLDS_APART = 10**9
 
 
@@ -25,7 +25,7 @@ class Sequence:
     """What all learners of a table have in common.
 
     Attributes:
-        name: Of the file, without its ending.
+        name: The file's name without its extension.
         about: What it is for, in a sentence.
         tasks: Variants, in the order in which they are learned.
         decisions: Number of decisions to learn from in each task.

@@ -87,7 +87,7 @@ class Results:
 
     @cached_property
     def runs(self) -> dict[str, list[Run]]:
-        """By learner, in the order of seeds.
+        """The finished runs by learner, in the order of seeds.
 
         Raises:
             ValueError: If there are no finished cells.

@@ -7,7 +7,7 @@ from typing import Any
 
 import gymnasium
 
-#: Episodes are cut short, so that a check contains many ends and restarts.
+#: Maximum number of steps of an episode: short, so that a check contains many ends and restarts.
 SHORT_EPISODE = 9
 
 

@@ -41,7 +41,7 @@ class Rule:
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("error")
-                # These come from libraries below and concern only them.
+                # These come from underlying libraries and concern only them.
                 warnings.simplefilter("ignore", DeprecationWarning)
                 warnings.simplefilter("ignore", ResourceWarning)
                 self.check(case)
@@ -109,7 +109,7 @@ def _same_seed_same_worlds(case: Case) -> None:
 def _goes_on_from_its_state(case: Case) -> None:
     with closing(case.bare()) as env, closing(case.bare()) as other:
         actions = case.actions(env.action_space)
-        # Takes the state earlier if episodes end within a few steps, at the latest before the first step.
+        # Takes the state earlier if episodes end within a few steps; as a last resort, before the first step.
         for before in (SHORT_EPISODE // 2, 1, 0):
             env.reset(seed=case.seed)
             if not any(any(env.step(action)[2:4]) for action in actions[:before]):

@@ -21,7 +21,7 @@ else:
 
 
 def autoreset_mode_of(mode: Any) -> AutoresetMode:
-    """The mode with a name, ``next_step``, ``same_step`` or ``disabled``, or with Gymnasium's value for it.
+    """The mode for a name (``next_step``, ``same_step`` or ``disabled``) or for Gymnasium's value of it.
 
     Raises:
         ValueError: For anything else.

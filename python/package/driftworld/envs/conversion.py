@@ -1,9 +1,9 @@
 """Lets infos pass through Gymnasium's wrappers that convert arrays for another library, such as
 ``gymnasium.wrappers.vector.NumpyToTorch``.
 
-Those wrappers also convert infos, but support neither strings nor object arrays, of which infos of vector environments
-are full: they recurse endlessly or raise an error. This module extends Gymnasium's own conversion tables: strings stay
-as they are, and object arrays stay object arrays with each object converted.
+Those wrappers also convert infos, but support neither strings nor object arrays, which are common in infos of vector
+environments: they recurse endlessly or raise an error. This module extends Gymnasium's own conversion tables: strings
+stay as they are, and object arrays stay object arrays with each object converted.
 """
 
 from __future__ import annotations

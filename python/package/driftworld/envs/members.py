@@ -55,7 +55,7 @@ class Members:
         sources: Where the worlds of each environment come from.
         options: Options applied to the worlds.
         autoreset: ``"next_step"``, ``"same_step"`` or ``"disabled"``.
-        num_threads: Threads that step and draw; 0 is one for each processor.
+        num_threads: Threads that step and draw; 0 means one for each processor.
         max_episode_steps: A limit of steps in addition to the worlds' own.
         labels: The ids of the variants in the order of their labels; by default the task's, then the others of the
             sources.
@@ -164,7 +164,7 @@ class Members:
         self._warn_of_covered(list(new.values()) or list(_ends(source)))
 
     def _warn_of_covered(self, variants: Sequence[_native.Variant]) -> None:
-        """Warns of options that hide differences between these variants, once for each option."""
+        """Warns about options that hide differences between these variants, once for each option."""
         if not variants:
             return
         first = [] if self._home.first is None else [self._home.first]
@@ -217,7 +217,7 @@ class Members:
 
         Args:
             envs: The environments.
-            asked: Options of a reset, each for all of them or as a list with one for each; a queue is one for all.
+            asked: Options of a reset, each for all of them or as a list with one for each; a queue applies to all.
         """
         queue = asked.get("queue")
         spread = {name: _each(name, value, len(envs)) for name, value in asked.items() if name != "queue"}
@@ -331,7 +331,7 @@ class Members:
         return {kind: view.copy() if copied else view[:] for kind, view in self._views.items()}
 
     def expect_form(self, out: Any) -> None:
-        """Refuses arrays of another form than the observations."""
+        """Refuses arrays whose shape or type differs from that of the observations, and read-only ones."""
         views, arrays = (self._views, out) if self._options.is_dict else ({"": self._views[self._modalities[0]]}, {"": out})
         wanted = {kind: (view.shape, view.dtype.name) for kind, view in views.items()}
         if not isinstance(arrays, Mapping) or {kind: _form(array) for kind, array in arrays.items()} != wanted:

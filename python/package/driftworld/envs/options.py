@@ -63,8 +63,8 @@ _Init = TypeVar("_Init", bound=Callable[..., None])
 
 
 def shows_options(init: _Init) -> _Init:
-    """Shows a constructor's ``**options`` by name, with types and defaults, before ``render_mode``: in ``help`` and
-    tools.
+    """Lists a constructor's ``**options`` in its signature by name, with types and defaults, before ``render_mode``,
+    for ``help`` and tools.
     """
     signature, hints = inspect.signature(init), get_type_hints(EnvOptions)
     keyword = inspect.Parameter.KEYWORD_ONLY
@@ -292,9 +292,9 @@ def expect_same_spaces(ours: dict[str, Any], theirs: dict[str, Any], modalities:
 
 
 def fits_into(action: dict[str, Any], other: dict[str, Any]) -> bool:
-    """Whether actions of one kind are valid as those of the other: the same, or without the last numbers.
+    """Whether actions of one kind are valid as the other kind: the same kind, or one without its last numbers.
 
-    Bounds that worlds randomize include all values within them.
+    If worlds randomize a bound of the other kind, any narrower bound fits into it.
     """
     if action == other:
         return True

@@ -131,12 +131,12 @@ class Home:
             self.first = self.variant(variant, "variant")
 
     def __getstate__(self) -> dict[str, Any]:
-        # Cached look-ups can be repeated.
+        # The cache can be rebuilt.
         return {**self.__dict__, "_known": {}}
 
     def labels(self, sources: Iterable[Source]) -> list[str]:
-        """The ids of the variants that an agent may be told: those of the task, then any others that it or the sources
-        start with.
+        """The ids of the variants that have a label: those of the task, then any others that it or the sources start
+        with.
         """
         if self.task is None or self.first is None:
             return []
@@ -179,7 +179,7 @@ class Home:
         return self._known[own]
 
     def queue(self, names: Iterable[Any]) -> Queue:
-        """A queue from users' names of variants; each is found once, however often it occurs."""
+        """A queue from users' names of variants; each is looked up once, however often it occurs."""
         listed = list(names)
         places: dict[Any, int] = {}
         found: list[_native.Variant] = []

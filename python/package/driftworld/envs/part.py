@@ -18,7 +18,7 @@ from driftworld.recordings import Recording
 if TYPE_CHECKING:
     from driftworld.envs.vector import DriftworldVectorEnv
 
-#: Constructor options and other values that are fixed until an environment is made again.
+#: Constructor options and other values that are fixed once an environment is made.
 MADE_WITH = (
     *EnvOptions.__annotations__,
     *("task", "world", "variant", "variants", "render_mode", "render_size", "camera", "max_episode_steps", "num_threads"),

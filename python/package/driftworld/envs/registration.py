@@ -14,7 +14,7 @@ def _camel(name: str) -> str:
     return "".join(word.capitalize() for word in name.split("_"))
 
 
-#: The options of each id: one for each task that comes with the package, and two for any task or world.
+#: The options of each id: one id for each task that comes with the package, and two ids for any task and any world.
 ENV_IDS: dict[str, dict[str, Any]] = {
     **{f"driftworld/{_camel(task)}-v0": {"task": task} for _, tasks in _native.task_groups() for task in tasks},
     "driftworld/Task-v0": {},

@@ -178,9 +178,9 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         """Starts an episode in every environment, or in some.
 
         Args:
-            seed: The environments draw under :func:`driftworld.spread_seeds` of it, the first under the seed itself; or
-                each under its own from a list; ``None`` continues. (Gymnasium's own loops add 0, 1, 2 and so on, so
-                that two seeds share worlds.)
+            seed: One seed, from which :func:`driftworld.spread_seeds` derives those of the environments, the first of
+                which uses the seed itself; or a list with a seed for each. ``None`` continues. (Gymnasium's own loops
+                add 0, 1, 2 and so on, so that two seeds share worlds.)
             options: As for :meth:`DriftworldEnv.reset`, for all environments; and ``"variants"``, a variant for each;
                 ``"index"`` may be a list; a ``"queue"`` is dealt out like cards, episode after episode;
                 ``"reset_mask"``, bool (num_envs,), selects the environments to reset, and the others continue. With a
@@ -255,7 +255,7 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
     ) -> None:
         """Starts episodes in the chosen environments, which are those of the mask."""
         members = self._members
-        # Set back until it is done: Ctrl-C may come in between.
+        # Cleared until the reset completes: Ctrl-C may interrupt it.
         members.has_begun[chosen] = False
         for env in chosen:
             own = seeds[env]
@@ -437,7 +437,7 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
 
     def recording(self, env: int) -> Recording:
         """The recording of an environment's episode so far. Before the episode's first step, it is that of the previous
-        episode, also after the step that ended it in the autoreset mode ``"same_step"``.
+        episode; with the autoreset mode ``"same_step"``, this includes the time right after the step that ended it.
 
         Raises:
             IndexError: If there is no such environment.
@@ -464,7 +464,7 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
 
     def __getstate__(self) -> dict[str, Any]:
         kept = {name: value for name, value in self.__dict__.items() if name != "_members"}
-        # Copied in shallow copies, too: otherwise both copies would change them in turn.
+        # Copied even for a shallow copy: otherwise both copies would share and change them.
         for name in ("_generators", "_generator_seeds", "_ended"):
             kept[name] = deepcopy(kept[name])
         return {"kept": kept, "members": self._members.written()}
