@@ -35,7 +35,7 @@ def over_steps(curve: List, steps: List | None) -> List:
 
 
 # awarelab/continual_world, continualworld/results_processing/tables.py at 73f63bb4: calculate_data_at_the_end,
-# calculate_forgetting_individual, normalized_ft, BootstrapCI._apply_statistics. An evaluation stands for its last five.
+# calculate_forgetting_individual, normalized_ft, BootstrapCI._apply_statistics. An evaluation represents the last five.
 def continual_world(values: List, curves: List, alone: List, steps: List | None) -> dict[str, float]:
     """Performance and forgetting: means over tasks, then over seeds. Transfer: AUCs are first averaged over seeds."""
     tasks, performance, forgetting, transfer = len(values[0][0]), [], [], []
@@ -51,7 +51,7 @@ def continual_world(values: List, curves: List, alone: List, steps: List | None)
 
 
 # TTomilin/COOM, results/common.py at 79298011: calculate_performance, calculate_forgetting, calculate_transfer.
-# The mean over seeds comes first there (load_cl_data). An evaluation stands for all of a task's time.
+# The mean over seeds comes first there (load_cl_data). One evaluation represents the whole time of a task there.
 def coom(values: List, curves: List, alone: List, steps: List | None) -> dict[str, float]:
     """Performance: each task from its own learning on. Forgetting: all but the last task. Transfer: one curve for
     all.
@@ -135,8 +135,8 @@ def iqm(values: List) -> float:
     return mean(ordered)
 
 
-# google-research/rliable, rliable/library.py at 3ccd9f4d (StratifiedBootstrap.update_indices: a seed for each cell of
-# the table, its column stays), and bashtage/arch, arch/bootstrap/base.py at 543f44cf (conf_int, "percentile").
+# google-research/rliable, rliable/library.py at 3ccd9f4d (StratifiedBootstrap.update_indices: draws a seed for each
+# cell of the table, within its column), and bashtage/arch, arch/bootstrap/base.py at 543f44cf (conf_int, "percentile").
 def interval(table: List) -> List:
     """The bootstrap interval of the IQM of a table of seeds and tasks."""
     seeds, tasks = len(table), len(table[0])

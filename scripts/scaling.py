@@ -3,7 +3,7 @@
     python scripts/scaling.py [--seconds 0.3] [--rounds 5]
 
 It needs the Python package. Each figure is the best of some rounds in which all sizes of one table take turns, so that a busy
-moment of the machine affects all of them; a share is of the figures in one table.
+moment of the machine affects all of them; shares compare the figures of one table.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ Works = dict[str, tuple[Callable[[], Any], int]]
 
 
 def best(works: Works, seconds: float, rounds: int) -> dict[str, float]:
-    """The best rate of each work, in its own units a second; a work is a function and how many units one call is."""
+    """The best rate of each workload, in its own units a second: a function, and the number of units in one call."""
     rates = dict.fromkeys(works, 0.0)
     for work, _ in works.values():
         work()
@@ -73,7 +73,7 @@ def stepping(num_envs: int, threads: int, through_python: bool = True, **options
 
 
 def arena(num_objects: int = 20, corners: int = 0) -> dict[str, Any]:
-    """A world without end, of 100 × 100 m: objects on a spiral, and round walls of 12 corners each."""
+    """A world of 100 × 100 m without a time limit: objects on a spiral, and round walls of 12 corners each."""
     turn = math.pi * (3.0 - math.sqrt(5.0))
     around = [(45.0 * math.sqrt((at + 0.5) / num_objects), at * turn) for at in range(num_objects)]
     ring = [math.tau * corner / 12 for corner in range(12)]
@@ -104,7 +104,7 @@ def in_worlds(worlds: dict[str, dict[str, Any]]) -> Works:
 
 
 def rows_of(folder: Path, rows: int) -> Path:
-    """A log of two tasks, learned in turns, with an evaluation of both before and after each block."""
+    """A log of two tasks, learned in turn, with an evaluation of both before and after each block."""
     path = folder / f"log-{rows}"
     chance = np.random.default_rng(0)
     with LogWriter(path, "reward", scenario_info={"scenario_type": "custom"}) as log:

@@ -1,4 +1,4 @@
-//! The task families: each is a sound task with a page and a film, and the planner reaches the required end.
+//! The task families: each is a valid task with a page and a film, and the planner succeeds in its worlds.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -86,7 +86,7 @@ fn rewarding_objects_are_chosen() {
 }
 
 #[test]
-fn changed_optima_are_solved() {
+fn conflicting_variants_are_solved() {
     check("conflicts");
 }
 
@@ -112,7 +112,7 @@ fn guide_shows_its_worlds() {
     }
 }
 
-/// A document that no name reaches would be dead.
+/// A document that is not listed in `FAMILIES` could not be loaded by name.
 #[test]
 fn every_file_of_the_folder_is_a_family() {
     let mut named: Vec<String> = tasks::FAMILIES

@@ -1,6 +1,4 @@
-//! [`AtomicFile`]: a file while it is written, under a name that says whose it will be.
-//!
-//! Not here: where it goes, see `destination`; who may read it, see `permissions`.
+//! [`AtomicFile`]: writes a file under a temporary name, and renames it when it is complete.
 
 use std::fs;
 use std::io::{self, Write};
@@ -13,17 +11,18 @@ use crate::leftovers::{ENDING, TRIES, remove_leftovers_once};
 use crate::permissions;
 use crate::unfinished::Unfinished;
 
-/// Most characters of a file's name that its temporary one begins with.
+/// Maximum number of characters of the file's name at the start of the temporary name.
 const MOST_CHARACTERS: usize = 60;
 
-/// A file that is being written. Dropped before [`commit`](Self::commit), it is gone, and what was there before stays.
+/// A file that is being written. If it is dropped before [`commit`](Self::commit), it is removed, and a previous file
+/// of the same name stays as it was.
 #[derive(Debug)]
 pub struct AtomicFile(Kind);
 
 #[derive(Debug)]
 enum Kind {
     Beside {
-        // Before the note of it: dropped in this order, it is gone when it is forgotten.
+        // Declared before `unfinished`, so that the file is removed before its entry.
         file: NamedTempFile,
         target: PathBuf,
         unfinished: Unfinished,
@@ -32,14 +31,14 @@ enum Kind {
 }
 
 impl AtomicFile {
-    /// Begins a file; its folder is made where it is missing. Links are followed, and stay.
+    /// Starts a file, and creates its folder if that is missing. Links are followed, and kept.
     ///
-    /// A new file gets the mode 0666 less the umask. One that takes another's place keeps its mode, and its owner where
-    /// that is allowed. Devices, pipes and descriptors (`/dev/null`, `/dev/stdout`, `/dev/fd/3`) are opened, and
-    /// written straight.
+    /// A new file gets mode 0666 minus the umask. A file that replaces another keeps the mode of that one, and its
+    /// owner where permitted. Devices, pipes and descriptors (`/dev/null`, `/dev/stdout`, `/dev/fd/3`) are opened and
+    /// written directly.
     ///
     /// # Errors
-    /// Those of the system; [`io::ErrorKind::IsADirectory`] for a folder.
+    /// I/O errors; [`io::ErrorKind::IsADirectory`] for a folder.
     pub fn create(path: &Path) -> io::Result<Self> {
         match Destination::of(path)? {
             Destination::File(target) => Self::beside(target),
@@ -47,7 +46,8 @@ impl AtomicFile {
         }
     }
 
-    /// The same for a name that is no other's: a link of that name is replaced, and what it leads to stays as it is.
+    /// Like [`create`](Self::create), but does not follow links: a link of that name is replaced, and its target stays
+    /// unchanged.
     ///
     /// # Errors
     /// As [`create`](Self::create).
@@ -70,7 +70,7 @@ impl AtomicFile {
         let mut tries = 0;
         loop {
             let (file, unfinished) = Unfinished::make(|| builder.tempfile_in(folder), NamedTempFile::path)?;
-            // Some file systems have no locks: then leftovers stay.
+            // Some file systems do not support locks; leftovers stay there.
             let _ = file.as_file().try_lock();
             tries += 1;
             if file.path().exists() || tries == TRIES {
@@ -86,16 +86,16 @@ impl AtomicFile {
         }
     }
 
-    /// Whether what is written goes straight into a device, a pipe or what a process has open: somebody may be reading
-    /// it now.
+    /// Whether output goes directly to a device, a pipe or an open descriptor, where something may be reading it
+    /// already.
     pub fn is_straight(&self) -> bool {
         matches!(self.0, Kind::Straight(_))
     }
 
-    /// Ends the file: asks the disk to have it, and gives it its name.
+    /// Finishes the file: syncs it to disk, and gives it its final name.
     ///
     /// # Errors
-    /// Those of the system: then there is no such file, or the one that was there before.
+    /// I/O errors: the name then still has its previous file, or none.
     pub fn commit(self) -> io::Result<()> {
         match self.0 {
             Kind::Beside {

@@ -1,24 +1,24 @@
-//! What a path stands for: a file that can appear whole, or something that takes what it is given, such as a device, a
-//! pipe or what this process has open.
+//! Resolves a path to write to: a regular file, which can be replaced atomically, or a device, pipe or open descriptor,
+//! which is written directly.
 
 use std::fs::{self, File, OpenOptions};
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Most links that are followed one after the other, as Linux does.
+/// Maximum number of links followed in a row, as on Linux.
 const MOST_LINKS: usize = 40;
 
-/// Where what is written goes.
+/// Where output goes.
 #[derive(Debug)]
 pub(crate) enum Destination {
-    /// A file, or where there is none yet; no link.
+    /// The path of a regular file, which need not exist yet; not a link.
     File(PathBuf),
-    /// A device, a pipe, or what a process has open: opened for writing.
+    /// A device, a pipe or an open descriptor of a process, opened for writing.
     Straight(File),
 }
 
 impl Destination {
-    /// Follows links: they stay, and what they lead to is written.
+    /// Follows links, so that their target is written and the links are kept.
     pub(crate) fn of(path: &Path) -> io::Result<Self> {
         let (path, descriptor) = followed(path);
         if let Some(descriptor) = descriptor {
@@ -32,14 +32,14 @@ impl Destination {
     }
 }
 
-/// Whether a path, such as `/dev/stdout`, stands for this process's own standard output.
+/// Whether a path, such as `/dev/stdout`, refers to this process's own standard output.
 pub fn is_own_stdout(path: &Path) -> bool {
     followed(path)
         .1
         .is_some_and(|descriptor| descriptor.is_own && descriptor.number == Some(1))
 }
 
-/// What a process has open, under a path such as `/dev/fd/3`.
+/// An open file descriptor of a process, named by a path such as `/dev/fd/3`.
 struct Descriptor {
     path: PathBuf,
     is_own: bool,
@@ -47,9 +47,9 @@ struct Descriptor {
 }
 
 impl Descriptor {
-    /// The descriptor that a path names; its folder is what tells.
+    /// The descriptor that a path names, recognised by its folder.
     fn named(path: &Path) -> Option<Self> {
-        // Links elsewhere need no look at their folders.
+        // Other paths need no look at their folders.
         if !path.starts_with("/dev") && !path.starts_with("/proc") {
             return None;
         }
@@ -66,7 +66,8 @@ impl Descriptor {
         })
     }
 
-    /// Goes on where the process is that opened it: in the same description where it can be had, else at the end.
+    /// Opens it to continue where its process is writing: on the same file description if possible, otherwise by
+    /// appending.
     fn open(&self) -> io::Result<File> {
         #[cfg(unix)]
         {
@@ -84,7 +85,7 @@ impl Descriptor {
     }
 }
 
-/// Where the links end that a path leads through, and the descriptor if they end in one.
+/// The path after following all links, and the descriptor if they lead to one.
 fn followed(path: &Path) -> (PathBuf, Option<Descriptor>) {
     let mut path = path.to_owned();
     for _ in 0..MOST_LINKS {

@@ -12,7 +12,7 @@ pub(crate) const ENDING: &str = ".driftworld-part";
 /// Attempts at creating a file or folder: another process may remove it as a leftover before it is locked.
 pub(crate) const TRIES: u32 = 8;
 
-/// Most folders remembered as already searched.
+/// Maximum number of folders remembered as already searched.
 const MOST_FOLDERS: usize = 4096;
 
 /// Whether this is the name of an unfinished file: one being written, or left by a killed process.

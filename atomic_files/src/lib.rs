@@ -1,13 +1,11 @@
 //! Files that appear whole or not at all.
 //!
-//! [`AtomicFile`] is a file while it is written: under a temporary name beside the one that it will have, removed when
-//! the work fails. Devices and pipes keep nothing that could be half, and are written straight. [`ScratchFolder`] is a
-//! folder for what is made of several files.
+//! [`AtomicFile`] writes under a temporary name in the target's folder, renames the file when it is complete, and
+//! removes it if writing fails. Devices and pipes cannot keep a partial file, and are written directly.
+//! [`ScratchFolder`] is a temporary folder for work with several files.
 //!
-//! What a stopped process leaves is removed by itself, with [`remove_unfinished`]; what a killed one leaves, by the
-//! next that writes into the same folder: whoever writes holds a lock, so what nobody has locked is left over.
-//!
-//! Not here: what is written, and reading it.
+//! A process that is stopped removes its own unfinished files with [`remove_unfinished`]. Those of a killed process are
+//! removed by the next process that writes into the same folder: writers hold locks, so unlocked files are leftovers.
 //!
 //! ```
 //! use std::io::Write;

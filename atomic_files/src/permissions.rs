@@ -1,14 +1,15 @@
-//! Who may read and write a file that takes another's place: those who could before. A new one follows the umask.
+//! Permissions of written files: a file that replaces another keeps the permissions of that one; a new one follows the
+//! umask.
 
 use std::fs::{File, Metadata};
 
 use tempfile::Builder;
 
-/// The mode of a file that is new, before the umask takes from it.
+/// Mode of a new file, before the umask is applied.
 #[cfg(unix)]
 const PLAIN: u32 = 0o666;
 
-/// Lets a temporary file begin with no more than it will end with; the umask takes from that.
+/// Creates temporary files with their final mode at most; the umask restricts it further.
 #[cfg(unix)]
 pub(crate) fn begin(builder: &mut Builder<'_, '_>, before: Option<&Metadata>) {
     use std::os::unix::fs::PermissionsExt;
@@ -19,9 +20,9 @@ pub(crate) fn begin(builder: &mut Builder<'_, '_>, before: Option<&Metadata>) {
 #[cfg(not(unix))]
 pub(crate) fn begin(_: &mut Builder<'_, '_>, _: Option<&Metadata>) {}
 
-/// Gives a file the owner and the mode of the one whose place it takes.
+/// Gives a file the owner and the mode of the one that it replaces.
 ///
-/// Where it cannot have the same group, the group may do what everybody may.
+/// If the group cannot be kept, the new group gets only the permissions of others.
 #[cfg(unix)]
 pub(crate) fn keep(file: &File, before: &Metadata) {
     use std::os::unix::fs::{MetadataExt, PermissionsExt, fchown};
@@ -34,7 +35,7 @@ pub(crate) fn keep(file: &File, before: &Metadata) {
             kept = (kept & !0o070) | ((kept & 0o007) << 3);
         }
     }
-    // Where the system has no modes to give, the file stays as closed as it was begun.
+    // If the mode cannot be set, the file keeps the restrictive one that it was created with.
     let _ = file.set_permissions(std::fs::Permissions::from_mode(kept));
 }
 

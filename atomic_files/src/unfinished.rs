@@ -1,6 +1,4 @@
-//! The files and folders of this process that are not finished, to be removed when it is stopped.
-//!
-//! Not here: what other processes left, see `leftovers`.
+//! Keeps track of this process's unfinished files and folders, so that they can be removed when it is stopped.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -11,16 +9,16 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 static UNFINISHED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
 fn paths() -> MutexGuard<'static, BTreeSet<PathBuf>> {
-    // Whoever panics with the lock has changed nothing by halves.
+    // A panic while the lock is held leaves no half-made change.
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Something that is not finished: forgotten when this is dropped.
+/// The entry of an unfinished file or folder, removed on drop.
 #[derive(Debug)]
 pub(crate) struct Unfinished(PathBuf);
 
 impl Unfinished {
-    /// Makes something, and notes it in the same breath: nobody ends the process in between.
+    /// Creates a file or folder and records it under the same lock, so that [`remove_unfinished`] cannot miss it.
     pub(crate) fn make<T>(
         make: impl FnOnce() -> io::Result<T>,
         path: impl FnOnce(&T) -> &Path,
@@ -39,12 +37,12 @@ impl Drop for Unfinished {
     }
 }
 
-/// Removes every file and folder of this process that is not finished. For a process that is about to end: whoever
-/// begins a file afterwards waits for ever.
+/// Removes all unfinished files and folders of this process. Only for a process that is about to exit: starting or
+/// finishing a file afterwards blocks forever.
 pub fn remove_unfinished() {
     let paths = paths();
     for path in paths.iter() {
-        // What cannot be removed stays for the next that writes there.
+        // Whatever cannot be removed is left to the next process that writes there.
         let _ = fs::remove_file(path).or_else(|_| fs::remove_dir_all(path));
     }
     std::mem::forget(paths);

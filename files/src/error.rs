@@ -33,7 +33,7 @@ pub enum FileError {
         path: PathBuf,
         /// The file's size in bytes, or a lower bound of it.
         found: u64,
-        /// Most bytes allowed.
+        /// Maximum number of bytes allowed.
         limit: u64,
     },
     /// The file is not UTF-8 text.

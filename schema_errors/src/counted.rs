@@ -59,7 +59,7 @@ impl<'a> Counted<'a> {
         self.tally.map_or(0, |tally| tally.looks.load(Relaxed))
     }
 
-    /// Most errors listed for one list or object.
+    /// Maximum number of errors listed for one list or object.
     fn limit(&self) -> usize {
         self.tally.map_or(usize::MAX, |tally| tally.limit)
     }
@@ -139,8 +139,9 @@ impl<'a> Node<'a, Counting> for Counted<'a> {
         jsonschema::json::cmp::equal(self.looked_at(), expected)
     }
 
-    /// Every error asks for the value that it is about, which is how errors are counted. It gets `null`, because some errors keep
-    /// a copy: readers find the value by its path. Names are not part of the document and are returned as they are.
+    /// Every error requests the value that it concerns, which is how errors are counted. It gets `null`, because some
+    /// errors keep a copy; readers find the value by its path. Property names have no counter and are returned
+    /// unchanged.
     fn to_value(&self) -> Cow<'a, Value> {
         match self.tally {
             Some(tally) => {
@@ -156,13 +157,13 @@ impl<'a> Node<'a, Counting> for Counted<'a> {
     }
 }
 
-/// Items or members, until a few hundred errors are found in them. Members that were never accessed are unknown keys, which
-/// errors list by name: it also stops after a few hundred of those.
+/// Iterates over items or members until a few hundred errors are found in them. Members that were never accessed are
+/// unknown keys, which errors list by name: the iteration also stops after a few hundred of those in a row.
 pub(super) struct UntilFull<'a, I> {
     inner: I,
     holder: Counted<'a>,
     before: usize,
-    /// The access count when the last member was returned, and the number of earlier members that were never accessed.
+    /// The access count when the last member was returned, and the number of members in a row never accessed before it.
     looks: usize,
     unseen: usize,
 }

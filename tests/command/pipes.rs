@@ -30,7 +30,10 @@ fn pipe_reader_gets_the_first_world_before_the_last_is_drawn() {
     let mut line = String::new();
     reader.read_line(&mut line).expect("a world comes");
     assert_eq!(line, first);
-    assert!(child.try_wait().expect("it can be asked").is_none(), "it draws on");
+    assert!(
+        child.try_wait().expect("it can be asked").is_none(),
+        "it is still drawing"
+    );
     // The reader is gone: that is reported.
     drop(reader);
     let ended = child.wait_with_output().expect("it ends");
@@ -66,7 +69,7 @@ fn every_format_works_in_a_pipe() {
             })
         };
         succeed_in(path, &[&arguments[..], &["-o", &pipe]].concat());
-        let found = reader.join().expect("nothing is asserted there");
+        let found = reader.join().expect("the reader does not panic");
         assert_eq!(found, expected, "{name}: {} and {} bytes", found.len(), expected.len());
     }
 }

@@ -17,8 +17,8 @@ pub const MAX_NAME_BYTES: usize = 200;
 /// The part of the grammar that a JSON Schema pattern can express. [`check_name`] checks the rest: length in bytes,
 /// normalisation, device names.
 ///
-/// Beyond ASCII it excludes white space, general punctuation and unprintable characters, and so accepts a few symbols that are
-/// refused later.
+/// Beyond ASCII it excludes only white space, general punctuation and unprintable characters, so it accepts some
+/// symbols that [`check_name`] refuses.
 pub const NAME_PATTERN: &str = concat!(
     r"^[^\x00-\x2f\x3a-\x40\x5b-\x5e\x60\x7b-\xa9\u2000-\u206f\u3000-\u3003\ufeff]",
     r"(?:[^\x00-\x2a\x2c\x2f\x3a-\x40\x5b-\x5e\x60\x7b-\xa9\u2000-\u206f\u3000-\u3003\ufeff]*",
@@ -92,7 +92,7 @@ impl NameFault {
 /// Device names of Windows (`con`, `nul.txt`, `COM1`) are refused.
 ///
 /// # Errors
-/// The first fault, counted from the beginning of the name.
+/// The first fault found.
 ///
 /// # Example
 /// ```
@@ -134,7 +134,7 @@ fn may_begin(letter: char) -> bool {
 }
 
 fn may_follow(letter: char) -> bool {
-    // Marks of zero width: variation selectors choose a glyph for the letter before them.
+    // Variation selectors are marks of zero width that choose a glyph for the letter before them.
     let is_selector = matches!(letter, '\u{fe00}'..='\u{fe0f}' | '\u{e0100}'..='\u{e01ef}');
     let is_mark = is_combining_mark(letter) && !is_unprintable(letter) && !is_selector;
     may_begin(letter) || matches!(letter, '-' | '+' | '.') || is_mark

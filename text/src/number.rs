@@ -1,13 +1,13 @@
 //! Formats numbers for people: without the digits that are rounding noise. Files keep every digit.
 
-/// Most decimal places.
+/// Maximum number of decimal places.
 const PLACES: usize = 6;
 
-/// Most significant digits of a number with decimals, so that long sums show no noise.
+/// Maximum number of significant digits of a number with decimals, so that long sums show no noise.
 const DIGITS: usize = 13;
 
 /// A number without the noise of its last bits: at most six decimal places and, if it has any, thirteen significant digits; no
-/// trailing zeros, and no sign before zero. Numbers from 1e15 on, which have no decimals, keep all their digits.
+/// trailing zeros, and no sign before zero. Numbers from 1e12 on have no decimals, and keep all other digits.
 ///
 /// ```
 /// # use driftworld_text::amount;

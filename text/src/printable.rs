@@ -124,7 +124,7 @@ impl ShownPath for Path {
     }
 }
 
-/// In double quotes and one line, with backslashes and quotes escaped as in a Rust string.
+/// The text in double quotes and in one line, with backslashes and quotes escaped as in a Rust string.
 ///
 /// # Example
 /// ```

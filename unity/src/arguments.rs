@@ -200,7 +200,7 @@ fn is_option(word: &str) -> bool {
     word.len() > 1 && word.starts_with('-') && word.parse::<f64>().is_err()
 }
 
-/// Our own option that a word may stand for.
+/// The option of ours that an unknown word probably means.
 fn meant(word: &str) -> Option<String> {
     // Most programs use this name.
     if word.trim_start_matches('-').eq_ignore_ascii_case("port") {

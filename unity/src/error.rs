@@ -10,7 +10,7 @@ use driftworld_text::{ShownPath, one_line};
 use crate::behavior::BEHAVIOR;
 use crate::outbox::MAX_OUTGOING_BYTES;
 
-/// Everything that ends a session other than the client.
+/// Errors that end a session.
 #[derive(Debug, thiserror::Error, strum::IntoStaticStr, strum::VariantNames)]
 #[strum(prefix = "unity/", serialize_all = "kebab-case")]
 #[non_exhaustive]
@@ -126,7 +126,7 @@ pub enum UnityError {
         /// The problem.
         source: EnvError,
     },
-    /// An answer is longer, by its bytes, than clients accept.
+    /// An answer is longer than clients accept: its length in bytes.
     #[error(
         "observation: {0} bytes in a message, of which clients accept {MAX_OUTGOING_BYTES}; reset to a smaller observation_size, or leave out --raw-observations"
     )]

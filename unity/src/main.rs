@@ -21,7 +21,7 @@ fn main() -> ExitCode {
         Ok((Request::Help, _)) => say(stdout(), HELP),
         Ok((Request::Version, _)) => say(stdout(), format_args!("{MARK}, {}", env!("CARGO_PKG_VERSION"))),
         Ok((Request::Run(options), remarks)) => {
-            // Without a log file there is still the terminal.
+            // If the log file cannot be opened, the error goes to the terminal.
             let journal = Journal::open(options.log.as_deref())
                 .inspect_err(|error| say(stderr(), format_args!("driftworld-unity: {error}")));
             let ending = journal.and_then(|mut journal| {

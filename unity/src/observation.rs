@@ -28,7 +28,7 @@ const WHITE_DEPTH: f32 = 100.0;
 
 /// The observations of a frame and a state, in the original's order.
 ///
-/// `state` follows the number of the collected object.
+/// `state` begins with the number of the collected or photographed object.
 pub(crate) fn observations(
     frame: &Frame,
     state: Vec<f32>,

@@ -9,7 +9,7 @@ use crate::side_channel::{RECORD_HEAD, write_record};
 /// Longest message that is sent, in bytes: the default limit of gRPC servers.
 pub(crate) const MAX_OUTGOING_BYTES: usize = 4 << 20;
 
-/// Most queued records: if a client requests more than it accepts, later ones are dropped.
+/// Maximum number of queued messages: if a client requests more than it accepts, later ones are dropped.
 const MOST_WAITING: usize = 10_000;
 
 /// Messages to the client, in sending order.

@@ -15,7 +15,7 @@ pub(crate) enum About {
     Refusals,
 }
 
-/// Most remarks of a kind per session: a client that sends garbage in every step must not fill the disk.
+/// Maximum number of remarks of a kind per session: a client that sends garbage in every step must not fill the disk.
 const MOST: usize = 100;
 
 /// Remarks not yet taken, and the set of all that were made.

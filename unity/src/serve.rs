@@ -37,8 +37,8 @@ const FAREWELL: Duration = Duration::from_millis(500);
 /// Connects to a client, and follows its commands until it ends.
 ///
 /// # Errors
-/// [`UnityError`] for unusable files, without a client, and for a client that violates the protocol, which is told first. A
-/// client that quits or disconnects is no error.
+/// [`UnityError`] for unusable files, for a missing client, and for a client that violates the protocol, which is sent
+/// the error first. A client that quits or disconnects is no error.
 pub fn run(options: &Options, journal: &mut Journal) -> Result<(), UnityError> {
     let maps = match &options.maps {
         Some(path) => MapLibrary::from_json(&path.display().to_string(), &read("--maps", path)?)?,
@@ -85,8 +85,8 @@ fn write(session: &mut Session, recordings: Option<&mut RecordingFile>) -> Resul
         .try_for_each(|recording| recordings.write(recording))
 }
 
-/// Reads a world file, in our format or the original's. Notes the warnings of the original's reader, because there a misspelt
-/// key counts as unknown.
+/// Reads a world file, in our format or the original's. Notes the warnings of the original's reader, because that
+/// reader only warns about misspelt keys.
 fn world(path: &Path, maps: &MapLibrary, journal: &mut Journal) -> Result<World, UnityError> {
     let text = read("--world", path)?;
     let name = path.display().to_string();
@@ -94,7 +94,7 @@ fn world(path: &Path, maps: &MapLibrary, journal: &mut Journal) -> Result<World,
         Ok(world) => return Ok(world),
         Err(error) => error,
     };
-    // Only our format has a version; if neither format fits, our reader's errors are the stricter ones.
+    // Only our format has a version. If neither format fits, reports our reader's errors, which are stricter.
     let is_ours = serde_json::from_str::<Ours>(&text).is_ok_and(|ours| ours.version.is_some());
     match World::from_l2explorer_with(&name, &text, maps) {
         Ok((world, warnings)) if !is_ours => {

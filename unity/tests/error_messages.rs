@@ -14,7 +14,7 @@ fn errors() -> Vec<UnityError> {
     let arguments = Request::parse(&["--wait".to_owned(), "soon".to_owned()]);
     let document = World::from_json("world.json", "{ \"max_steps\": -3 }");
     vec![
-        arguments.expect_err("soon is no number"),
+        arguments.expect_err("soon is not a number"),
         UnityError::Reading {
             option: "--world",
             source: driftworld_files::FileError::Unreadable {

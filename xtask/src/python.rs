@@ -156,7 +156,7 @@ pub(crate) fn package(workspace: &Workspace) -> Result<Outcome> {
     Ok(Outcome::Passed("with the newest and the oldest Gymnasium".into()))
 }
 
-/// Tests with torch, Stable-Baselines3, Minari and Ray, which are gigabytes.
+/// Tests with torch, Stable-Baselines3, Minari and Ray, which take gigabytes.
 pub(crate) fn learners(workspace: &Workspace) -> Result<Outcome> {
     let made = interpreter(ANY).ok_or_else(|| NO_INTERPRETER.to_owned());
     let list = ["python/tests/requirements-learners.txt"];

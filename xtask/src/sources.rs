@@ -196,7 +196,7 @@ mod tests {
         for path in "spec/tests/a.rs spec/src/tests.rs env/benches/a.rs examples/a.rs fuzz/src/a.rs".split(' ') {
             assert_eq!(lines_of_code(path, "fn f() {}\n"), [Test], "{path}");
         }
-        // A module in its own file is no block to skip.
+        // A test module in its own file has no block here to skip.
         assert_eq!(
             lines_of_code("spec/src/a.rs", "#[cfg(test)]\nmod tests;\nfn f() {}\n"),
             [Code, Code, Code]

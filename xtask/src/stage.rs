@@ -55,7 +55,7 @@ pub(crate) const STAGES: [Stage; 18] = [
     ),
     quick(
         "size",
-        "no room has more lines of code than SIZE.md allows",
+        "no part of the code has more lines than SIZE.md allows",
         size::check,
     ),
     quick(
@@ -71,7 +71,7 @@ pub(crate) const STAGES: [Stage; 18] = [
     ),
     quick(
         "examples",
-        "every program in examples/ ends well in an empty folder",
+        "every program in examples/ runs without error in an empty folder",
         examples::stage,
     ),
     quick(
@@ -87,7 +87,7 @@ pub(crate) const STAGES: [Stage; 18] = [
     slow("benches", "every bench runs once", benches),
     slow(
         "documents",
-        "a second validator, in Python, judges tests/documents by the schemas as ours does",
+        "a second validator, in Python, checks tests/documents against the schemas with the same results as ours",
         python::documents,
     ),
     slow(
@@ -150,7 +150,7 @@ fn benches(workspace: &Workspace) -> Result<Outcome> {
     passed(workspace.cargo_everywhere(&["test", "--bench", "*", "--quiet"]))
 }
 
-/// `book/build.py` checks every link, and builds the book where mdBook is installed. Rustdoc runs with `--all` alone.
+/// `book/build.py` checks every link, and builds the book if mdBook is installed. Rustdoc runs only with `--all`.
 fn docs(workspace: &Workspace) -> Result<Outcome> {
     if workspace.is_full {
         let mut command = workspace.cargo_everywhere(&["doc", "--no-deps"]);
@@ -198,7 +198,7 @@ fn deny(workspace: &Workspace) -> Result<Outcome> {
     passed(deny(&["check", "advisories"]))
 }
 
-/// A build folder that was not empty may hold old builds, so a finding fails only if `DRIFTWORLD_REQUIRE_NO_REBUILDS` is set.
+/// A reused build folder may hold old builds, so duplicates fail only if `DRIFTWORLD_REQUIRE_NO_REBUILDS` is set.
 fn rebuilds(workspace: &Workspace) -> Result<Outcome> {
     let mut search = workspace.program("sh".as_ref(), &["scripts/rebuilds.sh"]);
     search.arg(&workspace.target);

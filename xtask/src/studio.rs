@@ -1,5 +1,5 @@
-//! `cargo xtask studio`, which builds the page of the workbench into `target/studio`, and the stage `studio`, which tests it. How
-//! the page is bundled is in `studio/build.mjs`.
+//! `cargo xtask studio`, which builds the page of the workbench into `target/studio`, and the stage `studio`, which
+//! tests it. `studio/build.mjs` bundles the page.
 
 use std::env;
 use std::fs;
@@ -17,7 +17,7 @@ pub(crate) fn build(workspace: &Workspace) -> Result {
     bundle(workspace)
 }
 
-/// What is missing to build the page, each with what to do about it.
+/// Checks for the tools that build the page; the error lists the missing ones, each with advice.
 fn tools(workspace: &Workspace) -> std::result::Result<(), Vec<String>> {
     let mut lack = Vec::new();
     let version = "process.exit(Number(process.versions.node.split('.')[0]) >= 20 ? 0 : 1)";
@@ -55,7 +55,7 @@ fn bundle(workspace: &Workspace) -> Result {
     run(bundle)
 }
 
-/// Installs the packages of `studio/package-lock.json`, unless they are there.
+/// Installs the packages of `studio/package-lock.json`, unless they are up to date.
 fn install(workspace: &Workspace) -> Result {
     let time = |path: &str| {
         let changed = workspace.root.join("studio").join(path).metadata();
@@ -74,7 +74,7 @@ fn npm(workspace: &Workspace, arguments: &[&str]) -> Command {
     npm
 }
 
-/// Builds the page, checks its types, and compares its simulator with this machine's, in Node and, where there is one, in Chromium.
+/// Builds the page, checks its types, and compares its simulator with the native one, in Node.js and, if any, Chromium.
 pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome> {
     if let Err(lack) = tools(workspace) {
         return missing("STUDIO", lack.join("; "));
@@ -84,11 +84,11 @@ pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome> {
     }
     bundle(workspace)?;
     run(npm(workspace, &["run", "--silent", "check"]))?;
-    // The tests of the machine have built what this is made of.
+    // The native tests have already built most of this.
     run(workspace.cargo_everywhere(&["build", "--example", "answers", "--bin", "driftworld"]))?;
     let command = workspace.target.join("debug/driftworld");
     let page = workspace.target.join("studio");
-    // What the page's own documentation does by hand.
+    // The same export that the page's own documentation describes.
     let mut export = workspace.program(&command, &["studio", "--export"]);
     export.arg(workspace.target.join("studio-export"));
     run(export)?;
@@ -108,7 +108,7 @@ pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome> {
     )))
 }
 
-/// The files of tests: not all versions of Node.js find them in a folder.
+/// The test files: not every version of Node.js finds them in a folder.
 fn test_files(workspace: &Workspace) -> Result<Vec<PathBuf>> {
     let folder = workspace.root.join("studio/test");
     let entries = fs::read_dir(&folder).map_err(about(&folder))?;
@@ -118,7 +118,7 @@ fn test_files(workspace: &Workspace) -> Result<Vec<PathBuf>> {
     Ok(files)
 }
 
-/// Says how the page gets into a program.
+/// Prints how to serve the page and how to embed it in a program.
 pub(crate) fn tell(workspace: &Workspace) {
     let folder = workspace.target.join("studio");
     let shown = folder.display();

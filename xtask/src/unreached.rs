@@ -1,7 +1,7 @@
 //! Finds public items of the libraries that nothing uses: neither their own crate, nor another, nor a program.
 //!
-//! Code is compared by names, so an item counts as used if another item of its name is. Tests, benches, the fuzzer and
-//! developer tools do not count.
+//! Code is compared by names, so an item counts as used if another item of the same name is. Tests, benches, the fuzzer
+//! and developer tools do not count.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -138,7 +138,7 @@ fn item<'a>(path: &'a str, lines: &[&'a str], at: usize) -> Option<Item<'a>> {
         _ => return None,
     };
     let name = words.next()?.split(|letter| !is_of_name(letter)).next()?;
-    // Macros may have other names there.
+    // In a macro, something other than a name may stand there.
     let is_name = name.starts_with(is_of_name);
     is_name.then_some(Item {
         path,
@@ -188,7 +188,7 @@ fn uses<'a>(files: &[File<'a>]) -> BTreeMap<&'a str, Vec<Use<'a>>> {
     uses
 }
 
-/// Whether a line starts a `use` declaration of any visibility; texts may start so, too, but name no paths.
+/// Whether a line starts a `use` declaration of any visibility; strings may start the same way, but name no path.
 fn is_use(line: &str) -> bool {
     let split = line
         .split_once("use ")

@@ -1,5 +1,5 @@
-//! Runs a script of calls on this machine, and prints a hash of all answers of each group: what the tests in `studio/test` compare a
-//! browser with. `cargo run -p driftworld-wasm --example answers -- SCRIPT`.
+//! Runs a script of calls natively, and prints for each group a hash of all answers, with which the tests in
+//! `studio/test` compare a browser's answers. `cargo run -p driftworld-wasm --example answers -- SCRIPT`.
 
 #![expect(clippy::print_stdout, reason = "a program of a test")]
 
@@ -11,7 +11,7 @@ use std::time::Instant;
 use driftworld_wasm::Session;
 use serde_json::{Value, json};
 
-/// Two numbers that change with every byte; `hash` in `studio/test/script.mjs` is the same.
+/// A hash of two numbers; `hash` in `studio/test/script.mjs` computes the same.
 struct Hash([u32; 2]);
 
 impl Hash {
@@ -50,7 +50,7 @@ impl Player<'_> {
         Ok(serde_json::from_str(&json)?)
     }
 
-    /// Plays so many steps, world after world, and draws after each.
+    /// Plays the requested number of steps, world after world, and draws a frame after each if requested.
     fn play(&mut self, play: &Value) -> Result<(), Box<dyn Error>> {
         let mut left = play["steps"].as_u64().ok_or("a play has steps")?;
         let mut index = 0;
@@ -90,7 +90,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let networks = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/networks");
     let groups: Vec<Value> = serde_json::from_str(&fs::read_to_string(script)?)?;
     let mut found = Vec::new();
-    // As in a page, one session answers all groups: numbers of episodes and networks go on.
+    // As in a page, one session answers all groups, so episodes and networks are numbered across groups.
     let mut session = Session::default();
     for group in groups {
         let start = Instant::now();

@@ -1,4 +1,4 @@
-//! The C functions of the module: memory for a call, the call, and where its answer lies. One thread calls them, one after the other.
+//! The C functions of the module: they allocate memory for a call, and answer it. One thread calls them, one at a time.
 
 #![expect(unsafe_code, reason = "exported names and foreign memory have no safe form")]
 #![expect(unreachable_pub, reason = "they are reached by their exported names")]
@@ -7,7 +7,7 @@ use std::cell::RefCell;
 
 use crate::Session;
 
-/// The session, and the answer to its last call: where its JSON and its bytes lie, for the caller to copy.
+/// The session, and the JSON and bytes of the answer to its last call, with their addresses, for the caller to copy.
 struct Module {
     session: Session,
     json: String,
@@ -25,21 +25,21 @@ thread_local! {
     });
 }
 
-/// Memory of so many bytes, for the input of [`driftworld_call`], which frees it.
+/// Allocates `length` bytes for the input of [`driftworld_call`], which frees them.
 #[unsafe(no_mangle)]
 pub extern "C" fn driftworld_memory(length: usize) -> *mut u8 {
     Box::into_raw(vec![0_u8; length].into_boxed_slice()).cast()
 }
 
-/// Answers a call: its JSON is the first `json` of `length` bytes at `input`, the rest are its bytes. Returns the address of four
-/// 32-bit numbers: address and length of the answer's JSON and of its bytes, which stay until the next call.
+/// Answers a call: the first `json` of `length` bytes at `input` are its JSON, the rest its binary data. Returns the
+/// address of four 32-bit numbers: address and length of the answer's JSON and binary data, valid until the next call.
 ///
 /// # Safety
-/// `input` and `length` are those of a call of [`driftworld_memory`] that no other call has used.
+/// `input` must come from a call of [`driftworld_memory`] with the same `length`, and must not be used again.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn driftworld_call(input: *mut u8, length: usize, json: usize) -> *const u32 {
     let memory = std::ptr::slice_from_raw_parts_mut(input, length);
-    // SAFETY: the caller promises that it is a box of this length, which nobody else frees.
+    // SAFETY: the caller promises that this is a box of this length, which nothing else frees.
     let input = unsafe { Box::from_raw(memory) };
     let (call, bytes) = input.split_at(json.min(length));
     MODULE.with_borrow_mut(|module| {
@@ -56,13 +56,13 @@ pub unsafe extern "C" fn driftworld_call(input: *mut u8, length: usize, json: us
     })
 }
 
-/// What hash maps ask for their keys: the same numbers in every page, for nobody else chooses what is in its maps.
+/// Random bytes for the keys of hash maps: the same in every page, because no one else chooses what is in its maps.
 ///
 /// # Safety
-/// `place` is memory of so many bytes.
+/// `place` must be valid for writing `length` bytes.
 #[unsafe(no_mangle)]
 unsafe extern "Rust" fn __getrandom_v03_custom(place: *mut u8, length: usize) -> Result<(), getrandom::Error> {
-    // SAFETY: the caller promises that the memory is there.
+    // SAFETY: the caller promises that the memory is valid.
     unsafe { std::ptr::write_bytes(place, 0x5a, length) };
     Ok(())
 }

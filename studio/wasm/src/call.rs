@@ -1,4 +1,4 @@
-//! [`Call`]: what can be asked of a session. `studio/src/engine.ts` says what each is for, and what comes of it.
+//! [`Call`]: the calls that a session answers. `studio/src/engine.ts` documents each of them and its result.
 
 use driftworld::env::Action;
 use driftworld::similarity::Method;
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::request::WorldRequest;
 
-/// A call, with its arguments. Agents and files come as numbers of what was handed over, or as bytes beside the call.
+/// A call, with its arguments. Files and new networks are bytes beside the call; later calls give networks by number.
 #[derive(Debug, Deserialize)]
 #[serde(tag = "call", rename_all = "snake_case", deny_unknown_fields)]
 pub(crate) enum Call {
@@ -70,7 +70,7 @@ pub(crate) enum Call {
     Close {
         episode: u32,
     },
-    /// Hands a network over: the bytes beside the call.
+    /// Hands over a network: the bytes beside the call.
     Network,
     Run {
         request: WorldRequest,
@@ -126,7 +126,7 @@ pub(crate) enum Call {
     },
 }
 
-/// Some variants of a task, and by what they are compared.
+/// Some or all variants of a task, and the measure that compares them.
 #[derive(Debug, Deserialize)]
 pub(crate) struct Among {
     pub(crate) task: String,
@@ -138,7 +138,7 @@ pub(crate) struct Among {
     pub(crate) worlds: Option<u64>,
 }
 
-/// A file of a log: the next so many of the bytes beside the call.
+/// A file of a log: the next `length` bytes beside the call.
 #[derive(Debug, Deserialize)]
 pub(crate) struct File {
     pub(crate) path: String,
@@ -154,12 +154,12 @@ pub(crate) struct Link {
     pub(crate) actions: Vec<Taken>,
 }
 
-/// What a step is asked to do.
+/// What to do in a step.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(untagged)]
 pub(crate) enum Command {
     Action(Taken),
-    /// What keys ask for, in −1..1.
+    /// Input from keys, with `ahead` and `turn` in −1..=1.
     Keys {
         ahead: f64,
         turn: f64,
@@ -167,7 +167,7 @@ pub(crate) enum Command {
     },
 }
 
-/// An action as JSON has it.
+/// An action in its JSON form.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 #[serde(untagged)]
 pub(crate) enum Taken {
@@ -193,7 +193,7 @@ impl From<Taken> for Action {
     }
 }
 
-/// Who acts; a network by the number that it was given when it was handed over.
+/// The agent that acts; a network is given by the number that it got when it was handed over.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum AgentName {
@@ -203,7 +203,7 @@ pub(crate) enum AgentName {
     Network(usize),
 }
 
-/// From where a picture is taken.
+/// Where a picture is taken from.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum View {
@@ -211,7 +211,7 @@ pub(crate) enum View {
     Above,
 }
 
-/// The method of this name.
+/// Parses the name of an ordering method.
 pub(crate) fn method(name: Option<&str>) -> Result<Option<Method>, crate::fault::Fault> {
     Ok(name.map(str::parse).transpose()?)
 }

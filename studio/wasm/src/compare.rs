@@ -10,7 +10,7 @@ use crate::call::Among;
 use crate::fault::Fault;
 use crate::request::TaskCache;
 
-/// How far apart two are.
+/// The distance between two variants or worlds.
 pub(crate) fn distance(a: &Side, b: &Side, by: Option<By>, worlds: Option<u64>, seed: u64) -> Result<Value, Fault> {
     let sample = Sample {
         by,
@@ -29,7 +29,7 @@ pub(crate) fn distance(a: &Side, b: &Side, by: Option<By>, worlds: Option<u64>, 
     }))
 }
 
-/// What two variants of a task differ in, and a witness of each element.
+/// The elements in which two variants of a task differ, with a witness of each.
 pub(crate) fn elements(
     tasks: &mut TaskCache,
     called: &str,
@@ -59,7 +59,7 @@ pub(crate) fn elements(
     }))
 }
 
-/// All distances among variants, and by what they were measured.
+/// All distances among variants, and the measure.
 fn measured(tasks: &mut TaskCache, among: &Among) -> Result<(DistanceMatrix, By), Fault> {
     let task = tasks.task(&among.task)?;
     let variants: Vec<Variant> = match &among.variants {
@@ -77,7 +77,7 @@ fn measured(tasks: &mut TaskCache, among: &Among) -> Result<(DistanceMatrix, By)
     Ok((distances::variant_matrix(&named, &sample, Ok)?, by))
 }
 
-/// All distances among variants, and a flat map of them.
+/// All distances among variants, and a two-dimensional map of them.
 pub(crate) fn matrix(tasks: &mut TaskCache, among: &Among) -> Result<Value, Fault> {
     let (matrix, by) = measured(tasks, among)?;
     let map = classical_map(&matrix);
@@ -85,7 +85,7 @@ pub(crate) fn matrix(tasks: &mut TaskCache, among: &Among) -> Result<Value, Faul
     Ok(json!({ "by": by, "labels": matrix.labels(), "rows": rows, "points": map.points, "shown": map.explained }))
 }
 
-/// Variants in an order.
+/// Orders variants.
 pub(crate) fn ordered(
     tasks: &mut TaskCache,
     among: &Among,

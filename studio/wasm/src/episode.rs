@@ -1,4 +1,4 @@
-//! [`Episode`]: a world that runs, with all that was done in it, so that any moment of it can be gone back to; its map and its pictures.
+//! [`Episode`]: a running world with all actions taken in it, to go back to any step; its map and its pictures.
 
 use driftworld::env::{
     Action, Agent, Camera, Environment, EpisodeOrigin, Frame, NetworkAgent, OnRailsAgent, Paint, RandomAgent,
@@ -11,16 +11,16 @@ use serde_json::{Value, json};
 use crate::call::{AgentName, Command, Taken, View};
 use crate::fault::Fault;
 
-/// So many steps lie between moments that are kept.
+/// Number of steps between kept snapshots.
 const KEPT: usize = 64;
 
-/// Corners of a disc on the map.
+/// Number of corners of the polygon that shows a disc on the map.
 const CORNERS: usize = 32;
 
-/// Agents that were handed over, by their numbers.
+/// The networks that were handed over, by their numbers.
 pub(crate) type Networks = Vec<NetworkAgent>;
 
-/// An agent that begins anew; the seed of all of them is 0, as the command's `--agent-seed`.
+/// A new agent; its seed is 0, the default of the command's `--agent-seed`.
 pub(crate) fn agent(name: AgentName, networks: &Networks) -> Result<Box<dyn Agent>, Fault> {
     let mut agent: Box<dyn Agent> = match name {
         AgentName::Planner => Box::new(OnRailsAgent::new()),
@@ -36,18 +36,18 @@ pub(crate) fn agent(name: AgentName, networks: &Networks) -> Result<Box<dyn Agen
     Ok(agent)
 }
 
-/// A world that runs.
+/// A running world with the actions taken in it.
 pub(crate) struct Episode {
     environment: Environment,
     actions: Vec<Action>,
-    /// How many of these were taken.
+    /// Number of actions taken up to the current step.
     at: usize,
-    /// Every [`KEPT`] steps, what was then.
+    /// Snapshots, one every [`KEPT`] steps, each with the result of its last step.
     moments: Vec<(Snapshot, Step)>,
     step: Step,
-    /// Who chose the last action; an agent begins anew when it takes over.
+    /// The agent that chose the last action; an agent starts anew when it takes over.
     agent: Option<(AgentName, Box<dyn Agent>)>,
-    /// What it chose last.
+    /// The action that it chose last.
     chosen: Option<Action>,
     size: Option<[u32; 2]>,
 }
@@ -81,7 +81,7 @@ impl Episode {
         self.environment.ended()
     }
 
-    /// Does what is asked; what was played beyond this moment is dropped.
+    /// Takes a step, and drops the actions recorded beyond the current one.
     pub(crate) fn step(&mut self, command: Command) -> Result<(), Fault> {
         let action = match command {
             Command::Action(action) => action.into(),
@@ -111,7 +111,7 @@ impl Episode {
         self.go_on()
     }
 
-    /// Takes the next of the actions that are known.
+    /// Takes the next of the known actions.
     fn go_on(&mut self) -> Result<(), Fault> {
         self.step = self.environment.step(self.actions[self.at])?;
         self.at += 1;
@@ -121,7 +121,7 @@ impl Episode {
         Ok(())
     }
 
-    /// What an agent would do now.
+    /// The action that an agent would take now.
     pub(crate) fn choose(&mut self, name: AgentName, networks: &Networks) -> Result<Action, Fault> {
         let mut acting = match self.agent.take() {
             Some((known, agent)) if known == name => agent,
@@ -138,7 +138,7 @@ impl Episode {
         self.take(action)
     }
 
-    /// Goes to the moment after so many steps, or to the last.
+    /// Goes to the state after `step` steps, or to the last one if there are fewer.
     pub(crate) fn seek(&mut self, step: usize) -> Result<(), Fault> {
         let step = step.min(self.actions.len());
         self.agent = None;
@@ -154,7 +154,7 @@ impl Episode {
         Ok(())
     }
 
-    /// Where it stands.
+    /// The current state, for the page.
     pub(crate) fn now(&self) -> Value {
         let agent = self.environment.agent();
         let mut now = json!(self.step);
@@ -172,7 +172,7 @@ impl Episode {
         now
     }
 
-    /// What was played up to now as a file of recordings, as `driftworld film --record` writes it.
+    /// The episode up to now as a file of recordings, as written by `driftworld film --record`.
     pub(crate) fn recording(&self) -> String {
         let recording = Recording {
             origin: EpisodeOrigin::default(),
@@ -186,7 +186,7 @@ impl Episode {
         RecordingLines::header() + &RecordingLines::default().lines(&recording)
     }
 
-    /// What the page is told of it when it begins.
+    /// The description that the page gets when the episode is opened.
     pub(crate) fn opened(&self) -> Value {
         let world = self.environment.world();
         let agent = &world.agent_params;
@@ -244,7 +244,7 @@ impl Episode {
         Ok(([width, height], pixels))
     }
 
-    /// All that a flat map shows.
+    /// Everything that the two-dimensional map shows.
     pub(crate) fn map(&self) -> Value {
         let (world, scene) = (self.environment.world(), self.environment.scene());
         let walls = scene
@@ -285,7 +285,7 @@ impl Episode {
         })
     }
 
-    /// How an episode went that an agent has played to its end.
+    /// The outcome of an episode that an agent has played.
     pub(crate) fn outcome(&self) -> Value {
         json!({
             "steps": self.at, "total": self.environment.episode_return(), "success": self.step.success,
@@ -299,7 +299,7 @@ fn around([x, y]: [f64; 2], radius: f64, corner: usize) -> [f64; 2] {
     [x + radius * libm::cos(turn), y + radius * libm::sin(turn)]
 }
 
-/// What a row of a table does, in words.
+/// The name of a row of the action table, such as `ahead right`.
 fn row_name([speed, turn, interact]: [f64; 3]) -> String {
     let along = if speed > 0.0 { "ahead" } else { "back" };
     let turn = (turn != 0.0).then_some(if turn > 0.0 { "right" } else { "left" });
@@ -318,7 +318,7 @@ fn row_name([speed, turn, interact]: [f64; 3]) -> String {
     }
 }
 
-/// Colours with an alpha of 1.
+/// Opaque RGBA pixels.
 fn rgba(rgb: &[u8]) -> Vec<u8> {
     let mut pixels = vec![255; rgb.len() / 3 * 4];
     for (pixel, rgb) in pixels.chunks_exact_mut(4).zip(rgb.chunks_exact(3)) {

@@ -1,4 +1,4 @@
-//! [`Fault`]: why a call has no result, with a stable code and the problems of a document.
+//! [`Fault`]: why a call failed, with a stable code and the problems of a document.
 
 use driftworld::Failure;
 use driftworld::distances::DistancesError;
@@ -9,7 +9,7 @@ use driftworld::spec::{Problem, SpecError};
 use driftworld::tasks::TaskError;
 use serde_json::{Value, json};
 
-/// Why a call has no result.
+/// Why a call failed.
 #[derive(Debug)]
 pub(crate) struct Fault {
     pub(crate) code: String,
@@ -26,7 +26,7 @@ impl Fault {
         }
     }
 
-    /// A request that contradicts itself or names what is not there.
+    /// A request that contradicts itself or names something that does not exist.
     pub(crate) fn request(message: impl Into<String>) -> Self {
         Self::new("request/wrong", message)
     }
@@ -36,7 +36,7 @@ impl Fault {
     }
 }
 
-/// The problems of an error as the page shows them; that of a syntax error stands where the text breaks off.
+/// The problems of an error as the page shows them; a syntax error is placed where parsing stopped.
 pub(crate) fn problems_of(error: &SpecError) -> Vec<Value> {
     let place = |problem: &Problem| {
         json!({

@@ -1,8 +1,8 @@
-//! An episode as the fragment of an address. Base64url of: the version of the form, a checksum, and what is deflated: a line of JSON
-//! that says which world and what came of it, then a number for each step.
+//! Encodes an episode as the fragment of an address: base64url of the format's version, a checksum, and deflated data,
+//! which are a line of JSON with the world and the outcome, then a number for each step.
 //!
-//! Actions of three numbers would take 24 bytes a step. But the planner and the agent that acts at random do the same again, so
-//! that a step is a few bits: who chose it, or which of the actions that are listed.
+//! Actions of three numbers would take 24 bytes a step. But the planner and the random agent repeat their actions
+//! exactly, so a step takes a few bits: the number of the agent that chose it, or an index into a list of actions.
 
 use std::io::{Read, Write};
 
@@ -20,22 +20,22 @@ use crate::episode::agent;
 use crate::fault::Fault;
 use crate::request::{TaskCache, WorldRequest, in_style};
 
-/// The version of the form.
+/// The version of the format.
 const FORMAT: u8 = 1;
 
-/// The most steps in a link.
+/// Maximum number of steps in a link.
 pub(crate) const MAX_LINK_STEPS: usize = 20_000;
 
-/// The longest fragment, and the most bytes that come out of it.
+/// Maximum length of a fragment, and of its unpacked data in bytes.
 const MAX_FRAGMENT: usize = 1 << 18;
 const MAX_UNPACKED: u64 = 1 << 22;
 
-/// Who acts again as they did: each as one who goes on, and as one who begins anew.
+/// The agents that repeat their actions exactly. Each has two numbers: one for continuing, and one for starting anew.
 const AGENTS: [AgentName; 2] = [AgentName::Planner, AgentName::Random];
-/// Numbers of steps below this are agents, the others places in the list of actions.
+/// Step numbers below this are those of agents; larger ones are indices into the list of actions, plus this.
 const LISTED: u64 = 2 * AGENTS.len() as u64;
 
-/// What the line of JSON says.
+/// The contents of the line of JSON.
 #[derive(Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 struct Header {
@@ -47,19 +47,19 @@ struct Header {
     steps: usize,
     /// The beginning of the world's hash.
     hash: String,
-    /// The bits of the sum of rewards.
+    /// The bits of the return, in hexadecimal.
     total: String,
-    /// Actions that nobody chooses again.
+    /// The actions that steps refer to by index.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     listed: Vec<Taken>,
 }
 
-/// Agents that are asked along an episode what they would do.
+/// The agents that are queried during an episode for the actions they would take.
 #[derive(Default)]
 struct Asked([Option<Box<dyn Agent>>; AGENTS.len()]);
 
 impl Asked {
-    /// What an agent does that goes on (even numbers) or begins anew; nobody else can go on from here.
+    /// The action of an agent that continues (even numbers) or starts anew (odd). Then only this agent can continue.
     fn act(&mut self, number: usize, environment: &Environment) -> Option<Action> {
         let (own, is_new) = (number / 2, number % 2 == 1);
         let mut acting = if is_new {
@@ -82,7 +82,7 @@ fn same(a: Action, b: Action) -> bool {
     }
 }
 
-/// The fragment of an episode.
+/// Encodes an episode as a fragment.
 pub(crate) fn encoded(tasks: &mut TaskCache, link: Link) -> Result<String, Fault> {
     let steps = link.actions.len();
     if steps > MAX_LINK_STEPS {
@@ -97,7 +97,7 @@ pub(crate) fn encoded(tasks: &mut TaskCache, link: Link) -> Result<String, Fault
     let (mut asked, mut listed, mut numbers) = (Asked::default(), Vec::<Action>::new(), Vec::new());
     for taken in &link.actions {
         let action = Action::from(*taken);
-        // Rows are as short as a number of an agent, and quicker to read back.
+        // An index for a discrete action is as short as an agent's number, and faster to decode.
         let number = match action {
             Action::Discrete(_) => None,
             Action::Continuous(_) => chosen_again(&mut asked, &environment, action),
@@ -136,10 +136,10 @@ pub(crate) fn encoded(tasks: &mut TaskCache, link: Link) -> Result<String, Fault
     Ok(URL_SAFE_NO_PAD.encode(bytes))
 }
 
-/// The number of an agent that would have chosen this action, too.
+/// The number of an agent that would also have chosen this action.
 fn chosen_again(asked: &mut Asked, environment: &Environment, action: Action) -> Option<u64> {
     for own in 0..AGENTS.len() {
-        // One who acted until now goes on; should that be another action, it may have begun anew.
+        // An agent that acted until now continues; if its action differs, it may have started anew.
         let goes_on = asked.0[own].is_some();
         let tries = if goes_on {
             vec![2 * own, 2 * own + 1]
@@ -160,7 +160,7 @@ fn chosen_again(asked: &mut Asked, environment: &Environment, action: Action) ->
     None
 }
 
-/// The episode of a fragment, which has been run again to see that it is the same.
+/// Decodes an episode from a fragment, and replays it to check that it is the same.
 pub(crate) fn decoded(tasks: &mut TaskCache, fragment: &str) -> Result<Link, Fault> {
     let (header, mut numbers) = unpacked(fragment)?;
     let other = |what: &str| {
@@ -211,7 +211,7 @@ pub(crate) fn decoded(tasks: &mut TaskCache, fragment: &str) -> Result<Link, Fau
     })
 }
 
-/// What is deflated in a fragment: the line of JSON, and the numbers.
+/// Unpacks a fragment: the line of JSON, and the numbers.
 fn unpacked(fragment: &str) -> Result<(Header, std::collections::VecDeque<u8>), Fault> {
     if fragment.len() > MAX_FRAGMENT {
         return Err(damaged(&format!(
@@ -261,7 +261,7 @@ fn damaged(found: &str) -> Fault {
     )
 }
 
-/// The beginning of a name that somebody else wrote.
+/// The first characters of an untrusted text, for messages.
 fn printable(text: &str) -> String {
     text.chars().filter(char::is_ascii_graphic).take(20).collect()
 }
@@ -274,7 +274,7 @@ fn bits(number: f64) -> String {
     format!("{:x}", number.to_bits())
 }
 
-/// Seven bits a byte, the lowest first.
+/// Writes seven bits per byte, the lowest first.
 fn push_number(bytes: &mut Vec<u8>, mut number: u64) {
     while number >= 0x80 {
         bytes.push(number as u8 | 0x80);

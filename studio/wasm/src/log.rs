@@ -1,5 +1,5 @@
-//! A log of a lifetime out of files that a page was given: what its learning curve shows, and the episodes whose actions were recorded.
-//! Checking and scoring logs is `metrics`', which reads folders.
+//! Reads the log of a lifetime from files given to a page: the data of its learning curve, and the episodes whose
+//! actions were recorded. It neither checks nor scores the log.
 
 use std::collections::BTreeSet;
 use std::io::Cursor;
@@ -10,10 +10,10 @@ use serde_json::{Value, json};
 use crate::call::File;
 use crate::fault::Fault;
 
-/// The most rows of a log.
+/// Maximum number of rows of a log.
 const MAX_ROWS: usize = 1_000_000;
 
-/// Columns that are no metrics.
+/// Columns that are not metrics.
 const COLUMNS: [&str; 9] = [
     "block_num",
     "exp_num",
@@ -32,7 +32,7 @@ pub(crate) struct Log {
     recordings: Vec<Vec<u8>>,
 }
 
-/// A row of a table, by its columns; a cell in quotes may hold what parts cells, and a quote twice.
+/// The cells of a row of a table. In quoted cells, a doubled quote means one quote; they cannot contain tabs.
 fn cells(line: &str) -> Vec<String> {
     let unquoted = |cell: &str| match cell.strip_prefix('"').and_then(|cell| cell.strip_suffix('"')) {
         Some(inner) => inner.replace("\"\"", "\""),

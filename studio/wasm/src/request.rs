@@ -1,4 +1,4 @@
-//! [`WorldRequest`]: which world is meant, as a page and a link name it, and the world itself.
+//! [`WorldRequest`]: how a page or a link names a world; finds or draws that world.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::fault::Fault;
 
-/// A world that a task draws, or one as it is.
+/// A world drawn from a task, or a world given as JSON.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct WorldRequest {
@@ -26,7 +26,7 @@ pub(crate) struct WorldRequest {
     pub(crate) seed: u64,
     #[serde(default, skip_serializing_if = "is_zero")]
     pub(crate) index: u64,
-    /// The JSON of a world, in place of all others.
+    /// The JSON of a world, instead of a task.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) world: Option<String>,
 }
@@ -39,12 +39,12 @@ fn is_zero(number: &u64) -> bool {
 /// The name of a variant whose values were changed.
 const CHANGED: &str = "changed";
 
-/// The task that was read last: a page asks for many worlds of one text.
+/// Caches the task that was read last, because a page requests many worlds of the same text.
 #[derive(Debug, Default)]
 pub(crate) struct TaskCache(Option<(String, Arc<TaskSpec>)>);
 
 impl TaskCache {
-    /// The task of this name, or in this text.
+    /// The task with this name or text.
     pub(crate) fn task(&mut self, called: &str) -> Result<Arc<TaskSpec>, Fault> {
         if let Some((known, task)) = &self.0
             && known == called
@@ -61,7 +61,7 @@ impl TaskCache {
         Ok(task)
     }
 
-    /// The variant of a request, under the values that it sets.
+    /// The variant of a request, with the values that the request sets.
     pub(crate) fn variant(&mut self, request: &WorldRequest) -> Result<Variant, Fault> {
         let called = request.task.as_deref().ok_or_else(|| {
             Fault::request("request: found no task, expected the name or the text of one, or a world")
@@ -88,7 +88,7 @@ impl TaskCache {
         }
     }
 
-    /// What a distance compares: the variant of a request, or its world.
+    /// One side of a comparison: the variant of a request, or its world.
     pub(crate) fn side(&mut self, request: &WorldRequest, as_worlds: bool) -> Result<Side, Fault> {
         if as_worlds || request.world.is_some() {
             return Ok(Side::World(Box::new(self.world(request)?)));
@@ -97,7 +97,7 @@ impl TaskCache {
     }
 }
 
-/// Whether a task is given by its text.
+/// Whether a task is given by its text rather than by its name.
 pub(crate) fn is_text(called: &str) -> bool {
     called.trim_start().starts_with(['{', '/', '\u{feff}'])
 }

@@ -1,4 +1,4 @@
-//! [`Session`]: all that a page has open, and the answer to each of its calls.
+//! [`Session`]: everything that a page has open; answers the page's calls.
 
 use std::collections::BTreeMap;
 
@@ -15,10 +15,10 @@ use crate::log::Log;
 use crate::request::{TaskCache, in_style, is_text};
 use crate::tasks;
 
-/// The most episodes that are open at a time: each has pictures and moments in memory.
+/// Maximum number of open episodes: each keeps pictures and snapshots in memory.
 const MAX_EPISODES: usize = 64;
 
-/// All that a page has open.
+/// Everything that a page has open.
 #[derive(Default)]
 pub struct Session {
     tasks: TaskCache,
@@ -29,8 +29,8 @@ pub struct Session {
 }
 
 impl Session {
-    /// Answers a call in JSON, with bytes beside it: networks, files. The answer is `{"ok": …}` or `{"error": …}`, with bytes beside it:
-    /// the pixels of a frame.
+    /// Answers a call in JSON, with a network or files as bytes beside it. The answer is `{"ok": …}` or `{"error": …}`,
+    /// with the pixels of a frame as bytes beside it.
     ///
     /// # Example
     /// ```
@@ -188,7 +188,7 @@ impl Session {
         })
     }
 
-    /// Keeps an episode, and says what it is.
+    /// Keeps an episode, and returns its number and its description.
     fn opened(&mut self, episode: Episode) -> Result<Value, Fault> {
         if self.episodes.len() == MAX_EPISODES {
             return Err(Fault::request(format!(

@@ -1,4 +1,4 @@
-//! What a page shows of tasks: the gallery, the parameters of one for sliders and pickers, and what is wrong with a text.
+//! What a page shows of tasks: the gallery, a task's parameters for sliders and pickers, and the problems of a text.
 
 use driftworld::documents::{self, Kind};
 use driftworld::env::Catalogue;
@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use crate::fault::{Fault, problems_of};
 
-/// The most variants that a card shows.
+/// Maximum number of variants that a card shows.
 const SHOWN: usize = 4;
 
 /// All built-in tasks.
@@ -71,7 +71,7 @@ fn described_parameter(name: &str, parameter: &Parameter) -> Value {
     })
 }
 
-/// All that is wrong with a text.
+/// The problems and warnings of a text.
 pub(crate) fn validated(text: &str) -> Value {
     let kind = Kind::of(text);
     let classes = tasks::classes(&Catalogue::default());

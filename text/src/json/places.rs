@@ -24,11 +24,11 @@ pub fn last_key(pointer: &str) -> String {
 pub struct Wanted<'p> {
     /// The pointer.
     pub pointer: &'p str,
-    /// Locate the key in front of the value.
+    /// Whether to locate the key instead of the value.
     pub at_key: bool,
 }
 
-/// Offsets of the values of pointers; for a missing one, of its nearest existing parent.
+/// Offsets of the values at these pointers; for a missing value, of its nearest existing parent.
 pub fn offsets(text: &str, wanted: &[Wanted]) -> Vec<usize> {
     let mut tree = Tree::default();
     let ways: Vec<Vec<usize>> = wanted.iter().map(|wanted| tree.way(wanted.pointer)).collect();
@@ -159,7 +159,7 @@ struct Place {
 struct Tree {
     nodes: Vec<Node>,
     open: Vec<Branch>,
-    /// Of the next value in an object: its node, if it leads to a wanted pointer, and the offset of its key.
+    /// For the next value in an object: its node, if it leads to a wanted pointer, and the offset of its key.
     keyed: (Option<usize>, usize),
 }
 
@@ -247,7 +247,7 @@ impl Tree {
         }
     }
 
-    /// Of repeated keys the last counts, including everything below it.
+    /// Forgets a value and everything below it: of repeated keys, the last one counts.
     fn forget(&mut self, node: usize) {
         if self.nodes[node].place.take().is_some() {
             let below: Vec<usize> = self.nodes[node].keys.values().copied().collect();

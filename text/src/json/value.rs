@@ -16,7 +16,7 @@ pub enum Stop {
     Repeated,
     /// There are more values than allowed.
     TooMany,
-    /// A key is longer than any known key.
+    /// A key is longer than [`MAX_KEY_BYTES`].
     LongKey,
 }
 
@@ -249,7 +249,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
 
-        /// The parser's own values serve as the oracle.
+        /// `serde_json`'s own values serve as the oracle.
         #[test]
         fn values_agree_with_serde_json(value in any_json()) {
             let text = value.to_string();

@@ -9,7 +9,7 @@ use crate::behavior::{ACTION_LENGTH, BEHAVIOR};
 use crate::error::UnityError;
 use crate::protocol::{AgentActionProto, ListAgentActionProto};
 
-/// The only agent's action; without one, it does nothing.
+/// The action of the only agent; three zeros if the message has none.
 pub(super) fn action(
     actions: &BTreeMap<String, ListAgentActionProto>,
     agent: &AgentParams,

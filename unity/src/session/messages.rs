@@ -12,18 +12,18 @@ use crate::side_channel::{
     Payload, Setting, SideChannel, engine_setting, environment_parameter, float_property, id_of, records, text_payload,
 };
 
-/// Most messages handled at a time.
+/// Maximum number of messages handled at a time.
 const MOST_MESSAGES: usize = 1000;
 
-/// Most values in the JSON texts of one batch of messages: those of a world with about twenty thousand objects. A text of only
-/// brackets with that many takes half a gigabyte before it is found to be meaningless; one of 4 MB took 2.8. While texts are
-/// being read, a disconnected client is not noticed.
+/// Maximum number of values in the JSON texts of one batch of messages, enough for a world of about twenty thousand
+/// objects. Reading a text of that many brackets takes half a gigabyte before it is refused; one of 4 MB took 2.8.
+/// While texts are being read, a disconnected client is not noticed.
 const MOST_VALUES: usize = 400_000;
 
-/// Most messages that are parsed, to refuse those beyond [`MOST_MESSAGES`].
+/// Maximum number of messages that are parsed, so that those beyond [`MOST_MESSAGES`] can be refused one by one.
 const MOST_LOOKED_AT: usize = 10_000;
 
-/// Most pixels of screenshots per batch, two of the largest: while they are drawn, a disconnected client is not noticed.
+/// Maximum screenshot pixels per batch, two of the largest: while they are drawn, a disconnected client is not noticed.
 const MOST_POINTS: u64 = 2 << 24;
 
 /// An L2Explorer message: its channel, and its text or the reason why there is none.

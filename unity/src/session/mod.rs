@@ -55,8 +55,8 @@ pub enum Turn {
     Quit,
 }
 
-/// The parts of the behaviour that a client is told once, and again when they change: descriptions of the numbers of an action,
-/// and the length of observations.
+/// The parts of the behaviour that are announced to a client once, and again when they change: descriptions of the
+/// numbers of an action, and the size of observations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Announced {
     words: [&'static str; ACTION_LENGTH],
@@ -102,7 +102,7 @@ pub struct Session {
     remarks: Remarks,
     /// The behaviour as announced to the client.
     announced: Option<Announced>,
-    /// Records episodes if requested, and the finished ones.
+    /// Records episodes, if requested; finished ones go to `recordings`.
     recorder: Option<Recorder>,
     recordings: Vec<Recording>,
 }
@@ -224,7 +224,7 @@ impl Session {
         std::mem::take(&mut self.recordings)
     }
 
-    /// Ends the current episode, when no step follows.
+    /// Ends the recording of the current episode, for use when no step follows.
     pub fn end_recording(&mut self) {
         self.keep_recording(None);
     }
@@ -326,8 +326,8 @@ impl Session {
         Ok(vec![agent, self.decision(0.0, 0)?])
     }
 
-    /// The end of an episode and the start of the next are in one message. Floats always have the same size: if two of them do
-    /// not fit, the error comes at the start and not during training.
+    /// Checks that the end of an episode and the start of the next fit into one message. Images of floats always have
+    /// the same size, so the error is raised at the start and not during training.
     fn check_end_fits(&self, agent: &AgentInfoProto) -> Result<(), UnityError> {
         let world = self.environment.world();
         let can_end = self.album.is_some()
@@ -346,7 +346,7 @@ impl Session {
         let (pictures, client) = (self.pictures, self.client);
         let observations = if let Some(album) = &mut self.album {
             let mut state = album.state(self.environment.world());
-            // Clients were told this length.
+            // This is the announced length.
             state.resize(1 + self.environment.world().agent_params.state_len(), 0.0);
             observations(album.picture()?, state, pictures, client)?
         } else {

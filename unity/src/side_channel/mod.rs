@@ -48,7 +48,7 @@ impl SideChannel {
 
 /// The identifier of one of L2Explorer's channels.
 pub(crate) fn id_of(channel: Channel) -> Uuid {
-    Uuid::try_parse(channel.guid()).expect("the three are written as identifiers are, see the test below")
+    Uuid::try_parse(channel.guid()).expect("all three are valid UUIDs, see the test below")
 }
 
 /// One message on one channel.

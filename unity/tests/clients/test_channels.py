@@ -1,4 +1,4 @@
-"""L2Explorer's three channels: worlds and objects that come in mid-session, what is told of the world, and refusals."""
+"""L2Explorer's three channels: worlds and objects sent mid-session, reports on the world, and rejected messages."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from channels import Channels, RawChannel
 from clients import Client, Launcher
 from worlds import AHEAD, thing, world
 
-#: A colour of the segmentation: what stands there and pays nothing.
+#: Segmentation colour of objects that pay nothing.
 NEUTRAL = np.array([255, 178, 178], dtype=np.float32) / np.float32(255)
 
 
@@ -47,7 +47,7 @@ def test_a_reset_by_message_works_with_a_step_too(client: Client, channels: Chan
     assert moment.now.agent_id == before.agent_id + 1
 
 
-def test_an_object_that_comes_in_mid_episode_is_seen_touched_and_pays(client: Client, channels: Channels) -> None:
+def test_object_created_mid_episode_is_visible_and_pays_when_touched(client: Client, channels: Channels) -> None:
     empty = client.step(AHEAD).now
     assert not (empty.segmentation == NEUTRAL).all(axis=2).any()
     channels.reset.say("object_create", thing(-4, 8), unique_name="onlooker")
@@ -61,7 +61,7 @@ def test_an_object_that_comes_in_mid_episode_is_seen_touched_and_pays(client: Cl
     assert moments[-1].agent_id == empty.agent_id, "the episode goes on"
 
 
-def test_an_object_that_came_in_mid_episode_is_gone_in_the_next(client: Client, channels: Channels) -> None:
+def test_object_created_mid_episode_is_gone_in_the_next(client: Client, channels: Channels) -> None:
     start = client.reset().now
     channels.reset.say("object_create", thing(0, 5))
     assert not client.step().now.equals(start)
@@ -88,7 +88,7 @@ def test_an_object_that_came_in_mid_episode_is_gone_in_the_next(client: Client, 
         ("debug", "", None, "expected one of"),
     ],
 )
-def test_what_is_not_understood_is_answered_by_an_error_and_changes_nothing(
+def test_invalid_request_is_answered_by_an_error_and_changes_nothing(
     client: Client, channels: Channels, channel: str, action: str, payload: Any, expected: str
 ) -> None:
     before = client.step().now
@@ -103,7 +103,7 @@ def test_what_is_not_understood_is_answered_by_an_error_and_changes_nothing(
 
 
 @pytest.mark.parametrize("text", ["", "{", "[]", "null", "\0", '{"action": 3}', "[" * 5000])
-def test_what_is_no_message_is_answered_by_an_error_without_a_token(
+def test_text_that_is_not_a_message_is_answered_by_an_error_without_a_token(
     client: Client, channels: Channels, text: str
 ) -> None:
     for channel in channels.all:
@@ -115,16 +115,14 @@ def test_what_is_no_message_is_answered_by_an_error_without_a_token(
 
 
 @pytest.mark.parametrize("data", [b"", b"\x05", b"\x05\0\0\0abc", b"\xff\xff\xff\xffabc", b"\x01\0\0\0\xff"])
-def test_a_text_that_is_not_as_long_as_it_says_is_answered_by_an_error(
-    client: Client, channels: Channels, data: bytes
-) -> None:
+def test_bytes_without_a_valid_text_are_answered_by_an_error(client: Client, channels: Channels, data: bytes) -> None:
     channels.reset.send_bytes(data)
     client.step()
     (answer,) = channels.reset.take()
     assert answer["action"] == "error" and "message: found" in answer["payload"][0]
 
 
-def test_a_flood_of_messages_is_taken_up_to_a_thousand_and_each_is_answered(client: Client, channels: Channels) -> None:
+def test_a_thousand_messages_per_step_are_accepted_and_all_are_answered(client: Client, channels: Channels) -> None:
     tokens = [channels.reset.say("object_create", thing(number % 38 - 19, -15)) for number in range(1500)]
     channels.state.say("set_active_observers", {"state": ["objects"]})
     client.step()
@@ -162,9 +160,7 @@ def test_observers_are_listed(client: Client, channels: Channels) -> None:
 
 
 @pytest.mark.parametrize("beside", [False, True], ids=["in the payload", "beside the action"])
-def test_active_observers_tell_the_world_as_it_is_after_each_step(
-    client: Client, channels: Channels, beside: bool
-) -> None:
+def test_active_observers_report_the_world_after_each_step(client: Client, channels: Channels, beside: bool) -> None:
     parts = ["agent_params", "objects"]
     if beside:
         token = channels.state.say("set_active_observers", state=parts)
@@ -185,7 +181,7 @@ def test_active_observers_tell_the_world_as_it_is_after_each_step(
     assert [message["action"] for message in channels.state.take()] == ["ok"], "nobody watches any more"
 
 
-def test_debug_categories_are_listed_and_bring_remarks(client: Client, channels: Channels) -> None:
+def test_debug_categories_are_listed_and_enable_debug_messages(client: Client, channels: Channels) -> None:
     token = channels.debug.say("get_debug_categories")
     client.step()
     answer = channels.debug.answer(token)
@@ -229,7 +225,7 @@ def test_the_originals_example_messages_are_understood(client: Client, channels:
     assert list(told["payload"]) == ["agent_params"]
 
 
-def test_messages_on_channels_that_nobody_knows_are_ignored_and_remarked_once(launcher: Launcher) -> None:
+def test_messages_on_unknown_channels_are_ignored_and_logged_once(launcher: Launcher) -> None:
     stranger = RawChannel("0a1b2c3d-0000-1111-2222-333344445555")
     client = launcher.start("-logFile", "remarks.log", channels=[stranger])
     client.reset()
