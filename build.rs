@@ -1,4 +1,5 @@
-//! Puts the page of the workbench into the program, where `DRIFTWORLD_STUDIO` names the folder that `cargo xtask studio` built.
+//! Embeds the page of the workbench in the program if `DRIFTWORLD_STUDIO` names the folder that `cargo xtask studio`
+//! built.
 
 use std::error::Error;
 use std::fmt::Write;
@@ -32,7 +33,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(fs::write(out.join("studio_files.rs"), code)?)
 }
 
-/// The files of a folder and of those in it, by their paths below it.
+/// Lists the files of a folder and its subfolders with their paths relative to it.
 fn list(folder: &Path, above: &str, files: &mut Vec<(String, PathBuf)>) -> Result<(), Box<dyn Error>> {
     for entry in fs::read_dir(folder)? {
         let entry = entry?;
