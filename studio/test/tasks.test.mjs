@@ -305,3 +305,23 @@ task("11 mouse: a rock is put on the map, and taken away", "#/author", async (pa
   await page.keyboard.press("Enter");
   await at(4);
 });
+
+task("12 draft: completion, and an edited task that Back does not replace", "#/author/maze", async (page) => {
+  await page.waitForSelector(".note.good");
+  await tabTo(page, "Text of the task");
+  await page.keyboard.press("Control+Home");
+  await page.keyboard.press("ArrowRight");
+  await page.keyboard.press("Enter");
+  await page.waitForFunction(() => location.hash.startsWith("#/author/draft"));
+  await page.keyboard.press("Control+Space");
+  await page.waitForSelector(".cm-tooltip-autocomplete");
+  await page.keyboard.press("Escape");
+  const edited = await page.evaluate(() => localStorage.getItem("driftworld.draft"));
+  await page.waitForSelector("a.button.main");
+  await page.locator("a.button.main").click();
+  await page.waitForFunction(() => location.hash.startsWith("#/play/draft"));
+  await page.goBack();
+  await page.waitForSelector(".editor");
+  await page.waitForSelector(".note.good");
+  assert.equal(await page.evaluate(() => localStorage.getItem("driftworld.draft")), edited);
+});

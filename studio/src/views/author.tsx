@@ -59,6 +59,7 @@ export function Author({ route }: { route: Route }) {
   const place = useRef<HTMLDivElement>(null);
   const editor = useRef<Editor | null>(null);
   const context = useRef<{ schema: Json; task: Task | null }>({ schema: {}, task: null });
+  const begun = useRef<string | null>(null);
   const [text, setText] = useState(draft.text || TEMPLATES[0]!.text);
   const [variant, setVariant] = useState(route.options["variant"] ?? "");
   const [seed, setSeed] = useState(0);
@@ -78,6 +79,7 @@ export function Author({ route }: { route: Route }) {
       const named = await begunWith(route);
       if (isOver || !place.current) return;
       editor.current = createEditor(place.current, text, () => context.current, setText);
+      begun.current = named;
       if (named !== null) editor.current.replace(named);
       // The text can be read before it can be completed.
       context.current.schema = await engine.schema("task");
@@ -92,6 +94,8 @@ export function Author({ route }: { route: Route }) {
 
   useEffect(() => {
     draft.keep(text);
+    // An edited task is the draft: neither Back nor a reload begins again with the text that the address named.
+    if (begun.current !== null && text !== begun.current) history.replaceState(null, "", hrefOf("author", "draft", { variant }));
     let isOver = false;
     const look = async () => {
       const found = await engine.validate(text);
@@ -182,7 +186,9 @@ export function Author({ route }: { route: Route }) {
           <button type="button" onClick={() => editor.current?.undo()}>Undo</button>
           <button type="button" onClick={() => editor.current?.redo()}>Redo</button>
           <button type="button" onClick={() => saveText(draft.file, draft.text)}>Save {draft.file}</button>
-          <a class="button main" href={hrefOf("play", "draft", { variant: request.variant, seed: seed || undefined, index: index || undefined })}>Play</a>
+          {problems.length > 0
+            ? <button type="button" class="main" disabled title="First mend what is listed below the text.">Play</button>
+            : <a class="button main" href={hrefOf("play", "draft", { variant: request.variant, seed: seed || undefined, index: index || undefined })}>Play</a>}
         </div>
       </div>
       <div class="author">

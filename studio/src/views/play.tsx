@@ -237,7 +237,7 @@ export function Play({ route }: { route: Route }) {
               <button type="button" class="main" onClick={guarded(share)}>Share as a link</button>
               <button type="button" disabled={!you || you.step.step === 0} onClick={guarded(watch)}>Replay</button>
               <button type="button" disabled={!you || you.step.step === 0} onClick={guarded(save)}>Save</button>
-              <a class="button quiet" href={hrefOf("author", task === "draft" ? "" : task)}>Edit the task</a>
+              <a class="button quiet" href={hrefOf("author", task === "draft" ? "" : task, { variant })}>Edit the task</a>
             </div>
             <p class="small faint" role="status">{shared}</p>
             {link && <input type="text" readOnly value={link} aria-label="The link" onFocus={(event) => event.currentTarget.select()} />}

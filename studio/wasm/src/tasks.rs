@@ -89,9 +89,9 @@ pub(crate) fn validated(text: &str) -> Value {
 /// The schema of a kind of document.
 pub(crate) fn schema_of(kind: &str) -> Result<Value, Fault> {
     let all = schema::all();
-    let found = all.iter().find(|(name, _)| *name == kind);
-    found.map(|(_, schema)| schema.json().clone()).ok_or_else(|| {
-        let names: Vec<&str> = all.iter().map(|(name, _)| *name).collect();
-        Fault::request(format!("schema: found {kind:?}, expected one of {}", names.join(", ")))
-    })
+    let kinds = all.map(|(name, _)| name.trim_end_matches(".schema.json"));
+    let found = all.iter().zip(kinds).find(|(_, known)| *known == kind);
+    found
+        .map(|((_, schema), _)| schema.json().clone())
+        .ok_or_else(|| Fault::request(format!("schema: found {kind:?}, expected one of {}", kinds.join(", "))))
 }
