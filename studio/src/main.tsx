@@ -55,7 +55,12 @@ function App() {
     const go = () => {
       const next = parseRoute(location.hash);
       setRoute((last) => {
-        if (last.view !== next.view) requestAnimationFrame(() => main.current?.focus({ preventScroll: true }));
+        if (last.view !== next.view) {
+          requestAnimationFrame(() => {
+            scrollTo(0, 0);
+            main.current?.focus({ preventScroll: true });
+          });
+        }
         return next;
       });
     };

@@ -42,14 +42,19 @@ export function VariantPicker({ variants, variant, pick, label = "Variant", isNa
   );
 }
 
-/** A whole number from 0. */
+/** A whole number from 0; anything else is not taken, and the number before it is shown again. */
 export function NumberPicker({ label, value, pick }: { label: string; value: number; pick: (value: number) => void }) {
   return (
     <label class="field">
       {label}
       <input
         type="number" min={0} step={1} value={value}
-        onChange={(event) => pick(Math.max(0, Math.floor(event.currentTarget.valueAsNumber) || 0))}
+        onChange={(event) => {
+          const typed = event.currentTarget.valueAsNumber;
+          const taken = Number.isSafeInteger(typed) && typed >= 0 ? typed : value;
+          event.currentTarget.value = String(taken);
+          pick(taken);
+        }}
       />
     </label>
   );
