@@ -46,8 +46,8 @@ pub use log::{
     BlockSubtype, BlockType, Complexity, DEFAULT_WORKER, Delimiter, Difficulty, ExpStatus, KeptRows,
     LOG_FORMAT_VERSION, Log, LogCounts, LogTable, LogWarning, LogWriter, LoggerInfo, MAX_CELL_BYTES, MAX_CELLS,
     MAX_COLUMNS, MAX_FILE_BYTES, MAX_JSON_BYTES, MAX_JSON_VALUES, MAX_LISTED, MAX_LOG_FILES, MAX_RECORDS, Record, Row,
-    Rows, ScenarioInfo, ScenarioType, SharedColumn, SteStoreMode, StoredRun, StoredTask, TaskParams, Timestamp,
-    Validation, begun_log, find_ste, read_log, read_log_with_texts, store_ste, validate_log,
+    Rows, STANDARD_COLUMNS, ScenarioInfo, ScenarioType, SharedColumn, SteStoreMode, StoredRun, StoredTask, TaskParams,
+    Timestamp, Validation, begun_log, find_ste, read_log, read_log_with_texts, store_ste, validate_log,
 };
 pub use options::{
     AggregationMethod, Anchors, DataRange, DataRanges, Definitions, MAX_WINDOW_LENGTH, MaintenanceMethod, Noise,

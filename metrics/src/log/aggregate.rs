@@ -7,7 +7,7 @@ use std::io::{self, Write};
 use driftworld_text::Cells;
 use serde::Deserialize;
 
-use super::columns::{STANDARD, delimited};
+use super::columns::{STANDARD_COLUMNS, delimited};
 use super::record::ExpStatus;
 use super::rows::Row;
 use super::table::{MAX_CELLS, MAX_RECORDS};
@@ -109,7 +109,7 @@ impl LogTable {
         };
         let has_run_id = self.logs.len() > 1;
         let [run_id, regime_num] = ADDED;
-        let [block_num, others @ ..] = STANDARD;
+        let [block_num, others @ ..] = STANDARD_COLUMNS;
         let names = has_run_id.then_some(run_id).into_iter();
         let names = names.chain([block_num, regime_num]).chain(others);
         write(

@@ -3,7 +3,7 @@
 use crate::Record;
 
 /// The columns of every log of format 1.1, in order; the metrics follow alphabetically.
-pub(super) const STANDARD: [&str; 9] = [
+pub const STANDARD_COLUMNS: [&str; 9] = [
     "block_num",
     "exp_num",
     "worker_id",
@@ -27,7 +27,7 @@ pub(super) fn metric_columns(record: &Record) -> Vec<String> {
 
 /// The whole header of a log with these metrics.
 pub(super) fn header(metrics: &[String]) -> Vec<String> {
-    STANDARD
+    STANDARD_COLUMNS
         .iter()
         .map(ToString::to_string)
         .chain(metrics.iter().cloned())

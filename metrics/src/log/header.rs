@@ -5,7 +5,7 @@ use std::path::Path;
 use csv::StringRecord;
 
 use super::cell::{Cell, cut, listed, shown};
-use super::columns::{SINCE_1_1, STANDARD};
+use super::columns::{SINCE_1_1, STANDARD_COLUMNS};
 use super::data_file::MAX_CELL_BYTES;
 use super::faults::Faults;
 use super::record::{BlockSubtype, BlockType, ExpStatus};
@@ -17,7 +17,7 @@ use crate::{LogLine, MetricsError};
 pub(super) struct Header<'a> {
     path: &'a Path,
     pub(super) names: Vec<String>,
-    standard: [usize; STANDARD.len()],
+    standard: [usize; STANDARD_COLUMNS.len()],
     /// Position of `block_subtype`, which logs of format 1.0 lack.
     subtype: Option<usize>,
     /// Positions of the columns that must hold numbers.
@@ -46,13 +46,13 @@ impl<'a> Header<'a> {
             });
         }
         let place = |column: &str| names.iter().position(|name| name == column);
-        if STANDARD.iter().all(|column| place(column).is_none()) {
+        if STANDARD_COLUMNS.iter().all(|column| place(column).is_none()) {
             return Err(MetricsError::NoHeader {
                 path: path.to_owned(),
                 found: cut(&names.join(" ")),
             });
         }
-        let needed = (STANDARD.into_iter().filter(|column| *column != SINCE_1_1))
+        let needed = (STANDARD_COLUMNS.into_iter().filter(|column| *column != SINCE_1_1))
             .chain(metrics_columns.iter().map(String::as_str));
         let absent = needed.filter(|column| place(column).is_none());
         let missing = absent.map(|column| MetricsError::MissingColumn {
@@ -74,13 +74,13 @@ impl<'a> Header<'a> {
         }
         // Every required column exists.
         let metrics: Vec<usize> = metrics_columns.iter().filter_map(|column| place(column)).collect();
-        let is_other = |index: &usize| !metrics.contains(index) && !STANDARD.contains(&names[*index].as_str());
+        let is_other = |index: &usize| !metrics.contains(index) && !STANDARD_COLUMNS.contains(&names[*index].as_str());
         let others: Vec<usize> = (0..names.len()).filter(is_other).collect();
         let numbers = table.begin_columns(others.iter().map(|&index| names[index].as_str()))?;
         Ok(Self {
             path,
             subtype: place(SINCE_1_1),
-            standard: STANDARD.map(|column| place(column).unwrap_or_default()),
+            standard: STANDARD_COLUMNS.map(|column| place(column).unwrap_or_default()),
             others: others.into_iter().zip(numbers).collect(),
             metrics,
             names,

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::cell::cut;
-use super::columns::STANDARD;
+use super::columns::STANDARD_COLUMNS;
 use super::json_file;
 use super::table::MAX_COLUMNS;
 use crate::MetricsError;
@@ -83,7 +83,7 @@ fn check_columns(columns: &[String]) -> Result<(), MetricsError> {
     let repeated = columns.iter().collect::<BTreeSet<_>>().len() < columns.len();
     let unusable = columns
         .iter()
-        .any(|name| name.is_empty() || STANDARD.contains(&name.as_str()));
+        .any(|name| name.is_empty() || STANDARD_COLUMNS.contains(&name.as_str()));
     if columns.is_empty() || repeated || unusable {
         return Err(wrong_columns(&format!("{columns:?}")));
     }

@@ -33,6 +33,7 @@ mod writer;
 
 pub use aggregate::{Delimiter, KeptRows, LogTable};
 pub use begun::begun_log;
+pub use columns::STANDARD_COLUMNS;
 pub use data_file::{MAX_CELL_BYTES, MAX_FILE_BYTES};
 pub use data_files::MAX_LOG_FILES;
 pub use faults::MAX_LISTED;

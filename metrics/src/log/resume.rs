@@ -74,7 +74,7 @@ fn latest(rows: &Rows) -> Vec<usize> {
 fn metrics_of(header: &[String]) -> Vec<String> {
     let mut metrics: Vec<String> = header
         .iter()
-        .filter(|name| !columns::STANDARD.contains(&name.as_str()))
+        .filter(|name| !columns::STANDARD_COLUMNS.contains(&name.as_str()))
         .cloned()
         .collect();
     metrics.sort();

@@ -306,7 +306,7 @@ fn check_cells(record: &Record) -> Result<(), MetricsError> {
         ));
     }
     for (name, value) in &record.metrics {
-        if name.is_empty() || columns::STANDARD.contains(&name.as_str()) {
+        if name.is_empty() || columns::STANDARD_COLUMNS.contains(&name.as_str()) {
             let expected = "a name that is not empty and not a standard column's".to_owned();
             return Err(bad_record(record, "metrics", cell::shown(name), expected));
         }
@@ -316,7 +316,7 @@ fn check_cells(record: &Record) -> Result<(), MetricsError> {
         }
     }
     for name in record.texts.keys() {
-        if name.is_empty() || columns::STANDARD.contains(&name.as_str()) || record.metrics.contains_key(name) {
+        if name.is_empty() || columns::STANDARD_COLUMNS.contains(&name.as_str()) || record.metrics.contains_key(name) {
             let expected = "a name that is not empty and neither a standard column's nor a metric's".to_owned();
             return Err(bad_record(record, "texts", cell::shown(name), expected));
         }

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use std::io::Cursor;
 
 use driftworld::env::{Recording, RecordingReader};
+use driftworld::metrics::STANDARD_COLUMNS;
 use serde_json::{Value, json};
 
 use crate::call::File;
@@ -13,32 +14,10 @@ use crate::fault::Fault;
 /// Maximum number of rows of a log.
 const MAX_ROWS: usize = 1_000_000;
 
-/// Columns that are not metrics.
-const COLUMNS: [&str; 9] = [
-    "block_num",
-    "exp_num",
-    "worker_id",
-    "block_type",
-    "block_subtype",
-    "task_name",
-    "task_params",
-    "exp_status",
-    "timestamp",
-];
-
 /// The recordings of the log that was read last.
 #[derive(Default)]
 pub(crate) struct Log {
     recordings: Vec<Vec<u8>>,
-}
-
-/// The cells of a row of a table. In quoted cells, a doubled quote means one quote; they cannot contain tabs.
-fn cells(line: &str) -> Vec<String> {
-    let unquoted = |cell: &str| match cell.strip_prefix('"').and_then(|cell| cell.strip_suffix('"')) {
-        Some(inner) => inner.replace("\"\"", "\""),
-        None => cell.to_owned(),
-    };
-    line.trim_end_matches('\r').split('\t').map(unquoted).collect()
 }
 
 impl Log {
@@ -121,8 +100,10 @@ fn read_rows(
     warnings: &mut Vec<String>,
 ) -> Result<(), Fault> {
     let text = String::from_utf8_lossy(bytes);
-    let mut lines = text.lines();
-    let header = cells(lines.next().unwrap_or_default());
+    let mut table = csv::ReaderBuilder::new();
+    let mut table = table.delimiter(b'\t').flexible(true).from_reader(text.as_bytes());
+    let unreadable = |error: csv::Error| Fault::new("log/header", format!("{path}: {error}"));
+    let header = table.headers().map_err(unreadable)?.clone();
     let place = |name: &str| header.iter().position(|column| column == name);
     let needed = ["block_num", "exp_num", "block_type", "task_name"].map(place);
     let [Some(block), Some(experience), Some(kind), Some(task)] = needed else {
@@ -130,18 +111,18 @@ fn read_rows(
             "log/header",
             format!(
                 "{path}:1: found the columns {}, expected those of a log",
-                header.join(", ")
+                header.iter().collect::<Vec<_>>().join(", ")
             ),
         ));
     };
-    for name in header.iter().filter(|name| !COLUMNS.contains(&name.as_str())) {
-        if !metrics.contains(name) {
-            metrics.push(name.clone());
+    for name in header.iter().filter(|name| !STANDARD_COLUMNS.contains(name)) {
+        if !metrics.iter().any(|known| known == name) {
+            metrics.push(name.to_owned());
         }
     }
     let (reward, steps) = (place("reward"), place("steps").or_else(|| place("episode_step_count")));
-    for (number, line) in (2..).zip(lines) {
-        let cells = cells(line);
+    for (number, cells) in (2..).zip(table.records()) {
+        let cells = cells.map_err(unreadable)?;
         if cells.len() != header.len() {
             warnings.push(format!(
                 "{path}:{number}: found {} cells, expected {}; left out",
@@ -158,8 +139,8 @@ fn read_rows(
         }
         let whole = |place: usize| cells[place].parse::<u64>().unwrap_or_default();
         let number = |place: Option<usize>| place.and_then(|place| cells[place].parse::<f64>().ok());
-        if !tasks.contains(&cells[task]) {
-            tasks.push(cells[task].clone());
+        if !tasks.iter().any(|known| *known == cells[task]) {
+            tasks.push(cells[task].to_owned());
         }
         rows.push(json!({
             "block": whole(block), "experience": whole(experience), "block_type": cells[kind], "task": cells[task],
@@ -167,4 +148,29 @@ fn read_rows(
         }));
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_are_read_as_the_log_quotes_them() {
+        let text = "block_num\texp_num\tblock_type\ttask_name\treward\r\n0\t7\ttrain\t\"a\t\"\"b\"\"\"\t2.5\r\n0\t8\ttrain\r\n";
+        let file = File {
+            path: "log/data-log.tsv".to_owned(),
+            length: text.len(),
+        };
+        let (_, found) = Log::read(&[file], text.as_bytes()).expect("it is a log");
+        assert_eq!(
+            (&found["tasks"], &found["metrics"]),
+            (&json!(["a\t\"b\""]), &json!(["reward"]))
+        );
+        let episode = &found["episodes"][0];
+        assert_eq!((&episode["experience"], &episode["reward"]), (&json!(7), &json!(2.5)));
+        assert_eq!(
+            found["warnings"],
+            json!(["log/data-log.tsv:3: found 3 cells, expected 5; left out"])
+        );
+    }
 }
