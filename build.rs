@@ -12,7 +12,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut files = Vec::new();
     if let Some(folder) = env::var_os("DRIFTWORLD_STUDIO").map(PathBuf::from) {
         let folder = folder.canonicalize().map_err(|error| {
-            format!("DRIFTWORLD_STUDIO: found a folder that cannot be opened ({error}), expected the whole path of the folder that `cargo xtask studio` built")
+            format!(
+                "DRIFTWORLD_STUDIO: found a folder that cannot be opened ({error}), expected the whole path of the folder \
+                 that `cargo xtask studio` built"
+            )
         })?;
         let shown = folder
             .to_str()

@@ -54,6 +54,14 @@ fn served(folder: &Path, arguments: &[&str]) -> (Serving, String) {
     (Serving(child), address.trim().to_owned())
 }
 
+/// The host of an address, the token of its path, and its fragment.
+fn parts(address: &str) -> (&str, &str, &str) {
+    let (before, fragment) = address.split_once('#').expect("a task is shown");
+    let host_and_token = before.trim_start_matches("http://").split_once('/');
+    let (host, token) = host_and_token.expect("it has a path");
+    (host, token, fragment)
+}
+
 /// What a path of a host gets: the status, and the body.
 fn get(host: &str, path: &str) -> (u16, String) {
     let mut stream = TcpStream::connect(host).expect("it listens");
@@ -75,12 +83,8 @@ fn only_the_page_is_served_and_only_below_its_token() {
     let folder = scratch();
     page(folder.path());
     let (_serving, address) = served(folder.path(), &["find_objects#red"]);
-    let (before, fragment) = address.split_once('#').expect("a task is shown");
+    let (host, token, fragment) = parts(&address);
     assert_eq!(fragment, "/play/find_objects?variant=red");
-    let (host, token) = before
-        .trim_start_matches("http://")
-        .split_once('/')
-        .expect("it has a path");
     assert!(host.starts_with("127.0.0.1:") && token.len() > 32, "{address}");
     assert_eq!(get(host, &format!("/{token}")), (200, "<p>page</p>".to_owned()));
     assert_eq!(get(host, &format!("/{token}networks/index.json")).0, 200);
@@ -102,12 +106,8 @@ fn a_task_of_a_file_lies_beside_the_page() {
     let text = "{ \"name\": \"mine\", \"world\": {} }";
     std::fs::write(folder.path().join("mine.json"), text).expect("the folder is ours");
     let (_serving, address) = served(folder.path(), &["mine.json"]);
-    let (before, fragment) = address.split_once('#').expect("a task is shown");
+    let (host, token, fragment) = parts(&address);
     assert_eq!(fragment, "/author/draft?file=task.json");
-    let (host, token) = before
-        .trim_start_matches("http://")
-        .split_once('/')
-        .expect("it has a path");
     assert_eq!(get(host, &format!("/{token}task.json")), (200, text.to_owned()));
 }
 

@@ -80,7 +80,10 @@ pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome> {
         return missing("STUDIO", lack.join("; "));
     }
     if let Err(reason) = install(workspace) {
-        return missing("STUDIO", format!("the packages of the page cannot be had: {reason}"));
+        return missing(
+            "STUDIO",
+            format!("the packages of the page could not be installed: {reason}"),
+        );
     }
     bundle(workspace)?;
     run(npm(workspace, &["run", "--silent", "check"]))?;
