@@ -22,6 +22,9 @@ const ANY_GYMNASIUM: [&str; 4] = [
     "tests/test_check.py",
 ];
 
+/// What the package's quick tests import.
+const PACKAGE_LIST: &str = "python/tests/requirements.txt";
+
 /// A virtual environment.
 pub(crate) struct Environment {
     interpreter: PathBuf,
@@ -137,7 +140,7 @@ pub(crate) fn documents(workspace: &Workspace) -> Result<Outcome> {
 
 /// Checks and tests the package with the libraries that are quick to install, then with the oldest Gymnasium instead.
 pub(crate) fn package(workspace: &Workspace) -> Result<Outcome> {
-    let tests = match quick_environment(workspace, "python/tests/requirements.txt") {
+    let tests = match quick_environment(workspace, PACKAGE_LIST) {
         Ok(tests) => tests,
         Err(reason) => return missing("PYTHON", reason),
     };
@@ -168,6 +171,13 @@ pub(crate) fn learners(workspace: &Workspace) -> Result<Outcome> {
         }
         Err(reason) => missing("LEARNERS", reason),
     }
+}
+
+/// An interpreter that imports the installed package, for tests in other languages.
+pub(crate) fn with_package(workspace: &Workspace) -> Result<PathBuf> {
+    let tests = quick_environment(workspace, PACKAGE_LIST)?;
+    tests.install_driftworld(workspace)?;
+    Ok(tests.interpreter)
 }
 
 /// The environment of the quick tests, with the packages of a list.

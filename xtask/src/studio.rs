@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use std::process::Command;
 
 use crate::process::{Result, Workspace, about, output, run, works};
+use crate::python;
 use crate::stage::{Outcome, missing};
 
 const TARGET: &str = "wasm32-unknown-unknown";
@@ -101,6 +102,13 @@ pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome> {
         .env("CARGO_TARGET_DIR", &workspace.target)
         .env("DRIFTWORLD_PAGE", &page)
         .env("DRIFTWORLD_COMMAND", &command);
+    match python::with_package(workspace) {
+        Ok(interpreter) => tests.env("DRIFTWORLD_PYTHON", interpreter),
+        Err(reason) => {
+            println!("the page's programs in Python are not run: {reason}");
+            tests.env_remove("DRIFTWORLD_PYTHON")
+        }
+    };
     if workspace.is_full {
         tests.env("DRIFTWORLD_FULL", "1");
     }
