@@ -49,6 +49,8 @@ LAYOUT: dict[str, tuple[str, str, dict[str, list[str]]]] = {
                 "variants",
                 "validate",
                 "elements",
+                "studio",
+                "Studio",
             ]
         },
     ),

@@ -27,6 +27,7 @@ from driftworld.recordings import Recording, replay
 from driftworld.scores import Metrics, metrics, report
 from driftworld.specs import Drift, TaskSpec, Variant, built_in_tasks, task_groups, validate, variant, variants
 from driftworld.vector_lifetimes import VectorAgent, VectorTransition
+from driftworld.workbench import Studio, studio
 
 __version__: str = _native.__version__
 __all__ = [
@@ -51,6 +52,7 @@ __all__ = [
     "Recording",
     "SimilarityError",
     "SpecError",
+    "Studio",
     "Summary",
     "TaskError",
     "TaskSpec",
@@ -70,6 +72,7 @@ __all__ = [
     "report",
     "segmentation_classes",
     "spread_seeds",
+    "studio",
     "task_groups",
     "validate",
     "validate_log",
