@@ -4,6 +4,7 @@ use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::Mutex;
 
 use crate::process::{Result, Workspace, about, run, works};
 use crate::stage::{Outcome, missing};
@@ -88,6 +89,9 @@ impl Environment {
     /// Installs the wheel without dependencies, which exist already. One interpreter builds it for all environments, so that
     /// Cargo has nothing to rebuild.
     pub(crate) fn install_driftworld(&self, workspace: &Workspace) -> Result {
+        // Two stages may want it at once, and the files have the same names.
+        static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
+        let _turn = ONE_AT_A_TIME.lock();
         let builder = Self::with(workspace, &interpreter(ANY).ok_or(NO_INTERPRETER)?, "newcomer", &[])?;
         let wheels = workspace.target.join("python/wheels");
         let wheels = wheels.to_str().ok_or("the build folder's path is not UTF-8")?;

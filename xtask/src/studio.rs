@@ -5,6 +5,7 @@ use std::env;
 use std::fs;
 use std::path::PathBuf;
 use std::process::Command;
+use std::thread;
 
 use crate::process::{Result, Workspace, about, output, run, works};
 use crate::python;
@@ -86,17 +87,24 @@ pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome> {
             format!("the packages of the page could not be installed: {reason}"),
         );
     }
-    bundle(workspace)?;
-    run(npm(workspace, &["run", "--silent", "check"]))?;
-    // The native tests have already built most of this.
-    run(workspace.cargo_everywhere(&["build", "--example", "answers", "--bin", "driftworld"]))?;
+    thread::scope(|scope| {
+        // Linking the simulator as one unit keeps one core busy.
+        let page = scope.spawn(|| bundle(workspace));
+        // The native tests have already built most of this.
+        run(workspace.cargo_everywhere(&["build", "--example", "answers", "--bin", "driftworld"]))?;
+        run(npm(workspace, &["run", "--silent", "check"]))?;
+        page.join().expect("it returns its errors")
+    })?;
     let command = workspace.target.join("debug/driftworld");
     let page = workspace.target.join("studio");
     // The same export that the page's own documentation describes.
     let mut export = workspace.program(&command, &["studio", "--export"]);
     export.arg(workspace.target.join("studio-export"));
     run(export)?;
-    let mut tests = workspace.program("node".as_ref(), &["--test", "--test-reporter=spec"]);
+    let mut tests = workspace.program(
+        "node".as_ref(),
+        &["--test", "--test-concurrency=2", "--test-reporter=spec"],
+    );
     tests
         .args(test_files(workspace)?)
         .env("CARGO_TARGET_DIR", &workspace.target)
