@@ -130,9 +130,13 @@ fn command_line() -> String {
     let mut given = given.into_iter().skip(1);
     while let Some(next) = given.next() {
         // The paths of the page and the figures do not affect the contents.
-        if ["-o", "--output", "--plots"].iter().any(|option| next == *option) {
+        let shown = next.to_string_lossy();
+        if ["-o", "--output", "--plots"].iter().any(|option| shown == *option) {
             given.next();
-        } else {
+        } else if !["-o", "--output=", "--plots="]
+            .iter()
+            .any(|start| shown.starts_with(start))
+        {
             words.push(word(next));
         }
     }

@@ -62,12 +62,11 @@ fn lifetime_becomes_a_page_and_figures_with_its_scenarios_distances() {
         4,
         "a view and a map of each"
     );
-    succeed_in(folder.path(), "report log -o again.html");
-    assert_eq!(
-        read(folder.path().join("again.html")),
-        page,
-        "the same log gives the same bytes"
-    );
+    for named in ["-o again.html", "-oagain.html", "--output=again.html --plots=more"] {
+        succeed_in(folder.path(), &format!("report log {named}"));
+        let again = read(folder.path().join("again.html"));
+        assert_eq!(again, page, "the same log gives the same bytes: {named}");
+    }
 }
 
 #[test]
