@@ -53,8 +53,10 @@ IMAGES: dict[str, list[str]] = {
     "models.png": ["assets show -o {}"],
     "demo.png": [f"sheet {of('find_objects', 'blue red green dusk huddle penalty')} --seed 7 --size 200 -o {{}}"],
     "six-families.png": [
-        "sheet key_corridor#red maze#medium collect_health#four put_next#one lava_crossing#lava obstacle_course#crowded --size 120"
-        " --columns 3 -o {}"
+        (
+            "sheet key_corridor#red maze#medium collect_health#four put_next#one lava_crossing#lava obstacle_course#crowded"
+            " --size 120 --columns 3 -o {}"
+        )
     ],
     "distances.png": ["demo -o {tmp}/demo"],
     "order.png": [f"order {of('find_objects', ORDERED)} --order two-opt --start find_objects#blue --plot {{}}"],
