@@ -44,6 +44,8 @@ step env/bin/driftworld render find_objects -o first.png
 step env/bin/python -c "import driftworld, gymnasium; print(gymnasium.make('driftworld/FindObjects-v0').reset(seed=0)[0]['rgb'].shape)"
 step env/bin/python -m driftworld.check find_objects
 step env/bin/driftworld demo
+step env/bin/driftworld studio --export page
+test -s page/index.html
 du -sm env
 for archive in ./*.tar.gz; do
     [ -e "$archive" ] || continue

@@ -154,7 +154,7 @@ impl<'a> Safetensors<'a> {
             .iter()
             .map(|axis| axis.map_or("n".to_owned(), |n| n.to_string()))
             .collect();
-        let expected = format!("F32 [{}]", axes.join(","));
+        let expected = format!("F32 or BF16 [{}]", axes.join(","));
         let Some(entry) = self.tensors.get(name) else {
             return Err(self.bad(name, "none", expected));
         };
@@ -163,14 +163,16 @@ impl<'a> Safetensors<'a> {
         };
         let fits = tensor.shape.len() == shape.len()
             && (tensor.shape.iter().zip(shape)).all(|(found, axis)| axis.map_or(*found > 0, |axis| axis == *found));
-        if tensor.dtype != "F32" || !fits {
-            let found = format!("{} {}", tensor.dtype, shown(&Value::from(tensor.shape)));
-            return Err(self.bad(name, found, expected));
-        }
-        let bytes = tensor
-            .shape
-            .iter()
-            .try_fold(4_u64, |bytes, axis| bytes.checked_mul(*axis));
+        let width = match tensor.dtype.as_str() {
+            "F32" if fits => 4_u64,
+            "BF16" if fits => 2,
+            other => {
+                let found = format!("{other} {}", shown(&Value::from(tensor.shape)));
+                return Err(self.bad(name, found, expected));
+            }
+        };
+        let mut axes = tensor.shape.iter();
+        let bytes = axes.try_fold(width, |bytes, axis| bytes.checked_mul(*axis));
         let [start, end] = tensor.data_offsets;
         let is_as_long = bytes == end.checked_sub(start).map(|length| length as u64);
         let data = is_as_long.then(|| self.data.get(start..end)).flatten();
@@ -182,12 +184,16 @@ impl<'a> Safetensors<'a> {
             );
             return Err(self.bad(name, format!("data_offsets [{start},{end}]"), expected));
         };
-        let numbers: Vec<f32> = data
-            .as_chunks()
-            .0
-            .iter()
-            .map(|bytes| f32::from_le_bytes(*bytes))
-            .collect();
+        let numbers: Vec<f32> = if width == 4 {
+            let chunks = data.as_chunks().0.iter();
+            chunks.map(|bytes| f32::from_le_bytes(*bytes)).collect()
+        } else {
+            // The upper half of a number of 32 bits.
+            let chunks = data.as_chunks().0.iter();
+            chunks
+                .map(|[low, high]| f32::from_le_bytes([0, 0, *low, *high]))
+                .collect()
+        };
         match numbers.iter().find(|number| !number.is_finite()) {
             Some(number) => Err(self.bad(name, number.to_string(), "finite numbers")),
             None => Ok(numbers),

@@ -120,6 +120,27 @@ fn changed(from: &str, to: &str) -> Vec<u8> {
     [&(header.len() as u64).to_le_bytes(), header.as_bytes(), data].concat()
 }
 
+#[test]
+fn numbers_of_two_bytes_are_upper_halves() {
+    let length = u64::from_le_bytes(*NETWORK.first_chunk().expect("eight bytes")) as usize;
+    let (header, data) = NETWORK[8..].split_at(length);
+    let rounded: Vec<[u8; 4]> = data.as_chunks().0.iter().map(|[_, _, c, d]| [0, 0, *c, *d]).collect();
+    let halves: Vec<u8> = rounded.iter().flat_map(|bytes| &bytes[2..]).copied().collect();
+    let mut tensors: serde_json::Value = serde_json::from_slice(header).expect("JSON");
+    for tensor in tensors.as_object_mut().expect("tensors").values_mut().skip(1) {
+        let offsets = [0, 1].map(|k| tensor["data_offsets"][k].as_u64().expect("a place") / 2);
+        (tensor["dtype"], tensor["data_offsets"]) = ("BF16".into(), offsets.as_slice().into());
+    }
+    let short = tensors.to_string();
+    let file = |header: &[u8], data: &[u8]| [&(header.len() as u64).to_le_bytes(), header, data].concat();
+    let [long, short] = [file(header, rounded.as_flattened()), file(short.as_bytes(), &halves)]
+        .map(|file| file::read("halves", &file).expect("a network").network);
+    assert_eq!(
+        long.log_policy(&[77; 16 * 16 * 3]),
+        short.log_policy(&[77; 16 * 16 * 3])
+    );
+}
+
 fn refusal(bytes: &[u8]) -> String {
     let refused = NetworkAgent::parse("a.safetensors", bytes).map(|_| "taken".to_owned());
     refused.unwrap_or_else(|error| error.to_string())

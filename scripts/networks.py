@@ -1,0 +1,101 @@
+"""Trains PPO in some families, one network each, for examples/networks: the workbench plays them, the README films one.
+
+    python scripts/networks.py [NAME]... [--jobs 2] [--film target/release/driftworld]
+
+Files that exist are kept. Prints for each new one the mean reward and the success rate in 100 other worlds. Training
+takes half a minute to three minutes on a core, and needs PyTorch.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import subprocess
+import tempfile
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any
+
+from driftworld import Curriculum
+from driftworld.logs import read_log
+
+ROOT = Path(__file__).parents[1]
+NETWORKS, SCALES, FILM = ROOT / "examples/networks", ROOT / "examples/families.json", ROOT / "docs/images/trained.gif"
+NUM_ENVS, WORLDS = 64, 100
+ACTIONS = [[10, 0, 0], [10, 27, 0], [10, -27, 0], [3, 90, 0], [3, -90, 0]]
+OPTIONS: dict[str, Any] = {"modalities": "rgb", "size": 32, "actions": ACTIONS, "interact": False, "frame_skip": 5}
+#: Decisions for each family.
+DECISIONS = {
+    "obstacle_course": 150_000, "hallway": 100_000, "one_room": 150_000, "t_maze": 150_000, "sidewalk": 200_000,
+    "y_maze": 500_000, "collect_health": 500_000,
+}  # fmt: skip
+
+
+def train(name: str) -> tuple[str, float, float]:
+    """Learns a family's first variant, writes the network, and evaluates it in other worlds."""
+    import torch
+    from driftworld.learners import PPO, Settings
+
+    torch.set_num_threads(1)
+    variant, scale = next(iter(json.loads(SCALES.read_text(encoding="utf-8"))[name].items()))
+    if name == "obstacle_course":
+        variant = "crowded"
+    count = DECISIONS[name]
+    blocks = [
+        {"type": "learning", "regimes": [{"task": name, "variant": variant, "count": count, "steps": count, "seed": 1}]},
+        {"type": "evaluation", "regimes": [{"task": name, "variant": variant, "count": WORLDS, "seed": 2}]},
+    ]
+    plan = Curriculum.from_dict({"version": 1, "name": "network", "blocks": blocks})
+    reward_scale = 2.0 / (scale["planner"] - scale["random"])
+    learner = PPO(len(ACTIONS), NUM_ENVS, seed=1, size=32, settings=Settings(annealing=count, reward_scale=reward_scale))
+    with tempfile.TemporaryDirectory() as place:
+        plan.run_vector(learner, Path(place) / "log", num_envs=NUM_ENVS, num_threads=1, check_frozen=False, **OPTIONS)
+        columns = read_log(Path(place) / "log").columns
+    learner.export(NETWORKS / f"{name}.safetensors", actions=ACTIONS, frame_skip=5, interact=False)
+    halve(NETWORKS / f"{name}.safetensors")
+    evaluated = columns["block_type"] != "train"
+    return name, float(columns["reward"][evaluated].astype(float).mean()), float(columns["success"][evaluated].astype(float).mean())
+
+
+def halve(file: Path) -> None:
+    """Rounds the numbers of a network from four bytes to two, as BF16; the value head, which nobody reads, goes."""
+    import numpy as np
+
+    content = file.read_bytes()
+    start = 8 + int.from_bytes(content[:8], "little")
+    header, numbers = json.loads(content[8:start]), np.frombuffer(content, "<u4", offset=start)
+    parts, end = [], 0
+    tensors = {"__metadata__": header.pop("__metadata__")}
+    for name, tensor in header.items():
+        if tensor["dtype"] == "F32" and not name.startswith("value."):
+            begin, stop = (offset // 4 for offset in tensor["data_offsets"])
+            wide = numbers[begin:stop]
+            # To the nearest, ties to even.
+            parts.append(((wide + 0x7FFF + (wide >> 16 & 1)) >> 16).astype("<u2").tobytes())
+            tensors[name] = {"dtype": "BF16", "shape": tensor["shape"], "data_offsets": [end, end + len(parts[-1])]}
+            end += len(parts[-1])
+    text = json.dumps(tensors).encode()
+    text += b" " * (-len(text) % 8)
+    file.write_bytes(len(text).to_bytes(8, "little") + text + b"".join(parts))
+
+
+def main() -> None:
+    """Trains what is missing, and films the obstacle course."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("names", nargs="*", metavar="NAME", default=list(DECISIONS))
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--film", metavar="COMMAND", help="draw the README's film anew by this command")
+    given = parser.parse_args()
+    wanted = [name for name in given.names if not (NETWORKS / f"{name}.safetensors").is_file()]
+    with ProcessPoolExecutor(given.jobs, mp_context=get_context("spawn"), max_tasks_per_child=1) as pool:
+        for done in as_completed([pool.submit(train, name) for name in wanted]):
+            print(*done.result(), flush=True)
+    if given.film:
+        network = NETWORKS / "obstacle_course.safetensors"
+        words = ["film", "obstacle_course#crowded", "--agent", f"net:{network}", "--index", "2", "--size", "176", "-o", FILM]
+        subprocess.run([given.film, *words], check=True)
+
+
+if __name__ == "__main__":
+    main()
