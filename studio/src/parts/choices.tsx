@@ -23,6 +23,23 @@ export function TaskPicker({ task, pick }: { task: string; pick: (task: string) 
   );
 }
 
+/** A list with its label; an entry is a word, or a value and the words for it. */
+export function Choice({ label, value, entries, pick }: {
+  label: string;
+  value: string;
+  entries: readonly (string | readonly [value: string, words: string])[];
+  pick: (value: string) => void;
+}) {
+  return (
+    <label class="field">
+      {label}
+      <select value={value} onChange={(event) => pick(event.currentTarget.value)}>
+        {entries.map((entry) => (typeof entry === "string" ? [entry, entry] : entry)).map(([of, words]) => <option key={of} value={of}>{words}</option>)}
+      </select>
+    </label>
+  );
+}
+
 /** A variant of a task; empty is that of all defaults, where there is a choice of it. */
 export function VariantPicker({ variants, variant, pick, label = "Variant", isNamed = false }: {
   variants: string[];
@@ -31,15 +48,7 @@ export function VariantPicker({ variants, variant, pick, label = "Variant", isNa
   label?: string;
   isNamed?: boolean;
 }) {
-  return (
-    <label class="field">
-      {label}
-      <select value={variant} onChange={(event) => pick(event.currentTarget.value)}>
-        {!isNamed && <option value="">defaults</option>}
-        {variants.map((name) => <option key={name}>{name}</option>)}
-      </select>
-    </label>
-  );
+  return <Choice label={label} value={variant} entries={isNamed ? variants : [["", "defaults"], ...variants]} pick={pick} />;
 }
 
 /** A whole number from 0; anything else is not taken, and the number before it is shown again. */

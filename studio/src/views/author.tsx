@@ -12,7 +12,7 @@ import { asError, engine } from "../simulator.ts";
 import { TEMPLATES } from "../templates.ts";
 import { written, type WrittenParameter } from "../written.ts";
 import { Cells } from "../parts/cells.tsx";
-import { NumberPicker, VariantPicker } from "../parts/choices.tsx";
+import { Choice, NumberPicker, VariantPicker } from "../parts/choices.tsx";
 import { Knobs } from "../parts/knobs.tsx";
 import { ErrorNote, Recipes, saveText } from "../parts/notes.tsx";
 import { FlatMap, Picture } from "../parts/pictures.tsx";
@@ -227,13 +227,10 @@ export function Author({ route }: { route: Route }) {
             </div>
             {problems.length > 0 && <p class="faint small">The last valid text is shown.</p>}
             {groups.length > 0 && (
-              <label class="field">
-                A click on the map
-                <select value={target} onChange={(event) => setTarget(event.currentTarget.value)}>
-                  <option value="">finds what is there in the text</option>
-                  {groups.map(({ name }) => <option key={name} value={name}>puts one of {name} there, or takes it away</option>)}
-                </select>
-              </label>
+              <Choice
+                label="A click on the map" value={target} pick={setTarget}
+                entries={[["", "finds what is there in the text"], ...groups.map(({ name }) => [name, `puts one of ${name} there, or takes it away`] as const)]}
+              />
             )}
           </section>
           {layout && (

@@ -10,7 +10,7 @@ import { isAsking, useHeldKeys } from "../keys.ts";
 import { hrefOf, type Route, wholeNumber } from "../route.ts";
 import { Session } from "../session.ts";
 import { asError, engine, requestOf, useAnswer } from "../simulator.ts";
-import { NumberPicker, TaskPicker, VariantPicker } from "../parts/choices.tsx";
+import { Choice, NumberPicker, TaskPicker, VariantPicker } from "../parts/choices.tsx";
 import { ErrorNote, Recipes } from "../parts/notes.tsx";
 import { FlatMap } from "../parts/pictures.tsx";
 import { same } from "../json_text.ts";
@@ -216,10 +216,7 @@ export function Compare({ route }: { route: Route }) {
       )}
       <section class="card pad stack" aria-label="Distance">
         <div class="row spread">
-          <label class="field">
-            Measured by
-            <select value={by} onChange={(event) => go({ by: event.currentTarget.value })}>{measures.map((name) => <option key={name}>{name}</option>)}</select>
-          </label>
+          <Choice label="Measured by" value={by} entries={measures} pick={(to) => go({ by: to })} />
           <button type="button" disabled={!isReady || elements.pending} onClick={() => setMeasured(key)}>Test what differs in their worlds</button>
         </div>
         {distance.error && <ErrorNote error={distance.error} again={() => setRound((last) => last + 1)} />}

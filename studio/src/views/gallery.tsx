@@ -6,6 +6,7 @@ import { useClock } from "../clock.ts";
 import { Session } from "../session.ts";
 import { engine, trainedTasks, useAnswer } from "../simulator.ts";
 import { hrefOf, type Route } from "../route.ts";
+import { Choice } from "../parts/choices.tsx";
 import { Picture } from "../parts/pictures.tsx";
 import { ErrorNote } from "../parts/notes.tsx";
 
@@ -115,13 +116,7 @@ export function Gallery({ route }: { route: Route }) {
             Search
             <input type="search" value={words} placeholder="maze, door, memory …" onInput={(event) => setWords(event.currentTarget.value)} />
           </label>
-          <label class="field">
-            Group
-            <select value={group} onChange={(event) => setGroup(event.currentTarget.value)}>
-              <option value="">all</option>
-              {groups.map((name) => <option key={name}>{name}</option>)}
-            </select>
-          </label>
+          <Choice label="Group" value={group} entries={[["", "all"], ...groups]} pick={setGroup} />
         </div>
       </div>
       {cards.error && <ErrorNote error={cards.error} again={() => location.reload()} />}

@@ -6,7 +6,7 @@ import * as commands from "../commands.ts";
 import { draft } from "../draft.ts";
 import { hrefOf, type Route, wholeNumber } from "../route.ts";
 import { engine, requestOf, useAnswer } from "../simulator.ts";
-import { NumberPicker, TaskPicker, VariantPicker } from "../parts/choices.tsx";
+import { Choice, NumberPicker, TaskPicker, VariantPicker } from "../parts/choices.tsx";
 import { ErrorNote, Recipes } from "../parts/notes.tsx";
 import { Picture } from "../parts/pictures.tsx";
 
@@ -104,16 +104,8 @@ export function Order({ route }: { route: Route }) {
         </div>
         <div class="row end">
           <TaskPicker task={task} pick={(to) => go({}, to)} />
-          <label class="field">
-            Distance by
-            <select value={by} onChange={(event) => go({ by: event.currentTarget.value })}>{measures.map((name) => <option key={name}>{name}</option>)}</select>
-          </label>
-          <label class="field">
-            Method
-            <select value={method} onChange={(event) => go({ method: event.currentTarget.value })}>
-              {METHODS.map((name) => <option key={name}>{name}</option>)}
-            </select>
-          </label>
+          <Choice label="Distance by" value={by} entries={measures} pick={(to) => go({ by: to })} />
+          <Choice label="Method" value={method} entries={METHODS} pick={(to) => go({ method: to })} />
           <VariantPicker isNamed label="Start" variants={all} variant={start} pick={(to) => go({ start: to })} />
           <NumberPicker label="Seed" value={seed} pick={(to) => go({ seed: to })} />
         </div>
