@@ -242,6 +242,19 @@ task("08 compare: two variants under one set of actions", "#/compare/find_object
   await page.waitForSelector("ul.plain", { timeout: 3 * PATIENCE_MS });
 });
 
+task("13 measures: what counts for several elements is one part, and some measures have none", "#/compare/maze?a=medium&b=tiny", async (page) => {
+  const says = (pattern) => until(page, (source) => new RegExp(source).test(document.querySelector('section[aria-label="Distance"]')?.innerText), pattern.source);
+  await says(/layout\s+State, Transition, Observation\s+layout \/ widest choice\s+100\.0 %/);
+  await choose(page, "Measured by", "dynamics:b");
+  await says(/0\.054 apart[^]*compares worlds as a whole: its number has no parts/);
+  await choose(page, "Measured by", "pictures");
+  await says(/none of 16 places free/);
+  assert.equal(await page.getByText("Try again").count(), 0);
+  await tabTo(page, "Compare by worlds");
+  await page.keyboard.press("Enter");
+  await says(/3\.813 apart[^]*The total is the sum of the parts/);
+});
+
 task("09 order: walk along it", "#/order/find_objects", async (page) => {
   await page.waitForSelector("svg.plot");
   await choose(page, "Method", "outward");

@@ -2,7 +2,7 @@
 
 import type { Value, Variant } from "../engine.ts";
 import type { WrittenParameter } from "../written.ts";
-import { choiceOf, ELEMENTS, wordOf } from "./value.tsx";
+import { choiceOf, elementWords, wordOf } from "./value.tsx";
 
 /** A number as it is written by hand: no more digits than a step needs. */
 const rounded = (value: number, step: number): number => Number(value.toFixed(Math.max(0, Math.ceil(-Math.log10(step)))));
@@ -24,7 +24,7 @@ function Knob({ parameter, value, set }: { parameter: WrittenParameter; value: V
   const id = `knob-${name}`;
   const isWhole = type === "integer";
   const numbers = Array.isArray(value) && value.every((part) => typeof part === "number") ? (value as number[]) : null;
-  const title = [description, affects.length ? `Affects ${affects.map((element) => ELEMENTS[element].toLowerCase()).join(", ")}.` : ""].filter(Boolean).join(" ");
+  const title = [description, affects.length ? `Affects ${elementWords(affects).toLowerCase()}.` : ""].filter(Boolean).join(" ");
   const said = choices ? "" : typeof value === "number" ? `${value}${unit ? ` ${unit}` : ""}` : numbers ? numbers.join(" × ") : "";
   const chosen = choiceOf(parameter, value);
   return (

@@ -5,13 +5,15 @@ import type { ComponentChildren } from "preact";
 import type { EngineError } from "../engine.ts";
 import type { Recipe } from "../commands.ts";
 
-/** Why something did not come about, and a way out of it. */
-export function ErrorNote({ error, again }: { error: EngineError; again?: () => void }) {
+/** Why something did not come about, and ways out of it; `again` is offered where another try can do better. */
+export function ErrorNote({ error, again, children }: { error: EngineError; again?: () => void; children?: ComponentChildren }) {
   const isStopped = error.code === "engine/stopped" || error.code === "engine/lost";
+  const canPass = /^(engine|page)\//.test(error.code);
   return (
     <div class={`note ${isStopped ? "warn" : "bad"}`} role="alert">
       <span>{isStopped ? "Stopped. The simulator starts anew with the next action." : error.message}</span>
-      {again && <button type="button" onClick={again}>{isStopped ? "Begin again" : "Try again"}</button>}
+      {again && canPass && <button type="button" onClick={again}>{isStopped ? "Begin again" : "Try again"}</button>}
+      {!isStopped && children}
     </div>
   );
 }

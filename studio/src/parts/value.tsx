@@ -6,8 +6,10 @@ import type { WrittenParameter } from "../written.ts";
 
 /** The elements of a decision process. */
 export const ELEMENTS: Record<Element, string> = {
-  S: "State", A: "Action", T: "Transition", R: "Reward", O: "Observation", p: "Initial state", phi: "Emission",
+  S: "State", A: "Action", T: "Transition", R: "Reward", O: "Observation", p: "Initial state", phi: "Observation",
 };
+/** Elements in words, each once. */
+export const elementWords = (elements: Element[]): string => [...new Set(elements.map((element) => ELEMENTS[element]))].join(", ");
 
 let brush: CanvasRenderingContext2D | null = null;
 

@@ -1,5 +1,6 @@
 // Two variants of a task side by side, under one seed and one set of actions; and how far apart they are, element by element.
 
+import type { ComponentChildren } from "preact";
 import { useEffect, useMemo, useState } from "preact/hooks";
 import type { Distance, Element, EngineError, Task, Variant } from "../engine.ts";
 import * as commands from "../commands.ts";
@@ -14,8 +15,9 @@ import { Choice, NumberPicker, TaskPicker, VariantPicker } from "../parts/choice
 import { ErrorNote, Recipes } from "../parts/notes.tsx";
 import { FlatMap } from "../parts/pictures.tsx";
 import { same } from "../json_text.ts";
+import { unitOf } from "../measures.ts";
 import { written, type WrittenParameter } from "../written.ts";
-import { ELEMENTS, ShownValue } from "../parts/value.tsx";
+import { ELEMENTS, elementWords, ShownValue } from "../parts/value.tsx";
 import { Seat } from "../parts/seat.tsx";
 
 /** A share as a bar, beside its number. */
@@ -27,50 +29,53 @@ export function Meter({ share }: { share: number }) {
   );
 }
 
+/** The parts that make a distance, the largest first: what counts for several elements is one of them. */
+function partsOf({ parts }: Distance) {
+  const rows = new Map<string, { name: string; measure: string; elements: Element[]; share: number }>();
+  for (const { name, measure, raw, element, share } of parts.filter((part) => part.share > 0)) {
+    const key = `${name} ${measure} ${raw}`;
+    const row = rows.get(key) ?? { name, measure, elements: [], share: 0 };
+    rows.set(key, { ...row, elements: [...row.elements, element], share: row.share + share });
+  }
+  return [...rows.values()].sort((a, b) => b.share - a.share);
+}
+
+/** A table, row by row. */
+function Table({ heads, rows }: { heads: string[]; rows: ComponentChildren[][] }) {
+  return (
+    <div class="table">
+      <table>
+        <thead><tr>{heads.map((word) => <th key={word} scope="col">{word}</th>)}</tr></thead>
+        <tbody>{rows.map((cells, row) => <tr key={row}>{cells.map((cell, column) => <td key={column}>{cell}</td>)}</tr>)}</tbody>
+      </table>
+    </div>
+  );
+}
+
 function Elements({ distance }: { distance: Distance }) {
-  const entries = Object.entries(distance.elements) as [Element, number | null][];
-  const most = Math.max(1e-9, ...entries.map(([, value]) => value ?? 0));
-  const parts = distance.parts.filter((part) => part.share > 0).sort((a, b) => b.share - a.share);
+  const entries = (Object.entries(distance.elements) as [Element, number | null][]).flatMap(([element, value]) => (value === null ? [] : [{ element, value }]));
+  const most = Math.max(1e-9, ...entries.map(({ value }) => value));
+  const parts = partsOf(distance);
   return (
     <div class="stage">
       <div class="stack">
         <h2>{distance.total.toFixed(3)} apart</h2>
+        <p class="small">{unitOf(distance.by)} {parts.length > 1 && "The total is the sum of the parts."}</p>
         <p class="faint small">{distance.description}</p>
-        <div class="table">
-          <table>
-            <thead><tr><th scope="col">Element</th><th scope="col" class="right">Distance</th><th scope="col"><span class="hidden">Bar</span></th></tr></thead>
-            <tbody>
-              {entries.map(([element, value]) => (
-                <tr key={element}>
-                  <th scope="row">{ELEMENTS[element]}</th>
-                  <td class="right">{value === null ? "–" : value.toFixed(3)}</td>
-                  <td><Meter share={(value ?? 0) / most} /></td>
-                </tr>
-              ))}
-            </tbody>
-          </table>
-        </div>
+        {entries.length > 0 && (
+          <Table heads={["Element", "Distance", ""]} rows={entries.map(({ element, value }) => [ELEMENTS[element], value.toFixed(3), <Meter share={value / most} />])} />
+        )}
       </div>
       <div class="stack">
         <h2>What makes it</h2>
-        {parts.length === 0
-          ? <p class="faint small">Nothing that is compared differs.</p>
-          : (
-            <div class="table">
-              <table>
-                <thead><tr><th scope="col">Part</th><th scope="col">Measure</th><th scope="col" class="right">Share</th></tr></thead>
-                <tbody>
-                  {parts.map((part) => (
-                    <tr key={`${part.name} ${part.element}`}>
-                      <td><code>{part.name}</code></td>
-                      <td class="faint">{part.measure}</td>
-                      <td class="right">{(100 * part.share).toFixed(1)} %</td>
-                    </tr>
-                  ))}
-                </tbody>
-              </table>
-            </div>
-          )}
+        {entries.length === 0 && <p class="small">{distance.by} compares worlds as a whole: its number has no parts. Other measures split theirs by element.</p>}
+        {entries.length > 0 && parts.length === 0 && <p class="faint small">Nothing that {distance.by} compares differs.</p>}
+        {parts.length > 0 && (
+          <Table
+            heads={["Part", "Counts for", "Measure", "Share"]}
+            rows={parts.map(({ name, measure, elements, share }) => [<code>{name}</code>, elementWords(elements), measure, `${(100 * share).toFixed(1)} %`])}
+          />
+        )}
       </div>
     </div>
   );
@@ -197,21 +202,12 @@ export function Compare({ route }: { route: Route }) {
       {rows.length > 0 && (
         <section class="card pad stack" aria-label="Parameters that differ">
           <h2>Parameters that differ</h2>
-          <div class="table">
-            <table>
-              <thead><tr>{["Parameter", a, b, "Affects"].map((word) => <th key={word} scope="col">{word}</th>)}</tr></thead>
-              <tbody>
-                {rows.map(({ parameter, values: [left, right] }) => (
-                  <tr key={parameter.name}>
-                    <td><code>{parameter.name}</code></td>
-                    <td><ShownValue parameter={parameter} value={left} /></td>
-                    <td><ShownValue parameter={parameter} value={right} /></td>
-                    <td class="faint">{parameter.affects.join(" ")}</td>
-                  </tr>
-                ))}
-              </tbody>
-            </table>
-          </div>
+          <Table
+            heads={["Parameter", a, b, "Affects"]}
+            rows={rows.map(({ parameter, values }) => [
+              <code>{parameter.name}</code>, ...values.map((value) => <ShownValue parameter={parameter} value={value} />), elementWords(parameter.affects),
+            ])}
+          />
         </section>
       )}
       <section class="card pad stack" aria-label="Distance">
@@ -219,7 +215,14 @@ export function Compare({ route }: { route: Route }) {
           <Choice label="Measured by" value={by} entries={measures} pick={(to) => go({ by: to })} />
           <button type="button" disabled={!isReady || elements.pending} onClick={() => setMeasured(key)}>Test what differs in their worlds</button>
         </div>
-        {distance.error && <ErrorNote error={distance.error} again={() => setRound((last) => last + 1)} />}
+        {distance.error && (
+          <ErrorNote error={distance.error} again={() => setRound((last) => last + 1)}>
+            <span>Other measures can compare them:</span>
+            {["parameters", "worlds"].filter((other) => other !== by).map((other) => (
+              <button key={other} type="button" onClick={() => go({ by: other })}>Compare by {other}</button>
+            ))}
+          </ErrorNote>
+        )}
         {distance.pending && <p class="faint">Measuring …</p>}
         {distance.value && <Elements distance={distance.value} />}
         {elements.error && <ErrorNote error={elements.error} />}
