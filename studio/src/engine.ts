@@ -651,29 +651,17 @@ class WorkerEngine implements Engine {
     return kept?.ok ? ((await kept.json()) as TaskCard[]) : this.ask({ call: "tasks" });
   }
 
-  task(task: string): Promise<Task> {
-    return this.ask({ call: "task", task });
-  }
+  task = (task: string): Promise<Task> => this.ask({ call: "task", task });
 
-  async parameters(task: string): Promise<Parameter[]> {
-    return (await this.task(task)).parameters;
-  }
+  parameters = async (task: string): Promise<Parameter[]> => (await this.task(task)).parameters;
 
-  validate(text: string): Promise<Validation> {
-    return this.ask({ call: "validate", text });
-  }
+  validate = (text: string): Promise<Validation> => this.ask({ call: "validate", text });
 
-  schema(kind: "task" | "world" | "scenario"): Promise<Json> {
-    return this.ask({ call: "schema", kind });
-  }
+  schema = (kind: "task" | "world" | "scenario"): Promise<Json> => this.ask({ call: "schema", kind });
 
-  sample(request: WorldRequest): Promise<string> {
-    return this.ask({ call: "sample", request });
-  }
+  sample = (request: WorldRequest): Promise<string> => this.ask({ call: "sample", request });
 
-  open(request: WorldRequest, options: OpenOptions = {}): Promise<Episode> {
-    return this.opened(request, { call: "open", request, ...drawn(options) });
-  }
+  open = (request: WorldRequest, options: OpenOptions = {}): Promise<Episode> => this.opened(request, { call: "open", request, ...drawn(options) });
 
   private async opened(request: WorldRequest | null, call: Record<string, unknown>): Promise<Episode> {
     const found = await this.ask<Opened>(call);
@@ -695,9 +683,7 @@ class WorkerEngine implements Engine {
     return null;
   }
 
-  measures(): Promise<Measure[]> {
-    return this.ask({ call: "measures" });
-  }
+  measures = (): Promise<Measure[]> => this.ask({ call: "measures" });
 
   distance(a: WorldRequest, b: WorldRequest, { as, ...options }: DistanceOptions = {}): Promise<Distance> {
     return this.ask({ call: "distance", a, b, as_worlds: as === "worlds", ...options });
@@ -707,13 +693,9 @@ class WorkerEngine implements Engine {
     return this.ask({ call: "elements", task, a, b, worlds, seed });
   }
 
-  matrix(task: string, options: MatrixOptions = {}): Promise<Matrix> {
-    return this.ask({ call: "matrix", task, ...options });
-  }
+  matrix = (task: string, options: MatrixOptions = {}): Promise<Matrix> => this.ask({ call: "matrix", task, ...options });
 
-  order(task: string, options: OrderOptions = {}): Promise<Order> {
-    return this.ask({ call: "order", task, ...options });
-  }
+  order = (task: string, options: OrderOptions = {}): Promise<Order> => this.ask({ call: "order", task, ...options });
 
   async log(files: DroppedFile[]): Promise<Log> {
     const all = new Uint8Array(files.reduce((sum, file) => sum + file.bytes.length, 0));
@@ -730,13 +712,9 @@ class WorkerEngine implements Engine {
     return this.opened(null, { call: "open_logged", experience, ...drawn(options) });
   }
 
-  encodeLink(link: Link): Promise<string> {
-    return this.ask({ call: "encode_link", link });
-  }
+  encodeLink = (link: Link): Promise<string> => this.ask({ call: "encode_link", link });
 
-  decodeLink(fragment: string): Promise<Link> {
-    return this.ask({ call: "decode_link", fragment });
-  }
+  decodeLink = (fragment: string): Promise<Link> => this.ask({ call: "decode_link", fragment });
 }
 
 /** How a world and its pictures are opened, as calls say it. */
@@ -780,25 +758,15 @@ class WorkerEpisode implements Episode {
     return step;
   }
 
-  steps(actions: Action[]): Promise<Step[]> {
-    return this.ask({ call: "step", steps: actions });
-  }
+  steps = (actions: Action[]): Promise<Step[]> => this.ask({ call: "step", steps: actions });
 
-  async choose(agent: Agent): Promise<Action> {
-    return this.ask({ call: "choose", agent: await this.engine.agent(agent) });
-  }
+  choose = async (agent: Agent): Promise<Action> => this.ask({ call: "choose", agent: await this.engine.agent(agent) });
 
-  async act(agent: Agent): Promise<Step> {
-    return this.ask({ call: "act", agent: await this.engine.agent(agent) });
-  }
+  act = async (agent: Agent): Promise<Step> => this.ask({ call: "act", agent: await this.engine.agent(agent) });
 
-  seek(step: number): Promise<Step> {
-    return this.ask({ call: "seek", step });
-  }
+  seek = (step: number): Promise<Step> => this.ask({ call: "seek", step });
 
-  now(): Promise<Step> {
-    return this.ask({ call: "now" });
-  }
+  now = (): Promise<Step> => this.ask({ call: "now" });
 
   async frame(view: View = "agent", modality: Modality = "rgb", size?: { width: number; height: number }): Promise<Frame> {
     const wanted = size ? { size: [size.width, size.height] } : {};
@@ -808,17 +776,11 @@ class WorkerEpisode implements Episode {
     return { width, height, data: new Uint8ClampedArray(bytes.buffer) };
   }
 
-  map(): Promise<WorldMap> {
-    return this.ask({ call: "map" });
-  }
+  map = (): Promise<WorldMap> => this.ask({ call: "map" });
 
-  actions(): Promise<Action[]> {
-    return this.ask({ call: "actions" });
-  }
+  actions = (): Promise<Action[]> => this.ask({ call: "actions" });
 
-  recording(): Promise<string> {
-    return this.ask({ call: "recording" });
-  }
+  recording = (): Promise<string> => this.ask({ call: "recording" });
 
   async close(): Promise<void> {
     await this.ask({ call: "close" }).catch(() => {});
