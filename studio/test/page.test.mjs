@@ -10,6 +10,7 @@ const { scaleOf, toMetres, toPixels, whatIsAt } = await load("map_view.ts");
 const { outlines } = await load("difference.ts");
 const { following, looped, marks } = await load("timeline.ts");
 const { curves, trailingMeans } = await load("curve.ts");
+const { placeLabels } = await load("labels.ts");
 const { askedBy, isAsking } = await load("keys.ts");
 
 test("addresses go there and back", () => {
@@ -78,6 +79,19 @@ test("differences are outlined where they are", () => {
   b.data[4 * (9 * 20 + 18)] = 20;
   assert.deepEqual(outlines(a, b), [], "within what shading may differ");
   assert.deepEqual(outlines(a, { ...b, width: 10 }), []);
+});
+
+test("labels of a map cover no point and no other label", () => {
+  const crowd = Array.from({ length: 40 }, (_, at) => ({ x: 100 + ((at * 37) % 90), y: 60 + ((at * 53) % 70), texts: [`${at + 1} variant`, `${at + 1}`] }));
+  const labels = placeLabels(crowd, 300, 200);
+  const boxes = [...labels.flatMap((label) => label?.box ? [label.box] : []), ...crowd.map(({ x, y }) => [x - 5, y - 5, x + 5, y + 5])];
+  const shown = labels.filter(Boolean).length;
+  assert.equal(labels[0].text, "1 variant");
+  assert.ok(shown >= 5 && shown < 40, `found ${shown} labels`);
+  boxes.slice(0, shown).forEach((a, place) => boxes.forEach((b, other) => {
+    assert.ok(place === other || a[2] <= b[0] || b[2] <= a[0] || a[3] <= b[1] || b[3] <= a[1], `${a} on ${b}`);
+  }));
+  assert.deepEqual(placeLabels([{ x: 5, y: 5, texts: ["too long for this"] }], 60, 40), [null]);
 });
 
 test("timelines mark what is unusual, and loops keep to their ends", () => {

@@ -264,6 +264,12 @@ task("09 order: walk along it", "#/order/find_objects", async (page) => {
   await page.keyboard.press("ArrowRight");
   await page.keyboard.press("ArrowRight");
   await until(page, () => document.body.textContent.includes("3 of "));
+  assert.match(await text(page, "ol.picks [aria-current]"), /^3 \w+\s+\d\.\d{3}$/);
+  const overlaps = await page.evaluate(() => {
+    const boxes = [...document.querySelectorAll("svg.points text")].map((label) => label.getBoundingClientRect());
+    return boxes.filter((a, place) => boxes.slice(place + 1).some((b) => a.left < b.right && b.left < a.right && a.top + 2 < b.bottom && b.top + 2 < a.bottom)).length;
+  });
+  assert.equal(overlaps, 0);
   await until(page, () => [...document.querySelectorAll(".sheet canvas")].every((canvas) => canvas.width === 240));
 });
 

@@ -108,16 +108,16 @@ function draw(canvas: HTMLCanvasElement, map: WorldMap, trail: readonly (readonl
   }
 }
 
-/** Whether the page is dark: canvases are drawn anew when that changes. */
-function useDark(): boolean {
-  const query = matchMedia("(prefers-color-scheme: dark)");
-  const [isDark, setDark] = useState(query.matches);
+/** Whether a media query holds, now and when that changes. */
+export function useMedia(media: string): boolean {
+  const query = matchMedia(media);
+  const [holds, setHolds] = useState(query.matches);
   useEffect(() => {
-    const changed = () => setDark(query.matches);
+    const changed = () => setHolds(query.matches);
     query.addEventListener("change", changed);
     return () => query.removeEventListener("change", changed);
   }, []);
-  return isDark;
+  return holds;
 }
 
 /** One list, so that a map without anyone is drawn once. */
@@ -132,7 +132,7 @@ export function FlatMap({ map, trail = NONE, others = NONE, click }: {
 }) {
   const canvas = useRef<HTMLCanvasElement>(null);
   const [under, setUnder] = useState("");
-  const isDark = useDark();
+  const isDark = useMedia("(prefers-color-scheme: dark)");
   useLayoutEffect(() => {
     if (canvas.current && map) draw(canvas.current, map, trail, others);
   }, [map, trail, others, isDark]);

@@ -1,16 +1,26 @@
 // The variants of a task as a contact sheet, as a map of their distances, and as an order that is walked along it.
 
 import { useEffect, useState } from "preact/hooks";
-import type { Frame, Matrix, Order as Found, OrderMethod } from "../engine.ts";
+import type { Frame, Matrix, OrderMethod } from "../engine.ts";
 import * as commands from "../commands.ts";
 import { draft } from "../draft.ts";
+import { placeLabels } from "../labels.ts";
 import { hrefOf, type Route, wholeNumber } from "../route.ts";
 import { engine, requestOf, useAnswer } from "../simulator.ts";
 import { Choice, NumberPicker, TaskPicker, VariantPicker } from "../parts/choices.tsx";
 import { ErrorNote, Recipes } from "../parts/notes.tsx";
-import { Picture } from "../parts/pictures.tsx";
+import { Picture, useMedia } from "../parts/pictures.tsx";
 
-const METHODS: OrderMethod[] = ["gradual", "outward", "abrupt", "farthest", "nearest", "two-opt", "random", "given"];
+const METHODS: Partial<Record<OrderMethod, string>> = {
+  gradual: "Small steps: the shortest way through all variants.",
+  outward: "From the start to ever farther variants.",
+  abrupt: "Large steps: the longest way, so that neighbours are unlike each other.",
+  farthest: "Each time the variant farthest from all before it.",
+  nearest: "Each time the nearest variant that is left.",
+  "two-opt": "A short way that is found fast: that of nearest, with its detours mended.",
+  random: "By chance, to compare the others with.",
+  given: "As the task lists them, the start first.",
+};
 /** Variants that are shown at first: more take longer, and their names overlap. */
 const MOST = 12;
 const SIZE = { width: 240, height: 180 };
@@ -41,24 +51,32 @@ function useFrames(task: string, variants: string[], seed: number, index: number
   return frames;
 }
 
-/** Points with about the distances of the variants, and the way of an order among them. */
-function DistanceMap({ matrix, order, now, pick }: { matrix: Matrix; order: Found | null; now: string; pick: (variant: string) => void }) {
+/** Points with about the distances of the variants, numbered along the way of an order among them. */
+function DistanceMap({ matrix, way, now, pick }: { matrix: Matrix; way: string[]; now: string; pick: (variant: string) => void }) {
+  const width = useMedia("(max-width: 40rem)") ? 340 : 560;
   const [xs, ys] = [matrix.points.map(([x]) => x), matrix.points.map(([, y]) => y)];
   const [left, top] = [Math.min(...xs), Math.max(...ys)];
-  const width = 560;
   const [across, along] = [Math.max(...xs) - left, top - Math.min(...ys)];
-  const scale = Math.min((width - 140) / (across || 1), 340 / (along || 1));
+  const scale = Math.min((width - 120) / (across || 1), 340 / (along || 1));
   const height = Math.max(160, along * scale + 80);
   const inset = (width - across * scale) / 2;
-  const place = new Map(matrix.labels.map((label, at) => [short(label), [inset + (xs[at]! - left) * scale, 40 + (top - ys[at]!) * scale] as const]));
-  const way = order?.labels.map((label) => place.get(short(label))).filter((point) => point !== undefined) ?? [];
+  const names = matrix.labels.map(short);
+  const stops = way.flatMap((variant, place) => {
+    const at = names.indexOf(variant);
+    return at < 0 ? [] : [{ variant, texts: [`${place + 1} ${variant}`, `${place + 1}`], x: inset + (xs[at]! - left) * scale, y: 40 + (top - ys[at]!) * scale }];
+  });
+  // The variant that is looked at always has its label.
+  const first = stops.findIndex(({ variant }) => variant === now);
+  const ranked = [...stops.slice(first, first + 1), ...stops.filter((_, place) => place !== first)];
+  const labels = placeLabels(ranked, width, height);
   return (
-    <svg class="plot" viewBox={`0 0 ${width} ${height}`} role="img" aria-label={`Map of the distances of ${matrix.labels.length} variants`}>
-      <polyline class="way" points={way.map((point) => point.join(",")).join(" ")} />
-      {[...place].map(([variant, [x, y]], number) => (
+    <svg class="plot points" viewBox={`0 0 ${width} ${height}`} role="img" aria-label={`Map of the distances of ${names.length} variants`}>
+      <polyline class="way" points={stops.map(({ x, y }) => `${x},${y}`).join(" ")} />
+      {ranked.map(({ variant, texts, x, y }, place) => (
         <g key={variant} onClick={() => pick(variant)}>
+          <title>{texts[0]}</title>
           <circle class={`dot ${variant === now ? "now" : ""}`} cx={x} cy={y} r={variant === now ? 7 : 5} />
-          <text x={x} y={number % 2 ? y + 20 : y - 10} text-anchor="middle">{variant}</text>
+          {labels[place] && <text x={labels[place].x} y={labels[place].y} text-anchor="middle">{labels[place].text}</text>}
         </g>
       ))}
     </svg>
@@ -92,7 +110,6 @@ export function Order({ route }: { route: Route }) {
   const [at, setAt] = useState(0);
   const now = way[Math.min(at, way.length - 1)] ?? "";
   useEffect(() => setAt(0), [task, method, start]);
-  const step = order.value?.steps[at];
   const error = about.error ?? matrix.error ?? order.error;
   const description = about.value?.variants.find(({ name }) => name === now)?.description ?? "";
   return (
@@ -105,7 +122,7 @@ export function Order({ route }: { route: Route }) {
         <div class="row end">
           <TaskPicker task={task} pick={(to) => go({}, to)} />
           <Choice label="Distance by" value={by} entries={measures} pick={(to) => go({ by: to })} />
-          <Choice label="Method" value={method} entries={METHODS} pick={(to) => go({ method: to })} />
+          <Choice label="Method" value={method} entries={Object.keys(METHODS)} pick={(to) => go({ method: to })} />
           <VariantPicker isNamed label="Start" variants={all} variant={start} pick={(to) => go({ start: to })} />
           <NumberPicker label="Seed" value={seed} pick={(to) => go({ seed: to })} />
         </div>
@@ -113,12 +130,14 @@ export function Order({ route }: { route: Route }) {
       {error && <ErrorNote error={error} again={() => setRound((last) => last + 1)} />}
       <div class="stage wide">
         <section class="card pad stack" aria-label="Map of distances">
-          <div class="row spread">
-            <h2>Map of distances</h2>
-            {matrix.value && <span class="faint small">shows {Math.round(100 * matrix.value.shown)} % of them</span>}
-          </div>
+          <h2>Map of distances</h2>
+          {matrix.value && (
+            <p class="faint small">
+              Near points are alike. A flat map cannot keep every distance: this one keeps {Math.round(100 * matrix.value.shown)} % of them.
+            </p>
+          )}
           {matrix.pending && <p class="faint">Measuring …</p>}
-          {matrix.value && <DistanceMap matrix={matrix.value} order={order.value} now={now} pick={(variant) => setAt(Math.max(0, way.indexOf(variant)))} />}
+          {matrix.value && <DistanceMap matrix={matrix.value} way={way} now={now} pick={(variant) => setAt(Math.max(0, way.indexOf(variant)))} />}
           {all.length === 1 && <p class="faint">There is one variant only; an order needs two.</p>}
         </section>
         <section class="card pad stack" aria-label="The way">
@@ -132,10 +151,16 @@ export function Order({ route }: { route: Route }) {
             type="range" aria-label="Along the order" aria-valuetext={now} min={0} max={Math.max(0, way.length - 1)} value={at}
             onInput={(event) => setAt(event.currentTarget.valueAsNumber)}
           />
-          <dl class="facts">
-            <div><dt>next step</dt><dd>{step === undefined ? "–" : step.toFixed(3)}</dd></div>
-            <div><dt>whole way</dt><dd>{order.value?.length.toFixed(3) ?? "–"}</dd></div>
-          </dl>
+          <p class="small">{METHODS[method as OrderMethod]} {order.value && `The whole way is ${order.value.length.toFixed(3)}.`}</p>
+          <ol class="picks" aria-label="Variants in order, each with its distance from the one before">
+            {way.map((variant, place) => (
+              <li key={variant}>
+                <button type="button" {...(variant === now ? { "aria-current": "step" as const } : {})} onClick={() => setAt(place)}>
+                  <span>{place + 1} {variant}</span><span class="number faint">{order.value?.steps[place - 1]?.toFixed(3)}</span>
+                </button>
+              </li>
+            ))}
+          </ol>
           <a class="button" href={hrefOf("play", task, { variant: now, seed: seed || undefined })}>Play {now}</a>
           <Recipes of={{ "This order": commands.order(task === "draft" ? draft.file : task, variants, by, method, start) }} />
         </section>
@@ -144,14 +169,16 @@ export function Order({ route }: { route: Route }) {
         <div class="row spread">
           <h2>Contact sheet</h2>
           {all.length > MOST && (
-            <button type="button" aria-pressed={isAll} onClick={() => go({ all: isAll ? 0 : 1 })}>All {all.length} variants</button>
+            <button type="button" aria-pressed={isAll} title={`The first ${MOST} are shown, as more take longer`} onClick={() => go({ all: isAll ? 0 : 1 })}>
+              {isAll ? `All ${all.length} variants` : `${MOST} of ${all.length} variants: show all`}
+            </button>
           )}
         </div>
         <ul class="sheet">
           {way.map((variant, place) => (
             <li key={variant}>
               <button type="button" aria-pressed={variant === now} onClick={() => setAt(place)}>
-                <Picture frame={frames.get(variant) ?? null} label="" /><span>{variant}</span>
+                <Picture frame={frames.get(variant) ?? null} label="" /><span>{place + 1} {variant}</span>
               </button>
             </li>
           ))}

@@ -1,0 +1,29 @@
+// Labels of points on a map, none on another.
+
+/** Left, top, right and bottom. */
+type Box = [number, number, number, number];
+
+/** What a character takes, in pixels of the map. */
+const [WIDE, HIGH] = [6.6, 12];
+
+/**
+ * Where the label of each point stands: over, under or beside it, where it covers no point and no other label. The first of its texts
+ * that has room is taken; null where none has. Points that come first choose first.
+ */
+export function placeLabels(points: { x: number; y: number; texts: string[] }[], width: number, height: number) {
+  const taken = points.map(({ x, y }): Box => [x - 5, y - 5, x + 5, y + 5]);
+  const isFree = ([left, top, right, bottom]: Box) => left >= 0 && top >= 0 && right <= width && bottom <= height
+    && taken.every((other) => right <= other[0] || left >= other[2] || bottom <= other[1] || top >= other[3]);
+  return points.map(({ x, y, texts }) => {
+    for (const text of texts) {
+      const half = (text.length * WIDE) / 2;
+      for (const [across, down] of [[0, -9], [0, 18], [half + 8, 4], [-half - 8, 4]] as const) {
+        const box: Box = [x + across - half, y + down - HIGH + 3, x + across + half, y + down + 3];
+        if (!isFree(box)) continue;
+        taken.push(box);
+        return { text, x: x + across, y: y + down, box };
+      }
+    }
+    return null;
+  });
+}
