@@ -24,6 +24,7 @@ await build({
   entryPoints: { main: "src/main.tsx", worker: "src/worker.ts", style: "src/style.css" },
   outdir: out,
   bundle: true,
+  loader: { ".json": "text" },
   // The editor is a file of its own, loaded where a text is edited.
   splitting: true,
   format: "esm",
