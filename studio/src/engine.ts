@@ -274,6 +274,8 @@ export interface DistancePart {
 /** How far apart two are. */
 export interface Distance {
   by: Measure;
+  /** What 1 is, in a sentence. */
+  unit: string;
   /** By what, from how many worlds, and what else is to be known of the number, in words. */
   description: string;
   total: number;

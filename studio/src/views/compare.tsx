@@ -15,7 +15,6 @@ import { Choice, NumberPicker, TaskPicker, VariantPicker } from "../parts/choice
 import { ErrorNote, Recipes } from "../parts/notes.tsx";
 import { FlatMap } from "../parts/pictures.tsx";
 import { same } from "../json_text.ts";
-import { unitOf } from "../measures.ts";
 import { written, type WrittenParameter } from "../written.ts";
 import { ELEMENTS, elementWords, ShownValue } from "../parts/value.tsx";
 import { Seat } from "../parts/seat.tsx";
@@ -60,7 +59,7 @@ function Elements({ distance }: { distance: Distance }) {
     <div class="stage">
       <div class="stack">
         <h2>{distance.total.toFixed(3)} apart</h2>
-        <p class="small">{unitOf(distance.by)} {parts.length > 1 && "The total is the sum of the parts."}</p>
+        <p class="small">{distance.unit} {parts.length > 1 && "The total is the sum of the parts."}</p>
         <p class="faint small">{distance.description}</p>
         {entries.length > 0 && (
           <Table heads={["Element", "Distance", ""]} rows={entries.map(({ element, value }) => [ELEMENTS[element], value.toFixed(3), <Meter share={value / most} />])} />

@@ -24,9 +24,39 @@ pub(crate) fn distance(a: &Side, b: &Side, by: Option<By>, worlds: Option<u64>, 
         .map(|(element, distance)| (element.letter().to_owned(), json!(distance)))
         .collect();
     Ok(json!({
-        "by": found.by, "description": found.description, "total": found.distance.total, "elements": elements,
+        "by": found.by, "unit": unit(found.by), "description": found.description, "total": found.distance.total, "elements": elements,
         "parts": found.distance.parts,
     }))
+}
+
+/// What a number by this measure means, in a sentence.
+fn unit(by: By) -> &'static str {
+    match by {
+        By::Parameters => {
+            "1 is one parameter moved over its whole range. What counts for several elements counts once."
+        }
+        By::Worlds => "Each part has a unit of its own, such as 10 m, half a turn, 100 points or black for white.",
+        By::Pictures => "1 is black for white, on objects or around them; 2 is the most.",
+        By::PicturesWhole => "1 is black for white everywhere.",
+        By::PicturesStructure => "0 is the same edges and textures, 1 the opposite ones.",
+        By::Occupancy => "In metres: how far objects would have to move on average, summed over their classes.",
+        By::OccupancyJaccard => "1 is no place in common.",
+        By::OccupancyHausdorff => "In metres: how far the farthest taken place is from any of the other.",
+        By::OccupancyChamfer => "In metres: how far taken places are from the nearest of the other, on average.",
+        By::Placements => "1 is 10 m on average, or a class of objects that one of the two lacks; classes are summed.",
+        By::Objects => "In metres: the mean way between objects; one without a counterpart counts 10 m.",
+        By::ObjectsCounts => "1 is no object with a counterpart.",
+        By::Colors | By::ColorsSrgb | By::ColorsCie76 | By::ColorsCiede2000 | By::ColorsHyab => {
+            "1 is as far apart as two colours can be, for every object."
+        }
+        By::Rewards => "0 asks for the same, about 0.7 for something unrelated, 1 for the reverse.",
+        By::Dynamics => "1 is 100 points, 10 m or half a turn of difference after the same action, on average.",
+        By::DynamicsBisimulation => "1 is 100 points of difference for each action, where both do the same.",
+        By::Behavior => "1 is 100 points an episode that the other's planner earns less than the own one.",
+        By::BehaviorSuccess => {
+            "1 is a planner that always succeeds in its own worlds, and never in those of the other."
+        }
+    }
 }
 
 /// The elements in which two variants of a task differ, with a witness of each.
