@@ -80,11 +80,18 @@ function sealed(format, unpacked) {
   return Buffer.concat([Buffer.from([format]), sum, packed]).toString("base64url");
 }
 
+/** What is said of links: nothing of bytes and offsets, which nobody who copied one knows. */
+const SAID = {
+  "link/damaged": /^this link is cut or was changed; copy all of it$/,
+  "link/version": /^this link was made by another version of Driftworld, or was changed; |^link: found .* made by Driftworld /,
+};
+
 function code(fragment) {
   try {
     ask({ call: "decode_link", fragment });
     return "";
   } catch (error) {
+    assert.match(error.message, SAID[error.code] ?? /^$/);
     return error.code;
   }
 }

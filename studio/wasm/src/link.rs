@@ -182,7 +182,7 @@ pub(crate) fn decoded(tasks: &mut TaskCache, fragment: &str) -> Result<Link, Fau
     let mut environment = Environment::new(in_style(world, header.looks)?);
     let (mut asked, mut actions) = (Asked::default(), Vec::with_capacity(header.steps));
     for _ in 0..header.steps {
-        let number = pop_number(&mut numbers).ok_or_else(|| damaged("fewer numbers than steps"))?;
+        let number = pop_number(&mut numbers).ok_or_else(damaged)?;
         let action = if number < LISTED {
             asked.act(number as usize, &environment)
         } else {
@@ -192,14 +192,14 @@ pub(crate) fn decoded(tasks: &mut TaskCache, fragment: &str) -> Result<Link, Fau
                 .get((number - LISTED) as usize)
                 .map(|taken| Action::from(*taken))
         };
-        let action = action.ok_or_else(|| damaged("a step that is none"))?;
+        let action = action.ok_or_else(damaged)?;
         if environment.ended() || environment.step(action).is_err() {
             return Err(other("steps that cannot be taken here, in an episode"));
         }
         actions.push(Taken::from(action));
     }
     if !numbers.is_empty() {
-        return Err(damaged("more numbers than steps"));
+        return Err(damaged());
     }
     if bits(environment.episode_return()) != header.total {
         return Err(other("rewards that are not paid here, in an episode"));
@@ -214,51 +214,38 @@ pub(crate) fn decoded(tasks: &mut TaskCache, fragment: &str) -> Result<Link, Fau
 /// Unpacks a fragment: the line of JSON, and the numbers.
 fn unpacked(fragment: &str) -> Result<(Header, std::collections::VecDeque<u8>), Fault> {
     if fragment.len() > MAX_FRAGMENT {
-        return Err(damaged(&format!(
-            "{} characters, more than {MAX_FRAGMENT}",
-            fragment.len()
-        )));
+        return Err(damaged());
     }
-    let bytes = URL_SAFE_NO_PAD
-        .decode(fragment)
-        .map_err(|error| damaged(&error.to_string()))?;
-    let (&format, rest) = bytes.split_first().ok_or_else(|| damaged("nothing"))?;
-    let (sum, packed) = rest
-        .split_first_chunk::<4>()
-        .ok_or_else(|| damaged("too few characters"))?;
+    let bytes = URL_SAFE_NO_PAD.decode(fragment).map_err(|_| damaged())?;
+    let (&format, rest) = bytes.split_first().ok_or_else(damaged)?;
+    let (sum, packed) = rest.split_first_chunk::<4>().ok_or_else(damaged)?;
     if u32::from_le_bytes(*sum) != crc32fast::hash(packed) {
-        return Err(damaged("another checksum than that of its characters"));
+        return Err(damaged());
     }
     if format != FORMAT {
         return Err(Fault::new(
             "link/version",
-            format!(
-                "link: found the form {format}, expected {FORMAT}; open it with the version of Driftworld that made it"
-            ),
+            "this link was made by another version of Driftworld, or was changed; open it with the version that made it, \
+             or copy all of it",
         ));
     }
     let mut all = Vec::new();
     let read = DeflateDecoder::new(packed).take(MAX_UNPACKED + 1).read_to_end(&mut all);
-    read.map_err(|error| damaged(&error.to_string()))?;
+    read.map_err(|_| damaged())?;
     if all.len() as u64 > MAX_UNPACKED {
-        return Err(damaged("more than can be unpacked"));
+        return Err(damaged());
     }
-    let end = all
-        .iter()
-        .position(|byte| *byte == b'\n')
-        .ok_or_else(|| damaged("no line of JSON"))?;
-    let header: Header = serde_json::from_slice(&all[..end]).map_err(|error| damaged(&error.to_string()))?;
+    let end = all.iter().position(|byte| *byte == b'\n').ok_or_else(damaged)?;
+    let header: Header = serde_json::from_slice(&all[..end]).map_err(|_| damaged())?;
     if header.steps > MAX_LINK_STEPS {
-        return Err(damaged(&format!("{} steps, more than {MAX_LINK_STEPS}", header.steps)));
+        return Err(damaged());
     }
     Ok((header, all.drain(end + 1..).collect()))
 }
 
-fn damaged(found: &str) -> Fault {
-    Fault::new(
-        "link/damaged",
-        format!("link: found {found}, expected a whole link; copy all of it"),
-    )
+/// What is wrong inside a link tells nobody how to mend it, so the message is the same for all damage.
+fn damaged() -> Fault {
+    Fault::new("link/damaged", "this link is cut or was changed; copy all of it")
 }
 
 /// The first characters of an untrusted text, for messages.
