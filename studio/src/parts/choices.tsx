@@ -52,9 +52,15 @@ export function VariantPicker({ variants, variant, pick, label = "Variant", isNa
 }
 
 /** A whole number from 0; anything else is not taken, and the number before it is shown again. */
+/** What the numbers of a world mean. */
+const MEANINGS: Record<string, string> = {
+  Seed: "Worlds are drawn by chance. The same seed draws the same worlds again.",
+  World: "The number of the world among all that this seed draws, from 0.",
+};
+
 export function NumberPicker({ label, value, pick }: { label: string; value: number; pick: (value: number) => void }) {
   return (
-    <label class="field">
+    <label class="field" title={MEANINGS[label]}>
       {label}
       <input
         type="number" min={0} step={1} value={value}

@@ -187,7 +187,7 @@ export function Author({ route }: { route: Route }) {
           <button type="button" onClick={() => editor.current?.redo()}>Redo</button>
           <button type="button" onClick={() => saveText(draft.file, draft.text)}>Save {draft.file}</button>
           {problems.length > 0
-            ? <button type="button" class="main" disabled title="First mend what is listed below the text.">Play</button>
+            ? <button type="button" class="main" disabled title="First mend what is listed below the text.">Mend the text to play</button>
             : <a class="button main" href={hrefOf("play", "draft", { variant: request.variant, seed: seed || undefined, index: index || undefined })}>Play</a>}
         </div>
       </div>

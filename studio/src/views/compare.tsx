@@ -2,7 +2,7 @@
 
 import type { ComponentChildren } from "preact";
 import { useEffect, useMemo, useState } from "preact/hooks";
-import type { Distance, Element, EngineError, Task, Variant } from "../engine.ts";
+import type { Distance, Element, Elements as Found, EngineError, Task, Variant } from "../engine.ts";
 import * as commands from "../commands.ts";
 import { useClock } from "../clock.ts";
 import { outlines } from "../difference.ts";
@@ -20,6 +20,13 @@ import { ELEMENTS, elementWords, ShownValue } from "../parts/value.tsx";
 import { Seat } from "../parts/seat.tsx";
 
 /** A share as a bar, beside its number. */
+/** What a test of their worlds found of the parameters' claims. */
+const VERDICTS: Record<Found["verdict"], string> = {
+  sound: "just what the parameters declare",
+  idle: "a parameter changes nothing",
+  contradicted: "more than the parameters declare",
+};
+
 export function Meter({ share }: { share: number }) {
   return (
     <svg class="meter" viewBox="0 0 100 8" preserveAspectRatio="none" aria-hidden="true">
@@ -227,7 +234,8 @@ export function Compare({ route }: { route: Route }) {
         {elements.error && <ErrorNote error={elements.error} />}
         {elements.value && (
           <div class="stack">
-            <h3>Seen in their worlds: <span class={`tag ${elements.value.verdict === "sound" ? "good" : "bad"}`}>{elements.value.verdict}</span></h3>
+            <h3>Seen in their worlds: <span class={`tag ${elements.value.verdict === "sound" ? "good" : "bad"}`}>{VERDICTS[elements.value.verdict]}</span></h3>
+            <p class="faint small">For each element, the first difference that was found: left beside right.</p>
             <ul class="plain">{elements.value.measured.map((witness) => <li key={witness.element}><b>{ELEMENTS[witness.element]}:</b> {witness.message}</li>)}</ul>
             {elements.value.measured.length === 0 && <p class="faint small">No element was seen to differ.</p>}
             {elements.value.contradictions.map((text) => <p key={text} class="note bad"><span>{text}</span></p>)}

@@ -9,6 +9,7 @@ import { hrefOf, type Route } from "../route.ts";
 import { Choice } from "../parts/choices.tsx";
 import { Picture } from "../parts/pictures.tsx";
 import { ErrorNote } from "../parts/notes.tsx";
+import { MEANINGS } from "./play.tsx";
 
 const SIZE = { width: 280, height: 210 };
 /** Steps of the planner before a card's picture is taken: many worlds begin in front of a wall. */
@@ -82,8 +83,10 @@ function Card({ card, isTrained }: { card: TaskCard; isTrained: boolean }) {
         </div>
         <div class="foot">
           <a class="button quiet" href={go()} tabIndex={-1} aria-hidden="true">Play</a>
-          {isTrained && <a class="button quiet" href={go("policy")} aria-label={`Play ${card.name} beside the trained policy`}>Policy</a>}
-          <a class="button quiet" href={go("planner")} aria-label={`Play ${card.name} beside the planner`}>Planner</a>
+          {isTrained && (
+            <a class="button quiet" href={go("policy")} title={MEANINGS.policy} aria-label={`Play ${card.name} beside the trained policy`}>Policy</a>
+          )}
+          <a class="button quiet" href={go("planner")} title={MEANINGS.planner} aria-label={`Play ${card.name} beside the planner`}>Planner</a>
         </div>
       </article>
     </li>

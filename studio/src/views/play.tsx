@@ -15,7 +15,12 @@ import { FlatMap } from "../parts/pictures.tsx";
 import { amount, Seat } from "../parts/seat.tsx";
 
 type Companion = "policy" | "planner";
-const NAMES: Record<Companion, string> = { policy: "Trained policy", planner: "Planner" };
+const NAMES: Record<Companion, string> = { planner: "Planner", policy: "Trained policy" };
+/** Who they are, for the gallery, too. */
+export const MEANINGS: Record<Companion, string> = {
+  planner: "A program that knows the map plays the same world",
+  policy: "A network that learned this task from pictures plays the same world",
+};
 const SPEEDS = [1, 2, 6];
 /** Worlds that are tried for one in which an agent fails. */
 const TRIED = 50;
@@ -176,11 +181,13 @@ export function Play({ route }: { route: Route }) {
         </div>
       <div class="row spread">
         <div class="row" role="group" aria-label="Who plays beside you">
-          <button type="button" aria-pressed={companions.includes("planner")} onClick={() => toggle("planner")}>Planner</button>
-          <button
-            type="button" aria-pressed={companions.includes("policy")} disabled={!isTrained} onClick={() => toggle("policy")}
-            title={isTrained ? "" : "No trained network of this task lies beside the page"}
-          >Trained policy</button>
+          {(Object.keys(NAMES) as Companion[]).map((name) => (
+            <button
+              key={name} type="button" aria-pressed={companions.includes(name)} disabled={name === "policy" && !isTrained} onClick={() => toggle(name)}
+              title={name === "policy" && !isTrained ? "No network that learned this task lies beside the page" : MEANINGS[name]}
+            >{NAMES[name]}</button>
+          ))}
+          {!isTrained && <span class="faint small">(none for this task)</span>}
           <button type="button" onClick={guarded(findFailure)}>Show me where {isTrained ? "the policy" : "the planner"} fails</button>
           <span class="faint small" role="status">{search}</span>
         </div>
@@ -193,7 +200,9 @@ export function Play({ route }: { route: Route }) {
               >{factor}×</button>
             ))}
           </div>
-          <button type="button" onClick={() => setState(state === "running" ? "paused" : "running")}>{state === "running" ? "Pause" : "Go"}</button>
+          <button type="button" title="Lets time pass, as any key does" onClick={() => setState(state === "running" ? "paused" : "running")}>
+            {state === "running" ? "Pause" : "Go"}
+          </button>
           <button type="button" onClick={again}>Again</button>
           <button type="button" onClick={() => go({ index: index + 1 })}>Next world</button>
         </div>
@@ -239,7 +248,7 @@ export function Play({ route }: { route: Route }) {
               <button type="button" disabled={!you || you.step.step === 0} onClick={guarded(save)}>Save</button>
               <a class="button quiet" href={hrefOf("author", task === "draft" ? "" : task, { variant })}>Edit the task</a>
             </div>
-            <p class="small faint" role="status">{shared}</p>
+            <p class="small faint" role="status">{shared || (you?.step.step === 0 && "Replay and Save want a step first.")}</p>
             {link && <input type="text" readOnly value={link} aria-label="The link" onFocus={(event) => event.currentTarget.select()} />}
             <Recipes of={recipes} />
             </div>

@@ -16,6 +16,7 @@ const SHOWN: usize = 4;
 pub(crate) fn cards() -> Result<Value, Fault> {
     let mut cards = Vec::new();
     for (group, names) in tasks::groups() {
+        let group = group.replace("the paper's", "the L2Explorer paper");
         for (name, _) in names {
             let task = tasks::task(name)?;
             let described =
