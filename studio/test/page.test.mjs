@@ -11,6 +11,7 @@ const { outlines } = await load("difference.ts");
 const { following, looped, marks } = await load("timeline.ts");
 const { curves, trailingMeans } = await load("curve.ts");
 const { placeLabels } = await load("labels.ts");
+const { amount, payOf } = await load("pay.ts");
 const { askedBy, isAsking } = await load("keys.ts");
 
 test("addresses go there and back", () => {
@@ -92,6 +93,19 @@ test("labels of a map cover no point and no other label", () => {
     assert.ok(place === other || a[2] <= b[0] || b[2] <= a[0] || a[3] <= b[1] || b[3] <= a[1], `${a} on ${b}`);
   }));
   assert.deepEqual(placeLabels([{ x: 5, y: 5, texts: ["too long for this"] }], 60, 40), [null]);
+});
+
+test("what a world pays is one line", () => {
+  const touched = { reward_once_stimulus: ["AgentCollide"] };
+  const world = {
+    max_steps: 0, max_seconds: 120, rules: { step_reward: 0, reward_per_second: -0.5 },
+    objects: [{ class: "geometric", tag: "goal", reward: 100, ...touched }, { class: "rock", reward: -0.5, ...touched }, { class: "rock", reward: -0.5, ...touched }, { class: "tree", reward: 9 }],
+    environment_params: { zones: [{ name: "hot_place", reward_on_entering: -3 }, { name: "sand" }] },
+  };
+  assert.equal(payOf(JSON.stringify(world), 0.1), "goal +100 · rock −0.5 · hot place −3 · every step −0.05 · ends after 120 s");
+  assert.equal(payOf(JSON.stringify({ max_steps: 300, objects: [] }), 0.1), "ends after 300 steps");
+  assert.equal(payOf(JSON.stringify({ rules: { reward_per_second: -0.02 }, objects: [] }), 0.1), "every step −0.002");
+  assert.deepEqual([3, -0.125, -7].map(amount), ["3", "−0.13", "−7"]);
 });
 
 test("timelines mark what is unusual, and loops keep to their ends", () => {

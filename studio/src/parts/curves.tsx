@@ -3,7 +3,7 @@
 import { useMemo } from "preact/hooks";
 import type { Log } from "../engine.ts";
 import { curves } from "../curve.ts";
-import { amount } from "./seat.tsx";
+import { amount } from "../pay.ts";
 
 export function Curves({ log, now, pick }: { log: Log; now: number | null; pick: (experience: number) => void }) {
   const all = useMemo(() => curves(log.episodes), [log]);

@@ -3,10 +3,9 @@
 import { useEffect, useRef } from "preact/hooks";
 import type { ComponentChildren } from "preact";
 import type { Line } from "../difference.ts";
+import { amount } from "../pay.ts";
 import { ending, type Session } from "../session.ts";
 import { Picture } from "./pictures.tsx";
-
-export const amount = (number: number): string => (Number.isInteger(number) ? String(number) : number.toFixed(2)).replace("-", "−");
 
 export function Seat({ name, session, isYours = false, lines, below, children }: {
   name: string;

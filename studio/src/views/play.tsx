@@ -6,13 +6,14 @@ import * as commands from "../commands.ts";
 import { useClock } from "../clock.ts";
 import { draft } from "../draft.ts";
 import { HELD, isAsking, useHeldKeys } from "../keys.ts";
+import { amount, payOf } from "../pay.ts";
 import { hrefOf, type Route, wholeNumber } from "../route.ts";
 import { Session } from "../session.ts";
 import { asError, engine, requestOf, trainedAgent, trainedTasks, useAnswer } from "../simulator.ts";
 import { NumberPicker, TaskPicker, VariantPicker } from "../parts/choices.tsx";
 import { copyText, ErrorNote, Recipes, saveText } from "../parts/notes.tsx";
 import { FlatMap } from "../parts/pictures.tsx";
-import { amount, Seat } from "../parts/seat.tsx";
+import { Seat } from "../parts/seat.tsx";
 
 type Companion = "policy" | "planner";
 const NAMES: Record<Companion, string> = { planner: "Planner", policy: "Trained policy" };
@@ -150,6 +151,7 @@ export function Play({ route }: { route: Route }) {
       setSearch(asError(reason).message);
     }
   };
+          {you && <p class="small">{payOf(you.episode.world, you.episode.actionSpace.step_seconds)}</p>}
   const guarded = (action: () => Promise<void>) => () => void action().catch((reason: unknown) => setError(asError(reason)));
 
   const subject = { task: task === "draft" ? draft.file : task, variant, seed, index };

@@ -6,13 +6,13 @@ import * as commands from "../commands.ts";
 import { useClock } from "../clock.ts";
 import { droppedFiles, pickedFiles } from "../files.ts";
 import { hrefOf, type Route } from "../route.ts";
+import { amount } from "../pay.ts";
 import { VIEW } from "../session.ts";
 import { asError, engine } from "../simulator.ts";
 import { following, type Loop, looped, marks } from "../timeline.ts";
 import { Curves } from "../parts/curves.tsx";
 import { ErrorNote, Recipes } from "../parts/notes.tsx";
 import { FlatMap, Picture } from "../parts/pictures.tsx";
-import { amount } from "../parts/seat.tsx";
 import { Timeline } from "../parts/timeline.tsx";
 
 /** An episode that is replayed, with all its steps. */

@@ -1,0 +1,30 @@
+// What a world pays, and when it ends.
+
+/** A number of points, with few digits and the sign that is as wide as a plus. */
+export const amount = (number: number): string => (Number.isInteger(number) ? String(number) : number.toFixed(2)).replace("-", "−");
+
+/** The keys of a world that say what it pays. */
+interface World {
+  max_steps?: number;
+  max_seconds?: number;
+  rules?: { step_reward?: number; reward_per_second?: number };
+  objects: { class: string; tag?: string; reward?: number; reward_stimulus?: string[]; reward_once_stimulus?: string[] }[];
+  environment_params?: { zones?: { name?: string; reward_on_entering?: number }[] };
+}
+
+/** What a world pays, and when it ends, in one line. */
+export function payOf(json: string, stepSeconds: number): string {
+  const { max_steps: steps, max_seconds: seconds, rules, objects, environment_params: place } = JSON.parse(json) as World;
+  const signed = (number: number) => `${number > 0 ? "+" : ""}${Number(number.toFixed(4))}`.replace("-", "−");
+  const paid = [
+    ...objects.flatMap((object) => (object.reward_stimulus ?? object.reward_once_stimulus ? [[object.tag ?? object.class, object.reward] as const] : [])),
+    ...(place?.zones ?? []).map((zone) => [zone.name ?? "zone", zone.reward_on_entering] as const),
+  ];
+  const each = (rules?.step_reward ?? 0) + (rules?.reward_per_second ?? 0) * stepSeconds;
+  return [
+    ...new Set(paid.flatMap(([name, reward]) => (reward ? [`${name.replaceAll("_", " ")} ${signed(reward)}`] : []))),
+    ...(each ? [`every step ${signed(each)}`] : []),
+    ...(seconds ? [`ends after ${seconds} s`] : []),
+    ...(steps ? [`ends after ${steps} steps`] : []),
+  ].join(" · ");
+}
