@@ -1,20 +1,38 @@
 // The text of the author view: kept in the browser, so that a reload loses nothing.
 
 const KEY = "driftworld.draft";
+/** The text that another one replaced outside the editor. */
+const REPLACED = "driftworld.replaced";
 
-function stored(): string {
+function stored(key: string): string {
   try {
-    return localStorage.getItem(KEY) ?? "";
+    return localStorage.getItem(key) ?? "";
   } catch {
     return "";
   }
 }
 
+function store(key: string, text: string): void {
+  try {
+    localStorage.setItem(key, text);
+  } catch {
+    // Without storage, the text lasts as long as the page.
+  }
+}
+
+/** The name of the task in a text, as far as it can be read. */
+export const nameIn = (text: string): string => /"name"\s*:\s*"([a-z][a-z0-9_]*)"/.exec(text)?.[1] ?? "my_task";
+
+/** The text of a built-in task as that of one's own, under a name of its own. */
+export const copyOf = (text: string): string => text.replace(`"name": "${nameIn(text)}"`, `"name": "my_${nameIn(text)}"`);
+
 export const draft = {
-  text: stored(),
-  /** The name of the task in it, as far as it can be read. */
+  text: stored(KEY),
+  /** Hears the name of the task when it changes. */
+  onname: null as ((name: string) => void) | null,
+  /** The name of the task in it; empty where there is no text. */
   get name(): string {
-    return /"name"\s*:\s*"([a-z][a-z0-9_]*)"/.exec(this.text)?.[1] ?? "my_task";
+    return this.text && nameIn(this.text);
   },
   /** The file that the draft is saved as, and that commands name. */
   get file(): string {
@@ -22,10 +40,18 @@ export const draft = {
   },
   keep(text: string): void {
     this.text = text;
-    try {
-      localStorage.setItem(KEY, text);
-    } catch {
-      // Without storage, the text lasts as long as the page.
-    }
+    store(KEY, text);
+    this.onname?.(this.name);
+  },
+  /** Takes the text of someone else's task; the editor can go back to the one before. */
+  take(text: string): void {
+    if (this.text && this.text !== text) store(REPLACED, this.text);
+    this.keep(text);
+  },
+  /** The text before the last one that was taken, once; empty if there is none. */
+  replaced(): string {
+    const text = stored(REPLACED);
+    store(REPLACED, "");
+    return text;
   },
 };

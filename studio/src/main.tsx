@@ -2,6 +2,7 @@
 
 import { render } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
+import { draft } from "./draft.ts";
 import { engine, useAnswer } from "./simulator.ts";
 import { hrefOf, parseRoute, type Route, type ViewName, VIEWS } from "./route.ts";
 import { ErrorNote } from "./parts/notes.tsx";
@@ -47,10 +48,22 @@ function Busy() {
   );
 }
 
+/** Says that an address leads nowhere. */
+function Nothing({ what }: { what: string }) {
+  return <p class="note warn" role="alert"><span>{what} <a href={hrefOf("gallery")}>The gallery</a> shows all tasks.</span></p>;
+}
+
 function App() {
   const [route, setRoute] = useState(() => parseRoute(location.hash));
   const main = useRef<HTMLElement>(null);
   const started = useAnswer(() => engine.ready(), []);
+  const tasks = useAnswer(() => engine.tasks(), []);
+  const [own, setOwn] = useState(draft.name);
+  const isKnown = route.task === "draft" ? own || route.view === "author" : !tasks.value || tasks.value.some(({ name }) => name === route.task);
+  const isUnknown = route.task && !isKnown;
+  useEffect(() => {
+    draft.onname = setOwn;
+  }, []);
   useEffect(() => {
     const go = () => {
       const next = parseRoute(location.hash);
@@ -80,10 +93,10 @@ function App() {
           <nav aria-label="Views">
             {VIEWS.map((view) => (
               <a
-                key={view} href={hrefOf(view, view === "gallery" || view === "replay" ? "" : route.task)}
+                key={view} href={hrefOf(view, view === "gallery" || view === "replay" ? "" : view === "author" && own ? "draft" : route.task)}
                 {...(view === route.view ? { "aria-current": "page" as const } : {})}
               >
-                {TITLES[view]}
+                {TITLES[view]}{view === "author" && own && <span class="own">{own}</span>}
               </a>
             ))}
           </nav>
@@ -92,7 +105,9 @@ function App() {
       </header>
       <main id="main" ref={main} tabIndex={-1}>
         {started.error && <ErrorNote error={started.error} again={() => location.reload()} />}
-        {started.value && <View key={route.view} route={route} />}
+        {route.unknown && <Nothing what={`There is no page ${route.unknown}.`} />}
+        {isUnknown && <Nothing what={route.task === "draft" ? "There is no task of your own yet." : `There is no task called ${route.task}.`} />}
+        {started.value && !tasks.pending && !isUnknown && <View key={route.view} route={route} />}
         {started.pending && <p class="loading">Loading the simulator …</p>}
       </main>
     </>

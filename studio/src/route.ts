@@ -12,16 +12,19 @@ export interface Route {
   options: Record<string, string>;
   /** The fragment of an episode, for the view `replay`. */
   link: string | null;
+  /** What was asked for in place of a view; null if it is one. */
+  unknown: string | null;
 }
 
 /** Reads a fragment, with or without its `#`. What is no view is the gallery. */
 export function parseRoute(fragment: string): Route {
   const text = fragment.replace(/^#/, "");
-  if (text && !text.startsWith("/")) return { view: "replay", task: "", options: {}, link: text };
+  if (text && !text.startsWith("/")) return { view: "replay", task: "", options: {}, link: text, unknown: null };
   const [path = "", query = ""] = text.split("?", 2);
   const [, name, task = ""] = path.split("/");
-  const view = VIEWS.find((known) => known === name) ?? "gallery";
-  return { view, task: decode(task), options: Object.fromEntries(new URLSearchParams(query)), link: null };
+  const view = VIEWS.find((known) => known === name);
+  const options = Object.fromEntries(new URLSearchParams(query));
+  return { view: view ?? "gallery", task: view ? decode(task) : "", options, link: null, unknown: view || !name ? null : decode(path) };
 }
 
 /** The fragment of a route, with `#`. */

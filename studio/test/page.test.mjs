@@ -17,8 +17,8 @@ const { askedBy, isAsking } = await load("keys.ts");
 test("addresses go there and back", () => {
   const { view, task, options } = parseRoute(hrefOf("play", "a b/c", { variant: "x&y", seed: 3, index: undefined }));
   assert.deepEqual([view, task, options], ["play", "a b/c", { variant: "x&y", seed: "3" }]);
-  assert.deepEqual(parseRoute("#1AbC_-"), { view: "replay", task: "", options: {}, link: "1AbC_-" });
-  assert.equal(parseRoute("#/nowhere").view, "gallery");
+  assert.deepEqual(parseRoute("#1AbC_-"), { view: "replay", task: "", options: {}, link: "1AbC_-", unknown: null });
+  assert.deepEqual([parseRoute("#/foo/bar").view, parseRoute("#/foo/bar").unknown, parseRoute("").unknown], ["gallery", "/foo/bar", null]);
   assert.equal(parseRoute("#/play/%E0%A4%A").task, "%E0%A4%A");
   assert.deepEqual(["7", "-1", "1e99", "x", undefined].map(wholeNumber), [7, 0, 0, 0, 0]);
 });

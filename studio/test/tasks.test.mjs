@@ -324,6 +324,8 @@ task("11 mouse: a rock is put on the map, and taken away", "#/author", async (pa
   await tabTo(page, "Undo");
   await page.keyboard.press("Enter");
   await at(4);
+  assert.match(edited, /"name": "my_maze"/);
+  assert.equal(await text(page, "nav .own"), "my_maze");
 });
 
 task("12 draft: completion, and an edited task that Back does not replace", "#/author/maze", async (page) => {

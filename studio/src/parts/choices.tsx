@@ -48,7 +48,8 @@ export function VariantPicker({ variants, variant, pick, label = "Variant", isNa
   label?: string;
   isNamed?: boolean;
 }) {
-  return <Choice label={label} value={variant} entries={isNamed ? variants : [["", "defaults"], ...variants]} pick={pick} />;
+  const names = [...new Set([...variants, variant])].filter(Boolean);
+  return <Choice label={label} value={variant} entries={isNamed ? names : [["", "defaults"], ...names]} pick={pick} />;
 }
 
 /** A whole number from 0; anything else is not taken, and the number before it is shown again. */

@@ -3,7 +3,7 @@
 import { useEffect, useRef, useState } from "preact/hooks";
 import { EngineError, type Frame, type Json, type Problem, type Task, type Value, type Variant, type WorldMap, type WorldRequest } from "../engine.ts";
 import * as commands from "../commands.ts";
-import { draft } from "../draft.ts";
+import { copyOf, draft } from "../draft.ts";
 import type { Editor } from "../editor.ts";
 import { applied, change, type Change, pathOf, type Path, removal, spanAt, spans } from "../json_text.ts";
 import { pointGroups, textLayouts, withLetter } from "../layouts.ts";
@@ -52,7 +52,7 @@ async function begunWith({ task, options: { file } }: Route): Promise<string | n
     if (!reply.ok) throw new EngineError("page/file", `${file}: found nothing of this name beside the page; open the task with \`driftworld studio\``);
     return reply.text();
   }
-  return task && task !== "draft" ? (await engine.task(task)).text : null;
+  return task && task !== "draft" ? copyOf((await engine.task(task)).text) : null;
 }
 
 export function Author({ route }: { route: Route }) {
