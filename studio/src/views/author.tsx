@@ -78,9 +78,10 @@ export function Author({ route }: { route: Route }) {
       const { createEditor } = await import("../editor.ts");
       const named = await begunWith(route);
       if (isOver || !place.current) return;
-      editor.current = createEditor(place.current, text, () => context.current, setText);
+      const replaced = draft.replaced();
+      editor.current = createEditor(place.current, replaced || text, () => context.current, setText);
       begun.current = named;
-      if (named !== null) editor.current.replace(named);
+      if (named !== null || replaced) editor.current.replace(named ?? text);
       // The text can be read before it can be completed.
       context.current.schema = await engine.schema("task");
     };

@@ -4,9 +4,10 @@ import { useEffect, useLayoutEffect, useMemo, useRef, useState } from "preact/ho
 import type { DroppedFile, EngineError, Episode, Frame, Log, Step, WorldMap } from "../engine.ts";
 import * as commands from "../commands.ts";
 import { useClock } from "../clock.ts";
+import { draft, nameIn } from "../draft.ts";
 import { droppedFiles, pickedFiles } from "../files.ts";
-import { hrefOf, type Route } from "../route.ts";
 import { amount } from "../pay.ts";
+import { hrefOf, type Route } from "../route.ts";
 import { VIEW } from "../session.ts";
 import { asError, engine } from "../simulator.ts";
 import { following, type Loop, looped, marks } from "../timeline.ts";
@@ -34,7 +35,8 @@ async function fromLink(fragment: string): Promise<Played> {
   const episode = await engine.open(request, { ...VIEW, ...(looks ? { looks } : {}) });
   const first = await episode.now();
   const task = "task" in request ? request.task : "a world";
-  const name = task.startsWith("{") ? "a task of its own" : `${task}${"variant" in request && request.variant ? `#${request.variant}` : ""}`;
+  const variant = "variant" in request && request.variant ? `#${request.variant}` : "";
+  const name = task.startsWith("{") ? `${nameIn(task)}${variant}, a task of its own` : `${task}${variant}`;
   const where = "task" in request ? `, world ${request.index ?? 0} under seed ${request.seed ?? 0}` : "";
   return { episode, title: `${name}${where}`, steps: [first, ...(await episode.steps(actions))] };
 }
@@ -170,13 +172,18 @@ export function Replay({ route }: { route: Route }) {
   const trail = useMemo(() => shown?.steps.slice(0, moment + 1).map(({ agent }): [number, number] => [agent.x, agent.y]) ?? [], [shown, moment]);
   const found = useMemo(() => (shown ? marks(shown.steps.slice(1)) : []), [shown]);
   const request = shown?.episode.request;
-  const subject = request && "task" in request && !request.task.startsWith("{")
-    ? { task: request.task, variant: request.variant ?? "", seed: request.seed ?? 0, index: request.index ?? 0 }
+  const isOwn = request !== undefined && "task" in request && request.task.startsWith("{");
+  const subject = request && "task" in request
+    ? { task: isOwn ? "draft" : request.task, variant: request.variant ?? "", seed: request.seed ?? 0, index: request.index ?? 0 }
     : null;
+  const go = (view: "play" | "author") => {
+    if (isOwn) draft.take(request.task);
+    location.hash = hrefOf(view, subject!.task, placeOf(subject!));
+  };
   const actions = shown?.steps.slice(1).flatMap(({ action }) => (action === null ? [] : [action])) ?? [];
   const recipe = log && experience !== null
     ? commands.replayLog(folder, experience)
-    : subject && shown ? commands.episode(subject, shown.episode.actionSpace, actions) : null;
+    : subject && shown && !isOwn ? commands.episode(subject, shown.episode.actionSpace, actions) : null;
   return (
     <div
       class="stack drop" onDragOver={(event) => { event.preventDefault(); setOver(true); }} onDragLeave={() => setOver(false)}
@@ -188,7 +195,8 @@ export function Replay({ route }: { route: Route }) {
           <p>{shown ? `${shown.title}, ${last} steps` : "An episode from a link, or a log of a lifetime."}</p>
         </div>
         <div class="row">
-          {subject && <a class="button" href={hrefOf("play", subject.task, placeOf(subject))}>Play this world</a>}
+          {subject && <button type="button" onClick={() => go("play")}>Play this world</button>}
+          {subject && <button type="button" title={isOwn ? "Undo in Author brings your own text back" : ""} onClick={() => go("author")}>Edit this task</button>}
           <label class="button">
             Open a log folder
             <input class="hidden" type="file" multiple {...{ webkitdirectory: true }} onChange={(event) => void read(pickedFiles(event.currentTarget.files))} />
