@@ -242,19 +242,6 @@ task("08 compare: two variants under one set of actions", "#/compare/find_object
   await page.waitForSelector("ul.plain", { timeout: 3 * PATIENCE_MS });
 });
 
-task("13 measures: what counts for several elements is one part, and some measures have none", "#/compare/maze?a=medium&b=tiny", async (page) => {
-  const says = (pattern) => until(page, (source) => new RegExp(source).test(document.querySelector('section[aria-label="Distance"]')?.innerText), pattern.source);
-  await says(/layout\s+State, Transition, Observation\s+layout \/ widest choice\s+100\.0 %/);
-  await choose(page, "Measured by", "dynamics:b");
-  await says(/0\.054 apart[^]*compares worlds as a whole: its number has no parts/);
-  await choose(page, "Measured by", "pictures");
-  await says(/none of 16 places free/);
-  assert.equal(await page.getByText("Try again").count(), 0);
-  await tabTo(page, "Compare by worlds");
-  await page.keyboard.press("Enter");
-  await says(/3\.813 apart[^]*The total is the sum of the parts/);
-});
-
 task("09 order: walk along it", "#/order/find_objects", async (page) => {
   await page.waitForSelector("svg.plot");
   await choose(page, "Method", "outward");
@@ -324,8 +311,6 @@ task("11 mouse: a rock is put on the map, and taken away", "#/author", async (pa
   await tabTo(page, "Undo");
   await page.keyboard.press("Enter");
   await at(4);
-  assert.match(edited, /"name": "my_maze"/);
-  assert.equal(await text(page, "nav .own"), "my_maze");
 });
 
 task("12 draft: completion, and an edited task that Back does not replace", "#/author/maze", async (page) => {
@@ -339,6 +324,8 @@ task("12 draft: completion, and an edited task that Back does not replace", "#/a
   await page.waitForSelector(".cm-tooltip-autocomplete");
   await page.keyboard.press("Escape");
   const edited = await page.evaluate(() => localStorage.getItem("driftworld.draft"));
+  assert.match(edited, /"name": "my_maze"/);
+  assert.equal(await text(page, "nav .own"), "my_maze");
   await page.waitForSelector("a.button.main");
   await page.locator("a.button.main").click();
   await page.waitForFunction(() => location.hash.startsWith("#/play/draft"));
@@ -346,4 +333,72 @@ task("12 draft: completion, and an edited task that Back does not replace", "#/a
   await page.waitForSelector(".editor");
   await page.waitForSelector(".note.good");
   assert.equal(await page.evaluate(() => localStorage.getItem("driftworld.draft")), edited);
+});
+
+task("13 measures: what counts for several elements is one part, and some measures have none", "#/compare/maze?a=medium&b=tiny", async (page) => {
+  const says = (pattern) => until(page, (source) => new RegExp(source).test(document.querySelector('section[aria-label="Distance"]')?.innerText), pattern.source);
+  await says(/layout\s+State, Transition, Observation\s+layout \/ widest choice\s+100\.0 %/);
+  await choose(page, "Measured by", "dynamics:b");
+  await says(/0\.054 apart[^]*compares worlds as a whole: its number has no parts/);
+  await choose(page, "Measured by", "pictures");
+  await says(/none of 16 places free/);
+  assert.equal(await page.getByText("Try again").count(), 0);
+  await tabTo(page, "Compare by worlds");
+  await page.keyboard.press("Enter");
+  await says(/3\.813 apart[^]*The total is the sum of the parts/);
+});
+
+task("14 addresses: what is not there says so", "#/play/nosuch", async (page) => {
+  const says = async (address, sentence) => {
+    await page.evaluate((to) => { location.hash = to; }, address);
+    await until(page, (wanted) => document.querySelector(".note")?.innerText.includes(wanted), sentence);
+    assert.equal(await page.getByText("Try again").count(), 0);
+  };
+  await says("#/play/nosuch", "There is no task called nosuch. The gallery shows all tasks.");
+  await says("#/compare/draft", "There is no task of your own yet.");
+  await says("#/foo/bar", "There is no page /foo/bar.");
+  await page.waitForSelector(".gallery .card");
+  await says("#/play/maze?variant=nope", "expected one of medium, tiny");
+  assert.equal(await page.inputValue("label.field:nth-child(2) select"), "nope");
+  await page.evaluate(() => { location.hash = "#/play/maze?variant=tiny"; });
+  await page.waitForSelector(".seat");
+  await until(page, () => document.querySelector(".head").innerText.includes("goal +100 · every step −0.05 · ends after 120 s"));
+});
+
+task("15 link: of an own task, played and edited by who gets it", "#/author", async (page) => {
+  const draft = () => page.evaluate(() => localStorage.getItem("driftworld.draft"));
+  const begin = async (template) => {
+    await page.waitForSelector(".editor");
+    await choose(page, "New from", template);
+    await page.waitForSelector(".note.good");
+  };
+  await begin("a park");
+  await page.locator("a.button.main").click();
+  await page.waitForSelector(".seat");
+  await walk(page, "You", 5);
+  await page.keyboard.press("KeyP");
+  await page.waitForTimeout(500);
+  await tabTo(page, "Share as a link");
+  await page.keyboard.press("Enter");
+  await page.waitForSelector('input[aria-label="The link"]');
+  const [link, shared] = [await page.inputValue('input[aria-label="The link"]'), await draft()];
+  await page.goto(`${server.address}#/author`);
+  await begin("a map");
+  const own = await draft();
+  await page.goto(link);
+  await page.waitForSelector(".timeline");
+  assert.match(await text(page, ".head p"), /^my_park, a task of its own, world 0 under seed 0, \d+ steps/);
+  await tabTo(page, "Play this world");
+  await page.keyboard.press("Enter");
+  await page.waitForSelector(".pad-keys", { state: "attached" });
+  assert.equal(await text(page, "h1"), "my_park");
+  await page.goBack();
+  await page.waitForSelector(".timeline");
+  await tabTo(page, "Edit this task");
+  await page.keyboard.press("Enter");
+  await page.waitForSelector(".note.good");
+  assert.equal(await draft(), shared);
+  await tabTo(page, "Undo");
+  await page.keyboard.press("Enter");
+  await until(page, (wanted) => localStorage.getItem("driftworld.draft") === wanted, own);
 });

@@ -52,13 +52,13 @@ export function VariantPicker({ variants, variant, pick, label = "Variant", isNa
   return <Choice label={label} value={variant} entries={isNamed ? names : [["", "defaults"], ...names]} pick={pick} />;
 }
 
-/** A whole number from 0; anything else is not taken, and the number before it is shown again. */
 /** What the numbers of a world mean. */
 const MEANINGS: Record<string, string> = {
   Seed: "Worlds are drawn by chance. The same seed draws the same worlds again.",
   World: "The number of the world among all that this seed draws, from 0.",
 };
 
+/** A whole number from 0; anything else is not taken, and the number before it is shown again. */
 export function NumberPicker({ label, value, pick }: { label: string; value: number; pick: (value: number) => void }) {
   return (
     <label class="field" title={MEANINGS[label]}>

@@ -126,7 +126,8 @@ export function Author({ route }: { route: Route }) {
     const path: Path = parameter.role === "fixed"
       ? ["parameters", parameter.name, "value"]
       : variant ? ["variants", variant, parameter.name] : ["parameters", parameter.name, "default"];
-    setSaid(edit(path, value, "drag") ? "" : `${variant} is a member of a family: change the family in the text, or choose another variant.`);
+    const effect = path[2] === "default" ? `The default of ${parameter.name} is changed in the text, and so is every variant that names no value of its own.` : "";
+    setSaid(edit(path, value, "drag") ? effect : `${variant} is a member of a family: change the family in the text, or choose another variant.`);
   };
   const showPlace = (path: Path) => {
     const span = spanAt(spans(text), path);
@@ -197,7 +198,7 @@ export function Author({ route }: { route: Route }) {
           <div class="card editor" ref={place} />
           {problems.length > 0
             ? (
-              <ul class="problems" aria-label="Problems">
+              <ul class="problems verdict" aria-label="Problems">
                 {problems.slice(0, 20).map((problem, number) => (
                   <li key={number}>
                     <button type="button" onClick={() => showProblem(editor.current, text, problem)}>
@@ -208,8 +209,11 @@ export function Author({ route }: { route: Route }) {
               </ul>
             )
             : shown && (
-              <p class="note good" role="status">
-                <span>Valid. {shown.task ? `${shown.task.variants.length} variants, ${shown.task.parameters.length} parameters.` : "A world."}</span>
+              <p class="note good verdict" role="status">
+                <span>
+                  Valid. {shown.task ? `${shown.task.variants.length} variants, ${shown.task.parameters.length} parameters.` : "A world."}
+                  {route.task && route.task !== "draft" && ` A copy of ${route.task}, with worlds of its own.`}
+                </span>
               </p>
             )}
           <Recipes of={{ "Check it": commands.validate(draft.file), "Play it": commands.play(subject), "Draw this world": commands.sample(subject) }} />

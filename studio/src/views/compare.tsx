@@ -13,13 +13,13 @@ import { Session } from "../session.ts";
 import { asError, engine, requestOf, useAnswer } from "../simulator.ts";
 import { Choice, NumberPicker, TaskPicker, VariantPicker } from "../parts/choices.tsx";
 import { ErrorNote, Recipes } from "../parts/notes.tsx";
+import { Pad } from "../parts/pad.tsx";
 import { FlatMap } from "../parts/pictures.tsx";
 import { same } from "../json_text.ts";
 import { written, type WrittenParameter } from "../written.ts";
 import { ELEMENTS, elementWords, ShownValue } from "../parts/value.tsx";
 import { Seat } from "../parts/seat.tsx";
 
-/** A share as a bar, beside its number. */
 /** What a test of their worlds found of the parameters' claims. */
 const VERDICTS: Record<Found["verdict"], string> = {
   sound: "just what the parameters declare",
@@ -27,6 +27,7 @@ const VERDICTS: Record<Found["verdict"], string> = {
   contradicted: "more than the parameters declare",
 };
 
+/** A share as a bar, beside its number. */
 export function Meter({ share }: { share: number }) {
   return (
     <svg class="meter" viewBox="0 0 100 8" preserveAspectRatio="none" aria-hidden="true">
@@ -205,6 +206,7 @@ export function Compare({ route }: { route: Route }) {
           ))}
         </div>
       )}
+      {pair && <Pad set={keys.set} />}
       {rows.length > 0 && (
         <section class="card pad stack" aria-label="Parameters that differ">
           <h2>Parameters that differ</h2>

@@ -12,6 +12,7 @@ import { Session } from "../session.ts";
 import { asError, engine, requestOf, trainedAgent, trainedTasks, useAnswer } from "../simulator.ts";
 import { NumberPicker, TaskPicker, VariantPicker } from "../parts/choices.tsx";
 import { copyText, ErrorNote, Recipes, saveText } from "../parts/notes.tsx";
+import { Pad } from "../parts/pad.tsx";
 import { FlatMap } from "../parts/pictures.tsx";
 import { Seat } from "../parts/seat.tsx";
 
@@ -25,27 +26,6 @@ export const MEANINGS: Record<Companion, string> = {
 const SPEEDS = [1, 2, 6];
 /** Worlds that are tried for one in which an agent fails. */
 const TRIED = 50;
-
-/** The buttons for who has no keyboard. */
-const PAD: [string, string, string][] = [
-  ["", "", ""], ["ArrowUp", "↑", "Ahead"], ["Space", "●", "Use"],
-  ["ArrowLeft", "←", "Left"], ["ArrowDown", "↓", "Back"], ["ArrowRight", "→", "Right"],
-];
-
-function Pad({ set }: { set: (code: string, isDown: boolean) => void }) {
-  return (
-    <div class="pad-keys">
-      {PAD.map(([code, sign, word], place) => code
-        ? (
-          <button
-            key={place} type="button" aria-label={word}
-            onPointerDown={() => set(code, true)} onPointerUp={() => set(code, false)} onPointerLeave={() => set(code, false)}
-          >{sign}</button>
-        )
-        : <span key={place} />)}
-    </div>
-  );
-}
 
 export function Play({ route }: { route: Route }) {
   const task = route.task || "find_objects";
@@ -151,7 +131,6 @@ export function Play({ route }: { route: Route }) {
       setSearch(asError(reason).message);
     }
   };
-          {you && <p class="small">{payOf(you.episode.world, you.episode.actionSpace.step_seconds)}</p>}
   const guarded = (action: () => Promise<void>) => () => void action().catch((reason: unknown) => setError(asError(reason)));
 
   const subject = { task: task === "draft" ? draft.file : task, variant, seed, index };
@@ -172,6 +151,7 @@ export function Play({ route }: { route: Route }) {
         <div>
           <h1>{task === "draft" ? draft.name : task}</h1>
           <p>{about.value?.description} {description}</p>
+          {you && <p class="small">{payOf(you.episode.world, you.episode.actionSpace.step_seconds)}</p>}
         </div>
       </div>
       <div class="tools stack">
@@ -216,7 +196,7 @@ export function Play({ route }: { route: Route }) {
         <div class={`stage ${seats.length === 1 ? "solo" : ""}`}>
           {seats.map(({ name, session }, place) => (
             <Seat key={name} name={name} session={session} isYours={place === 0} below={place === 0 ? <Pad set={keys.set} /> : null}>
-              {state !== "running" && <span class="tag">{state === "paused" ? "paused" : "press a key to begin"}</span>}
+              {state !== "running" && <span class="tag">{state === "paused" ? "paused" : "tap or press a key to begin"}</span>}
             </Seat>
           ))}
           <section class="card pad stack" aria-label="Map">
