@@ -8,7 +8,7 @@ interface World {
   max_steps?: number;
   max_seconds?: number;
   rules?: { step_reward?: number; reward_per_second?: number };
-  objects: { class: string; tag?: string; reward?: number; reward_stimulus?: string[]; reward_once_stimulus?: string[] }[];
+  objects: { class: string; tag?: string; reward?: number; reward_probability?: number; reward_stimulus?: string[]; reward_once_stimulus?: string[] }[];
   environment_params?: { zones?: { name?: string; reward_on_entering?: number }[] };
 }
 
@@ -17,12 +17,14 @@ export function payOf(json: string, stepSeconds: number): string {
   const { max_steps: steps, max_seconds: seconds, rules, objects, environment_params: place } = JSON.parse(json) as World;
   const signed = (number: number) => `${number > 0 ? "+" : ""}${Number(number.toFixed(4))}`.replace("-", "−");
   const paid = [
-    ...objects.flatMap((object) => (object.reward_stimulus ?? object.reward_once_stimulus ? [[object.tag ?? object.class, object.reward] as const] : [])),
-    ...(place?.zones ?? []).map((zone) => [zone.name ?? "zone", zone.reward_on_entering] as const),
+    ...objects.filter((object) => object.reward_stimulus ?? object.reward_once_stimulus)
+      .map((object) => ({ name: object.tag ?? object.class, reward: object.reward, odds: object.reward_probability ?? 1 })),
+    ...(place?.zones ?? []).map((zone) => ({ name: zone.name ?? "zone", reward: zone.reward_on_entering, odds: 1 })),
   ];
   const each = (rules?.step_reward ?? 0) + (rules?.reward_per_second ?? 0) * stepSeconds;
   return [
-    ...new Set(paid.flatMap(([name, reward]) => (reward ? [`${name.replaceAll("_", " ")} ${signed(reward)}`] : []))),
+    ...new Set(paid.flatMap(({ name, reward, odds }) =>
+      reward ? [`${name.replaceAll("_", " ")} ${signed(reward)}${odds < 1 ? `, ${Number((100 * odds).toFixed(1))} % of the time` : ""}`] : [])),
     ...(each ? [`every step ${signed(each)}`] : []),
     ...(seconds ? [`ends after ${seconds} s`] : []),
     ...(steps ? [`ends after ${steps} steps`] : []),

@@ -103,6 +103,8 @@ test("what a world pays is one line", () => {
     environment_params: { zones: [{ name: "hot_place", reward_on_entering: -3 }, { name: "sand" }] },
   };
   assert.equal(payOf(JSON.stringify(world), 0.1), "goal +100 · rock −0.5 · hot place −3 · every step −0.05 · ends after 120 s");
+  const seldom = { objects: [{ class: "barrel", tag: "others", reward: 1, reward_probability: 0.1, ...touched }] };
+  assert.equal(payOf(JSON.stringify(seldom), 0.1), "others +1, 10 % of the time");
   assert.equal(payOf(JSON.stringify({ max_steps: 300, objects: [] }), 0.1), "ends after 300 steps");
   assert.equal(payOf(JSON.stringify({ rules: { reward_per_second: -0.02 }, objects: [] }), 0.1), "every step −0.002");
   assert.deepEqual([3, -0.125, -7].map(amount), ["3", "−0.13", "−7"]);
