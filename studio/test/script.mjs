@@ -21,7 +21,7 @@ const SAMPLED = [
 
 const COMPARED = [
   { task: "find_objects", names: ["blue", "red", "dusk", "huddle", "penalty", "wide", "spheres"], by: ["parameters", "worlds", "objects", "occupancy"] },
-  { task: "get_to_goal", names: ["plain", "deadly", "soft"], by: ["parameters", "rewards", "colors", "placements"] },
+  { task: "get_to_goal", names: ["plain", "deadly", "soft", "slow"], by: ["parameters", "rewards", "colors", "placements"] },
 ];
 
 /** Groups of calls: a small set for a quick run, or all of them. */
