@@ -10,6 +10,7 @@ const { scaleOf, toMetres, toPixels, whatIsAt } = await load("map_view.ts");
 const { outlines } = await load("difference.ts");
 const { following, looped, marks } = await load("timeline.ts");
 const { curves, trailingMeans } = await load("curve.ts");
+const { copyOf, nameIn } = await load("draft.ts");
 const { placeLabels } = await load("labels.ts");
 const { amount, payOf } = await load("pay.ts");
 const { askedBy, isAsking } = await load("keys.ts");
@@ -21,6 +22,12 @@ test("addresses go there and back", () => {
   assert.deepEqual([parseRoute("#/foo/bar").view, parseRoute("#/foo/bar").unknown, parseRoute("").unknown], ["gallery", "/foo/bar", null]);
   assert.equal(parseRoute("#/play/%E0%A4%A").task, "%E0%A4%A");
   assert.deepEqual(["7", "-1", "1e99", "x", undefined].map(wholeNumber), [7, 0, 0, 0, 0]);
+});
+
+test("a copy of a task has a name of its own", () => {
+  const text = '{\n  "version": 2,\n  "name": "maze",\n  "groups": [{ "name": "maze" }]\n}';
+  assert.equal(copyOf(text), text.replace("maze", "my_maze"));
+  assert.deepEqual([nameIn(copyOf(text)), nameIn("{}")], ["my_maze", "my_task"]);
 });
 
 test("commands quote what a shell would read", () => {

@@ -337,7 +337,7 @@ task("12 draft: completion, and an edited task that Back does not replace", "#/a
 
 task("13 measures: what counts for several elements is one part, and some measures have none", "#/compare/maze?a=medium&b=tiny", async (page) => {
   const says = (pattern) => until(page, (source) => new RegExp(source).test(document.querySelector('section[aria-label="Distance"]')?.innerText), pattern.source);
-  await says(/layout\s+State, Transition, Observation\s+layout \/ widest choice\s+100\.0 %/);
+  await says(/layout\s+State, Transition, Observation\s+layout \/ widest choice\s+100\.0\s%/);
   await choose(page, "Measured by", "dynamics:b");
   await says(/0\.054 apart[^]*compares worlds as a whole: its number has no parts/);
   await choose(page, "Measured by", "pictures");

@@ -80,7 +80,7 @@ function Elements({ distance }: { distance: Distance }) {
         {parts.length > 0 && (
           <Table
             heads={["Part", "Counts for", "Measure", "Share"]}
-            rows={parts.map(({ name, measure, elements, share }) => [<code>{name}</code>, elementWords(elements), measure, `${(100 * share).toFixed(1)} %`])}
+            rows={parts.map(({ name, measure, elements, share }) => [<code>{name}</code>, elementWords(elements), measure, `${(100 * share).toFixed(1)}\u00a0%`])}
           />
         )}
       </div>
