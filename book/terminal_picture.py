@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from html import escape
 
-# Pixels of a character, of a line, around the whole, and of the title bar.
+# Pixels: the width of a character, the height of a line, the margin, and the height of the title bar.
 LETTER, LINE, RIM, BAR = 7.8, 17, 14, 26
 # The shortest time between two frames in seconds: progress bars are redrawn more often than anyone can see.
 SHORTEST = 0.2
@@ -104,7 +104,7 @@ def picture(events: Events, columns: int, rows: int) -> str:
     begin = events[0][0]
     shown = moments([(at - begin, text) for at, text in events], columns)
     length = shown[-1][0] + END
-    # The time spans of each content of each row.
+    # The drawn rows, by the time span during which they are on screen.
     lives: dict[tuple[float, float], list[str]] = {}
     scrolls: list[tuple[float, int]] = [(0.0, 0)]
     since: dict[int, tuple[float, Line]] = {}

@@ -1,4 +1,4 @@
-//! Removes the unfinished files of killed processes: those with our file name ending that no process has locked.
+//! Removes the unfinished files of killed processes: those with our file name suffix that no process has locked.
 
 use std::collections::BTreeSet;
 use std::fs::{self, File, OpenOptions};
@@ -6,7 +6,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-/// File name ending of unfinished files.
+/// File name suffix of unfinished files.
 pub(crate) const ENDING: &str = ".driftworld-part";
 
 /// Attempts at creating a file or folder: another process may remove it as a leftover before it is locked.
@@ -62,6 +62,6 @@ pub(crate) fn remove_in(folder: &Path, is_ours: impl Fn(&str) -> bool, remove: i
 /// Opens for writing where possible: some file systems can lock only files open for writing.
 fn opened(path: &Path) -> io::Result<File> {
     let written = OpenOptions::new().read(true).write(true).open(path);
-    // Only locked and never read, not by driftworld-files: its name shows that the file is ours.
+    // Not opened through driftworld-files: the file is only locked, never read, and its name shows that it is ours.
     written.or_else(|_| File::open(path))
 }

@@ -1,8 +1,8 @@
 //! Curricula: turns ordered variants into learning and evaluation blocks, runs an agent through them and writes the log.
 //!
-//! [`probe`] and [`steps`] find variants for a hypothesis, [`arrange`] orders them, [`design`] makes a
-//! [`Scenario`](driftworld_spec::Scenario) of them, [`run`] runs it, and [`audit`] checks its scores with simulated agents of known
-//! behaviour. The caller passes in folders and the clock.
+//! [`probe`] and [`steps`] find variants for a hypothesis, [`arrange`] orders them, [`design`] builds a
+//! [`Scenario`](driftworld_spec::Scenario) from them, [`run`] runs it, and [`audit`] checks its scores with simulated
+//! agents of known behaviour. The caller passes in folders and the clock.
 
 mod audit;
 mod design;

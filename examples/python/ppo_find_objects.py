@@ -106,7 +106,7 @@ def learn(seed: int, arguments: argparse.Namespace) -> tuple[PPO, list[dict[str,
 
 
 def evaluate(arguments: argparse.Namespace, model: PPO | None, policy: str, seed: int = 0) -> dict[str, float]:
-    """Reward and success in worlds that were never learned from; without a model, those of a random agent."""
+    """Reward and success in held-out worlds; without a model, those of a random agent."""
 
     @torch.no_grad()
     def probabilities(observations: Any) -> Any:
@@ -120,8 +120,8 @@ def evaluate(arguments: argparse.Namespace, model: PPO | None, policy: str, seed
 
 
 def expert(arguments: argparse.Namespace, **changes: Any) -> dict[str, float]:
-    """The reward of the agent on rails, which knows the map; it holds actions as long as the learner does, unless
-    changed.
+    """The reward and success of the agent on rails, which knows the map; it holds actions as long as the learner
+    does, unless `changes` say otherwise.
     """
     env = gym.make(ID, variant=arguments.variant, **(OPTIONS | changes))
     variant = driftworld.TaskSpec.load("find_objects").variant(arguments.variant)

@@ -31,7 +31,7 @@ pub enum FileError {
     TooLarge {
         /// The file's path.
         path: PathBuf,
-        /// The file's size in bytes, or a lower bound of it.
+        /// The file's size in bytes, or a lower bound on it.
         found: u64,
         /// Maximum number of bytes allowed.
         limit: u64,

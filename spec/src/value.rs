@@ -119,7 +119,7 @@ impl Value {
         }
     }
 
-    /// Whether only a place for JSON can hold it: a list of words or of lists, an object, or `null`.
+    /// Whether it is [`Value::Json`]: when read, a list of words or of lists, an object, or `null`.
     pub(crate) fn is_json(&self) -> bool {
         matches!(self, Self::Json(_))
     }

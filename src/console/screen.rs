@@ -1,4 +1,4 @@
-//! Pictures in a terminal: coloured half blocks if colours are available, else letters.
+//! Pictures in a terminal: coloured half blocks if colours are available, else plain characters.
 
 use std::fmt::Write;
 use std::io::IsTerminal;
@@ -22,7 +22,7 @@ pub(crate) struct Screen {
 }
 
 impl Screen {
-    /// Monochrome letters, 80 per line: for anything but a terminal.
+    /// Monochrome characters, 80 per line: for anything but a terminal.
     pub(super) const PLAIN: Self = Self {
         colors: false,
         columns: USUAL_COLUMNS,
@@ -61,7 +61,7 @@ impl Screen {
     }
 }
 
-/// The picture in colours: the upper half of each letter is one pixel, the lower half another.
+/// The picture in colours: the upper half of each character is one pixel, the lower half another.
 pub(super) fn half_blocks(width: u32, rgb: &[u8]) -> String {
     let mut text = String::new();
     let row_length = 3 * width as usize;
@@ -94,7 +94,7 @@ pub(super) fn color_of(id: u32) -> [u8; 3] {
     })
 }
 
-/// A frame as letters. Colours and depth are shades; categories are ` .B+o-` for sky, map, building, positive, zero and
+/// A frame as text. Colours and depth are shades; categories are ` .B+o-` for sky, map, building, positive, zero and
 /// negative reward; classes and instances are the last digit of their ids.
 pub(super) fn letters(frame: &Frame, kind: Modality) -> String {
     let width = frame.width as usize;

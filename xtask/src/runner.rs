@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 use crate::process::{Result, Workspace, ended, run, works};
 use crate::stage::Outcome;
 
-/// Runs every test of the workspace; the note is the runner's summary.
+/// Runs the workspace's tests; the note is the runner's summary.
 pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome> {
     let mut command = if works(workspace.cargo(&["nextest", "--version"])) {
         workspace.cargo_everywhere(&["nextest", "run"])
@@ -16,7 +16,7 @@ pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome> {
         workspace.cargo_everywhere(&["test", "--lib", "--bins", "--tests"])
     };
     if workspace.is_full {
-        // Commands on pages run in the build that readers have.
+        // Commands on documentation pages run with the release build, as most readers have it.
         run(workspace.cargo(&["build", "--release"]))?;
         let built = workspace.target.join("release/driftworld");
         command.env("DRIFTWORLD_FULL", "1").env("DRIFTWORLD_COMMAND", built);

@@ -77,7 +77,7 @@ mod tests {
     use super::super::Design;
     use super::*;
 
-    /// Each regime as `variant>variant from-until ×count`, with `|` between blocks.
+    /// Each regime as `variant>variant from-until xCOUNT`, with `|` between blocks.
     #[track_caller]
     fn check(path: &[usize], num_blocks: u64, expected: &str) {
         let variants = ["a", "b", "c"].map(|name| Choice::new("t", name));

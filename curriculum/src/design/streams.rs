@@ -1,5 +1,5 @@
 //! [`Streams`]: seeds and world indices for the parts of a lifetime. Seeds depend on the lifetime and the purpose of the
-//! worlds, first indices of learning on the variant.
+//! worlds; the first index for learning depends on the variant.
 
 use driftworld_spec::{MAX_EXPERIENCES, Regime};
 use serde::Deserialize;
@@ -39,7 +39,7 @@ impl<'a> Streams<'a> {
         Self { options, ids }
     }
 
-    /// `count` experiences of learning, after the first `taken` of the variant.
+    /// `count` learning experiences, after the first `taken` of the variant.
     pub(super) fn learning(&self, choice: &Choice, count: u32, taken: u64) -> Regime {
         let seed = spread(self.options.seed, self.options.lifetime, "learn");
         choice.regime(count, seed, self.start(choice) + taken)
@@ -51,7 +51,7 @@ impl<'a> Streams<'a> {
         choice.regime(self.options.pre_deployment, seed, 0)
     }
 
-    /// Evaluation, the same each time. All variants have worlds of the same numbers, so that they can be compared in pairs.
+    /// Evaluation, the same each time. All variants use the same world indices, so that they can be compared in pairs.
     pub(super) fn evaluation(&self, choice: &Choice) -> Regime {
         let lifetime = if self.options.fixed_evaluation {
             0

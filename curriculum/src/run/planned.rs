@@ -68,8 +68,8 @@ impl Planned {
         }
     }
 
-    /// The label of experience `number`: in a drift, that of the nearer end according to the schedule, and in the
-    /// middle that of the end that it leads to; if whole variants switch, that of the experience's own variant.
+    /// The label of experience `number`: in a drift, that of the nearer end according to the schedule, or of the second
+    /// end if exactly halfway; if whole variants switch, that of the experience's own variant.
     pub(super) fn label(&self, number: u64) -> Option<&Label> {
         let [from, to] = self.labels.as_ref()?;
         Some(if self.is_near_its_beginning(number) { from } else { to })
@@ -172,8 +172,8 @@ impl Planned {
     /// The seed of the agent's random numbers in an experience.
     ///
     /// It depends on the task, the seed and the world's index, but not on the variant: a random agent acts alike in two
-    /// variants under one seed. Every evaluation of a world has the same, so an unchanged agent earns the same in it; learning
-    /// again in the same world has another, so that a learner does not repeat its attempts.
+    /// variants under one seed. Every evaluation of a world gets the same seed, so an unchanged agent earns the same in
+    /// it; learning in that world again gets another seed, so that a learner does not repeat its attempts.
     pub(super) fn agent_seed(&self, number: u64) -> u64 {
         let task = self.id.rsplit_once('#').map_or(self.id.as_str(), |(task, _)| task);
         let numbers = [self.seed, self.index_of(number), self.learned_before, self.run_seed];
@@ -237,8 +237,8 @@ impl Planned {
         }
     }
 
-    /// The log parameters of this regime's experiences: the same for each, because programs that read logs take experiences
-    /// with other parameters for other regimes.
+    /// The log parameters of this regime's experiences: the same for each, because programs that read logs treat
+    /// experiences with different parameters as different regimes.
     pub(super) fn params(&self) -> TaskParams {
         let mut params = Map::new();
         let mut say = |key: &str, value: Value| drop(params.insert(key.to_owned(), value));
@@ -269,7 +269,7 @@ impl Planned {
     }
 }
 
-/// The name of a drift's second end beside its first: with the task's name in front if it differs.
+/// The name of a drift's second end, prefixed with its task if that differs from the first end's.
 pub(super) fn end_name(task: &str, to: &Variant) -> String {
     if to.task().name() == task {
         to.name().to_owned()

@@ -43,6 +43,6 @@ pub struct Label {
     pub number: usize,
     /// Number of names in the lifetime: the length of a one-hot vector.
     pub of: usize,
-    /// Whether the label is part of the observation; otherwise it is known beside the observation.
+    /// Whether the label is part of the observation; otherwise it is given separately from the observation.
     pub observed: bool,
 }

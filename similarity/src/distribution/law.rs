@@ -27,7 +27,7 @@ pub(super) struct Run {
 /// A distribution of numbers, split into its parts.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Law {
-    /// Single numbers with their probabilities, each once, in rising order.
+    /// Single numbers with their probabilities, each once, in ascending order.
     pub(super) atoms: Vec<(f64, f64)>,
     pub(super) runs: Vec<Run>,
     pub(super) parts: Vec<Part>,

@@ -219,7 +219,7 @@ enum Piece<'a> {
     Value(usize),
 }
 
-/// The name pattern of a family's members, in pieces; `None` if the family gives none. Fails with the problem of an invalid one.
+/// The name pattern of a family's members, in pieces; `None` if the family gives none. Fails if it is invalid.
 fn pattern_of<'a>(spec: &'a VariantSpec, axes: &[Axis], pointer: &str) -> Result<Option<Vec<Piece<'a>>>, Problem> {
     let Some(name) = spec.name.as_deref() else {
         return Ok(None);
@@ -300,7 +300,7 @@ fn member_of(
     (own, declared)
 }
 
-/// A value as part of a name: only letters, digits, `.`, `+` and `_`.
+/// A value as part of a name: letters, digits, `.`, `+` and `_`, and the minus sign of a real number.
 fn word(value: &Value, index: usize) -> String {
     let numbers = |numbers: &[f64]| numbers.iter().map(f64::to_string).collect::<Vec<_>>().join("_");
     match value {

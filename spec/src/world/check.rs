@@ -1,5 +1,5 @@
-//! Turns a [`WorldDraft`] into a [`World`] by checking its values against the rules of documents. Also reads and checks
-//! single objects.
+//! Turns a [`WorldDraft`] into a [`World`] by checking its values against the rules for documents. Also reads and
+//! checks single objects.
 
 use std::sync::{Arc, LazyLock};
 
@@ -52,7 +52,7 @@ impl Object {
 }
 
 impl WorldDraft {
-    /// The world with these fields, if they follow the rules of documents.
+    /// The world with these fields, if they follow the rules for documents.
     ///
     /// # Errors
     /// [`SpecError::Document`] under the name `world`, with all problems.
@@ -205,7 +205,7 @@ impl World {
         self.draft
     }
 
-    /// The world after a change, if it still follows the rules of documents.
+    /// The world after a change, if it still follows the rules for documents.
     ///
     /// # Errors
     /// As [`WorldDraft::check`].

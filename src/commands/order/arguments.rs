@@ -1,4 +1,4 @@
-//! [`OrderArgs`]: the ordering options shared by all commands.
+//! [`OrderArgs`]: the ordering options shared by `order` and `curriculum`.
 
 use std::str::FromStr;
 
@@ -86,7 +86,7 @@ impl OrderArgs {
         }
     }
 
-    /// The library's request for a design: with the order of its blocks separate, if the word names one.
+    /// The library's request for a design, and separately the order by purpose, if the word names one.
     pub(crate) fn design(&self) -> (OrderRequest, Option<DesignOrder>) {
         let (method, order) = match self.order {
             Some(OrderWord::Method(method)) => (Some(method), None),

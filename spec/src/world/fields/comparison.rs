@@ -2,7 +2,7 @@
 
 use crate::element::Element;
 
-/// Declares the parts: for each its subject, its element of the decision process, its name in tables, and its unit,
+/// Declares the parts, each with its subject, its element of the decision process, its name in tables, and its unit,
 /// the difference that counts as 1.
 macro_rules! comparisons {
     ($($(#[$doc:meta])* $part:ident: $element:ident, $name:literal, $unit:literal,)+) => {
@@ -13,7 +13,7 @@ macro_rules! comparisons {
         }
 
         impl Comparison {
-            /// All of them, in the order of tables.
+            /// All of them, in the order in which tables list them.
             pub const ALL: &[Self] = &[$(Self::$part),+];
 
             /// Its name in tables.
