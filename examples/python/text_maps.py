@@ -12,7 +12,7 @@ two spaces are floor, `G` a goal of 1 point that ends the episode, `V` lava, whi
 a ball, `B` a box, `D` a closed door, `L` one that a key of its colour unlocks, `__` an open one; `>>`, `VV`, `<<` and
 `^^` are the agent. It carries one thing at a time. Cells are 2 m wide.
 
-Unknown characters are read as floor, and reported on standard error with line and column. Needs no package.
+Unknown characters are read as floor, and reported on standard error with line and column. Needs no packages.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ HEADINGS = {">>": 90.0, "VV": 180.0, "<<": 270.0, "^^": 0.0}
 
 
 class Map:
-    """The letters of a layout read so far, and the things on them."""
+    """The layout read so far, in letters, and the things on it."""
 
     def __init__(self, name: str, cell: float) -> None:
         self.name, self.cell = name, cell
@@ -83,7 +83,7 @@ class Map:
                 self.warn("", f"of {len(self.starts)} places where the agent may start, it starts in the first")
             return self.starts[0]
         self.warn("", "nothing says where the agent starts; it starts in the first free cell")
-        taken = {at for _, at in self.objects} | set(self.lava)
+        taken = {at for _, at in [*self.objects, *self.doors]} | set(self.lava)
         cells = ((column, row) for row in range(len(self.rows)) for column in range(len(self.rows[0])))
         return next(((at, 0.0) for at in cells if self.is_open(*at) and at not in taken), None)
 
@@ -167,7 +167,7 @@ def variations(lines: list[str]) -> int:
 
 
 def dmlab(name: str, text: str) -> dict[str, Any]:
-    """The world of the entity layer of a text level of DeepMind Lab."""
+    """The world of a DeepMind Lab text level, from its entity layer."""
     found, lines = Map(name, 3.125), text.splitlines()
     end = variations(lines)
     if end < len(lines):
@@ -194,7 +194,7 @@ def dmlab(name: str, text: str) -> dict[str, Any]:
 
 
 def minigrid(name: str, text: str) -> dict[str, Any]:
-    """The world of a grid of MiniGrid."""
+    """The world of a MiniGrid grid."""
     found = Map(name, 2.0)
     for number, line in enumerate(text.splitlines()):
         shown = line.strip()

@@ -242,6 +242,9 @@ def test_order_keeps_its_ends() -> None:
         order(SOME, "nearby")
     with pytest.raises(ValueError, match="measured already"):
         order(distance_matrix(SOME[:2]), weights={"R": 1})
+    for name, value in {"by": "parameters", "worlds": 3, "scale": "share", "assets": ["a.dwal"]}.items():
+        with pytest.raises(ValueError, match=f"{name}: found some beside a matrix"):
+            order(distance_matrix(SOME[:2]), **{name: value})  # type: ignore[arg-type]
 
 
 def test_embedding_keeps_distances_in_a_plane() -> None:

@@ -87,6 +87,12 @@ def test_minigrid_grid_has_its_rooms_things_and_lava(maps: ModuleType, capsys: A
     assert '"XX" is not known' in capsys.readouterr().err
 
 
+def test_agent_starts_beside_a_door_not_in_it(maps: ModuleType) -> None:
+    world = maps.dmlab("level.txt", "**H**\n*   *\n*****\n")
+    door, start = tagged(world, "door")[0]["coordinates"], world["agent_params"]["coordinates"]
+    assert start[1] < door[1] - 1
+
+
 def test_minigrid_doors_span_their_doorways_and_need_keys_of_their_colour(maps: ModuleType) -> None:
     grid = "WGWGWGWGWG\nWG>>DRKBWG\nWGLBWGWGWG\nWG__WGGGWG\nWG      WG\nWGWGWGWGWG\n"
     world = maps.minigrid("grid.txt", grid)

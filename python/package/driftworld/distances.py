@@ -524,10 +524,10 @@ def order(
         ValueError: If a label belongs to none of the items.
     """
     if isinstance(items, DistanceMatrix):
-        if weights is not None:
-            raise ValueError("weights: found some beside a matrix, expected none: its distances are measured already")
-        if by is not None:
-            raise ValueError("by: found some beside a matrix, expected none: its distances are measured already")
+        measured = {"weights": weights, "by": by, "worlds": worlds, "scale": None if scale == "units" else scale, "assets": assets or None}
+        for name, value in measured.items():
+            if value is not None:
+                raise ValueError(f"{name}: found some beside a matrix, expected none: its distances are measured already")
         matrix = items
     else:
         named = [items] if isinstance(items, (str, os.PathLike, Variant, TaskSpec)) else list(items)
