@@ -34,7 +34,10 @@ export function Choice({ label, value, entries, pick }: {
     <label class="field">
       {label}
       <select value={value} onChange={(event) => pick(event.currentTarget.value)}>
-        {entries.map((entry) => (typeof entry === "string" ? [entry, entry] : entry)).map(([of, words]) => <option key={of} value={of}>{words}</option>)}
+        {entries.map((entry) => {
+          const [of, words] = typeof entry === "string" ? [entry, entry] : entry;
+          return <option key={of} value={of}>{words}</option>;
+        })}
       </select>
     </label>
   );

@@ -126,7 +126,9 @@ export function Author({ route }: { route: Route }) {
     const path: Path = parameter.role === "fixed"
       ? ["parameters", parameter.name, "value"]
       : variant ? ["variants", variant, parameter.name] : ["parameters", parameter.name, "default"];
-    const effect = path[2] === "default" ? `The default of ${parameter.name} is changed in the text, and so is every variant that names no value of its own.` : "";
+    const effect = path[2] === "default"
+      ? `The default of ${parameter.name} is changed in the text, and so is every variant that names no value of its own.`
+      : "";
     setSaid(edit(path, value, "drag") ? effect : `${variant} is a member of a family: change the family in the text, or choose another variant.`);
   };
   const showPlace = (path: Path) => {

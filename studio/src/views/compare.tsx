@@ -60,7 +60,8 @@ function Table({ heads, rows }: { heads: string[]; rows: ComponentChildren[][] }
 }
 
 function Elements({ distance }: { distance: Distance }) {
-  const entries = (Object.entries(distance.elements) as [Element, number | null][]).flatMap(([element, value]) => (value === null ? [] : [{ element, value }]));
+  const all = Object.entries(distance.elements) as [Element, number | null][];
+  const entries = all.flatMap(([element, value]) => (value === null ? [] : [{ element, value }]));
   const most = Math.max(1e-9, ...entries.map(({ value }) => value));
   const parts = partsOf(distance);
   return (
@@ -70,17 +71,24 @@ function Elements({ distance }: { distance: Distance }) {
         <p class="small">{distance.unit} {parts.length > 1 && "The total is the sum of the parts."}</p>
         <p class="faint small">{distance.description}</p>
         {entries.length > 0 && (
-          <Table heads={["Element", "Distance", ""]} rows={entries.map(({ element, value }) => [ELEMENTS[element], value.toFixed(3), <Meter share={value / most} />])} />
+          <Table
+            heads={["Element", "Distance", ""]}
+            rows={entries.map(({ element, value }) => [ELEMENTS[element], value.toFixed(3), <Meter share={value / most} />])}
+          />
         )}
       </div>
       <div class="stack">
         <h2>What makes it</h2>
-        {entries.length === 0 && <p class="small">{distance.by} compares worlds as a whole: its number has no parts. Other measures split theirs by element.</p>}
-        {entries.length > 0 && parts.length === 0 && <p class="faint small">Nothing that {distance.by} compares differs.</p>}
+        {entries.length === 0 && (
+          <p class="small">By {distance.by}, worlds are compared as a whole: the number has no parts. Other measures split theirs by element.</p>
+        )}
+        {entries.length > 0 && parts.length === 0 && <p class="faint small">Nothing differs that is measured by {distance.by}.</p>}
         {parts.length > 0 && (
           <Table
             heads={["Part", "Counts for", "Measure", "Share"]}
-            rows={parts.map(({ name, measure, elements, share }) => [<code>{name}</code>, elementWords(elements), measure, `${(100 * share).toFixed(1)}\u00a0%`])}
+            rows={parts.map(({ name, measure, elements, share }) => [
+              <code>{name}</code>, elementWords(elements), measure, `${(100 * share).toFixed(1)}\u00a0%`,
+            ])}
           />
         )}
       </div>
@@ -236,7 +244,10 @@ export function Compare({ route }: { route: Route }) {
         {elements.error && <ErrorNote error={elements.error} />}
         {elements.value && (
           <div class="stack">
-            <h3>Seen in their worlds: <span class={`tag ${elements.value.verdict === "sound" ? "good" : "bad"}`}>{VERDICTS[elements.value.verdict]}</span></h3>
+            <h3>
+              Seen in their worlds:{" "}
+              <span class={`tag ${elements.value.verdict === "sound" ? "good" : "bad"}`}>{VERDICTS[elements.value.verdict]}</span>
+            </h3>
             <p class="faint small">For each element, the first difference that was found: left beside right.</p>
             <ul class="plain">{elements.value.measured.map((witness) => <li key={witness.element}><b>{ELEMENTS[witness.element]}:</b> {witness.message}</li>)}</ul>
             {elements.value.measured.length === 0 && <p class="faint small">No element was seen to differ.</p>}

@@ -63,7 +63,8 @@ function DistanceMap({ matrix, way, now, pick }: { matrix: Matrix; way: string[]
   const names = matrix.labels.map(short);
   const stops = way.flatMap((variant, place) => {
     const at = names.indexOf(variant);
-    return at < 0 ? [] : [{ variant, texts: [`${place + 1} ${variant}`, `${place + 1}`], x: inset + (xs[at]! - left) * scale, y: 40 + (top - ys[at]!) * scale }];
+    const texts = [`${place + 1} ${variant}`, `${place + 1}`];
+    return at < 0 ? [] : [{ variant, texts, x: inset + (xs[at]! - left) * scale, y: 40 + (top - ys[at]!) * scale }];
   });
   // The variant that is looked at always has its label.
   const first = stops.findIndex(({ variant }) => variant === now);
@@ -169,7 +170,9 @@ export function Order({ route }: { route: Route }) {
         <div class="row spread">
           <h2>Contact sheet</h2>
           {all.length > MOST && (
-            <button type="button" aria-pressed={isAll} title={`The first ${MOST} are shown, as more take longer`} onClick={() => go({ all: isAll ? 0 : 1 })}>
+            <button
+              type="button" aria-pressed={isAll} title={`The first ${MOST} are shown, as more take longer`} onClick={() => go({ all: isAll ? 0 : 1 })}
+            >
               {isAll ? `All ${all.length} variants` : `${MOST} of ${all.length} variants: show all`}
             </button>
           )}

@@ -165,7 +165,7 @@ export function Play({ route }: { route: Route }) {
         <div class="row" role="group" aria-label="Who plays beside you">
           {(Object.keys(NAMES) as Companion[]).map((name) => (
             <button
-              key={name} type="button" aria-pressed={companions.includes(name)} disabled={name === "policy" && !isTrained} onClick={() => toggle(name)}
+              key={name} type="button" aria-pressed={companions.includes(name)} onClick={() => toggle(name)} disabled={name === "policy" && !isTrained}
               title={name === "policy" && !isTrained ? "No network that learned this task lies beside the page" : MEANINGS[name]}
             >{NAMES[name]}</button>
           ))}

@@ -196,7 +196,9 @@ export function Replay({ route }: { route: Route }) {
         </div>
         <div class="row">
           {subject && <button type="button" onClick={() => go("play")}>Play this world</button>}
-          {subject && <button type="button" title={isOwn ? "Undo in Author brings your own text back" : ""} onClick={() => go("author")}>Edit this task</button>}
+          {subject && (
+            <button type="button" title={isOwn ? "Undo in Author brings your own text back" : ""} onClick={() => go("author")}>Edit this task</button>
+          )}
           <label class="button">
             Open a log folder
             <input class="hidden" type="file" multiple {...{ webkitdirectory: true }} onChange={(event) => void read(pickedFiles(event.currentTarget.files))} />
