@@ -140,13 +140,8 @@ pub(crate) fn encoded(tasks: &mut TaskCache, link: Link) -> Result<String, Fault
 fn chosen_again(asked: &mut Asked, environment: &Environment, action: Action) -> Option<u64> {
     for own in 0..AGENTS.len() {
         // An agent that acted until now continues; if its action differs, it may have started anew.
-        let goes_on = asked.0[own].is_some();
-        let tries = if goes_on {
-            vec![2 * own, 2 * own + 1]
-        } else {
-            vec![2 * own + 1]
-        };
-        for number in tries {
+        let first = 2 * own + usize::from(asked.0[own].is_none());
+        for number in first..2 * own + 2 {
             let mut trying = Asked::default();
             if number % 2 == 0 {
                 trying.0[own] = asked.0[own].take();
@@ -187,10 +182,8 @@ pub(crate) fn decoded(tasks: &mut TaskCache, fragment: &str) -> Result<Link, Fau
             asked.act(number as usize, &environment)
         } else {
             asked = Asked::default();
-            header
-                .listed
-                .get((number - LISTED) as usize)
-                .map(|taken| Action::from(*taken))
+            let listed = header.listed.get((number - LISTED) as usize);
+            listed.copied().map(Action::from)
         };
         let action = action.ok_or_else(damaged)?;
         if environment.ended() || environment.step(action).is_err() {
