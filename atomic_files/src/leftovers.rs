@@ -62,6 +62,6 @@ pub(crate) fn remove_in(folder: &Path, is_ours: impl Fn(&str) -> bool, remove: i
 /// Opens for writing where possible: some file systems can lock only files open for writing.
 fn opened(path: &Path) -> io::Result<File> {
     let written = OpenOptions::new().read(true).write(true).open(path);
-    // Not opened through driftworld-files: the file is only locked, never read, and its name shows that it is ours.
+    // Opened here, not by driftworld-files: it is only locked, never read, and its name shows that it is ours.
     written.or_else(|_| File::open(path))
 }
