@@ -57,6 +57,8 @@ fn python(interpreter: &Path, arguments: &[&str]) -> Command {
 impl Environment {
     /// The environment of this name with the packages of all these lists; created if it does not work.
     pub(crate) fn with(workspace: &Workspace, interpreter: &Path, name: &str, lists: &[&str]) -> Result<Self> {
+        static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
+        let _turn = ONE_AT_A_TIME.lock();
         let folder = workspace.target.join("python").join(name);
         let environment = Self {
             interpreter: folder.join(if cfg!(windows) { "Scripts/python" } else { "bin/python" }),
@@ -67,7 +69,8 @@ impl Environment {
             run(make)?;
         }
         for list in lists {
-            environment.pip(workspace, "install --quiet --requirement", &[list])?;
+            // Modules are compiled when they are imported, and most never are.
+            environment.pip(workspace, "install --quiet --no-compile --requirement", &[list])?;
         }
         Ok(environment)
     }
@@ -163,11 +166,16 @@ pub(crate) fn package(workspace: &Workspace) -> Result<Outcome> {
     Ok(Outcome::Passed("with the newest and the oldest Gymnasium".into()))
 }
 
-/// Tests with torch, Stable-Baselines3, Minari and Ray, which take gigabytes.
-pub(crate) fn learners(workspace: &Workspace) -> Result<Outcome> {
-    let made = interpreter(ANY).ok_or_else(|| NO_INTERPRETER.to_owned());
+/// The environment with torch, Stable-Baselines3, Minari and Ray, which take gigabytes.
+pub(crate) fn learners_environment(workspace: &Workspace) -> Result<Environment> {
+    let interpreter = interpreter(ANY).ok_or(NO_INTERPRETER)?;
     let list = ["python/tests/requirements-learners.txt"];
-    match made.and_then(|interpreter| Environment::with(workspace, &interpreter, "learners", &list)) {
+    Environment::with(workspace, &interpreter, "learners", &list)
+}
+
+/// Tests with what people train with.
+pub(crate) fn learners(workspace: &Workspace) -> Result<Outcome> {
+    match learners_environment(workspace) {
         Ok(learners) => {
             learners.install_driftworld(workspace)?;
             learners.pytest(workspace, &["-m", "learners"])?;

@@ -228,6 +228,16 @@ pub(crate) fn list() {
 
 /// Runs the stages in order, stops at the first failure, and prints a table.
 pub(crate) fn run_all(workspace: &Workspace, stages: &[&Stage]) -> Result {
+    thread::scope(|scope| {
+        if stages.len() == STAGES.len() {
+            // Fetched while the tests are built; the stage `learners` says what went wrong.
+            scope.spawn(|| python::learners_environment(workspace));
+        }
+        run_in_order(workspace, stages)
+    })
+}
+
+fn run_in_order(workspace: &Workspace, stages: &[&Stage]) -> Result {
     let start = Instant::now();
     let mut table = Vec::new();
     let mut in_part = Vec::new();
