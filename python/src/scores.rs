@@ -84,6 +84,7 @@ pub(crate) fn report(py: Python<'_>, logs: Vec<PathBuf>, options: Bound<'_, PyDi
         date: options.text("date")?,
         distances: options.path("distances")?,
         plots: options.path("plots")?,
+        studio: options.text("studio")?,
         figure_options: FigureOptions {
             unit: options.word("unit")?.unwrap_or_default(),
             ..FigureOptions::default()

@@ -58,6 +58,9 @@ pub(crate) struct Report {
     /// Logs may name any file, so only built-in tasks and these specs are read.
     #[arg(long = "task", value_name = "FILE")]
     tasks: Vec<PathBuf>,
+    /// The address of a workbench, as `driftworld studio` prints it, to link to worlds in which the last evaluation failed.
+    #[arg(long, value_name = "URL")]
+    studio: Option<String>,
     /// Also write the figures into this folder, as `NAME_raw.png`, `NAME_raw.svg` and so on.
     ///
     /// NAME is the name of the log.
@@ -90,6 +93,7 @@ impl Report {
             distances: self.distances,
             tasks: self.tasks,
             plots: self.plots,
+            studio: self.studio,
             command: Some(command_line()),
         };
         let page = write_report(&request, &|text| output::warning(text))?;

@@ -1,5 +1,6 @@
 //! [`write_report`]: lifetimes on one HTML page, with the distances between their blocks.
 
+mod failed;
 mod neighbours;
 
 use std::path::PathBuf;
@@ -34,6 +35,8 @@ pub struct ReportRequest {
     pub figure_options: FigureOptions,
     /// A folder to which the figures are written, too.
     pub plots: Option<PathBuf>,
+    /// The address of a workbench; the page links to the worlds in which the last evaluation failed.
+    pub studio: Option<String>,
     /// The command line to show on the page.
     pub command: Option<String>,
 }
@@ -72,6 +75,7 @@ pub fn write_report(request: &ReportRequest, warn: Warn<'_>) -> Result<Page, Fai
         let (found, limit) = (logs.len(), MAX_LIFETIMES);
         return Err(ReportError::TooManyLifetimes { found, limit }.into());
     }
+    request.studio.as_deref().map_or(Ok(()), failed::check_address)?;
     let setup = Setup::new(logs, asked)?;
     let Setup {
         logs,
@@ -155,6 +159,11 @@ fn chapter_options(
         smoothed: options.smoothing_method != SmoothingMethod::Off,
         facts: facts(&log.log),
         worlds: neighbours.worlds_of(&log.log),
+        failed: request
+            .studio
+            .iter()
+            .flat_map(|studio| failed::links(&log.log, studio))
+            .collect(),
         warnings: log.warnings.clone(),
         distance_note,
     }

@@ -70,6 +70,22 @@ fn lifetime_becomes_a_page_and_figures_with_its_scenarios_distances() {
 }
 
 #[test]
+fn failed_worlds_are_linked_to_a_workbench() {
+    let folder = scratch();
+    live(folder.path());
+    succeed_in(
+        folder.path(),
+        "report log --studio http://127.0.0.1:8008/secret/#/play/maze",
+    );
+    let page = read(folder.path().join("report.html"));
+    let start = "<a href=\"http://127.0.0.1:8008/secret/#/play/find_objects?variant=";
+    assert_eq!(page.matches(start).count(), 4, "two worlds of each variant");
+    assert!(page.contains("variant=red&amp;seed=0&amp;index=1\">"), "{page}");
+    let said = fail_in(folder.path(), 2, "report log --studio javascript:alert(1)");
+    assert!(said.contains("expected an address that begins with http://"), "{said}");
+}
+
+#[test]
 fn matrix_distances_take_precedence_and_a_mismatch_is_reported() {
     let folder = scratch();
     live(folder.path());

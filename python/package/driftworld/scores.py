@@ -329,6 +329,7 @@ def report(
     date: str | None = None,
     distances: PathLike | None = None,
     plots: PathLike | None = None,
+    studio: str | None = None,
     plot_types: Sequence[PlotType] | None = None,
     unit: Unit | None = None,
     perf_measure: str | None = None,
@@ -347,6 +348,8 @@ def report(
         date: The date to print on the report; without it, the same logs give the same bytes.
         distances: A distance matrix file, as written by :meth:`DistanceMatrix.save`.
         plots: A folder to also write the figures to.
+        studio: The address of a workbench, such as ``driftworld.studio().address``: the page links there to worlds in
+            which the last evaluation failed.
         plot_types: The figures: ``"all"``, or some of ``raw``, ``lb``, ``eb``, ``ste``, ``timeline``.
         unit: The unit of the horizontal axis: ``"exp_num"`` or ``"steps"``.
         perf_measure: As for :func:`metrics`.

@@ -31,6 +31,8 @@ pub struct ChapterOptions {
     pub facts: Vec<(String, String)>,
     /// Pictures of worlds in which it learned, or a sentence that says why there are none.
     pub worlds: Result<Vec<SheetRow>, String>,
+    /// Where to play worlds in which it failed: words and the address of each.
+    pub failed: Vec<(String, String)>,
     /// Warnings, such as those of the log's reader.
     pub warnings: Vec<String>,
     /// A sentence under the timeline: the source of its distances, or why there are none.
@@ -45,6 +47,7 @@ impl Default for ChapterOptions {
             smoothed: true,
             facts: Vec::new(),
             worlds: Err(String::new()),
+            failed: Vec::new(),
             warnings: Vec::new(),
             distance_note: String::new(),
         }
@@ -109,6 +112,7 @@ impl Chapter {
             (warnings(&options.warnings))
             (facts(lifetime, metrics, &options.facts))
             (worlds(&options.worlds)?)
+            (failed(&options.failed))
             (pair_table::tables(metrics, &options.figures.names))
             h3 { "Metrics" }
             (table)
@@ -160,6 +164,21 @@ fn worlds(rows: &Result<Vec<SheetRow>, String>) -> Result<Markup, ReportError> {
         h3 { "Worlds" }
         div.worlds { @for figure in &figures { (figure) } }
     })
+}
+
+/// Links to worlds in which it failed.
+fn failed(links: &[(String, String)]) -> Markup {
+    html! {
+        @if !links.is_empty() {
+            p.note {
+                "Failed in the last evaluation, to play in the workbench: "
+                @for (number, (words, address)) in links.iter().enumerate() {
+                    @if number > 0 { " · " }
+                    a href=(address) { (breakable(words)) }
+                }
+            }
+        }
+    }
 }
 
 /// Numbers of blocks of a kind: all, and sleeping ones.
