@@ -4,7 +4,8 @@ import { useEffect, useState } from "preact/hooks";
 import { type Agent, createEngine, EngineError, type WorldRequest } from "./engine.ts";
 import { draft } from "./draft.ts";
 
-export const engine = createEngine();
+/** Long measures take tens of seconds; the bar has a button that stops them. */
+export const engine = createEngine({ limit: 60_000 });
 
 /** What became of a call. While another is under way, the last value stays. */
 export interface Outcome<T> {

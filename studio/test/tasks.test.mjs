@@ -146,6 +146,7 @@ task("03 planner: it plays beside", "#/play/maze?variant=small", async (page) =>
   await page.keyboard.press("Enter");
   await tabTo(page, "Go");
   await page.keyboard.press("Enter");
+  await until(page, () => document.activeElement.matches(".frame"), undefined);
   await page.waitForSelector('.seat[aria-label="Planner"] .tag.good', { timeout: 2 * PATIENCE_MS });
 });
 
@@ -154,7 +155,9 @@ task("04 policy: where it fails", "#/play/obstacle_course?with=policy", async (p
   await walk(page, "Trained policy", 10);
   await tabTo(page, "Show me where the policy fails");
   await page.keyboard.press("Enter");
-  await until(page, () => /index=\d+/.test(location.hash) || /It succeeds in all/.test(document.body.textContent), undefined);
+  await until(page, () => /It (succeeds in worlds|fails in world) \d+/.test(document.body.textContent), undefined);
+  await page.selectOption("label.field:has-text('Variant') select", { index: 2 });
+  await until(page, () => !/It (succeeds|fails) in/.test(document.body.textContent), undefined);
 });
 
 task("05 share: an episode is a link", "#/play/four_rooms?seed=3", async (page) => {

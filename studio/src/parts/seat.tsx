@@ -17,7 +17,8 @@ export function Seat({ name, session, isYours = false, lines, below, children }:
 }) {
   const frame = useRef<HTMLDivElement>(null);
   useEffect(() => {
-    if (isYours) frame.current?.focus({ preventScroll: true });
+    // A list that is walked by keyboard keeps the focus.
+    if (isYours && !document.activeElement?.matches("select:focus-visible, input")) frame.current?.focus({ preventScroll: true });
   }, [session.episode.id]);
   const { step } = session;
   const end = ending(step);

@@ -81,6 +81,7 @@ export function Author({ route }: { route: Route }) {
       const replaced = draft.replaced();
       editor.current = createEditor(place.current, replaced || text, () => context.current, setText);
       begun.current = named;
+      if (replaced) setSaid("Undo brings back the text that was here before.");
       if (named !== null || replaced) editor.current.replace(named ?? text);
       // The text can be read before it can be completed.
       context.current.schema = await engine.schema("task");

@@ -152,12 +152,14 @@ export function Order({ route }: { route: Route }) {
             type="range" aria-label="Along the order" aria-valuetext={now} min={0} max={Math.max(0, way.length - 1)} value={at}
             onInput={(event) => setAt(event.currentTarget.valueAsNumber)}
           />
-          <p class="small">{METHODS[method as OrderMethod]} {order.value && `The whole way is ${order.value.length.toFixed(3)}.`}</p>
+          <p class="small">
+            {order.value ? `${METHODS[method as OrderMethod]} The whole way is ${order.value.length.toFixed(3)}.` : "Not ordered yet: as the task lists them."}
+          </p>
           <ol class="picks" aria-label="Variants in order, each with its distance from the one before">
             {way.map((variant, place) => (
               <li key={variant}>
                 <button type="button" {...(variant === now ? { "aria-current": "step" as const } : {})} onClick={() => setAt(place)}>
-                  <span>{place + 1} {variant}</span><span class="number faint">{order.value?.steps[place - 1]?.toFixed(3)}</span>
+                  <span>{order.value && place + 1} {variant}</span><span class="number faint">{order.value?.steps[place - 1]?.toFixed(3)}</span>
                 </button>
               </li>
             ))}
@@ -181,7 +183,7 @@ export function Order({ route }: { route: Route }) {
           {way.map((variant, place) => (
             <li key={variant}>
               <button type="button" aria-pressed={variant === now} onClick={() => setAt(place)}>
-                <Picture frame={frames.get(variant) ?? null} label="" /><span>{place + 1} {variant}</span>
+                <Picture frame={frames.get(variant) ?? null} label="" /><span>{order.value && place + 1} {variant}</span>
               </button>
             </li>
           ))}

@@ -118,17 +118,21 @@ export function Play({ route }: { route: Route }) {
     location.hash = (await fragment()).text;
   };
   const save = async () => saveText(commands.RECORDING, await you!.episode.recording());
-  const [search, setSearch] = useState("");
+  const searched = `${task} ${variant} ${seed}`;
+  const [search, setSearch] = useState({ of: "", text: "" });
   const findFailure = async () => {
-    const agent = isTrained ? await trainedAgent(task) : "planner";
-    setSearch(`Trying up to ${TRIED} worlds …`);
+    const who = isTrained ? "policy" : "planner";
+    const say = (text: string) => setSearch({ of: searched, text });
+    // Once it plays beside you, the world that is shown is known.
+    const from = index + (companions.includes(who) ? 1 : 0);
+    say(`Trying up to ${TRIED} worlds …`);
     try {
-      const failure = await engine.findFailure(requestOf(task, variant, seed, index + 1), agent, { worlds: TRIED });
+      const failure = await engine.findFailure(requestOf(task, variant, seed, from), isTrained ? await trainedAgent(task) : "planner", { worlds: TRIED });
       const found = failure && "index" in failure.request ? failure.request.index : undefined;
-      setSearch(found === undefined ? `It succeeds in all of the next ${TRIED} worlds.` : "");
-      if (found !== undefined) go({ index: found, with: isTrained ? "policy" : "planner" });
+      say(found === undefined ? `It succeeds in worlds ${from} to ${from + TRIED - 1}.` : `It fails in world ${found}: Go shows how.`);
+      if (found !== undefined) go({ index: found, with: who });
     } catch (reason) {
-      setSearch(asError(reason).message);
+      say(asError(reason).message);
     }
   };
   const guarded = (action: () => Promise<void>) => () => void action().catch((reason: unknown) => setError(asError(reason)));
@@ -142,6 +146,11 @@ export function Play({ route }: { route: Route }) {
   }
   for (const name of companions) recipes[`A film of the ${name}`] = commands.film(subject, name === "planner" ? "onrails" : { network });
   recipes["Draw this world"] = commands.sample(subject);
+  // The arrow keys walk where the focus is.
+  const toView = (action: () => void) => {
+    action();
+    document.querySelector<HTMLElement>(".seat .frame[tabindex]")?.focus({ preventScroll: true });
+  };
   const toggle = (name: Companion) =>
     go({ with: (companions.includes(name) ? companions.filter((other) => other !== name) : [...companions, name]).join(",") });
   const description = about.value?.variants.find((known) => known.name === variant)?.description ?? "";
@@ -171,18 +180,18 @@ export function Play({ route }: { route: Route }) {
           ))}
           {!isTrained && <span class="faint small">(none for this task)</span>}
           <button type="button" onClick={guarded(findFailure)}>Show me where {isTrained ? "the policy" : "the planner"} fails</button>
-          <span class="faint small" role="status">{search}</span>
+          <span class="faint small" role="status">{search.of === searched && search.text}</span>
         </div>
         <div class="row">
           <div class="group" role="group" aria-label="Speed">
             {SPEEDS.map((factor) => (
               <button
                 key={factor} type="button" aria-pressed={speed === factor} aria-label={`${factor} times the world's time`}
-                onClick={() => setSpeed(factor)}
+                onClick={() => toView(() => setSpeed(factor))}
               >{factor}×</button>
             ))}
           </div>
-          <button type="button" title="Lets time pass, as any key does" onClick={() => setState(state === "running" ? "paused" : "running")}>
+          <button type="button" title="Lets time pass, as any key does" onClick={() => toView(() => setState(state === "running" ? "paused" : "running"))}>
             {state === "running" ? "Pause" : "Go"}
           </button>
           <button type="button" onClick={again}>Again</button>
