@@ -57,6 +57,7 @@ fn python(interpreter: &Path, arguments: &[&str]) -> Command {
 impl Environment {
     /// The environment of this name with the packages of all these lists; created if it does not work.
     pub(crate) fn with(workspace: &Workspace, interpreter: &Path, name: &str, lists: &[&str]) -> Result<Self> {
+        // `--all` makes that of the learners beside other stages.
         static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
         let _turn = ONE_AT_A_TIME.lock();
         let folder = workspace.target.join("python").join(name);
@@ -92,9 +93,6 @@ impl Environment {
     /// Installs the wheel without dependencies, which exist already. One interpreter builds it for all environments, so that
     /// Cargo has nothing to rebuild.
     pub(crate) fn install_driftworld(&self, workspace: &Workspace) -> Result {
-        // Two stages may want it at once, and the files have the same names.
-        static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
-        let _turn = ONE_AT_A_TIME.lock();
         let builder = Self::with(workspace, &interpreter(ANY).ok_or(NO_INTERPRETER)?, "newcomer", &[])?;
         let wheels = workspace.target.join("python/wheels");
         let wheels = wheels.to_str().ok_or("the build folder's path is not UTF-8")?;

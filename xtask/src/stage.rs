@@ -123,9 +123,6 @@ pub(crate) const STAGES: [Stage; 18] = [
     ),
 ];
 
-/// Stages that mostly wait or keep one core busy: neighbours run side by side.
-const ON_ONE_CORE: [&str; 2] = ["unity", "studio"];
-
 fn passed(command: Command) -> Result<Outcome> {
     run(command).map(|()| Outcome::Passed(String::new()))
 }
@@ -241,47 +238,28 @@ fn run_in_order(workspace: &Workspace, stages: &[&Stage]) -> Result {
     let start = Instant::now();
     let mut table = Vec::new();
     let mut in_part = Vec::new();
-    let mut rest = stages;
-    while !rest.is_empty() {
-        let together = rest
-            .iter()
-            .take_while(|stage| ON_ONE_CORE.contains(&stage.name))
-            .count()
-            .max(1);
-        let (now, later) = rest.split_at(together);
-        rest = later;
-        for (number, stage) in (stages.len() - later.len() - together + 1..).zip(now) {
-            println!("\n{number}/{} {}: {}", stages.len(), stage.name, stage.about);
-        }
-        let ended: Vec<_> = thread::scope(|scope| {
-            let started: Vec<_> = now
-                .iter()
-                .map(|stage| scope.spawn(|| timed(stage, workspace)))
-                .collect();
-            let joined = started
-                .into_iter()
-                .map(|stage| stage.join().expect("a stage returns its errors"));
-            joined.collect()
-        });
-        for (stage, (outcome, seconds)) in now.iter().zip(ended) {
-            let name = stage.name;
-            let ending = match outcome {
-                Ok(Outcome::Passed(note)) => format!("passed  {note}"),
-                Ok(Outcome::Partly(note)) => {
-                    in_part.push(name);
-                    format!("passed in part: {note}")
-                }
-                Ok(Outcome::Skipped(reason)) => format!("skipped: {reason}"),
-                Err(error) => {
-                    let all = if workspace.is_full { "--all " } else { "" };
-                    return Err(format!(
-                        "stage `{name}` failed after {seconds:.1} s: {error}; rerun it alone: cargo xtask test {all}--only {name}"
-                    ));
-                }
-            };
-            println!("{name} … {seconds:.0} s, {ending}");
-            table.push(format!("  {name:<9} {seconds:>7.1} s  {ending}"));
-        }
+    for (index, stage) in stages.iter().enumerate() {
+        let name = stage.name;
+        println!("\n{}/{} {name}: {}", index + 1, stages.len(), stage.about);
+        let stage_start = Instant::now();
+        let outcome = (stage.run)(workspace);
+        let seconds = stage_start.elapsed().as_secs_f64();
+        let ending = match outcome {
+            Ok(Outcome::Passed(note)) => format!("passed  {note}"),
+            Ok(Outcome::Partly(note)) => {
+                in_part.push(name);
+                format!("passed in part: {note}")
+            }
+            Ok(Outcome::Skipped(reason)) => format!("skipped: {reason}"),
+            Err(error) => {
+                let all = if workspace.is_full { "--all " } else { "" };
+                return Err(format!(
+                    "stage `{name}` failed after {seconds:.1} s: {error}; rerun it alone: cargo xtask test {all}--only {name}"
+                ));
+            }
+        };
+        println!("{}/{} {name} … {seconds:.0} s, {ending}", index + 1, stages.len());
+        table.push(format!("  {name:<9} {seconds:>7.1} s  {ending}"));
     }
     let seconds = start.elapsed().as_secs_f64();
     println!(
@@ -290,13 +268,6 @@ fn run_in_order(workspace: &Workspace, stages: &[&Stage]) -> Result {
         verdict(stages.len(), &in_part)
     );
     Ok(())
-}
-
-/// Runs a stage; returns its outcome and how many seconds it took.
-fn timed(stage: &Stage, workspace: &Workspace) -> (Result<Outcome>, f64) {
-    let start = Instant::now();
-    let outcome = (stage.run)(workspace);
-    (outcome, start.elapsed().as_secs_f64())
 }
 
 fn verdict(count: usize, in_part: &[&str]) -> String {

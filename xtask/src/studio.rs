@@ -93,7 +93,7 @@ pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome> {
         // The native tests have already built most of this.
         run(workspace.cargo_everywhere(&["build", "--example", "answers", "--bin", "driftworld"]))?;
         run(npm(workspace, &["run", "--silent", "check"]))?;
-        page.join().expect("it returns its errors")
+        page.join().expect("bundling returns its errors, and does not panic")
     })?;
     let command = workspace.target.join("debug/driftworld");
     let page = workspace.target.join("studio");
@@ -114,6 +114,7 @@ pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome> {
         Ok(interpreter) => tests.env("DRIFTWORLD_PYTHON", interpreter),
         Err(reason) => {
             println!("the page's programs in Python are not run: {reason}");
+            missing("PYTHON", reason)?;
             tests.env_remove("DRIFTWORLD_PYTHON")
         }
     };
