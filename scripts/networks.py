@@ -15,33 +15,28 @@ import tempfile
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from multiprocessing import get_context
 from pathlib import Path
-from typing import Any
 
 from driftworld import Curriculum
 from driftworld.logs import read_log
+from learn_families import ACTIONS, MEASURED, NUM_ENVS, OPTIONS, WORLDS
 
 ROOT = Path(__file__).parents[1]
-NETWORKS, SCALES, FILM = ROOT / "examples/networks", ROOT / "examples/families.json", ROOT / "docs/images/trained.gif"
-NUM_ENVS, WORLDS = 64, 100
-ACTIONS = [[10, 0, 0], [10, 27, 0], [10, -27, 0], [3, 90, 0], [3, -90, 0]]
-OPTIONS: dict[str, Any] = {"modalities": "rgb", "size": 32, "actions": ACTIONS, "interact": False, "frame_skip": 5}
-#: Decisions for each family.
-DECISIONS = {
-    "obstacle_course": 150_000, "hallway": 100_000, "one_room": 150_000, "t_maze": 150_000, "sidewalk": 200_000,
-    "y_maze": 500_000, "collect_health": 500_000,
+NETWORKS, FILM = ROOT / "examples/networks", ROOT / "docs/images/trained.gif"
+#: The variant of each family, and for how many decisions it is learned.
+LEARNED = {
+    "obstacle_course": ("crowded", 150_000), "hallway": ("plain", 100_000), "one_room": ("plain", 150_000), "t_maze": ("left", 150_000),
+    "sidewalk": ("plain", 200_000), "y_maze": ("either", 500_000), "collect_health": ("four", 500_000),
 }  # fmt: skip
 
 
 def train(name: str) -> tuple[str, float, float]:
-    """Learns a family's first variant, writes the network, and evaluates it in other worlds."""
+    """Learns a variant, writes the network, and evaluates it in other worlds."""
     import torch
     from driftworld.learners import PPO, Settings
 
     torch.set_num_threads(1)
-    variant, scale = next(iter(json.loads(SCALES.read_text(encoding="utf-8"))[name].items()))
-    if name == "obstacle_course":
-        variant = "crowded"
-    count = DECISIONS[name]
+    variant, count = LEARNED[name]
+    scale = next(iter(json.loads(MEASURED.read_text(encoding="utf-8"))[name].values()))
     blocks = [
         {"type": "learning", "regimes": [{"task": name, "variant": variant, "count": count, "steps": count, "seed": 1}]},
         {"type": "evaluation", "regimes": [{"task": name, "variant": variant, "count": WORLDS, "seed": 2}]},
@@ -83,7 +78,7 @@ def halve(file: Path) -> None:
 def main() -> None:
     """Trains what is missing, and films the obstacle course."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("names", nargs="*", metavar="NAME", default=list(DECISIONS))
+    parser.add_argument("names", nargs="*", metavar="NAME", default=list(LEARNED))
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--film", metavar="COMMAND", help="draw the README's film anew by this command")
     given = parser.parse_args()
