@@ -32,10 +32,12 @@ pub(super) fn links(log: &Log, workbench: &str) -> Vec<(String, String)> {
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
     let mut links = Vec::new();
     for row in evaluated().filter(has_failed) {
-        let Some((words, fragment)) = world(row) else { continue };
         let count = counts.entry(row.task_name()).or_default();
-        *count += 1;
-        if *count <= MOST_OF_A_TASK && links.len() < MOST {
+        if *count < MOST_OF_A_TASK
+            && links.len() < MOST
+            && let Some((words, fragment)) = world(row)
+        {
+            *count += 1;
             links.push((words, format!("{page}{fragment}")));
         }
     }
@@ -53,9 +55,65 @@ fn world(row: Row<'_>) -> Option<(String, String)> {
     let (task, variant, seed) = (text("task")?, text("variant")?, params.get("seed")?.as_u64()?);
     tasks::text_by_name(task)?;
     tasks::task(task).ok()?.variant(variant).ok()?;
-    let index = row.metric("world_index")?;
+    // A log may leave the number out in some rows.
+    let index = row.metric("world_index").filter(|index| *index >= 0.0)?;
     Some((
         format!("{task}#{variant}, world {index}"),
         format!("#/play/{task}?variant={variant}&seed={seed}&index={index}"),
     ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use driftworld_metrics::{LogWriter, LoggerInfo, Record, ScenarioInfo, Timestamp, read_log};
+    use serde_json::json;
+
+    #[test]
+    fn only_failures_of_the_last_evaluation_in_worlds_of_variants_are_linked() {
+        let folder = tempfile::tempdir().expect("there is a folder for temporary files");
+        let folder = folder.path().join("log");
+        let info = LoggerInfo::new(["success", "world_index"]).expect("two columns");
+        let mut writer = LogWriter::create(&folder, &info, &ScenarioInfo::default()).expect("a new log");
+        let known = json!({ "task": "maze", "variant": "tiny", "seed": 7 });
+        let rows = [
+            (0, BlockType::Test, 0.0, &known),
+            (1, BlockType::Train, 0.0, &known),
+            (2, BlockType::Test, 1.0, &known),
+            (2, BlockType::Test, 0.0, &known),
+            (
+                2,
+                BlockType::Test,
+                0.0,
+                &json!({ "task": "maze", "variant": "tiny", "to": "small", "seed": 7 }),
+            ),
+            (
+                2,
+                BlockType::Test,
+                0.0,
+                &json!({ "task": "mine", "variant": "tiny", "seed": 7 }),
+            ),
+            (
+                2,
+                BlockType::Test,
+                0.0,
+                &json!({ "task": "maze", "variant": "gone", "seed": 7 }),
+            ),
+        ];
+        for (number, (block, kind, success, params)) in (0_u32..).zip(rows) {
+            let when = Timestamp::from_unix_micros(i64::from(number)).expect("a time");
+            let record = Record::new(block, u64::from(number), kind, "maze_tiny", when)
+                .with_metric("success", success)
+                .with_metric("world_index", f64::from(number));
+            let params = params.as_object().expect("an object").clone();
+            writer.write(&record.with_task_params(params)).expect("a row");
+        }
+        drop(writer);
+        let found = links(&read_log(&folder).expect("a log"), "http://x/#/old");
+        let expected = (
+            "maze#tiny, world 3".to_owned(),
+            "http://x/#/play/maze?variant=tiny&seed=7&index=3".to_owned(),
+        );
+        assert_eq!(found, [expected]);
+    }
 }
