@@ -7,6 +7,15 @@ import { amount } from "../pay.ts";
 import { ending, type Session } from "../session.ts";
 import { Picture } from "./pictures.tsx";
 
+/** Who can play beside you. */
+export type Companion = "policy" | "planner";
+export const NAMES: Record<Companion, string> = { planner: "Planner", policy: "Trained policy" };
+/** Who they are. */
+export const MEANINGS: Record<Companion, string> = {
+  planner: "A program that knows the map plays the same world",
+  policy: "A network that learned this task from pictures plays the same world",
+};
+
 export function Seat({ name, session, isYours = false, lines, below, children }: {
   name: string;
   session: Session;

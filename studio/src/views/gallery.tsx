@@ -9,7 +9,7 @@ import { hrefOf, type Route } from "../route.ts";
 import { Choice } from "../parts/choices.tsx";
 import { Picture } from "../parts/pictures.tsx";
 import { ErrorNote } from "../parts/notes.tsx";
-import { MEANINGS } from "./play.tsx";
+import { MEANINGS } from "../parts/seat.tsx";
 
 const SIZE = { width: 280, height: 210 };
 /** Steps of the planner before a card's picture is taken: many worlds begin in front of a wall. */

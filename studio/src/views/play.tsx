@@ -14,15 +14,8 @@ import { NumberPicker, TaskPicker, VariantPicker } from "../parts/choices.tsx";
 import { copyText, ErrorNote, Recipes, saveText } from "../parts/notes.tsx";
 import { Pad } from "../parts/pad.tsx";
 import { FlatMap } from "../parts/pictures.tsx";
-import { Seat } from "../parts/seat.tsx";
+import { type Companion, MEANINGS, NAMES, Seat } from "../parts/seat.tsx";
 
-type Companion = "policy" | "planner";
-const NAMES: Record<Companion, string> = { planner: "Planner", policy: "Trained policy" };
-/** Who they are, for the gallery, too. */
-export const MEANINGS: Record<Companion, string> = {
-  planner: "A program that knows the map plays the same world",
-  policy: "A network that learned this task from pictures plays the same world",
-};
 const SPEEDS = [1, 2, 6];
 /** Worlds that are tried for one in which an agent fails. */
 const TRIED = 50;
