@@ -17,6 +17,7 @@ mod ground;
 mod looks;
 mod photograph;
 mod polygon;
+mod prefetch;
 mod recording;
 mod render;
 mod scene;

@@ -28,7 +28,7 @@ const THREADS_PER_PROCESSOR: usize = 4;
 /// `num_envs` environments that step together.
 ///
 /// Each behaves exactly as a single [`Environment`] would, whatever the number of threads. A step in which no episode begins
-/// allocates nothing, except that with several threads the pool's queue allocates a block of memory about once in sixty steps.
+/// allocates nothing, except that with several threads it hands a small block of memory to each but its own.
 /// Worlds allocate in steps in which something is pushed or respawns, bodies overlap, or an agent on rails chooses where to go.
 ///
 /// # Example
@@ -112,20 +112,21 @@ impl Batch {
         // Checks memory before allocating anything large.
         let copies = 1 + u64::from(options.autoreset == Autoreset::SameStep);
         expect_room(copies * Outputs::bytes(&layout, options.depth, state_len, num_envs))?;
-        let pool = match threads(options.num_threads, num_envs) {
-            1 if graphics.is_none() => None,
-            wanted => {
+        let threads = threads(options.num_threads, num_envs);
+        // The thread that steps works, too, except where pictures are drawn by a GPU.
+        let pool = match threads - usize::from(graphics.is_none()) {
+            0 => None,
+            others => {
                 let pool = rayon::ThreadPoolBuilder::new()
-                    .num_threads(wanted)
+                    .num_threads(others)
                     .thread_name(|index| format!("driftworld-{index}"))
                     .build();
                 Some(pool.map_err(|error| EnvError::BatchThreads {
-                    wanted,
+                    wanted: threads,
                     reason: error.to_string(),
                 })?)
             }
         };
-        let threads = pool.as_ref().map_or(1, rayon::ThreadPool::current_num_threads);
         let mut slots = Vec::with_capacity(num_envs);
         slots.push(first);
         for env in 1..num_envs {
@@ -140,14 +141,12 @@ impl Batch {
             Autoreset::SameStep => Some(Outputs::new(&layout, options.depth, state_len, num_envs)?),
             Autoreset::NextStep | Autoreset::Disabled => None,
         };
-        // Several parts per thread: environments near many objects take longer.
-        let parts = if threads == 1 { 1 } else { (4 * threads).min(num_envs) };
         let mut batch = Self {
             finals,
             slots,
             outputs,
             autoreset: options.autoreset,
-            renderers: vec![CpuRenderer::new(); parts],
+            renderers: vec![CpuRenderer::new(); threads],
             graphics,
             pool,
         };
@@ -326,13 +325,9 @@ impl Batch {
             slots: &mut self.slots,
             outputs: self.outputs.view(),
             finals: self.finals.as_mut().map(Outputs::view),
-            renderers: &mut self.renderers,
             drawing,
         };
-        match &self.pool {
-            Some(pool) => pool.install(|| part.run(0, work)),
-            None => part.run(0, work),
-        }
+        part.run(&mut self.renderers, self.pool.as_ref(), work)
     }
 }
 

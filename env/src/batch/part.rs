@@ -1,18 +1,33 @@
 //! Shares the work of a step or a reset among threads: each takes a part of the environments.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+
 use super::options::{Autoreset, GoOn};
 use super::outputs::OutputsMut;
 use super::slot::Slot;
 use crate::EnvError;
+use crate::prefetch::prefetch;
 use crate::render::CpuRenderer;
 use crate::sim::Action;
+
+/// Parts that the rest of a batch has for each thread: several, because environments near many objects take longer.
+const PARTS_PER_THREAD: usize = 4;
+
+/// How often to look whether the other threads have ended, before sleeping: some 100 µs.
+const MOST_SPINS: u32 = 3_000;
+
+/// Environments that stay in a processor's cache: more are requested ahead of time.
+const MOST_CACHED: usize = 32;
+
+/// Bytes of a picture that are requested ahead of time: the processor notices by itself that longer ones are written in order.
+const MOST_PREFETCHED: usize = 1 << 14;
 
 /// A part of a batch for one step or reset.
 pub(super) struct Part<'a> {
     pub(super) slots: &'a mut [Slot],
     pub(super) outputs: OutputsMut<'a>,
     pub(super) finals: Option<OutputsMut<'a>>,
-    pub(super) renderers: &'a mut [CpuRenderer],
     pub(super) drawing: Drawing,
 }
 
@@ -41,45 +56,95 @@ pub(super) enum Work<'a> {
 }
 
 impl Part<'_> {
-    /// Does the work on environments from `first` on, halving until each part has one renderer.
-    pub(super) fn run(self, first: usize, work: Work<'_>) -> Result<(), EnvError> {
-        if self.renderers.len() <= 1 {
-            return self.run_here(first, work);
-        }
-        let share = self.renderers.len() / 2;
-        let middle = self.slots.len() * share / self.renderers.len();
-        let (low, high) = self.split(middle, share);
-        let (low, high) = rayon::join(|| low.run(first, work), || high.run(first + middle, work));
-        low.and(high)
+    /// Does the work on this thread and on those of a pool, with a renderer for each: whoever is free takes a few environments.
+    pub(super) fn run(
+        self,
+        renderers: &mut [CpuRenderer],
+        pool: Option<&rayon::ThreadPool>,
+        work: Work<'_>,
+    ) -> Result<(), EnvError> {
+        let num_threads = renderers.len();
+        let Some((own, others)) = renderers.split_first_mut() else {
+            return Ok(());
+        };
+        let Some(pool) = pool.filter(|_| num_threads > 1) else {
+            return self.run_here(0, own, work);
+        };
+        let rest = Mutex::new((0, Some(self)));
+        let earliest: Mutex<Option<(usize, EnvError)>> = Mutex::new(None);
+        let busy = AtomicUsize::new(others.len());
+        let take_turns = |renderer: &mut CpuRenderer| {
+            while let Some((first, part)) = take(&rest, num_threads) {
+                if let Err(error) = part.run_here(first, renderer, work) {
+                    let mut earliest = earliest.lock().unwrap_or_else(PoisonError::into_inner);
+                    if earliest.as_ref().is_none_or(|(env, _)| first < *env) {
+                        *earliest = Some((first, error));
+                    }
+                }
+            }
+        };
+        pool.in_place_scope(|scope| {
+            for renderer in others {
+                scope.spawn(|_| {
+                    take_turns(renderer);
+                    busy.fetch_sub(1, Ordering::Release);
+                });
+            }
+            take_turns(own);
+            // The others are about to end, and sleeping would take longer than that.
+            for _ in 0..MOST_SPINS {
+                if busy.load(Ordering::Acquire) == 0 {
+                    break;
+                }
+                std::hint::spin_loop();
+            }
+        });
+        let earliest = earliest.into_inner().unwrap_or_else(PoisonError::into_inner);
+        earliest.map_or(Ok(()), |(_, error)| Err(error))
     }
 
-    /// Splits off the first environments with the first renderers.
-    fn split(mut self, num_envs: usize, num_renderers: usize) -> (Self, Self) {
+    /// Splits off the first environments.
+    fn split(self, num_envs: usize) -> (Self, Self) {
+        let (slots, more_slots) = self.slots.split_at_mut(num_envs);
         let (outputs, more_outputs) = self.outputs.split(num_envs);
         let (finals, more_finals) = self.finals.map(|finals| finals.split(num_envs)).unzip();
-        let rest = Self {
-            slots: self.slots.split_off_mut(num_envs..).unwrap_or_default(),
-            outputs: more_outputs,
-            finals: more_finals,
-            renderers: self.renderers.split_off_mut(num_renderers..).unwrap_or_default(),
-            drawing: self.drawing,
+        let drawing = self.drawing;
+        let part = |slots, outputs, finals| Self {
+            slots,
+            outputs,
+            finals,
+            drawing,
         };
         (
-            Self {
-                outputs,
-                finals,
-                ..self
-            },
-            rest,
+            part(slots, outputs, finals),
+            part(more_slots, more_outputs, more_finals),
         )
     }
 
-    fn run_here(mut self, first: usize, work: Work<'_>) -> Result<(), EnvError> {
+    /// Asks the processor to load the environments after this one, and to make room for the colours of the next.
+    fn prefetch_after(&mut self, index: usize) {
+        let after = |distance: usize| self.slots.get(index + distance);
+        if let Some(slot) = after(4) {
+            prefetch(slot);
+        }
+        if let Some(slot) = after(3) {
+            slot.environment.prefetch_lists();
+        }
+        if let Some(slot) = after(1) {
+            slot.environment.prefetch_contents();
+            let colors = self.outputs.images.target(index + 1).rgb;
+            colors.inspect(|colors| prefetch(&colors[..colors.len().min(MOST_PREFETCHED)]));
+        }
+    }
+
+    fn run_here(mut self, first: usize, renderer: &mut CpuRenderer, work: Work<'_>) -> Result<(), EnvError> {
         let mut outcome = Ok(());
-        let Some(renderer) = self.renderers.first_mut() else {
-            return outcome;
-        };
-        for (index, slot) in self.slots.iter_mut().enumerate() {
+        let is_large = self.slots.len() > MOST_CACHED;
+        for index in 0..self.slots.len() {
+            if is_large {
+                self.prefetch_after(index);
+            }
+            let slot = &mut self.slots[index];
             let env = first + index;
             let renderer = (self.drawing == Drawing::Now).then_some(&mut *renderer);
             let done = match work {
@@ -100,4 +165,18 @@ impl Part<'_> {
         }
         outcome
     }
+}
+
+/// Takes the next environments that nobody works on, with the index of the first: fewer and fewer, so that all threads end at
+/// about the same time. `None` if none are left.
+fn take<'a>(rest: &Mutex<(usize, Option<Part<'a>>)>, num_threads: usize) -> Option<(usize, Part<'a>)> {
+    let mut rest = rest.lock().unwrap_or_else(PoisonError::into_inner);
+    let (first, part) = (rest.0, rest.1.take()?);
+    let count = part.slots.len().div_ceil(PARTS_PER_THREAD * num_threads);
+    if count == part.slots.len() {
+        return Some((first, part));
+    }
+    let (now, later) = part.split(count);
+    *rest = (first + count, Some(later));
+    Some((first, now))
 }

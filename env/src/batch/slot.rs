@@ -30,8 +30,8 @@ pub(super) struct Slot {
     pub(super) steps: u32,
     limit: Option<NonZeroU32>,
     /// Records the episode if requested, and keeps the recording of the one before.
-    recorder: Option<Recorder>,
-    before: Option<Recording>,
+    recorder: Option<Box<Recorder>>,
+    before: Option<Box<Recording>>,
 }
 
 impl Slot {
@@ -63,7 +63,7 @@ impl Slot {
 
     /// Starts or stops recording.
     pub(super) fn set_recording(&mut self, records: bool) {
-        self.recorder = records.then(|| Recorder::from_now(&self.environment));
+        self.recorder = records.then(|| Box::new(Recorder::from_now(&self.environment)));
         self.before = None;
     }
 
@@ -71,7 +71,7 @@ impl Slot {
     pub(super) fn recording(&self) -> Option<Recording> {
         let recorder = self.recorder.as_ref()?;
         if recorder.num_steps() == 0 && self.before.is_some() {
-            return self.before.clone();
+            return self.before.as_deref().cloned();
         }
         // An end before the first recorded step belongs to another episode.
         let ended_by = self.step.ended_by.filter(|_| recorder.num_steps() > 0);
@@ -173,7 +173,7 @@ impl Slot {
         self.layout.check(self.env, &world)?;
         if let Some(recorder) = &mut self.recorder {
             if recorder.num_steps() > 0 {
-                self.before = Some(recorder.recording(&self.environment, self.step.ended_by));
+                self.before = Some(Box::new(recorder.recording(&self.environment, self.step.ended_by)));
             }
             recorder.begin(world.clone());
         }

@@ -11,6 +11,7 @@ use super::gap::Gap;
 use super::groups::{AGENT, GHOST, SOLID, WALL};
 use super::outline::Outline;
 use crate::polygon::to_f32;
+use crate::prefetch::prefetch;
 use crate::scene::{Item, Scene};
 
 /// Boundary for bodies that start outside the arena, in metres from the origin: documents allow no places beyond it.
@@ -18,13 +19,10 @@ pub(super) const EDGE: f32 = 300.0;
 
 /// All bodies of a world. Nothing moves by forces, so there are no time steps here, only queries about shapes.
 pub(crate) struct CollisionWorld {
-    bodies: RigidBodySet,
     pub(super) colliders: ColliderSet,
     /// Positions of colliders, by handle number.
     pub(super) places: BroadPhase,
-    pub(super) narrow_phase: NarrowPhase,
-    islands: IslandManager,
-    soft_bodies: SoftBodySet,
+    pub(super) engine: Box<Engine>,
     /// For each object, its collider while it is present.
     pub(super) handles: Vec<Option<ColliderHandle>>,
     /// Colliders of carried things, removed from the trees: kept so that they can be put back without allocating.
@@ -44,6 +42,15 @@ pub(crate) struct CollisionWorld {
     /// Whole footprint of each body.
     pub(super) whole: Vec<Footprint>,
     pub(super) scratch: Scratch,
+}
+
+/// Parts of the engine that queries and removals want to be handed. They stay empty.
+#[derive(Default)]
+pub(super) struct Engine {
+    bodies: RigidBodySet,
+    islands: IslandManager,
+    soft_bodies: SoftBodySet,
+    pub(super) narrow_phase: NarrowPhase,
 }
 
 /// One body, for queries about the ground.
@@ -83,12 +90,9 @@ impl CollisionWorld {
         // An upright cylinder for everything on the ground: the round ends are below the ground and above the head.
         let capsule = |radius: f32| SharedShape::capsule(Vector::ZERO, Vector::new(0.0, 0.0, height), radius);
         let mut bodies = Self {
-            bodies: RigidBodySet::new(),
             colliders: ColliderSet::new(),
             places: BroadPhase::default(),
-            narrow_phase: NarrowPhase::new(),
-            islands: IslandManager::new(),
-            soft_bodies: SoftBodySet::new(),
+            engine: Box::default(),
             handles: vec![None; scene.items.len()],
             put_by: Vec::new(),
             agent_handle: None,
@@ -115,6 +119,14 @@ impl CollisionWorld {
             bodies.add_object(index as u32, item, object.solid);
         }
         bodies
+    }
+
+    /// Asks the processor to load what the next motion reads.
+    pub(super) fn prefetch(&self) {
+        self.places.prefetch();
+        prefetch(self.low.as_slice());
+        prefetch(self.scratch.numbers.as_slice());
+        prefetch(self.scratch.path.as_slice());
     }
 
     /// Adds a body; `heading_deg` rotates its outline.
@@ -245,9 +257,9 @@ impl CollisionWorld {
             let group = self.colliders[handle].collision_groups().memberships;
             self.colliders.remove(
                 handle,
-                &mut self.islands,
-                &mut self.bodies,
-                &mut self.soft_bodies,
+                &mut self.engine.islands,
+                &mut self.engine.bodies,
+                &mut self.engine.soft_bodies,
                 false,
             );
             self.places.remove(group, slot(handle) as u32);
@@ -264,9 +276,9 @@ impl CollisionWorld {
         let mut filter = QueryFilter::default().groups(interaction);
         filter.exclude_collider = but;
         self.places.of(groups).map(move |bvh| QueryPipeline {
-            dispatcher: self.narrow_phase.query_dispatcher(),
+            dispatcher: self.engine.narrow_phase.query_dispatcher(),
             bvh,
-            bodies: &self.bodies,
+            bodies: &self.engine.bodies,
             colliders: &self.colliders,
             filter,
         })
@@ -277,15 +289,10 @@ impl CollisionWorld {
         &self,
         groups: Group,
         but: Option<ColliderHandle>,
-        [least, most]: [[f32; 2]; 2],
+        area: [[f32; 2]; 2],
     ) -> impl Iterator<Item = ColliderHandle> {
         let interaction = InteractionGroups::new(Group::ALL, groups, InteractionTestMode::And);
-        let area = Aabb::new(
-            Vector::new(least[0], least[1], -1e3),
-            Vector::new(most[0], most[1], 1e3),
-        );
-        let boxes = self.places.of(groups);
-        let numbers = boxes.flat_map(move |boxes| boxes.leaves(move |node| node.aabb().intersects(&area)));
+        let numbers = self.places.around(groups, area);
         numbers.filter_map(move |number| {
             let (collider, handle) = self.colliders.get_unknown_gen(number)?;
             let asked_for = collider.collision_groups().test(interaction) && Some(handle) != but;

@@ -18,8 +18,12 @@ use super::warning::Warning;
 use crate::EnvError;
 use crate::agents::OnRailsAgent;
 use crate::assets::Catalogue;
+use crate::prefetch::prefetch;
 use crate::render::{Frame, Renderer, RendererKind};
 use crate::scene::Scene;
+
+/// Walls whose geometry is requested ahead of time: enough for an arena with a few.
+const MOST_PREFETCHED: usize = 8;
 
 /// A running world: reset, step, observe.
 ///
@@ -80,6 +84,24 @@ impl Environment {
         let mut environment = Self::new(world);
         environment.set_renderer(Renderer::new(kind)?);
         Ok(environment)
+    }
+
+    /// Asks the processor to load the lists that the next step reads.
+    pub(crate) fn prefetch_lists(&self) {
+        prefetch(self.world.as_ref());
+        prefetch(self.state.objects.as_slice());
+        prefetch(self.views.scene.items.as_slice());
+        prefetch(self.views.scene.panels.as_slice());
+        self.views.bodies.prefetch();
+    }
+
+    /// Asks the processor to load what those lists point to.
+    pub(crate) fn prefetch_contents(&self) {
+        self.world.objects.first().inspect(|object| prefetch(*object));
+        for group in self.views.scene.panels.iter().take(MOST_PREFETCHED) {
+            prefetch(group.edges.as_slice());
+            group.blocks.first().inspect(|block| prefetch(*block));
+        }
     }
 
     /// The renderer of this environment.

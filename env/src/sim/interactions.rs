@@ -63,11 +63,10 @@ pub(super) fn apply_stimuli(
             answers
         })
         .flatten();
-    for (index, object) in world.objects.iter().enumerate() {
+    for place in 0..state.ranged.len() {
+        let index = state.ranged[place] as usize;
+        let object = &world.objects[index];
         let reach = object.range_stimulus_distance;
-        if reach <= 0.0 {
-            continue;
-        }
         let sim = SimRef { world, state, views };
         let was = state.objects[index].in_range;
         let is_level = object.range_trigger == Trigger::Level;

@@ -151,7 +151,7 @@ impl CollisionWorld {
         let meets = |handle: &ColliderHandle| {
             let collider = &self.colliders[*handle];
             let between = pose.inv_mul(collider.position());
-            let dispatcher = self.narrow_phase.query_dispatcher();
+            let dispatcher = self.engine.narrow_phase.query_dispatcher();
             dispatcher
                 .intersection_test(&between, &ball, collider.shape())
                 .is_ok_and(|met| met.intersecting)

@@ -95,6 +95,8 @@ pub(crate) struct SimState {
     pub(super) contacts: Vec<u32>,
     /// The objects that move by themselves, in rising order.
     pub(super) movers: Vec<Mover>,
+    /// The objects that notice the agent from a distance, in rising order.
+    pub(super) ranged: Vec<u32>,
     /// The pushable objects, in rising order.
     pub(super) pushed: Vec<Pushed>,
     /// Destroyed objects that will respawn, in rising order, with the time step in which they are due.
@@ -151,6 +153,8 @@ impl SimState {
             0
         };
         self.objects.push(ObjectState::new(object));
+        self.ranged
+            .extend((object.range_stimulus_distance > 0.0).then_some(index as u32));
         self.movers.extend(Mover::new(index, object, seed, identity));
         self.rngs.extend(ObjectRng::new(index, object, seed, identity));
         self.pushed.extend(Pushed::new(index, object));
