@@ -30,7 +30,7 @@ pub(crate) struct Compiled {
 /// A distribution with fixed numbers, and the stream it draws from.
 #[derive(Debug)]
 pub(crate) struct Drawn {
-    /// The distribution; if look-ups read drawn values, the one over all their outcomes.
+    /// The distribution; if look-ups read drawn values, the distribution over all their outcomes.
     pub(crate) distribution: Distribution,
     pub(crate) stream: Stream,
     look_up: Option<Box<LookUp>>,
@@ -127,7 +127,7 @@ impl Randomized {
 #[derive(Debug)]
 pub(crate) struct Filled<T> {
     pub(crate) base: T,
-    /// Where the template stands, for messages: `group/trees/object`.
+    /// The path of the template, for messages: `group/trees/object`.
     pub(crate) place: String,
     pub(crate) holes: Vec<(Hole<T>, Fill)>,
 }

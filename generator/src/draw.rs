@@ -38,7 +38,7 @@ pub(crate) fn draw<'a>(distribution: &'a Distribution, rng: &mut Rng) -> Cow<'a,
     }
 }
 
-/// Shares that sum to 1: each takes its part of what the earlier ones left (stick breaking).
+/// Shares that sum to 1: each takes its part of what the earlier ones left (stick-breaking).
 fn shares(alpha: &[f64], units: &[f64]) -> Vec<f64> {
     let mut rest: f64 = alpha.iter().sum();
     let mut left = 1.0;
@@ -63,7 +63,7 @@ fn shares(alpha: &[f64], units: &[f64]) -> Vec<f64> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Place {
     pub(crate) at: [f64; 2],
-    /// Least distance to objects of the same group; above 0 only for Poisson-disc sampling.
+    /// Minimum distance to objects of the same group; above 0 only for Poisson-disc sampling.
     pub(crate) own_distance: f64,
 }
 

@@ -6,19 +6,20 @@ use crate::GeneratorError;
 use crate::interpolation::interpolate;
 use crate::stream::Stream;
 
-/// How values that cannot be interpolated change: texts, booleans, numbers from a list.
+/// How values that cannot be interpolated change: strings, booleans, numbers from a list.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Switch {
     /// At the fraction that the parameter declares as `switch_at`, or halfway if it declares none.
     #[default]
     AtPoint,
-    /// By chance: at fraction t of the drift a world has the new value with probability t, drawn under this seed.
+    /// By chance: at fraction t of the drift a world has the new value with probability t, drawn with this seed.
     Mixture {
         /// The seed.
         seed: u64,
     },
-    /// One coin for the whole variant: at fraction t of the drift a world belongs to the second variant with probability t, drawn
-    /// under this seed, else to the first. Nothing is interpolated, not even numbers; the variants may be of two tasks.
+    /// One coin toss for the whole variant: at fraction t of the drift a world belongs to the second variant with probability t,
+    /// drawn with this seed, else to the first. Nothing is interpolated, not even numbers; the variants may belong to different
+    /// tasks.
     Task {
         /// The seed.
         seed: u64,
@@ -29,8 +30,8 @@ pub enum Switch {
 ///
 /// Numbers, points, vectors and the numbers of distributions of one family are interpolated linearly; headings take the shorter
 /// way round, or the way through their range; colours, including those of distributions, are interpolated in Oklab, so that they
-/// change evenly to the eye; distributions of different families are mixed; everything else switches. At 0 and 1 the variants are
-/// the given ones.
+/// change evenly to the eye; distributions of different families are mixed where possible; layouts change as
+/// [`Layout::toward`](driftworld_spec::Layout::toward) says; everything else switches. At 0 and 1 the variants are the given ones.
 ///
 /// # Example
 /// ```
@@ -81,7 +82,7 @@ impl Drift {
     }
 
     /// A drift between two variants, of any tasks, whose worlds each belong to one of the two: to the second with a probability
-    /// equal to the drift's progress, drawn under a seed.
+    /// equal to the drift's progress, drawn with a seed.
     ///
     /// # Example
     /// ```
@@ -103,7 +104,7 @@ impl Drift {
         }
     }
 
-    /// The drift that a scenario's regime declares, from its variant to the drift's; mixing switches draw under the
+    /// The drift that a scenario's regime declares, from its variant to the drift's; mixing switches draw with the
     /// regime's seed.
     ///
     /// # Errors
@@ -117,14 +118,14 @@ impl Drift {
         Ok(Self::new(from, to)?.with_schedule(drift.schedule).with_switch(switch))
     }
 
-    /// Uses another schedule.
+    /// Uses a different schedule.
     #[must_use]
     pub fn with_schedule(mut self, schedule: DriftSchedule) -> Self {
         self.schedule = schedule;
         self
     }
 
-    /// Uses another way of switching.
+    /// Uses a different way of switching.
     #[must_use]
     pub fn with_switch(mut self, switch: Switch) -> Self {
         self.switch = switch;

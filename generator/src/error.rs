@@ -21,12 +21,12 @@ pub enum GeneratorError {
         place: String,
         /// The drawn number.
         found: f64,
-        /// Least number allowed there.
+        /// Smallest number allowed there.
         low: f64,
-        /// Greatest number allowed there.
+        /// Largest number allowed there.
         high: f64,
     },
-    /// No free place was found for an object within its number of tries.
+    /// No free place was found for an object within the allowed number of tries.
     #[error(
         "{world}: group {group:?}, object {object} of {count}: found no free place in {}; {reason}",
         tried(*tries)

@@ -171,8 +171,8 @@ impl<'a> PlacementContext<'a> {
 
     /// Finds and takes a free place for an object; else returns the number of tries, and why no place was free.
     ///
-    /// `turns` tracks which places of a `points` or `grid` taken in turn earlier objects around the same anchor have
-    /// left.
+    /// If the places of a `points` or `grid` are taken in turn, `turns` tracks those that earlier objects around the same anchor
+    /// left free.
     pub(crate) fn find(
         &mut self,
         request: &Request,
@@ -342,11 +342,11 @@ struct Tried {
 }
 
 impl Tried {
-    /// The number of tries, and why none was free.
+    /// The number of tries, and why no place was free.
     fn failure(self) -> (u32, String) {
         let tries = self.failed.iter().sum();
         if tries == 0 {
-            // Only if places are taken in turn and all were already taken.
+            // This happens only if places are taken in turn and all were already taken.
             let reason = "every place in the list is taken; add places, or lower the count".to_owned();
             return (tries, reason);
         }

@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn scrambled_points_keep_one_per_share() {
+    fn scrambled_points_keep_one_per_stratum() {
         let stream = Stream::new("t", 7, "coverage");
         for dimension in [0, 1, 17, 99] {
             let mut shares: Vec<u64> = (256..512)
@@ -138,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn latin_hypercube_has_one_world_per_share() {
+    fn latin_hypercube_has_one_world_per_stratum() {
         for count in [1, 2, 3, 100, 1000] {
             let stream = Stream::new("t", 7, "coverage");
             let cube = Sequence::LatinHypercube { first: 50, count };

@@ -89,7 +89,7 @@ impl SpatialHash {
     }
 }
 
-/// The cell of a place. Border cells also hold everything beyond them: clamping never increases the distance of two cells.
+/// The cell of a place. Border cells also hold everything beyond them: clamping never increases the distance between two cells.
 fn cell(place: [f64; 2]) -> [i32; 2] {
     place.map(|metres| ((metres / CELL).floor() as i32 + SIDE / 2).clamp(0, SIDE - 1))
 }

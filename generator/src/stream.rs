@@ -8,8 +8,8 @@ use sha2::{Digest, Sha256};
 
 /// One named stream of a task under a seed.
 ///
-/// The numbers are Philox's under a key from the SHA-256 of task, seed and name; world, object and attempt form the counter.
-/// Access is random: any number can be computed without the others.
+/// The numbers come from Philox, keyed by the SHA-256 of task, seed and name; world, object and attempt form the counter. Access
+/// is random: any number can be computed without the others.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stream {
     key: [u64; 2],

@@ -1,5 +1,5 @@
-//! Laws of variants at a wanted distance if requirements cut the ranges: every distance that a grid search of the allowed region
-//! finds is found.
+//! Laws of variants at a given distance if requirements cut off parts of the ranges: every distance that a grid search of the
+//! allowed region finds is found.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use proptest::prelude::*;
 /// Tolerance of a found distance.
 const TOLERANCE: f64 = 1e-3;
 
-/// A task of numbers in 0..1 with requirements on them; the first values are the defaults.
+/// A task of numbers in 0..1 with requirements on them, and a variant with the default values.
 #[derive(Clone, Debug)]
 struct Case {
     defaults: Vec<f64>,
@@ -28,7 +28,7 @@ impl Case {
                 r#""{name}": {{ "role": "variant", "type": "number", "affects": ["T"], "range": [0, 1], "default": {default} }}"#
             )
         }).collect();
-        // Debug output of a list of plain texts is valid JSON.
+        // The debug output of a list of plain strings is valid JSON.
         let require = format!("{:?}", self.require);
         let text = format!(
             r#"{{ "name": "t", "parameters": {{ {} }}, "require": {require}, "variants": {{ "here": {{}} }} }}"#,

@@ -17,7 +17,7 @@ fn worlds(task: &Arc<TaskSpec>, variant: &str, seed: u64) -> Vec<Json> {
     (0..12).map(|index| world(&sampler, index)).collect()
 }
 
-/// A world, or the error: random walls may leave no place for all objects.
+/// A world, or the error: random walls may leave too little room for all objects.
 fn world(sampler: &Sampler, index: u64) -> Json {
     match sampler.world(index) {
         Ok(world) => serde_json::to_value(world).expect("a world serialises"),
@@ -110,7 +110,7 @@ fn looked_up(fillings: &Fillings, of: &str) -> [Json; 8] {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
 
-    /// A look-up over a variant parameter equals its case written out in place: worlds and distributions agree to the byte.
+    /// A look-up over a variant parameter equals its case written out in place: worlds and distributions are identical.
     #[test]
     fn look_up_over_variant_parameter_equals_its_case_written_out(fillings in fillings(), seed in 0..9u64) {
         let looked_up = task(&filled(&variant_cue(), &looked_up(&fillings, "cue")));
@@ -189,7 +189,7 @@ proptest! {
         }
     }
 
-    /// The distribution of a look-up says how often each of its values is drawn.
+    /// The distribution of a look-up gives the probability of each of its values.
     #[test]
     fn look_up_is_distributed_as_the_mixture_of_its_cases(weight in 1..9i32, chance in 0.1..0.9f64, seed in 0..99u64) {
         let task = task(&json!({ "version": 2, "name": "t", "parameters": {

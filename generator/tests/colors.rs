@@ -198,7 +198,7 @@ fn variants_share_random_numbers_channel_by_channel() {
 }
 
 #[test]
-fn sequences_give_each_channel_one_world_per_share() {
+fn sequences_give_each_channel_one_world_per_stratum() {
     let own = drawn_by(r#"{ "color_uniform": { "from": "black", "to": "white" } }"#);
     let beside = r#""n": { "role": "randomized", "type": "number", "affects": ["S"], "distribution": { "uniform": { "low": 0, "high": 1 } } },"#;
     let variant = default(&task(&format!("{beside}{own}"), ""));

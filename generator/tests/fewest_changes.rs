@@ -1,5 +1,5 @@
-//! Laws of variants at a wanted distance, with parameters of every type: every distance that an exhaustive search finds is found,
-//! by no more changes, and nothing idle changes. Numbers alone, cut by requirements, are tested in `at_distance.rs`.
+//! Laws of variants at a given distance, with parameters of every type: every distance that an exhaustive search finds is found,
+//! with no more changes, and no idle parameter changes. Numbers alone, cut by requirements, are tested in `at_distance.rs`.
 
 use std::collections::BTreeMap;
 
@@ -41,7 +41,7 @@ fn grid_of(from: &Variant, name: &str, parts: usize) -> Vec<Value> {
     values
 }
 
-/// The difference of two variants in a parameter, as a share of its range; words and booleans are equal or 1 apart.
+/// The difference of two variants in a parameter, as a share of its range; strings and booleans are 0 or 1 apart.
 fn apart(from: &Variant, to: &Variant, name: &str) -> f64 {
     let parameter = &from.task().parameters()[name];
     let [low, high] = parameter.range.unwrap_or([0.0, 1.0]);
@@ -129,7 +129,7 @@ fn on_a_grid(from: &Variant, names: &[String]) -> BTreeMap<Digits, usize> {
     found
 }
 
-/// The smallest above 0, the largest, and others spread evenly between, each slightly off.
+/// The smallest distance above 0, the largest, and others at random, one in each of equal intervals between them.
 fn asked(grid: &BTreeMap<Digits, usize>, numbers: &mut Numbers, most: usize) -> Vec<Digits> {
     let all: Vec<Digits> = grid.keys().copied().filter(|distance| *distance > 0).collect();
     if all.len() <= most {
@@ -142,7 +142,7 @@ fn asked(grid: &BTreeMap<Digits, usize>, numbers: &mut Numbers, most: usize) -> 
     asked
 }
 
-/// What is wrong with the answer for a distance that the grid reaches by `fewest` changes.
+/// The fault in the answer for a distance that the grid reaches with `fewest` changes.
 fn fault(from: &Variant, names: &[String], target: f64, fewest: usize) -> Option<String> {
     let measure = |other: &Variant| distance(from, other, names);
     let found = match at_distance(from, &Subject::Parameters(names.to_vec()), target, TOLERANCE, measure) {
@@ -173,7 +173,7 @@ fn fault(from: &Variant, names: &[String], target: f64, fewest: usize) -> Option
     idle.map(|name| format!("{target}: nothing reads {name}, and nothing forbids that it stays"))
 }
 
-/// Whether the error for a distance beyond reach names at least the grid's farthest.
+/// Checks that the error for a distance beyond reach reports at least the grid's farthest distance.
 fn fault_beyond(from: &Variant, names: &[String], farthest: f64) -> Option<String> {
     let measure = |other: &Variant| distance(from, other, names);
     match at_distance(from, &Subject::Parameters(names.to_vec()), 50.0, TOLERANCE, measure) {
@@ -183,13 +183,13 @@ fn fault_beyond(from: &Variant, names: &[String], farthest: f64) -> Option<Strin
     }
 }
 
-/// Requests many distances of each of `tasks` random tasks; returns what is wrong with the answers.
+/// Requests many distances of each of `tasks` random tasks; returns the faults in the answers.
 fn faults(seed: u64, tasks: usize, most: usize) -> Vec<String> {
     let mut numbers = Numbers(seed);
     let (mut found, mut checked) = (Vec::new(), 0);
     while checked < tasks {
         let Drawn { text, names } = Drawn::new(&mut numbers);
-        // If the variant breaks a requirement, there is none to start from.
+        // If the variant breaks a requirement, there is no variant to start from.
         let Ok(task) = TaskSpec::from_json("t", &text) else {
             continue;
         };
@@ -226,7 +226,7 @@ fn check(seed: u64, tasks: usize, most: usize) {
     );
 }
 
-/// Declares tests of a number of tasks each, which run in parallel.
+/// Declares tests that check a number of tasks each and run in parallel.
 macro_rules! drawn_tasks {
     ($tasks:literal: $($name:ident: $seed:literal,)*) => {
         $(

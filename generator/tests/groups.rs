@@ -38,7 +38,7 @@ fn distance(a: &Object, b: &Object) -> f64 {
     (a.coordinates[0] - b.coordinates[0]).hypot(a.coordinates[1] - b.coordinates[1])
 }
 
-/// Houses with fences around and facing them, trees that keep away from houses, rocks that face the nearest tree.
+/// Houses surrounded by fences that face them, trees that keep away from houses, rocks that face the nearest tree.
 fn village(fences: &str) -> Arc<TaskSpec> {
     load(&format!(
         r#"{{ "version": 2, "name": "village", "groups": [
@@ -56,7 +56,7 @@ fn village(fences: &str) -> Arc<TaskSpec> {
     ))
 }
 
-/// Difference of a heading from the direction between two places, in degrees.
+/// Difference between an object's heading and the direction to a place, in degrees.
 fn off(object: &Object, to: [f64; 2]) -> f64 {
     let [x, y] = object.coordinates;
     let wanted = (to[0] - x).atan2(to[1] - y).to_degrees();
@@ -96,7 +96,7 @@ fn groups_around_others_keep_their_distances_and_headings() {
 }
 
 #[test]
-fn one_more_object_around_each_moves_nothing_around_another() {
+fn one_more_object_around_each_anchor_moves_no_other_object() {
     let (few, more) = (world(&village("3"), 5), world(&village("4"), 5));
     let fences = |world: &World, around: usize, of: usize| -> Vec<Object> {
         let all = tagged(world, "fences");
@@ -337,7 +337,7 @@ fn object_whose_place_in_turn_is_taken_takes_the_next_free_one() {
         panic!("{error}")
     };
     assert_eq!(*object, 4, "{error}");
-    // The same on a grid, whose cells are the places; with jitter, each tries its own cell first.
+    // The same on a grid, whose cells are the places; with jitter, each object tries its own cell first.
     let grid = r#"{ "grid": { "low": [-2, -2], "high": [14, 2], "columns": 4, "rows": 1 } }"#;
     assert_eq!(
         places(&world(&row(grid, 3, blocked), 0)),

@@ -47,7 +47,7 @@ fn variants_keep_their_layouts_through_json() {
         again.variant("large").unwrap().hash(),
         task.variant("large").unwrap().hash()
     );
-    // The same numbers with keys in another order and without defaults.
+    // The same numbers with keys in a different order and without defaults.
     assert_eq!(
         task.variant("small").unwrap().value("map"),
         Some(
@@ -96,7 +96,7 @@ fn length(polygon: &[[f64; 2]]) -> f64 {
 }
 
 #[test]
-fn layouts_of_one_kind_interpolate_linearly_and_round_integers() {
+fn layouts_of_the_same_kind_interpolate_linearly_and_round_integers() {
     let task = task("");
     let [small, large, rooms] = ["small", "large", "rooms"].map(|name| task.variant(name).unwrap());
     let at = |from: &Variant, to: &Variant, t: f64| match drift(from, to, t).unwrap().value("map") {

@@ -33,7 +33,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
     #[test]
-    fn every_world_is_of_one_variant_and_the_share_is_the_progress(
+    fn every_world_belongs_to_one_variant_and_the_share_equals_the_progress(
         a in any::<prop::sample::Index>(),
         b in any::<prop::sample::Index>(),
         seed in 0..1_u64 << 53,

@@ -1,4 +1,4 @@
-//! Numbers, headings and shares are drawn with their declared laws, tested at fixed seeds. Places are tested in
+//! Numbers, headings and shares are drawn according to their declared laws, tested with fixed seeds. Places are tested in
 //! `statistics_of_places.rs`, the laws themselves in the spec crate.
 
 use std::sync::Arc;

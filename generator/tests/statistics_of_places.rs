@@ -1,4 +1,4 @@
-//! Objects are placed with the declared law. Numbers are tested in `statistics.rs`.
+//! Objects are placed according to the declared law. Numbers are tested in `statistics.rs`.
 
 #![expect(clippy::disallowed_methods, reason = "compared within a tolerance")]
 
@@ -25,7 +25,7 @@ fn world(sampler: &Sampler, index: u64) -> World {
     sampler.world(index).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The places of 200 worlds of 50 objects.
+/// The places of all objects in 200 worlds of 50 objects each.
 fn places(placement: &str) -> (Vec<[f64; 2]>, Distribution) {
     let (sampler, law) = sampler(placement, 50, "");
     let worlds = (0..200).map(|index| world(&sampler, index));

@@ -1,4 +1,4 @@
-//! Interpolated variants, and variants at wanted distances. Worlds are tested in `worlds.rs`.
+//! Interpolated variants, and variants at given distances. Worlds are tested in `worlds.rs`.
 
 use std::sync::Arc;
 
@@ -156,7 +156,7 @@ fn distance(from: &Variant) -> impl Fn(&Variant) -> f64 + '_ {
 }
 
 #[test]
-fn variant_at_wanted_distance_changes_only_its_subject() {
+fn variant_at_given_distance_changes_only_its_subject() {
     let a = variant("a");
     let found = at_distance(&a, &Subject::Element(Element::R), 0.1, 1e-9, distance(&a)).expect("half of the range");
     assert!((number(&found.variant, "pay") - 0.0).abs() < 1e-5);

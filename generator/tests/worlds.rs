@@ -148,7 +148,7 @@ fn nothing_stands_in_a_region_that_cannot_be_entered() {
         for object in &world(&load(&text), "default", 5, 0).objects {
             let [x, y] = object.coordinates;
             for region in maps::excluded_regions(map).iter().map(|region| &region.0) {
-                // Winding number by crossings: an independent oracle.
+                // Winding number by angles: an independent oracle.
                 let turns: f64 = region
                     .iter()
                     .zip(region.iter().cycle().skip(1))

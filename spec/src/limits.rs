@@ -1,18 +1,18 @@
 //! Limits on the size of documents and on the number of objects in a world.
 
-/// Most objects in one world.
+/// Maximum number of objects in one world.
 pub const MAX_OBJECTS: usize = 100_000;
 
-/// Longest document in bytes.
+/// Maximum size of a document in bytes.
 pub const MAX_BYTES: usize = 64 << 20;
 
-/// Most values of a world, ours or the original's: numbers, texts, lists, objects and so on.
+/// Maximum number of values in a world, ours or the original's: numbers, strings, lists, objects and so on.
 pub const MAX_WORLD_VALUES: usize = 4_000_000;
 
-/// Most values of a scenario, ours or the original's: as many as 100,000 blocks of four regimes have.
+/// Maximum number of values in a scenario, ours or the original's: as many as 100,000 blocks of four regimes have.
 pub const MAX_SCENARIO_VALUES: usize = 2_000_000;
 
-/// Most values of a task spec, a maps file or a single object.
+/// Maximum number of values in a task spec, a maps file or a single object.
 pub const MAX_VALUES: usize = 1_000_000;
 
 pub use driftworld_text::json::{MAX_DEPTH, MAX_KEY_BYTES};

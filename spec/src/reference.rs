@@ -41,7 +41,7 @@ by `driftworld elements`. `cargo xtask schemas` generates this page.
 |---|---|---|
 ";
 
-/// The pages, each after its file name.
+/// The pages, each with its file name.
 pub fn pages() -> Vec<(&'static str, String)> {
     let all = keys();
     let part_of = |key: &FieldPlace| {

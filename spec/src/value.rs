@@ -147,7 +147,7 @@ impl Value {
         Some(*whole)
     }
 
-    /// The text, if the value is one.
+    /// The string, if the value is one.
     pub(crate) fn as_text(&self) -> Option<&str> {
         let Self::Text(text) = self else { return None };
         Some(text)
@@ -272,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn equal_json_has_one_text_and_round_trips() {
+    fn equal_json_has_the_same_text_and_round_trips() {
         let json = |text: &str| {
             serde_json::from_str::<Value>(text)
                 .unwrap()

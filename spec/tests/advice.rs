@@ -7,7 +7,7 @@ use driftworld_spec::maps::MapLibrary;
 use driftworld_spec::{Problem, Scenario, SpecError, TaskSpec, World};
 use serde_json::Value;
 
-/// Phrases before a value that an advice spells out.
+/// Phrases before a value that a piece of advice spells out.
 const BEFORE_A_VALUE: [&str; 4] = [
     "drop the quotes: ",
     "write the number alone: ",

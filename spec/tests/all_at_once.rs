@@ -86,7 +86,7 @@ proptest! {
 }
 
 #[test]
-fn both_mistakes_of_the_readme_are_reported_together() {
+fn both_mistakes_in_the_docs_are_reported_together() {
     let variant = ("/variants/dusk/light", json!(60));
     let reference = ("/world/environment_params/light_intensity", json!({ "param": "ligth" }));
     let found: Vec<String> = said(&[&variant, &reference]).into_iter().collect();

@@ -96,7 +96,7 @@ fn choice_called_default_is_checked_by_its_place() {
 }
 
 #[test]
-fn value_outside_the_choices_is_refused_also_in_code() {
+fn value_outside_the_choices_is_also_refused_in_code() {
     let text = r#"{ "name": "t", "parameters": { "p": {
         "role": "variant", "type": "json", "affects": ["O"], "choices": [["rgb"], null], "default": ["rgb"] } } }"#;
     let task = TaskSpec::from_json("t", text).unwrap();

@@ -243,7 +243,7 @@ proptest! {
     }
 }
 
-/// The starting documents of the laws below: small ones as the original's generator writes them, and its examples if available.
+/// The starting documents of the test below: a small one like those of the original's generator, and its examples if available.
 fn originals() -> Vec<(String, serde_json::Value)> {
     let object = |class: &str, x: f64| {
         serde_json::json!({
@@ -375,7 +375,7 @@ proptest! {
         let (after, warnings) = match read(&changed) {
             Ok(read) => read,
             Err(error) => {
-                // Only numbers out of range and overlong texts are refused, at their place.
+                // Only numbers out of range and overlong strings are refused, at their place.
                 for problem in error.problems() {
                     let found = changed.pointer(&problem.pointer).cloned().unwrap_or_default();
                     let is_beyond = has_number_or_long_text(&found);

@@ -24,7 +24,7 @@ impl Models for Wood {
     }
 }
 
-/// The source of a text.
+/// The source of a string.
 #[derive(Clone, Debug)]
 enum Origin {
     Written(&'static str),
@@ -42,7 +42,7 @@ fn origin(words: &'static [&'static str]) -> impl Strategy<Value = Origin> {
 }
 
 impl Origin {
-    /// The text's form in the object; declares the parameters that it uses.
+    /// The string's form in the object; declares the parameters that it uses.
     fn declared(&self, name: &str, parameters: &mut serde_json::Map<String, Value>) -> Value {
         let declared = match self {
             Self::Written(word) => return json!(word),

@@ -20,7 +20,7 @@ fn is_chosen(parent: &str) -> bool {
     )
 }
 
-/// Every key of a document, after the pointer to its parent.
+/// Every key of a document, with the pointer to its parent.
 fn keys(json: &Value, pointer: &str, found: &mut Vec<(String, String)>) {
     match json {
         Value::Object(map) => {

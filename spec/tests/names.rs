@@ -20,7 +20,7 @@ fn scenario(name: &str, regime: &str) -> Result<Scenario, SpecError> {
     Scenario::from_json("s.json", &document.to_string())
 }
 
-/// Every place for a name.
+/// The errors for a name in every place that takes one.
 fn refusals(name: &str) -> [Option<SpecError>; 4] {
     [
         task(name, "g").err(),

@@ -24,7 +24,7 @@ fn task(require: &str) -> Result<std::sync::Arc<TaskSpec>, String> {
 }
 
 #[test]
-fn values_of_one_type_are_compared() {
+fn values_of_the_same_type_are_compared() {
     for require in [
         "trigger != other_trigger",
         "trigger == 'touch' or other_trigger == 'far'",

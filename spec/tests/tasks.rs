@@ -27,7 +27,7 @@ fn variant_overrides_those_it_extends_and_the_defaults() {
     assert_eq!(dusk.value("start_heading"), None);
 }
 
-/// The message for `find_objects` with one text replaced by another.
+/// The message for `find_objects` with one string replaced by another.
 fn broken(from: &str, to: &str) -> String {
     let text = read("find_objects");
     assert!(text.contains(from), "{from}");

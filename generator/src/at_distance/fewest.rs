@@ -7,13 +7,13 @@ use super::reach::{Reach, Way};
 use super::space::Space;
 use super::{Found, FreeParameters, Search};
 
-/// Budgets in measured variants: for straight ways, and for scans where requirements cut these off, each per number of
-/// changed parameters; and the total beyond which no larger number of changes is tried.
+/// Budgets in measured variants: for straight lines, and for scans where requirements cut these off, each per number of changed
+/// parameters; and the total beyond which no larger number of changes is tried.
 const MOST_LOOKS: usize = 24_000;
 const MOST_SCANNED: usize = 24_000;
 const MOST_IN_ALL: usize = 200_000;
 
-/// Minimum number of variants to measure for each set of parameters whose straight way is cut off.
+/// Minimum number of variants to measure for each set of parameters whose straight line is cut off.
 const FEWEST_SCANNED: usize = 500;
 
 /// Maximum number of points to compute where distances add up, per number of changed parameters; and limits per way.

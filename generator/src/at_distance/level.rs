@@ -1,4 +1,4 @@
-//! Moves several numbers at once, one of which adds its distance to that of the others: computes points with the wanted sum,
+//! Moves several numbers at once, one of which adds its distance to that of the others: computes points with the required sum,
 //! and asks the task whether it allows each. `scan.rs` takes over if no number adds its distance, or the allowed region is too
 //! narrow to hit.
 
@@ -17,7 +17,7 @@ const PARTS_OF_VECTOR: usize = 6;
 /// Bisection steps within a part.
 const HALVINGS: u32 = 40;
 
-/// Places of a parameter from end to end of its range, each with its distance.
+/// Values of a parameter from end to end of its range, each with its distance.
 struct Profile {
     places: Vec<(Vec<f64>, f64)>,
 }
@@ -57,7 +57,7 @@ impl Profiles {
 }
 
 impl<'a, D: FnMut(&Variant) -> f64> Search<'a, D> {
-    /// An allowed point of a way with the wanted sum, out of about `points` candidates; `None` if there is none among them.
+    /// An allowed point of a way with the required sum, out of about `points` candidates; `None` if there is none among them.
     pub(super) fn on_level(&mut self, way: &Way<'a>, profiles: &mut Profiles, points: usize) -> Option<Found> {
         for free in &way.smooth {
             profiles.measure(self, *free);

@@ -1,5 +1,5 @@
-//! Moves a single number whose distance depends on no other: finds where it gives the wanted distance, and checks whether the
-//! task allows that.
+//! Moves a single number whose distance does not depend on the others: finds where it gives the target distance, and checks
+//! whether the task allows that.
 
 use driftworld_spec::{ParameterType, Variant};
 
@@ -57,7 +57,7 @@ impl<'a, D: FnMut(&Variant) -> f64> Search<'a, D> {
         found
     }
 
-    /// Bisects an interval for the wanted distance. `is_rising`: the distance grows from start to end.
+    /// Bisects an interval for the target distance. `is_rising`: the distance grows from start to end.
     fn halved(
         &mut self,
         stretch: &[f64],

@@ -1,4 +1,4 @@
-//! Finds a variant at a wanted distance from another. The caller passes the distance function.
+//! Finds a variant at a given distance from another. The caller passes the distance function.
 
 mod fewest;
 mod level;
@@ -20,7 +20,7 @@ use subject::{Free, FreeParameters, parameters_of};
 /// Maximum number of combinations of choices to try.
 const MOST_COMBINATIONS: usize = 4096;
 
-/// Maximum number of variants to measure where requirements cut off the straight way, and minimum per combination.
+/// Maximum number of variants to measure where requirements cut off the straight line, and minimum per combination.
 const MOST_LOOKS: usize = 60_000;
 const FEWEST_LOOKS: usize = 1500;
 
@@ -35,17 +35,17 @@ pub struct Found {
 
 /// Finds a variant whose distance from `from` is `target` within `tolerance`, with as few changed parameters as possible.
 ///
-/// Searches everything that the task's requirements leave of the subject's choices and ranges. For each combination of choices
-/// the numbers move together towards the farthest ends of their ranges. If requirements cut that way off, or a number decides
-/// what is read, each number moves separately. Among answers that change equally few parameters, takes the one with the smallest
-/// changes as shares of their ranges. A parameter that nothing reads in the answer stays as it is in `from`, unless a requirement
-/// forbids that. The same arguments always find the same variant. Calls `distance` a few hundred times, or tens of
-/// thousands of times if requirements cut ways off. `distance` must never be negative, and must be 0 for `from`.
+/// Searches all of the subject's choices and ranges that the task's requirements allow. For each combination of choices the
+/// numbers move together towards the farthest ends of their ranges. If requirements cut that way off, or a number decides what is
+/// read, each number moves separately. Among answers that change equally few parameters, takes the one with the smallest changes
+/// as shares of their ranges. A parameter that nothing reads in the answer stays as it is in `from`, unless a requirement forbids
+/// that. The same arguments always find the same variant. Calls `distance` a few hundred times, or tens of thousands of times if
+/// requirements cut ways off. `distance` must never be negative, and must be 0 for `from`.
 ///
 /// # Errors
 /// [`GeneratorError::NothingToVary`] if the subject has no parameter that could change; [`GeneratorError::TooFar`] with the
-/// farthest variant that the task allows if that is nearer than `target`; [`GeneratorError::NoneBetween`] with the nearest miss
-/// if the choices leave a gap around `target`, or the search ran out of budget.
+/// farthest variant that the task allows if it is nearer than `target`; [`GeneratorError::NoneBetween`] with the nearest miss if
+/// the choices leave a gap around `target`, or the search ran out of budget.
 ///
 /// # Example
 /// ```

@@ -1,8 +1,8 @@
 //! Measures the greatest distance that each parameter can reach by itself, and lists the sets of parameters and choices that can
-//! add up to a wanted distance. Ignores requirements: `fewest.rs` checks them on the variants.
+//! add up to the target distance. Ignores requirements: `fewest.rs` checks them on the variants.
 //!
-//! Distances of independent parameters add up, and each grows with its number. Every pair is tested for this; if the distances do
-//! not add up, all values of the pair are measured together.
+//! Distances of independent parameters add up, and each grows as its number moves away. Every pair is tested for this; if the
+//! distances do not add up, all values of the pair are measured together.
 
 use std::collections::HashMap;
 
@@ -24,7 +24,7 @@ const ROUNDING: f64 = 1e-9;
 /// Share by which the reach of a way may exceed the distance at its last point whose worlds can be drawn.
 const NEARLY: f64 = 1e-4;
 
-/// Parts in which to measure the range of a number that may decide what is read; and each range if there are two.
+/// Number of parts in which to measure the range of a number that may decide what is read, and each range of a vector of two.
 const PARTS: usize = 32;
 const PARTS_OF_TWO: usize = 8;
 
@@ -34,8 +34,8 @@ struct Candidate<'a> {
     /// The other choices with their distances; empty if the parameter moves smoothly.
     choices: Vec<(Value, f64)>,
     ends: Vec<Value>,
-    /// For a number that may decide what is read: values from end to end, and how much farther it may reach between them; none
-    /// and infinity if there would be too many.
+    /// For a number that may decide what is read: values from end to end, and how much farther it may reach between them; no
+    /// values and infinity if there would be too many.
     between: (Vec<Value>, f64),
     least: f64,
     most: f64,

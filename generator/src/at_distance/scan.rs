@@ -1,7 +1,7 @@
-//! Scans everything that a task's requirements leave of the ranges, for cases where the straight way to their ends is cut off.
+//! Scans everything that a task's requirements allow within the ranges, for cases where the straight line to their ends is cut off.
 //!
 //! Walks lines along every axis through the whole box. Where a line leaves the allowed region, bisects for its border; between
-//! two points on either side of the wanted distance, bisects for that distance. From the nearest points it continues in all
+//! two points on either side of the target distance, bisects for that distance. From the nearest points it continues in all
 //! directions with ever smaller steps. Deterministic: the same arguments find the same variant.
 
 use driftworld_spec::Variant;
@@ -16,7 +16,7 @@ const PARTS: usize = 32;
 const LITTLE: usize = 3000;
 const PARTS_OF_LITTLE: usize = 3;
 
-/// Bisection steps towards a border, and towards the wanted distance.
+/// Bisection steps towards a border, and towards the target distance.
 const HALVINGS: u32 = 48;
 
 /// Number of points from which the search continues in small steps.
@@ -25,7 +25,7 @@ const STARTS: usize = 12;
 /// Number of times the small steps are halved.
 const FINENESS: u32 = 30;
 
-/// Four times the number of points on either side of the wanted distance that are tried in pairs.
+/// Four times the number of points on either side of the target distance that are tried in pairs.
 const PAIRS: usize = 24;
 
 /// Maximum number of axes for which diagonals are also tried.
@@ -56,11 +56,11 @@ pub(super) struct Scan<'s, 'a, D> {
     pub(super) budget: usize,
 }
 
-/// Ends the search: the wanted distance was met, or the budget is used up.
+/// Ends the search: the target distance was met, or the budget is used up.
 struct Over;
 
 impl<D: FnMut(&Variant) -> f64> Scan<'_, '_, D> {
-    /// Scans the whole box; true if the wanted distance was met.
+    /// Scans the whole box; true if the target distance was met.
     pub(super) fn run(mut self) -> bool {
         // The search's nearest variant shows which of the two it was.
         let _over = self.all();
@@ -171,7 +171,7 @@ impl<D: FnMut(&Variant) -> f64> Scan<'_, '_, D> {
         Ok(())
     }
 
-    /// Bisects between two points on either side of the wanted distance.
+    /// Bisects between two points on either side of the target distance.
     fn between(&mut self, a: (&[f64], f64), b: (&[f64], f64)) -> Result<(), Over> {
         let target = self.search.target;
         if (a.1 < target) == (b.1 < target) {
@@ -193,7 +193,7 @@ impl<D: FnMut(&Variant) -> f64> Scan<'_, '_, D> {
         Ok(())
     }
 
-    /// Tries straight lines between points nearer and points farther than wanted.
+    /// Tries straight lines between points nearer and points farther than the target distance.
     fn pairs(&mut self, seen: &[Seen]) -> Result<(), Over> {
         let target = self.search.target;
         let side = |far: bool| {
@@ -213,7 +213,7 @@ impl<D: FnMut(&Variant) -> f64> Scan<'_, '_, D> {
         Ok(())
     }
 
-    /// From a point, takes ever smaller steps in any direction that brings it nearer to the wanted distance.
+    /// From a point, takes ever smaller steps in any direction that brings it nearer to the target distance.
     fn climb(&mut self, (start, distance): Seen) -> Result<(), Over> {
         let target = self.search.target;
         let directions = directions(self.space.axes.len());

@@ -1,4 +1,4 @@
-//! Searches the straight way from a variant to ends of its ranges, on which all numbers move together.
+//! Searches the straight line from a variant to ends of its ranges, along which all numbers move together.
 
 use driftworld_spec::{Domain, Parameter, ParameterType, Value, Variant};
 
@@ -30,7 +30,7 @@ impl<D: FnMut(&Variant) -> f64> Search<'_, D> {
         self.straight_to(combination, &base, &ends)
     }
 
-    /// Like [`Self::straight`], to one corner after the other, the farthest first: for numbers whose joint reach is not the sum
+    /// Like [`Self::straight`], but to one corner after another, the farthest first: for numbers whose joint reach is not the sum
     /// of their reaches.
     pub(super) fn straight_to_corners(&mut self, combination: &Changes, smooth: &[Free]) -> bool {
         let Some(base) = self.look(combination.clone()) else {

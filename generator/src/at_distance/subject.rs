@@ -1,10 +1,10 @@
-//! [`Subject`]: what may change on the way to a wanted distance.
+//! [`Subject`]: the parameters that may change on the way to a target distance.
 
 use driftworld_spec::{Domain, Element, Parameter, ParameterType, Role, Variant, nearest};
 
 use crate::GeneratorError;
 
-/// What may change on the way to a wanted distance.
+/// The parameters that may change on the way to a target distance.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Subject {
     /// The variant parameters that affect only this element of the decision process.

@@ -17,7 +17,7 @@ const DOOR: &str = "door";
 /// open each of them.
 const COLORS: [&str; 8] = ["red", "blue", "yellow", "lime", "magenta", "cyan", "orange", "white"];
 
-/// Least distance of a key from walls, and from objects and the agent, in metres; less in smaller cells.
+/// Minimum distance of a key from walls, and from objects and the agent, in metres; less in smaller cells.
 const FROM_WALLS: f64 = 0.4;
 const FROM_OTHERS: f64 = 0.8;
 
@@ -28,7 +28,7 @@ const RANDOM_TRIES: usize = 32;
 const TRIES_IN_CELL: usize = 8;
 
 impl Sampler {
-    /// One door per doorway of the layout's rooms, in the order of the doorways; none if the layout asks for none.
+    /// One door per doorway of the layout's rooms, in the order of the doorways; no doors if the layout has none.
     pub(super) fn doors(&self, world: &WorldDraft, free_space: &FreeSpace, index: u64) -> Vec<Object> {
         let kind = doors_of(world);
         let Some(plan) = free_space.plan.as_deref().filter(|_| kind != RoomDoors::None) else {

@@ -19,7 +19,7 @@ impl Sampler {
         draft: &mut Draft,
     ) -> Result<(), GeneratorError> {
         let index = draft.index;
-        // Each anchor has its own random numbers, so that adding an object around it moves none around others.
+        // Each anchor has its own random numbers, so that adding an object around one anchor moves no objects around the others.
         let first = anchor_number << 32;
         let count = count_of(group, first, draft);
         let found = draft.world.objects.len().saturating_add(count as usize);
@@ -77,7 +77,7 @@ impl Sampler {
             object.coordinates = place;
             object.heading = along.unwrap_or(object.heading);
             if place.iter().any(|metres| metres.abs() > 300.0) {
-                // Only if no distance to walls is kept, so that the arena itself is the limit.
+                // This happens only if no distance to walls is kept, so that the arena itself is the limit.
                 return Err(self.out_of_range(
                     index,
                     &format!("group/{}/placement", group.name),

@@ -18,7 +18,7 @@ use crate::{GeneratorError, WorldId};
 use doors::stands_in_door;
 use groups::Draft;
 
-/// Maximum number of draws of a world's randomized parameters; a requirement still unmet then is an error.
+/// Maximum number of draws of a world's randomized parameters; after that, an unmet requirement is an error.
 pub(crate) const ATTEMPTS: u32 = 1000;
 
 /// Draws the worlds of one variant under one seed, with random access.

@@ -12,7 +12,7 @@ impl Numbers {
         z ^ (z >> 31)
     }
 
-    /// A number from 0 to below 1.
+    /// A number in 0..1.
     pub(crate) fn share(&mut self) -> f64 {
         (self.next() >> 11) as f64 / (1_u64 << 53) as f64
     }

@@ -15,7 +15,7 @@ pub struct Case<T> {
     /// The parameter that selects; it may have any role.
     #[serde(rename = "case")]
     pub by: ParamRef,
-    /// The results by the values of the parameter as texts: words, names of choices or colours, numbers, `true`, `false`.
+    /// The results by the values of the parameter as strings: words, names of choices or colours, numbers, `true`, `false`.
     pub of: IndexMap<String, T>,
     /// The result for all other values; `None` if every value has a case.
     #[serde(rename = "else", default, skip_serializing_if = "Option::is_none")]

@@ -61,7 +61,7 @@ pub(super) fn binomial_quantile(u: f64, n: f64, p: f64) -> f64 {
 /// The `u` quantile of the number of events if `mean` are expected.
 pub(super) fn poisson_quantile(u: f64, mean: f64) -> f64 {
     if mean <= SHORT_WALK {
-        // Beyond mean + 40 deviations the remaining probability is below 53 bits.
+        // Beyond mean + 40 deviations the remaining probability is below 2⁻⁵³.
         let most = mean + 40.0 * (mean + 1.0).sqrt();
         return walk(u, libm::exp(-mean), most.ceil(), |k| mean / (k + 1.0));
     }

@@ -42,14 +42,14 @@ impl<const N: usize> Moments<N> {
 }
 
 impl Distribution<f64> {
-    /// The mean; of a Bernoulli its `p`, of headings the mean direction in degrees.
+    /// The mean; `p` for a Bernoulli distribution, the mean direction in degrees for headings.
     ///
     /// `None` if it draws no numbers. All are closed forms.
     pub fn mean(&self) -> Option<f64> {
         self.mean_and_variance().map(|(mean, _)| mean)
     }
 
-    /// The variance, in the square of the unit; of a Bernoulli p (1 − p).
+    /// The variance, in squared units; p (1 − p) for a Bernoulli distribution.
     ///
     /// `None` if it draws no numbers, and for `von_mises`.
     pub fn variance(&self) -> Option<f64> {

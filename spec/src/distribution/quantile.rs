@@ -6,7 +6,7 @@ use super::{Distribution, discrete, von_mises};
 use crate::value::{ParameterType, Value};
 
 impl Distribution<f64> {
-    /// The least number up to which a draw falls with probability at least `p`, in `0..=1`.
+    /// The smallest number that a draw does not exceed with probability at least `p`, in `0..=1`.
     ///
     /// The same bits on every platform. Closed forms; `beta`, `von_mises` and mixtures by root finding to the last bits.
     /// Infinite at 0 or 1 if the distribution is unbounded there; headings lie in `mean − 180..=mean + 180` degrees. `None` if

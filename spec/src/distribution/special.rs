@@ -75,7 +75,7 @@ const TAIL: Ratio = (
      7.86869131145613259100e-4, 1.84631831751005468180e-5, 1.42151175831644588870e-7, 2.04426310338993978564e-15],
 );
 
-/// Least magnitude of a denominator in a continued fraction.
+/// Minimum magnitude of a denominator in a continued fraction.
 const TINY: f64 = 1e-300;
 
 /// The regularised upper incomplete gamma function Q(a, x). Relative error about 1e-12.
@@ -157,7 +157,7 @@ fn away_from_0(x: f64) -> f64 {
     if x.abs() < TINY { TINY } else { x }
 }
 
-/// The `x` in `0..=1` with I(x; a, b) = `p`, by bisection accelerated by Newton's steps.
+/// The `x` in `0..=1` with I(x; a, b) = `p`, by bisection accelerated by Newton steps.
 pub(super) fn beta_quantile(p: f64, a: f64, b: f64) -> f64 {
     let log_beta = libm::lgamma(a) + libm::lgamma(b) - libm::lgamma(a + b);
     let density = |x: f64| libm::exp((a - 1.0) * libm::log(x) + (b - 1.0) * libm::log1p(-x) - log_beta);

@@ -48,8 +48,8 @@ impl<N> Distribution<N> {
 }
 
 impl Distribution<f64> {
-    /// Its least and greatest number, corners of a box around its points or colours, or all values of a choice;
-    /// `None` if unbounded.
+    /// Its smallest and largest number, corners of a box around its points or colours, or all values of a choice; `None` if
+    /// unbounded.
     pub fn support(&self) -> Option<Vec<Value>> {
         let numbers = |low: f64, high: f64| Some(vec![Value::Number(low), Value::Number(high)]);
         let counts = |low: f64, high: f64| Some(vec![Value::Integer(low as i64), Value::Integer(high as i64)]);

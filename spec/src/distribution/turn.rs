@@ -10,7 +10,7 @@ const TRIES: usize = 1000;
 /// Maximum number of tries when checking whether a group fits; beyond that, only sampling decides.
 const MOST_CHECKED: usize = 200_000;
 
-/// Tracks which places of a `points` or `grid` in turn are taken by the objects of one group around one anchor.
+/// Tracks the places that the objects of one group around one anchor have taken, for a `points` or `grid` taken in turn.
 ///
 /// Object number `n` of a group has place `n` of the list, round and round. If it is not free, the object takes the next free
 /// one, in the order of the list and wrapping around; a place that another object has taken in this round is not free. At most
@@ -27,7 +27,7 @@ const MOST_CHECKED: usize = 200_000;
 #[derive(Clone, Debug)]
 pub struct Turns {
     places: usize,
-    /// Number of objects at each place; `None` as long as every object took its own.
+    /// Number of objects at each place; `None` as long as every object has taken its own place.
     taken: Option<Vec<u32>>,
 }
 
@@ -45,7 +45,7 @@ impl Turns {
         let places = self.places as u64;
         let (own, round) = ((number % places) as usize, number / places);
         let free = move |place: &usize| match &self.taken {
-            // All earlier objects took their own: in this round, the places before this object's.
+            // All earlier objects took their own places: in this round, those before this object's.
             None => *place >= own,
             Some(taken) => u64::from(taken[*place]) <= round,
         };
@@ -84,7 +84,7 @@ impl Distribution {
         }
     }
 
-    /// Place `number` of a `points` or `grid` in turn, in metres; `None` if places are random.
+    /// Place `number` of a `points` or `grid`, in metres; `None` if places are random.
     fn certain_place(&self, number: usize) -> Option<[f64; 2]> {
         match self {
             Self::Points { values, .. } => values.get(number).copied(),
@@ -166,7 +166,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// The rule in its simplest form: recounts every place from the beginning.
+    /// The rule in its simplest form: the number of objects at each place.
     struct Plain(Vec<u64>);
 
     impl Plain {

@@ -1,4 +1,4 @@
-//! Reads single values leniently: numbers as text, colours in 0..255, words in any case.
+//! Reads single values leniently: numbers as strings, colours in 0..255, words in any case.
 
 use serde_json::{Map, Value as Json, json};
 
@@ -6,7 +6,7 @@ use super::read::Reader;
 use crate::describe::describe;
 
 impl Reader {
-    /// Numbers written as text, alone or in a list.
+    /// Numbers written as strings, alone or in a list.
     pub(super) fn number(&mut self, at: &str, map: &mut Map<String, Json>, key: &str) {
         let Some(value) = map.get_mut(key) else { return };
         let mut found = Vec::new();
@@ -21,7 +21,7 @@ impl Reader {
         }
     }
 
-    /// Integers written as text or with a decimal point; the point alone gives no warning.
+    /// Integers written as strings or with a decimal point; the point alone gives no warning.
     pub(super) fn whole(&mut self, at: &str, map: &mut Map<String, Json>, key: &str) {
         self.number(at, map, key);
         drop_decimal_point(map, key);
@@ -112,7 +112,7 @@ fn place_of(list: &str, index: usize, len: usize) -> String {
     }
 }
 
-/// Converts text to a number if possible, and returns the text.
+/// Converts a string to a number if possible, and returns the string.
 fn to_number(value: &mut Json) -> Option<String> {
     let text = value.as_str()?.to_owned();
     let number = text.trim().parse::<f64>().ok().filter(|number| number.is_finite())?;
@@ -137,8 +137,8 @@ fn without_decimal_point(value: &mut Json) {
     }
 }
 
-/// Words in any case, alone or in a list. The original's words are ASCII; other letters stay as they are, so that a word
-/// keeps its length.
+/// Words in any case, alone or in a list. The original's words are ASCII; other characters stay as they are, so that a word keeps
+/// its length.
 pub(super) fn word(map: &mut Map<String, Json>, key: &str) {
     let lower = |value: &mut Json| {
         if let Json::String(text) = value {

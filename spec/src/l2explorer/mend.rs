@@ -1,4 +1,4 @@
-//! Repairs entries of the original's keys that are empty, missing or of another type: each gets the default, or its readable
+//! Repairs entries of the original's keys that are empty, incomplete or of the wrong type: each gets the default, or its readable
 //! part, with a warning. Values out of range and our own keys are not repaired; they are checked as in our documents.
 
 use serde_json::{Map, Value as Json, json};
@@ -23,16 +23,16 @@ pub(super) enum Entry {
     Word(Vec<String>),
     /// A colour: three numbers in 0..1, or a name.
     Color,
-    /// A text of 1 to 100 letters.
+    /// A string of 1 to 100 characters.
     Text,
-    /// A text of 1 to 100 letters, or a whole number.
+    /// A string of 1 to 100 characters, or a whole number.
     Model,
 }
 
-/// Longest text in letters.
+/// Maximum length of a string in characters.
 const MOST_LETTERS: usize = 100;
 
-/// Largest number of a model.
+/// Largest model number.
 const MOST_MODELS: u64 = 1_000_000;
 
 impl Entry {
@@ -196,7 +196,7 @@ fn color(value: &Json) -> Option<Json> {
     }
 }
 
-/// A text that is not empty; a number as text.
+/// A string that is not empty; a number as a string.
 fn text(value: &Json) -> Option<Json> {
     let text = match value {
         Json::String(text) => text.clone(),

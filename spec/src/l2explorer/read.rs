@@ -21,7 +21,7 @@ impl World {
     /// The original's default colour is (0, 0, 0); on anything but `geometric`, `cube` and `icosphere` it is read as the
     /// asset's own colours.
     ///
-    /// Entries of the original's keys that are empty or of another type get their defaults, or their readable part, each with a
+    /// Entries of the original's keys that are empty or of the wrong type get their defaults, or their readable part, each with a
     /// warning that says what is assumed: an object without a place is put at (0, 0), a moving object gets 2 m/s unless our own
     /// key `speed` is given. Objects outside the arena or inside walls stay where they are, with a warning. Predefined maps are
     /// the original's, written into the world as `map_regions`.
@@ -123,7 +123,7 @@ fn original_pointer(pointer: &str, kept: &[usize]) -> String {
     tokens.join("/")
 }
 
-/// Maps a place under our names to its place in the file, where keys may be spelled otherwise.
+/// Maps a place under our names to its place in the file, where keys may be spelled differently.
 fn as_spelled(pointer: String, spelled: &BTreeMap<String, String>) -> String {
     let ends = pointer.match_indices('/').map(|(end, _)| end).chain([pointer.len()]);
     let longest_known = ends
@@ -140,7 +140,7 @@ pub(super) struct Reader {
     warnings: Remarks,
     /// For each object of the world, its index in the file.
     pub(super) kept: Vec<usize>,
-    /// Places of entries whose keys the file spells otherwise: from our names to the places in the file.
+    /// Places of entries whose keys the file spells differently: from our names to the places in the file.
     pub(super) spelled: BTreeMap<String, String>,
 }
 
@@ -198,7 +198,7 @@ impl Reader {
         Json::Object(world)
     }
 
-    /// The entries under our names of the keys; unknown keys are dropped with a warning.
+    /// The entries under our names for the keys; unknown keys are dropped with a warning.
     fn keys(&mut self, pointer: &str, map: Map<String, Json>, known: &Part) -> Map<String, Json> {
         let plain = |key: &str| key.replace('_', "").to_lowercase();
         let mut renamed = Map::new();

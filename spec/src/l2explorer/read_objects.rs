@@ -1,4 +1,4 @@
-//! Reads the objects of a reset file: skips unusable ones, and converts early keys and missing entries.
+//! Reads the objects of a reset file: skips unusable objects, converts early keys and fills in missing entries.
 
 use std::collections::BTreeSet;
 

@@ -21,7 +21,7 @@ use crate::warning::{Remarks, Warning};
 const MAX_STEPS: u64 = 1_000_000_000;
 
 impl Scenario {
-    /// Reads a scenario file of the original. Each map becomes the world file of a regime; its name without folder and extension
+    /// Reads a scenario file of the original. Each map becomes the world file of a regime; its name without folders or extension
     /// becomes the regime's variant.
     ///
     /// # Errors
@@ -84,7 +84,7 @@ impl Reader {
             .take(100)
             .map(|letter| if fits(letter) { letter } else { '_' })
             .collect();
-        // Invalid names of files: a dot or hyphen at the beginning, a dot at the end, a device name of Windows.
+        // Invalid file names: a leading dot or hyphen, a trailing dot, a Windows device name.
         if name.starts_with(['.', '-']) {
             name.replace_range(..1, "_");
         }
@@ -226,7 +226,7 @@ impl Reader {
     }
 }
 
-/// The name of a file without folders and extension.
+/// A file's name without folders or extension.
 fn stem(path: &str) -> String {
     let file = path.rsplit(['/', '\\']).next().unwrap_or(path);
     let stem = file.rsplit_once('.').map_or(file, |(stem, _)| stem);
@@ -238,7 +238,7 @@ fn stem(path: &str) -> String {
 mod tests {
     use super::*;
 
-    /// A file of the original with one regime of these entries.
+    /// A scenario file of the original, with one regime of these entries.
     fn file(regime: &str) -> String {
         format!(r#"{{ "logging_base_dir": "logs", "scenario": [{{ "type": "train", "regimes": [{{ {regime} }}] }}] }}"#)
     }
@@ -294,7 +294,7 @@ mod tests {
     }
 
     #[test]
-    fn maps_of_one_name_become_two_variants() {
+    fn maps_with_the_same_name_become_different_variants() {
         let one = |map: &str| format!(r#"{{ "task": "a", "count": 1, "params": {{ "map": "{map}" }} }}"#);
         let regimes = ["x/m_1.json", "y/m_1.json", "x/m_1.json", "m1"].map(one).join(", ");
         let text =
@@ -313,7 +313,7 @@ mod tests {
     }
 
     #[test]
-    fn thousands_of_maps_of_one_name_are_disambiguated_fast() {
+    fn thousands_of_maps_with_the_same_name_are_disambiguated_fast() {
         let one = |number: u32| format!(r#"{{ "task": "a", "count": 1, "params": {{ "map": "{number}/m.json" }} }}"#);
         let regimes: Vec<String> = (1..=20_000).map(one).collect();
         let text = format!(

@@ -5,7 +5,7 @@ use crate::philox::philox;
 /// The second word of a layout's Philox key.
 const DOMAIN: u64 = 0x6c61_796f_7574_2031;
 
-/// What random numbers are used for.
+/// The purpose of a stream of random numbers.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Purpose {
     /// The spanning tree of a maze, or of joined rooms.
@@ -49,7 +49,7 @@ impl Draws {
         ((half * bound as u64) >> 32) as usize
     }
 
-    /// Shuffles items (Fisher and Yates).
+    /// Shuffles items (Fisher–Yates).
     pub(super) fn shuffle<T>(&mut self, items: &mut [T]) {
         for last in (1..items.len()).rev() {
             items.swap(last, self.below(last + 1));

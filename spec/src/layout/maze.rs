@@ -81,7 +81,7 @@ impl Maze {
         draws.shuffle(&mut ends);
         for cell in &ends[..share_of(self.braid, ends.len())] {
             let (sides, number, open) = closed(grid, *cell);
-            // Drawn for each dead end, so that which walls fall does not depend on the share.
+            // Drawn for each dead end, so that the walls that fall do not depend on the share.
             let choice = draws.below(number.max(1));
             if open == 1 && number > 0 {
                 let (cell, axis) = sides[choice];

@@ -123,7 +123,7 @@ impl TextMap<'_> {
     }
 }
 
-/// The eastern, northern, western and southern neighbours of a place, as far as they are inside the text.
+/// The eastern, northern, western and southern neighbours of a place, if they are inside the text.
 fn beside(place: usize, columns: usize, count: usize) -> [Option<usize>; 4] {
     let (column, row) = (place % columns, place / columns);
     [
@@ -222,7 +222,7 @@ fn doorways(squares: &[Square], columns: usize, rooms: &[u32], plan: &Plan, cell
         .collect()
 }
 
-/// The walls as a few disjoint rectangles, `[west, south, east, north]` in cells: runs from west to east, with equal ones in
+/// The walls as a few disjoint rectangles, `[west, south, east, north]` in cells: runs from west to east, with equal runs in
 /// adjacent rows merged.
 fn rectangles(squares: &[Square], [columns, rows]: [usize; 2]) -> Vec<[usize; 4]> {
     let mut done: Vec<[usize; 4]> = Vec::new();

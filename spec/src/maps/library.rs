@@ -139,7 +139,7 @@ impl MapLibrary {
     }
 }
 
-/// Checks beyond the schema: repeated numbers, arenas of another size, corners outside.
+/// Checks beyond the schema: repeated numbers, arenas of a different size, corners far outside the arena.
 fn problems(maps: &[MapLayout]) -> Vec<Problem> {
     let mut problems = Vec::new();
     for (index, map) in maps.iter().enumerate() {

@@ -239,7 +239,7 @@ impl Scenario {
 
     /// Reads a scenario strictly, and checks its variants and their values against the tasks that can be found.
     ///
-    /// `task` is called once for each task that the scenario names; if it returns none, that task is not checked.
+    /// `task` is called once for each task that the scenario names; if it returns `None`, that task is not checked.
     ///
     /// # Errors
     /// [`SpecError::Document`] with all problems of the text, sorted by place.

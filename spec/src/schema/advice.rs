@@ -1,4 +1,4 @@
-//! Advice for values that are nearly right: misspelt names, and numbers or booleans written as text.
+//! Advice for values that are nearly right: misspelt names, and numbers or booleans written as strings.
 
 use driftworld_text::{WordKind, removed};
 use serde_json::Value;

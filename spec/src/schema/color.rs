@@ -9,7 +9,7 @@ use crate::error::Problem;
 /// Wording of a colour in messages.
 pub(super) const EXPECTED: &str = "a CSS colour name or [r, g, b] in 0..1";
 
-/// The problem with a text or list that is not a colour; `None` for a triple with single invalid channels.
+/// The problem with a string or list that is not a colour; `None` for a list of three, whose invalid channels are reported one by one.
 pub(super) fn problem(pointer: &str, value: &Value) -> Option<Problem> {
     let problem = Problem::new("spec/value", pointer, describe(value), EXPECTED);
     let advised = match value {

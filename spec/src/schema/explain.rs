@@ -105,7 +105,7 @@ impl Explainer<'_> {
             | ValidationErrorKind::OneOfNotValid { context }
             | ValidationErrorKind::OneOfMultipleValid { context } => self.alternatives(error, context),
             ValidationErrorKind::PropertyNames { error: name } => vec![self.name(pointer, name).into()],
-            // An empty text has already been reported where `minLength` requires characters.
+            // An empty string has already been reported where `minLength` requires characters.
             ValidationErrorKind::Pattern { .. }
                 if self.instance(error).as_str() == Some("") && self.parent(error).get("minLength").is_some() =>
             {

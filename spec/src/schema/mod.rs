@@ -15,7 +15,7 @@ use crate::scenario::Scenario;
 use crate::task::TaskDocument;
 use crate::world::World;
 
-/// The schemas of all document types, each after its file name.
+/// The schemas of all document types, each with its file name.
 pub fn all() -> [(&'static str, &'static DocumentSchema); 4] {
     [
         ("world.schema.json", World::schema()),

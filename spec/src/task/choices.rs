@@ -24,7 +24,7 @@ use crate::value::Value;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Choices {
-    /// One for each value, or none.
+    /// One name for each value, or no names.
     names: Vec<String>,
     values: Vec<Value>,
 }

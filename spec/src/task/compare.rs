@@ -96,7 +96,7 @@ impl MeasureName {
         self.into()
     }
 
-    /// The measures that fit a distribution; `None` if this one does. `kind` is the parameter's type.
+    /// The measures that fit a distribution; `None` if this one fits. `kind` is the parameter's type.
     pub(super) fn misfit_of_draws(self, drawn: &Distribution<Number>, kind: ParameterType) -> Option<&'static str> {
         let is_color = self.is_of_colors();
         let overlaps = matches!(self, Self::TotalVariation | Self::Hellinger | Self::JensenShannon);

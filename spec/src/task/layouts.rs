@@ -67,7 +67,7 @@ impl Layout {
     pub fn toward(&self, other: &Self, t: f64) -> Self {
         let [mine, theirs] = [self, other].map(|layout| serde_json::to_value(layout).expect("a layout serialises"));
         let straight = between(&mine, &theirs, t).and_then(|json| serde_json::from_value::<Self>(json).ok());
-        // Two numbers that are valid at both ends can be too large together in between.
+        // Two numbers that are valid at both ends can be too large together on the way.
         if let Some(straight) = straight.filter(|layout| layout.problems().is_empty()) {
             return straight;
         }

@@ -31,7 +31,7 @@ impl Readers {
 }
 
 impl TaskSpec {
-    /// The readers of a parameter; none for an unknown name.
+    /// The readers of a parameter; no readers for an unknown name.
     ///
     /// # Example
     /// ```
@@ -132,7 +132,7 @@ impl Variant {
     }
 
     /// The value of a fixed or variant parameter as far as it matters: the default if nothing reads it in this variant. `None`
-    /// for a randomized or unknown one.
+    /// for a randomized or unknown parameter.
     pub fn value_as_read(&self, parameter: &str) -> Option<Cow<'_, Value>> {
         let value = self.value(parameter)?;
         if self.reads(parameter) {

@@ -144,7 +144,7 @@ impl<T> Hole<T> {
         }
     }
 
-    /// Sets the value. `None` if it is not allowed there, such as a text that names nothing.
+    /// Sets the value. `None` if it is not allowed there, such as a string that names nothing.
     pub fn fill(&self, target: &mut T, value: &Value) -> Option<()> {
         (self.set)(target, &self.steps, value)
     }
@@ -266,7 +266,7 @@ fn inline(schema: &Json, node: &Json) -> Json {
     if let (true, Some(description)) = (has_parts, node.get("description")) {
         copy["description"] = description.clone();
     }
-    // An example of the whole is no help for a template, and would be repeated at every place.
+    // An example of the whole does not help in a template, and would be repeated at every place.
     if let Some(map) = copy.as_object_mut() {
         map.shift_remove("examples");
     }

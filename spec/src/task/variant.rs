@@ -91,7 +91,7 @@ impl Variant {
         &self.values
     }
 
-    /// The value of a fixed or variant parameter; `None` for a randomized or unknown one.
+    /// The value of a fixed or variant parameter; `None` for a randomized or unknown parameter.
     pub fn value(&self, parameter: &str) -> Option<&Value> {
         self.values.get(parameter)
     }
@@ -120,7 +120,7 @@ impl Variant {
         })
     }
 
-    /// Resolves a source in a world with these values of randomized parameters; `None` if its look-ups read others.
+    /// Resolves a source in a world with these values of randomized parameters; `None` if its look-ups read other randomized parameters.
     pub fn resolve_with(&self, source: &Source, drawn: &[(&str, Value)]) -> Option<Resolved> {
         let scope = Scope { drawn, ..self.scope() };
         match scope.resolve(source) {
@@ -146,7 +146,7 @@ impl Variant {
         settled.expect("loading the task checked that every reference names a number")
     }
 
-    /// A variant like this one with another name and some changed values.
+    /// A variant like this one with a different name and some changed values.
     ///
     /// Each value must have its parameter's type and be in its range; if the domain is a list of choices, it may be between them,
     /// like the colours of a drift.

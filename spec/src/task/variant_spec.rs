@@ -175,7 +175,7 @@ pub(crate) fn problems(
     problems
 }
 
-/// The parameters that variants may set, and what to say was expected if another name is found.
+/// The parameters that variants may set, and the expectation to report if a different name is found.
 pub(super) fn variant_parameters(parameters: &IndexMap<String, Parameter>) -> (Vec<&String>, String) {
     let settable = parameters
         .iter()

@@ -132,7 +132,7 @@ impl AgentParams {
     /// A row of the table of actions: three numbers in the units of the action model; `None` if there is no such row.
     ///
     /// The default table is: forwards; forwards and left; forwards and right; left; right; backwards; and, if the agent can
-    /// interact, interact. It moves and turns at the agent's largest speeds, and backwards at half speed.
+    /// interact, interact. It moves and turns at the agent's maximum speeds, and backwards at half speed.
     pub fn action_row(&self, number: usize) -> Option<[f64; 3]> {
         let (speed, turn) = (self.max_linear_speed, self.max_angular_speed);
         match &self.actions {

@@ -124,7 +124,7 @@ impl WorldDraft {
         (self.max_seconds > 0.0).then(|| ticks().max(1.0) as u64)
     }
 
-    /// Most steps until the episode is truncated, by `max_steps` or by `max_seconds`; `None` if never.
+    /// Maximum number of steps until the episode is truncated, by `max_steps` or by `max_seconds`; `None` if never.
     ///
     /// # Example
     /// ```
@@ -145,7 +145,7 @@ impl WorldDraft {
         by_steps.into_iter().chain(by_time).min()
     }
 
-    /// Replaces all limits of the world by a limit of steps, 0 for none.
+    /// Replaces all limits of the world with a limit on steps, 0 for no limit.
     pub fn limit_steps(&mut self, max_steps: u32) {
         (self.max_steps, self.max_seconds) = (max_steps, 0.0);
     }

@@ -95,7 +95,7 @@ impl EnvironmentParams {
         own.unwrap_or(self.predefined_map)
     }
 
-    /// The regions of the map that cannot be entered: from a maps file, else from the built-in map. They do not include `walls`,
+    /// The regions of the map that cannot be entered: from a maps file, else from the built-in map. They include neither `walls`
     /// nor the walls of the layout, which are in the plan of a checked [`World`](crate::World).
     pub fn regions(&self) -> Vec<&[[f64; 2]]> {
         let regions = match &self.map_regions {

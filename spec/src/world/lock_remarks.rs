@@ -1,4 +1,4 @@
-//! Remarks on the places of doors and keys: keys that are all behind their own door, and doors that overlap.
+//! Remarks on the places of doors and keys: doors whose keys are all behind locked doors, and doors that overlap.
 
 use std::collections::BTreeSet;
 

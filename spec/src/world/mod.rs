@@ -52,7 +52,7 @@ use crate::version;
 /// Largest seed of a world or an object, 2⁵³ − 1: the largest integer that every JSON reader represents exactly.
 pub const MAX_SEED: u64 = (1 << 53) - 1;
 
-/// Maximum number of sample points of one image: 4096 × 4096 pixels with 2 × 2 points each.
+/// Maximum number of samples in one image: 4096 × 4096 pixels with 2 × 2 samples each.
 pub const MAX_POINTS: u64 = 1 << 26;
 
 /// One fully concrete world: what a reset takes.
@@ -71,7 +71,7 @@ pub const MAX_POINTS: u64 = 1 << 26;
 #[serde(transparent)]
 pub struct World {
     draft: WorldDraft,
-    /// What its layout comes to.
+    /// The plan of its layout.
     #[serde(skip)]
     plan: Option<Arc<Plan>>,
 }
@@ -83,8 +83,8 @@ impl PartialEq for World {
     }
 }
 
-/// Gives read access to the fields of the [`WorldDraft`]; they can be changed only through a draft, so that every world is
-/// a checked one.
+/// Gives read access to the fields of the [`WorldDraft`]; they can be changed only through a draft, so that every world has been
+/// checked.
 impl Deref for World {
     type Target = WorldDraft;
 

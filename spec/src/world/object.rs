@@ -179,7 +179,7 @@ impl Object {
     }
 }
 
-/// A model within a class. Documents write `"3"` or `3`; it is stored as text.
+/// A model within a class. Documents write `"3"` or `3`; it is stored as a string.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 pub struct Model(pub String);
 

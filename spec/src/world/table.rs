@@ -35,7 +35,7 @@ impl Default for LeafTexts {
 }
 
 impl LeafTexts {
-    /// Replaces the texts by those of a world, without its objects.
+    /// Replaces the texts with those of a world, without its objects.
     pub fn read_world(&mut self, world: &World) {
         self.0.iter_mut().for_each(Vec::clear);
         self.add::<WorldDraft>(world);
@@ -49,7 +49,7 @@ impl LeafTexts {
         );
     }
 
-    /// Replaces the texts by those of an object.
+    /// Replaces the texts with those of an object.
     pub fn read_object(&mut self, object: &Object) {
         self.0.iter_mut().for_each(Vec::clear);
         self.add(object);

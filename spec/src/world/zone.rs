@@ -92,7 +92,7 @@ pub enum ZoneEnd {
 
 word!(ZoneEnd);
 
-/// Largest factor on the agent's speed, of one zone or of several together.
+/// Maximum factor on the agent's speed, of one zone or of several together.
 const MOST_SPEED_FACTOR: f64 = 100.0;
 
 impl Zone {
@@ -171,7 +171,7 @@ impl Zone {
         })
     }
 
-    /// Its bounding box: least and largest x and y in metres; `None` for a zone without ground.
+    /// Its bounding box: smallest and largest x and y in metres; `None` for a zone without ground.
     pub fn bounds(&self) -> Option<[[f64; 2]; 2]> {
         if let Some(Disc { center: [x, y], radius }) = self.disc {
             return Some([[x - radius, y - radius], [x + radius, y + radius]]);

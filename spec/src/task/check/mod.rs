@@ -79,7 +79,7 @@ pub(super) fn compile(
         groups.into_iter().collect(),
         unfolded,
     ) else {
-        // It depends on a part that was refused; that problem is reported instead.
+        // The task depends on a refused part, whose problem is reported instead.
         return Err(Vec::new());
     };
     let task = TaskSpec {

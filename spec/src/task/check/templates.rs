@@ -12,7 +12,7 @@ use crate::error::Problem;
 use crate::value::Value;
 use crate::world::{Model, Object, Place, World, WorldDraft};
 
-/// The texts among the values.
+/// The strings among the values.
 fn texts(values: &[Value]) -> Vec<String> {
     values.iter().filter_map(Value::as_text).map(str::to_owned).collect()
 }
@@ -49,7 +49,7 @@ impl Check<'_> {
         Some(template)
     }
 
-    /// Checks that all possible classes of an object are known, and all its models within them.
+    /// Checks that all possible classes of an object are known, and that they have all its models.
     fn known_class(&mut self, root: &str, template: &Template<Object>) {
         let Some(classes) = self.classes else { return };
         let hole_at = |key: &str| template.holes.iter().find(|hole| hole.pointer == key);
@@ -97,7 +97,7 @@ impl Check<'_> {
         self.problems.extend(found);
     }
 
-    /// The texts that a source can give in a variant with these values.
+    /// The strings that a source can give in a variant with these values.
     fn texts_in(&self, values: &IndexMap<String, Value>, source: &Source) -> Vec<String> {
         let outcomes = Scope::new(self.parameters, values).outcomes(source).unwrap_or_default();
         let drawn = |(law, _): &(Distribution, f64)| law.support().unwrap_or_else(|| vec![law.example()]);
@@ -166,7 +166,7 @@ impl Check<'_> {
         })
     }
 
-    /// Checks that each hole accepts every value that it may be given, such as texts that must name something.
+    /// Checks that each hole accepts every value that it may be given, such as strings that must name something.
     fn fillable<T: Clone>(&mut self, root: &str, base: &T, holes: &[(Hole<T>, Vec<Value>)]) {
         for (hole, candidates) in holes {
             let mut trial = base.clone();

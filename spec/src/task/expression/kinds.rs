@@ -12,7 +12,7 @@ use crate::value::{ParameterType, Value};
 pub(in crate::task) enum Kind {
     Number,
     Truth,
-    /// A text, with all its possible values if they are known.
+    /// A string, with all its possible values if they are known.
     Text(Option<Vec<String>>),
     Color,
     /// A list of this length, whose numbers have an index: `start[0]`. The word is its name in messages.
@@ -47,7 +47,7 @@ impl Kind {
         }
     }
 
-    /// Whether it is a colour, or a text whose every possible value is a colour's name.
+    /// Whether it is a colour, or a string whose every possible value is a colour's name.
     fn is_color(&self) -> bool {
         match self {
             Self::Color => true,
@@ -167,7 +167,7 @@ impl<F: Fn(&str) -> Option<Kind>> Check<'_, F> {
         Ok(Kind::Truth)
     }
 
-    /// Checks that two parts can be equal: of one type, a colour and a colour's name, or a text and one of its choices.
+    /// Checks that two parts can be equal: of one type, a colour and a colour's name, or a string and one of its choices.
     fn alike(&self, a: (&Node, &Kind), b: (&Node, &Kind), symbol: &str) -> Result<(), Misfit> {
         match (a.1, b.1) {
             (Kind::Text(Some(first)), Kind::Text(Some(second))) => {
@@ -189,7 +189,7 @@ impl<F: Fn(&str) -> Option<Kind>> Check<'_, F> {
         }
     }
 
-    /// Refuses a quoted text that is not among a name's possible values.
+    /// Refuses a quoted string that is not among a name's possible values.
     fn is_choice(&self, text: &Node, (other, all): (&Node, &[String])) -> Result<(), Misfit> {
         let (Node::Constant(Term::Text(text)), Node::Name(name, _)) = (text, other) else {
             return Ok(());

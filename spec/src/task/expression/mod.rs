@@ -21,11 +21,11 @@ const MAX_DEPTH: usize = 32;
 
 /// A condition over parameters, such as `min_size < max_size and (count <= 5 or light >= 1)`.
 ///
-/// It consists of numbers, `true`, `false`, texts in single quotes, parameters of type number, integer, heading,
-/// boolean, string or color, `name[0]` of a vector or point, `+ - * / %`, `min(a, b, …)`, `max(a, b, …)`, `abs(a)`,
-/// `< <= > >= == !=`, `and`, `or`, `not` and brackets. Colours can only be tested for equality, with each other and
-/// with CSS names in quotes; `distance(a, b)` is the distance between two colours in Oklab
-/// ([`Color::distance`](crate::Color::distance)). A condition cannot loop, and does no I/O.
+/// It consists of numbers, `true`, `false`, strings in single quotes, parameters of type number, integer, heading, boolean,
+/// string or color, `name[0]` of a vector or point, `+ - * / %`, `min(a, b, …)`, `max(a, b, …)`, `abs(a)`, `< <= > >= == !=`,
+/// `and`, `or`, `not` and brackets. Colours can only be tested for equality, with each other and with CSS names in quotes;
+/// `distance(a, b)` is the distance between two colours in Oklab ([`Color::distance`](crate::Color::distance)). A condition
+/// cannot loop, and does no I/O.
 #[derive(Clone, Debug)]
 pub struct Requirement {
     text: String,
@@ -83,7 +83,7 @@ enum Operator {
     Calculate(fn(f64, f64) -> f64),
 }
 
-/// Symbol, binding strength and operation of an operator.
+/// Symbol, precedence and operation of an operator.
 type Binary = (&'static str, u8, Operator);
 
 /// The operators.
@@ -107,7 +107,7 @@ static BINARY: [Binary; 13] = [
 #[derive(Clone, Copy, Debug)]
 enum Made {
     OfNumbers(fn(&[f64]) -> f64),
-    /// The distance of two colours.
+    /// The distance between two colours.
     Distance,
 }
 
@@ -131,11 +131,11 @@ static FUNCTIONS: [Function; 4] = [
     ("distance", Some((2, "two colours")), Made::Distance),
 ];
 
-/// Binding strength of `not`: weaker than a comparison.
+/// Precedence of `not`: lower than that of a comparison.
 const NOT: u8 = 3;
-/// Binding strength of comparisons; they do not chain.
+/// Precedence of comparisons; they do not chain.
 const COMPARISON: u8 = 4;
-/// Binding strength of a sign.
+/// Precedence of a sign.
 const SIGN: u8 = 7;
 
 impl Requirement {

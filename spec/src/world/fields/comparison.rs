@@ -55,9 +55,9 @@ comparisons! {
     ModelOfActions: A, "action model", "another word",
     /// The action space, and whether the agent can interact and carry.
     SpaceOfActions: A, "action space", "another word",
-    /// The agent's largest speed.
+    /// The agent's maximum speed.
     LargestSpeed: A, "largest speed", "the larger one",
-    /// The agent's largest turn rate.
+    /// The agent's maximum turn rate.
     LargestTurnRate: A, "largest turn rate", "the larger one",
     /// How objects move by themselves.
     Motion: T, "motion of objects", "the larger one, or another word",

@@ -113,7 +113,7 @@ impl Field {
         Self { key, ..self }
     }
 
-    /// Sets the name of the Rust field, unless another was given.
+    /// Uses the name of the Rust field as the key, unless a key was given.
     pub(crate) const fn or_named(self, key: &'static str) -> Self {
         if self.key.is_empty() { self.named(key) } else { self }
     }

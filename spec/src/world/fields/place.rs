@@ -229,7 +229,7 @@ macro_rules! leaf {
     };
 }
 
-/// Lets a text set a type that documents write as a word.
+/// Lets a string set a type that documents write as a word.
 macro_rules! word {
     ($type:ty) => {
         impl $crate::world::fields::Place for $type {
