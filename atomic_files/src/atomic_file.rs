@@ -33,7 +33,7 @@ enum Kind {
 impl AtomicFile {
     /// Starts a file, and creates its folder if that is missing. Links are followed, and kept.
     ///
-    /// A new file gets mode 0666 minus the umask. A file that replaces another keeps the mode of that one, and its
+    /// A new file gets mode 0666 minus the umask. A file that replaces an existing one keeps its mode, and its
     /// owner where permitted. Devices, pipes and descriptors (`/dev/null`, `/dev/stdout`, `/dev/fd/3`) are opened and
     /// written directly.
     ///
@@ -95,7 +95,7 @@ impl AtomicFile {
     /// Finishes the file: syncs it to disk, and gives it its final name.
     ///
     /// # Errors
-    /// I/O errors: the name then still has its previous file, or none.
+    /// I/O errors: the previous file, if there was one, then stays as it was.
     pub fn commit(self) -> io::Result<()> {
         match self.0 {
             Kind::Beside {

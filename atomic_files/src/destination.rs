@@ -49,7 +49,7 @@ struct Descriptor {
 impl Descriptor {
     /// The descriptor that a path names, recognised by its folder.
     fn named(path: &Path) -> Option<Self> {
-        // Other paths need no look at their folders.
+        // The folders of other paths need not be resolved.
         if !path.starts_with("/dev") && !path.starts_with("/proc") {
             return None;
         }

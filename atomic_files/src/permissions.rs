@@ -1,4 +1,4 @@
-//! Permissions of written files: a file that replaces another keeps the permissions of that one; a new one follows the
+//! Permissions of written files: a file that replaces an existing one keeps its permissions; a new file follows the
 //! umask.
 
 use std::fs::{File, Metadata};
@@ -9,7 +9,7 @@ use tempfile::Builder;
 #[cfg(unix)]
 const PLAIN: u32 = 0o666;
 
-/// Creates temporary files with their final mode at most; the umask restricts it further.
+/// Creates temporary files with at most their final mode; the umask restricts it further.
 #[cfg(unix)]
 pub(crate) fn begin(builder: &mut Builder<'_, '_>, before: Option<&Metadata>) {
     use std::os::unix::fs::PermissionsExt;

@@ -19,7 +19,7 @@ pub struct ScratchFolder {
 }
 
 impl ScratchFolder {
-    /// Creates one in an existing folder, and first removes those that killed processes left there with the same prefix.
+    /// Creates a scratch folder in `parent`, after removing those that killed processes left there with the same prefix.
     ///
     /// # Errors
     /// Those of the system.
@@ -32,7 +32,7 @@ impl ScratchFolder {
             let lock = fs::File::open(folder.path());
             let is_taken = match lock.as_ref().map(fs::File::try_lock) {
                 Err(_) | Ok(Err(TryLockError::WouldBlock)) => true,
-                // Without file locks, another process may have removed it as a leftover.
+                // Another process may have removed it as a leftover before it was locked.
                 Ok(_) => !folder.path().exists(),
             };
             tries += 1;

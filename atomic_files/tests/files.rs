@@ -1,4 +1,4 @@
-//! What is there at each moment, of a file that is written: nothing, what was there before, or all of it.
+//! At every moment, a file that is being written is missing, unchanged or complete.
 
 use std::fs;
 use std::io::Write;
@@ -20,7 +20,7 @@ fn names(folder: &Path) -> Vec<String> {
 }
 
 #[test]
-fn a_file_is_there_whole_or_not_at_all() {
+fn file_appears_whole_or_not_at_all() {
     let folder = scratch();
     let path = folder.path().join("made/for/it/a.txt");
     let mut file = AtomicFile::create(&path).expect("the folder can be made");
@@ -48,7 +48,7 @@ fn long_names_are_cut_and_folders_are_refused_at_once() {
 }
 
 #[test]
-fn leftovers_go_and_what_is_being_written_stays() {
+fn leftovers_are_removed_and_files_being_written_stay() {
     let folder = scratch();
     let at = |name: &str| folder.path().join(name);
     let mut file = AtomicFile::create(&at("a.jsonl")).expect("the folder is ours");
@@ -66,7 +66,7 @@ fn leftovers_go_and_what_is_being_written_stays() {
 }
 
 #[test]
-fn scratch_folders_of_others_go_when_nobody_works_in_them() {
+fn abandoned_scratch_folders_are_removed_and_used_ones_stay() {
     let folder = scratch();
     fs::create_dir_all(folder.path().join(".work-killed/deep")).expect("the folder is ours");
     let first = ScratchFolder::new(".work-", folder.path()).expect("the folder is ours");
@@ -90,7 +90,7 @@ mod unix {
     }
 
     #[test]
-    fn a_file_keeps_its_mode_and_a_new_one_is_as_any_other() {
+    fn replaced_file_keeps_its_mode_and_new_file_follows_the_umask() {
         let folder = scratch();
         let at = |name: &str| folder.path().join(name);
         fs::write(at("plain"), "").expect("the folder is ours");
@@ -114,9 +114,9 @@ mod unix {
         }
     }
 
-    /// Only root may give files away; for others there is nothing to see.
+    /// Only root may change a file's owner; for other users the test checks nothing.
     #[test]
-    fn a_file_keeps_its_owner_where_that_is_allowed() {
+    fn replaced_file_keeps_its_owner_where_permitted() {
         let folder = scratch();
         let path = folder.path().join("theirs");
         fs::write(&path, "before").expect("the folder is ours");
@@ -130,7 +130,7 @@ mod unix {
     }
 
     #[test]
-    fn links_stay_and_what_they_lead_to_is_written() {
+    fn links_stay_and_their_targets_are_written() {
         let folder = scratch();
         let at = |name: &str| folder.path().join(name);
         fs::create_dir(at("far")).expect("the folder is ours");
@@ -150,17 +150,17 @@ mod unix {
     }
 
     #[test]
-    fn links_in_a_circle_are_an_error() {
+    fn writing_to_circular_links_terminates() {
         let folder = scratch();
         let at = |name: &str| folder.path().join(name);
         symlink("b", at("a")).expect("links can be made");
         symlink("a", at("b")).expect("links can be made");
-        // Whatever becomes of the link, it ends.
+        // The link may be replaced or refused, but the call returns.
         let _ = write(&at("a"), b"x");
     }
 
     #[test]
-    fn devices_and_pipes_are_written_straight() {
+    fn devices_and_pipes_are_written_directly() {
         let folder = scratch();
         let mut null = AtomicFile::create(Path::new("/dev/null")).expect("every system has it");
         assert!(null.is_straight());
@@ -195,7 +195,7 @@ mod unix {
 
     #[cfg(target_os = "linux")]
     #[test]
-    fn what_a_process_has_open_goes_on_at_its_end() {
+    fn open_descriptors_are_appended_to() {
         use std::os::fd::AsRawFd;
         let folder = scratch();
         let path = folder.path().join("open");
@@ -214,9 +214,9 @@ mod unix {
     }
 }
 
-/// A folder that was just made is nobody's leftover, however many are made beside it at the same moment.
+/// A folder that was just created is not removed as a leftover, however many are created beside it at the same time.
 #[test]
-fn folders_that_are_made_at_once_do_not_take_each_other_for_leftovers() {
+fn scratch_folders_created_at_once_do_not_remove_each_other() {
     let base = tempfile::tempdir().expect("a folder can be made");
     std::thread::scope(|threads| {
         for _ in 0..8 {

@@ -1,5 +1,5 @@
-//! A process that is stopped removes what it has not finished. In a program of its own: afterwards nothing can be
-//! begun.
+//! A process that is stopped removes its unfinished files. In a test program of its own: afterwards no file can be
+//! started.
 
 use std::fs;
 use std::io::Write;
@@ -7,7 +7,7 @@ use std::io::Write;
 use driftworld_atomic_files::{AtomicFile, ScratchFolder, remove_unfinished, write};
 
 #[test]
-fn what_is_not_finished_goes_and_what_is_stays() {
+fn unfinished_files_are_removed_and_finished_ones_stay() {
     let base = tempfile::tempdir().expect("the machine has a folder for temporary files");
     let at = |name: &str| base.path().join(name);
     write(&at("done"), b"whole").expect("there is room");
@@ -30,6 +30,6 @@ fn what_is_not_finished_goes_and_what_is_stays() {
     names.sort();
     assert_eq!(names, ["before", "done"]);
     assert_eq!(fs::read_to_string(at("before")).expect("it is there"), "before");
-    // Dropping what is unfinished would wait for ever, as would beginning anything.
+    // Dropping unfinished files would block forever, as would starting new ones.
     std::mem::forget((files, folder));
 }

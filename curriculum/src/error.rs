@@ -226,7 +226,7 @@ pub enum CurriculumError {
         /// Number of experiences.
         total: u64,
     },
-    /// A log to be resumed was written by another run.
+    /// A log to be resumed was written by a different run.
     #[error(
         "{}: {place}: found {found}, expected {expected} as in this run; continue with what the log was started with, \
          or choose another folder",
@@ -262,7 +262,7 @@ pub enum CurriculumError {
         /// The scenario's value.
         expected: String,
     },
-    /// A variant named for a probe differs in something else.
+    /// A variant named for a probe differs in other elements, too.
     #[error(
         "probing the {element}: found {a} and {b}, which differ in {differs}, expected variants that differ in the \
          {element} alone; name others, or the task to have them chosen"
@@ -287,7 +287,7 @@ pub enum CurriculumError {
         regime: usize,
         /// The experience, from 0 over the whole lifetime.
         experience: u64,
-        /// Its name: `task#variant`, in a drift with both ends.
+        /// Its name: `task#variant`; for a drift, with both ends.
         variant: String,
         /// Progress of a drift, 0..=1; 0 without a drift.
         progress: f64,
@@ -306,7 +306,7 @@ pub enum CurriculumError {
         /// The environment's error.
         source: EnvError,
     },
-    /// Transfer is measured by evaluations, and there are none.
+    /// Transfer is measured from evaluations, and there are none.
     #[error(
         "transfer: found no evaluation in {0} logs, expected every variant evaluated before and after another is \
          learned; design the curriculum with --evaluate every"
@@ -343,12 +343,12 @@ pub enum CurriculumError {
     /// The requested test is not possible.
     #[error("transfer: {0}")]
     Relabelling(#[source] SimilarityError),
-    /// A file of recordings is damaged, or of another kind.
+    /// A file of recordings is damaged, or is not a file of recordings.
     #[error("{}: {source}", path.shown())]
     Recording {
         /// The file.
         path: PathBuf,
-        /// The place, and the fault.
+        /// The position, and the fault.
         source: EnvError,
     },
     /// A file of recordings cannot be opened.

@@ -55,7 +55,7 @@ fn check(options: Design, expected: [Option<bool>; 5]) {
 }
 
 #[test]
-fn designs_are_sound_in_every_form() {
+fn designs_pass_the_audit() {
     let sound = [Some(true); 5];
     check(Design::default(), sound);
     if std::env::var_os("DRIFTWORLD_FULL").is_none() {
@@ -71,7 +71,7 @@ fn designs_are_sound_in_every_form() {
 }
 
 #[test]
-fn only_memory_notices_shared_layouts() {
+fn only_an_agent_with_memory_exploits_shared_layouts() {
     let paired = Design {
         paired_learning: true,
         ..Design::default()
@@ -80,7 +80,7 @@ fn only_memory_notices_shared_layouts() {
 }
 
 #[test]
-fn scenario_without_evaluations_cannot_be_audited() {
+fn scenario_without_evaluations_is_audited_only_in_part() {
     let blind = Design {
         evaluation: driftworld_curriculum::Evaluate::After(Vec::new()),
         ..Design::default()

@@ -9,7 +9,7 @@ use driftworld_spec::{Block, BlockKind, Regime, Scenario, ScenarioComplexity, Sc
 
 use crate::living::{Living, plan_of_worlds};
 
-/// Three worlds: a target ahead that ends the episode as a success, one that ends it as a failure, and none at all.
+/// Three worlds, each with a target ahead: it ends the episode as a success, as a failure, or not at all.
 fn world(path: &str) -> World {
     let rules = match path {
         "success.json" => r#""rules": { "success": [{ "touch": "goal" }] },"#,
@@ -120,7 +120,7 @@ fn log_without_an_ending_column_is_resumed_without_it() {
 }
 
 #[test]
-fn success_comes_before_the_limit() {
+fn endings_are_success_step_limit_and_failure() {
     let ended = |success, truncated| {
         Experience {
             success,

@@ -28,7 +28,7 @@ fn plan() -> Plan {
     plan_of_worlds(&scenario, |_| world.clone())
 }
 
-/// Acts at random, and sets a flag before a step, counted over all its copies.
+/// Acts at random, and sets a flag before a given step; steps are counted over all its copies.
 #[derive(Clone)]
 struct Stopper {
     acts: RandomAgent,
@@ -62,7 +62,7 @@ impl Agent for Stopper {
     }
 }
 
-/// Continues a log, and stops before a given step of the agent; `u64::MAX` for none.
+/// Continues a log, and stops before a given step of the agent; never with `u64::MAX`.
 fn live(log: &Path, jobs: usize, before: u64) -> (Summary, u64) {
     let (plan, stop) = (plan(), Arc::new(AtomicBool::new(false)));
     let mut agent = Stopper {

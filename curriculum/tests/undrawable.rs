@@ -16,7 +16,7 @@ use driftworld_spec::{DriftSchedule, DriftSwitch, Scenario, TaskSpec};
 use crate::files_below::files_below;
 use crate::living::Living;
 
-/// Rocks that find no place in some worlds, and a number whose middle is forbidden.
+/// Rocks that find no place in some worlds, and a number whose middle range is forbidden.
 fn task() -> Arc<TaskSpec> {
     let text = r#"{ "version": 2, "name": "quarry", "require": ["x <= 4 or x >= 6"],
         "parameters": { "x": { "role": "variant", "type": "number", "affects": ["T"], "range": [0, 10], "default": 0 } },
@@ -63,7 +63,7 @@ fn live(plan: &Plan, log: &Path, jobs: usize, more: u64) -> Result<Summary, Curr
     living.live(plan, &mut RandomAgent::new(0), log)
 }
 
-/// The numbers of the experiences that cannot be run, from drawing each world separately.
+/// The numbers of the experiences that cannot be run, found by drawing each world separately.
 fn undrawable(plan: &Plan) -> Vec<u64> {
     (0..plan.num_experiences())
         .filter(|number| plan.world(*number).is_err())
@@ -121,7 +121,7 @@ fn log_is_the_same_however_it_is_run() {
     while !live(&skipping, &pieces, 1, 4).expect("it is lived").finished {}
     assert!(files_below(&whole) == files_below(&jobs), "run by three workers");
     assert!(files_below(&whole) == files_below(&pieces), "lived in pieces");
-    // A run that refuses stops there, says where, and continues once it may skip.
+    // A run that refuses such worlds stops there, reports where, and continues once it may skip them.
     if let Ok(refusing) = plan(&scenario, Undrawable::Refused) {
         let error = live(&refusing, &stopped, 1, u64::MAX).expect_err("some worlds cannot be drawn");
         let CurriculumError::World { experience, .. } = &error else {
@@ -149,7 +149,7 @@ fn worlds_are_tried_before_the_run() {
 
     let plan = plan(&scenario(true), Undrawable::Skipped).expect("nothing is refused");
     let mut tried = Tried::default();
-    // Two worlds of each regime; of the drift every variant: none from 4 to 6 is allowed.
+    // Two worlds of each regime, and every variant of the drift: values between 4 and 6 are forbidden.
     let trials = plan.try_worlds(2, &mut tried);
     let drift = trials
         .iter()
@@ -164,7 +164,7 @@ fn worlds_are_tried_before_the_run() {
         .collect();
     assert!(way.iter().all(|progress| *progress > 0.4 && *progress < 0.6), "{way:?}");
     assert!(plan.try_worlds(2, &mut tried).is_empty(), "all has been tried");
-    // All worlds: each that cannot be run is found, those of the second evaluation with those of the first.
+    // All worlds: each that cannot be run is found; the second evaluation has the same worlds as the first.
     let all = plan.try_worlds(u32::MAX, &mut Tried::default());
     let found: Vec<u64> = all
         .iter()

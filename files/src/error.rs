@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use driftworld_text::ShownPath;
 
-/// Errors of opening or reading a file. Each message gives the path, what was found, what was expected, and what to do.
+/// Errors when opening or reading a file. Each message gives the path, what was found, what was expected, and what to do.
 #[derive(Debug, thiserror::Error, strum::IntoStaticStr, strum::VariantNames)]
 #[strum(prefix = "files/", serialize_all = "kebab-case")]
 #[non_exhaustive]

@@ -102,7 +102,7 @@ pub fn read(path: &Path, limit: u64) -> Result<Vec<u8>, FileError> {
 /// Reads a UTF-8 text file of at most `limit` bytes, and drops the byte order mark that some editors write.
 ///
 /// # Errors
-/// As [`read`]; [`FileError::NotText`] with the place of the first byte that is not UTF-8.
+/// As [`read`]; [`FileError::NotText`] with the position of the first byte that is not UTF-8.
 pub fn text(path: &Path, limit: u64) -> Result<String, FileError> {
     let mut text = String::from_utf8(read(path, limit)?).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
@@ -135,8 +135,8 @@ pub fn append(path: &Path) -> std::io::Result<File> {
     options.open(path)
 }
 
-/// Opens for reading without blocking: a named pipe that has just replaced the file is not waited for, and no terminal becomes
-/// the controlling one.
+/// Opens for reading without blocking, even if a named pipe has just replaced the file. A terminal does not become the
+/// controlling one.
 #[cfg(unix)]
 fn without_waiting(path: &Path) -> std::io::Result<File> {
     use std::os::unix::fs::OpenOptionsExt;
@@ -234,7 +234,7 @@ mod tests {
     /// A pipe may replace the file between the two checks.
     #[test]
     #[cfg(unix)]
-    fn opening_a_pipe_without_writer_does_not_block() {
+    fn opening_a_pipe_without_a_writer_does_not_block() {
         let folder = folder();
         let pipe = folder.path().join("pipe");
         let made = std::process::Command::new("mkfifo").arg(&pipe).status();
@@ -249,7 +249,7 @@ mod tests {
     /// Files whose content the system generates on reading report length 0.
     #[test]
     #[cfg(target_os = "linux")]
-    fn file_of_reported_length_0_is_read_up_to_the_limit() {
+    fn file_with_reported_length_0_is_read_up_to_the_limit() {
         let path = Path::new("/proc/self/status");
         assert!(!read(path, 1 << 20).expect("it is short").is_empty());
         assert!(matches!(read(path, 10), Err(FileError::TooLarge { found: 11, .. })));

@@ -9,7 +9,7 @@ use serde_json::{Map, Number, Value};
 /// First byte of an input that describes edits.
 pub(crate) const MARK: u8 = b'~';
 
-/// Most edits of one document.
+/// Maximum number of edits to one document.
 const MOST_CHANGES: usize = 12;
 
 /// Seed documents, and the words that edits may insert.

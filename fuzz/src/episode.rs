@@ -1,4 +1,4 @@
-//! Law of episodes in edited worlds. Input: a length, that many bytes of edits of a known world, then the agent's actions.
+//! Law of episodes in edited worlds. Input: a length, that many bytes of edits to a known world, then the agent's actions.
 
 use arbitrary::Unstructured;
 use driftworld_env::{Action, Environment, Step};
@@ -7,10 +7,10 @@ use driftworld_spec::World;
 use crate::edited::byte;
 use crate::{refusal, world};
 
-/// Most objects of a world that is run; larger worlds are covered by other tests.
+/// Maximum number of objects in a world that is run; larger worlds are covered by other tests.
 const MOST_OBJECTS: usize = 32;
 
-/// Most steps of an episode.
+/// Maximum number of steps in an episode.
 const MOST_STEPS: usize = 16;
 
 /// The same world and actions give the same episode, and all its numbers are finite. A world that is saved and loaded continues
@@ -29,7 +29,7 @@ pub(crate) fn check(bytes: &[u8]) {
         world.objects.truncate(MOST_OBJECTS);
         world.agent_params.observation_size = 8;
     });
-    // What remains must still be a valid world.
+    // The truncated world may be invalid.
     let Ok(start) = start else {
         return;
     };

@@ -1,5 +1,5 @@
-//! Law of glTF models. Input after [`MARK`](crate::edited::MARK): a length, that many bytes of edits of a known file,
-//! then edits of the bytes of its buffer.
+//! Law of glTF models. Input after [`MARK`](crate::edited::MARK): a length, that many bytes of edits to a known file,
+//! then edits to the bytes of its buffer.
 
 use std::sync::OnceLock;
 

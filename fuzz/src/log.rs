@@ -1,4 +1,4 @@
-//! Laws of logs, whatever their files hold: writing, reading, scoring and resuming.
+//! Laws of logs, whatever their files contain: writing, reading, scoring and resuming.
 
 use std::fs;
 use std::path::Path;
@@ -120,7 +120,7 @@ fn scores_without_nan(log: &Log) {
     }
 }
 
-/// A message without its quoted parts.
+/// The text without its quoted parts.
 fn without_quoted(text: &str) -> String {
     let mut found = String::new();
     let (mut quoted, mut escaped) = (false, false);
@@ -136,7 +136,7 @@ fn without_quoted(text: &str) -> String {
     found
 }
 
-/// A log that was read can be written if its rows keep the writer's rules, and reads back the same.
+/// A log that was read can be written if its rows follow the writer's rules, and reads back the same.
 fn writes_back(dir: &Path, log: &Log) {
     let info = LoggerInfo::new(log.logger_info.metrics_columns()).expect("they were taken before");
     let mut writer = LogWriter::create(dir, &info, &log.scenario_info).expect("the folder is new");

@@ -4,7 +4,7 @@ use driftworld_similarity::DistanceMatrix;
 
 use crate::refusal;
 
-/// Most items of a matrix that is written again.
+/// Maximum number of items in a matrix that is written again.
 const MOST_ITEMS: usize = 64;
 
 /// A matrix that can be read can be written in each format, and reads back the same.

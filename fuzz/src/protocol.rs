@@ -1,4 +1,4 @@
-//! Law of ML-Agents messages. Input: raw messages, or behind [`MARK`](crate::edited::MARK) a step with text on the Reset channel:
+//! Law of ML-Agents messages. Input: raw messages, or after [`MARK`](crate::edited::MARK) a step with text on the Reset channel:
 //! an edited world or anything else.
 
 use arbitrary::Unstructured;
@@ -18,10 +18,10 @@ const RESET: [u8; 16] = [
     0x70, 0x0a, 0x1f, 0x62, 0x87, 0x4f, 0xea, 0x11, 0xa6, 0xbf, 0x78, 0x4f, 0x43, 0x87, 0xd1, 0xf7,
 ];
 
-/// gRPC's default limit of a message in bytes.
+/// gRPC's default limit on the size of a message, in bytes.
 const LONGEST_ANSWER: usize = 4 << 20;
 
-/// Longest message on the Reset channel; larger worlds are run by other tests.
+/// Maximum length of a message on the Reset channel, in bytes; larger worlds are run by other tests.
 const LONGEST_TEXT: usize = 16_000;
 
 /// A session in a small world. Its screenshots go to a temporary folder.

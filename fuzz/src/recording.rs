@@ -1,4 +1,4 @@
-//! Law of files of recorded episodes. Input: raw bytes, or edits of the lines of a known file, which are then packed and get
+//! Law of files of recorded episodes. Input: raw bytes, or edits to the lines of a known file, which are then packed and get
 //! valid checksums, because random bytes seldom get past these.
 
 use std::fs;
@@ -20,11 +20,11 @@ use serde_json::{Value, json};
 use crate::edited::Known;
 use crate::{refusal, world};
 
-/// Most objects of a world that is run, and most steps.
+/// Maximum numbers of objects in a world that is run, and of steps.
 const MOST_OBJECTS: usize = 32;
 const MOST_STEPS: usize = 16;
 
-/// Most bytes to pack in an edited file: repeated copies grow quickly.
+/// Maximum number of bytes to pack per value of an edited file: repeated copies grow quickly.
 const MOST_PACKED: usize = 1 << 20;
 
 /// Known files, each as a list of lines. Packed parts are unpacked: a world is JSON, and actions are lists of bytes.
@@ -152,7 +152,7 @@ fn comes_back(recording: &Recording) {
     assert_eq!(format!("{again:?}"), format!("{recording:?}"));
 }
 
-/// Runs it twice and compares the ends.
+/// Runs the recording twice and compares the results.
 fn runs(recording: &Recording) {
     let worlds = recording.edits.iter().map(|edit| &edit.world);
     if worlds

@@ -1,10 +1,10 @@
-//! Laws of errors about a text: the message is not empty, points to an existing place, is of bounded length, and contains no
+//! Laws of errors about a text: the message is not empty, points to an existing line, is of bounded length, and contains no
 //! unprintable characters.
 
 use driftworld_spec::SpecError;
 use driftworld_text::is_unprintable;
 
-/// Longest message in bytes: fifty problems of a few hundred characters.
+/// Maximum length of a message in bytes: fifty problems of a few hundred characters.
 const LONGEST: usize = 100_000;
 
 /// Law of a [`SpecError`] about a document.

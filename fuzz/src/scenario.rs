@@ -47,8 +47,8 @@ fn task_named(name: &str) -> Option<Arc<TaskSpec>> {
     tasks().iter().find(|task| task.name() == name).cloned()
 }
 
-/// A scenario that can be read can be written, and reads back the same. Its plan has as many experiences, and each
-/// can be requested.
+/// A scenario that can be read can be written, and reads back the same. Its plan has the same number of experiences; the
+/// first, the middle and the last can be requested.
 pub(crate) fn check(bytes: &[u8]) {
     let text = known().text(bytes);
     match Scenario::from_json_with("s.json", &text, task_named) {

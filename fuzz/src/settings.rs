@@ -1,4 +1,4 @@
-//! Law of the settings of metrics.
+//! Law of metrics settings.
 
 use std::sync::OnceLock;
 
@@ -34,7 +34,7 @@ fn lifetime() -> &'static Log {
     })
 }
 
-/// Accepted settings round-trip, and no score under them is NaN.
+/// Accepted settings round-trip, and scores computed with them serialise to a JSON object.
 pub(crate) fn check(bytes: &[u8]) {
     let text = known().text(bytes);
     let options: Options = match serde_json::from_str(&text) {

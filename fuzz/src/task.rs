@@ -19,7 +19,7 @@ pub(crate) const EXAMPLES: [&str; 7] = [
     include_str!("../../examples/tasks/settlement.json"),
 ];
 
-/// Most variants per task of which worlds are drawn.
+/// Maximum number of variants per task from which worlds are drawn.
 const MOST_VARIANTS: usize = 2;
 
 fn known() -> &'static Known {

@@ -8,7 +8,7 @@ use serde_json::Value;
 use crate::edited::Known;
 use crate::{refusal, task};
 
-/// Seed worlds: one of each kind of task, and one written by hand.
+/// Seed worlds: up to two of each example task, and one written by hand.
 pub(crate) fn known() -> &'static Known {
     static KNOWN: OnceLock<Known> = OnceLock::new();
     KNOWN.get_or_init(|| {
@@ -30,7 +30,7 @@ pub(crate) fn json(text: &str) -> Value {
     serde_json::from_str(text).expect("a document of ours is JSON")
 }
 
-/// A world that can be read can be written, and reads back the same; a world of L2Explorer's can be converted.
+/// A world that can be read can be written, and reads back the same, also if it was converted from L2Explorer's format.
 pub(crate) fn check(bytes: &[u8]) {
     let text = known().text(bytes);
     match World::from_json("w.json", &text) {

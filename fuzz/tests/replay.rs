@@ -1,4 +1,4 @@
-//! Checks the laws on the fuzzer's seeds and on small changes of them. The fuzzer itself needs a nightly compiler.
+//! Checks the laws on the fuzzer's seeds and on small changes to them. The fuzzer itself needs a nightly compiler.
 
 use std::fs;
 use std::path::Path;
@@ -19,13 +19,13 @@ fn seeds(target: &Target) -> Vec<Vec<u8>> {
         .collect()
 }
 
-/// A small change of a text.
+/// A small change to a text.
 #[derive(Debug, Clone)]
 enum Change {
     Flip(prop::sample::Index, u8),
     Cut(prop::sample::Index, usize),
     Insert(prop::sample::Index, &'static str),
-    /// Copies a piece of the text to another place.
+    /// Copies a piece of the text to any position.
     Copy(prop::sample::Index, prop::sample::Index, usize),
 }
 
@@ -44,7 +44,7 @@ fn change() -> impl Strategy<Value = Change> {
 
 fn changed(mut text: Vec<u8>, changes: &[Change]) -> Vec<u8> {
     for change in changes {
-        // One place more than there are bytes: the end counts too.
+        // One position more than there are bytes: the end counts too.
         let at = |index: &prop::sample::Index| index.index(text.len() + 1);
         match change {
             Change::Flip(index, byte) => {
@@ -72,7 +72,7 @@ fn changed(mut text: Vec<u8>, changes: &[Change]) -> Vec<u8> {
     text
 }
 
-/// Checks one target's law on its seeds and on small changes of them.
+/// Checks one target's law on its seeds and on small changes to them.
 fn check(name: &str, cases: u32) {
     let target = TARGETS
         .iter()

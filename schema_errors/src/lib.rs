@@ -1,5 +1,5 @@
 //! Lists the errors of a JSON value against a JSON Schema in bounded memory. A separate crate, because it compiles the whole
-//! validator a second time, for values that count. It runs for invalid documents only, so it is not optimised.
+//! validator a second time, for values that count errors. It runs for invalid documents only, so it is not optimised.
 
 mod counted;
 
@@ -15,7 +15,7 @@ pub struct BoundedErrors {
 }
 
 impl BoundedErrors {
-    /// Lists about `limit` errors of any one list or object; the other items are skipped.
+    /// Lists about `limit` errors per list or object, and skips the items after those.
     ///
     /// # Errors
     ///

@@ -8,7 +8,7 @@ use driftworld_similarity::{
     BitGrid, Grid, GridShape, earth_movers_distance, grid_earth_movers_distance, grid_jaccard_distance,
 };
 
-/// Numbers in 0..1 that are the same on every run: splitmix64 of Vigna.
+/// Numbers in 0..1 that are the same on every run: Vigna's splitmix64.
 struct Chance(u64);
 
 impl Chance {

@@ -6,13 +6,13 @@ use std::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
 use driftworld_similarity::{Mdp, RewardSamples, bisimulation};
 
-/// Cells per side, headings, actions: ahead, back, turn left, turn right, stay.
+/// Cells per side, headings, actions: ahead, back, turn right, turn left, stay.
 const SIDE: usize = 60;
 const HEADINGS: usize = 8;
 const ACTIONS: usize = 5;
 const STEPS: [(isize, isize); HEADINGS] = [(0, 1), (1, 1), (1, 0), (1, -1), (0, -1), (-1, -1), (-1, 0), (-1, 1)];
 
-/// The cell that a step leads to, on a square with `side` cells per side; `None` if the edge or the wall is in the way.
+/// The cell that a step leads to, on a square with `side` cells per side; `cell` if the edge or the wall is in the way.
 fn ahead(side: usize, wall: Option<usize>, cell: usize, heading: usize, back: bool) -> usize {
     let (east, north) = STEPS[(heading + if back { HEADINGS / 2 } else { 0 }) % HEADINGS];
     let x = (cell % side).checked_add_signed(east).filter(|x| *x < side);

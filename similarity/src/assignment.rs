@@ -13,14 +13,14 @@ pub const MAX_ASSIGNED: usize = 4096;
 /// Marks an unpaired row or column in the buffers.
 const NONE: usize = usize::MAX;
 
-/// Pairs rows with columns so that the sum of the costs is least, and reuses its memory for the next matrix.
+/// Pairs rows with columns so that the sum of the costs is minimal, and reuses its memory for the next matrix.
 ///
 /// Each row and each column is in at most one pair, and there are as many pairs as the shorter side has members. Exact up to
 /// the rounding of `f64`. Deterministic, even if several pairings are equally cheap. Time `O(rows · columns · shorter side)` at
 /// worst and often far less; allocates nothing for sizes that it has met before.
 ///
 /// Source: Jonker and Volgenant 1987, "A shortest augmenting path algorithm for dense and sparse linear assignment problems"
-/// (without the reduction of columns, which holds for square matrices only); the same sums as
+/// (without column reduction, which is valid for square matrices only); the same sums as
 /// `scipy.optimize.linear_sum_assignment`, see `tests/oracle/assignment.json`.
 ///
 /// # Example
@@ -55,7 +55,7 @@ impl Assignment {
         Self::default()
     }
 
-    /// The least sum of costs. `costs`: `(rows, columns)`, row after row, any unit, negative ones too; the sum has the same
+    /// The minimum sum of costs. `costs`: `(rows, columns)`, row after row, in any unit, possibly negative; the sum has the same
     /// unit. Without rows or columns it is 0.
     ///
     /// # Errors
@@ -199,7 +199,7 @@ impl Assignment {
     }
 }
 
-/// The two least costs after prices and their columns; ties go to the first. There are at least two columns.
+/// The two lowest costs less prices, and their columns; ties go to the first. There are at least two columns.
 fn two_least(line: &[f64], price: &[f64]) -> [(f64, usize); 2] {
     let mut least = [(f64::INFINITY, 0), (f64::INFINITY, 0)];
     for (column, (cost, price)) in line.iter().zip(price).enumerate() {
@@ -264,7 +264,7 @@ mod tests {
         assert!(matches!(error, SimilarityError::TooMany { .. }), "{error}");
     }
 
-    /// The least sum by trying all pairings.
+    /// The minimum sum, found by trying all pairings.
     fn by_trying(costs: &[f64], rows: usize, columns: usize) -> f64 {
         fn from(costs: &[f64], columns: usize, row: usize, rows: usize, spare: usize, taken: u32) -> f64 {
             if row == rows {

@@ -101,7 +101,7 @@ pub enum SimilarityError {
         /// The largest valid index.
         most: usize,
     },
-    /// One item was given for both ends.
+    /// The same item was given for both ends.
     #[error("order: found {label:?} as the first item and as the last, expected two different ones")]
     EqualEnds {
         /// The item.
@@ -110,7 +110,7 @@ pub enum SimilarityError {
     /// A distance matrix, read or passed in, is invalid.
     #[error("matrix, {place}: found {found}, expected {expected}", place = one_line(place), found = one_line(found), expected = one_line(expected))]
     BadMatrix {
-        /// The place in the text or the matrix.
+        /// The position in the text or the matrix.
         place: String,
         /// The text or value found.
         found: String,

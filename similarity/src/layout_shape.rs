@@ -23,7 +23,7 @@ const COARSE: usize = 32;
 const NO_WAY: u32 = (SIDE * SIDE) as u32;
 
 /// A layout prepared for comparison: a raster of 96 × 96 cells with the heights of the walls that reach into them, the
-/// path lengths between the cells nearest to 36 places in rows and columns, and marks: letters of cells and colours of
+/// path lengths between the free cells nearest to 6 × 6 places, and marks: letters of cells and colours of
 /// walls. Places are relative to the arena's sides, so its size does not matter. Details smaller than a cell of the
 /// raster are ignored.
 #[derive(Clone, Debug, PartialEq)]
@@ -103,7 +103,7 @@ impl LayoutShape {
     }
 
     /// Jaccard distance of the walls, weighted by their heights: what only one layout has, as a share of what either has, 0..1.
-    /// A metric (Soergel's). If all walls have one height, it is the share of wall cells that only one layout has.
+    /// A metric (Soergel's). If all walls have the same height, it is the share of wall cells that only one layout has.
     pub fn walls_distance(&self, other: &Self) -> f64 {
         let pairs = || {
             self.walls
@@ -116,7 +116,7 @@ impl LayoutShape {
         if either > 0.0 { alone / either } else { 0.0 }
     }
 
-    /// The difference in paths: the mean, over all pairs of places, of the difference of the two lengths over the larger one,
+    /// The difference in paths: the mean, over all pairs of places, of the difference of the two lengths divided by the larger,
     /// 0..1. A metric of path lengths: 0 if all are equal.
     pub fn ways_distance(&self, other: &Self) -> f64 {
         let pairs = self.ways.iter().zip(&other.ways);
@@ -126,22 +126,23 @@ impl LayoutShape {
         apart / self.ways.len().max(1) as f64
     }
 
-    /// Jaccard distance of the marks: letters of cells and colours of walls that only one of them has there, as a share of
-    /// those that either has, 0..1. A metric.
+    /// Jaccard distance of the marks: letters of cells and colours of walls that only one layout has in the same place, as a
+    /// share of those that either has, 0..1. A metric.
     pub fn marks_distance(&self, other: &Self) -> f64 {
         let either = self.marks.union(&other.marks).count();
         let both = self.marks.intersection(&other.marks).count();
         (either - both) as f64 / either.max(1) as f64
     }
 
-    /// Wall transport: the mean distance that the mass of walls has to be moved, in sides of the arena, 0..√2. The earth
+    /// Wall transport: the mean distance by which the mass of walls has to be moved, in sides of the arena, 0..√2. The earth
     /// mover's distance (Wasserstein-1) of rasters of 32 × 32 cells. Each layout has a total mass of 1, distributed by how much
     /// of a cell its walls touch, and their heights.
     ///
     /// A metric on wall positions; it ignores the amount of wall and the common height, which
     /// [`LayoutShape::walls_distance`] measures. Moving a wall by a quarter of the arena costs a quarter of its share
     /// of the mass, while the Jaccard distance of two positions that do not overlap is the same however near they are.
-    /// A layout without walls has no mass to move and is √2 from every other. Not part of [`LayoutShape::distance`].
+    /// A layout without walls has no mass to move and is √2 from every layout with walls. Not part of
+    /// [`LayoutShape::distance`].
     ///
     /// Exact, by network simplex.
     ///
@@ -423,7 +424,7 @@ mod tests {
             prop_assert!(between(&a, &b) <= std::f64::consts::SQRT_2);
             let stand = a.walls.iter().any(|height| *height > 0.0);
             prop_assert_eq!(between(&a, LayoutShape::open()), if stand { std::f64::consts::SQRT_2 } else { 0.0 });
-            // A common factor of heights does not count; the distribution of mass does.
+            // A common factor of heights does not matter; the distribution of mass does.
             let higher = LayoutShape { walls: a.walls.iter().map(|height| height * f32::from(times)).collect(), ..a.clone() };
             prop_assert!(between(&a, &higher) < 1e-12);
             prop_assert_eq!(between(&a, &b) < 1e-12, same_shares(&a, &b));
@@ -460,7 +461,7 @@ mod tests {
         }
 
         #[test]
-        fn notation_of_a_layout_does_not_count(layout in layouts()) {
+        fn notation_of_a_layout_does_not_matter(layout in layouts()) {
             let plan = layout.plan(0);
             let walls = plan.walls.iter().map(|wall| LayoutWall {
                 polygon: Some(wall.polygon.clone()),
@@ -475,7 +476,7 @@ mod tests {
         /// The cell size of a text layout changes nothing, and if the raster has whole cells for every letter it equals the
         /// text.
         #[test]
-        fn cell_size_of_a_text_layout_does_not_count(
+        fn cell_size_of_a_text_layout_does_not_matter(
             (columns, rows) in (prop::sample::select(vec![3_usize, 4, 5, 6, 7, 8, 9, 11, 12, 13, 16, 24, 31, 32, 48, 96]), 2_usize..33),
             walls in prop::collection::vec(any::<bool>(), 96 * 33), metres in 0.1..40.0_f64,
         ) {

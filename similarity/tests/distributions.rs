@@ -8,7 +8,7 @@ use driftworld_spec::{Distribution, Value};
 use proptest::prelude::*;
 use serde::Deserialize;
 
-/// A measure of two distributions.
+/// A measure of the distance between two distributions.
 type Measure = fn(&Distribution, &Distribution) -> Option<Measured>;
 
 #[derive(Deserialize)]
@@ -73,7 +73,7 @@ fn distances_match_scipy_and_pot() {
             // The oracle's own quadrature is accurate to about 1e-8; roots of small sums to less.
             let slack = 1e-7 * expected.max(1.0) + tolerance(found);
             let near = found.value == expected || (found.value - expected).abs() <= slack;
-            // The documented accuracy, in degrees and otherwise.
+            // The documented accuracy, in degrees for headings.
             let most = if name == "circular_wasserstein_1" { 1e-3 } else { 1e-5 };
             if !near || tolerance(found) > most {
                 wrong.push(format!("{name} of {a} and {b}: {found:?}, expected {expected}"));
@@ -272,7 +272,7 @@ proptest! {
         let of = |measure: Measure| measure(&a, &b).expect("both draw points");
         let (first, second) = (of(planar_wasserstein_1), of(planar_wasserstein_2));
         let least = bures_wasserstein(&a, &b).expect("both draw points");
-        // Samples represent each distribution within some percent.
+        // Samples represent each distribution within a few per cent.
         let slack = if matches!(second.method, Method::Samples { .. }) { 0.1 } else { 1e-6 };
         prop_assert!(second.value >= least * (1.0 - slack) - slack, "{second:?}, at least {least}");
         let slack = if first.method == second.method { 1e-6 } else { 0.1 };

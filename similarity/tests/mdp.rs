@@ -1,4 +1,4 @@
-//! Compares distances of random decision processes with `SciPy`'s linear programs.
+//! Compares distances between random decision processes with `SciPy`'s linear programs.
 
 use driftworld_similarity::{Mdp, bisimulation, w1_mdp};
 use serde::Deserialize;
@@ -22,10 +22,10 @@ impl Rng {
     }
 }
 
-/// The contents of an oracle case, in order: the mean of all bisimulation distances, and for processes of one size W₁-MDP.
+/// The contents of an oracle case, in order: the mean of all bisimulation distances, and W₁-MDP for processes of equal size.
 /// Draws in the order of `drawn` in `oracle/make_mdp.py`: 1 to 6 states, in the second as many (one in two) or 1 to 6; 1 to 3
-/// actions; a discount of 0.3, 0.5 or 0.7; both processes; the reward that counts 1, in quarters up to 1; which states count
-/// beside the first (one in two).
+/// actions; a discount of 0.3, 0.5 or 0.7; both processes; the reward that counts as 1, in quarters up to 1; which states count
+/// besides the first (one in two).
 fn drawn(seed: u64) -> Vec<f64> {
     let mut rng = Rng(seed);
     let of_a = 1 + rng.below(6) as usize;

@@ -1,4 +1,4 @@
-//! Compares distances of grids with scipy, scikit-image and POT, and checks their laws.
+//! Compares distances between grids with scipy, scikit-image and POT, and checks their laws.
 
 use driftworld_similarity::{
     BitGrid, Grid, GridShape, SimilarityError, grid_chamfer_distance, grid_earth_movers_distance,
@@ -108,7 +108,7 @@ fn mismatched_grids_are_refused() {
     );
 }
 
-/// Grids of 4 × 3 cells in two planes, often with an empty one.
+/// Grids of 4 × 3 cells in two planes, often with an empty plane.
 fn grid() -> impl Strategy<Value = Grid> {
     let shape = GridShape::new(4, 3, 2, 2.0).expect("the shape is sound");
     let plane = || prop_oneof![1 => Just(vec![0u8; 12]), 4 => prop::collection::vec(0u8..4, 12)];

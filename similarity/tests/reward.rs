@@ -1,4 +1,4 @@
-//! Compares EPIC on all transitions with `NumPy` results by the reference's definitions.
+//! Compares EPIC with `NumPy` results computed by the reference's definitions.
 
 use driftworld_similarity::{RewardSamples, SampledReward};
 use serde::Deserialize;
@@ -89,7 +89,7 @@ fn every_step() -> RewardSamples<usize, usize> {
     samples(|_, _, _| 1, &[1; 9], &[1; 5])
 }
 
-/// The oracle's own rounding leaves some 3e-10 between equal rewards; anything else is far larger.
+/// The oracle's own rounding leaves about 3e-10 between equal rewards; anything else is far larger.
 #[track_caller]
 fn check(what: &str, found: f64, expected: f64) {
     if expected < 1e-9 {

@@ -36,7 +36,7 @@ fn check(what: &str, found: f64, expected: f64, within: f64) {
 }
 
 #[test]
-fn plans_cost_as_in_pot() {
+fn plan_costs_match_pot() {
     let plans = oracle().plans;
     assert!(plans.len() > 30);
     for case in plans {

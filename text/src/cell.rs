@@ -13,7 +13,7 @@ pub enum Cells {
 }
 
 impl Cells {
-    /// The cell for a text.
+    /// The cell for this text.
     pub fn cell(self, text: &str) -> Cow<'_, str> {
         match self {
             Self::Guarded => cell(text),
@@ -24,8 +24,8 @@ impl Cells {
 
 /// A cell that no spreadsheet reads as a formula.
 ///
-/// Text that begins with `=`, `+`, `-`, `@`, a tab or a line end, and is not a number, gets an apostrophe in front, as OWASP
-/// advises against CSV injection. So does text that begins with apostrophes before one of these. [`unguarded`] restores the text;
+/// Text that begins with `=`, `+`, `-`, `@`, a tab or a line break, and is not a number, gets an apostrophe in front, as OWASP
+/// recommends against CSV injection. So does text that begins with apostrophes before one of these. [`unguarded`] restores the text;
 /// [`Cells::Raw`] disables the guard.
 ///
 /// # Example
@@ -36,7 +36,7 @@ impl Cells {
 /// assert_eq!(cell("red"), "red");
 /// ```
 pub fn cell(text: &str) -> Cow<'_, str> {
-    // Full-width forms of the four also start formulas in East Asian locales.
+    // Full-width forms of the first four also start formulas in East Asian locales.
     let starts = ['=', '+', '-', '@', '\t', '\n', '\r', '＝', '＋', '－', '＠'];
     // Text that looks guarded gets another guard, so that removing one always restores the original.
     let is_formula = text.trim_start_matches('\'').starts_with(starts);
@@ -95,7 +95,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
 
         #[test]
-        fn guarded_cells_start_no_formula_and_round_trip(
+        fn guarded_cells_are_not_formulas_and_round_trip(
             start in "['=+@\t\r\n-]{0,3}", rest in "(?s).{0,8}"
         ) {
             let text = start + &rest;

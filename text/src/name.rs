@@ -1,5 +1,5 @@
-//! Checks names of variants, tasks, groups and scenarios by one grammar, which makes them safe as names of files and logs on
-//! every system. Uniqueness is checked by the documents.
+//! Checks names of variants, tasks, groups and scenarios against one grammar, which makes them safe as names of files and logs
+//! on every system. The document types check that names are unique.
 
 use std::fmt;
 
@@ -8,10 +8,10 @@ use unicode_normalization::is_nfc;
 
 use crate::printable::{is_unprintable, quoted};
 
-/// Longest name in characters.
+/// Maximum length of a name in characters.
 pub const MAX_NAME_CHARACTERS: usize = 100;
 
-/// Longest name in bytes of UTF-8: file systems allow 255, and extensions and numbers follow.
+/// Maximum length of a name in bytes of UTF-8: file systems allow 255, and extensions and numbers follow.
 pub const MAX_NAME_BYTES: usize = 200;
 
 /// The part of the grammar that a JSON Schema pattern can express. [`check_name`] checks the rest: length in bytes,
@@ -50,8 +50,8 @@ pub enum NameFault {
     Start(char),
     /// The name ends with a dot, which Windows drops.
     EndsWithDot,
-    /// The name is not in NFC: composed characters are written as several, or in another order, so that two names could
-    /// look the same.
+    /// The name is not in NFC: characters are decomposed, or their marks are in a different order, so that two different names
+    /// could look the same.
     NotNormalised,
     /// Windows reserves the name for a device.
     Device,
@@ -88,7 +88,7 @@ impl NameFault {
 /// Checks a name of a variant, a group or a scenario.
 ///
 /// A name has 1 to 100 characters and at most 200 bytes. It begins with a letter, a digit or `_`; then come letters, digits,
-/// marks on letters, `_`, `-`, `+` and `.`; it does not end with `.`. Letters and digits may be of any script, in the form NFC.
+/// combining marks, `_`, `-`, `+` and `.`; it does not end with `.`. Letters and digits may be of any script. The name is in NFC.
 /// Device names of Windows (`con`, `nul.txt`, `COM1`) are refused.
 ///
 /// # Errors

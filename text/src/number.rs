@@ -85,7 +85,7 @@ mod tests {
             prop_assert_eq!(amount(sum), if exact == 0 { "0" } else { expected });
         }
 
-        /// The text is within half a unit of its last place of the number, and formatting it again changes nothing.
+        /// The text is the number rounded to six decimals or thirteen digits, and formatting it again changes nothing.
         #[test]
         fn only_rounding_noise_is_dropped(number in prop::num::f64::NORMAL | prop::num::f64::ZERO) {
             let text = amount(number);

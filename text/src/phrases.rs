@@ -34,7 +34,7 @@ pub fn first_of<S: AsRef<str>>(names: &[S], most: usize) -> String {
     }
 }
 
-/// A text for a message, cut to its first `most` characters.
+/// Text for a message, cut to its first `most` characters.
 ///
 /// ```
 /// # use driftworld_text::shortened;
@@ -47,7 +47,7 @@ pub fn shortened(text: &str, most: usize) -> String {
     }
 }
 
-/// The words with a capital letter at their beginning.
+/// The words with their first letter in upper case.
 ///
 /// ```
 /// # use driftworld_text::capitalized;
@@ -63,7 +63,7 @@ pub fn capitalized(words: &str) -> String {
         + letters.as_str()
 }
 
-/// The words if a condition holds, else nothing.
+/// The words if a condition holds, otherwise an empty string.
 pub fn when(is_said: bool, words: impl FnOnce() -> String) -> String {
     if is_said { words() } else { String::new() }
 }

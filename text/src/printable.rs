@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::fmt::{self, Display, Write};
 use std::path::Path;
 
-/// Ranges, in rising order, of control characters, characters that change the direction of text, and characters of zero width.
+/// Ranges, in ascending order, of control characters, characters that change the direction of text, and characters of zero width.
 ///
 /// C0, DEL and C1; the soft hyphen; the bidirectional marks, embeddings, overrides and isolates (Unicode Standard Annex 9);
 /// joiners, fillers and other characters of zero width; line and paragraph separators; interlinear marks; tags. Of the variation
@@ -70,7 +70,7 @@ pub fn printable(text: &str) -> Cow<'_, str> {
     })
 }
 
-/// Text of several lines: like [`printable`], but line feeds and tabs stay.
+/// Multi-line text: like [`printable`], but keeps line feeds and tabs.
 ///
 /// For whole messages, right before they are printed.
 pub fn printable_lines(text: &str) -> Cow<'_, str> {
@@ -178,7 +178,7 @@ mod tests {
 
     use super::*;
 
-    /// Texts in which special characters are as frequent as others.
+    /// Strings in which about every third character is unprintable.
     fn texts() -> impl Strategy<Value = String> {
         let hostile = (0..UNPRINTABLE.len(), any::<u8>()).prop_map(|(range, offset)| {
             let (first, last) = UNPRINTABLE[range];

@@ -35,7 +35,7 @@ pub(super) fn normal(what: &str, keys: &[u64]) -> f64 {
     (even.sum::<f64>() - 8.0) / (16.0_f64 / 12.0).sqrt()
 }
 
-/// Its expected reward never changes; luck is drawn for every experience.
+/// Has an expected reward that never changes; luck is drawn for every experience.
 pub(super) fn never_learns(run: u32) -> impl FnMut(&Meeting) -> f64 {
     move |meeting| reward(START, meeting, &[run.into(), meeting.number])
 }

@@ -49,7 +49,7 @@ impl Default for AuditOptions {
     }
 }
 
-/// The share of lifetimes of an agent that never changes which a metric may call "good".
+/// Of an agent that never learns, the share of lifetimes that a metric may call "good".
 const FALSE_POSITIVES: f64 = 0.05;
 
 /// A count less probable than this fails the audit; it is small because each audit counts several metrics.
@@ -66,7 +66,7 @@ const RATIO_SLACK: f64 = 0.02;
 ///
 /// - *never learns*: its expected reward never changes. No metric may call more than 5 % of its lifetimes good.
 /// - *learns while frozen*: improves by being evaluated. The check of [`run`](crate::run) must refuse it.
-/// - *remembers by number*: repeats what paid best in the experience of the same number of an earlier block. It must not be
+/// - *remembers by number*: repeats what paid best in the experience with the same number in an earlier block. It must not be
 ///   better than its experts.
 /// - *its own expert*: learns every variant as if it were alone. Relative performance and sample efficiency must be 1.
 /// - *forgets*: new learning replaces the old. Maintenance must be bad, and forward transfer not good.
@@ -226,8 +226,8 @@ impl Room<'_> {
         Ok((found, (maintained > 0).then_some(5 * bad >= 4 * maintained && is_rare)))
     }
 
-    /// A metric that compares with experts, for each repeat in which the lifetime has it. `agent` gets the number of the
-    /// repeat, and the log's: 0 for the lifetime, then the experts.
+    /// The values of a metric that compares with experts, one for each repeat in which the lifetime has the metric. `agent`
+    /// gets the numbers of the repeat and of the log: 0 for the lifetime, then the experts.
     fn beside_experts(
         &self,
         metric: &str,
@@ -349,7 +349,7 @@ mod tests {
                 (ratio.mean - 1.0).abs() > reach * ratio.error + RATIO_SLACK
             };
             let off = (0..TRIES).filter(is_off).count();
-            // Four standard errors of a share of 0.0027 on either side: detects too wide bounds, too.
+            // Four standard errors of a share of 0.0027 on either side, so bounds that are too wide are detected, too.
             assert!((7..48).contains(&off), "{lifetimes} lifetimes: {off}");
         }
         // With 20 lifetimes, an error of twice their standard deviation is found.

@@ -6,12 +6,12 @@ use crate::CurriculumError;
 
 /// The order of `count` variants in a lifetime.
 ///
-/// Over `count` lifetimes, or twice as many if `count` is odd, each variant is in each place equally often and follows each
-/// other one equally often (Williams 1949, *Experimental designs balanced for the estimation of residual effects of
+/// Over `count` lifetimes, or twice as many if `count` is odd, each variant is in each position equally often and follows each
+/// other variant equally often (Williams 1949, *Experimental designs balanced for the estimation of residual effects of
 /// treatments*). The seed determines the order of the square's rows, and which variant each symbol stands for.
 pub(super) fn balanced_order(count: usize, seed: u64, lifetime: u64) -> Result<Vec<usize>, CurriculumError> {
     let rows = if count.is_multiple_of(2) { count } else { 2 * count };
-    // After all rows were used, the square is used again with other symbols.
+    // Once all rows have been used, the square is used again with different symbols.
     let (round, row) = (lifetime / rows as u64, (lifetime % rows as u64) as usize);
     let symbols = permutation(count, seed, 2 * round)?;
     let row = permutation(rows, seed, 2 * round + 1)?[row];
@@ -21,7 +21,7 @@ pub(super) fn balanced_order(count: usize, seed: u64, lifetime: u64) -> Result<V
         .collect())
 }
 
-/// A row of the square: 0, n − 1, 1, n − 2, … shifted by the number of the row; for odd n followed by the same reversed.
+/// A row of the square: 0, n − 1, 1, n − 2, … shifted by the number of the row; for odd n, the same rows reversed follow.
 fn square_row(count: usize, row: usize) -> Vec<usize> {
     let zigzag = (0..count).map(|place| {
         if place.is_multiple_of(2) {

@@ -8,7 +8,7 @@ use indexmap::IndexMap;
 pub struct Choice {
     /// The task: a built-in name, or the path of a task spec.
     pub task: String,
-    /// The declared variant that it is, or is derived from.
+    /// The declared variant, or the one that this variant is derived from.
     pub variant: String,
     /// Values that override the variant's; empty for a declared variant.
     pub values: IndexMap<String, Value>,

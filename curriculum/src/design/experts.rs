@@ -12,8 +12,8 @@ use crate::CurriculumError;
 /// A scenario for each variant that the lifetime learns, in which only this variant is learned: single-task experts to compare
 /// a lifelong learner with.
 ///
-/// `options` are those of the lifetime, whose experts are those of [`experts_of`]. The expert form has no lifetime: each
-/// variant is learned for `blocks` blocks, by default 1.
+/// `options` are those of the lifetime; [`experts_of`] describes its experts. The expert form has no lifetime: each variant is
+/// learned for `blocks` blocks, by default 1.
 ///
 /// Their names are `NAME-VARIANT`, or `NAME-TASK-VARIANT` if there are several tasks.
 ///
@@ -42,8 +42,8 @@ pub fn experts(variants: &[Choice], options: &Design) -> Result<Vec<Scenario>, C
 
 /// A scenario for each variant that a scenario learns, in which only this variant is learned.
 ///
-/// Each expert learns its variant as long as the lifetime does, in the same worlds and in blocks of the same lengths, after the
-/// same blocks before deployment, and is evaluated in its variant whenever the lifetime is, in the same worlds. So a learner
+/// Each expert learns its variant for as long as the lifetime does, in the same worlds and in blocks of the same lengths, after
+/// the same blocks before deployment, and is evaluated on its variant whenever the lifetime is, in the same worlds. So a learner
 /// without interference earns in the lifetime what it earns as its own expert. Drifts are replaced: the experiences that are
 /// nearer to a variant than to the drift's other end become experiences of that variant, in worlds with the same numbers. Names
 /// are those of [`experts`].
@@ -136,7 +136,7 @@ fn parts(regime: &Regime) -> Vec<Regime> {
     [from, to].into_iter().filter(|part| part.count > 0).collect()
 }
 
-/// The variant of a regime that does not drift; for a world file the world.
+/// The variant of a regime that does not drift; for a world file, the world.
 fn choice(regime: &Regime) -> Choice {
     Choice {
         values: regime.values.clone(),
@@ -173,7 +173,7 @@ fn name(choice: &Choice, scenario: &str, several_tasks: bool) -> String {
     }
 }
 
-/// Text in the characters allowed in a scenario's name.
+/// The text for a scenario's name: characters other than ASCII letters, digits, `_`, `.` and `-` become `-`.
 fn plain(text: &str) -> String {
     let allowed = |c: char| c.is_ascii_alphanumeric() || "_.-".contains(c);
     text.chars().map(|c| if allowed(c) { c } else { '-' }).collect()

@@ -1,4 +1,4 @@
-//! The forms of lifelong learning: decides which variant each learning block trains.
+//! The forms of lifelong learning: decides which variant is learned in each learning block.
 
 use driftworld_spec::ScenarioForm;
 
@@ -11,7 +11,7 @@ pub const MAX_BLOCKS: u32 = 10_000;
 /// Default number of rounds in the forms with recurring tasks.
 const ROUNDS: u32 = 3;
 
-/// The index of each learning block's variant, among `count` in order.
+/// The index of each learning block's variant among the `count` variants.
 pub(super) fn sequence(
     form: Option<ScenarioForm>,
     count: usize,

@@ -1,11 +1,11 @@
-//! The order of variants that a hypothesis predicts something about, and the control orders to compare it with.
+//! Orders of variants for testing a hypothesis, and control orders to compare them with.
 
 use driftworld_similarity::{DistanceMatrix, Method, OrderOptions, order};
 use strum::VariantArray;
 
 use crate::CurriculumError;
 
-/// A control: another order of the same variants.
+/// A control: a different order of the same variants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, strum::IntoStaticStr, strum::VariantArray)]
 #[strum(serialize_all = "lowercase")]
 pub enum Control {
@@ -81,8 +81,8 @@ mod tests {
 
     #[test]
     fn methods_give_different_orders_from_the_same_start() {
-        // The first stands in the middle: growing distance jumps from side to side, the shortest path does not. Of two
-        // equally short ones (10), gradual takes that with steps up to 3, not 5.
+        // The first variant is in the middle: `Outward` jumps from side to side, the shortest path does not. Of two paths of
+        // the minimum length 10, `Gradual` takes the one with steps of up to 3, not 5.
         let matrix = line(&[0.0, 1.0, -2.0, 3.0, -4.0]);
         assert_eq!(arrange(&matrix, Some(Method::Outward), 0).unwrap(), [0, 1, 2, 3, 4]);
         assert_eq!(arrange(&matrix, None, 0).unwrap(), [0, 1, 3, 2, 4]);

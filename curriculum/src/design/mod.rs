@@ -39,7 +39,7 @@ pub const MAX_SEED: u64 = 1 << 52;
 
 /// Default number of experiences in a learning block.
 ///
-/// PPO on 64 × 64 colour pictures (`examples/python/ppo_find_objects.py`) reached four fifths of the planner's reward in
+/// PPO on 64 × 64 colour images (`examples/python/ppo_find_objects.py`) reached four fifths of the planner's reward in
 /// `find_objects#blue` after 115,000 and 137,000 decisions, which are 1,900 and 2,300 episodes.
 pub const LEARN: u32 = 2500;
 
@@ -62,9 +62,9 @@ pub struct Design {
     pub lifetime: u64,
     /// All lifetimes are evaluated in the worlds of lifetime 0; by default each in its own.
     pub fixed_evaluation: bool,
-    /// The split of its evaluation worlds; default test.
+    /// The split of the evaluation worlds; default test.
     pub split: Split,
-    /// All variants are learned in worlds of the same numbers, so that variants of one task share layouts; default not.
+    /// All variants are learned in worlds with the same numbers, so that variants of one task share layouts; default false.
     pub paired_learning: bool,
     /// Variants that are evaluated but never learned; default none.
     pub held_out: Vec<Choice>,
@@ -72,7 +72,7 @@ pub struct Design {
     pub drifting: Option<Drifting>,
     /// Experiences of the first variant before deployment; default 0, which adds no such block.
     pub pre_deployment: u32,
-    /// Whether the learner gets a task label; default not.
+    /// Whether the learner gets a task label; default no.
     pub task_label: TaskLabel,
     /// Complexity of the scenario, for its logs; default none.
     pub complexity: Option<ScenarioComplexity>,
@@ -106,9 +106,9 @@ impl Default for Design {
     }
 }
 
-/// Learning blocks of the variants in the given order, with evaluation blocks of all of them, learned or not yet, in between.
+/// Learning blocks of the variants in the given order, with evaluation blocks of all variants, learned or not, between them.
 ///
-/// Learning, validation and test use different seeds, so no world is in two of them, and so does each lifetime. Every
+/// Learning, validation and test use different seeds, so no world is in two of them; so do different lifetimes. Every
 /// evaluation of a variant uses the same worlds, so differences between evaluations are due to the agent alone. Each variant is
 /// learned in its own worlds, each used once, so two designs of the same variants and counts have the same worlds in any order.
 ///
@@ -128,14 +128,14 @@ pub fn design(variants: &[Choice], options: &Design) -> Result<Scenario, Curricu
     arranged(variants, options, None)
 }
 
-/// A control of the design of the same variants and options: the same learning blocks in another order, after the same block
-/// before deployment, between the same evaluations.
+/// A control for the design of the same variants and options: the same learning blocks in a different order, after the same
+/// block before deployment, between the same evaluations.
 ///
-/// `order` is the control's order of the variants, by their places in `variants`. Every variant is learned as often as in the
+/// `order` is the control's order of the variants, by their indices in `variants`. Every variant is learned as often as in the
 /// design itself: if the blocks do not make a whole number of rounds, variants learned an extra time in the design are
 /// learned an extra time here, before the first round, or after the last if one of them would otherwise occur twice in
-/// a row or the control would equal the design. The reversed order is the design backwards. Two variants in turn, an
-/// odd number of times, have only one order.
+/// a row or the control would equal the design. The reversed order gives the design backwards. Two variants that alternate
+/// over an odd number of blocks have only one order.
 ///
 /// # Errors
 /// As [`design`]; [`CurriculumError::BadForm`] for the permuted form, which draws its own order, and for an `order`

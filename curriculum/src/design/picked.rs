@@ -7,7 +7,7 @@ use driftworld_spec::{Element, Variant};
 use super::Choice;
 use crate::CurriculumError;
 
-/// Beyond any distance between variants, and small enough to keep differences of 1e-9.
+/// Greater than any distance between variants, and small enough to keep differences of 1e-9.
 const BEYOND: f64 = 1e6;
 
 /// A variant for a curriculum.
@@ -41,7 +41,7 @@ impl Picked {
         self.choice.name.is_some()
     }
 
-    /// The distance to another, element by element.
+    /// The distance to another variant, element by element.
     ///
     /// # Errors
     /// [`CurriculumError::Similarity`] for variants of different tasks.
@@ -69,7 +69,7 @@ pub(super) fn measure_of(variant: &Variant) -> VariantMeasure {
     VariantMeasure::new(variant.task(), Weights::of_task(variant.task()))
 }
 
-/// The distance of two variants: in one element, or in total.
+/// The distance between two variants: in one element, or in total.
 pub(super) fn apart(
     measure: &VariantMeasure,
     a: &Variant,
@@ -87,7 +87,7 @@ pub(super) fn farthest(
     element: Option<Element>,
 ) -> Result<f64, GeneratorError> {
     let distance = |other: &Variant| apart(measure, anchor, other, element).unwrap_or(0.0);
-    // Nothing is so far away, so this finds the farthest, or the farthest among the searched ones.
+    // No variant is this far away, so this finds the farthest variant, or the farthest of those searched.
     match at_distance(anchor, subject, BEYOND, 0.0, distance) {
         Err(GeneratorError::TooFar { farthest, .. }) => Ok(farthest),
         Err(GeneratorError::NoneBetween { nearest, .. }) => Ok(nearest),

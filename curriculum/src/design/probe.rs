@@ -12,7 +12,7 @@ use crate::CurriculumError;
 /// Maximum number of variants in a probe, because all pairs are compared.
 pub const MAX_PROBED: usize = 200;
 
-/// Minimum number of variants by default.
+/// Number of variants by default, if as many can be made.
 const DEFAULT_COUNT: usize = 4;
 
 /// Two variants at most this far apart count as equal.
@@ -140,7 +140,7 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Whether a variant differs from every one found so far, in this element alone.
+    /// Whether a variant differs from every variant found so far, and in this element alone.
     fn is_new(&self, variant: &Variant) -> Result<bool, CurriculumError> {
         for picked in &self.found {
             let apart = self.measure.between(&picked.variant, variant)?;
@@ -324,7 +324,7 @@ mod tests {
     }
 
     #[test]
-    fn impossible_probes_are_refused_with_reason() {
+    fn impossible_probes_are_refused_with_a_reason() {
         let task = task();
         let pool = task.all_variants();
         let base = task.variant("base").unwrap();

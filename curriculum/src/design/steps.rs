@@ -30,8 +30,8 @@ pub struct Steps {
 ///
 /// # Errors
 /// [`CurriculumError::BadSteps`] for numbers out of range; [`CurriculumError::SeveralTasks`];
-/// [`CurriculumError::StepsGivenUp`] if the search takes too long; [`CurriculumError::TooFewSteps`] with the length of the
-/// longest sequence found, and the largest distance of any variant from the anchor.
+/// [`CurriculumError::StepsGivenUp`] if the search reaches its limit of comparisons; [`CurriculumError::TooFewSteps`] with the
+/// length of the longest sequence found, and the largest distance of any variant from the anchor.
 pub fn steps(task: &str, pool: &[Variant], anchor: &Variant, wanted: &Steps) -> Result<Vec<Picked>, CurriculumError> {
     let sound = wanted.distance > 0.0
         && wanted.distance <= 1.0
@@ -111,7 +111,7 @@ mod tests {
 
     #[test]
     fn search_backtracks_from_a_dead_end() {
-        // From the middle, 3 steps of 0.25 fit on neither side: at most 2 in the reward alone, more in all together.
+        // From the middle, 3 steps of 0.25 fit on neither side: at most 2 in the reward alone, more in all elements together.
         let error = found("middle", 0.25, 3, Some(Element::R)).unwrap_err();
         assert_eq!(
             error.to_string(),

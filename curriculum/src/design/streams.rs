@@ -21,7 +21,7 @@ pub enum Split {
 /// Distance between the first world indices of two variants: no lifetime learns a variant in more worlds.
 const SPAN: u64 = MAX_EXPERIENCES as u64 * MAX_BLOCKS as u64;
 
-/// Size of seeds in bits: every JSON reader keeps them exact.
+/// Size of seeds in bits, small enough for every JSON reader to keep them exact.
 const SEED_BITS: u32 = 53;
 
 /// The worlds of one lifetime.

@@ -239,7 +239,7 @@ fn an_expert_learns_one_variant_and_is_named_after_it() {
 }
 
 #[test]
-fn experts_of_several_tasks_have_names_of_their_own() {
+fn experts_of_several_tasks_have_different_names() {
     let names = |choices: &[Choice]| {
         let experts = experts(choices, &Design::default());
         experts.map(|experts| experts.into_iter().map(|scenario| scenario.name).collect::<Vec<_>>())
@@ -295,7 +295,7 @@ fn design_round_trips_through_json() {
 }
 
 #[test]
-fn invalid_designs_are_refused_with_reason() {
+fn invalid_designs_are_refused_with_a_reason() {
     let said = |count: usize, options: Design| design(&choices(count), &options).unwrap_err().to_string();
     assert_eq!(
         said(0, Design::default()),

@@ -146,7 +146,7 @@ impl<'a> Walk<'a> {
         Ok(declared.into_iter().chain(made).map(|(_, picked)| picked).collect())
     }
 
-    /// The distance between two variants, and whether they differ only in what may change.
+    /// The distance between two variants, and whether they differ only in elements that may change.
     fn measure(&self, a: &Variant, b: &Variant) -> Result<(f64, bool), CurriculumError> {
         self.comparisons.set(self.comparisons.get() + 1);
         let apart = self.measure.between(a, b)?;
@@ -163,8 +163,8 @@ impl<'a> Walk<'a> {
         Ok(nearest)
     }
 
-    /// Variants to step towards: the ends and choices of each parameter, all ranges at their low or high end, the pool, and the
-    /// one that the generator finds.
+    /// Variants to step towards: the ends and choices of each parameter, all ranges at their low or high end, the pool's
+    /// variants, and the one that the generator finds.
     fn targets(&self, here: &Variant) -> Result<Vec<Variant>, CurriculumError> {
         let (free, subject) = self.free();
         let mut changes: Vec<Vec<(String, Value)>> = Vec::new();

@@ -8,18 +8,18 @@ use super::episode::Experience;
 use super::gap::Gap;
 use super::planned::Planned;
 
-/// The metrics columns that every experience is logged with, beside those that the format requires.
+/// The metrics columns that every experience is logged with, besides those that the format requires.
 ///
 /// - `reward`: the sum of its rewards.
 /// - `success`: 1 if the world's success condition ended it, else 0.
 /// - `episode_step_count`: its steps.
-/// - `time_to_completion`: its simulated seconds: steps times time step times `frame_skip`.
-/// - `truncated`: 1 if a step limit cut it off, 0 if an event in the world ended it.
+/// - `time_to_completion`: its simulated seconds: steps times time step times `frame_skip`, at most the world's time limit.
+/// - `truncated`: 1 if a step or time limit cut it off, 0 if an event in the world ended it.
 /// - `world_index`: the index of its world for its variant and seed; `nan` for a world from a file.
 /// - `progress`: the progress of a drift, 0..=1; 0 without a drift.
 /// - `distance`: the distance of its variant from the variant that the agent learned last before this regime began, 0..=1: in a
 ///   learning block the step that the curriculum takes, in an evaluation block the distance over which learning has to
-///   generalise. 0 if both are the same; `nan`, the format's word for no value, before anything was learned.
+///   generalise. 0 if both are the same; `nan`, the format's missing value, before anything was learned.
 /// - `distance_state`, `distance_action`, `distance_transition`, `distance_reward`, `distance_observation`: the same in each
 ///   element of the decision process; 0 if nothing can differ in it.
 ///
@@ -44,12 +44,12 @@ pub const COLUMNS: [&str; 13] = [
     "distance_observation",
 ];
 
-/// The text column with how an experience ended: `success`, `failure` or `step_limit`, as in [`Experience::ending`], and
+/// The text column for how an experience ended: `success`, `failure` or `step_limit`, as in [`Experience::ending`], and
 /// `skipped` if it was left out. The log does not declare it as a metrics column, so l2metrics ignores it. Logs started before
 /// it existed continue without it.
 pub const ENDING: &str = "ending";
 
-/// The text column with what ended an experience, as in [`EndedBy::word`](driftworld_env::EndedBy::word): `all_collected`,
+/// The text column for what ended an experience, as in [`EndedBy::word`](driftworld_env::EndedBy::word): `all_collected`,
 /// `touch`, `return`, `energy`, `zone`, `steps` or `time`; `unknown` if not reported, and `skipped` if it was left out. As with
 /// [`ENDING`], l2metrics ignores it, and logs started before it existed continue without it.
 pub const ENDED_BY: &str = "ended_by";

@@ -29,15 +29,15 @@ pub struct Experience {
     pub steps: u32,
     /// Simulated seconds that it took: steps × time step × `frame_skip`, at most the world's limit of seconds.
     pub seconds: f64,
-    /// Whether a step limit cut it off, as opposed to an event in the world.
+    /// Whether a step or time limit cut it off, as opposed to an event in the world.
     pub truncated: bool,
     /// What ended it, according to the environment; `None` if unknown.
     pub ended_by: Option<EndedBy>,
 }
 
 impl Experience {
-    /// How it ended: `success` by the world's success condition, `step_limit` by a step limit, `failure` by any other condition
-    /// of the world.
+    /// How it ended: `success` by the world's success condition, `step_limit` by a step or time limit, `failure` by any other
+    /// condition of the world.
     pub fn ending(&self) -> &'static str {
         match self {
             Self { success: true, .. } => "success",
@@ -62,7 +62,7 @@ fn fingerprint(action: Action, environment: &Environment) -> u64 {
 
 /// Runs one experience in a freshly reset environment; `trace`, if given, gets a hash of each step.
 ///
-/// Only the environment ends it, by an event or the step limit. So the last experience of a block ends like any other, never
+/// Only the environment ends it, by an event or a limit. So the last experience of a block ends like any other, never
 /// because the block does. Returns `None` if it was stopped.
 pub(super) fn run_episode(
     agent: &mut dyn Agent,

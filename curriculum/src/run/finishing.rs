@@ -13,7 +13,7 @@ const MOST_TOLD: usize = 100;
 
 /// In how many worlds the built-in planner reached success.
 ///
-/// It is a good but not a perfect planner: if it fails, success may still be possible.
+/// The planner is good but not perfect: if it fails, success may still be possible.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Finished {
     /// Number of worlds that can end in success: by a rule or by a zone.

@@ -300,7 +300,7 @@ fn origin(plan: &Plan, number: u64) -> Result<EpisodeOrigin, CurriculumError> {
 /// Logged when it is unknown what ended an experience.
 const UNKNOWN: &str = "unknown";
 
-/// Counts a row of an earlier run if it is the one that the plan expects, and returns its steps, `None` if it was left out.
+/// Counts a row of an earlier run if it is the one that the plan expects, and returns its steps, or `None` if it was left out.
 /// Otherwise returns what was found and what was expected.
 fn count_row(plan: &Plan, summary: &mut Summary, number: u64, row: Row<'_>) -> Result<Option<u64>, (String, String)> {
     if number >= plan.num_experiences() {
@@ -374,7 +374,7 @@ fn logged<T: FromStr>(word: Option<impl Serialize>) -> Option<T> {
     json!(word?).as_str()?.parse().ok()
 }
 
-/// Where two JSON values first differ, and what each has there.
+/// The first difference between two JSON values: its path, and both values there.
 fn difference<'a>(found: &'a Value, expected: &'a Value, place: String) -> Option<(String, &'a Value, &'a Value)> {
     const NOTHING: &Value = &Value::Null;
     match (found, expected) {
@@ -412,7 +412,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn words_of_scenarios_are_words_of_logs() {
+    fn words_of_scenarios_become_words_of_logs() {
         use ScenarioComplexity::{High, Intermediate, Low};
         use ScenarioDifficulty::{Easy, Hard, Medium};
         use ScenarioForm::{Alternating, Condensed, Custom, Dispersed, Permuted};
@@ -436,7 +436,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_difference_is_named_by_its_place() {
+    fn first_difference_is_given_with_its_path() {
         let check = |a: Value, b: Value, expected: Option<(&str, &str, &str)>| {
             let found = difference(&a, &b, String::new());
             let found = found.map(|(place, a, b)| (place, shown(a), shown(b)));

@@ -28,7 +28,7 @@ impl LogNames {
 }
 
 /// The first two variants of a scenario with the same log name, as an error. `task` looks up the tasks that the scenario names;
-/// if it returns none, the scenario's name counts as the task's own.
+/// if it returns `None`, the name in the scenario is taken to be the task's own.
 ///
 /// # Example
 /// ```

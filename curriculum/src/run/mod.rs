@@ -48,11 +48,11 @@ use worlds::Worlds;
 
 /// The caller's context for a run, which does not read the clock itself.
 pub struct RunContext<'a> {
-    /// The time now.
+    /// Returns the current time.
     pub now: &'a mut dyn FnMut() -> Timestamp,
     /// Called after each experience; may end the run there. The log keeps everything up to then.
     pub watch: &'a mut dyn FnMut(&Progress) -> ControlFlow<()>,
-    /// Set from elsewhere, ends the run at the next step: experiences in progress leave no row.
+    /// Ends the run at the next step once it is set from elsewhere: experiences in progress leave no row.
     pub stop: &'a AtomicBool,
     /// The source of the worlds' assets.
     pub catalogue: Catalogue,
@@ -74,7 +74,7 @@ pub const REPEATED_EVALUATIONS: usize = 4;
 /// ended there can be resumed with a plan that skips it.
 ///
 /// The order of experiences, their worlds and the agent's initial random numbers depend on the scenario alone: a run that was
-/// interrupted and resumed writes what an undisturbed one does. [`Agent::learn`] is called in learning blocks only. A learning
+/// interrupted and resumed writes what an uninterrupted one does. [`Agent::learn`] is called in learning blocks only. A learning
 /// agent runs learning blocks one experience after the other; to resume a log with such an agent, the caller passes one that
 /// has learned what is in the log ([`relearn`]). Evaluation blocks, and all blocks of an agent that does not learn, are run by
 /// its [`Agent::frozen`] copies, several in parallel; by the agent itself if it has no copies. For a learning agent, some
@@ -138,9 +138,9 @@ pub fn run(
     Ok(journal.summary().clone())
 }
 
-/// Lets a learning agent repeat the learning experiences among the first `done`, without logging: it then has the state it had
-/// when the log held as many. For agents that do not save what they learned. Does nothing for one that does not learn. `Break`
-/// if it was stopped.
+/// Lets a learning agent repeat the learning experiences among the first `done`, without logging: it then has the state that it
+/// had when the log held that many. For agents that do not save what they learned. Does nothing for an agent that does not
+/// learn. `Break` if it was stopped.
 ///
 /// # Errors
 /// [`CurriculumError`] with block, regime and experience.
@@ -163,7 +163,7 @@ pub fn relearn(
     rollout::relearn_range(plan, 0..done, (&mut Worlds::new(plan), &mut None), &mut one_by_one)
 }
 
-/// The experiences, each with whether it is a repeat: some of each evaluation block, after its last.
+/// The experiences, each with whether it is a repeat: some experiences of each evaluation block are repeated at its end.
 fn with_repeats(plan: &Plan, numbers: Range<u64>, repeats: Repeats) -> Vec<(u64, bool)> {
     let mut items = Vec::new();
     let (mut block, mut repeated) = (None, Vec::new());
@@ -227,7 +227,7 @@ enum Outcome {
     Over(Box<FinishedExperience>),
     /// It was skipped because its world cannot be drawn, with the reason.
     LeftOut(String),
-    /// The run was stopped meanwhile.
+    /// The run was stopped in the meantime.
     CutOff,
 }
 

@@ -18,7 +18,7 @@ use super::shuffle::Shuffle;
 use super::undrawable::Undrawable;
 use crate::CurriculumError;
 
-/// The source of a scenario's tasks and worlds, because this crate reads no files. An error is its message.
+/// The source of a scenario's tasks and worlds, because this crate does not read their files. An error is given as a message.
 pub struct Sources<'a> {
     /// The task of this name or path.
     pub task: &'a mut dyn FnMut(&str) -> Result<Arc<TaskSpec>, String>,
@@ -63,7 +63,7 @@ pub struct ExperienceSpec<'a> {
     pub regime: usize,
     /// Whether the agent may learn from it.
     pub kind: BlockKind,
-    /// Its name: `task#variant`, in a drift with both ends.
+    /// Its name: `task#variant`; for a drift, with both ends.
     pub variant: &'a str,
     /// The seed of its world; `None` for a world from a file.
     pub seed: Option<u64>,
@@ -90,7 +90,7 @@ impl Plan {
     }
 
     /// Like [`Plan::new`], with a choice of how experiences whose worlds cannot be drawn are treated: if they are skipped, such
-    /// worlds are no error.
+    /// worlds are not an error.
     ///
     /// # Errors
     /// As [`Plan::new`].
@@ -143,13 +143,13 @@ impl Plan {
         Ok(finder.plan)
     }
 
-    /// Records another dependency of its lifetime, such as the bytes of an agent's script: a log can be resumed only if it is
+    /// Records a further dependency of the lifetime, such as the bytes of an agent's script: a log can be resumed only if it is
     /// unchanged. `what` must not be a variant's name, so it has no `#`.
     pub fn add_fingerprint(&mut self, what: &str, fingerprint: impl Into<Value>) {
         self.fingerprints.insert(what.to_owned(), fingerprint.into());
     }
 
-    /// Gives the agent other random numbers in the same worlds: a repeat of a run, not a copy. 0, the default, is the
+    /// Gives the agent different random numbers in the same worlds: a repeat of a run, not a copy. 0, the default, is the
     /// scenario's original run.
     pub fn set_run_seed(&mut self, seed: u64) {
         for planned in &mut self.regimes {
@@ -272,8 +272,8 @@ impl Plan {
             .collect()
     }
 
-    /// Every variant whose worlds it draws, including both ends of drifts, each once with the step limit that its first regime
-    /// sets.
+    /// Every variant from which worlds are drawn, including both ends of drifts, each once with the step limit that its first
+    /// regime sets.
     pub fn variants(&self) -> Vec<(&Variant, Option<u32>)> {
         let mut found: BTreeMap<String, (&Variant, Option<u32>)> = BTreeMap::new();
         for planned in &self.regimes {
@@ -289,7 +289,7 @@ impl Plan {
         found.into_values().collect()
     }
 
-    /// Every world that it takes from a file, once, by the world's name, with a step limit as in [`Plan::variants`].
+    /// Every world from a file, once, with its name, and with a step limit as in [`Plan::variants`].
     pub fn world_files(&self) -> Vec<(&str, &World, Option<u32>)> {
         let mut found: BTreeMap<&str, (&str, &World, Option<u32>)> = BTreeMap::new();
         for planned in &self.regimes {
@@ -302,7 +302,7 @@ impl Plan {
         found.into_values().collect()
     }
 
-    /// Every task whose worlds it draws, by its name in the scenario.
+    /// Every task from which worlds are drawn, by its name in the scenario.
     pub fn tasks(&self) -> &BTreeMap<String, Arc<TaskSpec>> {
         &self.tasks
     }

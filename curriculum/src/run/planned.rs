@@ -171,9 +171,9 @@ impl Planned {
 
     /// The seed of the agent's random numbers in an experience.
     ///
-    /// It depends on the task, the seed and the world's index, but not on the variant: a random agent acts alike in two
+    /// It depends on the task, the seed and the world's index, but not on the variant: a random agent acts the same in two
     /// variants under one seed. Every evaluation of a world gets the same seed, so an unchanged agent earns the same in
-    /// it; learning in that world again gets another seed, so that a learner does not repeat its attempts.
+    /// it; learning in that world again gets a different seed, so that a learner does not repeat its attempts.
     pub(super) fn agent_seed(&self, number: u64) -> u64 {
         let task = self.id.rsplit_once('#').map_or(self.id.as_str(), |(task, _)| task);
         let numbers = [self.seed, self.index_of(number), self.learned_before, self.run_seed];
@@ -203,7 +203,7 @@ impl Planned {
         match (&self.source, between) {
             (Source::World { world, .. }, _) => (self.id.clone(), Subject::World(world)),
             (Source::Variant(variant), _) => (variant.id(), Subject::Variant(variant)),
-            // During a drift, random choices may have made another variant for each experience.
+            // During a drift, random choices may have made a different variant for each experience.
             (Source::Drift { from, to, .. }, Some(variant)) if ![from.name(), to.name()].contains(&variant.name()) => {
                 (format!("{}/{number}", variant.id()), Subject::Variant(variant))
             }

@@ -198,7 +198,7 @@ impl RecordingsFile {
     /// Opens a file, and indexes its episodes without decoding them; `None` without a file.
     ///
     /// # Errors
-    /// [`CurriculumError::Recording`] for a file of something else; [`CurriculumError::UnreadableRecordings`] if it cannot be read.
+    /// [`CurriculumError::Recording`] for any other kind of file; [`CurriculumError::UnreadableRecordings`] if it cannot be read.
     pub fn open(path: &Path) -> Result<Option<Self>, CurriculumError> {
         match driftworld_files::open(path, MAX_RECORDINGS_BYTES) {
             Ok(opened) => Self::new(path, BufReader::new(opened.file)).map(Some),
@@ -251,7 +251,7 @@ impl<R: BufRead + Seek> RecordingsFile<R> {
     /// The recording of an episode, by its number; `None` without one.
     ///
     /// # Errors
-    /// [`CurriculumError::Recording`] if its line, or that of its world, is damaged; damaged lines of others are skipped.
+    /// [`CurriculumError::Recording`] if its line, or that of its world, is damaged; damaged lines of other episodes are skipped.
     pub fn recording(&mut self, experience: u64) -> Result<Option<Recording>, CurriculumError> {
         let Some(place) = self.places.get(&experience) else {
             return self.damage().map_or(Ok(None), Err);

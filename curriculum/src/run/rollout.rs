@@ -17,7 +17,7 @@ use crate::CurriculumError;
 pub struct Repeats {
     /// How many.
     pub count: usize,
-    /// Repeat the first ones of the block instead of a seeded sample: for when order matters, as in batches.
+    /// Repeat the block's first evaluations instead of a seeded sample: for cases where order matters, as in batches.
     pub first: bool,
 }
 
@@ -200,7 +200,7 @@ pub(super) fn run_range<R: Rollout>(
     Ok(ControlFlow::Continue(()))
 }
 
-/// Fails if a repeated evaluation gave another reward or trace, and then removes its block from the log.
+/// Fails if a repeated evaluation gave a different reward or trace, and then removes its block from the log.
 pub(super) fn expect_frozen(
     plan: &Plan,
     number: u64,

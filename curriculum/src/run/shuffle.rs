@@ -2,11 +2,11 @@
 
 use crate::hash::number_of;
 
-/// Rounds of the network; four turn a good function into a good permutation (Luby and Rackoff 1988).
+/// Rounds of the network; four turn a pseudorandom function into a pseudorandom permutation (Luby and Rackoff 1988).
 const ROUNDS: u64 = 4;
 
-/// A keyed permutation of a range of numbers that needs no memory: a Feistel network over the least even number of bits that
-/// holds the range, iterated until the result is in the range.
+/// A keyed permutation of a range of numbers that needs no memory: a Feistel network over the smallest even number of bits
+/// that holds the range, iterated until the result is in the range.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Shuffle {
     first: u64,

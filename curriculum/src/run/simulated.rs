@@ -13,7 +13,7 @@ pub(crate) struct Meeting {
     pub(crate) place: u64,
     /// Whether the agent may learn.
     pub(crate) learning: bool,
-    /// Its variant; in a drift the nearer end.
+    /// Its variant; in a drift, the nearer end.
     pub(crate) variant: String,
     /// Seed and index of its world: if both are equal, variants of one task have the same layout.
     pub(crate) layout: [u64; 2],

@@ -13,13 +13,13 @@ pub struct Progress {
     pub done: u64,
     /// Experiences of the whole lifetime.
     pub total: u64,
-    /// The block of the last one, from 0.
+    /// The block of the last experience, from 0.
     pub block: usize,
     /// Whether the agent learned in it.
     pub kind: BlockKind,
     /// Its variant, as `task#variant`.
     pub variant: String,
-    /// Its reward; NaN for one that was skipped.
+    /// Its reward; NaN if it was skipped.
     pub reward: f64,
 }
 

@@ -46,7 +46,7 @@ pub struct Trial {
     /// The block, from 0; `None` outside a scenario.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub block: Option<usize>,
-    /// The variant as `task#variant`, in a drift with both ends.
+    /// The variant as `task#variant`; for a drift, with both ends.
     pub variant: String,
     /// The seed of its worlds.
     pub seed: u64,
@@ -56,11 +56,11 @@ pub struct Trial {
     pub placement: u64,
     /// Failures because a requirement of the task did not hold.
     pub requirement: u64,
-    /// Failures for another reason.
+    /// Failures for other reasons.
     pub other: u64,
     /// The first failures, at most 100.
     pub failed: Vec<Failed>,
-    /// The planner's results in the others, if requested.
+    /// The planner's results in the worlds that could be drawn, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub expert: Option<Finished>,
 }
@@ -119,9 +119,9 @@ pub fn try_worlds(variant: &Variant, seed: u64, worlds: u64) -> Trial {
 pub struct Tried(BTreeSet<(String, u64, u64, u32)>);
 
 impl Plan {
-    /// Draws `worlds` worlds of each regime, evenly over its experiences from the first to the last, and checks that every
-    /// experience of a drift has a variant at all: at most 100,000, evenly again. Regimes with the same worlds are tried once;
-    /// those with world files have nothing to draw.
+    /// Draws `worlds` worlds of each regime, evenly spaced from its first experience to its last, and checks that every experience
+    /// of a drift, or 100,000 evenly spaced ones, has a variant at all. Regimes with the same worlds are tried once; those with
+    /// world files have nothing to draw.
     ///
     /// A plan that refuses undrawable worlds has already refused the first world of each regime: make one with
     /// [`Undrawable::Skipped`].
@@ -168,7 +168,7 @@ impl Planned {
     }
 }
 
-/// `wanted` numbers of `0..count`, evenly from the first to the last.
+/// `wanted` numbers of `0..count`, evenly spaced from the first to the last.
 fn evenly(count: u32, wanted: u32) -> impl Iterator<Item = u32> {
     let wanted = wanted.min(count);
     let last = u64::from(wanted.max(2) - 1);

@@ -59,7 +59,7 @@ pub struct TransferReport {
 /// Whether similar variants transfer more, forward or backward.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DirectionReport {
-    /// Every pair with a transfer, by the matrix's order of the learned variant, then of the other.
+    /// Every pair with a transfer, in the matrix's order: by the learned variant, then by the evaluated one.
     pub pairs: Vec<PairTransfer>,
     /// The test by ranks: the recommended one.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -87,13 +87,13 @@ pub struct PairTransfer {
     pub lifetimes: usize,
 }
 
-/// Correlates the transfer that lifetimes measured with distances.
+/// Correlates the transfer measured in lifetimes with distances.
 ///
 /// For each pair of variants the first transfer of each lifetime counts, as in the lifetime's own mean, averaged over
 /// lifetimes; forward and backward separately. Names in logs, `task_variant`, are matched with the matrix's `task#variant` by
 /// [`log_name`](crate::log_name)'s rule. Correlations are tested by relabelling the variants, see [`mantel`].
 ///
-/// Limits: if all lifetimes learn in one order, distance is confounded with position in that order, which `learning_orders`
+/// Limits: if all lifetimes learn in the same order, distance is confounded with position in that order, which `learning_orders`
 /// shows; a variant that is already at its best has nothing left to gain.
 ///
 /// # Errors
@@ -170,7 +170,7 @@ fn tested(
     let test = |method| mantel(distances, &values, method, options.relabellings, options.seed);
     let (spearman, pearson, untested) = match (test(Correlation::Spearman), test(Correlation::Pearson)) {
         (Ok(spearman), Ok(pearson)) => (Some(spearman), Some(pearson), None),
-        // Invalid whatever was measured.
+        // The number is invalid whatever was measured.
         (Err(source), _) if source.code() == "similarity/mantel-count" => {
             return Err(CurriculumError::Relabelling(source));
         }
@@ -211,7 +211,7 @@ mod tests {
     use super::*;
     use serde_json::json;
 
-    /// A lifetime that learned the tasks in this order, with these transfers forward.
+    /// A lifetime that learned the tasks in this order, with these forward transfers.
     fn lifetime(order: &[&str], forward: &[(&str, &str, f64)], evaluations: usize) -> LifetimeMetrics {
         let mut tasks = serde_json::Map::new();
         for name in order {
@@ -273,7 +273,7 @@ mod tests {
     }
 
     #[test]
-    fn impossible_correlations_are_refused_with_reason() {
+    fn impossible_correlations_are_refused_with_a_reason() {
         let none = lifetime(&["t_a"], &[], 0);
         assert!(said(&[none], &["t#a", "t#b"]).contains("no evaluation"));
         let strangers = lifetime(&["t_x", "t_y"], &[], 3);

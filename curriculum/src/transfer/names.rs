@@ -29,8 +29,8 @@ impl Names {
     }
 }
 
-/// The log name of a label `task#variant`; a task given as a path counts by its file name. A label without `#` is taken as a
-/// log name already.
+/// The log name of a label `task#variant`; for a task given as a path, its file name without `.json` is used. A label without `#`
+/// is taken to be a log name already.
 pub fn log_name_of_label(label: &str) -> String {
     let Some((task, variant)) = label.rsplit_once('#') else {
         return label.to_lowercase();
@@ -44,7 +44,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_label_is_found_by_the_name_that_logs_give_it() {
+    fn label_is_found_by_its_log_name() {
         for (label, name) in [
             ("find_objects#deep-red", "findobjects_deepred"),
             ("examples/tasks/find_objects.json#Red", "findobjects_red"),
@@ -57,7 +57,7 @@ mod tests {
     }
 
     #[test]
-    fn labels_with_one_name_in_a_log_are_refused() {
+    fn labels_with_the_same_log_name_are_refused() {
         let error = Names::of(&["a#b_c".to_owned(), "a#bc".to_owned()]).expect_err("both are a_bc");
         assert_eq!(error.code(), "curriculum/same-log-name");
     }

@@ -7,13 +7,13 @@ use driftworld_metrics::Timestamp;
 
 use super::*;
 
-/// Moves faster the more episodes it has begun, including evaluations.
+/// Acts differently depending on how many episodes it has begun, including evaluations.
 #[derive(Clone, Default)]
 struct Restless {
     episodes: u32,
     /// Whether evaluations are run by copies of it.
     is_copied: bool,
-    /// Whether only learning counts.
+    /// Whether it acts differently only after learning.
     is_honest: bool,
     learned: u32,
 }
@@ -21,7 +21,7 @@ struct Restless {
 impl Agent for Restless {
     fn act(&mut self, environment: &Environment) -> Action {
         let steps = if self.is_honest { self.learned } else { self.episodes };
-        // The farther it goes, the sooner it reaches a reward.
+        // Speed and turns affect the reward of every step.
         let share = f64::from(steps % 7) / 7.0;
         Action::Continuous([
             share * environment.world().agent_params.max_linear_speed,
@@ -60,7 +60,7 @@ pub(crate) fn shaped(world: &str) -> Scenario {
 }
 
 #[test]
-fn agent_that_evaluations_change_is_refused_with_one_or_several_jobs() {
+fn agent_changed_by_evaluations_is_refused_with_one_or_several_jobs() {
     let folder = scratch();
     for (name, is_copied, jobs) in [("self", false, 1), ("copy", true, 1), ("copies", true, 3)] {
         let mut agent = Restless {
@@ -80,7 +80,7 @@ fn agent_that_evaluations_change_is_refused_with_one_or_several_jobs() {
     }
 }
 
-/// Stands still except for one step, in which it waits for something else each time; nothing in its world pays.
+/// Stands still except for one step, in which it turns by a tiny angle that differs each time; its world has no rewards.
 struct Fidgety {
     episodes: u32,
     step: u32,

@@ -127,7 +127,7 @@ fn evaluations_repeat_their_random_numbers_and_learning_does_not() {
 #[test]
 fn relearning_the_log_continues_as_if_never_stopped() {
     let folder = scratch();
-    // Straight ahead costs there, so any learning shows.
+    // Moving straight ahead loses reward there, so any learning shows.
     let scenario = super::frozen::shaped("behind.json");
     let whole = folder.path().join("whole");
     live(&scenario, &mut SarsaAgent::new(), &whole, u64::MAX).unwrap_or_else(|error| panic!("{error}"));

@@ -94,7 +94,7 @@ fn scratch() -> tempfile::TempDir {
     tempfile::tempdir().expect("the machine has a folder for temporary files")
 }
 
-/// All files of a log, as one text.
+/// All files of a log, as one string.
 fn everything(folder: &Path) -> String {
     assert!(folder.is_dir(), "{}: there is no log", folder.display());
     let files = files_below(folder).into_values();
@@ -133,7 +133,7 @@ fn lifetime_is_logged_and_can_be_scored() {
 }
 
 #[test]
-fn lifetime_repeats_to_the_byte_and_agents_differ() {
+fn lifetime_is_repeatable_byte_for_byte_and_agents_differ() {
     let folder = scratch();
     let lived = |name: &str, agent: &mut dyn Agent| {
         let log = folder.path().join(name);
@@ -241,7 +241,7 @@ fn golden_log_is_unchanged() {
 }
 
 #[test]
-fn unplayable_scenarios_are_refused_with_the_place() {
+fn unplayable_scenarios_are_refused_with_block_and_regime() {
     let folder = scratch();
     let mut odd = scenario(&["blue"]);
     odd.blocks[1].regimes[0].variant = "bleu".to_owned();
@@ -454,7 +454,7 @@ fn step_limit_truncates_and_end_of_block_does_not() {
     );
 }
 
-/// The label of each experience, by its number.
+/// The seed and the label of each experience, in order.
 type Told = Vec<(u64, Option<Label>)>;
 
 #[test]

@@ -41,7 +41,7 @@ fn log_cut_at_any_byte_is_completed_identically() {
                 break;
             }
             let (torn, part) = (left < bytes.len(), &bytes[..left.min(bytes.len())]);
-            // The two info files have another name until they are whole.
+            // The two info files have a different name until they are complete.
             let name = if torn && !file.contains('/') {
                 format!(".{file}.tmp")
             } else {

@@ -80,7 +80,7 @@ fn experiences_run_elsewhere_are_logged_identically() {
     assert_eq!(everything(&there), everything(&here));
 }
 
-/// Counts the requested experiences.
+/// Records the numbers of the requested experiences, and ends the run at number 9.
 #[derive(Default)]
 struct Counting(Vec<u64>);
 impl Rollout for Counting {

@@ -3,7 +3,7 @@
 use crate::color::euclidean;
 use crate::color::lab::Lab;
 
-/// The largest distance of two sRGB colours, rounded up: from blue to pure green (`lime` in CSS).
+/// The largest distance between two sRGB colours, rounded up: from blue to pure green (`lime` in CSS).
 pub(crate) const CIE76_DIAMETER: f64 = 258.680_21;
 
 /// Euclidean distance in CIE L*a*b*: √(ΔL² + Δa² + Δb²). About 2.3 is just noticeable.

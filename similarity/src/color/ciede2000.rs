@@ -2,7 +2,7 @@
 
 use crate::color::lab::Lab;
 
-/// The largest distance of two sRGB colours, rounded up: a dark blue (0, 0, 0.4303) and a yellowish green (0.5589, 1, 0).
+/// The largest distance between two sRGB colours, rounded up: a dark blue (0, 0, 0.4303) and a yellowish green (0.5589, 1, 0).
 pub(crate) const CIEDE2000_DIAMETER: f64 = 119.484_76;
 
 /// 25 to the 7th.
@@ -17,7 +17,7 @@ const TURN_6: [f64; 2] = [0.994_521_895_368_273_3, 0.104_528_463_267_653_46];
 const TURN_63: [f64; 2] = [0.453_990_499_739_546_8, 0.891_006_524_188_367_9];
 const TURN_275: [f64; 2] = [0.087_155_742_747_658_18, -0.996_194_698_091_745_5];
 
-/// The perceived difference of two colours, by CIEDE2000 with all weights 1: about 1 is just noticeable, black to white is 100.
+/// The perceived difference between two colours, by CIEDE2000 with all weights 1: about 1 is just noticeable, black to white is 100.
 ///
 /// A distance, *not a metric*: about one triple of sRGB colours in 30 violates the triangle inequality, the worst seen by half.
 /// From 0 to 119.49 within sRGB, no unit. The formula is discontinuous where the hues of two colours are exactly opposite; a

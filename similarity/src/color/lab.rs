@@ -15,10 +15,10 @@ const WHITE: [f64; 3] = [0.950_47, 1.0, 1.088_83];
 /// A colour in CIE L*a*b* under D65: lightness 0 to 100, a* from green to red, b* from blue to yellow, both about ±110 for sRGB.
 ///
 /// Convert each colour once to avoid repeated conversions in matrices of distances. Numbers must be finite and at most 1e6 in
-/// size; beyond that, distances lose their meaning.
+/// magnitude; beyond that, distances lose their meaning.
 ///
 /// Source: CIE 15, with the matrix and the white of scikit-image: the same numbers as `skimage.color.rgb2lab` within 1e-9. (Other tools
-/// round these constants elsewhere and differ by up to 0.02.)
+/// round these constants differently and differ by up to 0.02.)
 ///
 /// # Example
 /// ```

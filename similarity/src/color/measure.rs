@@ -39,12 +39,12 @@ impl ColorMeasure {
     /// All measures.
     pub const ALL: &[Self] = Self::VARIANTS;
 
-    /// The distance of two colours, in the measure's own unit.
+    /// The distance between two colours, in the measure's own unit.
     pub fn between(self, a: Color, b: Color) -> f64 {
         self.between_prepared(self.prepare(a), self.prepare(b))
     }
 
-    /// The largest distance of two sRGB colours, with the last place rounded up.
+    /// The largest distance between two sRGB colours, with the last place rounded up.
     pub fn diameter(self) -> f64 {
         match self {
             // Black to white.
@@ -96,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn diameter_is_the_distance_of_the_farthest_colours() {
+    fn diameter_is_the_distance_between_the_farthest_colours() {
         let named = |name| Color::from_name(name).expect("a name of CSS");
         for (measure, a, b) in [
             (ColorMeasure::Srgb, named("black"), named("white")),

@@ -1,10 +1,10 @@
-//! Euclidean distance of sRGB triples.
+//! Euclidean distance between sRGB triples.
 
 use driftworld_spec::Color;
 
 use crate::color::euclidean;
 
-/// Euclidean distance of two sRGB triples, as in the L2Explorer paper: √(Δr² + Δg² + Δb²).
+/// Euclidean distance between two sRGB triples, as in the L2Explorer paper: √(Δr² + Δg² + Δb²).
 ///
 /// A metric, in `0..=√3`, no unit. Ignores perception: black is as far from dark green as from dark blue. Takes a few
 /// nanoseconds.

@@ -64,7 +64,7 @@ mod tests {
     use super::*;
     use crate::{LayoutShape, VariantMeasure, Weights};
 
-    /// A task with these environment parameters, and a parameter `map` with an empty layout, a text of its own size and a wall.
+    /// A task with these environment parameters, and a parameter `map`: an empty layout, a text layout of 18 × 18 m, or two walls.
     fn task(around: &str) -> Arc<TaskSpec> {
         let text = format!(
             r#"{{ "name": "t", "parameters": {{
@@ -85,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn arena_is_that_of_the_task() {
+    fn arena_is_taken_from_the_task() {
         assert_arena("", [100.0; 2], 4.0);
         assert_arena(r#", "map_size": [18, 18], "wall_height": 2"#, [18.0; 2], 2.0);
         assert_arena(r#", "map_size": { "param": "side" }"#, [18.0, 24.0], 4.0);

@@ -21,7 +21,7 @@ const ALL_PAIRS: usize = 24;
 pub(super) struct DrawnMeasure {
     measure: Option<MeasureName>,
     headings: bool,
-    /// The largest distance of two distributions that the task's declared values allow. `None` if that is infinite: numbers are
+    /// The largest distance between two distributions that the task's declared values allow. `None` if that is infinite: numbers are
     /// then not normalised.
     widest: Option<f64>,
     can_differ: bool,
@@ -58,8 +58,8 @@ impl DrawnMeasure {
         made
     }
 
-    /// The largest distance among distributions: of all pairs, or, if there are many, from the first to its farthest and on to
-    /// the farthest from that, which is at least half of the largest if the triangle inequality holds. 0 if all are alike.
+    /// The largest distance among distributions: over all pairs, or, if there are many, from the one farthest from the first to
+    /// the one farthest from that, which is at least half of the largest if the triangle inequality holds. 0 if all are equal.
     fn widest_of(&self, all: &[Distribution]) -> f64 {
         let raw = |a: &Distribution, b: &Distribution| self.raw(a, b).2;
         if all.len() <= ALL_PAIRS {
@@ -88,7 +88,7 @@ impl DrawnMeasure {
         }
     }
 
-    /// Whether the declared values bound its number.
+    /// Whether the declared values bound the distance.
     pub(super) fn is_bounded(&self) -> bool {
         self.widest.is_some()
     }
@@ -154,7 +154,7 @@ fn usable(width: f64) -> bool {
     width > 0.0 && width.is_finite()
 }
 
-/// Whether a measure is one of transport, so that lists of colours are compared by transport, too.
+/// Whether a measure requires transport, so that lists of colours are compared by transport, too.
 fn asks_for_ways(measure: Option<MeasureName>) -> bool {
     use MeasureName::{Cie76, Ciede2000, Hyab, Oklab, Srgb, Wasserstein1, Wasserstein2};
     matches!(

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 
 use crate::combined::sketch::ObjectFeatures;
 
-/// How many pairs of kinds a thread remembers; a power of 2.
+/// Number of pairs of kinds in a thread's cache; a power of 2.
 const CACHE_SIZE: usize = 2048;
 
 /// Weight of the reward in the cost of a match: just enough to break ties.

@@ -1,4 +1,4 @@
-//! [`Leaves`]: fields of a world flattened into the numbers and words of their JSON, so that a small change of one number is a
+//! [`Leaves`]: fields of a world flattened into the numbers and words of their JSON, so that a small change in one number is a
 //! small distance.
 
 use std::cmp::Ordering;
@@ -10,7 +10,7 @@ use serde_json::Value as Json;
 use crate::assignment::{Assignment, MAX_ASSIGNED};
 use crate::scalar::relative_difference;
 
-/// Distance between two points, in metres, that counts 1, as for objects.
+/// Distance between two points, in metres, that counts as 1, as for objects.
 const METRES: f64 = 10.0;
 
 /// Numbers and words by their paths, in the order of the paths' ids.
@@ -43,7 +43,7 @@ pub(super) struct LeafReader {
 }
 
 impl LeafReader {
-    /// Reads leaves from lines of JSON, one field a line.
+    /// Reads leaves from lines of JSON, one field per line.
     pub(super) fn read(&mut self, text: &[u8]) -> Arc<Leaves> {
         if let Some(known) = self.read.get(text) {
             return Arc::clone(known);
@@ -130,10 +130,10 @@ impl LeafReader {
 }
 
 impl Leaves {
-    /// The distance: a sum over all paths. Numbers count by their difference over the larger in size; points by their distance
-    /// in tens of metres, up to 2; a different word, or a path that only one has, even a struct, 1; sets of words by the number
-    /// of words to change, add or remove; things by the cheapest matching, with unmatched ones in full. A metric; 0 for equal
-    /// leaves. Both must come from the same reader.
+    /// The distance: a sum over all paths. Numbers count by their difference divided by the larger magnitude; points by their
+    /// distance in tens of metres, up to 2; a different word, or a path that only one side has, even a struct, counts as 1; sets
+    /// of words by the number of words to change, add or remove; things by the cheapest matching, with unmatched ones in full.
+    /// A metric; 0 for equal leaves. Both must come from the same reader.
     pub(super) fn distance(&self, other: &Self) -> f64 {
         if std::ptr::eq(self, other) {
             return 0.0;
@@ -201,7 +201,7 @@ fn between_things(a: &[Vec<(u32, Leaf)>], b: &[Vec<(u32, Leaf)>]) -> f64 {
     } else {
         (theirs, mine)
     };
-    // Unmatched things count in full, so it is cheapest to match all of the fewer.
+    // Unmatched things count in full, so it is cheapest to match all things of the smaller collection.
     let over = |a: &[(u32, Leaf)], b: &[(u32, Leaf)]| apart(a, b) - size(b);
     let all: f64 = more.iter().map(|thing| size(thing)).sum();
     // Collections too large for an assignment are compared in order.

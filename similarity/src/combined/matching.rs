@@ -10,10 +10,10 @@ use crate::combined::kinds::Kinds;
 use crate::combined::parts::{length, turn};
 use crate::combined::sketch::ObjectFeatures;
 
-/// Distance between objects, in metres, that counts 1.
+/// Distance between objects, in metres, that counts as 1.
 pub(super) const UNIT_OF_PLACE: f64 = 10.0;
 
-/// Difference in reward that counts 1.
+/// Difference in reward that counts as 1.
 pub(super) const UNIT_OF_REWARD: f64 = 100.0;
 
 impl ObjectFeatures {
@@ -54,7 +54,7 @@ struct Buffers {
 }
 
 /// Visits each object of one class in two worlds once: all of the smaller set with a match, the rest alone. The matching has
-/// the least sum of costs; ties are broken by the objects alone, not by the order of the worlds.
+/// the minimum sum of costs; ties are broken by the objects alone, not by the order of the worlds.
 ///
 /// Pay decides only between otherwise equal matchings; if it counted, a world with all pay reversed would look like one
 /// whose objects changed places.
@@ -129,7 +129,7 @@ fn is_of_one_kind(objects: &[ObjectFeatures]) -> bool {
     objects.windows(2).all(|pair| pair[0].kind == pair[1].kind)
 }
 
-/// Whether a class has fewer objects than the other, or as many and precedes it in order.
+/// Whether `a` has fewer objects than `b`, or as many and does not come after it in order.
 fn comes_first(a: &[ObjectFeatures], b: &[ObjectFeatures]) -> bool {
     let by_number = a.len().cmp(&b.len());
     let by_object = || a.iter().zip(b).map(|(a, b)| a.order(b)).find(|order| order.is_ne());
@@ -155,7 +155,7 @@ mod tests {
         Sketcher::default().sketch(&world).objects
     }
 
-    /// The least sum over all matchings, by brute force.
+    /// The minimum sum over all matchings, by brute force.
     fn least(fewer: &[ObjectFeatures], more: &[ObjectFeatures]) -> f64 {
         let Some((first, rest)) = fewer.split_first() else {
             return 0.0;

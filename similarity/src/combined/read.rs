@@ -48,7 +48,7 @@ pub(super) fn as_read(object: &Object, style: Style) -> Object {
     read
 }
 
-/// Whether approaching changes it: opens or closes it, triggers it, picks it up.
+/// Whether approaching the object changes it: opens or closes it, triggers it, picks it up.
 fn is_moved_in_range(object: &Object) -> bool {
     let is_near = |list: &Vec<Stimulus>| list.contains(&Stimulus::AgentInRange);
     let door = object.door.as_ref();

@@ -15,7 +15,7 @@ use crate::layout_shape::LayoutShape;
 /// The next unused kind id. 0 means none.
 static NEXT_KIND: AtomicU64 = AtomicU64::new(1);
 
-/// Makes sketches; only sketches of the same sketcher can be compared.
+/// Makes sketches; only sketches from the same sketcher can be compared.
 #[derive(Debug, Default)]
 pub(super) struct Sketcher {
     texts: LeafTexts,
@@ -54,7 +54,7 @@ pub(super) struct Sketch {
     /// Reward per second.
     pub(super) step_reward: f64,
     pub(super) rules: Arc<Leaves>,
-    /// Longest episode in seconds; `None` without a limit.
+    /// Maximum length of an episode in seconds; `None` without a limit.
     pub(super) limit: Option<f64>,
     pub(super) light: f64,
     /// Wall, sky, ground, sunlight, ceiling.
@@ -144,7 +144,7 @@ impl Sketcher {
         }
     }
 
-    /// The shape of the world's layout, cached because worlds of one layout often come in a row.
+    /// The shape of the world's layout, cached because worlds with the same layout often come in a row.
     fn shape(&mut self, world: &World) -> Option<Arc<LayoutShape>> {
         let around = &world.environment_params;
         let (plan, arena, height) = (world.plan()?, around.arena_size(), around.wall_height);

@@ -24,13 +24,13 @@ pub(super) enum ValueMeasure {
     Relative { widest: f64 },
     /// Turn over the widest turn that the range or the choices allow, at most half a circle.
     Turn { widest: f64 },
-    /// A distance of colours over that of the widest pair of choices.
+    /// A distance between colours over that of the widest pair of choices.
     Color {
         measure: &'static str,
         of: ColorMeasure,
         widest: f64,
     },
-    /// The difference of two layouts over that of the widest pair of choices.
+    /// The difference between two layouts over that of the widest pair of choices.
     Layout {
         of: LayoutMeasure,
         arena: Arena,
@@ -154,7 +154,7 @@ impl ValueMeasure {
 /// The aspect of two layouts that is compared. Layouts without a seed are drawn with seed 0.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum LayoutMeasure {
-    /// Everything: shapes and the sides of their arenas, each by the difference over the larger, and 1 for different doors.
+    /// Everything: shapes, the sides of their arenas, each by the difference over the larger, and 1 for different doors.
     Whole,
     /// Which cells have walls.
     Walls,
@@ -299,7 +299,7 @@ fn widest_turn(parameter: &Parameter) -> f64 {
     }
 }
 
-/// The largest relative difference of two numbers: below 1 for those of one sign, 2 across 0.
+/// The largest relative difference between two numbers: at most 1 if they cannot have different signs, 2 across 0.
 fn widest_relative(parameter: &Parameter) -> f64 {
     match parameter.domain() {
         Some(Domain::Range([low, high])) if low < 0.0 && 0.0 < high => 2.0,

@@ -11,13 +11,13 @@ use crate::combined::weighted_distance::{Distance, Part};
 use crate::combined::weights::Weights;
 use crate::{MetricProperties, SimilarityError};
 
-/// The distance of two variants of one task: a sum over its parameters, where 1 is one parameter moved over its whole declared
+/// The distance between two variants of one task: a sum over its parameters, where 1 is one parameter moved over its whole declared
 /// range.
 ///
 /// Every parameter uses the measure and weight that the task gives it under `compare`, by default weight 1 and its
 /// type's measure: the difference of numbers, the turn between headings, the distance of colours in Oklab, the
 /// Euclidean length for points and vectors, the difference in shape of layouts in the task's arena. Each is divided by
-/// the most that the declared range or the choices allow. Values of other types are the same or not. Randomized
+/// the maximum that the declared range or the choices allow. Values of other types are the same or not. Randomized
 /// parameters are compared by their distributions: Wasserstein-1 for numbers, on the circle for headings, in Oklab for
 /// colours from a continuum, share by share for shares, Wasserstein-2 for points, total variation for words and for
 /// colours from lists. Each is divided by the distance of the widest pair of distributions that the declared ranges
@@ -26,8 +26,8 @@ use crate::{MetricProperties, SimilarityError};
 /// are left out.
 ///
 /// Equal values contribute exactly 0, so variants that differ only in pay are 0 apart in all elements but the reward, and
-/// adding a parameter that is the same in both changes no number. Normalisation depends only on what the task declares, on no
-/// other variant. [`VariantMeasure::properties`] says whether the whole is a metric. To compare many variants, make a
+/// adding a parameter that is the same in both changes no number. Normalisation depends only on what the task declares, not on
+/// other variants. [`VariantMeasure::properties`] says whether the whole is a metric. To compare many variants, make a
 /// [`VariantMeasure`] once.
 ///
 /// # Errors
@@ -69,7 +69,7 @@ struct Compared {
     by: By,
 }
 
-/// The coarse elements that a parameter counts for. One that is listed along with a finer element of it counts once.
+/// The coarse elements that a parameter counts for. A coarse element that is listed along with a finer element of it counts once.
 fn counts_for(affects: &[Element]) -> Vec<Element> {
     let is_said = |element: &&Element| **element == element.coarse() || !affects.contains(&element.coarse());
     affects.iter().filter(is_said).map(|element| element.coarse()).collect()
@@ -116,7 +116,7 @@ impl VariantMeasure {
         }
     }
 
-    /// The distance of two variants of the task.
+    /// The distance between two variants of the task.
     ///
     /// # Errors
     /// [`SimilarityError::DifferentTasks`] if one is not a variant of this task, [`SimilarityError::NotADistance`] for
@@ -165,7 +165,7 @@ impl VariantMeasure {
     }
 
     /// Upper bound on the distance between two variants of the task: all parameters moved over their whole declared
-    /// ranges. 0 for a task without parameters that count, infinite if the distributions of one have no finite bound.
+    /// ranges. 0 for a task without parameters that count, infinite if the distance in one of them has no finite bound.
     pub fn diameter(&self) -> f64 {
         let counts = |compared: &Compared| {
             let weights = compared.affects.iter().map(|element| self.weights.of(*element));

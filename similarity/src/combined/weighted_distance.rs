@@ -28,11 +28,11 @@ pub struct Part {
     pub share: f64,
 }
 
-/// The distance of two variants or two worlds.
+/// The distance between two variants or two worlds.
 ///
 /// Parts are added, not averaged: each element's distance is the weighted sum of its parts, and the whole is the sum over
-/// everything that was compared, each at the weight of its element; a parameter that counts for several elements counts once in
-/// the whole, at the largest of their weights. So parts that are equal in both change no number, however many there are. All
+/// everything that was compared, each with the weight of its element; a parameter that counts for several elements counts once
+/// in the whole, with the largest of their weights. So parts that are equal in both change no number, however many there are. All
 /// are at least 0 and may be above 1; for variants, 1 is one parameter moved over its whole declared range. A weighted sum of
 /// metrics is a metric.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -63,7 +63,7 @@ impl Part {
 }
 
 impl Distance {
-    /// A distance that belongs to no single element, such as that of what a learner can reach or do. It has no parts.
+    /// A distance that belongs to no single element, such as one of where a learner can go or what it can do. It has no parts.
     pub fn whole(total: f64) -> Self {
         Self {
             total,
@@ -72,7 +72,7 @@ impl Distance {
         }
     }
 
-    /// Adds up parts; parts of one name must be adjacent, with the same number for each of their elements.
+    /// Adds up parts; parts with the same name must be adjacent, with the same number for each of their elements.
     pub fn new(mut parts: Vec<Part>, weights: &Weights) -> Self {
         let elements = Element::ALL.map(|element| {
             let own = || parts.iter().filter(|part| part.element == element && part.weight > 0.0);

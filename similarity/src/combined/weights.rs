@@ -4,7 +4,7 @@ use driftworld_spec::{Element, TaskSpec};
 
 use crate::SimilarityError;
 
-/// Largest weight of an element, also in a task spec.
+/// Maximum weight of an element, also in a task spec.
 pub const MAX_WEIGHT: f64 = 1e6;
 
 /// Weights of the elements of the decision process in the whole. Each is 1 by default.

@@ -10,20 +10,20 @@ use crate::combined::weighted_distance::Distance;
 use crate::combined::weights::Weights;
 use crate::distribution::Method;
 
-/// The distance of two worlds: a sum of parts, each in a unit of its own.
+/// The distance between two worlds: a sum of parts, each in a unit of its own.
 ///
-/// | element | parts, with what counts 1 |
+/// | element | parts, with the difference that counts as 1 |
 /// |---|---|
 /// | state | places of objects (10 m), unmatched objects (each), their headings (180°), the agent's start (10 m), its heading (180°) |
-/// | action | action model, action space (another word), top speeds (something against nothing) |
+/// | action | action model, action space (a different word), top speeds (something against nothing) |
 /// | transition | motion and solidity of objects, time step, the agent's width, map and walls, sides of the arena |
 /// | reward | objects' pay (100 points), its triggers and odds (never against always), pay per second (1 point), rules, step limit |
 /// | observation | colours (black against white, in Oklab), looks of unmatched objects (each), models, sizes, light, camera |
 ///
-/// Numbers without a unit count by their difference over the larger one, so that 1 is something against nothing; words count 1
-/// if they differ. `docs/reference/comparison.md` lists all parts, units and keys.
+/// Numbers without a unit count by their difference over the larger one, so that 1 is something against nothing; words count as
+/// 1 if they differ. `docs/reference/comparison.md` lists all parts, units and keys.
 ///
-/// Objects are matched once within each class, at the least total cost over all features; unmatched ones count in full: their
+/// Objects are matched once within each class, at minimum total cost over all features; unmatched ones count in full: their
 /// presence in the state, their looks in the observation, their pay in the reward. So the order of objects in a document does
 /// not matter, and adding the same object to both worlds changes nothing unless it is a better match. Fields that nothing
 /// reads, such as the reward of an object without a stimulus, do not count.
@@ -33,7 +33,7 @@ use crate::distribution::Method;
 ///
 /// Symmetric, and 0 between worlds that differ only in fields that are not compared (names, tags, the mode of the game,
 /// progress so far). A metric among worlds whose objects match in the same way; among others the triangle inequality may fail.
-/// Time: some microseconds for 20 objects, growing with the cube of the objects of one class.
+/// Time: some microseconds for 20 objects, growing with the cube of the number of objects of one class.
 pub fn world_distance(a: &World, b: &World, weights: &Weights) -> Distance {
     let mut sketcher = Sketcher::default();
     let (a, b) = (sketcher.sketch(a), sketcher.sketch(b));
@@ -53,10 +53,10 @@ pub(crate) fn match_objects(a: &World, b: &World) -> Vec<(Option<usize>, Option<
     matches
 }
 
-/// The distance of two sets of worlds: the mean over pairs, the first with the first and so on; worlds without a partner are
+/// The distance between two sets of worlds: the mean over pairs, the first with the first and so on; worlds without a partner are
 /// left out. Each part's numbers are means, too.
 ///
-/// Draw both sets under the same seed and indices: then pairs share their random numbers, and only the difference of the
+/// Draw both sets with the same seed and indices: then pairs share their random numbers, and only the difference between the
 /// variants remains.
 ///
 /// # Errors
@@ -124,7 +124,7 @@ impl Worlds {
         self.sketches.is_empty()
     }
 
-    /// The distance of two worlds by index, at least 0.
+    /// The distance between two worlds by index, at least 0.
     ///
     /// # Panics
     /// If an index is out of range.
@@ -132,7 +132,7 @@ impl Worlds {
         total(&self.sketches[a], &self.sketches[b], &self.weights)
     }
 
-    /// The distance of two worlds by index, with its parts.
+    /// The distance between two worlds by index, with its parts.
     ///
     /// # Panics
     /// If an index is out of range.
@@ -320,7 +320,7 @@ mod tests {
             prop_assert_eq!(d(&here, &drawn(unread, layout, fog)).total, 0.0, "{:?}", unread);
             let there = d(&here, &drawn(other, layout, fog));
             prop_assert!(there.differs_in().iter().all(|element| *element == Element::O));
-            // From the plain style, each part is 1 farther than from the natural style.
+            // Natural looks are 1 farther from the plain style than from the default of the natural style.
             let natural = drawn(Looks { fog_in_depth: looks.fog_in_depth, ..Looks::of(Style::Natural) }, layout, fog);
             let plain = drawn(Looks { fog_in_depth: looks.fog_in_depth, ..Looks::default() }, layout, fog);
             if looks.style == Style::Natural {

@@ -56,16 +56,16 @@ pub struct MantelTest {
 /// The correlation is taken over the pairs that have a value. Then the items of the matrix are relabelled, with all their
 /// distances, and the correlation is taken again: a share of `p` of the relabellings correlates at least as strongly. Items are
 /// relabelled and not pairs, because pairs that share an item are not independent. If there are at most `relabellings` of them,
-/// all are used, and `p = k / all`; otherwise as many are drawn from `seed`, and `p = (k + 1) / (drawn + 1)`, which counts the
+/// all are used, and `p = k / all`; otherwise that many are drawn with `seed`, and `p = (k + 1) / (drawn + 1)`, which counts the
 /// observed one among them. So `p` is never 0.
 ///
 /// `pairs`: in any order, each at most once; the two directions are two pairs. **Pairs without a value are left out**: the gaps
 /// stay in place while labels change, and only items with at least one value take part. The test is then about the measured
-/// pairs; no test knows whether the others are like them. Distances cannot be missing: a matrix has all of them, which keeps a
+/// pairs; no test can tell whether the others are like them. Distances cannot be missing: a matrix has all of them, which keeps a
 /// test with gaps sound. A relabelling under which all distances are equal has no correlation; it counts as at least as strong,
 /// against the result.
 ///
-/// Time `O(relabellings · (pairs + items²))`, over all cores; the same result for the same seed on any number of cores.
+/// Time `O(relabellings · (pairs + items²))`, on all cores; the same result for the same seed on any number of cores.
 ///
 /// Source: Mantel 1967; Legendre and Legendre 2012, § 10.5; the same correlations as `skbio.stats.distance.mantel` and the
 /// same exact shares as an enumeration with scipy, see `tests/oracle/make_correlation.py`.
@@ -343,8 +343,8 @@ mod tests {
     }
 
     #[test]
-    fn relabelling_without_a_correlation_counts_against_the_result() {
-        // Three pairs of four items, three of which are in one place: under some labels all distances are 0.
+    fn constant_distances_are_refused_and_equal_correlations_count_against_the_result() {
+        // Of the four items, the first three are in one place: the first three pairs have distances of 0.
         let pairs = [(0, 1, 1.0), (1, 2, 2.0), (0, 2, 3.0), (0, 3, 4.0)].map(pair);
         let test = mantel(&matrix(&[0.0, 0.0, 0.0, 5.0]), &pairs[..3], Correlation::Pearson, 24, 0);
         assert_eq!(test.unwrap_err().code(), "similarity/correlation-constant");
@@ -358,7 +358,7 @@ mod tests {
     }
 
     #[test]
-    fn impossible_tests_are_refused_with_reason() {
+    fn impossible_tests_are_refused_with_a_reason() {
         let check = |pairs: &[(usize, usize, f64)], relabellings, expected: &str| {
             let pairs: Vec<_> = pairs.iter().copied().map(pair).collect();
             let found = mantel(

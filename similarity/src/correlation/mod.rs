@@ -96,7 +96,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn impossible_correlations_are_refused_with_reason() {
+    fn impossible_correlations_are_refused_with_a_reason() {
         let said = |a: &[f64], b: &[f64]| {
             let of = |correlation: Correlation| correlation.of(a, b).unwrap_err().to_string();
             assert_eq!(of(Correlation::Spearman), of(Correlation::Pearson));

@@ -7,7 +7,7 @@ use crate::SimilarityError;
 /// predict the other linearly.
 ///
 /// `r = Σ (aᵢ − ā)(bᵢ − b̄) / √(Σ (aᵢ − ā)² · Σ (bᵢ − b̄)²)`. `a` and `b`: one number each per observation, in any units, at
-/// least 3. Returns −1 to 1; symmetric; the same when a list is shifted or scaled by a factor above 0. One far-off point can
+/// least 3. Returns −1 to 1; symmetric; the same when a list is shifted or scaled by a factor above 0. One outlier can
 /// make or break it: compare with [`spearman`](crate::spearman). Not a distance. Time `O(n)`.
 ///
 /// Source: Pearson 1895; the same numbers as `scipy.stats.pearsonr` within 1e-12.

@@ -7,7 +7,7 @@ use crate::SimilarityError;
 /// other's order.
 ///
 /// Pearson's correlation of the [`ranks`]; equal numbers share the mean of their ranks. `a` and `b`: one number each per
-/// observation, in any units, at least 3. Returns −1 to 1; symmetric; invariant under any rising map of either list, so no
+/// observation, in any units, at least 3. Returns −1 to 1; symmetric; invariant under any increasing map of either list, so no
 /// outlier and no choice of scale decides it. Numbers that differ only by rounding count as equal, as in [`ranks`]. Not a
 /// distance. Time `O(n log n)`.
 ///
@@ -28,7 +28,7 @@ pub fn spearman(a: &[f64], b: &[f64]) -> Result<f64, SimilarityError> {
     pearson(&ranks(a), &ranks(b))
 }
 
-/// The ranks of finite numbers, from 1 for the least; equal numbers share the mean of their ranks.
+/// The ranks of finite numbers, from 1 for the smallest; equal numbers share the mean of their ranks.
 ///
 /// Numbers count as equal if they agree to twelve significant digits, or if they differ by less than the rounding of the
 /// largest: equal distances may be sums in different orders, which must not break ties. Time `O(n log n)`.
@@ -60,9 +60,9 @@ const TWELVE_DIGITS: f64 = 1e-12;
 /// Rounding error of sums, as a share of the largest number.
 const ROUNDING: f64 = 1e-15;
 
-/// Replaces each number by the least of those that count as equal to it.
+/// Replaces each number by the smallest of those that count as equal to it.
 ///
-/// Numbers are compared with the least of their group, not with their neighbours, so that no chain of small steps makes
+/// Numbers are compared with the smallest of their group, not with their neighbours, so that no chain of small steps makes
 /// distant numbers equal. They are not rounded, which would separate neighbours on either side of a rounding edge.
 pub(super) fn without_rounding(values: &[f64]) -> Vec<f64> {
     let mut order: Vec<usize> = (0..values.len()).collect();
@@ -98,7 +98,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
 
         #[test]
-        fn spearman_is_symmetric_bounded_and_invariant_under_rising_maps((a, b) in lists()) {
+        fn spearman_is_symmetric_bounded_and_invariant_under_increasing_maps((a, b) in lists()) {
             let Ok(rho) = spearman(&a, &b) else { return Ok(()) };
             prop_assert!((-1.0..=1.0).contains(&rho));
             prop_assert!((spearman(&b, &a).unwrap() - rho).abs() < 1e-12);

@@ -6,11 +6,11 @@ use super::gap::Power;
 use super::law::{self, Law, rising};
 use super::measured::Measured;
 
-/// Widest stretch, in degrees, over which the first pass takes a curved cumulative function as linear; the second pass
+/// Widest stretch, in degrees, over which the first pass treats a curved cumulative function as linear; the second pass
 /// uses half of it.
 const COARSE: f64 = 0.5;
 
-/// Wasserstein-1 of two distributions of headings, with each heading moved the shorter way round.
+/// Wasserstein-1 between two distributions of headings, with each heading moved the shorter way round.
 ///
 /// min over c of ∫ |F − G − c| over one turn; the best c is the median of F − G. A metric in `0..=180` degrees. Numbers are
 /// taken as headings in degrees, reduced to one turn. `None` if either draws no numbers, or spreads them over more than 200
@@ -18,7 +18,7 @@ const COARSE: f64 = 0.5;
 /// degrees, at about two thousand points.
 ///
 /// Source: Rabin, Delon & Gousseau 2011, "Transportation distances on the circle"; the same numbers as
-/// `ot.wasserstein_circle`, which counts in turns.
+/// `ot.wasserstein_circle`, which measures in turns.
 ///
 /// # Example
 /// ```
@@ -150,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn narrow_bells_are_as_far_as_on_the_line() {
+    fn narrow_bells_are_as_far_apart_as_on_the_line() {
         let at = |mean: f64| VonMises { mean, kappa: 500.0 };
         check(&at(350.0), &at(15.0), 25.0, 1e-3);
         let normal = |mean: f64, std: f64| Normal { mean, std };

@@ -12,12 +12,12 @@ use crate::{Assignment, ColorMeasure, optimal_transport};
 /// exactly.
 const STAND_INS: usize = 256;
 
-/// Wasserstein-1 of two distributions of colours, with `measure` between single colours: in the measure's own unit, at most its
+/// Wasserstein-1 between two distributions of colours, with `measure` between single colours: in the measure's own unit, at most its
 /// [`diameter`](ColorMeasure::diameter).
 ///
 /// Exact between single colours and between lists of at most 256; otherwise from 256 evenly spread colours of each,
-/// matched at the least cost, which is accurate to a few per cent of the spreads. Among distributions with a density a
-/// metric (except that equal samples are 0 apart) if the measure is one. `None` if either draws anything but colours.
+/// matched at minimum cost, which is accurate to a few per cent of the spreads. A metric among distributions with a
+/// density (except that equal samples are 0 apart) if the measure is one. `None` if either draws anything but colours.
 ///
 /// Source: Villani 2009, "Optimal Transport: Old and New", chapter 6.
 ///
@@ -34,7 +34,7 @@ pub fn color_wasserstein_1(a: &Distribution, b: &Distribution, measure: ColorMea
     paired(a, b, measure, |way| way)
 }
 
-/// Wasserstein-2: the root mean square distance that each colour has to move by `measure`, in its own unit.
+/// Wasserstein-2: the root mean square of the distances by which colours have to move, in the unit of `measure`.
 ///
 /// Never below [`color_wasserstein_1`]. In sRGB channel by channel and as exact as [`wasserstein_2`](super::wasserstein_2()) if
 /// the channels of both are independent; otherwise computed like [`color_wasserstein_1`]. `None` if either draws anything but
@@ -244,7 +244,7 @@ mod tests {
             prop_assert!((0.0..=1.0).contains(&far(&a, &b)));
         }
 
-        /// Compares two ways to the same number: channel by channel, and by pairs of colours. Whatever the pairs, the distance
+        /// Computes the same number in two ways: channel by channel, and by pairs of colours. Whatever the pairs, the distance
         /// is at least that of the means.
         #[test]
         fn samples_approximate_the_closed_form(a in any_law(), b in any_law()) {

@@ -2,7 +2,7 @@
 
 use driftworld_spec::Distribution;
 
-/// Counts less likely than this times the likeliest are left out.
+/// Counts whose probability is below this fraction of the likeliest count's are left out.
 const NEGLIGIBLE: f64 = 1e-17;
 
 /// All non-negligible counts with their probabilities; `None` for any other distribution and for more than `most` counts.

@@ -11,9 +11,9 @@ use super::wasserstein_1::folded;
 
 /// √(2 E|X − Y| − E|X − X′| − E|Y − Y′|), which on the line is √(2 ∫ (F − G)²): in the square root of the numbers' unit.
 ///
-/// A metric in `0..` (its square is not). A Bernoulli counts as 0 and 1. `None` if either draws no numbers, or headings. Closed
-/// for two normals and for everything flat or stepped; otherwise by quadrature, mostly within 1e-6, at 13 to 700 points between
-/// neighbouring knots. Ranges of more than 4,096 whole numbers are treated as continuous.
+/// A metric in `0..` (its square is not). A Bernoulli counts as 0 and 1. `None` if either draws no numbers, or headings. In
+/// closed form for two normals and for everything flat or stepped; otherwise by quadrature, mostly within 1e-6, at 13 to 700
+/// points between neighbouring knots. Ranges of more than 4,096 whole numbers are treated as continuous.
 ///
 /// Source: Székely & Rizzo 2013, "Energy statistics"; the same numbers as `scipy.stats.energy_distance`, which returns the
 /// root, too.

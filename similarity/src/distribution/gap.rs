@@ -1,4 +1,4 @@
-//! Integrals of the difference of two cumulative functions.
+//! Integrals of the difference between two cumulative functions.
 
 use super::law::{self, Law, rising};
 use super::measured::Measured;
@@ -75,7 +75,7 @@ pub(super) fn integral(a: &Law, b: &Law, power: Power) -> Measured {
     }
 }
 
-/// Iterates upwards over the single numbers of a law.
+/// Iterates upwards over the atoms of a law.
 struct Steps<'a> {
     atoms: &'a [(f64, f64)],
     next: usize,
@@ -93,7 +93,7 @@ impl<'a> Steps<'a> {
         }
     }
 
-    /// Probability of the single numbers up to `x`, and of those above.
+    /// Probability of the atoms up to `x`, and of those above.
     fn up_to(&mut self, x: f64) -> [f64; 2] {
         while let Some(atom) = self.atoms.get(self.next).filter(|atom| atom.0 <= x) {
             self.below += atom.1;

@@ -8,8 +8,8 @@ use super::part::log_beta;
 
 /// √(½ Σ (√p − √q)²), for densities √(½ ∫ (√f − √g)²).
 ///
-/// A metric in `0..=1`. Accepts what [`total_variation`](super::total_variation()) accepts, and two `gaussian`s of the
-/// plane or two `dirichlet`s of one length. Closed for normal, log-normal, exponential, beta (with the same ends),
+/// A metric in `0..=1`. Accepts what [`total_variation`](super::total_variation()) accepts, and two `gaussian`s in the
+/// plane or two `dirichlet`s of equal length. In closed form for normal, log-normal, exponential, beta (with the same ends),
 /// Poisson, geometric, gaussian and Dirichlet pairs and for everything flat or stepped; otherwise by quadrature, mostly
 /// within 1e-6 (the root of a sum known within 1e-9 or better), at 13 to 700 points between neighbouring knots.
 ///

@@ -36,7 +36,7 @@ pub fn jensen_shannon_divergence(a: &Distribution, b: &Distribution) -> Option<M
     Some(overlap::sum(a, b, term)?.times(1.0 / LN_2).clamped(0.0, 1.0))
 }
 
-/// ½ p ln(p / m) + ½ q ln(q / m) with m = (p + q) / 2, written in d with p = m (1 + d) so that nothing cancels.
+/// ½ p ln(p / m) + ½ q ln(q / m) with m = (p + q) / 2, written in terms of d in p = m (1 + d), so that nothing cancels.
 fn term(p: f64, q: f64) -> f64 {
     let (p, q) = (libm::exp(p), libm::exp(q));
     let middle = f64::midpoint(p, q);

@@ -11,10 +11,10 @@ use super::part::log_beta;
 ///
 /// A divergence in `0..=∞`: not symmetric, no triangle inequality, and infinite as soon as `a` draws what `b` cannot.
 /// Provided only for parity with methods that use it (self-paced curricula). Accepts what
-/// [`total_variation`](super::total_variation()) accepts, and two `gaussian`s of the plane or two `dirichlet`s of one
-/// length. Closed for normal, log-normal, exponential, beta (with the same ends), Poisson, geometric, gaussian and
-/// Dirichlet pairs and for everything flat or stepped; otherwise by quadrature, mostly within 1e-9 of its size, at 13
-/// to 700 points between neighbouring knots.
+/// [`total_variation`](super::total_variation()) accepts, and two `gaussian`s in the plane or two `dirichlet`s of
+/// equal length. In closed form for normal, log-normal, exponential, beta (with the same ends), Poisson, geometric, gaussian
+/// and Dirichlet pairs and for everything flat or stepped; otherwise by quadrature, mostly within a relative error of 1e-9,
+/// at 13 to 700 points between neighbouring knots.
 ///
 /// Source: Kullback & Leibler 1951, "On information and sufficiency".
 ///

@@ -1,4 +1,4 @@
-//! [`Law`]: any distribution of numbers or headings, split into single numbers, runs and densities.
+//! [`Law`]: any distribution of numbers or headings, split into single numbers (atoms), runs and densities.
 
 use driftworld_spec::Distribution;
 
@@ -10,7 +10,7 @@ use super::values::share;
 /// Maximum number of single numbers of a distribution of counts; with more, it is not split.
 const MOST_ATOMS: usize = 65_536;
 
-/// Longest run of whole numbers that is split into single numbers.
+/// Maximum length of a run of whole numbers that is split into single numbers.
 const LONGEST_RUN: f64 = 4096.0;
 
 /// Maximum number of turns over which a distribution of headings may spread.

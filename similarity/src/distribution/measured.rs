@@ -27,9 +27,9 @@ pub struct Measured {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Method {
-    /// A formula, exact but for rounding.
+    /// A formula, exact except for rounding.
     Closed,
-    /// A sum over the possible values, exact but for rounding and for values less likely than 1e-15.
+    /// A sum over the possible values, exact except for rounding and for values with a probability below 1e-15.
     Atoms,
     /// Numerical integration.
     Quadrature {
@@ -81,7 +81,7 @@ impl Measured {
         }
     }
 
-    /// Clamps the value to these ends.
+    /// Clamps the value to this range.
     pub(crate) fn clamped(self, low: f64, high: f64) -> Self {
         let value = self.value.clamp(low, high);
         Self { value, ..self }

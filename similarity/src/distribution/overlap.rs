@@ -53,7 +53,7 @@ fn onto_the_circle(knot: f64) -> Option<f64> {
     knot.is_finite().then(|| knot.rem_euclid(360.0))
 }
 
-/// The integral between two neighbouring knots, with its error, which is 0 if the masses decide it alone.
+/// The integral between two neighbouring knots, with its error, which is 0 if the masses alone decide it.
 fn over_stretch(a: &Law, b: &Law, [low, high]: [f64; 2], term: &impl Fn(f64, f64) -> f64) -> (f64, f64) {
     let mass = |law: &Law| {
         let below = law.cumulative_of_parts(high) - law.cumulative_of_parts(low);

@@ -76,7 +76,7 @@ impl Part {
     pub(super) fn log_density(&self, node: Node) -> f64 {
         let node = node.lowered(self.shift);
         let bell = |z: f64| -0.5 * z * z;
-        // A point on the very end may have been rounded past it.
+        // A point at the very end may have been rounded past it.
         let inside = |low: f64, high: f64, log: f64| {
             let slack = 1e-12 * (high - low).min(1e6);
             if node.above(low) >= -slack && node.above(high) <= slack {
@@ -174,7 +174,7 @@ impl Part {
         [low + self.shift, high + self.shift]
     }
 
-    /// Ends of stretches on which density and cumulative function are smooth and of one order of magnitude, unsorted. Less than
+    /// Ends of stretches on which density and cumulative function are smooth enough to be integrated, unsorted. Less than
     /// 1e-17 of the probability and of the mean lies outside.
     pub(super) fn knots(&self) -> Vec<f64> {
         let [low, high] = self.ends();
@@ -247,7 +247,7 @@ mod tests {
     use super::*;
     use Distribution::{Beta, Exponential, LogNormal, Normal, Triangular, TruncatedNormal, Uniform, VonMises};
 
-    /// Checks that the density is the slope of the cumulative function, and sums to 1 between the knots.
+    /// Checks that the density is the slope of the cumulative function, and integrates to 1 between the knots.
     #[track_caller]
     fn check(family: Distribution) {
         let part = Part::new(1.0, family, 0.5);

@@ -20,8 +20,8 @@ pub fn placement_wasserstein_1(a: &Distribution, b: &Distribution) -> Option<Mea
 ///
 /// If both draw each object's place independently, this is [`planar_wasserstein_2`] plus the difference of the distances that
 /// `poisson_disc` keeps. If one takes its places in turn, the first object is compared with the first, the second with the
-/// second and so on, by the mean and the spread of where each may stand; so a list of points in turn differs from the same list
-/// at random. A pseudometric in `0..`, whose first part is a metric. `None` if either draws no points.
+/// second and so on, by the mean and the spread of where each may stand; so a list of points taken in turn differs from the same
+/// list taken at random. A pseudometric in `0..`, whose first part is a metric. `None` if either draws no points.
 ///
 /// # Example
 /// ```
@@ -101,7 +101,7 @@ fn places_in_turn(distribution: &Distribution) -> Option<Vec<[f64; 2]>> {
     }
 }
 
-/// The least distance, in metres, that the distribution keeps between objects; for a mixture the mean.
+/// The minimum distance, in metres, that the distribution keeps between objects; for a mixture, the mean.
 fn kept_distance(distribution: &Distribution) -> f64 {
     match distribution {
         Distribution::PoissonDisc { distance, .. } => *distance,
@@ -176,7 +176,7 @@ mod tests {
         }
 
         #[test]
-        fn lists_in_turn_of_equal_length_satisfy_the_metric_laws(
+        fn lists_in_turn_satisfy_the_triangle_inequality(
             a in prop::collection::vec(prop::array::uniform2(-9.0..9.0_f64), 3),
             b in prop::collection::vec(prop::array::uniform2(-9.0..9.0_f64), 2),
             c in prop::collection::vec(prop::array::uniform2(-9.0..9.0_f64), 6),

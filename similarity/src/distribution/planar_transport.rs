@@ -12,11 +12,11 @@ use crate::Assignment;
 /// Sample points per distribution, if no exact method applies.
 const STAND_INS: usize = 256;
 
-/// Wasserstein-1 of two distributions of points, in metres.
+/// Wasserstein-1 between two distributions of points, in metres.
 ///
-/// A metric in `0..`, except when estimated from samples. Closed if one is the other shifted, and for concentric discs;
-/// by quadrature if rings or round gaussians are concentric with each other or with a disc; otherwise from 256 evenly
-/// spread points of each, matched at the least cost, which is accurate to within a few percent of the spreads. Ignores
+/// A metric in `0..`, except when estimated from samples. In closed form if one is the other shifted, and for concentric
+/// discs; by quadrature if rings or round gaussians are concentric with each other or with a disc; otherwise from 256 evenly
+/// spread points of each, matched at minimum cost, which is accurate to within a few per cent of the spreads. Ignores
 /// the minimum distance of `poisson_disc`. `None` if either draws no points.
 ///
 /// Source: Villani 2009, "Optimal Transport: Old and New", chapter 6.
@@ -49,13 +49,13 @@ pub fn planar_wasserstein_1(a: &Distribution, b: &Distribution) -> Option<Measur
     paired(a, b, |x, y| libm::hypot(x[0] - y[0], x[1] - y[1]))
 }
 
-/// Wasserstein-2 of two distributions of points: the root mean square distance that each point has to move, in metres.
+/// Wasserstein-2 between two distributions of points: the root mean square of the distances that points have to move, in metres.
 ///
 /// A metric in `0..`, except when estimated from samples; never below [`bures_wasserstein`](super::bures_wasserstein())
-/// nor [`planar_wasserstein_1`]. Closed for two of one family (boxes, discs, gaussians, rings of one proportion) and
-/// for anything against a single point; axis by axis for boxes, axis-aligned gaussians and grids, as exact as
-/// [`wasserstein_2`](super::wasserstein_2()); by quadrature for discs, rings and round gaussians; otherwise from 256
-/// evenly spread points of each, matched at the least cost. Ignores the minimum distance of `poisson_disc`. `None` if
+/// nor [`planar_wasserstein_1`]. In closed form for two of the same family (boxes, discs, gaussians, rings of
+/// equal proportions) and for anything against a single point; axis by axis for boxes, axis-aligned gaussians and grids, as
+/// exact as [`wasserstein_2`](super::wasserstein_2()); by quadrature for discs, rings and round gaussians; otherwise from 256
+/// evenly spread points of each, matched at minimum cost. Ignores the minimum distance of `poisson_disc`. `None` if
 /// either draws no points.
 ///
 /// Source: Peyré & Cuturi 2019, "Computational Optimal Transport", remarks 2.31 and 2.34.
@@ -281,7 +281,7 @@ mod tests {
     }
 
     #[test]
-    fn distance_of_centres_adds_as_a_leg_of_a_triangle() {
+    fn distance_between_centres_adds_as_a_leg_of_a_triangle() {
         let near = planar_wasserstein_2(&disc(0.0, 2.0), &round(0.0, 1.0)).unwrap().value;
         check(
             planar_wasserstein_2(&disc(0.0, 2.0), &round(3.0, 1.0)),

@@ -148,7 +148,7 @@ pub(crate) fn split_at_signs(knots: &[f64], f: impl Fn(f64) -> f64) -> Vec<f64> 
     found
 }
 
-/// The sign change between two points of different sign, by the Illinois rule.
+/// The sign change between two points of different sign, by the Illinois method.
 fn root(mut a: (f64, f64), mut b: (f64, f64), f: impl Fn(f64) -> f64) -> f64 {
     for _ in 0..100 {
         let x = (a.0 * b.1 - b.0 * a.1) / (b.1 - a.1);

@@ -1,4 +1,4 @@
-//! Points that represent a distribution of the plane: evenly spread and deterministic.
+//! Points that represent a distribution in the plane: evenly spread and deterministic.
 
 use driftworld_spec::{Distribution, Value};
 

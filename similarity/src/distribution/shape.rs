@@ -1,4 +1,4 @@
-//! [`Shape`]: a family up to shift and scale. Two distributions of one shape have closed forms.
+//! [`Shape`]: a family up to shift and scale. Two distributions of the same shape have closed forms.
 
 use driftworld_spec::Distribution;
 

@@ -7,12 +7,13 @@ use driftworld_spec::Distribution;
 use super::measured::Measured;
 use super::overlap;
 
-/// Largest difference of the probabilities that two distributions give to any event: ½ Σ |p − q|, ½ ∫ |f − g|.
+/// Largest difference between the probabilities that two distributions give to any event: ½ Σ |p − q|, ½ ∫ |f − g|.
 ///
 /// A metric in `0..=1`; 1 exactly if they share no outcome. Takes distributions of numbers, of headings (both on the circle as
-/// soon as either draws headings; a metric only if all numbers keep to one turn), and of single values of any type; `None` for
-/// numbers against words, for points with a density and for shares. Closed for normal, log-normal and exponential pairs and for
-/// everything flat or stepped; otherwise by quadrature, mostly within 1e-9, at 13 to 700 points between neighbouring knots.
+/// soon as either draws headings; a metric only if all numbers stay within one turn), and of single values of any type; `None`
+/// for numbers against words, for points with a density and for shares. In closed form for normal, log-normal and exponential
+/// pairs and for everything flat or stepped; otherwise by quadrature, mostly within 1e-9, at 13 to 700 points between
+/// neighbouring knots.
 ///
 /// Source: Levin, Peres & Wilmer 2017, "Markov Chains and Mixing Times", section 4.1.
 ///
@@ -123,7 +124,7 @@ mod tests {
     fn long_runs_are_counted_without_listing() {
         let run = |low: f64, high: f64| IntegerUniform { low, high };
         check(&run(1.0, 1e9), &run(5e8 + 1.0, 1.5e9), 0.5);
-        // The first draws a thousand million whole numbers, the other three of them.
+        // The first draws from a billion whole numbers, the second from three of them.
         check(&run(1.0, 1e9), &run(1.0, 3.0), 1.0 - 3e-9);
     }
 

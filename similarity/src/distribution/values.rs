@@ -84,7 +84,7 @@ pub(super) fn grid_centres(low: [f64; 2], high: [f64; 2], cells: [f64; 2]) -> im
     (0..rows).flat_map(move |row| (0..columns).map(move |column| [along(0, column), along(1, row)]))
 }
 
-/// Pairs the probabilities of equal values, 0 where one cannot draw it; both lists are sorted.
+/// Pairs the probabilities of equal values, with 0 for values that are in one list only; both lists are sorted.
 pub(super) fn side_by_side(a: &[(Value, f64)], b: &[(Value, f64)]) -> Vec<[f64; 2]> {
     let (mut i, mut j) = (0, 0);
     let mut pairs = Vec::with_capacity(a.len().max(b.len()));

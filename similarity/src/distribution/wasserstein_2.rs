@@ -8,13 +8,13 @@ use super::measured::Measured;
 use super::quadrature::integrate;
 use super::shape::Shape;
 
-/// Wasserstein-2 of two distributions of numbers, the root mean square distance that each number has to move: √∫ (F⁻¹(u) −
-/// G⁻¹(u))² du, in the unit of the numbers.
+/// Wasserstein-2 between two distributions of numbers, the root mean square of the distances that numbers have to move:
+/// √∫ (F⁻¹(u) − G⁻¹(u))² du, in the unit of the numbers.
 ///
 /// A metric in `0..`, never below Wasserstein-1. A Bernoulli counts as 0 and 1. `None` if either draws no numbers,
-/// draws headings, or has more than 65,536 different counts. Closed if both differ only in shift and scale (normal,
-/// uniform, exponential, triangular, beta and truncated normal of one shape): the hypotenuse of the differences of mean
-/// and standard deviation; for two log-normals, for anything against a constant, and for everything flat or stepped.
+/// draws headings, or has more than 65,536 different counts. In closed form if both differ only in shift and scale
+/// (normal, uniform, exponential, triangular, beta and truncated normal of the same shape): the hypotenuse of the differences
+/// in mean and standard deviation; for two log-normals, for anything against a constant, and for everything flat or stepped.
 /// Otherwise by quadrature over the quantiles, mostly within 1e-7, at 13 to 700 points between neighbouring knots.
 /// Uniform integers with more than 4,096 possible values are treated as continuous.
 ///

@@ -11,7 +11,7 @@ use crate::SimilarityError;
 
 impl DistanceMatrix {
     /// The matrix as CSV (RFC 4180 with bare line feeds). Every number reads back exactly. Labels that a spreadsheet would take
-    /// for formulas are escaped by an apostrophe, which reading removes.
+    /// for formulas are escaped with an apostrophe, which reading removes.
     pub fn to_csv(&self) -> String {
         self.to_csv_with(Cells::Guarded)
     }
@@ -109,7 +109,7 @@ struct Row {
     cells: Vec<String>,
 }
 
-/// Iterates over the lines of a table; a cell in quotes may hold commas and line ends, and a doubled quote stands for one.
+/// Iterates over the lines of a table; a cell in quotes may hold commas and line breaks, and a doubled quote stands for one.
 /// Empty lines, which some editors append, are skipped.
 struct Rows<'t> {
     letters: Peekable<Chars<'t>>,
@@ -176,7 +176,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn csv_quotes_what_needs_it() {
+    fn csv_quotes_labels_that_need_it() {
         let names = vec!["a,b".to_owned(), "say \"x\"".to_owned()];
         let matrix = DistanceMatrix::measure(names, |_, _| Ok::<_, SimilarityError>(0.5)).unwrap();
         assert_eq!(
@@ -212,7 +212,7 @@ mod tests {
     }
 
     #[test]
-    fn foreign_line_ends_and_byte_order_marks_are_read() {
+    fn foreign_line_endings_and_byte_order_marks_are_read() {
         let matrix = DistanceMatrix::from_csv("\u{feff},a,b\r\na,0, 1e-1\r\nb,0.1,0\r\n\r\n").unwrap();
         assert_eq!((matrix.labels().join(" "), matrix.get(1, 0)), ("a b".to_owned(), 0.1));
     }
@@ -227,7 +227,7 @@ mod tests {
     }
 
     #[test]
-    fn bad_csv_error_names_the_place() {
+    fn bad_csv_error_names_the_line() {
         for row in r#"
  => 1: found no lines, expected a line of labels after an empty cell
 ,a,b|a,0,1| => 2: found 1 lines below the labels, expected 2, one for each label

@@ -9,7 +9,7 @@ use crate::split_mix::SplitMix64;
 const MAX_STEPS: usize = 160;
 /// Maximum number of runs; each later one starts from the vector found by the previous one.
 const MAX_RESTARTS: usize = 12;
-/// Largest error of `A v = λ v`, relative to the largest `λ`.
+/// Maximum error of `A v = λ v`, relative to the largest `λ`.
 const PRECISION: f64 = 1e-12;
 
 /// The largest eigenvalue of a symmetric matrix on the subspace orthogonal to some orthonormal vectors, with its eigenvector of
@@ -196,7 +196,7 @@ fn remove(vector: &mut [f64], directions: &[Vec<f64>]) {
     }
 }
 
-/// The vector or its negative, so that the first entry of (up to rounding) the largest magnitude is positive.
+/// The vector or its negative, so that the first entry with (up to rounding) the largest magnitude is positive.
 fn with_fixed_sign(vector: Vec<f64>) -> Vec<f64> {
     let largest = vector.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
     let leads = vector.iter().find(|value| value.abs() >= largest * (1.0 - 1e-9));

@@ -58,7 +58,7 @@ impl DistanceMatrix {
     }
 }
 
-/// The JSON reader's message without the place, which the error states separately.
+/// The JSON reader's message without the position, which the error states separately.
 fn without_place(error: &serde_json::Error) -> String {
     let said = error.to_string();
     let end = said.rfind(" at line ").unwrap_or(said.len());

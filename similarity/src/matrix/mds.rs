@@ -1,4 +1,4 @@
-//! Maps of a matrix: items as points of a plane that approximate the distances.
+//! Maps of a matrix: items as points in a plane that approximate the distances.
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -17,7 +17,7 @@ pub struct PlanarMap {
 
 /// Classical scaling (Torgerson 1952): the plane that keeps most of the doubly centred squared distances. Distances that are
 /// not Euclidean are approximated; `explained` says how well. Signs are fixed: on each axis, the item farthest from 0, the
-/// first of equals, is on the positive side. Time `O(n²)` for each of some dozens of steps.
+/// first of equals, is on the positive side. Time `O(n²)` for each of a few dozen steps.
 ///
 /// Matches the points from `numpy.linalg.eigh` up to signs, within 1e-9; see `tests/oracle/mds.json`.
 ///
@@ -137,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn equal_items_are_in_one_place() {
+    fn equal_items_are_at_the_same_point() {
         let matrix =
             DistanceMatrix::measure(vec!["a".into(), "b".into()], |_, _| Ok::<_, SimilarityError>(0.0)).unwrap();
         let map = classical_map(&matrix);

@@ -36,7 +36,7 @@ fn rows<S: serde::Serializer>(values: &Array2<f64>, serializer: S) -> Result<S::
 impl DistanceMatrix {
     /// Measures every pair once, in parallel; `measure` takes two indices, the first below the second.
     ///
-    /// Declared a mere [`MetricProperties::Distance`] unless [`DistanceMatrix::with_properties`] says more.
+    /// Declared as a mere [`MetricProperties::Distance`] unless [`DistanceMatrix::with_properties`] says more.
     ///
     /// # Errors
     /// The error of `measure` for the first failing pair in row order; [`SimilarityError::NotADistance`] for an invalid number;
@@ -79,7 +79,7 @@ impl DistanceMatrix {
     /// at most 1e-9 of the larger value, the upper one is kept.
     ///
     /// # Errors
-    /// [`SimilarityError::BadMatrix`] for another shape, a repeated label, a diagonal that is not 0, or halves that differ;
+    /// [`SimilarityError::BadMatrix`] for a different shape, a repeated label, a diagonal that is not 0, or halves that differ;
     /// [`SimilarityError::NotADistance`] for an invalid number; [`SimilarityError::TooMany`] for more than [`MAX_ITEMS`].
     pub fn from_values(labels: Vec<String>, values: Array2<f64>) -> Result<Self, SimilarityError> {
         let n = Self::bounded(labels.len())?;
@@ -188,7 +188,7 @@ impl DistanceMatrix {
         self.labels.is_empty()
     }
 
-    /// The distance of two items.
+    /// The distance between two items.
     pub fn get(&self, a: usize, b: usize) -> f64 {
         self.values[[a, b]]
     }
@@ -231,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn values_that_are_no_distance_matrix_are_refused() {
+    fn values_that_are_not_a_distance_matrix_are_refused() {
         let said = |numbers: [f64; 4]| {
             let values = Array2::from_shape_vec((2, 2), numbers.to_vec()).unwrap();
             DistanceMatrix::from_values(labels(2), values).map_err(|error| error.to_string())

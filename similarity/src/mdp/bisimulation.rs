@@ -10,8 +10,8 @@ use crate::SimilarityError;
 /// Maximum number of pairs that [`bisimulation`] visits; with 6 actions, they take about 3 GiB.
 pub const MAX_PAIRS: usize = 1 << 24;
 
-/// The distance of two states of two deterministic processes: the bounds are equal, but for rounding, if all reachable pairs
-/// were visited.
+/// The distance between two states of two deterministic processes: the bounds are equal, except for rounding, if all reachable
+/// pairs were visited.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bisimulation {
     /// Lower bound, in the unit of the rewards.
@@ -25,7 +25,7 @@ pub struct Bisimulation {
 /// The bisimulation metric between a state of one deterministic decision process and a state of another with the same actions.
 ///
 /// With one successor each, `d(s, t) = maxₐ (1 − c) |R(s, a) − R(t, a)| + c d(s', t')`, where action `a` leads from `s` to `s'`
-/// and from `t` to `t'`: the Wasserstein-1 distance of two certain successors is their distance. So `d(s, t)` depends only on
+/// and from `t` to `t'`: the Wasserstein-1 distance between two certain successors is their distance. So `d(s, t)` depends only on
 /// the pairs that equal action sequences reach from `(s, t)`. In `0..=` the largest difference of rewards, in the unit of the
 /// rewards: 0 between states from which every sequence of actions pays the same. Between worlds with the same transitions, each
 /// state is paired with itself, so there are as many pairs as states.
@@ -40,7 +40,7 @@ pub struct Bisimulation {
 ///
 /// Source: Ferns, Panangaden and Precup 2004, "Metrics for finite Markov decision processes"; for deterministic processes
 /// Castro 2020, "Scalable methods for computing state similarity in deterministic Markov decision processes". Same numbers as
-/// by `SciPy`'s linear programs, see `tests/oracle/mdp.json`.
+/// from `SciPy`'s linear programs, see `tests/oracle/mdp.json`.
 ///
 /// # Errors
 /// [`SimilarityError::SizesDiffer`] for different numbers of actions, [`SimilarityError::NoSuchState`] for an invalid start,
@@ -128,7 +128,7 @@ fn largest_difference(a: &Mdp, b: &Mdp) -> f64 {
     (high_a - low_b).max(high_b - low_a).max(0.0)
 }
 
-/// The pairs reachable from the starts, nearest first, followed by one place for all that were not visited.
+/// The pairs reachable from the starts, nearest first, followed by one entry for all pairs that were not visited.
 #[derive(Debug)]
 struct Reached {
     pairs: usize,
@@ -184,7 +184,7 @@ impl Reached {
         !self.next[..self.pairs * steps].contains(&(self.pairs as u32))
     }
 
-    /// The costs, with this one for each step from the place of the pairs that were not visited.
+    /// The costs, with this cost for each step from the entry of the pairs that were not visited.
     fn with_beyond(&self, cost: f64, actions: usize) -> Vec<f64> {
         let mut costs = self.costs.clone();
         let last = costs.len() - actions;

@@ -58,7 +58,7 @@ impl CertainSums<'_> {
         best
     }
 
-    /// The sums of following the chosen steps for ever.
+    /// The sums along the chosen steps, followed for ever.
     fn along(&self, chosen: &[u32]) -> Vec<f64> {
         let at = |place: usize| place * self.steps + chosen[place] as usize;
         let mut values = vec![f64::NAN; chosen.len()];

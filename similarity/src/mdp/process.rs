@@ -30,7 +30,7 @@ pub struct Mdp {
 }
 
 impl Mdp {
-    /// `successors` and `rewards`: `(states · actions,)`, for each state action by action, rewards within ±1e100.
+    /// `successors` and `rewards`: `(states · actions,)`, state by state, then action by action; rewards within ±1e100.
     ///
     /// # Errors
     /// [`SimilarityError::NoSuchState`] for an invalid successor, [`SimilarityError::BadReward`],

@@ -1,4 +1,4 @@
-//! Chamfer distance of two grids: the mean distance to the nearest taken cell.
+//! Chamfer distance between two grids: the mean distance to the nearest taken cell.
 
 use super::bit_grid::BitGrid;
 use super::distance_transform::nearest_squared;
@@ -8,8 +8,8 @@ use crate::SimilarityError;
 /// (mean over A of d(a, B) + mean over B of d(b, A)). Uses means and unsquared distances.
 ///
 /// Between the centres of cells, within a plane. A distance in `0..=` the grid's diameter, not a metric: the triangle
-/// inequality may fail. Two empty planes are 0 apart; if only one is empty, each cell of the other counts the diameter in both
-/// directions. Time: a few passes over the cells.
+/// inequality may fail. Two empty planes are 0 apart; if only one is empty, each taken cell of the other counts as the diameter
+/// in its own direction, and the empty plane counts as the diameter once in the other. Time: a few passes over the cells.
 ///
 /// # Errors
 /// [`SimilarityError::GridsDiffer`] if the shapes differ.
@@ -31,7 +31,7 @@ pub fn grid_chamfer_distance(a: &BitGrid, b: &BitGrid) -> Result<f64, Similarity
 }
 
 /// The distance in metres from each taken cell of `a` to the nearest of `b`. If only the plane of `b` is empty, each
-/// cell counts the diameter; if only that of `a` is empty, the plane adds the diameter once.
+/// cell counts as the diameter; if only that of `a` is empty, the plane adds the diameter once.
 pub(super) fn ways(a: &BitGrid, b: &BitGrid) -> Result<Vec<f64>, SimilarityError> {
     let shape = a.shape();
     shape.check(b.shape())?;

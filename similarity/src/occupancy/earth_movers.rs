@@ -1,18 +1,18 @@
-//! Earth mover's distance of two grids of the same mass.
+//! Earth mover's distance between two grids of equal mass.
 
 use super::grid::{Grid, GridShape};
 use crate::SimilarityError;
 use crate::transport::{Units, cheapest_moves};
 
-/// Least work that turns one grid into the other: mass times metres, between the centres of cells (Wasserstein-1 with the
+/// Minimum work that turns one grid into the other: mass times metres, between the centres of cells (Wasserstein-1 with the
 /// Euclidean distance).
 ///
-/// Both grids must hold the same mass in each plane: use [`Grid::normalised`] if only the places matter. In `0..=` the
+/// Both grids must hold the same mass in each plane: use [`Grid::normalised`] if only the positions matter. In `0..=` the
 /// diameter times the mass, metres for a mass of 1. A metric. Mass does not move between planes; the work of all planes
 /// is added up.
 ///
 /// Exact: mass that both grids have in a cell stays (with a metric no plan is better than one that leaves it), the rest is
-/// moved by network simplex. Two grids of 25 × 25 random masses take some milliseconds.
+/// moved by network simplex. Two grids of 25 × 25 random masses take a few milliseconds.
 ///
 /// # Errors
 /// [`SimilarityError::GridsDiffer`] if the shapes differ, [`SimilarityError::UnequalMasses`] if a plane's masses differ by more

@@ -6,7 +6,7 @@ use crate::SimilarityError;
 /// Maximum number of cells in a grid, all planes together.
 pub const MAX_CELLS: usize = 1 << 20;
 
-/// Side of a cell in metres, unless that makes too many cells.
+/// Default side of a cell in metres, unless that makes too many cells.
 pub(super) const DEFAULT_CELL: f64 = 1.0;
 
 /// Number and size of the cells. Grids can be compared if their shapes are equal.
@@ -139,8 +139,8 @@ impl Grid {
         self.masses.iter().sum()
     }
 
-    /// Scales each plane to a total of 1; empty planes stay empty. Makes grids of unequal masses comparable if only the places
-    /// matter, not the numbers.
+    /// Scales each plane to a total of 1; empty planes stay empty. Makes grids of unequal masses comparable if only the
+    /// positions matter, not the amounts.
     #[must_use]
     pub fn normalised(&self) -> Self {
         let mut masses = self.masses.clone();

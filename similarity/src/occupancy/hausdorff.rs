@@ -1,4 +1,4 @@
-//! Hausdorff distance of two grids: the largest distance from a taken cell to the nearest one of the other grid.
+//! Hausdorff distance between two grids: the largest distance from a taken cell to the nearest one of the other grid.
 
 use super::bit_grid::BitGrid;
 use super::chamfer::ways;

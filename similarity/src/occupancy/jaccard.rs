@@ -1,11 +1,11 @@
-//! Jaccard distance of two grids: taken or free.
+//! Jaccard distance between two grids, whose cells are taken or free.
 
 use super::bit_grid::BitGrid;
 use crate::SimilarityError;
 
 /// Share of the cells taken in either grid that are not taken in both: 1 − |A ∩ B| / |A ∪ B|.
 ///
-/// A metric in `0..=1`; two empty grids are 0 apart. Time: one word per 64 cells, so some tens of nanoseconds for grids of 50 ×
+/// A metric in `0..=1`; two empty grids are 0 apart. Time: one word per 64 cells, so tens of nanoseconds for grids of 50 ×
 /// 50.
 ///
 /// # Errors

@@ -11,18 +11,18 @@ use crate::SimilarityError;
 /// its south-western corner on, with a plane for each class.
 ///
 /// An object on the line between two cells belongs to the northern or eastern one, on the outer edge to the last cell; objects
-/// outside are not counted. Grids of one raster can be compared.
+/// outside are not counted. Grids of the same raster can be compared.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Raster {
     shape: GridShape,
-    /// The north-eastern corner; the south-western one is its opposite.
+    /// The north-eastern corner; the south-western corner is its negative.
     high: [f64; 2],
     /// In lower case, sorted.
     classes: Vec<String>,
 }
 
 impl Raster {
-    /// A raster for these worlds, with cells of 1 m, or of 2, 4, 8 … m for arenas that are too large for it.
+    /// A raster for these worlds, with cells of 1 m, or of 2, 4, 8 … m for arenas that are too large for that.
     ///
     /// # Errors
     /// Those of [`Raster::of_worlds`].
@@ -30,7 +30,7 @@ impl Raster {
         let mut cell = DEFAULT_CELL;
         loop {
             match Self::of_worlds(worlds, cell) {
-                // An arena has at least one cell, and fewer classes than the limit of cells.
+                // Large enough cells always fit: there are fewer classes than the limit of cells.
                 Err(SimilarityError::TooFine { .. }) if cell < 1e6 => cell *= 2.0,
                 made => return made,
             }

@@ -1,4 +1,4 @@
-//! The cheapest path of few items, by dynamic programming over sets (Held and Karp 1962). The caller passes in the costs of
+//! The cheapest path through few items, by dynamic programming over sets (Held and Karp 1962). The caller passes in the costs of
 //! steps.
 
 use super::items::{Ends, Items};
@@ -18,7 +18,7 @@ pub(super) fn order(items: &Items) -> Result<Vec<usize>, SimilarityError> {
     Ok(best_path(items.len(), &|a, b| items.gap(a, b), items.ends))
 }
 
-/// The path of least total; ties (within rounding) go to the lowest numbers first. Steps of infinite cost are taken only if
+/// The path with the minimum total cost; ties (within rounding) go to the lowest numbers first. Steps of infinite cost are taken only if
 /// every path has one. Time `O(2ⁿ n²)`, memory `2ⁿ n` numbers; `n` is at most [`MAX_EXACT`].
 pub(super) fn best_path(n: usize, cost: &impl Fn(usize, usize) -> f64, ends: Ends) -> Vec<usize> {
     debug_assert!(n <= MAX_EXACT, "larger sets are refused before");
@@ -56,7 +56,7 @@ pub(super) fn best_path(n: usize, cost: &impl Fn(usize, usize) -> f64, ends: End
     path
 }
 
-/// For each set and each item of it: the least total of a path that begins there, visits the set, and ends at the fixed last
+/// For each set and each item of it: the minimum total cost of a path that begins there, visits the set, and ends at the fixed last
 /// item, if any.
 fn rests(n: usize, costs: &[f64], last: Option<usize>) -> Vec<f64> {
     let mut rest = vec![f64::INFINITY; (1 << n) * n];

@@ -82,7 +82,7 @@ impl<'a> Items<'a> {
         ranks
     }
 
-    /// The same order, with the fixed ends moved to the ends.
+    /// The same order, with the fixed first and last items moved to the ends.
     pub(super) fn with_ends_outside(&self, mut ranks: Vec<usize>) -> Vec<usize> {
         let Ends { first, last } = self.ends;
         ranks.retain(|rank| Some(*rank) != first && Some(*rank) != last);
@@ -90,7 +90,7 @@ impl<'a> Items<'a> {
     }
 }
 
-/// Ranks by rising value. Values are compared in steps of 1e-9 of their span, so that rounding errors break no ties;
+/// Ranks in order of increasing value. Values are compared in steps of 1e-9 of their span, so that rounding errors break no ties;
 /// the names decide between equal values.
 pub(super) fn by_rising(values: &[f64]) -> Vec<usize> {
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);

@@ -1,7 +1,7 @@
 //! Local search for a cheap path: small improvements until none helps, then random shakes. The caller passes in the costs of
 //! steps, so the same search finds short, long and even paths.
 //!
-//! The moves are 2-opt (reverse a stretch) and Or-opt (move up to three neighbours), tried only towards near items (Bentley
+//! The moves are 2-opt (reverse a stretch) and Or-opt (move up to three items in a row), tried only towards near items (Bentley
 //! 1992), and only from items near a recent change (don't-look bits). A shake swaps two short stretches, and is undone unless
 //! the search then finds a cheaper path.
 
@@ -13,7 +13,7 @@ use crate::split_mix::SplitMix64;
 
 /// Number of nearest items towards which a move is tried.
 const NEIGHBOURS: usize = 10;
-/// The longest stretch that a shake moves.
+/// Maximum length of a stretch that a shake moves.
 const SHAKEN: usize = 50;
 
 /// A path no costlier than `path`, with the same fixed ends. Costs must not be negative.
@@ -43,7 +43,7 @@ struct Search<'a, C> {
     neighbours: Vec<Vec<u32>>,
     waiting: Vec<usize>,
     is_waiting: Vec<bool>,
-    /// The least gain that is not a rounding error.
+    /// The smallest gain that is not a rounding error.
     least_gain: f64,
 }
 
@@ -53,7 +53,7 @@ impl<'a, C: Fn(usize, usize) -> f64 + Sync> Search<'a, C> {
         let nearest: Vec<(f64, Vec<u32>)> = (0..n).into_par_iter().map(|item| nearest(n, item, cost)).collect();
         let largest = nearest.iter().map(|(largest, _)| *largest).fold(0.0, f64::max);
         let mut gap = vec![0.0; n + 1];
-        // No move can gain as much as the two steps that it removes cost, so fixed ends stay in place.
+        // Moving a fixed end costs more than any move can gain, so fixed ends stay in place.
         for end in [ends.first, ends.last].into_iter().flatten() {
             gap[end] = -4.0 * largest - 1.0;
         }
@@ -101,7 +101,7 @@ impl<'a, C: Fn(usize, usize) -> f64 + Sync> Search<'a, C> {
         gained
     }
 
-    /// Makes one improving move that brings `a` next to something nearer, if there is one; returns its gain.
+    /// Makes one improving move that brings `a` next to a nearer item, if there is one; returns its gain.
     fn change_at(&mut self, a: usize) -> Option<f64> {
         // Moves at the gap are found from the items.
         if a + 1 == self.gap.len() {

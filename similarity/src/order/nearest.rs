@@ -58,7 +58,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nearest_remaining_item_is_next_and_fixed_last_waits() {
+    fn nearest_remaining_item_is_next_and_fixed_last_comes_last() {
         let at = [0.0_f64, 1.0, 2.5, 10.0];
         let cost = |a: usize, b: usize| (at[a] - at[b]).abs();
         let ends = |first, last| Ends { first, last };

@@ -13,8 +13,8 @@ pub struct Ordering {
     pub steps: Vec<f64>,
     /// The sum of the steps.
     pub length: f64,
-    /// How steadily the order leads away from its first item: Spearman's rank correlation, in -1..=1, of an item's position
-    /// with its distance from the first, over all items but the first. `None` for fewer than three items, or if all distances
+    /// How steadily the order leads away from its first item: Spearman's rank correlation, in -1..=1, between an item's position
+    /// and its distance from the first, over all items but the first. `None` for fewer than three items, or if all distances
     /// are equal.
     pub anchor_correlation: Option<f64>,
 }
@@ -54,7 +54,7 @@ fn anchor_correlation(matrix: &DistanceMatrix, indices: &[usize]) -> Option<f64>
     pearson(&places, &ranks(&distances))
 }
 
-/// Correlation of two lists of one length; `None` if a list is constant.
+/// Correlation of two lists of equal length; `None` if a list is constant.
 fn pearson(a: &[f64], b: &[f64]) -> Option<f64> {
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
     let (mean_a, mean_b) = (mean(a), mean(b));

@@ -6,7 +6,7 @@ use super::two_opt::from_the_lower_end;
 
 /// Shakes per item in each round of the search.
 const SHAKES_PER_ITEM: usize = 2;
-/// Least number of shakes: a short path has few possible swaps, and they are tried at random.
+/// Minimum number of shakes: a short path has few possible swaps, and they are tried at random.
 const LEAST_SHAKES: usize = 200;
 /// Number of bounds tried.
 const ROUNDS: usize = 12;

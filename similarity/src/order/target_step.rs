@@ -1,4 +1,4 @@
-//! Paths whose every step is close to a target length.
+//! Paths in which every step is close to a target length.
 
 use super::items::Items;
 use super::two_opt::cheapest;

@@ -30,7 +30,7 @@ fn with_last(options: OrderOptions, last: usize) -> OrderOptions {
     }
 }
 
-/// The least value over all paths with the fixed ends, by brute force.
+/// The minimum value over all paths with the fixed ends, by brute force.
 fn least(matrix: &DistanceMatrix, options: &OrderOptions, value: &impl Fn(&Ordering) -> f64) -> f64 {
     fn extend(
         matrix: &DistanceMatrix,
@@ -197,7 +197,7 @@ fn ties_go_to_the_first_names() {
 }
 
 #[test]
-fn impossible_orders_are_refused_with_reason() {
+fn impossible_orders_are_refused_with_a_reason() {
     let said = |matrix: &DistanceMatrix, method, options: &OrderOptions| {
         order(matrix, method, options).unwrap_err().to_string()
     };
@@ -225,7 +225,7 @@ fn impossible_orders_are_refused_with_reason() {
     );
 }
 
-/// Random points of the unit square, the same as in `tests/oracle/make_orders.py`.
+/// Random points in the unit square, the same as in `tests/oracle/make_orders.py`.
 fn drawn(seed: u64, count: usize) -> DistanceMatrix {
     let mut rng = SplitMix64(seed);
     let points: Vec<[f64; 2]> = (0..count).map(|_| [rng.unit(), rng.unit()]).collect();

@@ -11,7 +11,7 @@ pub(super) fn order(items: &Items) -> Vec<usize> {
     search(items, &|a, b| items.gap(a, b), SHAKES_PER_ITEM)
 }
 
-/// The cheapest path: exact for few items, beyond by local search with `shakes` shakes per item.
+/// The cheapest path: exact for few items, otherwise by local search with `shakes` shakes per item.
 pub(super) fn cheapest(items: &Items, cost: &(impl Fn(usize, usize) -> f64 + Sync), shakes: usize) -> Vec<usize> {
     if items.len() <= MAX_EXACT {
         best_path(items.len(), cost, items.ends)
@@ -26,7 +26,7 @@ fn search(items: &Items, cost: &(impl Fn(usize, usize) -> f64 + Sync), shakes: u
     from_the_lower_end(path, items)
 }
 
-/// A path is as long backwards: without fixed ends it begins at the end whose name comes first.
+/// A path has the same length backwards: without fixed ends, it begins at the end whose name comes first.
 pub(super) fn from_the_lower_end(mut path: Vec<usize>, items: &Items) -> Vec<usize> {
     let free = items.ends.first.is_none() && items.ends.last.is_none();
     if free && path.first() > path.last() {

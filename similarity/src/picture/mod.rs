@@ -10,7 +10,7 @@ pub use views::{PictureMeasure, views_distance};
 
 use crate::SimilarityError;
 
-/// Longest side of a picture in pixels.
+/// Maximum side of a picture in pixels.
 pub const MAX_SIDE: usize = 4096;
 
 /// A borrowed picture: `(height, width, 3)` bytes of sRGB, row 0 at the top.
@@ -50,7 +50,7 @@ impl<'a> Picture<'a> {
         Ok(Self { rgb, height, width })
     }
 
-    /// Checks that another has the same height and width.
+    /// Checks that another picture has the same height and width.
     fn lies_on(self, other: Self) -> Result<(), SimilarityError> {
         if (self.height, self.width) == (other.height, other.width) {
             return Ok(());

@@ -1,4 +1,4 @@
-//! Mean colour difference of two pictures, pixel by pixel.
+//! Mean colour difference between two pictures, pixel by pixel.
 
 use std::sync::LazyLock;
 
@@ -13,7 +13,7 @@ static LIGHT: LazyLock<[f64; 256]> =
 
 /// Mean over all pixels of the distance in Oklab between two pictures.
 ///
-/// A metric between pictures of one size, in `0..=1` (black to white), no unit. A shift by a single pixel counts as much as an
+/// A metric between pictures of the same size, in `0..=1` (black to white), no unit. A shift by a single pixel counts as much as an
 /// absence. Costs about six cube roots per pixel; pixels of equal bytes are free.
 ///
 /// # Errors
@@ -30,7 +30,7 @@ static LIGHT: LazyLock<[f64; 256]> =
 pub fn picture_oklab(a: Picture, b: Picture) -> Result<f64, SimilarityError> {
     a.lies_on(b)?;
     let (from, to) = (a.rgb.as_chunks::<3>().0, b.rgb.as_chunks::<3>().0);
-    // Neighbours are often equal: the last conversion of each picture is cached.
+    // Neighbouring pixels are often equal: the last conversion of each picture is cached.
     let (mut before, mut after) = (Last::default(), Last::default());
     let mut sum = 0.0;
     for (from, to) in from.iter().zip(to) {
@@ -41,7 +41,7 @@ pub fn picture_oklab(a: Picture, b: Picture) -> Result<f64, SimilarityError> {
     Ok(sum / from.len() as f64)
 }
 
-/// The sum of the distances in Oklab and the number of pixels: for those that `marked` marks, and for the others.
+/// The sum of the distances in Oklab and the number of pixels: for the marked pixels, and for the others.
 ///
 /// Add these up over many pictures to get the mean over all pixels of either kind. `marked`: `(height · width,)`.
 ///

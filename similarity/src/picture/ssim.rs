@@ -6,7 +6,7 @@ use crate::SimilarityError;
 /// Radius of the Gaussian window (standard deviation 1.5 pixels), truncated as in scikit-image.
 const REACH: usize = 5;
 
-/// Side of the window, and so the shortest side of a picture.
+/// Side of the window, and so the minimum side of a picture.
 pub const LEAST_SIDE: usize = 2 * REACH + 1;
 
 /// (0.01 · 255)² and (0.03 · 255)²: they stabilise dark and flat areas.
@@ -16,7 +16,7 @@ const STEADY_SPREAD: f64 = 58.5225;
 /// Mean structural similarity (SSIM) of two pictures: mean, contrast and structure of the brightness around each pixel, channel
 /// by channel.
 ///
-/// Mean over the channels red, green and blue and over all places of a Gaussian window (11 × 11 pixels, standard deviation 1.5) of
+/// Mean over the channels red, green and blue and over all positions of a Gaussian window (11 × 11 pixels, standard deviation 1.5) of
 /// (2 μν + C₁)(2 κ + C₂) / ((μ² + ν² + C₁)(σ² + τ² + C₂)), with the means μ and ν, the variances σ² and τ², the covariance κ and
 /// C₁ = 6.5025, C₂ = 58.5225. 1 for equal pictures, about 0 for unrelated ones, at least −1. Symmetric. A similarity;
 /// `(1 − SSIM) / 2` is a distance but not a metric. Time proportional to the number of pixels: about 130 multiplications per

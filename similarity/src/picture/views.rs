@@ -3,7 +3,7 @@
 use super::{Picture, picture_oklab, structural_similarity};
 use crate::{MetricProperties, SimilarityError};
 
-/// A measure of two pictures.
+/// A measure of the distance between two pictures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PictureMeasure {
     /// [`picture_oklab`]: colours pixel by pixel. A metric.
@@ -30,7 +30,7 @@ impl PictureMeasure {
         }
     }
 
-    /// The distance of two pictures, in `0..=1`.
+    /// The distance between two pictures, in `0..=1`.
     ///
     /// # Errors
     /// As [`picture_oklab`] and [`structural_similarity`].

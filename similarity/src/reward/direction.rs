@@ -7,7 +7,7 @@ use crate::sum::sum;
 pub(super) struct Direction {
     /// `None` for a list that is constant within rounding.
     offsets: Option<Vec<f64>>,
-    /// Largest rotation of the direction by rounding.
+    /// Maximum rotation of the direction due to rounding.
     rounding: f64,
 }
 
@@ -39,7 +39,7 @@ impl Direction {
         }
     }
 
-    /// Half the distance between the two, which is `√((1 − r) / 2)` with Pearson's correlation `r` and keeps the digits
+    /// Half the distance between the two, which is `√((1 − r) / 2)` with Pearson's correlation `r`, but keeps the digits
     /// that `1 − r` loses.
     ///
     /// 0 to 1: 0 if one list is the other times a factor above 0 plus a constant, 1 if one falls exactly as the other rises. A

@@ -9,8 +9,8 @@ use crate::sum::sum;
 /// Largest absolute reward: squares of shaped rewards stay finite.
 const LARGEST: f64 = 1e100;
 
-/// Largest error of a shaped reward, as a multiple of 2⁻⁵² of the largest reward: half for the rewards themselves, some 2 for
-/// each of three means, half the size of every partial sum; doubled.
+/// Maximum error of a shaped reward, as a multiple of 2⁻⁵² of the largest reward: half for the rewards themselves, about 2 for
+/// each of three means, half the size of every partial sum; all doubled.
 const ROUNDING: f64 = 32.0 * f64::EPSILON;
 
 /// The samples on which rewards are compared: transitions, and pairs of an action and a state for the means.
@@ -25,7 +25,7 @@ pub struct RewardSamples<S, A> {
 
 impl<S, A> RewardSamples<S, A> {
     /// `transitions`: state, action, next state, from the coverage distribution of the comparison; only possible ones, if
-    /// others never pay. `draws`: actions and next states for estimating the canonical shape, drawn independently of each
+    /// impossible ones never pay. `draws`: actions and next states for estimating the canonical shape, drawn independently of each
     /// other; their states also serve as the random start states. Duplicates count twice.
     ///
     /// # Errors
@@ -121,12 +121,12 @@ impl SampledReward {
             .collect()
     }
 
-    /// EPIC: the distance of two rewards up to equivalence of their optimal policies, under any dynamics. Both must be measured
+    /// EPIC: the distance between two rewards up to equivalence of their optimal policies, under any dynamics. Both must be measured
     /// on the same samples.
     ///
     /// Both are brought into their canonical shape; the distance is `√((1 − r) / 2)` with Pearson's correlation `r`
-    /// over the transitions. 0 to 1: 0 between rewards that differ by potential shaping of this discount, by a factor
-    /// above 0 and by a shift, and 1 between a reward and its reverse. A reward that is constant, but for shaping, has
+    /// over the transitions. 0 to 1: 0 between rewards that differ by potential shaping with this discount, by a factor
+    /// above 0 and by a shift, and 1 between a reward and its reverse. A reward that is constant, apart from shaping, has
     /// no preference: it is 0 from another such reward and ½ from any other. Distances within rounding are exactly 0:
     /// up to 32 · 2⁻⁵² times (largest reward / standard deviation of the canonical one), summed over both rewards.
     ///
@@ -138,7 +138,7 @@ impl SampledReward {
     /// tabular code (`tabular.py`), see `tests/oracle/reward.json`.
     ///
     /// # Errors
-    /// [`SimilarityError::SizesDiffer`] for rewards of different samples, [`SimilarityError::BadNumber`] for a discount outside
+    /// [`SimilarityError::SizesDiffer`] for different numbers of transitions, [`SimilarityError::BadNumber`] for a discount outside
     /// 0 to 1.
     pub fn distance(&self, other: &Self, discount: f64) -> Result<f64, SimilarityError> {
         if !(0.0..=1.0).contains(&discount) {
@@ -223,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn shaping_of_another_discount_is_noticed() {
+    fn shaping_with_a_different_discount_is_noticed() {
         let goal = of_table(|_, _, next| f64::from(next == 1));
         let soft = shaped(&goal, &[5.0, 1.0, 0.0, 2.0, 3.0], 0.9);
         assert!(apart(&every(), &goal, &soft, 0.5) > 0.1);

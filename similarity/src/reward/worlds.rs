@@ -16,15 +16,15 @@ const DRAWS: usize = 96;
 
 /// The distance between the rewards of two worlds, in `0..=1`: EPIC, which ignores rewards that no choice affects.
 ///
-/// A state is the agent's place and the set of used-up objects; an action triggers one object, or none. For it, a world
+/// A state is the agent's position and the set of used-up objects; an action triggers one object, or none. For it, a world
 /// pays the object's reward (times its odds), or `order_penalty` if out of turn, plus its shaping. Both worlds' rewards
 /// are evaluated on the same 256 transitions, each of which may lead anywhere; objects are matched as in distances of
 /// worlds, and an object that only one world has pays nothing in the other. So 0 means the same reward up to a
 /// constant, a factor above 0 and potential shaping, about 0.7 (√½) unrelated rewards, and 1 the reverse.
 ///
 /// It ignores the reward per second, which is a constant, and how hard a reward is to reach. The discount is that of the
-/// worlds' shaping, the larger of two, by default 0.99. A pseudometric among worlds whose objects are matched alike.
-/// Deterministic. Takes some milliseconds.
+/// worlds' shaping, the larger of two, by default 0.99. A pseudometric among worlds whose objects match in the same way.
+/// Deterministic. Takes a few milliseconds.
 ///
 /// Source: Gleave, Dennis, Legg, Russell and Leike 2021, "Quantifying differences in reward functions".
 ///
@@ -62,7 +62,7 @@ pub fn world_rewards_distance(a: &World, b: &World) -> Result<f64, SimilarityErr
     measure(&a)?.distance(&measure(&b)?, discount)
 }
 
-/// The agent's place, and which objects are used up.
+/// The agent's position, and which objects are used up.
 #[derive(Clone, Debug)]
 struct State {
     place: [f64; 2],
@@ -211,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn reward_per_second_does_not_count() {
+    fn reward_per_second_does_not_matter() {
         let plain = world(&[10.0, -5.0]);
         let hasty = plain
             .clone()

@@ -2,7 +2,7 @@
 
 /// 0 for equal choices, 1 for any others.
 ///
-/// A metric (the discrete one), 0 or 1, no unit. The term for categories in Gower's mix.
+/// A metric (the discrete one), 0 or 1, no unit. The term for categories in Gower's coefficient.
 ///
 /// # Example
 /// ```

@@ -1,4 +1,4 @@
-//! Difference of two headings.
+//! Difference between two headings.
 
 /// The smaller angle between two headings: min(t, 360 − t) with t = |a − b| mod 360.
 ///

@@ -1,11 +1,11 @@
-//! Difference of the counts per kind.
+//! Difference between counts per kind.
 
 use std::collections::BTreeMap;
 
 /// Share of things without a counterpart: Σ |aₖ − bₖ| / Σ max(aₖ, bₖ) over all kinds k; 0 if there is nothing.
 ///
 /// A metric (Ruzicka's, the weighted form of Jaccard's), in `0..=1`, no unit. For a single kind, the difference as a share of
-/// the larger count. Missing kinds count 0. Time proportional to the number of kinds.
+/// the larger count. Missing kinds count as 0. Time proportional to the number of kinds.
 ///
 /// Source: Ruzicka 1958; the triangle inequality as for Jaccard, Kosub 2019.
 ///

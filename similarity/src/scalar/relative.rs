@@ -1,8 +1,8 @@
-//! Difference of two numbers as a share of the larger one.
+//! Difference between two numbers as a share of the larger one.
 
-/// Difference of two numbers as a share of the larger in size: |a − b| / max(|a|, |b|); 0 for two zeros.
+/// Difference between two numbers as a share of the larger magnitude: |a − b| / max(|a|, |b|); 0 for two zeros.
 ///
-/// A metric, in `0..=1` for numbers of one sign, up to 2 for others; no unit, and needs no range. Numbers must be finite. Takes
+/// A metric, in `0..=1` for numbers of the same sign, up to 2 for others; no unit, and needs no range. Numbers must be finite. Takes
 /// two nanoseconds.
 ///
 /// Source: Li 1998, "Relative perturbation theory I" (its relative distance for p = ∞).

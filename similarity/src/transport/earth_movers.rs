@@ -10,7 +10,7 @@ use crate::{Assignment, SimilarityError};
 /// the sets differ in size. In `0..=` the largest distance between two points. A metric between sets up to duplication: a set
 /// and its doubling are 0 apart. Two empty sets are 0 apart.
 ///
-/// Exact: an assignment for sets of one size, network simplex otherwise. Time about `points³` at worst.
+/// Exact: an assignment for sets of equal size, network simplex otherwise. Time about `points³` at worst.
 ///
 /// # Errors
 /// [`SimilarityError::UnequalMasses`] if only one set is empty, [`SimilarityError::BadPoint`] for a coordinate that is not

@@ -12,10 +12,10 @@ pub const MAX_TRANSPORTED: usize = 4096;
 ///
 /// `from`: `(origins,)` and `to`: `(destinations,)`, masses of at least 0 in any unit, whose sums are equal within 1e-9 of the
 /// larger (the difference is taken off the largest mass of the heavier side). `costs`: `(origins, destinations)`, row after row,
-/// any unit, negative ones too. Without any mass the cost is 0.
+/// in any unit, possibly negative. Without any mass the cost is 0.
 ///
 /// The optimum is exact: masses are moved in whole units (2⁻⁶⁰ of the sum) and the dual prices prove it; the cost is that of
-/// the true optimum within rounding, some 1e-14 of the largest cost times the mass. A metric between masses of sum 1 if the
+/// the true optimum within rounding, about 1e-14 of the largest cost times the mass. A metric between masses of sum 1 if the
 /// costs are the distances of a metric (Wasserstein-1). Network simplex, see `network_simplex.rs`: time grows like
 /// `(origins + destinations)^2` to `^3`.
 ///
@@ -52,7 +52,7 @@ pub fn optimal_transport(from: &[f64], to: &[f64], costs: &[f64]) -> Result<Tran
     Ok(TransportPlan { cost, moves })
 }
 
-/// Moves units from origins to destinations at the least cost. Returns origin, destination and units of every move, sorted.
+/// Moves units from origins to destinations at minimum cost. Returns origin, destination and units of every move, sorted.
 /// Both sides have the same number of units.
 pub(crate) fn cheapest_moves(
     from: &[i64],
@@ -85,7 +85,7 @@ pub(crate) fn check_costs(rows: usize, columns: usize, costs: &[f64]) -> Result<
     }
 }
 
-/// The places with mass, if there are not too many.
+/// The indices with mass, if there are not too many.
 fn taken(units: &[i64]) -> Result<Vec<usize>, SimilarityError> {
     let places: Vec<usize> = (0..units.len()).filter(|&place| units[place] > 0).collect();
     SimilarityError::check_count(places.len(), MAX_TRANSPORTED)?;

@@ -2,13 +2,13 @@
 
 use crate::SimilarityError;
 
-/// Largest difference between the sums of both sides, as a share of the larger.
+/// Maximum difference between the sums of both sides, as a share of the larger.
 const SUMS_WITHIN: f64 = 1e-9;
 
 /// The larger sum is about 2 to this power in units: a mass of at least a 128th of the whole loses no bit.
 const BITS: i32 = 60;
 
-/// Masses of both sides in whole units of one size.
+/// Masses of both sides in whole units of equal size.
 #[derive(Clone, Debug)]
 pub(crate) struct Units {
     /// One per origin, including zeros.

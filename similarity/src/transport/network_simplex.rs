@@ -8,7 +8,7 @@ use super::start::greedy;
 /// for ever. Problems of random masses need 2 to 4.
 const ROUND: usize = 64;
 
-/// Moves units from sources to sinks at the least cost: source, sink and units of every move, sorted.
+/// Moves units from sources to sinks at minimum cost: source, sink and units of every move, sorted.
 ///
 /// All units are above 0 and both sides have the same number; `costs`: `(sources, sinks)`, finite, row after row.
 ///
@@ -107,7 +107,7 @@ fn price_all(arcs: &mut Vec<Arc>, tree: &SpanningTree, sources: usize, sinks: us
     }
 }
 
-/// The least difference of a cost and a price. Four at a time, which the compiler vectorises.
+/// The smallest difference between a cost and a price. Four at a time, which the compiler vectorises.
 fn cheapest(row: &[f64], prices: &[f64]) -> f64 {
     let mut least = [f64::INFINITY; 4];
     let (rows, prices) = (row.chunks_exact(4), prices.chunks_exact(4));
@@ -195,7 +195,7 @@ mod tests {
         }
 
         #[test]
-        fn ties_terminate((sources, sinks) in sides(), numbers in prop::collection::vec(0u8..3, 900)) {
+        fn search_with_ties_terminates((sources, sinks) in sides(), numbers in prop::collection::vec(0u8..3, 900)) {
             let costs: Vec<f64> = numbers.into_iter().map(f64::from).collect();
             check(&sources, &sinks, &costs[..sources.len() * sinks.len()]);
         }

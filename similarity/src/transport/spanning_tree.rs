@@ -262,7 +262,7 @@ mod tests {
     }
 
     #[test]
-    fn entering_arc_takes_the_flow_of_a_dearer_path() {
+    fn entering_arc_takes_the_flow_of_a_costlier_path() {
         let mut tree = crossed();
         let reduced_cost = 0.0 - tree.price(0) - tree.price(2);
         assert_eq!(reduced_cost, -10.0);

@@ -11,17 +11,17 @@ use crate::{
     grid_jaccard_distance,
 };
 
-/// A single measure of the distance of two worlds, while [`world_distance`](crate::world_distance) adds up all their
+/// A single measure of the distance between two worlds, while [`world_distance`](crate::world_distance) adds up all their
 /// differences.
 ///
-/// The number depends on the two worlds alone, not on the order of their objects, and is finite, at least 0, 0 for a world and
-/// itself, and symmetric to the last bit. Two worlds without objects are 0 apart; each measure documents its value if only one
+/// The number depends on the two worlds alone, not on the order of their objects, and is finite, at least 0, 0 between a world
+/// and itself, and symmetric to the last bit. Two worlds without objects are 0 apart; each measure documents its value if only one
 /// has objects.
 ///
-/// Measures of *occupancy* compare the places of objects, each class separately. Both worlds become grids of square cells that
+/// Measures of *occupancy* compare the positions of objects, each class separately. Both worlds become grids of square cells that
 /// cover both arenas, so the pair alone decides; objects outside both arenas are ignored. A cell is 1 m wide, or 2, 4, 8 m and
 /// so on if all classes together would take more than [`MAX_CELLS`](crate::MAX_CELLS). The *diameter* is the distance between
-/// the centres of opposite corner cells. Measures of *objects* use each object's class and place. The case of a class is
+/// the centres of opposite corner cells. Measures of *objects* use each object's class and position. The case of a class is
 /// ignored.
 ///
 /// # Example
@@ -44,25 +44,25 @@ use crate::{
 pub enum WorldMeasure {
     /// Occupancy: [`grid_earth_movers_distance`](crate::grid_earth_movers_distance), the mean distance in metres by which a
     /// class must be moved, whatever its number of objects; exact. Classes are added up. A class that only one world has counts
-    /// the diameter, so an empty world is one diameter per class from another. In `0..=` diameter · classes.
+    /// as the diameter, so a world without objects is one diameter per class from any other. In `0..=` diameter · classes.
     EarthMovers,
-    /// Occupancy: [`grid_jaccard_distance`], the share of taken cells that are not taken in both, in `0..=1`. 1 between an
-    /// empty world and another.
+    /// Occupancy: [`grid_jaccard_distance`], the share of taken cells that are not taken in both, in `0..=1`. 1 if only
+    /// one world has objects.
     Jaccard,
     /// Occupancy: [`grid_hausdorff_distance`], the largest distance in metres from a taken cell to the nearest cell of the same
     /// class in the other world, in `0..=` diameter; the diameter if a class is in one world only.
     Hausdorff,
-    /// Occupancy: [`grid_chamfer_distance`], the mean of these distances. The diameter between an empty world and another.
+    /// Occupancy: [`grid_chamfer_distance`], the mean of these distances. The diameter if only one world has objects.
     Chamfer,
     /// Objects: [`ospa`](crate::ospa) with a cut-off of 10 m, the mean distance, in metres in `0..=10`, from an object to its
-    /// counterpart of the same class. An object without one counts 10 m, as does one that is farther away. 10 between an empty
-    /// world and another.
+    /// counterpart of the same class. An object without one counts as 10 m, as does one that is farther away. 10 if only one
+    /// world has objects.
     Ospa,
-    /// Objects: [`counts_distance`], the share of objects without a counterpart of their class, whatever their places, in
-    /// `0..=1`. 1 between an empty world and another.
+    /// Objects: [`counts_distance`], the share of objects without a counterpart of their class, whatever their positions, in
+    /// `0..=1`. 1 if only one world has objects.
     Counts,
-    /// The colours of objects that have one, whatever their places: the mean distance of the best pairing, as a share of the
-    /// distance between the two farthest colours, in `0..=1`. A colour without a counterpart counts 1, so worlds without and
+    /// The colours of objects that have one, whatever their positions: the mean distance of the best pairing, as a share of the
+    /// distance between the two farthest colours, in `0..=1`. A colour without a counterpart counts as 1, so worlds without and
     /// with colours are 1 apart. Objects that look like their model are left out.
     Colors(ColorMeasure),
 }
@@ -106,7 +106,7 @@ impl WorldMeasure {
         }
     }
 
-    /// Which laws the measure satisfies; for occupancy, only among worlds of one arena, see
+    /// Which laws the measure satisfies; for occupancy, only among worlds of the same arena, see
     /// [`WorldMeasure::properties_among`]. None is a metric, because each considers only part of a world.
     pub fn properties(self) -> MetricProperties {
         match self {
@@ -134,7 +134,7 @@ impl WorldMeasure {
         }
     }
 
-    /// The distance of two worlds, in the unit of [`WorldMeasure::label`]. Takes some microseconds to some milliseconds.
+    /// The distance between two worlds, in the unit of [`WorldMeasure::label`]. Takes microseconds to milliseconds.
     ///
     /// # Errors
     /// [`SimilarityError::TooMany`] for more than [`MAX_ASSIGNED`](crate::MAX_ASSIGNED) objects (`ospa`, colours), or

@@ -1,4 +1,4 @@
-//! Distances between worlds by a single measure: of places, of objects, or of colours.
+//! Distances between worlds by a single measure: of occupancy, of objects, or of colours.
 
 mod colors;
 mod measure;

@@ -6,7 +6,7 @@ use driftworld_spec::World;
 
 use crate::{SimilarityError, ospa};
 
-/// Distance in metres counted for a missing object; distances of worlds use the same unit for an object's place.
+/// Distance in metres counted for a missing object; distances between worlds use the same unit for an object's position.
 const CUT_OFF: f64 = 10.0;
 
 /// [`ospa`] of the objects of two worlds.
@@ -17,7 +17,7 @@ pub(super) fn places_apart(a: &World, b: &World) -> Result<f64, SimilarityError>
     ospa(&a, &b, CUT_OFF)
 }
 
-/// Class and place of each object, sorted.
+/// Class and position of each object, sorted.
 fn places(world: &World) -> Vec<(String, [f64; 2])> {
     let objects = world.objects.iter();
     let mut places: Vec<_> = objects

@@ -25,8 +25,8 @@ fn grids(a: &World, b: &World) -> Result<[Grid; 2], SimilarityError> {
     Ok(grids)
 }
 
-/// The sum over classes of the work that moves one to the other, each class of mass 1; the diameter for a class in one world
-/// only. Masses are whole numbers, so cells with equal shares of a class have equal masses.
+/// The sum over classes of the work that turns one world into the other, each class with mass 1; the diameter for a class in
+/// one world only. Masses are whole numbers, so cells with equal shares of a class have equal masses.
 pub(super) fn earth_movers(a: &World, b: &World) -> Result<f64, SimilarityError> {
     let [a, b] = &grids(a, b)?;
     let shape = a.shape();

@@ -1,4 +1,4 @@
-//! [`Placements`]: the places of objects in many worlds, as one distribution per class.
+//! [`Placements`]: the positions of objects in many worlds, as one distribution per class.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -8,10 +8,10 @@ use crate::combined::{Distance, Part, Weights};
 use crate::distribution::Method;
 use crate::{SimilarityError, earth_movers_distance};
 
-/// Distance in metres that counts as 1, as in distances of worlds.
+/// Distance in metres that counts as 1, as in distances between worlds.
 const METRES: f64 = 10.0;
 
-/// Where the objects of each class stand in many worlds of one variant: the actual distribution of places, after walls and
+/// Where the objects of each class stand in many worlds of one variant: the actual distribution of positions, after walls and
 /// rejected placements have changed the declared one.
 #[derive(Clone, Debug, Default)]
 pub struct Placements {
@@ -20,7 +20,7 @@ pub struct Placements {
 }
 
 impl Placements {
-    /// The places of all objects in these worlds. The case of a class is ignored.
+    /// The positions of all objects in these worlds. The case of a class is ignored.
     pub fn of(worlds: &[World]) -> Self {
         let mut by_class: BTreeMap<String, Vec<[f64; 2]>> = BTreeMap::new();
         for object in worlds.iter().flat_map(|world| &world.objects) {
@@ -34,12 +34,12 @@ impl Placements {
         Self { by_class, worlds }
     }
 
-    /// The distance of two sets of places, class by class: the mean distance of an object in tens of metres, by the least work
-    /// that turns one distribution into the other (Wasserstein-1 of all places together, exact). A class that only one has
-    /// counts 1.
+    /// The distance between two sets of positions, class by class: the mean distance by which an object moves, in tens of metres,
+    /// with the minimum work that turns one distribution into the other (Wasserstein-1 of all positions together, exact). A
+    /// class that only one set has counts as 1.
     ///
-    /// Classes are added up. The number of objects in a class does not count: more of them in the same places are 0
-    /// apart. A metric between sets of places of the same classes; if the classes differ, the triangle inequality may
+    /// Classes are added up. The number of objects in a class does not matter: more of them in the same positions are 0
+    /// apart. A metric between sets of positions of the same classes; if the classes differ, the triangle inequality may
     /// fail. All else in the worlds is ignored. `weights`: supplies the weight of the state.
     ///
     /// # Errors
@@ -64,7 +64,7 @@ impl Placements {
         for class in classes {
             let (raw, counts) = match (self.by_class.get(class), other.by_class.get(class)) {
                 (Some(a), Some(b)) => {
-                    // The lesser first, so that the result is symmetric to the last bit.
+                    // In a canonical order of the two, so that the result is symmetric to the last bit.
                     let (a, b) = if a > b { (b, a) } else { (a, b) };
                     let way = earth_movers_distance(a, b)?;
                     (way, way / METRES)
@@ -126,7 +126,7 @@ mod tests {
                 world.reverse();
             }
             prop_assert_eq!(d(&of_a, &of_b), d(&Placements::of(&worlds(&shuffled)), &of_b));
-            // A class that only one has counts 1, whatever the distances: it is a metric only if all have the same classes.
+            // A class that only one has counts as 1, whatever the distances: it is a metric only if all have the same classes.
             let classes = |of: &Placements| of.by_class.keys().cloned().collect::<Vec<_>>();
             if classes(&of_a) == classes(&of_b) && classes(&of_b) == classes(&of_c) {
                 prop_assert!(d(&of_a, &of_c) <= d(&of_a, &of_b) + d(&of_b, &of_c) + 1e-9);
@@ -136,7 +136,7 @@ mod tests {
         }
 
         #[test]
-        fn common_shift_counts_its_length(a in drawn(), east in -30.0..30.0_f64) {
+        fn common_shift_counts_by_its_length(a in drawn(), east in -30.0..30.0_f64) {
             let moved: Vec<Vec<_>> =
                 a.iter().map(|world| world.iter().map(|(class, [x, y])| (*class, [x + east, *y])).collect()).collect();
             let (before, after) = (Placements::of(&worlds(&a)), Placements::of(&worlds(&moved)));

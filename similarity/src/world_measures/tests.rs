@@ -10,8 +10,8 @@ use crate::{ColorMeasure, MetricProperties, Raster, SimilarityError, Weights};
 
 const COLORS: [&str; 3] = ["red", "tan", "navy"];
 
-/// Class, place and colour: two classes, one of them with varying case, places in and outside an arena of 12 × 8 m, and often
-/// the same cell.
+/// Class, position and colour: two classes, one of them with varying case, positions inside and outside an arena of 12 × 8 m,
+/// often in the same cell.
 type Thing = (&'static str, [f64; 2], Option<Color>);
 
 fn things() -> impl Strategy<Value = Vec<Thing>> {
@@ -39,7 +39,7 @@ fn between(measure: WorldMeasure, a: &[Thing], b: &[Thing]) -> f64 {
 }
 
 #[test]
-fn names_round_trip_and_others_are_refused() {
+fn names_round_trip_and_unknown_names_are_refused() {
     for measure in WorldMeasure::all() {
         let name = measure.name();
         assert_eq!(WorldMeasure::from_name(measure.kind(), Some(name)), Some(measure));
@@ -157,7 +157,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
 
     #[test]
-    fn measures_are_symmetric_and_0_on_equals(a in things(), b in things(), turn in 0_usize..5) {
+    fn measures_are_symmetric_and_0_between_equals(a in things(), b in things(), turn in 0_usize..5) {
         let mut turned = a.clone();
         turned.rotate_left(turn.min(a.len()));
         for measure in WorldMeasure::all() {
@@ -208,7 +208,7 @@ proptest! {
     }
 
     #[test]
-    fn equal_class_changes_no_sum_or_maximum(
+    fn class_equal_in_both_worlds_changes_no_sum_or_maximum(
         a in things(), b in things(), more in things(),
     ) {
         let with = |things: &[Thing]| -> Vec<Thing> {

@@ -1,4 +1,4 @@
-//! Reads JSON documents and logs: values within limits, errors in plain words, and the places of values in the text.
+//! Reads JSON documents and logs: values within limits, errors in plain words, and the positions of values in the text.
 
 mod places;
 mod value;
@@ -6,10 +6,10 @@ mod value;
 pub use places::{Wanted, escape, last_key, offsets, repeated};
 pub use value::{Repeats, Stop, parse};
 
-/// Longest key in bytes. Longer ones would appear in every pointer to a value below them.
+/// Maximum length of a key in bytes. Longer keys would appear in every pointer to a value below them.
 pub const MAX_KEY_BYTES: usize = 400;
 
-/// Greatest depth of nested lists and objects: `serde_json`'s limit, which keeps hostile text from overflowing the stack.
+/// Maximum depth of nested lists and objects: `serde_json`'s limit, which keeps hostile text from overflowing the stack.
 pub const MAX_DEPTH: usize = 127;
 
 /// Why a text is not JSON, in plain words with advice.

@@ -1,5 +1,5 @@
-//! Finds the places of values in a JSON text in one pass that stores no values, so that reporting problems in a large document
-//! needs no extra memory.
+//! Finds the positions of values in a JSON text in one pass that stores no values, so that reporting problems in a large
+//! document needs little extra memory.
 
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
@@ -43,7 +43,7 @@ pub fn offsets(text: &str, wanted: &[Wanted]) -> Vec<usize> {
     wanted.iter().zip(&ways).map(offset).collect()
 }
 
-/// Pointers of repeated keys within one object, at most `most`, in the order of the text.
+/// Pointers to keys that are repeated within an object, at most `most`, in the order of the text.
 pub fn repeated(text: &str, most: usize) -> Vec<String> {
     let mut open: Vec<Level> = Vec::new();
     let mut found = Vec::new();
@@ -148,7 +148,7 @@ fn walk<'t>(text: &'t str, mut tell: impl FnMut(Event<'t>) -> bool) {
     }
 }
 
-/// Offsets of a value and of its key; the same for an item of a list.
+/// Offsets of a value and of its key; a list item has the same offset for both.
 #[derive(Clone, Copy)]
 struct Place {
     key: usize,

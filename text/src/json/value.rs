@@ -29,7 +29,7 @@ pub enum Repeats {
     LastCounts,
 }
 
-/// Parses a text of at most `most` values.
+/// Parses a JSON text with at most `most` values.
 ///
 /// # Errors
 /// The parser's error, and the reason if a limit stopped it.

@@ -102,7 +102,7 @@ fn element_weights_scale_the_total() {
     assert_eq!((distance.total, distance.element(Element::R)), (0.0, Some(1.0)));
 }
 
-/// Checks the distance of two variants in the parameter `p`, as the task declares it.
+/// Checks the distance between two variants in the parameter `p`, as the task declares it.
 fn check(parameter: &str, other: &str, measure: &str, expected: f64) {
     let text = format!(
         r#"{{ "name": "t", "parameters": {{ "p": {{ "affects": ["O"], {parameter} }} }}, "variants": {{ "a": {{}}, "b": {{ "p": {other} }} }} }}"#
@@ -224,7 +224,7 @@ fn nonmetric_measure_makes_the_whole_nonmetric() {
 }
 
 #[test]
-fn variants_of_another_task_are_refused_even_under_the_same_name() {
+fn variants_of_a_different_task_with_the_same_name_are_refused() {
     let task = |range: &str| {
         TaskSpec::from_json(
             "t.json",

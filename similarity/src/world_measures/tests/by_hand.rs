@@ -24,7 +24,7 @@ fn diameter() -> f64 {
     170.0_f64.sqrt()
 }
 
-/// The least sum over all ways to give each element of the shorter list one of the longer.
+/// The minimum sum over all ways to pair each element of the shorter list with one of the longer list.
 fn least_sum<T>(short: &[T], long: &[T], cost: &dyn Fn(&T, &T) -> f64) -> f64 {
     fn go<T>(short: &[T], long: &[T], used: &mut Vec<bool>, cost: &dyn Fn(&T, &T) -> f64) -> f64 {
         let Some((first, rest)) = short.split_first() else {
@@ -84,7 +84,7 @@ fn taken(things: &[Thing]) -> BTreeSet<(&'static str, Cell)> {
     CLASSES.iter().flat_map(of_class).collect()
 }
 
-/// The distance from each taken cell to the nearest of its class; once the diameter if a class has none to start from.
+/// The distance from each taken cell to the nearest of its class; the diameter, once, for a class without cells to start from.
 fn ways(a: &[Thing], b: &[Thing]) -> Vec<f64> {
     let mut ways = Vec::new();
     for class in CLASSES {

@@ -47,7 +47,7 @@ fn assert_found(found: (&'static str, f64, f64), measure: &str, raw: f64, normal
     );
 }
 
-/// Difference of lightness plus the Euclidean distance in a and b.
+/// Difference in lightness plus the Euclidean distance in a and b.
 fn hyab_by_hand(a: &str, b: &str) -> f64 {
     let [Lab([l, u, v]), Lab([m, x, y])] = [a, b].map(|name| Lab::from(Color::from_name(name).unwrap()));
     (l - m).abs() + libm::hypot(u - x, v - y)
@@ -85,7 +85,7 @@ fn layouts_are_compared_by_the_requested_aspect_alone() {
         0.25,
         0.5,
     );
-    // Without overlap, the distance between the walls does not count.
+    // Without overlap, the distance between the walls does not matter.
     assert_found(ask("wall_jaccard", three()), "wall jaccard / widest choice", 1.0, 1.0);
     let rooms = |rows: [&str; 5]| format!(r#"{{ "text": {}, "cell": 2 }}"#, serde_json::to_string(&rows).unwrap());
     let doorway = ["#######", "#..#..#", "#.....#", "#..#..#", "#######"];
@@ -123,7 +123,7 @@ fn relative_differences_are_normalised_by_the_domain() {
 }
 
 #[test]
-fn distribution_measures_match_values_by_hand() {
+fn distribution_measures_match_values_computed_by_hand() {
     let at = |x: f64| format!(r#"{{ "normal": {{ "mean": {x}, "std": 0 }} }}"#);
     let ask = |measure: &str, three: [String; 3]| found("distribution", measure, &three.each_ref().map(String::as_str));
     // The energy distance of single numbers is √(2 |a − b|).
@@ -131,7 +131,7 @@ fn distribution_measures_match_values_by_hand() {
     assert_found(energy, "energy / widest", 2.0_f64.sqrt(), 0.5);
     let round = |x: f64, std: f64| format!(r#"{{ "gaussian": {{ "mean": [{x}, 0], "std": {std} }} }}"#);
     let places = ask("bures_wasserstein", [round(0.0, 1.0), round(3.0, 3.0), round(6.0, 1.0)]);
-    // Standard deviations of 3 m and 2 m along both axes.
+    // Means are 3 m apart, and standard deviations differ by 2 m along both axes.
     assert_found(
         places,
         "bures-wasserstein / widest",
