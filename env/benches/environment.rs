@@ -1,4 +1,4 @@
-//! Times of a step, an image and a reset. `driftworld bench env` measures whole batches.
+//! Benchmarks a step, an image and a reset. `driftworld bench env` measures whole batches.
 
 use std::hint::black_box;
 

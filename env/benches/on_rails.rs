@@ -26,7 +26,7 @@ fn moving_object(motion: MotionModel) -> World {
 fn crowd() -> World {
     let cube = |number: u32| {
         let share = |prime: f64| (f64::from(number) * prime).fract() - 0.5;
-        // Multiples of the golden ratio and of the root of two: no two cubes are close, and no two distances are equal.
+        // Multiples of the golden ratio and of the square root of two: no two cubes are close, and no two distances are equal.
         let mut cube = Object::new("cube", [share(0.618_033_988_75) * 94.0, share(0.414_213_562_37) * 94.0]);
         cube.reward = 1.0;
         cube.reward_once_stimulus = vec![Stimulus::AgentCollide];
@@ -65,7 +65,7 @@ fn steps(c: &mut Criterion) {
     group.finish();
 }
 
-/// Worlds 0 under seed 77 of example tasks, planned from start to end.
+/// World 0 under seed 77 of each of several example tasks, planned from start to end.
 fn errands(c: &mut Criterion) {
     let mut group = c.benchmark_group("on rails, a step of an example world");
     group.throughput(Throughput::Elements(1));

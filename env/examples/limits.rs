@@ -112,7 +112,7 @@ fn world(objects: Vec<Object>) -> WorldDraft {
     world
 }
 
-/// Places on a square grid around the origin, `apart` metres apart, with room for the agent.
+/// Positions on a square grid around the origin, `apart` metres apart, with room for the agent.
 fn field(count: usize, apart: f64) -> impl Iterator<Item = [f64; 2]> {
     let side = (count as f64).sqrt().ceil() as usize + 2;
     let middle = side as f64 / 2.0;

@@ -44,7 +44,7 @@ pub enum EnvError {
         /// Length of the state vector.
         expected: usize,
     },
-    /// A batch of no environments, or of too many.
+    /// A batch with no environments, or with too many.
     #[error("batch: found {found} environments, expected 1 to {most}")]
     BatchSize {
         /// Requested environments.
@@ -86,7 +86,7 @@ pub enum EnvError {
         /// Number of environments.
         num_envs: usize,
     },
-    /// The batch has no environment of this index.
+    /// The batch has no environment with this index.
     #[error("batch: found environment {found}, expected 0 to {}", num_envs - 1)]
     NoSuchEnv {
         /// The requested index.
@@ -112,7 +112,7 @@ pub enum EnvError {
         /// The source's reason.
         reason: String,
     },
-    /// A world has other images than the first world of its batch.
+    /// A world requests different images from the first world of its batch.
     #[error(
         "environment {env} of the batch: its world asks for {found}, expected {expected} as for environment 0; give the worlds \
          of a batch the same agent_params.observation_size and modalities"
@@ -125,7 +125,7 @@ pub enum EnvError {
         /// Images of the batch.
         expected: String,
     },
-    /// A file of recordings is damaged, truncated or of another kind.
+    /// A file of recordings is damaged, truncated or of a different kind.
     #[error("line {line}: found {found}, expected {expected}", found = one_line(found), expected = one_line(expected))]
     Recording {
         /// The line, from 1.
@@ -143,7 +143,7 @@ pub enum EnvError {
     Replay {
         /// Index of the experience.
         experience: u64,
-        /// What differs: the reward, the cause of the end, or a step that cannot be made.
+        /// What differs: the reward, the cause of the end, or a step that cannot be taken.
         what: &'static str,
         /// The value in the replay.
         found: String,
@@ -176,7 +176,7 @@ pub enum EnvError {
         /// Maximum number of objects in a world.
         limit: usize,
     },
-    /// The world has no object of this index.
+    /// The world has no object with this index.
     #[error("object: found number {found}, expected less than {count}, the number of objects of this world")]
     NoSuchObject {
         /// The requested index.
@@ -228,7 +228,7 @@ pub enum EnvError {
         what: &'static str,
         /// Its value.
         found: f64,
-        /// Largest allowed value.
+        /// Maximum allowed value.
         most: f64,
     },
     /// An abstraction needs more states than allowed.
@@ -297,7 +297,7 @@ pub enum EnvError {
         /// What was expected.
         expected: String,
     },
-    /// There is no renderer of this name.
+    /// There is no renderer with this name.
     #[error("renderer: found {found:?}, expected cpu, gpu or auto")]
     NoSuchRenderer {
         /// The requested name.
@@ -324,7 +324,7 @@ pub enum EnvError {
         width: u32,
         /// Height in samples.
         height: u32,
-        /// Largest size that the adapter supports.
+        /// Maximum size that the adapter supports.
         most: u32,
         /// The adapter's name.
         adapter: String,

@@ -5,7 +5,7 @@ use driftworld_spec::{World, Zone};
 use crate::assets::{Material, Mesh, Paint, Part};
 use crate::scene::PanelGroup;
 
-/// Corners of the polygon that approximates a disc.
+/// Number of corners of the polygon that approximates a disc.
 const CORNERS: u32 = 64;
 
 /// Height of a patch above the ground, as a fraction of the camera's height: too small to show in depths, large enough to lie
@@ -160,7 +160,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
 
-        /// The triangles of a simple polygon cover exactly its inside.
+        /// The triangles of a simple polygon cover exactly its interior.
         #[test]
         fn triangles_cover_the_zone(
             radii in prop::collection::vec(0.5..5.0f64, 3..12),

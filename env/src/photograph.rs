@@ -1,4 +1,4 @@
-//! Photographs a world's objects one by one, from around and above, for `collect_images`.
+//! Photographs a world's objects one by one, from all sides and from above, for `collect_images`.
 
 use driftworld_spec::{EnvironmentParams, World, WorldDraft};
 

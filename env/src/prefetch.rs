@@ -1,11 +1,11 @@
-//! Requests memory before it is read.
+//! Loads memory into the cache before it is used.
 
 /// Asks the processor to load a value into its cache. Does nothing where Rust has no instruction for it.
 pub(crate) fn prefetch<T: ?Sized>(value: &T) {
     #[cfg(target_arch = "x86_64")]
     {
         use std::arch::x86_64::{_MM_HINT_T1, _mm_prefetch};
-        /// Bytes of a line of the cache.
+        /// Bytes of a cache line.
         const LINE: usize = 64;
         let start = std::ptr::from_ref(value).cast::<i8>();
         for offset in (0..size_of_val(value)).step_by(LINE) {

@@ -50,7 +50,7 @@ pub(crate) struct PanelGroup {
     pub(crate) color: [f32; 3],
     /// Extra height at which they are drawn, as a fraction of the camera's height: 0 for upright panels.
     pub(crate) lift: f32,
-    /// Base edges of upright panels on the ground, from and to; empty for flat ones.
+    /// Base edges of upright panels on the ground, each from and to; empty for flat panels.
     pub(crate) edges: Vec<[[f32; 2]; 2]>,
     /// Height in metres of upright panels, or of the tops of walls; 0 for panels on the ground.
     pub(crate) height: f32,
@@ -212,7 +212,7 @@ impl Scene {
         self
     }
 
-    /// The same scene; in the natural style, with other ground around its arena, for images from outside.
+    /// The same scene; in the natural style, with different ground around its arena, for images from outside.
     #[must_use]
     pub fn with_surroundings(mut self) -> Self {
         if self.natural.is_some() {
@@ -279,7 +279,7 @@ impl Scene {
         self.add_panels(&edges, height, color);
     }
 
-    /// Adds panels on these edges, of one height and colour.
+    /// Adds panels on these edges, all with the same height and colour.
     fn add_panels(&mut self, edges: &[([f32; 2], [f32; 2])], height: f32, color: [f32; 3]) {
         let mut mesh = Mesh::default();
         mesh.corners.reserve(4 * edges.len());

@@ -54,7 +54,7 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// The benchmark's scene, with a moving object, one that pays in passing, and an endless hunt.
+/// The benchmark's scene, in which every object pays when touched, approached or used, and every fourth one wanders.
 fn world() -> World {
     let text = include_str!("../../src/throughput/arena_20.json");
     let scene = World::from_json("arena_20.json", text).expect("the bench's scene is sound");
@@ -126,7 +126,7 @@ fn world_with_things() -> World {
     world.environment_params.map_size = [7.0, 7.0];
     (world.agent_params.agent_width, world.agent_params.carry_limit) = (0.4, 3);
     world.agent_params.modalities = Vec::new();
-    // In circles past all of them.
+    // The agent walks in circles past all of them.
     world.agent_params.max_linear_speed = 0.6;
     world.agent_params.state_features = vec![StateFeature::Position, StateFeature::Carrying];
     world.check().expect("the world is sound")
@@ -144,7 +144,7 @@ fn taken(world: World, num_threads: usize, steps: usize) -> (u64, f64) {
     let mut batch = Batch::new(NUM_ENVS, source, options).expect("the scene starts");
     let actions: [Action; NUM_ENVS] =
         std::array::from_fn(|env| Action::Continuous([4.0 + env as f64, 20.0 - 3.0 * env as f64, 1.0]));
-    // Lists reach their final size in the first rounds.
+    // Lists reach their final size in the first steps.
     for _ in 0..300 {
         batch.step(&actions).expect("the batch goes on");
     }
@@ -173,8 +173,8 @@ fn steps_do_not_allocate() {
     });
     let (taken_by_hands, _) = taken(seen.expect("the world is sound"), 1, 600);
     assert_eq!(taken_by_hands, 0, "pictures of what is carried");
-    // Passing work to another thread allocates one block, and one of the pool's queue once in 63 times, whatever the number of
-    // environments.
+    // Passing work to another thread allocates one block, and one more for the pool's queue once every 63 times, whatever the
+    // number of environments.
     let (taken_by_two, _) = taken(world(), 2, 300);
     assert!(taken_by_two <= 310, "on two threads: {taken_by_two} in 300 steps");
     heaps_take_memory_in_proportion();
@@ -201,7 +201,7 @@ fn heaps_take_memory_in_proportion() {
                 .expect("the episode goes on");
         }
         let taken = PEAK.load(Ordering::Relaxed) - before;
-        // The most contacts in a time step, and the lists of bodies.
+        // The maximum number of contacts in a time step, and the lists of bodies.
         assert!(taken < (48 << 20) + 2000 * count, "{count} cubes: {taken} bytes");
     }
 }

@@ -1,4 +1,4 @@
-//! A batch gives the same numbers and pixels as separate environments, whatever the threads and the autoreset mode.
+//! A batch gives the same numbers and pixels as separate environments, whatever the number of threads and the autoreset mode.
 
 use std::sync::Arc;
 
@@ -69,7 +69,7 @@ fn picture(environment: &Environment) -> Frame {
     frame
 }
 
-/// Compares one environment's images and state in `outputs` with a separate environment.
+/// Compares one environment's images and state in `outputs` with those of a separate environment.
 fn same(outputs: &driftworld_env::Outputs, env: usize, alone: &Environment) {
     let frame = picture(alone);
     let pixels = 24 * 24;
@@ -221,7 +221,7 @@ fn missing_world_stops_only_its_environment() {
 }
 
 #[test]
-fn worlds_with_other_images_are_refused() {
+fn worlds_with_different_images_are_refused() {
     let source: WorldSource = Arc::new(|episode| {
         let mut world = draft(episode);
         world.agent_params.observation_size = 24 + episode.env as u32;

@@ -17,7 +17,7 @@ const ALL: [Modality; 5] = [
 ];
 const SIDE: usize = 12;
 
-/// A world with the modalities of this bit mask.
+/// A world with the modalities in this bit mask.
 fn world(asked: u8) -> World {
     let mut world = WorldDraft {
         max_steps: 3,

@@ -8,7 +8,7 @@ use proptest::prelude::*;
 
 use crate::fixtures::start;
 
-/// Number of times that each stimulus occurs on a path of legs (turn in degrees, metres), at a speed, with this time step.
+/// Number of times that each stimulus occurs on a path of legs (turn in degrees, metres), at this speed and with this time step.
 fn count(mut world: WorldDraft, legs: &[(f64, f64)], speed: f64, seconds: f64) -> [usize; 2] {
     let agent = &mut world.agent_params;
     (agent.max_linear_speed, agent.max_angular_speed, agent.time_step) = (100.0, 3600.0, seconds);
@@ -99,7 +99,6 @@ proptest! {
         for (speed, seconds) in PACES {
             let found = count(world.clone(), &legs, speed, seconds);
             let off = [0, 1].map(|kind| found[kind].abs_diff(slow[kind]));
-            // A path that leaves and comes back within millimetres of an edge may count once more.
             prop_assert!(off == [0, 0], "{found:?} beside {slow:?} at {speed} m/s in steps of {seconds} s");
         }
     }

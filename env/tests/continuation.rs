@@ -36,7 +36,7 @@ fn corridor(start: usize, lies: usize, model: ActionModel, frame_skip: u32) -> W
         legend,
         ..Layout::default()
     };
-    // Places of the letter, by rows from the north; cells are 2 m wide.
+    // Positions of the character, row by row from the north; cells are 2 m wide.
     let places = |letter: char| -> Vec<[f64; 2]> {
         let cells = rows.iter().enumerate().flat_map(|(row, text)| {
             let found = text.chars().enumerate().filter(move |(_, found)| *found == letter);
@@ -134,7 +134,7 @@ fn with_half_the_energy(mut world: WorldDraft) -> WorldDraft {
     world
 }
 
-/// Results and observations of a step, to the bit.
+/// Results and observations of a step, for comparison bit for bit.
 #[derive(Debug, PartialEq)]
 struct Moment {
     step: Step,
@@ -191,7 +191,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
     #[test]
-    fn puzzle_resumes_from_its_text_to_the_bit(
+    fn puzzle_resumes_from_its_document_bit_for_bit(
         start in 0usize..9,
         lies in 0usize..12,
         on_rails in any::<bool>(),
@@ -235,7 +235,7 @@ proptest! {
     }
 }
 
-/// The test above would fail if the saved text lacked any of the three.
+/// The test above would fail if the saved document lacked any of the three.
 #[test]
 fn door_key_and_energy_each_affect_the_resumed_world() {
     let world = with_half_the_energy(corridor(0, 0, ActionModel::ByVelocity, 1));

@@ -133,7 +133,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(5, 12)))]
 
     /// Limits depend only on where objects are: a world that was saved in the middle of a crowd, and whose trees were built in
-    /// another order, resumes to the bit, and so does one restored from a snapshot.
+    /// a different order, resumes bit for bit, and so does one restored from a snapshot.
     #[test]
     fn crowd_resumes_from_its_state_and_from_a_snapshot(
         first in 0usize..5,

@@ -1,4 +1,4 @@
-//! A door obeys its last order, whatever stands in it meanwhile: compares the simulator with a door of a few lines.
+//! A door obeys its last order, whatever stands in it in the meantime: compares the simulator with a reference door of a few lines.
 
 use driftworld_env::{Action, Effect, Environment};
 use driftworld_spec::{Door, Object, Stimulus, Switch, SwitchAction, World, WorldDraft};

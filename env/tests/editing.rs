@@ -102,7 +102,7 @@ fn teleport_requires_room() {
 }
 
 #[test]
-fn teleporting_beside_an_object_is_no_contact() {
+fn teleporting_beside_an_object_is_not_a_contact() {
     let mut environment = start(vec![coin(5.0)]);
     // 0.4 m of barrel and 0.5 m of agent.
     environment.teleport([0.0, 4.075], 0.0).expect("there is room");

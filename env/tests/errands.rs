@@ -9,8 +9,8 @@ use proptest::prelude::*;
 
 use crate::fixtures::{by_expert, key, thing, wall_of};
 
-/// Three rooms in a row, 6 × 8 m each, between walls with a doorway of 1.5 m, at x −3 and at x 3. The agent is in the middle
-/// one.
+/// Three rooms in a row, 6 × 8 m each, separated by walls with a doorway of 1.5 m at x = −3 and x = 3. The agent is in the
+/// middle room.
 fn rooms(doorways: [f64; 2]) -> WorldDraft {
     let mut world = WorldDraft {
         max_steps: 3000,
@@ -63,7 +63,7 @@ fn solved(world: &World) -> Option<u32> {
 fn check(name: &str, make: impl Fn([f64; 2], &dyn Fn(usize) -> f64) -> WorldDraft) {
     let mut failed = Vec::new();
     for number in 0..60_usize {
-        // Places that differ from world to world: fractions of irrational numbers.
+        // Positions that differ from world to world: fractional parts of multiples of irrational numbers.
         let unit = |k: usize| ((number + 1) as f64 * [1.618_034, 1.732_05, 2.236_067, 2.645_751][k % 4]).fract();
         let doorways = [unit(0) * 4.0 - 2.0, unit(1) * 4.0 - 2.0];
         let mut world = make(doorways, &unit);
@@ -247,7 +247,7 @@ fn expert_opens_doors_in_sequence_and_collects_rewards_first() {
 
 /// The world with a locked door in `docs/worlds.md` behaves as described there.
 #[test]
-fn world_of_the_docs_is_solved() {
+fn world_in_the_docs_is_solved() {
     let page = include_str!("../../docs/worlds.md");
     let text = page.split("```").find_map(|part| part.strip_prefix("json\n"));
     let world = World::from_json("docs/worlds.md", text.expect("the page has a world")).expect("it is sound");
@@ -255,7 +255,7 @@ fn world_of_the_docs_is_solved() {
     assert!(solved(&world).is_some_and(|steps| steps < 300));
 }
 
-/// The expert does not attempt the impossible: the agent stands still, and the episode ends by its limit.
+/// The expert does not attempt the impossible: the agent stands still, and the episode ends at its limit.
 #[test]
 fn expert_stands_still_if_nothing_can_be_done() {
     let stands = |change: &dyn Fn(&mut WorldDraft)| {
@@ -312,7 +312,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(16))]
 
     #[test]
-    fn world_on_rails_resumes_to_the_bit(written_at in 0..250_u32, unit in 0.0..1.0_f64) {
+    fn world_on_rails_resumes_bit_for_bit(written_at in 0..250_u32, unit in 0.0..1.0_f64) {
         let mut world = rooms([unit * 3.0 - 1.5, 1.0 - unit]);
         world.agent_params.action_model = ActionModel::OnRails;
         world.agent_params.heading = unit * 300.0;

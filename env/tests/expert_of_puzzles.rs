@@ -201,7 +201,7 @@ fn carried_past_lava([ford, key_x, thickness]: [f64; 3], fails: bool, is_discret
 proptest! {
     #![proptest_config(ProptestConfig { cases: crate::tier::quick_or_full(24, 48), max_global_rejects: 4000, ..ProptestConfig::default() })]
 
-    /// Whatever the order of the list of objects.
+    /// Holds for every order of the list of objects.
     #[test]
     fn solvable_puzzles_are_solved(
         puzzle in puzzle().prop_filter("solvable", Puzzle::can_be_solved),
@@ -289,7 +289,7 @@ proptest! {
     }
 
     /// Lava with a ford lies between the agent and its ball, and again in front of the box: it is never entered, whether it
-    /// ends the episode or costs, also with the steps of an action table.
+    /// ends the episode or costs, even with the steps of an action table.
     #[test]
     fn plans_avoid_zones_that_fail_or_cost(
         ford in -4.0..4.0_f64,
@@ -335,9 +335,9 @@ proptest! {
     }
 }
 
-/// A world that was saved in the middle of a plan resumes to the bit: with a key carried, a door open, and half the energy.
+/// A world that was saved in the middle of a plan resumes bit for bit: with a key carried, a door open, and half the energy.
 #[test]
-fn saved_plan_resumes_to_the_bit() {
+fn saved_plan_resumes_bit_for_bit() {
     let mut between = [Between::Wall; 7];
     (between[0], between[3], between[1]) = (Between::Lock(0), Between::Lock(0), Between::Lock(1));
     let puzzle = Puzzle {

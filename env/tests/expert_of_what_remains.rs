@@ -32,7 +32,7 @@ fn field(pays: f64, has_things: bool) -> WorldDraft {
     world
 }
 
-/// Four walls around a place.
+/// Four walls around a position.
 fn cell([x, y]: [f64; 2]) -> Vec<Wall> {
     let wall = |low: [f64; 2], high: [f64; 2]| {
         wall_of([

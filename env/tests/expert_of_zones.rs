@@ -39,7 +39,7 @@ fn lava(corners: [[f64; 2]; 2]) -> Zone {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 100)))]
 
-    /// A stream of lava with a ford somewhere, a pool on either side, and the goal beyond.
+    /// A stream of lava with a ford somewhere, up to two pools that cost, and the goal beyond.
     #[test]
     fn lava_is_crossed_at_the_ford(
         ford in -11.0..11.0f64,

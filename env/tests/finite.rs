@@ -20,7 +20,7 @@ impl Dice {
     }
 }
 
-/// Words for text values of the world's schema.
+/// Words for string values in the world's schema.
 const WORDS: &str = "a b tree geometric door switch rock animal red 2";
 
 fn resolved<'a>(root: &'a Value, mut node: &'a Value) -> &'a Value {
@@ -100,7 +100,7 @@ fn world(dice: &mut Dice) -> World {
         let key = keys[dice.roll(keys.len())];
         let drawn = value(root, &properties[key], dice);
         match (&mut place[key.as_str()], drawn) {
-            // Lists grow, also by overlapping objects.
+            // Lists grow, sometimes by many overlapping objects.
             (Value::Array(list), Value::Array(more)) if key != "modalities" => {
                 let times = [1, 1, 1, 25][dice.roll(4)];
                 list.extend(more.iter().flat_map(|one| std::iter::repeat_n(one.clone(), times)));

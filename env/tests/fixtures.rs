@@ -1,4 +1,4 @@
-//! Shared by several tests: episodes, walls, and objects with tags.
+//! Helpers for several tests: episodes, walls, and objects with tags.
 
 use driftworld_env::{Action, Agent, Environment, OnRailsAgent, Step};
 use driftworld_spec::{Object, Portable, Wall, World, WorldDraft};

@@ -31,7 +31,7 @@ fn import(bytes: &[u8]) -> Result<Imported, EnvError> {
     })
 }
 
-/// A tetrahedron of 1 m with glTF's front; every case is a broken variant of it.
+/// A tetrahedron of 1 m in glTF's axes; every case is a broken variant of it.
 fn sound() -> Value {
     let corners: [[f32; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let indices: [u16; 12] = [0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3];

@@ -21,7 +21,7 @@ fn options(class: &str) -> ImportOptions {
     }
 }
 
-/// A GLB file of one mesh: a quad from (0, 0, 0) to (2, 1, 0) in glTF's axes, with its front towards +z.
+/// A GLB file with one mesh: a quad from (0, 0, 0) to (2, 1, 0) in glTF's axes, with its front towards +z.
 struct Quad {
     json: Value,
     binary: Vec<u8>,
@@ -54,7 +54,7 @@ impl Quad {
         quad
     }
 
-    /// Adds an accessor of these bytes; returns its index.
+    /// Adds an accessor for these bytes; returns its index.
     fn add(&mut self, bytes: &[u8], mut accessor: Value) -> usize {
         let views = self.json["bufferViews"].as_array_mut().expect("views are a list");
         views.push(json!({"buffer": 0, "byteOffset": self.binary.len(), "byteLength": bytes.len()}));
@@ -141,7 +141,7 @@ fn mirrored_nodes_still_show_their_front() {
 }
 
 #[test]
-fn strips_and_fans_are_wound_as_lists_are() {
+fn strips_and_fans_are_wound_like_lists() {
     for (mode, indices) in [(5, [0_u8, 1, 2, 3]), (6, [0, 1, 3, 2])] {
         let mut quad = Quad::new();
         let number = quad.add(&indices, json!({"componentType": 5121, "count": 4, "type": "SCALAR"}));
@@ -196,7 +196,7 @@ fn colours_combine_factor_and_corners_in_linear_light() {
     let asset = quad
         .set("/meshes/0/primitives/0/attributes/COLOR_0", json!(number))
         .asset();
-    // A triangle of red corners, and one with a third of linear blue.
+    // A triangle with red corners, and one with a third of linear blue.
     assert_eq!(colors(&asset), [[213, 0, 156], [255, 0, 0]]);
 }
 
@@ -213,8 +213,8 @@ fn two_pixels() -> Vec<u8> {
     png
 }
 
-/// A quad with a texture of two pixels. The first triangle is in the left half, the second one in the right half, with corners
-/// 0 and 3 on the border; everything is shifted to the right by `pictures` images.
+/// A quad with a texture of two pixels. The first triangle is in the left half, the second in the right half, with corners 0
+/// and 3 on the border; all are shifted to the right by `pictures` images.
 fn textured(pictures: f32) -> Quad {
     let mut quad = Quad::new();
     let places: Vec<u8> = [[0.5_f32, 0.0], [0.0, 0.5], [1.0, 0.5], [0.5, 1.0]]

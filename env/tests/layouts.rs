@@ -69,7 +69,7 @@ fn world(layout: Layout, start: usize, goal: usize, change: impl FnOnce(&mut Wor
     world.check().unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The same walls as separate walls.
+/// The world with its layout's walls as separate walls.
 fn with_single_walls(world: &World) -> World {
     let plan = world.plan().expect("the world has a layout").clone();
     let walls = plan.walls.into_iter().map(|wall| Wall {
@@ -85,7 +85,7 @@ fn with_single_walls(world: &World) -> World {
     single.unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Everything that an agent can observe of a step.
+/// Everything that an agent can observe in a step.
 fn told(environment: &mut Environment, action: Action) -> (String, Vec<u8>, Vec<u32>) {
     let step = environment.step(action).expect("the action is sound");
     let said = format!("{:?} {} {}", environment.agent(), step.reward, step.terminated);
@@ -165,7 +165,7 @@ proptest! {
     }
 }
 
-/// Whether the on-rails agent collects the goal within the number of steps that a walk of that length may take.
+/// Whether the on-rails agent collects the goal within 1500 steps.
 fn expert_arrives(world: World) -> bool {
     let mut environment = Environment::new(world);
     let mut agent = OnRailsAgent::new();

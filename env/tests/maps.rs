@@ -46,7 +46,7 @@ fn world(layout: Layout) -> World {
     world.check().expect("the world is sound")
 }
 
-/// The pixel at a place on a square map.
+/// The pixel at a position on a square map.
 fn pixel(world: &World, image: &Image, place: [f64; 2]) -> [u8; 3] {
     let span = world
         .environment_params
@@ -121,7 +121,7 @@ fn door_is_a_bar_along_its_leaf() {
 }
 
 #[test]
-fn path_is_a_line_over_its_places() {
+fn path_is_a_line_through_its_positions() {
     let mut world = WorldDraft::default();
     world.environment_params.map_size = [12.0, 12.0];
     let world = world.check().expect("the world is sound");

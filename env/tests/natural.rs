@@ -1,5 +1,5 @@
-//! Natural looks of classes with a plain one: the same colliders and similar sizes, distinct shapes, few triangles, and exactly
-//! the same trajectories.
+//! Models in the natural style, compared with the plain ones: the same colliders and similar sizes, distinct shapes, few
+//! triangles, and exactly the same trajectories.
 
 use driftworld_env::{Action, Camera, CpuRenderer, Environment, Frame, Scene, asset, asset_in, classes};
 use driftworld_spec::{Layout, Looks, Maze, Model, Object, Style, World, WorldDraft};
@@ -58,7 +58,7 @@ fn natural_models_keep_colliders_and_nearly_keep_sizes() {
 }
 
 #[test]
-fn natural_trees_have_few_more_triangles_nearby_and_half_as_many_far_away() {
+fn natural_trees_have_a_few_more_triangles_nearby_and_half_as_many_far_away() {
     let mean = |style: Style, level: usize| {
         let of = |number: u32| {
             let asset = asset_in(style, "tree", &Model(number.to_string()));

@@ -1,9 +1,9 @@
-//! The built-in learner learns, is reproducible to the bit, and its frozen copies never change.
+//! The built-in learner learns and is reproducible bit for bit, and its frozen copies never change.
 
 use driftworld_env::{Agent, Environment, RandomAgent, SarsaAgent};
 use driftworld_spec::{Color, Object, Stimulus, World, WorldDraft};
 
-/// A field with blue cubes that pay, at places that depend on the number.
+/// A field with blue cubes that pay, at positions that depend on the number.
 fn field(number: u64) -> World {
     let mut draft = WorldDraft {
         max_steps: 100,
@@ -74,7 +74,7 @@ fn evaluations_do_not_change_copy_or_learner() {
     let (mut evaluated, mut left_alone) = (taught(10), taught(10));
     let mut copy = evaluated.frozen().expect("it has copies");
     let earned = mean(copy.as_mut());
-    // Even if a caller lets a copy learn.
+    // This holds even if a caller lets a copy learn.
     episode(copy.as_mut(), 5, true);
     assert_eq!(mean(copy.as_mut()), earned);
     for number in 50..60 {

@@ -1,4 +1,4 @@
-//! Carried things are shown at the lower edge of the agent's colours, if the world enables it, and nowhere else.
+//! Carried things are shown at the bottom of the agent's colour image, if the world enables it, and nowhere else.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use crate::fixtures::{key, thing};
 
 const USE: Action = Action::Continuous([0.0, 0.0, 1.0]);
 
-/// Things of several classes within reach, and a carry limit for some of them.
+/// Things of several classes within reach, to be carried up to this limit.
 fn draft(size: [u32; 2], limit: u32, colors: &[[f64; 3]]) -> WorldDraft {
     let mut world = WorldDraft::default();
     let place = |number: usize| [0.25 * number as f64 - 0.4, 1.1 + 0.1 * number as f64];
@@ -65,7 +65,7 @@ proptest! {
 
     /// Only colours change, only in the lowest fifth (or eight rows), and only while something is carried.
     #[test]
-    fn carried_things_change_only_the_lower_edge_of_colours(
+    fn carried_things_change_only_the_bottom_of_the_colour_image(
         size in prop::array::uniform2(8u32..90),
         supersampling in 1u32..3,
         limit in 0u32..5,
@@ -100,7 +100,7 @@ proptest! {
         }
     }
 
-    /// A batch shows the same as single environments, with any renderer and at any size.
+    /// A batch shows the same pixels as single environments, with any instruction set.
     #[test]
     fn batches_and_renderers_show_carried_things_alike(colors in prop::collection::vec(prop::array::uniform3(0.0..1.0f64), 1..4)) {
         let world = draft([60, 50], 3, &colors);

@@ -1,4 +1,4 @@
-//! Texts on signs are readable in images of agents' usual size, and are left out where they would flicker.
+//! Text on signs is readable in images of agents' usual size, and is left out where it would flicker.
 
 use driftworld_env::{Camera, CpuRenderer, Frame, Scene};
 use driftworld_spec::{Color, Object, World, WorldDraft};
@@ -6,7 +6,7 @@ use driftworld_spec::{Color, Object, World, WorldDraft};
 /// Width and height of the agent's images.
 const SIDE: u32 = 84;
 
-/// Letters of a text, and squares per letter across and down.
+/// Number of characters of a text, and of squares per character across and down.
 const LETTERS: usize = 3;
 const COLUMNS: usize = 5;
 const ROWS: usize = 7;
@@ -49,10 +49,10 @@ fn board(frame: &Frame) -> [[usize; 2]; 2] {
     [columns, [rows[0], rows[rows.len() - 1] + 1]]
 }
 
-/// Which squares of each letter are darker than half-way between the board and the darkest square.
+/// Which squares of each character are darker than halfway between the board and the darkest square.
 fn squares(frame: &Frame) -> Vec<Vec<bool>> {
     let [[left, right], [top, bottom]] = board(frame);
-    // A margin of one square beside each letter, above and below.
+    // A margin of one square beside each character, above and below.
     let across = (right - left) as f32 / (LETTERS * (COLUMNS + 1) + 1) as f32;
     let down = (bottom - top) as f32 / (ROWS + 2) as f32;
     let at = |letter: usize, k: usize| {
@@ -67,7 +67,7 @@ fn squares(frame: &Frame) -> Vec<Vec<bool>> {
     (0..LETTERS).map(letter).collect()
 }
 
-/// All letters in groups of three, one group per sign.
+/// All letters and digits in groups of three, one group per sign.
 fn texts() -> Vec<String> {
     let letters: Vec<char> = ('A'..='Z').chain('0'..='9').collect();
     letters.chunks(LETTERS).map(|text| text.iter().collect()).collect()
@@ -75,7 +75,7 @@ fn texts() -> Vec<String> {
 
 #[test]
 fn three_letters_are_readable_at_84_pixels_from_a_few_metres() {
-    // Reference shapes of the letters from a nearby, large image.
+    // Reference shapes of the characters from a nearby, large image.
     let templates: Vec<(char, Vec<bool>)> = texts()
         .iter()
         .flat_map(|text| {

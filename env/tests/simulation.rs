@@ -368,7 +368,7 @@ fn bits(environment: &Environment) -> Vec<u32> {
     environment.state_vector().into_iter().map(f32::to_bits).collect()
 }
 
-/// A small world with something of everything.
+/// A small world with a bit of everything.
 fn arena() -> WorldDraft {
     let mut objects = vec![
         cube(4.0),

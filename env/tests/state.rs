@@ -1,4 +1,4 @@
-//! A running world that was saved as a document, or kept in memory, resumes to the bit, including its images.
+//! A running world that was saved as a document, or kept in memory, resumes bit for bit, including its images.
 
 use driftworld_env::{Action, Agent, EnvError, Environment, RandomAgent};
 use driftworld_spec::{
@@ -9,7 +9,7 @@ use proptest::prelude::*;
 
 use crate::fixtures::wall_of;
 
-/// A small world with something of everything that has progress.
+/// A small world with a bit of everything that has progress.
 fn world(action_model: ActionModel, frame_skip: u32) -> World {
     let object = |class: &str, at: [f64; 2]| Object::new(class, at);
     let mut coin = object("geometric", [2.0, 2.5]);
@@ -92,7 +92,7 @@ fn start(world: World) -> Environment {
     Environment::new(world)
 }
 
-/// Everything observable of a step and of the moment after it, as exact text.
+/// Everything observable in a step and in the moment after it, as exact strings.
 type Trace = Vec<Vec<String>>;
 
 /// The first step in which two traces differ, and how.
@@ -105,7 +105,7 @@ fn difference(a: &Trace, b: &Trace) -> Option<String> {
     Some(format!("step {number}: {apart:?}"))
 }
 
-/// The scene is fully determined by the objects' states.
+/// Checks that the objects' states fully determine the scene.
 fn expect_scene_of_state(environment: &Environment) {
     let items = &environment.scene().items;
     for (item, object) in items.iter().zip(environment.objects()) {
@@ -148,7 +148,7 @@ fn actions(seed: u64, environment: &Environment, count: usize) -> Vec<Action> {
         let Action::Continuous([a, b, c]) = agent.act(environment) else {
             panic!("the space is continuous");
         };
-        // Sometimes to a place, for agents that walk to places.
+        // At least every third action interacts.
         actions.push(Action::Continuous([a, b, if number % 3 == 0 { 1.0 } else { c }]));
     }
     actions
@@ -266,7 +266,7 @@ fn counters_at_their_limits_do_not_overflow() {
 }
 
 #[test]
-fn state_without_a_seed_takes_its_worlds() {
+fn state_without_a_seed_uses_its_worlds_seed() {
     let heading = |tag: &str, seed: Option<u64>| {
         let mut wanderer = Object::new("barrel", [3.0, 3.0]);
         (wanderer.motion_model, wanderer.speed) = (MotionModel::RandomWaypoint, 1.0);
@@ -302,7 +302,7 @@ fn old_state_without_per_object_random_numbers_resumes() {
 
 #[test]
 fn world_with_only_a_seed_as_progress_is_at_its_start() {
-    // The agent stands in the barrel: a start is no contact, and pays nothing.
+    // The agent starts in the barrel: that contact begins, and pays, in the first step.
     let touched = || {
         let mut barrel = Object::new("barrel", [0.0, 0.5]);
         barrel.reward = 5.0;

@@ -75,7 +75,7 @@ fn door_that_opens_on_touch_closes_after_its_time_behind_the_agent() {
     let mut environment = start(draft(door));
     let events = steps(&mut environment, AHEAD, 17);
     assert_eq!(effects(&events), [(0, Effect::Opened)]);
-    // It stands in the doorway for longer than the door would stay open.
+    // The agent stands in the doorway for longer than the door would stay open.
     steps(&mut environment, AHEAD, 4);
     steps(&mut environment, WAIT, 30);
     let stands = environment.agent();
@@ -132,7 +132,7 @@ fn key_unlocks_its_door_and_disappears_if_consumed() {
             (vec![], 0.0),
             "locked doors pay nothing"
         );
-        // Around, to the key behind it.
+        // Turns around, to the key behind the agent.
         steps(&mut environment, Action::Continuous([0.0, 90.0, 0.0]), 20);
         assert_eq!(effects(&steps(&mut environment, USE, 1)), [(2, Effect::PickedUp)]);
         assert_eq!(environment.state_vector(), [1.0, 25.0, 3.0]);
@@ -236,7 +236,7 @@ fn held_action_interacts_once_and_rules_end_the_episode() {
 }
 
 #[test]
-fn delivery_requires_all_objects_of_the_tag() {
+fn delivery_requires_all_objects_with_the_tag() {
     let mut world = draft(Door::default());
     world.objects = vec![
         key("ball", [0.0, 1.0]),

@@ -167,7 +167,7 @@ proptest! {
     }
 
     #[test]
-    fn saved_house_resumes_to_the_bit(
+    fn saved_house_resumes_bit_for_bit(
         actions in prop::collection::vec(action(), 50..300),
         share in 0.0..1.0_f64,
     ) {

@@ -1,5 +1,5 @@
-//! Sliding: along any obstacle the agent, a mover or a pushed body keeps the component of its velocity parallel to it, and
-//! passes nothing.
+//! Sliding: along any obstacle, the agent, a mover or a pushed body keeps the component of its velocity parallel to it, and
+//! passes through nothing.
 
 #![expect(clippy::disallowed_methods, reason = "compared within a tolerance")]
 
@@ -9,7 +9,7 @@ use proptest::prelude::*;
 
 use crate::fixtures::{start, wall_of};
 
-/// A wall of this length in metres through a point, rotated by degrees clockwise from +y.
+/// A wall with this length in metres through a point, at this bearing in degrees clockwise from +y.
 fn wall(through: [f64; 2], bearing_deg: f64, length: f64) -> Wall {
     let along = direction(bearing_deg).map(|part| part * length / 2.0);
     let across = direction(bearing_deg + 90.0).map(|part| part * 0.1);
@@ -147,7 +147,7 @@ proptest! {
         width in 0.2..2.0_f64,
         speed in 0.5..30.0_f64,
     ) {
-        // Two walls from one point, with the agent between them on its way to it.
+        // Two walls that meet at a point, with the agent between them on its way to that point.
         let mut world = arena(300.0);
         let axis = direction(bearing);
         let polygon = |turn: f64| {
@@ -322,7 +322,7 @@ proptest! {
     }
 
     #[test]
-    fn tip_of_a_wall_stops_nobody(
+    fn tip_of_a_wall_does_not_stop_the_agent(
         half in prop_oneof![Just(2.5), Just(10.0), Just(22.5), Just(45.0), Just(60.0), 2.0..75.0_f64],
         off in prop_oneof![-0.02..-0.002_f64, 0.002..0.02_f64],
         turn in 0.0..360.0_f64,

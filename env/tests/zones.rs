@@ -1,4 +1,4 @@
-//! Effects of zones on the agent inside: rewards, speed, ends of the episode, and teleports.
+//! Effects of zones on the agent inside: rewards, speed, the end of the episode, and teleports.
 
 use driftworld_env::{Action, Agent, Environment, RandomAgent};
 use driftworld_spec::{ActionModel, Object, World, WorldDraft, Zone, ZoneEnd};
@@ -84,7 +84,7 @@ proptest! {
         }
     }
 
-    /// Walking through a disc pays for the time on the chord, up to one time step at either end, and for one entry.
+    /// Walking through a disc pays for the time on the chord, give or take one time step, and for one entry.
     #[test]
     fn crossing_a_zone_pays_for_the_time_in_it(
         offset in -2.5..2.5f64,
@@ -107,7 +107,7 @@ proptest! {
         prop_assert!((earned - expected).abs() <= rate.abs() * time_step * 1.001 + 1e-6, "{earned} for {expected}");
     }
 
-    /// Rewards and speed do not depend on the order of the list: to the bit.
+    /// Rewards and positions do not depend on the order of the list, bit for bit.
     #[test]
     fn order_of_zones_does_not_matter(
         zones in prop::collection::vec(zone(), 1..7),
@@ -129,7 +129,7 @@ proptest! {
         }
     }
 
-    /// The speed is the largest one times all factors at the agent's place at the beginning of a time step.
+    /// The speed is the maximum speed times all factors at the agent's position at the beginning of a time step.
     #[test]
     fn factors_on_the_speed_are_multiplied(zones in prop::collection::vec(zone(), 0..5), heading in 0.0..360.0f64) {
         let factor: f64 = zones.iter().filter(|zone| zone.contains([0.0; 2])).map(|zone| zone.speed_factor).product();
@@ -190,7 +190,7 @@ fn zones_that_teleport_to_each_other_work_both_ways() {
         0.0,
         "at its edge"
     );
-    // Into the first zone in the first time steps, and on with the others from the middle of the second.
+    // Enters the first zone within the first time steps; during the remaining ones it continues from the middle of the second zone.
     let into = step(&mut environment, Action::Continuous([0.9, 0.0, 0.0]));
     assert_eq!(into.reward, 11.0, "arriving is entering");
     assert!((-19.5..-19.0).contains(&environment.agent().position[1]));
@@ -233,7 +233,7 @@ fn agent_placed_into_a_zone_from_outside_has_not_entered_it() {
 }
 
 #[test]
-fn worlds_of_the_docs_are_valid() {
+fn worlds_in_the_docs_are_valid() {
     let page = include_str!("../../docs/worlds.md");
     let texts: Vec<&str> = page
         .split("```json\n")

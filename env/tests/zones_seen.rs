@@ -31,7 +31,7 @@ fn zone() -> impl Strategy<Value = Zone> {
         if is_disc {
             Zone::disc([x, y], size)
         } else {
-            // A concave one.
+            // A concave polygon.
             Zone::polygon(vec![
                 [x, y],
                 [x + size, y - size],
@@ -70,7 +70,7 @@ proptest! {
                 f64::from(at[0]) + metres * (sin + right * cos),
                 f64::from(at[1]) + metres * (cos - right * sin),
             ];
-            // Not at the border, where a disc's polygon is slightly smaller, and where pixels are large.
+            // Skips the border, where a disc's polygon is slightly smaller, and where pixels are large.
             let margin = 0.02 + 0.04 * metres * metres / f64::from(height) * step;
             let around = [[0.0, 0.0], [0.0, margin], [margin, 0.0], [0.0, -margin], [-margin, 0.0]]
                 .map(|by| zone.contains([place[0] + by[0], place[1] + by[1]]));
@@ -91,7 +91,7 @@ proptest! {
         prop_assert!(wrong.len() <= 14, "{} pixels: {:?}", wrong.len(), &wrong[..3]);
     }
 
-    /// With any instruction set: to the bit.
+    /// Every instruction set renders zones the same, bit for bit.
     #[test]
     fn instruction_sets_render_zones_alike(
         zones in prop::collection::vec(zone(), 1..6),

@@ -57,7 +57,7 @@ fn batches(c: &mut Criterion) {
     }
 }
 
-/// The same on the CPU, on one thread.
+/// Renders colour images on the CPU, on one thread.
 fn processor(c: &mut Criterion) {
     let (environment, cameras) = circle();
     let mut renderer = CpuRenderer::new();

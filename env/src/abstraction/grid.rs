@@ -1,4 +1,4 @@
-//! [`StateGrid`]: maps places and headings to numbers of states.
+//! [`StateGrid`]: maps positions and headings to state numbers.
 
 /// Number of headings that a state can have: every 45°, starting at +y.
 pub const NUM_HEADINGS: usize = 8;
@@ -18,7 +18,7 @@ pub struct StateGrid {
 }
 
 impl StateGrid {
-    /// The smallest grid that covers an area of these sides in metres, centred on the origin.
+    /// The smallest grid that covers an area with these side lengths in metres, centred on the origin.
     pub(super) fn over(area: [f64; 2], cell: f64) -> Self {
         let cells = area.map(|side| (side / cell - 1e-9).ceil().max(1.0) as usize);
         Self { cell, cells }
@@ -46,7 +46,7 @@ impl StateGrid {
         Some(([middle(0), middle(1)], heading as f64 * TURN))
     }
 
-    /// The state of a place in metres and a heading in degrees; a place outside the grid belongs to the nearest cell.
+    /// The state for a position in metres and a heading in degrees; a position outside the grid belongs to the nearest cell.
     pub fn state_at(&self, place: [f64; 2], heading_deg: f64) -> usize {
         let [column, row] = [0, 1].map(|axis| {
             let cells = place[axis] / self.cell + self.cells[axis] as f64 / 2.0;

@@ -17,7 +17,7 @@ use walker::{Walked, Walker};
 /// Maximum number of states of a [`WorldAbstraction`].
 pub const MAX_ABSTRACT_STATES: usize = 1 << 20;
 
-/// The longest macro action in seconds.
+/// Maximum duration of a macro action in seconds.
 pub const MAX_MACRO_SECONDS: f64 = 60.0;
 
 /// Number of macro actions: ahead, ahead and left, ahead and right, left, right, and interact.
@@ -31,7 +31,7 @@ pub struct Abstraction {
     /// Seconds of simulated time for which an action is held, above 0 to [`MAX_MACRO_SECONDS`]; 0.5 by default. Rounded up to
     /// whole steps of the world.
     pub seconds: f64,
-    /// Sides in metres of the area that the cells cover; by default the world's arena.
+    /// Side lengths in metres of the area that the cells cover; by default the world's arena.
     pub area: Option<[f64; 2]>,
     /// The catalogue of assets.
     pub catalogue: Catalogue,
@@ -53,11 +53,11 @@ impl Default for Abstraction {
 /// A state is a cell and a heading; everything else is as at the start of the world: each object is present, pays what it paid
 /// then, and starts its own motion. So the tables reflect walls, the agent's body and speed, the time step, how long actions
 /// are held, the action model, solid and pushed objects, and rewards. Everything that was taken, pushed or moved is
-/// reset after the action; limits of steps and seconds are ignored; rules about the return count only what this one
-/// action earns. Uncertain rewards pay their mean.
+/// reset after the action; step and time limits are ignored; rules about the return count only what this one action earns.
+/// Uncertain rewards pay their mean.
 ///
-/// Actions are in the order of [`NUM_MACRO_ACTIONS`]; each is done at the agent's full speed, by the nearest row if the world
-/// has a table of actions. An agent that cannot interact stands still instead.
+/// Actions are in the order of [`NUM_MACRO_ACTIONS`]; each is performed at the agent's full speed, with the nearest row if the
+/// world has an action table. An agent that cannot interact stands still instead.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WorldAbstraction {
     /// Maps between states and poses.
@@ -66,8 +66,8 @@ pub struct WorldAbstraction {
     pub states: usize,
     /// Number of actions: [`NUM_MACRO_ACTIONS`].
     pub actions: usize,
-    /// `(states · actions,)`, row-major by state: the successor state. The end, and states in which the agent has no room, lead
-    /// to themselves.
+    /// `(states · actions,)`, row-major by state: the successor state. The end leads to itself. A state in which the agent has
+    /// no room leads to the nearest neighbour in which it has, or to itself.
     pub successors: Vec<u32>,
     /// `(states · actions,)`: the reward of the action, in points.
     pub rewards: Vec<f64>,
@@ -225,7 +225,8 @@ fn tables(world: &World, grid: StateGrid, open: &[bool], walked: &[Vec<Walked>])
     found
 }
 
-/// The state of a pose. If the agent has no room in that cell, the nearest of the eight cells around it; otherwise `otherwise`.
+/// The state of a pose. If the agent has no room in that cell, the state in the nearest of the eight cells around it that has
+/// room; if none has, `otherwise`.
 fn standing(grid: StateGrid, open: &[bool], place: [f64; 2], heading_deg: f64, otherwise: usize) -> usize {
     let own = grid.state_at(place, heading_deg);
     if open[own / NUM_HEADINGS] {

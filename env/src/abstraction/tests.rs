@@ -48,7 +48,7 @@ fn touch_reward_is_paid_once_by_the_touching_action() {
 }
 
 #[test]
-fn all_episode_ends_lead_to_the_end_state() {
+fn ended_episode_leads_to_the_end_state() {
     let found = abstracted(|world| world.rules.success = vec![driftworld_spec::EndCondition::AllCollected]);
     let from = found.grid.state_at([1.0, 3.0], 0.0) * found.actions;
     assert_eq!(found.successors[from] as usize, found.grid.end());

@@ -10,7 +10,7 @@ pub trait Agent {
     /// Called before each episode, with a seed for all random numbers that the agent draws in it.
     ///
     /// Within a run, every evaluation of a world gets the same seed, so that an unchanged agent acts the same way again.
-    /// Learning in that world again gets another seed. Worlds of the same index and seed get the same agent seed in all
+    /// Learning in that world again gets a different seed. Worlds with the same index and seed get the same agent seed in all
     /// variants of a task.
     fn begin(&mut self, _seed: u64) {}
 

@@ -2,7 +2,7 @@
 
 use super::occupancy::OccupancyGrid;
 
-/// Cost of a step to a straight and to a diagonal neighbour, in fifths of a cell.
+/// Cost of a straight and of a diagonal step, in fifths of a cell.
 pub(super) const STRAIGHT: u32 = 5;
 pub(super) const SLANTING: u32 = 7;
 
@@ -12,8 +12,8 @@ pub(super) const BLOCKED: u32 = 40;
 /// More than the largest step cost, so that queued cells are never a full round ahead; a power of two.
 const NUM_BUCKETS: usize = 512;
 
-/// Which cell of a step decides whether the step counts as blocked. On a walk from far to near it is always the cell that the
-/// walk leaves.
+/// Which cell of a step decides whether the step counts as blocked. In terms of the walk, it is always the cell that the walk
+/// leaves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Charge {
     /// The flood spreads from the walk's goal: the cell that the flood enters.

@@ -23,13 +23,13 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    /// Cells over an arena of these sides in metres.
+    /// Cells over an arena with these side lengths in metres.
     #[cfg(test)]
     pub(super) fn over(size: [f32; 2]) -> Self {
         Self::of_side(size, LEAST_SIDE)
     }
 
-    /// A grid over an arena of these sides in metres, with cells of side `wanted` if that is smaller than the default side.
+    /// A grid over an arena with these side lengths in metres, and cells of side `wanted` if that is smaller than the default side.
     pub(super) fn fine(size: [f32; 2], wanted: f32) -> Self {
         let long = size[0].max(size[1]);
         let plain = (long / MOST_CELLS as f32).max(LEAST_SIDE);
@@ -69,7 +69,7 @@ impl Grid {
         self.side
     }
 
-    /// The cell of a place; the nearest cell for a place outside the arena.
+    /// The cell at a position; the nearest cell for a position outside the arena.
     pub(super) fn cell_at(&self, [x, y]: [f32; 2]) -> usize {
         self.cell([self.index(x, 0), self.index(y, 1)])
     }

@@ -11,9 +11,9 @@ const MOST_LOOKS: usize = 4_000_000;
 /// The goals of each cell, as linked lists in one vector, and scratch space for searching around a goal.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Marks {
-    /// For each cell the position of its first mark, from 1.
+    /// For each cell, the index of its first link, counted from 1; 0 if it has none.
     first: Vec<u32>,
-    /// Number of a goal, and the position of the cell's next mark.
+    /// A goal's number, and the index of the cell's next link, counted from 1.
     links: Vec<(u32, u32)>,
     marked: Vec<usize>,
     /// Distance from each cell to the goal of the current search.
@@ -27,7 +27,7 @@ pub(super) struct Marks {
 impl Marks {
     pub(super) fn begin(&mut self, grid: Grid) {
         for cell in self.marked.drain(..) {
-            // The marks may be left from a larger arena.
+            // The marks may be left over from a larger arena.
             if let Some(first) = self.first.get_mut(cell) {
                 *first = 0;
             }

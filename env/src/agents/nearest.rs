@@ -9,8 +9,8 @@ use super::marks::Marks;
 use super::route::Route;
 use crate::scene::Scene;
 
-/// Most cells that belong to goals in one choice. If there are more, only the nearest goals by straight-line distance
-/// are considered.
+/// Maximum number of cells that belong to goals in one choice. If there are more, only the nearest goals by straight-line
+/// distance are considered.
 const MOST_MARKS: usize = 2_000_000;
 
 /// A candidate destination.
@@ -20,7 +20,7 @@ pub(super) struct Goal {
     pub(super) object: u32,
     /// Its position in metres.
     pub(super) place: [f32; 2],
-    /// Probability that it pays, above 0: a goal that pays half the time is worth as much as one twice as far away.
+    /// Probability that it pays, above 0: a goal that pays half the time is worth as much as a certain one twice as far away.
     pub(super) probability: f32,
 }
 
@@ -55,7 +55,7 @@ impl Route {
         }
         let here = self.open_cell(from);
         self.flood.begin(&self.occupancy, here);
-        // For each goal a lower bound on its distance: that at which the flood first reaches the goal's cell or the
+        // For each goal a lower bound on its distance: the distance at which the flood first reaches the goal's cell or the
         // ground that the goal's own object blocks.
         let mut least: Vec<Option<u32>> = vec![None; goals.len()];
         let likeliest = goals.iter().map(|goal| goal.probability).fold(0.0, f32::max);
@@ -95,7 +95,7 @@ impl Route {
         nearest.map(|(number, _)| number)
     }
 
-    /// The numbers of the goals to consider, rising: all, unless they have too many cells.
+    /// The numbers of the goals to consider, in ascending order: all, unless they have too many cells.
     fn looked_at(&self, from: [f32; 2], goals: &[Goal]) -> Vec<usize> {
         let grid = self.occupancy.grid();
         let num_cells = |goal: &Goal| 1 + self.occupancy.disc(goal.object).map_or(0, |disc| disc.num_cells(grid));
@@ -323,7 +323,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 96)))]
 
-        /// One instance is reused for several worlds, as agents do, and avoids only some of the objects.
+        /// One instance is reused for several worlds, as in agents, and avoids only some of the objects.
         #[test]
         fn path_lengths_and_nearest_goal_match_a_slow_reference(
             worlds in vec((world(), [-13.0..=13.0, -13.0..=13.0f32], any::<u16>()), 1..3),

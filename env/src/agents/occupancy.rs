@@ -19,7 +19,7 @@ fn clearance(corridor: f32, body: f32) -> f32 {
 /// Distance in metres that the agent's centre keeps from zones that cost.
 const ZONE_CLEARANCE: f32 = 0.35;
 
-/// Largest side of a cell in metres if zones end the episode as a failure, so that narrow gaps between them are found.
+/// Maximum side of a cell in metres if zones end the episode as a failure, so that narrow gaps between them are found.
 const SIDE_BESIDE_FAILURE: f32 = 0.25;
 
 /// Counts how often each cell is taken: once by walls, and once by each avoided object. Updates only what changed since the
@@ -32,7 +32,7 @@ pub(super) struct OccupancyGrid {
     /// Whether a cell belongs to a wall of a layout, or to a zone that ends the episode as a failure: no path crosses it. Empty
     /// if there are neither.
     sealed: Vec<bool>,
-    /// The avoided objects, by rising index.
+    /// The avoided objects, in ascending order of index.
     discs: Vec<Disc>,
 }
 
@@ -42,7 +42,7 @@ struct Walls {
     arena_size: [f32; 2],
     /// Half the agent's width in metres.
     body: f32,
-    /// The smallest width between walls of the layout, in metres.
+    /// The smallest distance between walls of the layout, in metres.
     corridor: f32,
     regions: Vec<Vec<[f64; 2]>>,
     /// Zones that cost, or end an episode as a failure: paths avoid them if possible.
@@ -64,7 +64,7 @@ impl Disc {
         near.filter(move |cell| self.covers(*cell, grid))
     }
 
-    /// An upper estimate of the number of cells that it covers.
+    /// An upper bound on the number of cells that it covers.
     pub(super) fn num_cells(self, grid: Grid) -> usize {
         let across = (2.0 * self.radius / grid.side()) as usize + 2;
         across.saturating_mul(across).min(grid.num_cells())

@@ -185,7 +185,7 @@ impl OnRailsAgent {
         let zones = sim.world.environment_params.zones.iter();
         let wanted = zones.filter(|zone| zone.is_wanted());
         let goals = wanted.filter_map(|zone| Some((zone, ground::middle(zone)?.map(|metres| metres as f32))));
-        // Zones that end the episode well come first, then those that pay most; ties go to the nearest.
+        // Zones that end the episode in success come first, then those that pay most; ties go to the nearest.
         let value = |zone: &Zone| (zone.ends.is_some(), zone.reward_per_second, zone.reward_on_entering);
         let (zone, goal) = goals.max_by(|(a, to_a), (b, to_b)| {
             let (a, b) = (value(a), value(b));

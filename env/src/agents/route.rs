@@ -17,7 +17,7 @@ pub(super) struct Route {
 }
 
 impl Route {
-    /// Sets the goal; paths avoid walls and these objects at their places at the start.
+    /// Sets the goal; paths avoid walls, and these objects at their start positions.
     ///
     /// The goal's own cell may be blocked by objects around it.
     pub(super) fn lead(&mut self, world: &World, scene: &Scene, goal: [f32; 2], avoided: &[u32]) {
@@ -43,7 +43,7 @@ impl Route {
         grid.centre(cell)
     }
 
-    /// Whether the path from a place, `straight` metres from the goal in a straight line, has hardly any detour.
+    /// Whether the path from a place `straight` metres from the goal as the crow flies makes hardly any detour.
     pub(super) fn is_straight(&mut self, from: [f32; 2], straight: f32) -> bool {
         let cell = self.open_cell(from);
         let way = self.flood.reach(cell, &self.occupancy, Charge::Entered);

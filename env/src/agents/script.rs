@@ -1,4 +1,4 @@
-//! Parses and checks scripts for the scripted agent, one command a line.
+//! Parses and checks scripts for the scripted agent, with one command per line.
 
 use std::str::FromStr;
 
@@ -17,7 +17,7 @@ const WALK_STEPS: u32 = 300;
 /// Maximum number of lines of a script.
 const MOST_LINES: usize = 100_000;
 
-/// Longest name of an object, as in worlds.
+/// Maximum length of an object's name in characters, as in worlds.
 const MOST_LETTERS: usize = 100;
 
 /// Every command with its arguments.
@@ -36,9 +36,9 @@ const COMMANDS: [(&str, &str); 7] = [
 pub(super) enum Command {
     /// Repeats one action for `steps` steps.
     Act { action: Action, steps: u32 },
-    /// Walks to the nearest object of a name, until a condition holds.
+    /// Walks to the nearest object with a name, until a condition holds.
     Go { name: String, until: Until, steps: u32 },
-    /// Acts as the agent on rails until nothing is worth going to.
+    /// Acts like the agent on rails until nothing is worth going to.
     Tour { steps: u32 },
     /// Starts again from the first line.
     Repeat,
@@ -91,7 +91,7 @@ type Problem = (String, String);
 
 fn command(name: &str, words: &[&str]) -> Result<Command, Problem> {
     let go = |object: &str, until, rest: &[&str]| -> Result<Command, Problem> {
-        // Worlds may name objects freely, as the original's do, so only unprintable names are refused.
+        // Worlds may name objects freely, as the original's worlds do, so only unprintable names are refused.
         if object.chars().count() > MOST_LETTERS || object.contains(is_unprintable) {
             let expected = format!("the name of an object: 1 to {MOST_LETTERS} characters that can be seen");
             return Err((quoted(object), expected));

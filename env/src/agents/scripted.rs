@@ -12,12 +12,12 @@ use crate::sim::{Action, Environment, ObjectState};
 /// Steps for which the agent keeps interacting with an object that does not react.
 const INSISTENCE: u32 = 10;
 
-/// Plays a script from the start in every episode, one command a line; `#` begins a comment, and after the last line the agent
-/// stands still.
+/// Plays a script from the start in every episode, one command per line; `#` begins a comment, and after the last line the
+/// agent stands still.
 ///
 /// | line | what it does |
 /// |---|---|
-/// | `step [N] [A B C \| ROW]` | take N steps (1) with action A B C (0 0 0), or with a row of the action table, as in the console |
+/// | `step [N] [A B C \| ROW]` | takes N steps (1) with action A B C (0 0 0), or with a row of the action table, as in the console |
 /// | `action [-c N] -a A B C \| ROW` | the same, with options |
 /// | `touch NAME [N]` | walks to the nearest object of this tag or unique name until it touches it, for at most N steps (300) |
 /// | `interact NAME [N]` | walks there and interacts until the object reacts |
@@ -46,7 +46,7 @@ pub struct ScriptedAgent {
     commands: Vec<Command>,
     /// Index of the current command.
     now: usize,
-    /// Steps that it has taken so far.
+    /// Steps that the current command has taken so far.
     steps: u32,
     walk: Option<Walk>,
     route: Route,
@@ -253,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn near_stops_at_its_distance() {
+    fn near_stops_at_the_given_distance() {
         let (earned, [x, _]) = play(world(), "near switch 3", 60);
         assert_eq!(earned, 0.0);
         assert!((-4.2..-2.9).contains(&x), "{x}");

@@ -9,7 +9,7 @@ use crate::sim::{Action, SimRef};
 /// Fractions of a speed to try.
 const SHARES: [f64; 4] = [1.0, 0.5, 0.25, 0.0];
 
-/// Extra distance that steps keep from objects whose touch fails, in metres.
+/// Extra distance that steps keep from objects whose touch is a failure, in metres.
 const AWAY: f64 = 0.01;
 
 /// Which zones steps avoid, in addition to objects whose touch is a failure.

@@ -8,7 +8,7 @@ use crate::sim::{Action, Environment, SimRef};
 /// Distance in metres within which it walks straight at an object, ignoring the path.
 const NEAR: f32 = 2.0;
 
-/// The same, in worlds with zones that cost.
+/// Like `NEAR`, in worlds with zones that cost.
 const NEAR_BESIDE_ZONES: f32 = 1.2;
 
 /// Look-ahead along the path in metres, in worlds with zones that cost and without a layout.

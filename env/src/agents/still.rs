@@ -1,4 +1,4 @@
-//! [`StillAgent`]: stands still, a baseline that random acting may fall below.
+//! [`StillAgent`]: stands still, a baseline that a random agent may fall below.
 
 use driftworld_spec::{ActionModel, ActionSpace};
 

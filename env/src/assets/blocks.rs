@@ -76,7 +76,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn triangles_are_each_in_one_block_and_unused_lanes_face_away() {
+    fn each_triangle_is_in_one_block_and_unused_lanes_face_away() {
         let part = Part::new(Mesh::ball(1.0, 1.0, 9, 5), Paint::Fixed([1.0; 3]));
         let material = Material::new(&part);
         assert_eq!(material.blocks.len(), part.mesh.triangles.len().div_ceil(BLOCK));

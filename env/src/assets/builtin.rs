@@ -13,7 +13,7 @@ struct Models {
     read: OnceLock<Vec<(String, Arc<Asset>)>>,
 }
 
-/// A list of classes, each in the file of its name with this ending.
+/// A list of classes, each in the file with its name and this ending.
 macro_rules! models {
     ($ending:literal: $($class:ident)+) => {
         [$(Models {
@@ -32,7 +32,7 @@ static PLAIN: [Models; 29] = models!(".gltf":
     door key switch animal sign furniture
 );
 
-/// The classes with other models in the natural style: equally many, with the same names and bodies.
+/// The classes with different models in the natural style: as many as in the plain style, with the same names and bodies.
 static NATURAL: [Models; 5] = models!("_natural.gltf": car mushroom rock shrub tree);
 
 /// The placeholder for unknown classes: a striped bollard to stumble over.
@@ -70,7 +70,7 @@ pub(crate) fn model_names(class: &str) -> impl Iterator<Item = &'static str> + u
     models.iter().map(|(name, _)| name.as_str())
 }
 
-/// The number of a model of a class, from its name or its number as text, ignoring case. `None` if there is no such model.
+/// The number of a model of a class, from its name or its number as a string, ignoring case. `None` if there is no such model.
 pub(crate) fn number(class: &str, model: &Model) -> Option<u32> {
     let name = model.0.trim();
     let named = model_names(class).position(|own| own.eq_ignore_ascii_case(name));

@@ -125,8 +125,8 @@ impl Catalogue {
         found.map_or_else(|| asset_in(style, class, model), |entry| entry.asset())
     }
 
-    /// The asset of an object with a text: a built-in sign has the text on its board, in lettering that is readable on the
-    /// board's colour (sRGB; its own if absent). All other models ignore the text.
+    /// The asset of an object with text: a built-in sign shows it on its board, in lettering that is readable on the board's
+    /// colour (sRGB; its own if absent). All other models ignore the text.
     pub fn asset_with_text(&self, class: &str, model: &Model, text: &str, color: Option<[f32; 3]>) -> Arc<Asset> {
         let is_built_in =
             class == "sign" && (self.models.is_empty() || !self.models.contains_key(&key(class, &model.0)));
@@ -185,7 +185,7 @@ mod tests {
 
     /// Pinned: stored images use these numbers.
     #[test]
-    fn numbers_of_the_originals_classes_are_stable() {
+    fn numbers_of_built_in_classes_are_stable() {
         let numbers: Vec<String> = Catalogue::default()
             .class_numbers()
             .map(|(class, number)| format!("{number} {class}"))
@@ -231,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn class_numbers_in_images_are_stable_and_may_exceed_a_byte() {
+    fn class_numbers_in_images_are_the_same_in_every_world() {
         let mut library = Library::default();
         for class in ["kiosk", "lamp"] {
             library.insert(model(class)).expect("there is room");

@@ -1,11 +1,11 @@
-//! Letters as geometry: a block font of five by seven squares, merged into few rectangles.
+//! Text as geometry: a block font of five by seven squares, merged into few rectangles.
 
 use super::Mesh;
 
-/// Squares of a letter, across and down.
+/// Squares of a character, across and down.
 pub(crate) const LETTER: [u32; 2] = [5, 7];
 
-/// Each letter as seven rows from the top; the highest of five bits is the left square.
+/// Each character as seven rows from the top; the highest of five bits is the left square.
 const FONT: &[(char, [u8; 7])] = &[
     (' ', [0; 7]),
     ('!', [0x04, 0x04, 0x04, 0x04, 0x04, 0x00, 0x04]),
@@ -52,13 +52,13 @@ const FONT: &[(char, [u8; 7])] = &[
     ('Z', [0x1F, 0x01, 0x02, 0x04, 0x08, 0x10, 0x1F]),
 ];
 
-/// Whether a square of a letter, counted from the left and the top, is filled; letters missing from the font have none.
+/// Whether a square of a character, counted from the left and the top, is filled; characters missing from the font are blank.
 pub(crate) fn is_filled(letter: char, column: u32, row: u32) -> bool {
     let found = FONT.binary_search_by_key(&letter, |(letter, _)| *letter);
     found.is_ok_and(|place| FONT[place].1[row as usize] >> (LETTER[0] - 1 - column) & 1 == 1)
 }
 
-/// A letter as disjoint rectangles: left, top, width and height in squares. Identical runs in successive rows are one
+/// A character as disjoint rectangles: left, top, width and height in squares. Identical runs in successive rows are one
 /// rectangle.
 fn rectangles(letter: char) -> Vec<[u32; 4]> {
     let [columns, rows] = LETTER;
@@ -85,8 +85,8 @@ fn rectangles(letter: char) -> Vec<[u32; 4]> {
     found
 }
 
-/// A text in the plane y = `front`, centred at x = 0 and z = `middle`, readable when looking along −y; squares have this size
-/// in metres.
+/// Text in the plane y = `front`, centred at x = 0 and z = `middle`, readable when looking along −y; `square` is the size of a
+/// square in metres.
 pub(crate) fn written(text: &str, square: f32, front: f32, middle: f32) -> Mesh {
     let [columns, rows] = LETTER.map(|count| count as f32);
     let letters = text.chars().count() as f32;
@@ -113,7 +113,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn font_is_sorted_and_its_letters_are_distinct() {
+    fn font_is_sorted_and_its_characters_are_distinct() {
         assert!(
             FONT.windows(2).all(|pair| pair[0].0 < pair[1].0),
             "binary search needs it"

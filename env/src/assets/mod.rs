@@ -87,7 +87,7 @@ impl Asset {
         }
     }
 
-    /// Triangles of each level of detail, and its largest error in metres at scale 1: from the full model to the coarsest.
+    /// Number of triangles of each level of detail, and its largest error in metres at scale 1: from the full model to the coarsest.
     pub fn levels(&self) -> impl Iterator<Item = (usize, f32)> {
         self.levels.iter().map(|level| (level.num_triangles, level.error))
     }
@@ -129,7 +129,7 @@ pub enum Paint {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ColliderKind {
-    /// A ball for models that are round on all sides, otherwise the smaller one of box and cylinder.
+    /// A ball for models that are round on all sides, otherwise the smaller of box and cylinder.
     #[default]
     Auto,
     /// The box around the part below 2 m, as high as the model.
@@ -140,7 +140,7 @@ pub enum ColliderKind {
     Cylinder,
     /// Like the cylinder, with round ends.
     Capsule,
-    /// An approximate convex hull of the whole model, of at most 64 points.
+    /// An approximate convex hull of the whole model, with at most 64 points.
     Hull,
 }
 
@@ -149,7 +149,7 @@ pub enum ColliderKind {
 #[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "lowercase")]
 pub enum ColliderShape {
-    /// A box of these half sides.
+    /// A box with these half sides.
     Box {
         /// Half width, half depth, half height.
         half: [f32; 3],
@@ -219,7 +219,7 @@ pub(crate) fn lowercase(class: &str) -> Cow<'_, str> {
     }
 }
 
-/// The built-in sign of a model with a text, built on first use and cached.
+/// The built-in sign number `model` with text, built on first use and cached.
 pub(crate) fn sign(model: u32, text: &str, lettering: Lettering) -> Arc<Asset> {
     type Made = HashMap<(u32, String, Lettering), Arc<Asset>>;
     static MADE: LazyLock<Mutex<Made>> = LazyLock::new(Mutex::default);

@@ -1,4 +1,4 @@
-//! Signs with a text on their boards.
+//! Signs with text on their boards.
 
 use super::letters::{LETTER, written};
 use super::{Asset, Paint, Part};
@@ -40,8 +40,8 @@ impl Lettering {
     }
 }
 
-/// The bare sign number `model` with a text on its front. Letters are left out where one of their squares is below [`READABLE`]
-/// pixels, because they would flicker and be misread.
+/// The bare sign number `model` with text on its front. Letters are left out where their squares are below [`READABLE`] pixels,
+/// because they would flicker and be misread.
 pub(crate) fn sign(bare: &Asset, model: u32, text: &str, lettering: Lettering) -> Asset {
     if text.trim().is_empty() {
         return bare.clone();

@@ -28,8 +28,8 @@ const THREADS_PER_PROCESSOR: usize = 4;
 /// `num_envs` environments that step together.
 ///
 /// Each behaves exactly as a single [`Environment`] would, whatever the number of threads. A step in which no episode begins
-/// allocates nothing, except that with several threads it hands a small block of memory to each but its own.
-/// Worlds allocate in steps in which something is pushed or respawns, bodies overlap, or an agent on rails chooses where to go.
+/// allocates nothing, except that with several threads it allocates a small block for each thread but its own. Worlds allocate
+/// in steps in which something is pushed or respawns, bodies overlap, or an agent on rails chooses where to go.
 ///
 /// # Example
 /// ```
@@ -56,14 +56,14 @@ pub struct Batch {
 }
 
 impl Batch {
-    /// Environments at the start of their episodes 0, with their first observations rendered.
+    /// Creates environments at the start of their episode 0, with their first observations rendered.
     ///
     /// # Errors
-    /// [`EnvError::BatchSize`] for none or more than [`MAX_ENVS`]; [`EnvError::BatchMemory`] if outputs would take more than
-    /// [`MAX_BATCH_BYTES`], or more than is available; [`EnvError::BatchWorld`] if the source has no world;
-    /// [`EnvError::BatchImages`] if worlds request images of other sizes, or modalities that the batch lacks;
+    /// [`EnvError::BatchSize`] for no environments, or more than [`MAX_ENVS`]; [`EnvError::BatchMemory`] if outputs would take
+    /// more than [`MAX_BATCH_BYTES`], or more than is available; [`EnvError::BatchWorld`] if the source has no world;
+    /// [`EnvError::BatchImages`] if worlds request images of different sizes, or modalities that the batch lacks;
     /// [`EnvError::BatchThreads`] if threads cannot be started; [`EnvError::NoGpu`] if a GPU is requested and none works; and
-    /// as [`Renderer::draw_batch`].
+    /// those of [`Renderer::draw_batch`].
     pub fn new(num_envs: usize, source: WorldSource, options: BatchOptions) -> Result<Self, EnvError> {
         Self::with_catalogue(num_envs, source, options, &Catalogue::default())
     }
@@ -113,7 +113,7 @@ impl Batch {
         let copies = 1 + u64::from(options.autoreset == Autoreset::SameStep);
         expect_room(copies * Outputs::bytes(&layout, options.depth, state_len, num_envs))?;
         let threads = threads(options.num_threads, num_envs);
-        // The thread that steps works, too, except where pictures are drawn by a GPU.
+        // The calling thread works too, unless a GPU draws the images.
         let pool = match threads - usize::from(graphics.is_none()) {
             0 => None,
             others => {

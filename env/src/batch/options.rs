@@ -26,7 +26,7 @@ pub enum Autoreset {
     /// In the same step: it returns the first observation of the next episode, and keeps the last of the old one in
     /// [`Batch::final_outputs`](super::Batch::final_outputs).
     SameStep,
-    /// Only by [`Batch::reset_where_while`](super::Batch::reset_where_while); stepping before is an error.
+    /// Only by [`Batch::reset_where_while`](super::Batch::reset_where_while); stepping before that is an error.
     Disabled,
 }
 

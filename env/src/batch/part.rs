@@ -11,16 +11,16 @@ use crate::prefetch::prefetch;
 use crate::render::CpuRenderer;
 use crate::sim::Action;
 
-/// Parts that the rest of a batch has for each thread: several, because environments near many objects take longer.
+/// Number of parts per thread into which the rest of a batch is divided: several, because environments near many objects take longer.
 const PARTS_PER_THREAD: usize = 4;
 
-/// How often to look whether the other threads have ended, before sleeping: some 100 µs.
+/// How often to check whether the other threads have finished, before sleeping: about 100 µs.
 const MOST_SPINS: u32 = 3_000;
 
-/// Environments that stay in a processor's cache: more are requested ahead of time.
+/// Number of environments that stay in a processor's cache: in larger parts, they are prefetched.
 const MOST_CACHED: usize = 32;
 
-/// Bytes of a picture that are requested ahead of time: the processor notices by itself that longer ones are written in order.
+/// Maximum number of bytes of an image to prefetch: beyond that, the processor itself detects that they are written in order.
 const MOST_PREFETCHED: usize = 1 << 14;
 
 /// A part of a batch for one step or reset.
@@ -56,7 +56,8 @@ pub(super) enum Work<'a> {
 }
 
 impl Part<'_> {
-    /// Does the work on this thread and on those of a pool, with a renderer for each: whoever is free takes a few environments.
+    /// Does the work on this thread and on those of a pool, with a renderer for each: every thread that is free takes a few
+    /// environments.
     pub(super) fn run(
         self,
         renderers: &mut [CpuRenderer],
@@ -91,7 +92,7 @@ impl Part<'_> {
                 });
             }
             take_turns(own);
-            // The others are about to end, and sleeping would take longer than that.
+            // The others are about to finish, and sleeping would take longer than that.
             for _ in 0..MOST_SPINS {
                 if busy.load(Ordering::Acquire) == 0 {
                     break;
@@ -121,7 +122,7 @@ impl Part<'_> {
         )
     }
 
-    /// Asks the processor to load the environments after this one, and to make room for the colours of the next.
+    /// Prefetches the environments after this one, and the colour image of the next.
     fn prefetch_after(&mut self, index: usize) {
         let after = |distance: usize| self.slots.get(index + distance);
         if let Some(slot) = after(4) {
@@ -167,8 +168,8 @@ impl Part<'_> {
     }
 }
 
-/// Takes the next environments that nobody works on, with the index of the first: fewer and fewer, so that all threads end at
-/// about the same time. `None` if none are left.
+/// Takes the next environments that no thread has taken, with the index of the first: fewer and fewer, so that all threads
+/// finish at about the same time. `None` if none are left.
 fn take<'a>(rest: &Mutex<(usize, Option<Part<'a>>)>, num_threads: usize) -> Option<(usize, Part<'a>)> {
     let mut rest = rest.lock().unwrap_or_else(PoisonError::into_inner);
     let (first, part) = (rest.0, rest.1.take()?);

@@ -73,7 +73,7 @@ impl Slot {
         if recorder.num_steps() == 0 && self.before.is_some() {
             return self.before.as_deref().cloned();
         }
-        // An end before the first recorded step belongs to another episode.
+        // An end before the first recorded step belongs to an earlier episode.
         let ended_by = self.step.ended_by.filter(|_| recorder.num_steps() > 0);
         Some(recorder.recording(&self.environment, ended_by))
     }

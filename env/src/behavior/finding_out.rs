@@ -15,11 +15,11 @@ impl Expertise {
     /// An agent in the world `abroad` that knows only that rewards are as in one of `homes`.
     ///
     /// It acts as the expert of the first home does [`abroad`](Self::abroad). After each step it drops the homes in which that
-    /// step would have given another reward or another end, and follows the first remaining one. If none remains, it keeps the
+    /// step would have given a different reward or ending, and follows the first remaining one. If none remains, it keeps the
     /// last one it followed. Uncertain rewards are compared using the random draws of this very world, so the agent finds out
     /// sooner than a learner could.
     ///
-    /// With one home it is the expert of that home abroad, to the bit; with none, the expert of the world itself.
+    /// With one home it is the expert of that home abroad, bit for bit; with none, the expert of the world itself.
     ///
     /// # Errors
     /// Those of [`Expertise::abroad`].

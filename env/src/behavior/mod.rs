@@ -57,11 +57,10 @@ impl Expertise {
     /// positions. It plans by the rules of `home`, and takes each object for the most similar one of the same class at home: by
     /// nearest colour, then by model, then by nearest place, then by index. It believes that the object has that one's
     /// reward, probability, stimuli, order and respawn; it believes objects of a class that home lacks to have no
-    /// effect. The chosen action is then carried out in `abroad`, within that agent's limits, by the nearest row of its
-    /// action table if there is one. The expert leaves an object alone once it has triggered what it believes to use
-    /// the object up.
+    /// effect. The chosen action is then carried out in `abroad`, within that agent's limits, as the nearest row of its action
+    /// table if there is one. The expert leaves an object alone once it has triggered what it believes to use the object up.
     ///
-    /// If the world is `home` itself, the result is that of [`at_home`](Self::at_home), to the bit.
+    /// If the world is `home` itself, the result is that of [`at_home`](Self::at_home), bit for bit.
     ///
     /// # Errors
     /// Those of [`Environment::step`](crate::Environment::step); [`EnvError::BadWorld`] if the rules of one world are invalid

@@ -56,7 +56,7 @@ fn expert_goes_for_the_colour_that_pays_at_home() {
 }
 
 #[test]
-fn objects_believed_used_up_are_left_after_one_try() {
+fn objects_believed_used_up_are_left_alone_after_one_try() {
     let home = sound(world(RED, BLUE));
     let mut idle = world(RED, BLUE);
     idle.rules.success.clear();

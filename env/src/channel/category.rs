@@ -12,7 +12,7 @@ pub enum Category {
     Communications,
     /// Worlds and objects created by messages.
     Worldmaker,
-    /// Episodes: starts requested by messages, and all ends.
+    /// Episodes: starts requested by messages, and all endings.
     Academy,
 }
 
@@ -30,7 +30,7 @@ impl Category {
         Self::ALL.iter().map(|category| category.name()).collect()
     }
 
-    /// The category of this name, ignoring case.
+    /// The category with this name, ignoring case.
     pub fn from_name(name: &str) -> Option<Self> {
         name.parse().ok()
     }

@@ -50,8 +50,8 @@ pub struct Received {
     pub screenshot: Option<Screenshot>,
     /// Whether the environment is at the start of a new world.
     pub reset: bool,
-    /// Warnings about a new world or object: unknown keys and unknown assets. The Debug channel sends the same to clients that
-    /// listen to `worldmaker`.
+    /// Warnings about a new world or object: unknown keys and unknown assets. The Debug channel sends the same warnings to
+    /// clients that listen to `worldmaker`.
     pub remarks: Vec<String>,
 }
 
@@ -266,7 +266,7 @@ impl Channels {
     }
 
     /// The current state of the observed parts of the world. Absent objects are left out; objects without a name get one made
-    /// of their index.
+    /// from their index.
     fn state(&self, environment: &Environment) -> Value {
         let world = environment.world();
         let part = |part: &str| match part {

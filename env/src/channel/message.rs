@@ -5,16 +5,16 @@ use serde_json::{Map, Value, json};
 
 use super::Channel;
 
-/// Maximum size of a message that is read, in bytes: the same as for documents.
+/// Maximum size of a message that is read, in bytes: the limit for documents.
 pub const MAX_MESSAGE_BYTES: usize = driftworld_spec::MAX_BYTES;
 
-/// The longest token, in characters; a UUID has 36.
+/// Maximum length of a token in characters; a UUID has 36.
 const LONGEST_TOKEN: usize = 100;
 
 /// The `req_token` of a message that answers no other.
 const NO_TOKEN: &str = "00000000-0000-0000-0000-000000000000";
 
-/// Maximum number of texts in the payload of one error; one more says how many are missing.
+/// Maximum number of strings in the payload of an error, plus one that says how many were left out.
 const MOST_TEXTS: usize = 20;
 
 /// A message to the client.
@@ -35,7 +35,7 @@ pub struct Outgoing {
 }
 
 impl Outgoing {
-    /// The reasons for a refusal, in one text; `None` for other messages.
+    /// The reasons for a refusal, in one string; `None` for other messages.
     pub fn refusal(&self) -> Option<String> {
         let texts = self.payload.as_ref().filter(|_| self.action == "error")?.as_array()?;
         let texts: Vec<&str> = texts.iter().filter_map(Value::as_str).collect();
@@ -57,7 +57,7 @@ impl Outgoing {
     }
 }
 
-/// The reasons for refusing a message: texts for the payload of the `error` that answers it.
+/// The reasons for refusing a message: strings for the payload of the `error` that answers it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Refusal(Vec<String>);
 

@@ -25,7 +25,7 @@ pub enum Channel {
 }
 
 impl Channel {
-    /// All of them.
+    /// All channels.
     pub const ALL: &[Self] = Self::VARIANTS;
 
     /// Its name.

@@ -109,7 +109,7 @@ pub(super) fn screenshot(environment: &Environment, message: &Message) -> Result
     })
 }
 
-/// The settings of `set_debug_categories`; one invalid entry refuses all of them.
+/// The settings of `set_debug_categories`; if one entry is invalid, all of them are refused.
 pub(super) fn categories(message: &Message) -> Result<Vec<(Category, bool)>, Refusal> {
     let payload = message.payload("a list of {category, active}")?;
     let list = match payload {

@@ -7,7 +7,7 @@ use driftworld_spec::{Object, World, WorldDraft};
 use super::space::{Kind, StateSpace, kind, shown};
 use crate::sim::Unlike;
 
-/// Two worlds, each reduced to the objects that have a counterpart, in the order of the first: objects of the same index are
+/// Two worlds, each reduced to the objects that have a counterpart, in the order of the first: objects with the same index are
 /// counterparts.
 pub(super) struct Paired {
     pub(super) worlds: [World; 2],
@@ -16,7 +16,7 @@ pub(super) struct Paired {
 }
 
 impl Paired {
-    /// Pairs objects of the same unique name; the others by kind, in order.
+    /// Pairs objects with the same unique name, and the others by kind, in order.
     pub(super) fn new(a: &World, b: &World) -> Self {
         let counts = [a, b].map(count);
         let names: Vec<&String> = b
@@ -73,7 +73,7 @@ impl Paired {
         Some(Unlike::new(what, of(own, found), of(other, found)))
     }
 
-    /// Differences between the starting places of the agents and of paired objects.
+    /// Differences between the initial states of the agents and of paired objects.
     pub(super) fn places_unlike(&self) -> Option<Unlike> {
         let [a, b] = &self.worlds;
         let (own, other) = (&a.agent_params, &b.agent_params);

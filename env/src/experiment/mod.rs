@@ -30,7 +30,7 @@ pub struct Experiment {
     pub modalities: Option<Vec<Modality>>,
     /// Steps of a run, 1 to [`MAX_EXPERIMENT_STEPS`]; 100 by default. An agent that stands still takes a fifth of them.
     pub steps: u32,
-    /// Observations are compared every this many steps, starting with the first; 25 by default, at least 1.
+    /// Number of steps between comparisons of observations, starting with the first; 25 by default, at least 1.
     pub look_every: u32,
     /// Height and width of the images that are compared, in pixels, 1 to 4096; 48 by default.
     pub side: u32,

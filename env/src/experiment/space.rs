@@ -20,7 +20,7 @@ pub(super) fn shown((class, tag): &Kind) -> &str {
     tag.as_deref().unwrap_or(class)
 }
 
-/// Observed ranges of a task's worlds: the least and the greatest number of objects of each kind.
+/// Observed ranges of a task's worlds: the minimum and maximum number of objects of each kind.
 #[derive(Debug, Default)]
 pub(super) struct StateSpace {
     counts: BTreeMap<Kind, [usize; 2]>,

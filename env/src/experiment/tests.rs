@@ -8,7 +8,7 @@ use proptest::prelude::*;
 
 use super::*;
 
-/// A world with cubes that pay when touched, a barrel that costs, a tree and a bench.
+/// A world with cubes that pay when touched, a barrel that costs, and a tree.
 fn world() -> WorldDraft {
     let mut world = WorldDraft::default();
     world.environment_params.map_size = [30.0, 30.0];
@@ -108,7 +108,7 @@ fn dynamics_belong_to_the_transitions() {
     });
 }
 
-/// A room with a lever, and a door that opens by touch on the way to a goal; the key of another door lies beside it.
+/// A room with a lever, a key, and a door that opens by touch on the way to a goal.
 fn rooms() -> WorldDraft {
     let mut world = WorldDraft::default();
     world.environment_params.map_size = [6.0, 12.0];
@@ -139,7 +139,7 @@ fn rooms() -> WorldDraft {
 }
 
 #[test]
-fn changes_of_doors_switches_keys_and_energy_are_found() {
+fn changes_to_doors_switches_keys_and_energy_are_found() {
     // Two pairs, so that the visitor also goes through the tags backwards.
     let elements = |a: &WorldDraft, b: &WorldDraft| {
         let pair = (sound(a), sound(b));
@@ -325,7 +325,7 @@ fn overlapping_object_counts_differ_in_law_and_disjoint_ones_in_space() {
 }
 
 #[test]
-fn witness_names_the_place_and_both_values() {
+fn witness_names_the_world_and_both_values() {
     let (own, mut changed) = (world(), world());
     changed.objects[0].reward = 3.0;
     let found = Experiment::default()
@@ -342,7 +342,7 @@ fn witness_names_the_place_and_both_values() {
     assert_eq!((&back.a, &back.b), (&witness.b, &witness.a));
 }
 
-/// One of the changes of the tests above.
+/// One of the changes from the tests above.
 fn change(world: &mut WorldDraft, which: u8) {
     match which {
         0 => world.objects[0].coordinates = [2.0, 9.0],

@@ -50,7 +50,7 @@ pub(super) struct EpisodeLine {
     pub(super) actions: PackedActions,
 }
 
-/// Writes recordings as lines, each with its line end.
+/// Writes recordings as lines, each with its line ending.
 #[derive(Clone, Debug, Default)]
 pub struct RecordingLines {
     /// The hashes of worlds that already have a line.
@@ -110,7 +110,7 @@ impl RecordingLines {
 /// The key of the checksum, the last in a line.
 const SEAL: &str = ",\"crc32\":\"";
 
-/// Serialises a line of JSON, with the checksum of its contents and a line end.
+/// Serialises a line of JSON, with the checksum of its contents and a line ending.
 pub(super) fn sealed(line: &impl Serialize) -> String {
     let mut json = serde_json::to_string(line).expect("lines have string keys only, which always serialise");
     let end = json.pop();
@@ -119,7 +119,7 @@ pub(super) fn sealed(line: &impl Serialize) -> String {
     json + &format!("{SEAL}{sum:08x}\"}}\n")
 }
 
-/// Checks the checksum of a line without its end; the error is what was found, and what was expected.
+/// Checks the checksum of a line without its line ending; the error is what was found, and what was expected.
 pub(super) fn unsealed(line: &[u8]) -> Result<(), (String, String)> {
     let expected = || "a line of JSON that ends with its checksum".to_owned();
     let text = std::str::from_utf8(line).map_err(|_| ("bytes that are no text".to_owned(), expected()))?;

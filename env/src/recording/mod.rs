@@ -17,7 +17,7 @@ pub use replay::Replay;
 
 use crate::sim::{Action, EndedBy};
 
-/// Identifies a recorded episode; what is unknown is `None`.
+/// Identifies a recorded episode; unknown fields are `None`.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct EpisodeOrigin {
     /// Index of the experience over the whole lifetime, as in the log; otherwise the episode's index in its file, from 0.

@@ -1,4 +1,4 @@
-//! Encodes actions and worlds as short texts: deflated with zlib, then base64.
+//! Encodes actions and worlds as short strings: deflated with zlib, then base64.
 
 use std::io::{Read, Write};
 
@@ -100,7 +100,7 @@ pub(super) fn deflated(bytes: impl IntoIterator<Item = u8>) -> String {
     STANDARD.encode(written.expect("writing into memory cannot fail"))
 }
 
-/// Decodes and inflates such a text, to at most `most` + 1 bytes.
+/// Decodes and inflates such a string, to at most `most` + 1 bytes.
 pub(super) fn inflated(text: &str, most: u64) -> Result<Vec<u8>, (String, String)> {
     let wrong = |reason: String| (reason, "zlib in base64".to_owned());
     let bytes = STANDARD.decode(text).map_err(|error| wrong(error.to_string()))?;
@@ -136,7 +136,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
 
         #[test]
-        fn actions_round_trip_to_the_bit(
+        fn actions_round_trip_bit_for_bit(
             kind in 0usize..4,
             actions in prop::collection::vec(action(), 0..60),
         ) {

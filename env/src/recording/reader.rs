@@ -12,7 +12,7 @@ use super::{Edit, EpisodeOrigin, Recording};
 use crate::EnvError;
 use crate::sim::EndedBy;
 
-/// Longest line that is read, in bytes.
+/// Maximum length of a line that is read, in bytes.
 pub const MAX_RECORDING_LINE: u64 = 1 << 27;
 
 /// Reads the episodes of a file one after another.
@@ -26,7 +26,7 @@ pub struct RecordingReader<R> {
     is_torn: bool,
 }
 
-/// A place in a file between two lines.
+/// A position in a file between two lines.
 #[derive(Clone, Copy, Debug)]
 pub struct RecordingMark {
     line: u64,
@@ -143,7 +143,7 @@ impl<R: BufRead> RecordingReader<R> {
         })
     }
 
-    /// Seeks to a marked place, after the file has been read to its end. Consecutive places are read without seeking.
+    /// Seeks to a marked position, after the file has been read to its end. Consecutive positions are read without seeking.
     ///
     /// # Errors
     /// [`EnvError::Recording`] if seeking fails.
@@ -187,8 +187,8 @@ impl<R: BufRead> RecordingReader<R> {
         Ok((length, lines, next))
     }
 
-    /// The number of bytes before a place, and a writer that continues there. It rewrites worlds whose lines cannot be decoded,
-    /// such as those of another version.
+    /// The number of bytes before a position, and a writer that continues there. It rewrites worlds whose lines cannot be
+    /// decoded, such as those of a different version.
     fn into_lines_at(self, place: RecordingMark) -> (u64, RecordingLines) {
         let before = self.worlds.iter().filter(|(_, (line, _))| *line <= place.line);
         let sound = before.filter(|(hash, _)| self.world(place.line, hash).is_ok());
@@ -215,7 +215,7 @@ impl<R: BufRead> RecordingReader<R> {
         Ok(world)
     }
 
-    /// The next line without its end, with its checksum verified.
+    /// The next line without its line ending, with its checksum verified.
     fn line(&mut self) -> Result<Option<Vec<u8>>, EnvError> {
         let mut line = Vec::new();
         let read = self

@@ -47,7 +47,7 @@ impl<'a> Replay<'a> {
         self.steps
     }
 
-    /// Makes the next step; `None` after the last.
+    /// Takes the next step; `None` after the last.
     ///
     /// # Errors
     /// [`EnvError::Replay`] if the action cannot be carried out.
@@ -57,7 +57,7 @@ impl<'a> Replay<'a> {
         };
         let step = self.environment.step(*action).map_err(|error| {
             let step = self.steps;
-            self.differs("step", format!("{step}: {error}"), "one that goes on".to_owned())
+            self.differs("step", format!("{step}: {error}"), "a step that succeeds".to_owned())
         })?;
         self.steps += 1;
         self.ended_by = step.ended_by;

@@ -12,7 +12,8 @@ pub(crate) const SQUARE: f32 = 2.0;
 /// Contrast of the squares with the ground, and of the blocks of 8 × 8 squares.
 pub(super) const CONTRAST: [f32; 2] = [0.045, 0.03];
 
-/// How fast squares and blocks fade as they become smaller than pixels, per square that a pixel covers.
+/// How fast the contrast of squares and blocks fades, per square that a pixel covers: it reaches 0 just before they are as small as
+/// a pixel.
 pub(super) const FADING: [f32; 2] = [1.3, 1.3 / 8.0];
 
 /// The background of an image, row by row. Reused between images.

@@ -1,4 +1,4 @@
-//! The canvas that triangles are filled into: depth and packed pixel of each position.
+//! The canvas that triangles are rasterised into: depth and packed pixel of each position.
 
 use super::lanes::{Lanes, MOST_LANES};
 
@@ -132,7 +132,7 @@ struct Reach {
     edges: [[f32; 3]; 3],
     /// 1 / the change of each edge function per row.
     per_row: [f32; 3],
-    /// Largest rounding error of each edge function.
+    /// Maximum rounding error of each edge function.
     off: [f32; 3],
 }
 
@@ -208,8 +208,8 @@ impl<T> std::ops::DerefMut for Aligned<T> {
     }
 }
 
-/// Added to an edge function, excludes the lanes beside a triangle's columns: their number depends on the instruction
-/// set, and the edge functions of a sliver may be non-negative there.
+/// A term that, added to an edge function, excludes the lanes beside a triangle's columns: their number depends on the
+/// instruction set, and the edge functions of a sliver may be non-negative there.
 #[inline(always)]
 fn within<L: Lanes>(lanes: L, start: usize, [first, last]: [usize; 2]) -> L::Float {
     let beside = BESIDE.as_flattened();
@@ -240,7 +240,7 @@ mod tests {
     use super::super::lanes::Portable;
     use super::*;
 
-    /// A triangle of these corners, with 1 / depth of each; clockwise on the screen, where rows go down.
+    /// A triangle with these corners and 1 / depth of each; clockwise on the screen, where rows go down.
     fn triangle(corners: [[f32; 2]; 3], inverse: [f32; 3], size: [usize; 2]) -> Option<Triangle> {
         let edge = |k: usize| {
             let ([px, py], [qx, qy]) = (corners[(k + 1) % 3], corners[(k + 2) % 3]);
@@ -269,7 +269,7 @@ mod tests {
         })
     }
 
-    /// Reference result of `fill`, position by position, visiting every row.
+    /// Reference result of `fill`, pixel by pixel, visiting every row.
     fn plainly(triangle: &Triangle, canvas: &Canvas) -> Vec<f32> {
         let mut depths = vec![0.0; canvas.stride * canvas.height];
         let first = triangle.rows[0] as f32;

@@ -355,7 +355,7 @@ impl Composition<'_> {
     fn in_contact<L: Lanes>(&self, l: L, columns: &mut Columns<'_, L>, row: &Row, seen: &Seen<L>) -> L::Word {
         let is_ceiling = row.shows == Shows::Ceiling;
         let foot = if is_ceiling { columns.lintel } else { columns.foot };
-        // Darkening must depend on a pixel's own column alone: how many are beside it depends on the instruction set.
+        // Darkening must depend on a pixel's own column alone: how many columns are beside it depends on the instruction set.
         if !seen.may_meet && l.bits(l.above(l.splat(row.metres + 1.0 / row.fades), foot)) == 0 {
             return seen.word;
         }

@@ -91,8 +91,8 @@ impl CpuRenderer {
     /// Renders the images that the target requests.
     ///
     /// # Errors
-    /// [`EnvError::PictureSize`] unless both sides are 1 to 4096 pixels, there are at most 2²⁶ points of supersampling,
-    /// and every image has room for exactly its pixels.
+    /// [`EnvError::PictureSize`] unless both sides are 1 to 4096 pixels, `supersampling` is at most 4, there are at most 2²⁶
+    /// samples in all, and every image has room for exactly its pixels.
     pub fn draw(&mut self, scene: &Scene, camera: &Camera, target: &mut Target<'_>) -> Result<(), EnvError> {
         target.check()?;
         match target.supersampling {
@@ -102,7 +102,7 @@ impl CpuRenderer {
         Ok(())
     }
 
-    /// Draws these carried items of the scene at the lower edge of the target's colours.
+    /// Draws these carried items of the scene at the bottom of the target's colour image.
     pub(crate) fn draw_carried(&mut self, scene: &Scene, carried: &[u32], target: &mut Target<'_>) {
         self.hand.draw(scene, carried, target);
     }

@@ -1,4 +1,4 @@
-//! Light of the natural style: sun and sky by the sun's elevation, or even light under a ceiling.
+//! Light of the natural style: sun and sky by the sun's elevation, or lamps under a ceiling.
 //!
 //! Each face gets sunlight by its angle, and ambient light by how much it faces up. The sum is about 1 in full daylight, so
 //! that saturated colours keep their shading. As in the plain style, everything is in gamma space.
@@ -144,7 +144,7 @@ mod tests {
         }
     }
 
-    /// In full daylight a saturated colour is not clipped: faces in other directions have other levels.
+    /// In full daylight a saturated colour is clipped by 6 % at most: faces in different directions have different levels.
     #[test]
     fn saturated_colours_keep_their_shading() {
         let day = Daylight::new(&light(0.6, 1.0), false);

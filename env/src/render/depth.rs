@@ -1,6 +1,6 @@
-//! Depth as bytes, millimetres and grey; [`DepthForm`] names the number formats of a batch's depth images.
+//! Converts depth to millimetres and grey; [`DepthForm`] names the number formats of a batch's depth images.
 
-/// The number format of a batch's depth images, by the names of Python's array types.
+/// The number format of a batch's depth images, named like NumPy's dtypes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, strum::EnumString)]
 pub enum DepthForm {
     /// Metres, as rendered.
@@ -56,12 +56,12 @@ fn scaled<T>(depth: &[f32], scale: f32, most: f32, lowest: impl Fn(u32) -> T, ou
     #[cfg(target_arch = "x86_64")]
     {
         if is_x86_feature_detected!("avx512bw") && is_x86_feature_detected!("avx512vl") {
-            #[expect(unsafe_code, reason = "the processor was just asked for these instructions")]
+            #[expect(unsafe_code, reason = "the processor was just checked for these instructions")]
             // SAFETY: the CPU has them; AVX-512BW implies F and AVX2.
             return unsafe { scaled_avx512(depth, scale, most, lowest, out) };
         }
         if is_x86_feature_detected!("avx2") {
-            #[expect(unsafe_code, reason = "the processor was just asked for these instructions")]
+            #[expect(unsafe_code, reason = "the processor was just checked for these instructions")]
             // SAFETY: the CPU has them.
             return unsafe { scaled_avx2(depth, scale, most, lowest, out) };
         }
@@ -120,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn every_instruction_set_gives_the_same_numbers() {
+    fn widest_instruction_set_gives_the_same_numbers() {
         let steps = (0..10_007_u16).step_by(if cfg!(miri) { 59 } else { 1 });
         let depth: Vec<f32> = steps.map(|step| f32::from(step) * 0.011_3).collect();
         let (mut fast, mut plain) = (vec![0_u8; depth.len()], vec![0_u8; depth.len()]);

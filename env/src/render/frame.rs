@@ -1,6 +1,6 @@
 //! [`Frame`]: the output of a render, with one buffer per modality, and the meaning of its values.
 
-/// Depth of the sky, and the largest depth, in metres.
+/// Depth of the sky, and the maximum depth, in metres.
 pub const FAR_DEPTH: f32 = 1000.0;
 
 /// Reward category: sky.

@@ -1,4 +1,4 @@
-//! Draws the things that the agent carries as small pictures at the lower edge of its view: only into colours, and always on
+//! Draws the things that the agent carries as small pictures at the bottom of its view: only in the colour image, and always on
 //! the CPU, so that the pixels do not depend on the renderer.
 
 use driftworld_spec::World;
@@ -28,8 +28,8 @@ struct Studio {
 }
 
 impl Hand {
-    /// Draws these items side by side at the lower edge of the colours, in this order; the last ones if there is no room for
-    /// all.
+    /// Draws these items side by side at the bottom of the colour image, in this order; only the last ones if there is no room
+    /// for all.
     pub(super) fn draw(&mut self, scene: &Scene, carried: &[u32], target: &mut Target<'_>) {
         let (width, height) = (target.width, target.height);
         let side = (height / SHARE).max(LEAST).min(width).min(height);

@@ -1,4 +1,4 @@
-//! Culls what walls hide: records the nearest wall in each column of an image. Lower or equally high things behind it are not
+//! Culls what walls hide: records the nearest wall in each column of an image. Things behind it that are not higher are not
 //! drawn.
 
 use super::view::{NEAR, View};
@@ -14,7 +14,7 @@ const SHARE: f32 = 1e-3;
 pub(super) struct Hidden {
     /// 1 / depth of the nearest wall of each column; 0 without one.
     inverse: Vec<f32>,
-    /// Least height of all recorded walls, in metres.
+    /// Minimum height of all recorded walls, in metres.
     height: Option<f32>,
     is_usable: bool,
     /// Disables culling, so that everything is drawn.
@@ -142,7 +142,7 @@ impl Hidden {
     }
 }
 
-/// Position of a place on the ground relative to the camera: metres to the right and ahead.
+/// Position of a point on the ground relative to the camera: metres to the right and ahead.
 fn place(view: &View, [x, y]: [f32; 2]) -> [f32; 2] {
     let [right, _, ahead] = view.view_from_world([x, y, 0.0]);
     [right, ahead]
@@ -164,7 +164,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 64)))]
 
-        /// Colours, depths and instances are the same, to the bit.
+        /// Colours, depths and instances are the same, bit for bit.
         #[test]
         fn culling_hidden_objects_does_not_change_images(
             (seed, standing, wall) in (0_u64..999, 0.3..=1.0, 0.05..1.5_f64),

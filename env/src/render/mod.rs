@@ -1,7 +1,7 @@
 //! Renders scenes. The CPU renderer is the default and needs no driver; the GPU renderer requires the feature `gpu`.
 #![expect(
     clippy::inline_always,
-    reason = "what works on vectors must end up inside a function that has their instruction set"
+    reason = "vector code must be inlined into a function that enables its instruction set"
 )]
 
 mod backdrop;

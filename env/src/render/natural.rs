@@ -368,7 +368,7 @@ pub(super) fn glow_towards(looks: &NaturalLooks, daylight: &Daylight) -> Option<
 /// Share of grey in a pure colour: weathered paint.
 const MUTED: f32 = 0.28;
 
-/// A material's colour; the purer, the more it is muted.
+/// A material's colour, muted: the purer it is, the more.
 fn color_of(item: &Item, material: &Material) -> [f32; 3] {
     let color = match material.paint {
         Paint::Main(own) => item.color.unwrap_or(own),

@@ -28,7 +28,7 @@ pub(super) struct Patch {
 }
 
 impl Patch {
-    /// A patch of a tile, scaled, on faces of this normal, along these axes from an origin: all in the world's frame.
+    /// A patch of a tile, scaled, on faces with this normal, along these axes from an origin: all in the world's frame.
     pub(super) fn new(
         (tile, scale): (&'static Tile, f32),
         view: &View,
@@ -214,7 +214,7 @@ impl<L: Lanes> Run<L> {
         self.first = l.select_words(columns, l.truncate(l.mul(side, l.add(side, u))), self.first);
     }
 
-    /// Texels of a row, `up` metres up at 1 m, from the tile of an upright patch: the same as by [`Patch::texel`].
+    /// Texels of a row, `up` metres up at 1 m, from the tile of an upright patch, with the same result as [`Patch::texel`].
     #[inline(always)]
     pub(super) fn texel(&self, l: L, patch: &Patch, up: f32) -> L::Word {
         let [at, _, _, above] = patch.v;

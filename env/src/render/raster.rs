@@ -119,7 +119,7 @@ fn draw_lanes<L: Lanes, const ITEMS: bool, S: Shading>(
     if seen == 0 {
         return;
     }
-    // Edge k is opposite corner k; the triangle on its other side has exactly the same line, to the bit.
+    // Edge k is opposite corner k; the triangle on its other side has exactly the same line, bit for bit.
     let edges = if params.is_turned() {
         [edge(l, x, y, 2, 1), edge(l, x, y, 0, 2), edge(l, x, y, 1, 0)]
     } else {

@@ -109,7 +109,7 @@ impl Renderer {
         }
     }
 
-    /// Draws these carried items of the scene at the lower edge of the target's colours.
+    /// Draws these carried items of the scene at the bottom of the target's colour image.
     pub(crate) fn draw_carried(&mut self, scene: &Scene, carried: &[u32], target: &mut Target<'_>) {
         match &mut self.0 {
             Inner::Cpu(renderer) => renderer.draw_carried(scene, carried, target),
@@ -118,7 +118,7 @@ impl Renderer {
         }
     }
 
-    /// Renders many images; a GPU renders those of one size together.
+    /// Renders many images; a GPU renders those of the same size together.
     ///
     /// # Errors
     /// [`EnvError::PictureSize`] for sizes out of range; on a GPU also [`EnvError::GpuPicture`] for images too large for it,

@@ -30,7 +30,7 @@ pub struct AdapterReport {
     pub driver: String,
     /// Whether it is software emulation of a GPU.
     pub is_software: bool,
-    /// Why it cannot be used, if so.
+    /// Why it cannot be used; `None` if it can.
     pub problem: Option<String>,
 }
 

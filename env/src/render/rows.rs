@@ -14,14 +14,14 @@ use crate::scene::{Light, Scene};
 /// Added to texel indices to make them positive; a multiple of every side of a tile.
 const SHIFT: f32 = 65536.0;
 
-/// Most texels per pixel, along the pixel's footprint. The side of a level is a power of two, so a pixel shows between
-/// half as many texels and this many.
+/// Maximum number of texels per pixel, along the pixel's footprint. The side of a level is a power of two, so a pixel shows
+/// between half as many texels and this many.
 const SHARPNESS: f32 = 1.25;
 
 /// Columns may share a texel if the texel is wider than them by this factor.
 const WIDER: f32 = 1.25;
 
-/// Finest texels across a pixel's width at which the detail starts to appear, and at which it has its full strength.
+/// Number of the finest texels across a pixel's width at which the detail starts to appear, and at which it has its full strength.
 const DETAIL: [f32; 2] = [0.5, 0.25];
 
 /// A layer of clouds: metres above the eye, metres per side of its tile, and the slope of the ray from which it is fully
@@ -34,7 +34,7 @@ pub(super) const CEILING: Surface = Surface::Tile;
 /// Darkness where walls, ground, ceiling and objects meet, and the distance in metres over which it fades.
 pub(super) const CONTACT: [f32; 2] = [0.5, 0.35];
 
-/// Fewest pixels over which that darkness fades, so that it does not flicker; it is fainter where this limit applies.
+/// Minimum number of pixels over which that darkness fades, so that it does not flicker; it is fainter where this limit applies.
 pub(super) const CONTACT_PIXELS: f32 = 1.5;
 
 /// Number of a wall's lowest pixels that count as meeting the ground.
@@ -109,7 +109,7 @@ struct Key {
     looks: NaturalLooks,
 }
 
-/// The rows of an image, cached for the next: those of one camera in one light differ only in the positions of texels.
+/// The rows of an image, cached for the next image: for the same camera and light, they differ only in the positions of texels.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Rows {
     key: Option<Key>,

@@ -16,13 +16,13 @@ use crate::scene::{ARENA_WALLS, Item, Scene};
 /// Height of shadows above the ground, as a fraction of the camera's height: more than that of zones.
 const LIFT: f32 = 2e-3;
 
-/// Longest shadow, as a multiple of the object's height.
+/// Maximum length of a shadow, as a multiple of the object's height.
 const LONGEST: f32 = 2.5;
 
 /// Width of the shadow below a thing in diffuse light, as a multiple of the thing's width.
 const SPREAD: f32 = 1.2;
 
-/// Largest error of a simplified mesh that casts a shadow, in pixels.
+/// Maximum error of a simplified mesh that casts a shadow, in pixels.
 const TOLERANCE: f32 = 2.5;
 
 /// How shadows are cast: away from the light, in the direction opposite to `toward`, whose height is 1.

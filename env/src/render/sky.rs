@@ -4,7 +4,7 @@ use super::daylight::{Daylight, between, rise};
 use super::shade::{FULL_LEVEL, Shader};
 use crate::scene::Light;
 
-/// Brightness of the sky: without light, per unit of the brightest channel, and at most.
+/// Brightness of the sky: without light, per unit of the brightest channel, and its maximum.
 const SKY_BRIGHTNESS: [f32; 3] = [0.12, 0.88, 1.06];
 
 /// Height of fog above the eye, in metres.
@@ -14,7 +14,7 @@ const FOG_HEIGHT: f32 = 30.0;
 const HORIZON: [f32; 2] = [0.42, 0.55];
 
 impl Shader {
-    /// The sky's colours at the zenith and at the horizon, for its own colour. It dims with the light, but less than the
+    /// The sky's colours at the zenith and at the horizon, given its own colour. It dims with the light, but less than the
     /// ground.
     pub(crate) fn sky(&self, color: [f32; 3]) -> [[f32; 3]; 2] {
         let brightest = self.tint[0].max(self.tint[1]).max(self.tint[2]);

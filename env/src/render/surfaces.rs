@@ -311,7 +311,7 @@ fn door(x: f32, y: f32) -> [f32; 3] {
     tinted(own + 0.09 * grain, 0.04 * grain)
 }
 
-/// A frame around boards with a brace, 0.9 m to a side.
+/// A frame around boards with a brace, 0.9 m on each side.
 fn wooden_box(x: f32, y: f32) -> [f32; 3] {
     let [across, up] = [x, y].map(around_middle);
     let out = across.abs().max(up.abs());

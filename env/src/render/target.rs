@@ -65,8 +65,8 @@ impl<'a> Target<'a> {
     }
 
     /// # Errors
-    /// [`EnvError::PictureSize`] unless both sides are 1 to 4096 pixels, there are at most 2²⁶ points of supersampling,
-    /// and every image has room for exactly its pixels.
+    /// [`EnvError::PictureSize`] unless both sides are 1 to 4096 pixels, `supersampling` is at most 4, there are at most 2²⁶
+    /// samples in all, and every image has room for exactly its pixels.
     pub(super) fn check(&self) -> Result<(), EnvError> {
         let (width, height) = (self.width, self.height);
         if self.is_sound() {

@@ -31,7 +31,7 @@ pub fn top_down(scene: &Scene, width: u32, height: u32, agent: Option<([f32; 2],
     top_down_with_way(scene, width, height, agent, &[])
 }
 
-/// Like [`top_down`], with the path through these places, in metres, as a line under the arrow.
+/// Like [`top_down`], with the path through these positions, in metres, as a line under the arrow.
 pub fn top_down_with_way(
     scene: &Scene,
     width: u32,

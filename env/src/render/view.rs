@@ -53,7 +53,7 @@ impl Pose {
 
     /// The frame of panels: flat ones are lifted slightly off the ground, depending on the camera.
     pub(crate) fn of_panels(group: &PanelGroup, view: &View) -> Self {
-        /// Largest camera height in metres that is used for the lift.
+        /// Maximum camera height in metres that is used for the lift.
         const HIGHEST: f32 = 1000.0;
         let height = view.position[2].clamp(0.0, HIGHEST);
         Self {

@@ -4,7 +4,7 @@ use super::view::{NEAR, View};
 use crate::assets::Material;
 use crate::scene::{ARENA_WALLS, Item, Scene};
 
-/// Largest error of a simplified mesh that is drawn, in pixels.
+/// Maximum error of a simplified mesh that is drawn, in pixels.
 const TOLERANCE: f32 = 0.5;
 
 /// An object that may be visible.

@@ -76,7 +76,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
 
         #[test]
-        fn bounding_box_matches_the_engines(
+        fn bounding_box_matches_that_of_the_engine(
             at in prop::array::uniform3(-300.0_f32..300.0), heading in -7.0_f32..7.0, tilt in -2.0_f32..2.0,
             [radius, half] in [0.005_f32..9.0, 0.005_f32..9.0],
             corners in prop::collection::vec(prop::array::uniform3(-9.0_f32..9.0), 4..24),

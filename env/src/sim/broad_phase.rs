@@ -1,7 +1,8 @@
-//! Broad phase: finds the bodies around a place.
+//! Broad phase: finds the bodies around a position.
 //!
-//! Walls, solid bodies and ghosts have separate trees, so that queries for one kind are not slowed down by the others. Few bodies
-//! are also kept in one short list, which is read faster than a tree.
+//! Walls, solid bodies and ghosts have separate trees, so that queries for one kind are not slowed down by the others. The
+//! first bodies are also kept in one short list, which is read instead of the trees if there are no others, because that is
+//! faster.
 
 use rapier3d::parry::partitioning::{Bvh, BvhBuildStrategy, BvhWorkspace};
 use rapier3d::prelude::*;
@@ -29,7 +30,7 @@ pub(super) struct BroadPhase {
     workspace: Box<BvhWorkspace>,
 }
 
-/// Least and greatest coordinates.
+/// Minimum and maximum coordinates.
 type Rectangle = [[f32; 2]; 2];
 
 #[derive(Default)]
@@ -43,7 +44,7 @@ struct Tree {
 }
 
 impl BroadPhase {
-    /// Asks the processor to load what the next query reads.
+    /// Prefetches what the next query reads.
     pub(super) fn prefetch(&self) {
         prefetch(self.listed.as_slice());
     }

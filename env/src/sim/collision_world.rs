@@ -14,7 +14,7 @@ use crate::polygon::to_f32;
 use crate::prefetch::prefetch;
 use crate::scene::{Item, Scene};
 
-/// Boundary for bodies that start outside the arena, in metres from the origin: documents allow no places beyond it.
+/// Boundary for bodies that start outside the arena, in metres from the origin: documents allow no positions beyond it.
 pub(super) const EDGE: f32 = 300.0;
 
 /// All bodies of a world. Nothing moves by forces, so there are no time steps here, only queries about shapes.
@@ -44,7 +44,7 @@ pub(crate) struct CollisionWorld {
     pub(super) scratch: Scratch,
 }
 
-/// Parts of the engine that queries and removals want to be handed. They stay empty.
+/// Parts of the engine that queries and removals take as arguments. They stay empty.
 #[derive(Default)]
 pub(super) struct Engine {
     bodies: RigidBodySet,
@@ -77,7 +77,7 @@ pub(super) struct Scratch {
     pub(super) places: Vec<u32>,
     /// The rotated body of an object that moves.
     pub(super) body: Footprint,
-    /// Places where bodies would overlap with a door.
+    /// Positions at which bodies would overlap a door.
     pub(super) doorway: Footprint,
     /// Footprints widened by that body.
     pub(super) widened: Vec<Footprint>,
@@ -121,7 +121,7 @@ impl CollisionWorld {
         bodies
     }
 
-    /// Asks the processor to load what the next motion reads.
+    /// Prefetches what the next motion reads.
     pub(super) fn prefetch(&self) {
         self.places.prefetch();
         prefetch(self.low.as_slice());
@@ -239,7 +239,7 @@ impl CollisionWorld {
         self.handles[index as usize] = Some(handle);
     }
 
-    /// Moves a body to a place and a heading in degrees.
+    /// Moves a body to a position and a heading in degrees.
     pub(super) fn put(&mut self, handle: ColliderHandle, at: [f32; 2], heading_deg: f32) {
         let collider = &self.colliders[handle];
         let mut pose = *collider.position();

@@ -9,10 +9,10 @@ use super::collision_world::{CollisionWorld, slot};
 use super::footprint::Point;
 use super::groups::{GHOST, SOLID};
 
-/// Widest gap that is a touch, in metres: slightly more than the skin.
+/// Maximum gap that counts as a touch, in metres: slightly more than the skin.
 const TOUCH: f64 = 0.03;
 
-/// Widest gap at which a contact continues, in metres; a range ends the same distance beyond its edge.
+/// Maximum gap at which a contact continues, in metres; a range ends the same distance beyond its edge.
 pub(super) const RELEASE: f64 = 0.25;
 
 impl CollisionWorld {
@@ -44,8 +44,8 @@ impl CollisionWorld {
         }
     }
 
-    /// Records an object if it touched the agent while it moved by `by` metres to its current place, and the agent from one
-    /// place to another.
+    /// Records an object if it touched the agent while it moved by `by` metres to its current position, and the agent between
+    /// these positions.
     pub(super) fn note_passing(&self, object: u32, by: [f32; 2], agent: [[f32; 2]; 2], met: &mut Vec<u32>) {
         let Some(handle) = self.handles[object as usize] else {
             return;
@@ -74,8 +74,8 @@ impl CollisionWorld {
         }
     }
 
-    /// Whether an agent that goes straight from place to place touches an object or comes within `metres` of a touch.
-    /// If it starts nearer than that, only coming even nearer counts.
+    /// Whether an agent that follows this path touches an object or comes within `metres` of a touch. If it starts nearer than
+    /// that, only coming even nearer counts.
     pub(super) fn would_touch(&self, object: u32, path: &[Point], metres: f64) -> bool {
         let Some(handle) = self.handles[object as usize] else {
             return false;

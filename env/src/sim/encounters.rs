@@ -5,7 +5,7 @@
 pub(super) struct Encounters {
     /// Objects that the agent met on its path, or that met it on theirs; may contain duplicates.
     pub(super) met: Vec<u32>,
-    /// Contacts that continue although a moving object ran ahead, in rising order.
+    /// Contacts that continue although a moving object ran ahead, in ascending order.
     pub(super) kept: Vec<u32>,
     /// Objects that moved, by index, and their previous positions.
     pub(super) moved: Vec<(usize, [f32; 2])>,

@@ -22,7 +22,7 @@ use crate::prefetch::prefetch;
 use crate::render::{Frame, Renderer, RendererKind};
 use crate::scene::Scene;
 
-/// Walls whose geometry is requested ahead of time: enough for an arena with a few.
+/// Number of walls whose geometry is prefetched: enough for an arena with a few walls.
 const MOST_PREFETCHED: usize = 8;
 
 /// A running world: reset, step, observe.
@@ -86,7 +86,7 @@ impl Environment {
         Ok(environment)
     }
 
-    /// Asks the processor to load the lists that the next step reads.
+    /// Prefetches the lists that the next step reads.
     pub(crate) fn prefetch_lists(&self) {
         prefetch(self.world.as_ref());
         prefetch(self.state.objects.as_slice());
@@ -95,7 +95,7 @@ impl Environment {
         self.views.bodies.prefetch();
     }
 
-    /// Asks the processor to load what those lists point to.
+    /// Prefetches what those lists point to.
     pub(crate) fn prefetch_contents(&self) {
         self.world.objects.first().inspect(|object| prefetch(*object));
         for group in self.views.scene.panels.iter().take(MOST_PREFETCHED) {
@@ -269,7 +269,7 @@ impl Environment {
     }
 }
 
-/// The tags of a world's objects; consecutive objects of a group share theirs.
+/// The tags of a world's objects; consecutive objects with the same tag share it.
 fn tags(world: &World) -> Vec<Option<Arc<str>>> {
     let mut tags: Vec<Option<Arc<str>>> = Vec::with_capacity(world.objects.len());
     for object in &world.objects {

@@ -88,7 +88,7 @@ pub struct Step {
     pub reward: f64,
     /// Whether the episode ended by itself.
     pub terminated: bool,
-    /// Whether the episode was cut off by a limit of steps or of simulated time.
+    /// Whether the episode was cut off by a step limit or a limit of simulated time.
     pub truncated: bool,
     /// Whether it ended as a success.
     pub success: bool,

@@ -42,8 +42,8 @@ impl Footprint {
         }
     }
 
-    /// A segment of this half length along x around the origin, widened: its ends are round, so that two walls meet in a corner
-    /// without a notch.
+    /// A segment with this half length along x around the origin, widened: its ends are round, so that two walls meet in a
+    /// corner without a notch.
     pub(super) fn line(half_length: f64, radius: f64) -> Self {
         Self {
             corners: smallvec![[-half_length, 0.0], [half_length, 0.0]],
@@ -138,7 +138,7 @@ impl Footprint {
 
     /// The gap between this footprint and a point.
     ///
-    /// The distance is a convex function of the point, also inside: along a straight path it first falls and then rises.
+    /// The distance is a convex function of the point, even inside: along a straight path it first falls and then rises.
     pub(super) fn gap(&self, at: Point) -> Gap {
         let gap = match self.corners.as_slice() {
             [middle] => away_from(*middle, at),

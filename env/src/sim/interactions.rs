@@ -90,7 +90,7 @@ pub(super) fn apply_stimuli(
         if let Some((index, place)) = put_down_now {
             put_down(world, state, views, index, place);
             let sim = SimRef { world, state, views };
-            // Being near to the place where it is put down is not an event.
+            // Being near the place where it is put down is not an event.
             state.objects[index as usize].in_range = is_in_range(sim, index as usize);
             step.events.push(Event {
                 object: index as usize,

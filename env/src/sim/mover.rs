@@ -36,7 +36,7 @@ pub(super) struct View {
     pub(crate) agent: [f32; 2],
     /// Half the arena's sides.
     pub(crate) half: [f32; 2],
-    /// Seconds of a step.
+    /// Duration of a step in seconds.
     pub(crate) seconds: f32,
 }
 
@@ -127,7 +127,7 @@ impl Mover {
         (length(way) > 1e-4).then_some(way)
     }
 
-    /// Reports how far it moved: a wanderer that hardly moved chooses another goal.
+    /// Reports how far it moved: a wanderer that hardly moved chooses a new goal.
     pub(super) fn moved(&mut self, meant: [f32; 2], came: [f32; 2]) {
         if length(came) < STUCK * length(meant) {
             self.goal = None;

@@ -9,7 +9,7 @@ use super::groups::{AGENT, SOLID, WALL};
 use super::outline::Outline;
 use super::slide::{Obstacles, SKIN};
 
-/// Largest displacement, in metres, that makes room for a body that turns beside a wall.
+/// Maximum displacement, in metres, that makes room for a body that turns beside a wall.
 const TURN_ROOM: f64 = 0.25;
 
 /// With this many bodies around it, a place counts as taken.
@@ -39,7 +39,7 @@ impl CollisionWorld {
 
     /// Moves an object's body that turns from one heading in degrees to another; it stops at walls, solid objects and the
     /// agent, and slides along them. A body with corners turns only if it finds room for them; otherwise it slides on without
-    /// turning. Returns its place and heading; `None` for an absent object, and for one with more around it than the budget
+    /// turning. Returns its position and heading; `None` for an absent object, and for one with more around it than the budget
     /// allows, which waits.
     pub(crate) fn push(
         &mut self,
@@ -127,7 +127,7 @@ impl CollisionWorld {
         Some((place, heading_deg))
     }
 
-    /// Widens the footprints of these numbers by a body.
+    /// Widens the footprints with these numbers by a body.
     fn widen(&self, numbers: &[u32], body: &Footprint, widened: &mut [Footprint]) {
         for (number, widened) in numbers.iter().zip(widened) {
             self.whole[*number as usize].widened_into(body, widened);

@@ -46,8 +46,8 @@ impl Environment {
         shown(&self.world, &self.state)
     }
 
-    /// Draws what the agent carries onto an image of its view, if the world shows it: at the lower edge of the target's
-    /// colours. Other images stay unchanged.
+    /// Draws what the agent carries onto an image of its view, if the world shows it: at the bottom of the target's colour
+    /// image. Other images stay unchanged.
     pub fn draw_carried(&self, renderer: &mut CpuRenderer, target: &mut Target<'_>) {
         renderer.draw_carried(&self.views.scene, self.shown_carried(), target);
     }

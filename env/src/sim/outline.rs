@@ -24,7 +24,7 @@ impl Outline {
         }
     }
 
-    /// A thin wall with round ends, of this half length along x.
+    /// A thin wall with round ends and this half length along x.
     pub(super) fn wall(half_length: f32, half_thickness: f32) -> Self {
         Self {
             low: None,
@@ -116,7 +116,7 @@ impl Outline {
         self.whole.place_into(turn(heading_deg), [0.0; 2], whole);
     }
 
-    /// Rotates the outline to a heading in degrees, and moves it to a place.
+    /// Rotates the outline to a heading in degrees, and moves it to a position.
     pub(super) fn place_into(&self, heading_deg: f32, at: Point, low: &mut Footprint, whole: &mut Footprint) {
         // Discs do not depend on the heading.
         let turn = if self.is_disc() { [0.0, 1.0] } else { turn(heading_deg) };

@@ -60,7 +60,7 @@ pub(super) fn to_world(sim: SimRef, seed: &Seed, rails: Option<RailsProgress>) -
         .expect("steps keep the rules that the world started with")
 }
 
-/// The world's agent at its current place; exactly the start, to the bit, if it is there.
+/// The world's agent at its current position and heading; if these are its start, exactly as in the world, bit for bit.
 pub(super) fn agent_now(sim: SimRef) -> AgentParams {
     let agent = sim.agent();
     let mut now = sim.world.agent_params.clone();
@@ -73,14 +73,14 @@ pub(super) fn agent_now(sim: SimRef) -> AgentParams {
     now
 }
 
-/// A world's object at its current place, with its remaining reward.
+/// A world's object at its current position, with its remaining reward.
 pub(super) fn object_now(sim: SimRef, index: usize) -> Object {
     let mut now = sim.world.objects[index].clone();
     put_where_it_is(sim, index, &mut now);
     now
 }
 
-/// Moves an object to its current place; returns its original place if that differs.
+/// Gives an object its current position, heading and reward; returns the original ones if any differs.
 fn put_where_it_is(sim: SimRef, index: usize, object: &mut Object) -> Option<Origin> {
     let own = &sim.objects()[index];
     let stands = object.coordinates.map(|metres| metres as f32) == own.position
@@ -99,7 +99,7 @@ fn put_where_it_is(sim: SimRef, index: usize, object: &mut Object) -> Option<Ori
     origin
 }
 
-/// The progress of an object, which is moved to its current place.
+/// The progress of an object, which is moved to its current position.
 fn note_object(sim: SimRef, index: usize, object: &mut Object) -> ObjectProgress {
     let own = &sim.objects()[index];
     let origin = put_where_it_is(sim, index, object);

@@ -33,7 +33,7 @@ impl Pushed {
     }
 }
 
-/// Whether an object can be pushed: it is pushable and solid, and does not move by itself.
+/// Whether an object can be pushed: it is pushable and solid, is not a door, and does not move by itself.
 pub(super) fn is_pushed(object: &Object) -> bool {
     object.pushable.is_some() && object.door.is_none() && object.solid && object.motion_model == MotionModel::Stationary
 }

@@ -22,7 +22,7 @@ use super::views::Views;
 /// The agent's mass in kilograms. In each time step it meets the bodies that it pushes with this mass and its speed.
 const AGENT_MASS: f32 = 80.0;
 
-/// Longest step of the physics, in seconds.
+/// Maximum duration of a physics step in seconds.
 const LONGEST: f32 = 1.0 / 60.0;
 
 /// Minimum number of physics steps in a time step: the first step of a new physics world ignores existing contacts.
@@ -284,7 +284,7 @@ fn read_back(
     }
 }
 
-/// Whether the straight path of an object's body between two places crosses a wall.
+/// Whether the straight path of an object's body between two positions crosses a wall.
 fn leads_through(bodies: &CollisionWorld, from: [f32; 2], to: [f32; 2], object: u32) -> bool {
     let way = Vector::new(to[0] - from[0], to[1] - from[1], 0.0);
     let ray = Ray::new(Vector::new(from[0], from[1], 0.05), way);
@@ -293,7 +293,7 @@ fn leads_through(bodies: &CollisionWorld, from: [f32; 2], to: [f32; 2], object: 
     bodies.queries_but(WALL, own).any(hit)
 }
 
-/// Friction with the ground: slows sliding and rotating bodies until they rest.
+/// Friction with the ground: slows sliding and rotating bodies until they are at rest.
 fn rub(physics: &mut PhysicsWorld, active: &[Active]) {
     let seconds = physics.integration_parameters.dt;
     for body in active {

@@ -1,4 +1,4 @@
-//! Respawns destroyed objects at free places near their first place.
+//! Respawns destroyed objects at free positions near their start positions.
 
 use driftworld_spec::World;
 

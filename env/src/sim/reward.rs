@@ -16,7 +16,7 @@ pub(super) fn per_tick(world: &World) -> f64 {
     world.rules.reward_per_second * world.agent_params.time_step
 }
 
-/// The shaping reward of a step, from the potentials before and after it; an end has the potential 0.
+/// The shaping reward of a step, from the potentials before and after it; the end of an episode has potential 0.
 pub(super) fn shaping(world: &World, state: &SimState, before: f64, terminated: bool) -> Option<f64> {
     let shaping = world.rules.shaping.as_ref()?;
     let after = if terminated { 0.0 } else { potential(world, state) };

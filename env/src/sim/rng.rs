@@ -61,7 +61,7 @@ impl Seed {
                 key[..8].copy_from_slice(&seed.to_le_bytes());
                 key[8..].copy_from_slice(&DOMAIN);
             }
-            // The digits, not the bytes that they encode: half of them is a good enough key.
+            // The digits, not the bytes that they encode: half of them make a good enough key.
             Self::Places(hash) => key
                 .iter_mut()
                 .zip(hash.bytes())
@@ -84,7 +84,7 @@ pub(super) enum Purpose {
 
 /// Identities of a world's objects, independent of their position in the list.
 ///
-/// Objects with the same seed, or without one at the same place, are distinguished by their order among each other.
+/// Objects with the same seed, or without one at the same place, are distinguished by their order among themselves.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Identities {
     /// Number of objects so far with each base identity.

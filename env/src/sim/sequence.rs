@@ -5,7 +5,7 @@ use driftworld_spec::Object;
 /// The places of a sequence in order, and how many from the first on have been collected.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sequence {
-    /// Place and object, in rising order.
+    /// Place and object, in ascending order.
     places: Vec<(u32, u32)>,
     /// All places before this one have been collected.
     next: usize,

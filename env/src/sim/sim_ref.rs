@@ -37,8 +37,8 @@ impl<'a> SimRef<'a> {
         self.views.bodies.in_reach(agent.position, agent.forward(), found);
     }
 
-    /// Whether an agent that goes straight from place to place touches an object or comes within `metres` of a touch.
-    /// If it starts nearer than that, only coming even nearer counts.
+    /// Whether an agent that follows this path touches an object or comes within `metres` of a touch. If it starts nearer than
+    /// that, only coming even nearer counts.
     pub(crate) fn would_touch(self, object: u32, path: &[[f64; 2]], metres: f64) -> bool {
         self.views.bodies.would_touch(object, path, metres)
     }

@@ -61,7 +61,7 @@ impl Obstacles<'_> {
             .min_by(|a, b| a.distance.total_cmp(&b.distance))
     }
 
-    /// Moves a round body out of overlaps, by at most half a metre and never through anything else.
+    /// Moves a round body out of overlaps, in at most three moves of up to half a metre, and never through anything else.
     ///
     /// If that would lead just as deep into other obstacles, it stays.
     pub(super) fn out_of_overlap(&self, start: Point, radius: f64) -> Point {
@@ -283,7 +283,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 2000)))]
 
         #[test]
-        fn allowed_direction_equals_the_definition_to_the_bit(
+        fn allowed_direction_equals_the_definition_bit_for_bit(
             by in direction(),
             length in prop_oneof![1e-8..1e-3_f64, 1e-3..1e3_f64],
             outs in prop::collection::vec(direction(), 0..12),

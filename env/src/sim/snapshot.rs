@@ -59,7 +59,7 @@ impl Environment {
         }
     }
 
-    /// Restores a moment of this environment or of another one; everything afterwards is the same to the bit.
+    /// Restores a moment of this environment or of another one; everything afterwards is the same, bit for bit.
     pub fn restore(&mut self, moment: &Snapshot) {
         if !Arc::ptr_eq(&self.world, &moment.world) {
             self.start_with(Arc::clone(&moment.world), &moment.catalogue);
@@ -90,12 +90,12 @@ impl Environment {
         to_world(self.sim(), &self.seed, self.rails.as_ref().map(OnRailsAgent::progress))
     }
 
-    /// The world's agent at its current place; exactly the start, to the bit, if it is there.
+    /// The world's agent at its current position and heading; if these are its start, exactly as in the world, bit for bit.
     pub(crate) fn agent_now(&self) -> AgentParams {
         agent_now(self.sim())
     }
 
-    /// A world's object at its current place, with its remaining reward.
+    /// A world's object at its current position, with its remaining reward.
     pub(crate) fn object_now(&self, index: usize) -> Object {
         object_now(self.sim(), index)
     }

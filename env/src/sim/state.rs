@@ -91,27 +91,27 @@ pub(crate) struct SimState {
     pub(super) ended: bool,
     /// Random numbers of bandit arms and respawning objects, ordered by object.
     pub(super) rngs: Vec<ObjectRng>,
-    /// Objects in contact at the end of the last step, in rising order.
+    /// Objects in contact at the end of the last step, in ascending order.
     pub(super) contacts: Vec<u32>,
-    /// The objects that move by themselves, in rising order.
+    /// The objects that move by themselves, in ascending order.
     pub(super) movers: Vec<Mover>,
-    /// The objects that notice the agent from a distance, in rising order.
+    /// The objects that notice the agent from a distance, in ascending order.
     pub(super) ranged: Vec<u32>,
-    /// The pushable objects, in rising order.
+    /// The pushable objects, in ascending order.
     pub(super) pushed: Vec<Pushed>,
-    /// Destroyed objects that will respawn, in rising order, with the time step in which they are due.
+    /// Destroyed objects that will respawn, in ascending order, with the time step in which they are due.
     pub(super) returning: Vec<(usize, u64)>,
     /// The sequence, if objects are in one.
     pub(super) sequence: Sequence,
     /// For each of the views' zones, whether the agent has entered it and is still inside.
     pub(super) inside: Vec<bool>,
-    /// The objects that are doors, in rising order.
+    /// The objects that are doors, in ascending order.
     pub(super) doors: Vec<DoorState>,
     /// The objects that the agent carries, in the order in which it picked them up.
     pub(super) carried: Vec<u32>,
     /// Whether any object is a door, a switch or a carriable thing.
     pub(crate) has_things: bool,
-    /// Seconds of a time step.
+    /// Duration of a time step in seconds.
     time_step: f64,
     /// The agent's energy; 0 in a world without energy.
     pub(super) energy: f64,

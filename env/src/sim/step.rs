@@ -38,7 +38,7 @@ impl Environment {
         Ok(())
     }
 
-    /// Makes one step with a command for the body, whatever action it comes from.
+    /// Takes one step with a command for the body, whatever action it comes from.
     pub(crate) fn step_by(&mut self, mut intent: Intent, step: &mut Step) {
         step.clear();
         let potential_before = reward::potential(&self.world, &self.state);

@@ -90,7 +90,7 @@ pub(crate) fn put_down_place(sim: SimRef) -> Option<(u32, [f32; 2])> {
     let ahead = sim.world.agent_params.agent_width as f32 / 2.0 + radius + APART;
     let [east, north] = agent.forward();
     let place = [agent.position[0] + east * ahead, agent.position[1] + north * ahead];
-    // Documents allow no places beyond the edge of worlds.
+    // Documents allow no positions beyond the edge of worlds.
     let is_inside = place.iter().all(|metres| metres.abs() <= EDGE);
     let is_free = is_inside && sim.views.bodies.is_way_free(agent.position, place, f64::from(radius));
     is_free.then_some((index, place))
@@ -136,7 +136,7 @@ fn set_going(world: &World, state: &mut SimState, views: &mut Views, door: usize
     }
 }
 
-/// Uses up the key of a door, if it needs one.
+/// Unlocks a door with its key, if it needs one, and removes the key if it is consumed.
 fn unlock(world: &World, state: &mut SimState, index: usize) {
     let key = world.objects[index].door.as_ref().and_then(|door| door.key.as_deref());
     let (Some(key), Some(door)) = (key, state.doors.iter().position(|door| door.object == index)) else {

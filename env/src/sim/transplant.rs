@@ -102,7 +102,7 @@ impl Environment {
         self.state.objects[object].reward = 0.0;
     }
 
-    /// Sets the clock to the last step before a world's limit of steps or seconds; returns whether it has one.
+    /// Sets the clock to the last step before a world's step or time limit; returns whether it has one.
     pub(crate) fn wind_to_limit_of(&mut self, limited: &World) -> bool {
         let Some(limit) = limited.step_limit().filter(|limit| *limit > 0) else {
             return false;
@@ -204,7 +204,7 @@ impl Environment {
     }
 }
 
-/// Copies others' entries for the same objects; both lists are sorted by object.
+/// Copies the other list's entries for the same objects; both lists are sorted by object.
 fn take_over<T: Clone>(own: &mut [T], theirs: &[T], object: impl Fn(&T) -> usize) {
     for one in own {
         if let Ok(place) = theirs.binary_search_by_key(&object(one), &object) {

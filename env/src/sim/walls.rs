@@ -9,7 +9,7 @@ use crate::polygon::is_near_or_inside;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, strum::Display)]
 #[non_exhaustive]
 pub enum Obstacle {
-    /// The place is outside the arena, or not finite.
+    /// The position is outside the arena, or not finite.
     #[strum(to_string = "no ground of the arena")]
     Outside,
     /// A wall, or a region that cannot be entered.
@@ -23,7 +23,7 @@ pub enum Obstacle {
     },
 }
 
-/// The part of the arena's boundary or walls that is in the way of a round body of this radius in metres.
+/// The part of the arena's boundary or walls that is in the way of a round body with this radius in metres.
 pub(super) fn obstacle(world: &World, position: [f64; 2], radius: f64) -> Option<Obstacle> {
     let environment = &world.environment_params;
     if !position.iter().all(|metres| metres.is_finite()) || !environment.contains(position) {
@@ -35,7 +35,7 @@ pub(super) fn obstacle(world: &World, position: [f64; 2], radius: f64) -> Option
     (beyond || world.obstacles().any(inside)).then_some(Obstacle::Wall)
 }
 
-/// The obstacle to the agent's body at a place: the arena's boundary, a wall, or a solid object.
+/// The obstacle to the agent's body at a position: the arena's boundary, a wall, or a solid object.
 pub(super) fn agent_obstacle(sim: SimRef, position: [f64; 2]) -> Option<Obstacle> {
     let radius = sim.world.agent_params.agent_width / 2.0;
     obstacle(sim.world, position, radius).or_else(|| {
@@ -73,7 +73,7 @@ mod tests {
         check([3.0, 3.0], Some(Obstacle::Wall));
         check([1.6, 3.0], Some(Obstacle::Wall));
         check([1.4, 3.0], None);
-        // The notch from above is free ground once it is wide enough.
+        // The notch at the top is free ground where it is wide enough.
         check([4.0, 5.8], None);
         check([4.0, 4.2], Some(Obstacle::Wall));
     }

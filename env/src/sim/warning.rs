@@ -40,7 +40,7 @@ pub enum Warning {
         /// The obstacle.
         obstacle: Obstacle,
     },
-    /// The object is pushable but cannot be pushed: it is not solid, or moves by itself.
+    /// The object is pushable but cannot be pushed: it is not solid, moves by itself, or is a door.
     #[strum(
         to_string = "/objects/{object}/pushable: found an object that moves by itself or is not solid; it is not pushed"
     )]
@@ -59,7 +59,7 @@ pub enum Warning {
         object: usize,
         /// Number of other objects that overlap it, by bounding boxes.
         bodies: usize,
-        /// Largest number allowed.
+        /// Maximum number allowed.
         limit: usize,
     },
     /// The world is meant for photographs of its objects ([`Studio`](crate::Studio)); when stepped, it runs as if it were for

@@ -1,4 +1,4 @@
-//! Applies zones to the agent in a time step: rewards, speed, ends of the episode, and teleports.
+//! Applies zones to the agent in a time step: rewards, speed, the end of the episode, and teleports.
 
 use driftworld_spec::{World, Zone, ZoneEnd};
 
@@ -11,8 +11,8 @@ use super::state::SimState;
 use super::views::Views;
 use super::walls::agent_obstacle;
 
-/// The zones of a world, in an order that does not depend on the list's, so that sums and products over them are the same to
-/// the bit.
+/// The zones of a world, in an order that does not depend on that of the list, so that sums and products over them are the
+/// same, bit for bit.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Zones(Vec<Area>);
 
@@ -20,7 +20,7 @@ pub(crate) struct Zones(Vec<Area>);
 #[derive(Clone, Debug)]
 pub(crate) struct Area {
     pub(crate) zone: Zone,
-    /// Smallest and largest x and y in metres.
+    /// Minimum and maximum x and y in metres.
     bounds: [Point; 2],
     /// Its index in the world's list.
     index: usize,
@@ -81,7 +81,7 @@ impl Zones {
         self.0.iter().any(|area| is_meant(&area.zone) && is_entered(area))
     }
 
-    /// The zones that contain a place.
+    /// The zones that contain a position.
     pub(super) fn around(&self, point: Point) -> impl Iterator<Item = &Zone> {
         let areas = self.0.iter().filter(move |area| area.contains(point));
         areas.map(|area| &area.zone)
@@ -89,7 +89,7 @@ impl Zones {
 }
 
 impl Area {
-    /// Whether it contains a place.
+    /// Whether it contains a position.
     pub(crate) fn contains(&self, point: Point) -> bool {
         let [low, high] = self.bounds;
         (0..2).all(|axis| low[axis] <= point[axis] && point[axis] <= high[axis]) && self.zone.contains(point)
@@ -107,7 +107,7 @@ impl Area {
         })
     }
 
-    /// Whether a straight path between two places crosses its border.
+    /// Whether a straight path between two positions crosses its border.
     fn is_cut(&self, from: Point, to: Point) -> bool {
         if let Some(disc) = &self.zone.disc {
             return squared_distance(disc.center, from, to) < disc.radius * disc.radius;
@@ -139,8 +139,8 @@ pub(super) fn slowed(intent: Intent, state: &SimState, zones: &Zones) -> Intent 
     }
 }
 
-/// Pays for the zones that the agent is in and for those that it entered in this time step, and teleports it if one does.
-/// Returns how they end the episode.
+/// Pays for the zones that the agent is in and for those that it entered in this time step, and teleports it if one of them
+/// does. Returns how they end the episode.
 pub(super) fn apply_zones(world: &World, state: &mut SimState, views: &Views, step: &mut Step) -> Option<ZoneEnd> {
     let zones = &views.zones;
     if zones.0.is_empty() {
@@ -189,7 +189,7 @@ pub(super) fn apply_zones(world: &World, state: &mut SimState, views: &Views, st
     end
 }
 
-/// Of two ends in one time step, a success takes precedence.
+/// Of two endings in one time step, a success takes precedence.
 fn first_of(a: Option<ZoneEnd>, b: Option<ZoneEnd>) -> Option<ZoneEnd> {
     match (a, b) {
         (Some(ZoneEnd::Success), _) | (_, Some(ZoneEnd::Success)) => Some(ZoneEnd::Success),
@@ -197,7 +197,7 @@ fn first_of(a: Option<ZoneEnd>, b: Option<ZoneEnd>) -> Option<ZoneEnd> {
     }
 }
 
-/// The nearest place, among some on rings around this one, where the agent's body has room; `None` if there is none.
+/// The nearest position with room for the agent's body, among some on rings around the wanted one; `None` if there is none.
 fn free_place(sim: SimRef, wanted: Point) -> Option<Point> {
     /// Number of rings, each wider than the last by half the agent's width.
     const RINGS: u32 = 8;

@@ -15,7 +15,7 @@ pub(crate) fn gpu() -> Option<GpuRenderer> {
             panic!("DRIFTWORLD_REQUIRE_GPU=1: {error}")
         }
         Err(error) => {
-            // Not by println, which the test harness hides for passing tests.
+            // Not with println, which the test harness hides for passing tests.
             let _ = writeln!(std::io::stderr(), "skipped: {error}");
             None
         }

@@ -335,7 +335,7 @@ fn carried_things_look_the_same_alone_and_in_a_batch() {
     assert!(like.colors >= 0.99 && like.instances >= 0.99, "{like:?}");
 }
 
-/// Plain and natural worlds in one batch: the natural ones are rendered on the CPU, to the bit.
+/// Plain and natural worlds in one batch: the natural ones are rendered on the CPU, bit for bit.
 #[test]
 fn natural_images_of_a_batch_are_rendered_on_the_cpu() {
     let Some(mut gpu) = gpu() else { return };

@@ -188,7 +188,7 @@ impl<'a> Safetensors<'a> {
             let chunks = data.as_chunks().0.iter();
             chunks.map(|bytes| f32::from_le_bytes(*bytes)).collect()
         } else {
-            // The upper half of a number of 32 bits.
+            // BF16 is the upper half of F32.
             let chunks = data.as_chunks().0.iter();
             chunks
                 .map(|[low, high]| f32::from_le_bytes([0, 0, *low, *high]))

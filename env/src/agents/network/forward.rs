@@ -1,4 +1,4 @@
-//! Forward pass of `PatchNetwork` of `driftworld.learners`: patches of 4 × 4 pixels, then 2 × 2 of those, a hidden layer, the
+//! Forward pass of `PatchNetwork` from `driftworld.learners`: patches of 4 × 4 pixels, then 2 × 2 of those, a hidden layer, the
 //! policy. Sums have a fixed order, so results are the same on every machine.
 
 /// Side of a patch in pixels.

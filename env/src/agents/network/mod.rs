@@ -1,4 +1,4 @@
-//! [`NetworkAgent`]: acts by a network trained with `driftworld.learners`.
+//! [`NetworkAgent`]: acts with a network trained by `driftworld.learners`.
 
 mod file;
 mod forward;
@@ -28,11 +28,11 @@ struct Trained {
     is_greedy: bool,
 }
 
-/// Acts by a network that a Python learner's `export` wrote: renders a small image of its camera view on the CPU, and holds
+/// Acts with a network that a Python learner's `export` wrote: renders a small image of its camera view on the CPU, and holds
 /// each action as long as in training.
 ///
 /// Its image is bit-identical to that of an environment with the modality RGB and the network's size. A sampled policy draws
-/// from the seed of the episode. In worlds with a table of actions it takes the nearest row.
+/// with the episode's seed. In worlds with an action table it takes the nearest row.
 pub struct NetworkAgent {
     trained: Arc<Trained>,
     renderer: CpuRenderer,

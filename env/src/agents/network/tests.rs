@@ -121,7 +121,7 @@ fn changed(from: &str, to: &str) -> Vec<u8> {
 }
 
 #[test]
-fn numbers_of_two_bytes_are_upper_halves() {
+fn bf16_numbers_are_upper_halves_of_f32() {
     let length = u64::from_le_bytes(*NETWORK.first_chunk().expect("eight bytes")) as usize;
     let (header, data) = NETWORK[8..].split_at(length);
     let rounded: Vec<[u8; 4]> = data.as_chunks().0.iter().map(|[_, _, c, d]| [0, 0, *c, *d]).collect();

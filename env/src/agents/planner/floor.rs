@@ -61,9 +61,9 @@ pub(super) struct Floor {
     pub(super) body: f32,
     regions: Vec<Vec<[f64; 2]>>,
     zones: Vec<Zone>,
-    /// The weight of each cell by walls and zones alone; 0 where it is closed.
+    /// The weight of each cell from walls and zones alone; 0 where it is closed.
     pub(super) bare: Vec<u16>,
-    /// The same with objects.
+    /// The weight of each cell, objects included.
     pub(super) weight: Vec<u16>,
     /// Costs of entering zones, and which cells are in zones that cost.
     pub(super) zone_costs: ZoneCosts,
@@ -126,7 +126,7 @@ impl Floor {
             .collect();
     }
 
-    /// Rebuilds the grid if walls or zones have changed; returns whether they had.
+    /// Rebuilds the grid if walls or zones have changed; returns whether it did.
     fn refresh_walls(&mut self, world: &World, arena_size: [f32; 2]) -> bool {
         let body = world.agent_params.agent_width as f32 / 2.0;
         let regions = || world.obstacles();
@@ -282,7 +282,7 @@ impl Floor {
     }
 }
 
-/// The weight of a cell by the room that walls leave beyond the agent's body.
+/// The weight of a cell, given the room that walls leave beyond the agent's body.
 fn by_room(metres: f32) -> u16 {
     match metres {
         room if room < MIN_CLEARANCE => 0,

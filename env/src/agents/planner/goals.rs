@@ -16,7 +16,7 @@ pub(super) enum Goal<'a> {
     Use(u32),
     /// Open a door, set off a switch, pick up a thing.
     Move(u32),
-    /// Put a thing down near an object of a tag.
+    /// Put a thing down near an object with a tag.
     Bring { thing: u32, tag: &'a str },
 }
 
@@ -118,7 +118,7 @@ fn endings(sim: SimRef) -> Vec<Goal> {
     before_their_turn(sim, found)
 }
 
-/// These goals, or what must come before them in the sequence.
+/// The goals whose turn it is in the sequence; if some must wait, also what comes before them.
 fn before_their_turn<'a>(sim: SimRef<'a>, found: Vec<Goal<'a>>) -> Vec<Goal<'a>> {
     let (world, states) = (sim.world, sim.objects());
     let is_due = |object: &Object| sim.state.is_due(object.order);

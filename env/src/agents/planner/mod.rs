@@ -57,7 +57,7 @@ struct Situation {
     target: Option<u32>,
     /// Where the target is, if that can change.
     target_room: Option<u32>,
-    /// For each door whether it is unlocked, and what is carried.
+    /// For each door, whether it is unlocked.
     unlocked: Vec<bool>,
     carried: Vec<u32>,
     /// Positions of the doors, switches and portable things that are present, as bits.

@@ -46,7 +46,7 @@ pub(super) struct Plan<'a> {
 }
 
 impl<'a> Plan<'a> {
-    /// Opens every free door, then spends keys as these goals need.
+    /// Opens every free door, then spends keys as these goals require.
     pub(super) fn new(sim: SimRef<'a>, floor: &'a Floor, goals: &[Vec<Goal>; 3]) -> Option<Self> {
         let here = floor.room_at(sim.agent().position)?;
         let mut plan = Self {

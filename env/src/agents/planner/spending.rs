@@ -6,11 +6,11 @@ use std::collections::{BTreeSet, VecDeque};
 use super::goals::Goal;
 use super::plan::{Plan, Way};
 
-/// Most choices of doors to compare, starting with those that spend the fewest keys; if there are more, the best of
+/// Maximum number of door choices to compare, starting with those that spend the fewest keys; if there are more, the best of
 /// these wins.
 const MOST_CHOICES: usize = 1000;
 
-/// What a plan is worth, most important first: whether it reaches a success, what it is paid, how many successful endings it
+/// The worth of a plan, most important first: whether it reaches a success, how much it earns, how many successful endings it
 /// can reach.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 struct Worth {

@@ -101,8 +101,8 @@ impl Subgoal {
         }
     }
 
-    /// Whether another thing would answer although the agent faces the wanted one from as near as it gets: the agent then takes
-    /// that thing and puts it down elsewhere.
+    /// Whether a different thing would answer, although the agent faces the wanted one and is as close as it can get: the agent
+    /// then takes that thing and puts it down elsewhere.
     fn is_behind_another(self, sim: SimRef) -> bool {
         let object = &sim.world.objects[self.object as usize];
         if self.act != Act::Move || object.portable.is_none() {
@@ -259,7 +259,7 @@ fn turn(sim: SimRef, point: [f32; 2]) -> f64 {
 /// A step towards a point, and `past` metres beyond it; slower in turns.
 fn walk(sim: SimRef, point: [f32; 2], past: f32) -> [f64; 3] {
     if is_narrow(sim) {
-        // Cuts no corner beside something that costs.
+        // Does not cut corners beside something that costs.
         return step_to(sim, point, past.min(0.05), 5.0);
     }
     step_to(sim, point, past, 20.0)

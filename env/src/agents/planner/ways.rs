@@ -58,7 +58,7 @@ impl Floor {
             ..
         } = bringing;
         let at = sim.objects()[to as usize].position;
-        // The nearest thing answers an interaction: another one, or one still to be picked up, must not be nearer.
+        // The nearest thing answers an interaction: nothing else that answers, or is still to be picked up, may be within reach.
         let answers = |index: &u32| answering(sim, &[*index]).is_some() || is_left(sim, bringing, *index);
         let others: Vec<Leaf> = (0..sim.objects().len() as u32)
             .filter(answers)
@@ -145,7 +145,7 @@ impl Floor {
     }
 
     /// Where to walk next from a place: the farthest point on the way that can be walked to straight. `None` at the goal, and
-    /// where no way leads.
+    /// if there is no way.
     pub(super) fn next(&mut self, from: [f32; 2]) -> Option<[f32; 2]> {
         let start = self.cell_near(from)?;
         self.reach(start);
@@ -173,7 +173,7 @@ impl Floor {
                 break;
             }
         }
-        // No straight walk onto costlier ground, such as a zone to enter: the agent walks cell by cell there.
+        // Straight walks onto costlier ground, such as a zone to enter, are not clear: the agent walks cell by cell there.
         if best == self.grid.centre(start) && self.grid.cell_at(from) == start {
             best = beside.map_or(best, |cell| self.grid.centre(cell));
         }
@@ -197,7 +197,7 @@ impl Floor {
     }
 }
 
-/// Whether a thing is present that is not delivered yet and may be picked up next.
+/// Whether a thing is present, not yet delivered, and may be picked up next.
 pub(super) fn is_left(sim: SimRef, bringing: Bringing, index: u32) -> bool {
     let (object, own) = (&sim.world.objects[index as usize], &sim.objects()[index as usize]);
     let to = sim.objects()[bringing.to as usize].position;

@@ -11,23 +11,23 @@ use crate::polygon::{is_near_or_inside, to_f32};
 const LIKED: f32 = 0.35;
 const NEAR: u16 = 8;
 
-/// The largest factor by which a zone raises the cost of the ground. Worlds where time costs nothing use it for every zone that
+/// Maximum factor by which zones raise the cost of the ground. Worlds where time costs nothing use it for every zone that
 /// costs.
 const MOST: f64 = 100.0;
 
 /// Maximum cost of entering, in fifths of a cell: 800 m of open ground with cells of 0.2 m.
 const MOST_ENTRY_COST: f64 = 20_000.0;
 
-/// The largest weight of a cell: sums over all cells stay far from overflow.
+/// Maximum weight of a cell: sums over all cells stay far from overflow.
 const MOST_WEIGHT: f64 = 4000.0;
 
 /// Below this speed factor an agent cannot leave a zone, so its cells are closed.
 const STUCK: f64 = 0.01;
 
-/// What zones add to path costs, in addition to the weights of cells.
+/// Path costs due to zones, in addition to the weights of cells.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ZoneCosts {
-    /// For each cell, what entering its zones costs, in fifths of a cell; empty if nothing does.
+    /// For each cell, the cost of entering its zones, in fifths of a cell; empty if no zone has one.
     entering: Vec<u32>,
     /// Whether a cell is in a zone that costs; empty if none does.
     costs: Vec<bool>,
@@ -94,7 +94,7 @@ impl ZoneCosts {
         zone_costs
     }
 
-    /// What a step from one cell to the next costs beyond their weights, in fifths of a cell.
+    /// The cost of a step from one cell to the next beyond their weights, in fifths of a cell.
     pub(super) fn of(&self, from: usize, to: usize) -> u32 {
         match (self.entering.get(from), self.entering.get(to)) {
             (Some(from), Some(to)) => to.saturating_sub(*from),

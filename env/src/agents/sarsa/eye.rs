@@ -123,7 +123,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
 
-        /// Colours share each cell: the squares of a cell's features always sum to 1.
+        /// The colours' shares of a cell sum to 1, and so do the squares of its features.
         #[test]
         fn squares_of_a_cells_features_sum_to_one(rgb in proptest::collection::vec(0_u8..=255, SIDE * SIDE * 3)) {
             let features = shares(&rgb);

@@ -12,7 +12,7 @@ use crate::sim::{Action, Environment, Step};
 use eye::Eye;
 use linear::{LinearSarsa, Seen};
 
-/// The actions: shares of the largest speed and turn rate, and whether it interacts.
+/// The actions: fractions of the maximum speed and turn rate, and whether it interacts.
 const ACTIONS: [[f64; 3]; 5] = [
     [1.0, 0.0, 1.0],
     [1.0, -0.5, 1.0],
@@ -34,14 +34,14 @@ const EPSILON: f64 = 0.1;
 /// Rewards are divided by 100: touching a cube of the built-in tasks pays 1.
 const UNIT: f32 = 0.01;
 
-/// Learns the value of five actions by linear Sarsa(λ): straight ahead, ahead to either side, turning on the spot.
+/// Learns the values of five actions with linear Sarsa(λ): straight ahead, ahead to either side, turning on the spot.
 ///
-/// It sees the agent's camera at 42 × 42 pixels, as the share of each cell of a 7 × 3 grid that each of eight colours covers:
-/// 169 features. It knows no map, state or label, and remembers nothing within an episode. It is small: it finds coloured
-/// things and shows how learning one task affects others, but cannot plan or open doors.
+/// It sees the agent's camera view at 42 × 42 pixels, as the share of each cell of a 7 × 3 grid that each of eight colours
+/// covers: 169 features. It knows no map, state or label, and remembers nothing within an episode. It is small: it finds
+/// coloured things and shows how learning one task affects others, but cannot plan or open doors.
 ///
 /// Actions are ε-greedy (ε 0.1, in evaluations as well: [`SarsaAgent::POLICY`]) and held for 0.2 s. All its random numbers come
-/// from the seed of the episode, so a lifetime is reproducible to the bit.
+/// from the seed of the episode, so a lifetime is reproducible bit for bit.
 ///
 /// # Source
 /// Sutton and Barto, *Reinforcement Learning*, 2nd edition, section 12.7, with accumulating traces.

@@ -16,7 +16,7 @@ pub(super) struct Coloring<'a> {
 }
 
 impl Coloring<'_> {
-    /// A triangle's mean linear colour: the product of its material's, its texture's and its corners'.
+    /// A triangle's mean linear colour: the product of the colours of its material, its texture and its corners.
     pub(super) fn of(&self, triangle: [u32; 3]) -> [f32; 3] {
         let [r, g, b, _] = self.factor;
         let factor = [r, g, b];

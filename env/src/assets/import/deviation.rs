@@ -7,12 +7,12 @@ use rapier3d::parry::shape::TriMesh;
 
 use super::simplify::{point, used};
 
-/// Triangle tests per level of detail: a second's work or two. Most models need a hundredth of it; but where thousands of large
-/// triangles intersect each other, their bounding boxes do not help, and every point would test all of them.
+/// Triangle tests per level of detail: a second or two of work. Most models need a hundredth of it; but where thousands of
+/// large triangles intersect each other, their bounding boxes do not help, and every point would test all of them.
 const LOOKS: u64 = 30_000_000;
 
-/// Skips points whose squared distance is below this fraction of the maximum so far: the margin exceeds the rounding difference
-/// between two ways to compute a distance.
+/// Skips points whose squared distance is below this fraction of the squared maximum so far: the margin exceeds the rounding
+/// difference between two ways to compute a distance.
 const PASSED_OVER: f32 = 1.0 - 1e-4;
 
 /// The remaining budget of triangle tests.

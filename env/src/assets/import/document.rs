@@ -12,10 +12,10 @@ use super::limits::{MAX_IMPORT_DEPTH, MAX_IMPORT_NODES};
 use super::refusal::{at_most, quoted, refuse};
 use crate::EnvError;
 
-/// Maximum number of objects and lists: each may take some hundred bytes of memory for two bytes of text.
+/// Maximum number of objects and lists: each may take several hundred bytes of memory for two bytes of JSON.
 const MAX_ITEMS: usize = 200_000;
 
-/// Maximum number of characters shown of the parser's own message, which may quote a text as long as the file.
+/// Maximum number of characters shown of the parser's own message, which may quote a string as long as the file.
 const MAX_WORDS: usize = 200;
 
 /// Extensions that may be ignored even if a file requires them: they change no triangle.
@@ -41,7 +41,7 @@ pub(super) fn parse(json: &str) -> Result<Root, EnvError> {
         if is_version_1(json) {
             return refuse("file", "glTF 1.0", "glTF 2.0; export as that");
         }
-        // The position is given separately, so it is cut off the parser's message.
+        // The position is given separately, so it is cut from the parser's message.
         let said = error.to_string();
         let words = said.split(" at line ").next().unwrap_or(&said);
         let place = format!("line {}, column {}", error.line(), error.column());
@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn quoted_texts_are_limited_to_a_line() {
+    fn quoted_strings_are_limited_to_one_line() {
         assert_eq!(quoted("é"), "\"é\"");
         assert_eq!(quoted(&"é".repeat(100)).chars().count(), 2 + 61);
     }

@@ -1,4 +1,4 @@
-//! Reduces a model to few colours: triangles of similar colours become one part.
+//! Reduces a model to a few colours: triangles of similar colours become one part.
 
 use std::collections::{BTreeMap, HashMap};
 

@@ -36,7 +36,7 @@ pub(super) fn one_of(length: usize) -> String {
     }
 }
 
-/// Quotes a text of the file for a message, shortened to a line.
+/// Quotes a string from the file for a message, shortened to one line.
 pub(super) fn quoted(text: &str) -> String {
     format!("{:?}", shortened(text, 60))
 }

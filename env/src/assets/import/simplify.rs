@@ -13,7 +13,7 @@ const WORTH_IT: usize = 96;
 /// Each level aims at the number of triangles of the level before, divided by this.
 const KEPT: usize = 4;
 
-/// Largest error of a level, as a fraction of the surface's size.
+/// Maximum error of a level, as a fraction of the surface's size.
 const MOST_ERROR: f32 = 0.2;
 
 /// Maximum number of corners of the whole surface that are measured per level: if there are more, evenly chosen ones

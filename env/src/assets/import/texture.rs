@@ -58,7 +58,7 @@ impl<'a, 'b> Textures<'a, 'b> {
         }
     }
 
-    /// The texture that `place` refers to; `None` if it has no image, or one in another format.
+    /// The texture that `place` refers to; `None` if it has no image, or one in an unsupported format.
     pub(super) fn texture(
         &mut self,
         texture: Index<gltf_json::Texture>,

@@ -29,10 +29,10 @@ pub const MAX_MODEL_PARTS: usize = 256;
 /// Maximum number of levels of detail of a model, including the full one.
 pub const MAX_MODEL_LEVELS: usize = 4;
 
-/// Largest distance of a model from its origin, along each axis in metres.
+/// Maximum distance of a model's corners from its origin, along each axis in metres.
 pub const MAX_MODEL_REACH: f32 = 1000.0;
 
-/// Longest class or model name, in bytes of UTF-8.
+/// Maximum length of a class or model name, in bytes of UTF-8.
 pub const MAX_NAME_BYTES: usize = 200;
 
 /// Models that worlds may refer to by class and name, in addition to the built-in ones; see [`Catalogue`](crate::Catalogue).
@@ -47,7 +47,7 @@ impl Library {
     /// Adds a model.
     ///
     /// # Errors
-    /// [`EnvError::BadModel`] if the library already has a model of that class and name, or has [`MAX_LIBRARY_MODELS`].
+    /// [`EnvError::BadModel`] if the library already has a model with that class and name, or has [`MAX_LIBRARY_MODELS`].
     pub fn insert(&mut self, model: LibraryModel) -> Result<(), EnvError> {
         let refuse = |found: &str, expected: &str| {
             Err(EnvError::BadModel {

@@ -145,7 +145,7 @@ impl LibraryModel {
         let parts = self.parts(self.levels.get(level)?);
         let whole = self.asset();
         let asset = Asset::of_levels(vec![(0.0, parts)], self.collider.clone());
-        // Coarse levels may be smaller, so keeps the full model's dimensions for placing it.
+        // Coarse levels may be smaller, so this keeps the full model's dimensions for placing it.
         Some(Asset {
             height: whole.height,
             radius: whole.radius,

@@ -126,7 +126,7 @@ pub(super) fn corners(block: &Block, lane: usize) -> [[f32; 3]; 3] {
 }
 
 /// The projection of a triangle's corners, as rows for the corners (1, 0, 0), (0, 1, 0) and (0, 0, 1): neighbouring triangles
-/// then share their edges to the bit.
+/// then share their edges bit for bit.
 fn corners_as_rows(at: &Placement, corners: [[f32; 3]; 3]) -> Placement {
     let row = |row: &[f32; 4]| {
         let [a, b, c] = corners.map(|[x, y, z]| x * row[0] + (y * row[1] + (z * row[2] + row[3])));

@@ -11,7 +11,7 @@ use crate::assets::{Asset, Material, Paint};
 /// Numbers per vertex: position, normal, colour, and whether the object's colour replaces it.
 pub(super) const VERTEX_LENGTH: usize = 10;
 
-/// Above this many vertices the cache is cleared, so that endless new assets cannot fill the memory: 160 MiB.
+/// Above this many vertices the cache is cleared, so that an endless series of new assets cannot fill the memory: 160 MiB.
 const MOST_VERTICES: usize = 1 << 22;
 
 /// Range of an asset's triangles among all vertices.

@@ -123,7 +123,7 @@ impl GpuRenderer {
         self.hand.draw(scene, carried, target);
     }
 
-    /// Renders many images, those of one size together. The natural style is rendered on the CPU.
+    /// Renders many images, those of the same size together. The natural style is rendered on the CPU.
     ///
     /// # Errors
     /// [`EnvError::PictureSize`] as for [`CpuRenderer::draw`](super::CpuRenderer::draw), and [`EnvError::GpuPicture`] for

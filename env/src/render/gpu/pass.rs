@@ -236,7 +236,7 @@ impl Stage {
     }
 }
 
-/// Most tiles and instances per pass on this device.
+/// Maximum numbers of tiles and of instances per pass on this device.
 pub(super) fn most_in_a_pass(limits: &wgpu::Limits) -> [usize; 2] {
     let storage = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
     let tile = (QUADS * 16) as u64;
@@ -263,7 +263,7 @@ fn read(device: &Device, atlas: &Atlas, layout: Layout, take: impl FnOnce(&[u8],
     match done.get() {
         Some(Ok(())) => {}
         Some(Err(error)) => return Err(failed(error)),
-        None => return Err(failed(&"the device does not answer")),
+        None => return Err(failed(&"the device did not respond")),
     }
     {
         let bytes = atlas.back.get_mapped_range(..layout.end);

@@ -48,7 +48,7 @@ fn prove(adapter: &wgpu::Adapter) -> Result<(), String> {
     let alike = pairs.filter(|(a, b)| a.abs_diff(**b) <= 3).count() as f64 / drawn.rgb.len() as f64;
     if alike < ALIKE {
         return Err(format!(
-            "draws another picture: {:.1} % of it is as it should be",
+            "draws a different image: only {:.1} % of its colour bytes are as expected",
             100.0 * alike
         ));
     }

@@ -5,7 +5,7 @@ use super::super::shade::{FULL_LEVEL, Shader};
 use super::super::view::View;
 use crate::scene::Scene;
 
-/// Vectors of four per tile: the size of `Tile` in `tile.wgsl`.
+/// Number of four-component vectors per tile: the size of `Tile` in `tile.wgsl`.
 pub(super) const QUADS: usize = 14;
 
 /// The words of one tile, in the order of `Tile` in `tile.wgsl`.

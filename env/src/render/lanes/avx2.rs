@@ -125,7 +125,7 @@ impl Lanes for Avx2 {
 
         store_rgb(value: Word, to: &mut [u8]) -> () = {
             let to: &mut [u8; 3 * N] = to.first_chunk_mut().expect("callers hand in three bytes a lane");
-            // Drops the fourth bytes within each half, then joins the halves.
+            // Drops every fourth byte within each half, then joins the halves.
             let halves = _mm256_setr_epi8(
                 0, 1, 2, 4, 5, 6, 8, 9, 10, 12, 13, 14, -1, -1, -1, -1, 0, 1, 2, 4, 5, 6, 8, 9, 10, 12, 13, 14, -1, -1,
                 -1, -1,

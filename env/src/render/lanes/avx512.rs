@@ -131,7 +131,7 @@ impl Lanes for Avx512 {
 
         store_rgb(value: Word, to: &mut [u8]) -> () = {
             let to: &mut [u8; 3 * N] = to.first_chunk_mut().expect("callers hand in three bytes a lane");
-            // Drops the fourth bytes within each quarter, then joins the quarters.
+            // Drops every fourth byte within each quarter, then joins the quarters.
             let quarter = _mm_setr_epi8(0, 1, 2, 4, 5, 6, 8, 9, 10, 12, 13, 14, -1, -1, -1, -1);
             let packed = _mm512_permutexvar_epi32(
                 _mm512_setr_epi32(0, 1, 2, 4, 5, 6, 8, 9, 10, 12, 13, 14, 3, 7, 11, 15),

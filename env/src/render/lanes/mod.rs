@@ -1,7 +1,7 @@
 //! SIMD operations for the renderer, for each instruction set.
 //!
 //! Every set rounds the same way: no fused multiply-add, the same order, IEEE division and square root. So a scene gives the
-//! same pixels on every machine, and a test compares all sets of the machine.
+//! same pixels on every machine, and a test compares all sets that the CPU has.
 //!
 //! Code between these operations avoids closures: closures lack the target feature, so the compiler calls each operation
 //! instead of inlining it (measured: three times slower).
@@ -60,9 +60,9 @@ pub(super) trait Lanes: Copy {
     fn sub(self, a: Self::Float, b: Self::Float) -> Self::Float;
     fn mul(self, a: Self::Float, b: Self::Float) -> Self::Float;
     fn div(self, a: Self::Float, b: Self::Float) -> Self::Float;
-    /// The smaller one; `b` if either is NaN.
+    /// The smaller number; `b` if either is NaN.
     fn min(self, a: Self::Float, b: Self::Float) -> Self::Float;
-    /// The larger one; `b` if either is NaN.
+    /// The larger number; `b` if either is NaN.
     fn max(self, a: Self::Float, b: Self::Float) -> Self::Float;
     fn at_least(self, a: Self::Float, b: Self::Float) -> Self::Mask;
     fn above(self, a: Self::Float, b: Self::Float) -> Self::Mask;
@@ -127,7 +127,7 @@ pub(super) trait Lanes: Copy {
         self.add(self.mul(a, b), c)
     }
 
-    /// Copies the lowest byte of each word into the lowest three; the rest of the word must be 0.
+    /// Copies the lowest byte of each word into its lowest three bytes; the rest of the word must be 0.
     #[inline(always)]
     fn three_times(self, value: Self::Word) -> Self::Word {
         self.or(value, self.shift_byte(self.or(value, self.shift_byte(value))))
