@@ -2,7 +2,7 @@
 //!
 //! A *lifetime* is a sequence of learning blocks (`train`) and evaluation blocks (`test`) over several tasks. While it
 //! runs, [`LogWriter`] writes one row per experience; afterwards [`read_log`] reads the rows back, ours or those of
-//! any agent that logs with l2logger, and [`score`] says what the agent kept, transferred and recovered.
+//! any agent that logs with l2logger, and [`score`] measures what the agent retained, transferred and recovered.
 //!
 //! ```
 //! use driftworld_metrics::{BlockType, LogWriter, LoggerInfo, Options, Record, ScenarioInfo, Timestamp, read_log, score};

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::MetricsError;
 use crate::choice::choice;
 
-/// Longest smoothing window, in experiences.
+/// Maximum length of the smoothing window, in experiences.
 pub const MAX_WINDOW_LENGTH: usize = 10_000;
 
 /// Performances must be below this magnitude, so that no sum or quotient of them overflows.
@@ -129,7 +129,7 @@ choice! {
         Hamming = "hamming",
         /// Triangle, zero at both ends.
         Bartlett = "bartlett",
-        /// Two cosines, zero at both ends.
+        /// Sum of two cosines, zero at both ends.
         Blackman = "blackman",
         /// No smoothing.
         Off = "none",
@@ -140,8 +140,8 @@ choice! {
     /// Which definitions the metrics follow where the reference's program departs from its own documentation.
     ///
     /// Under `published`, task parameters split regimes; saturation uses data that were smoothed once; the last tenth
-    /// of a regime is computed in integers; if several tasks were learned between two evaluations of another, transfer
-    /// is credited to each of them; and values in files are not rounded.
+    /// of a regime is computed in integers; if several tasks were learned between two evaluations of another task,
+    /// transfer is credited to each of them; and values in files are not rounded.
     #[derive(Default)]
     Definitions, "definitions" {
         /// The behaviour of l2metrics 3.1, including its peculiarities (default).
@@ -194,7 +194,7 @@ impl DataRange {
 /// Ranges by task, lower-case names.
 pub type DataRanges = IndexMap<String, DataRange>;
 
-/// Rewards in a task, in the log's unit: of agents that know nothing about it, and of one that knows everything.
+/// Rewards in a task, in the log's unit, of agents that know nothing about it and of an expert.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Anchors {
@@ -202,7 +202,7 @@ pub struct Anchors {
     pub floor: f64,
     /// Reward of an expert: scaled to 101.
     pub ceiling: f64,
-    /// Rewards of agents that cannot distinguish the task from others that look alike, for each set of such tasks.
+    /// Rewards of agents that cannot distinguish the task from others that look the same, for each set of such tasks.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub unlabelled: Vec<Unlabelled>,
 }
@@ -214,7 +214,7 @@ pub struct Anchors {
 pub struct Unlabelled {
     /// The tasks that look alike, including this one: lower-case names as in logs.
     pub among: Vec<String>,
-    /// Reward of an agent that acts alike in all of them.
+    /// Reward of an agent that behaves the same way in all of them.
     pub fixed: f64,
     /// Reward of an agent that may infer the task within an episode.
     pub finds_out: f64,
@@ -255,7 +255,7 @@ pub struct Options {
     /// floor, is scaled by its own range. Ranges in `data_range` take precedence.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub scales: Option<Scales>,
-    /// Normal noise on the lifetime's performances, but not on the experts'; default none.
+    /// Gaussian noise on the lifetime's performances, but not on the experts'; default none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub noise: Option<Noise>,
     /// The definitions; default the reference's.
@@ -337,7 +337,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn words_round_trip_and_unknown_ones_list_the_words() {
+    fn words_round_trip_and_an_unknown_word_is_refused_with_the_known_words() {
         for &method in SmoothingMethod::ALL {
             assert_eq!(method.name().parse::<SmoothingMethod>().unwrap(), method);
         }

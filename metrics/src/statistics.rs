@@ -1,12 +1,12 @@
-//! Basic statistics for the metrics: mean, quantile, least-squares covariance and Theil–Sen slope.
+//! Basic statistics for the metrics: mean, variance, quantile, median, Theil–Sen slope, and whether a least-squares line falls.
 
 /// Arithmetic mean; `None` without values.
 pub(crate) fn mean(values: &[f64]) -> Option<f64> {
     (!values.is_empty()).then(|| sum(values) / values.len() as f64)
 }
 
-/// The sum in `NumPy`'s order, so that means match the reference bit for bit: eight parallel sums, with halves of more than 128
-/// values summed separately.
+/// The sum in `NumPy`'s order, so that means match the reference bit for bit: eight parallel sums; more than 128 values are
+/// split into two halves, which are summed separately.
 pub(crate) fn sum(values: &[f64]) -> f64 {
     let num = values.len();
     if num < 8 {
@@ -79,8 +79,8 @@ pub(crate) fn theil_sen_slope(y: &[f64]) -> Option<f64> {
     median(slopes)
 }
 
-/// Whether the least-squares line through the points falls by more than an error of `slack` in each `y` explains. A constant or
-/// a single point does not fall.
+/// Whether the least-squares line through the points falls by more than errors of up to `slack` in each `y` could explain. A
+/// constant or a single point does not fall.
 pub(crate) fn trend_falls(x: &[f64], y: &[f64], slack: f64) -> bool {
     let (Some(mean_x), Some(mean_y)) = (mean(x), mean(y)) else {
         return false;

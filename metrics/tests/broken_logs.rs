@@ -9,7 +9,7 @@ const HEADER: &str =
     "block_num\texp_num\tworker_id\tblock_type\tblock_subtype\ttask_name\ttask_params\texp_status\ttimestamp\treward\n";
 const ROW: &str = "0\t0\tw\ttrain\twake\ta_b\t{}\tcomplete\t20200913T122640.0\t1\n";
 
-/// A log of one data file.
+/// A log with one data file.
 fn write_log(dir: &Path, data: impl AsRef<[u8]>) {
     fs::create_dir_all(dir.join("w/0-train")).unwrap();
     fs::write(
@@ -37,7 +37,7 @@ fn check(data: impl AsRef<[u8]>, code: &str, expected: &str) {
     assert_eq!(error.code(), code);
 }
 
-/// The good row with one cell changed.
+/// The valid row with one cell changed.
 fn with_cell(index: usize, text: &str) -> String {
     let mut cells: Vec<&str> = ROW.trim_end().split('\t').collect();
     cells[index] = text;
@@ -85,7 +85,7 @@ fn bad_cell_is_named_with_the_expected_contents() {
 }
 
 #[test]
-fn malformed_table_is_refused_with_its_place() {
+fn malformed_table_is_refused_with_file_and_line() {
     check(
         "",
         "metrics/empty-file",
@@ -142,7 +142,7 @@ fn malformed_table_is_refused_with_its_place() {
 }
 
 #[test]
-fn line_numbers_are_right_for_any_line_ends_and_gaps() {
+fn line_numbers_are_right_for_any_line_endings_and_blank_lines() {
     let at_line = |data: String, line: u64| {
         let message = "expected a finite number, or nothing for a missing one";
         let place = format!("LOG/w/0-train/data-log.tsv:{line}, column reward: found \"much\", {message}");
@@ -272,7 +272,7 @@ fn too_many_regimes_from_alternating_tasks_are_refused() {
 
 #[cfg(unix)]
 #[test]
-fn irregular_files_are_named_without_waiting() {
+fn named_pipes_are_refused_without_blocking() {
     let base = tempfile::tempdir().unwrap();
     for name in ["logger_info.json", "scenario_info.json", "w/0-train/data-log.tsv"] {
         let dir = base.path().join(name.replace('/', "_"));
@@ -316,7 +316,7 @@ fn linked_data_file_is_read_before_it_is_continued() {
 }
 
 #[test]
-fn foreign_line_ends_are_not_cut_off_as_torn() {
+fn foreign_line_endings_are_not_cut_off_as_torn() {
     let base = tempfile::tempdir().unwrap();
     let text = [HEADER, ROW].concat().replace('\n', "\r");
     write_log(base.path(), &text);

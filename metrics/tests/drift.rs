@@ -1,4 +1,4 @@
-//! Lifetimes with drifting variants: which drifts count as learning of which tasks, and measures that need no task boundaries.
+//! Lifetimes with drifting variants: which drifts count as learning which tasks, and measures that need no task boundaries.
 
 use driftworld_metrics::BlockType::{Test, Train};
 use driftworld_metrics::{
@@ -8,7 +8,7 @@ use driftworld_metrics::{
 };
 use proptest::prelude::*;
 
-/// A stretch of rows: learning or evaluation, the variant, the one that it drifts to, and rewards.
+/// A stretch of rows: learning or evaluation, the variant, the variant that it drifts to, and rewards.
 #[derive(Debug, Clone)]
 struct Stretch {
     block_type: BlockType,
@@ -35,7 +35,7 @@ fn learning(variant: &'static str, to: Option<&'static str>, rewards: &[f64]) ->
     }
 }
 
-/// Writes each stretch as a block of the task f, or of another that its variant names (`g#x`), as Driftworld does;
+/// Writes each stretch as a block of the task f, or of another task that its variant names (`g#x`), as Driftworld does;
 /// `has_progress` says whether the log has that column.
 fn log_of(stretches: &[Stretch], has_progress: bool) -> Log {
     let base = tempfile::tempdir().unwrap();
@@ -120,7 +120,7 @@ fn drift_away_counts_as_forgetting_and_never_as_forward_transfer() {
         let backward = pairs(&scores, "f_b", "backward_transfer_contrast");
         assert_eq!(backward.get("f_a"), Some(&vec![-85.0 / 95.0]));
         assert_eq!(backward.get("f_c"), Some(&vec![-1.0]));
-        // The loss of a never counts as forward transfer, and its own learning is no transfer at all.
+        // Forgetting f_a never counts as forward transfer, and learning it is not transfer at all.
         for (task, values) in &scores.task_metrics {
             for name in ["forward_transfer_contrast", "forward_transfer_ratio"] {
                 let to: Vec<&String> = values.pairs(name).unwrap().keys().collect();
@@ -134,7 +134,7 @@ fn drift_away_counts_as_forgetting_and_never_as_forward_transfer() {
 }
 
 #[test]
-fn drift_between_tasks_is_learning_of_both() {
+fn drift_between_tasks_counts_as_learning_both() {
     let evaluate = |a: f64, x: f64| [evaluation("a", &[a, a]), evaluation("g#x", &[x, x])];
     let mut life = evaluate(0.0, 0.0).to_vec();
     life.push(learning("a", Some("g#x"), &[10.0, 20.0, 60.0, 90.0]));
@@ -163,7 +163,7 @@ fn drift_is_ignored_if_variants_do_not_count() {
 }
 
 #[test]
-fn drift_between_unevaluated_variants_is_learning_of_itself() {
+fn drift_between_unevaluated_variants_counts_as_learning_itself() {
     let life = [
         evaluation("b", &[1.0, 1.0]),
         learning("c", Some("a"), &[1.0, 2.0]),
@@ -304,7 +304,7 @@ proptest! {
         }
     }
 
-    /// Other tasks do not matter: without their evaluations, or under other names, a curve is the same.
+    /// Other tasks do not matter: without their evaluations, a curve is the same.
     #[test]
     fn curve_depends_on_its_own_task_alone(life in lifetimes(), expert in -20.0..120.0_f64) {
         let all = with_experts(&life, expert);
@@ -371,7 +371,7 @@ fn lag_is_the_time_to_half_of_the_gain() {
 }
 
 #[test]
-fn evaluations_after_each_learning_show_lost_plasticity() {
+fn evaluations_after_each_learning_block_show_lost_plasticity() {
     let life = [
         learning("a", None, &[0.0; 4]),
         evaluation("a", &[80.0]),

@@ -101,7 +101,7 @@ fn differences_are_listed() {
         count: 3,
         ..before
     };
-    // One block instead of the lifetime's two, other worlds, less time before deployment, another agent.
+    // One block instead of the lifetime's two, fewer worlds, less learning before deployment, a different agent.
     let expert = [expert_before, learning("f_a", 1, 6, 12)];
     let (found, notes) = fit(&life, Some("replay"), &expert, Some("ppo"));
     assert_eq!(
@@ -118,7 +118,7 @@ fn differences_are_listed() {
         told.len() == 1 && told[0].starts_with("the expert life of f_a is not like for like: it had 12"),
         "{notes:?}"
     );
-    // The same index under another seed is another world.
+    // The same index with another seed is a different world.
     let (found, _) = fit(&life, None, &[learning("f_a", 2, 0, 24)], Some("ppo"));
     assert_eq!((found.shared_worlds, found.agent), (Some(0), None));
 }

@@ -1,4 +1,4 @@
-//! Logs are read back as written: awkward texts and numbers, several workers, interrupted runs.
+//! Logs are read back as written: awkward strings and numbers, several workers, interrupted runs.
 
 use std::fs;
 use std::path::Path;
@@ -141,7 +141,7 @@ fn rows_of_an_experience_are_in_one_block() {
         "record of experience 8, block_type: found test, expected train, as in the row of this experience before it"
     );
     writer.write(&record(4, 8, BlockType::Train)).unwrap();
-    // Another experience may be of another type.
+    // The next experience may be in a block of a different type.
     writer.write(&record(4, 9, BlockType::Test)).unwrap();
     assert_eq!(read_log(base.path()).unwrap().rows.exp_nums(), [8, 8, 9]);
 }

@@ -65,7 +65,7 @@ const MISHAPS: [Mishap; 10] = [
 ];
 
 impl Mishap {
-    /// Applies the damage to a folder or to a file of it.
+    /// Applies the damage to a folder or to a file in it.
     fn happen(self, dir: &Path, file: &Path) {
         let aside = dir.with_extension("aside");
         let cut = |length: u64| {
@@ -219,12 +219,12 @@ fn lost_rows_and_bytes_are_counted() {
 }
 
 #[test]
-fn identical_copy_of_a_finished_file_is_no_loss() {
+fn identical_copy_of_a_finished_file_is_not_a_loss() {
     let base = tempfile::tempdir().unwrap();
     let dir = base.path().join("log");
     let mut writer = create(&dir);
     (0..6).for_each(|number| writer.write(&record(number, 1)).unwrap());
-    // The first block is finished: some file systems give its file another id now.
+    // The first block is finished: some file systems give its file a different id now.
     let file = file_of(&dir, 0, 1);
     fs::copy(&file, file.with_extension("new")).unwrap();
     fs::rename(file.with_extension("new"), &file).unwrap();

@@ -37,7 +37,7 @@ fn plain() -> Options {
     }
 }
 
-/// The worst evaluation of a task, and the difference of each evaluation to it.
+/// The worst evaluation of a task, and the difference of each evaluation from it.
 struct WorstEvaluation;
 
 impl Metric for WorstEvaluation {
@@ -107,7 +107,7 @@ fn user_metric_appears_beside_the_others_at_every_level() {
     assert_eq!(back.lifetime, metrics.lifetime);
 }
 
-/// A metric of a given name that fails.
+/// A metric with a given name that fails.
 struct Broken(&'static str);
 
 impl Metric for Broken {
@@ -194,7 +194,7 @@ fn values_with_reserved_names_are_refused() {
     }
     // An empty list in JSON does not show its element type.
     let tasks = |metrics: &LifetimeMetrics| serde_json::to_value(&metrics.task_metrics).unwrap();
-    // At another level the same name is free.
+    // At a different level, the same name is free.
     for (level, name) in [
         (Level::Lifetime, "block_num"),
         (Level::Task, "run_id"),
@@ -250,7 +250,7 @@ fn published_definitions_split_regimes_by_parameters() {
 }
 
 #[test]
-fn published_definitions_let_every_task_in_a_gap_transfer() {
+fn published_definitions_credit_transfer_to_every_task_in_a_gap() {
     let blocks: [Block<'_>; 4] = [
         (Test, "c_1", 0, &[2.0]),
         (Train, "a_1", 0, &[1.0]),
@@ -277,7 +277,7 @@ fn published_definitions_let_every_task_in_a_gap_transfer() {
 }
 
 #[test]
-fn files_by_published_definitions_are_labelled_and_not_rounded() {
+fn files_with_published_definitions_are_labelled_and_not_rounded() {
     let thirds: [Block<'_>; 1] = [(Test, "a_1", 0, &[1.0, 1.0, 2.0])];
     let average = |definitions| {
         let json = serde_json::to_value(by(definitions, &thirds)).unwrap();

@@ -192,7 +192,7 @@ fn copies_of_a_lifetime_have_the_band_of_one() {
 
 #[test]
 fn several_lifetimes_show_what_one_leaves_unclear() {
-    // Learning is lost gradually, hidden by luck.
+    // Learning is lost gradually, hidden by noise.
     let lifetimes: Vec<LifetimeMetrics> = (0..12_u64)
         .map(|seed| {
             let mut rng = ChaCha8Rng::seed_from_u64(seed);
@@ -264,7 +264,7 @@ fn forgetting(rng: &mut ChaCha8Rng) -> Vec<Lived> {
 }
 
 #[test]
-fn forgetting_agent_lies_outside() {
+fn forgetting_agent_lies_outside_the_bands() {
     let scores = scored(&forgetting(&mut ChaCha8Rng::seed_from_u64(1)));
     for name in [
         "perf_maintenance_mrlep",
@@ -306,7 +306,7 @@ fn each_band_holds_the_lifetimes_value_and_contrast_comes_first() {
         let (found, expected) = (scores.null_bands[name].value, scores.lifetime.number(name).unwrap());
         assert!((found - expected).abs() <= 1e-12 * expected.abs().max(1.0), "{name}");
     }
-    // Only ratios were requested: the contrasts come before them all the same, and are in no file.
+    // Only ratios were requested: the contrasts still come before them, and are not in any file.
     let scores = score(&log_of(&rows), &[], &Options::default()).unwrap();
     let names: Vec<String> = scores.summary().into_iter().map(|row| row.name.into_owned()).collect();
     let place = |name: &str| names.iter().position(|found| found == name).unwrap();
@@ -445,7 +445,7 @@ fn all_permutations_of_a_small_lifetime_give_the_band() {
     // Four standard errors of twice a share of a thousand draws.
     let error = 8.0 * (extreme * (1.0 - extreme) / 1000.0).sqrt() + 0.004;
     assert!((band.p - 2.0 * extreme).abs() < error, "{band:?} {extreme}");
-    // At least 2.5 % of all permutations lie beyond each end, and at most 5 %.
+    // About 2.5 % of all permutations lie beyond each end: fewer than 5 % beyond it, more than 1 % at or beyond it.
     for beyond in [
         share(&|drawn| drawn < band.low - 1e-9),
         share(&|drawn| drawn > band.high + 1e-9),
@@ -470,7 +470,7 @@ fn expert(task: &'static str, learning: f64, evaluation: Option<f64>) -> SteLog 
 }
 
 #[test]
-fn task_below_a_fifth_of_the_expert_was_never_learned() {
+fn task_below_a_fifth_of_the_expert_counts_as_never_learned() {
     // The second task is never learned; the first is, and then forgotten.
     let rows = lifetime(4, |learned, block_type, task, world| {
         match (task, block_type, learned) {

@@ -1,4 +1,4 @@
-//! The power of Welch's test, compared with published numbers and with tests of random lifetimes.
+//! The power of Welch's test, compared with independent simulations and with tests of random lifetimes.
 
 #![expect(clippy::disallowed_methods, reason = "compared within a tolerance")]
 

@@ -11,7 +11,7 @@ use serde_json::Value;
 
 use crate::generators::{Lived, any_log, expert, lay_out, lifetime};
 
-/// All values requested.
+/// Options that request all values.
 fn options(normalization_method: NormalizationMethod, smoothing_method: SmoothingMethod) -> Options {
     Options {
         normalization_method,
@@ -67,7 +67,7 @@ fn is_spread(rows: &[&[Lived]]) -> bool {
 const SMOOTHED: usize = 15;
 
 /// Whether the learning of a task, or of the expert, is smoothed. The first windows of smoothed data tie by mirroring (of x2 x1
-/// | x0 x1 x2 the first three and the last three have one sum), and the last bit of the sums decides which of them is the first
+/// | x0 x1 x2 the first three and the last three have equal sums), and the last bit of the sums decides which is the first
 /// maximum.
 fn ties(rows: &[&[Lived]]) -> bool {
     rows.iter().any(|rows| {
@@ -162,7 +162,7 @@ proptest! {
             record.metrics.sort_by(|a, _, b, _| (a != "reward").cmp(&(b != "reward")));
             shown(&record)
         }).collect::<Vec<_>>());
-        // A log continues where it stopped, whatever its contents.
+        // A log can be continued where it stopped, whatever its contents.
         drop(writer);
         let last = records.last().unwrap();
         let next = Record { exp_num: last.exp_num + 1, ..last.clone() };

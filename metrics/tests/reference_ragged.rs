@@ -134,7 +134,7 @@ fn ragged_lifetimes_match_the_reference() {
         let base = tempfile::tempdir().unwrap();
         write(&base.path().join("life"), &oracle, &case["life"]);
         let log = read_log(base.path().join("life")).unwrap();
-        // The reference lists the run of a task that was stored last first.
+        // The reference lists the most recently stored run of a task first.
         let experts: Vec<SteLog> = (list(&case["experts"]).iter().enumerate().rev())
             .map(|(number, segments)| {
                 let dir = base.path().join(format!("expert{number}"));

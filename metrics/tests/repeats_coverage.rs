@@ -17,7 +17,7 @@ fn normal(chance: &mut ChaCha8Rng) -> f64 {
     (-2.0 * radius.ln()).sqrt() * (std::f64::consts::TAU * turn).cos()
 }
 
-/// A study: scores of tasks whose true mean is `mean`; the tasks of a lifetime share part of their luck.
+/// A study: scores of tasks whose true mean is `mean`; the tasks of a lifetime share part of their noise.
 fn study(num_runs: usize, num_tasks: usize, mean: f64, chance: &mut ChaCha8Rng) -> ScoreTable {
     let runs: Vec<_> = (0..num_runs)
         .map(|run| {
@@ -43,7 +43,7 @@ fn tolerance(share: f64, num_studies: u32) -> f64 {
     5.0 * (share * (1.0 - share) / f64::from(num_studies)).sqrt()
 }
 
-/// Share of studies whose intervals of mean and interquartile mean contain the true 0: the bootstrap's, then Student's.
+/// Share of studies whose intervals of mean and interquartile mean contain the true mean, 0: the bootstrap's, then Student's.
 fn coverage(shape: (usize, usize), resampling: Resampling, num_studies: u32) -> [[f64; 2]; 2] {
     let mut chance = ChaCha8Rng::seed_from_u64(16);
     let mut held = [[0.0; 2]; 2];

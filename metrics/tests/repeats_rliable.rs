@@ -41,7 +41,7 @@ fn oracle() -> Oracle {
     serde_json::from_str(include_str!("oracles/repeats_rliable.json")).unwrap()
 }
 
-/// From rows of runs.
+/// A table with one row per run.
 fn table(scores: &[Vec<f64>]) -> ScoreTable {
     let run = |scores: &Vec<f64>| {
         let named = scores.iter().enumerate().map(|(k, score)| (k.to_string(), *score));
@@ -61,7 +61,7 @@ const RESAMPLES: u32 = 20_000;
 
 /// Our ends, and theirs averaged over seeds, leave out 2.5 % of two samples of resamples. The share that a sample of size n
 /// leaves out beyond a fixed point varies by √(0.025 · 0.975 / n); five standard deviations of the difference are allowed.
-/// Compares shares, because few runs have few different resamples, with wide gaps between their values.
+/// Compares shares, because few runs have few distinct resamples, with wide gaps between their values.
 fn allowed_share(theirs: u32, seeds: u32) -> f64 {
     let of_one = |resamples: u32| 0.025 * 0.975 / f64::from(resamples);
     5.0 * (of_one(RESAMPLES) + of_one(theirs * seeds)).sqrt()
@@ -102,7 +102,7 @@ fn check_ends(name: &str, narrow: &Estimate, wide: &Estimate, expected: [f64; 2]
 }
 
 #[test]
-fn aggregates_and_profiles_match_rliable() {
+fn aggregates_match_rliable() {
     let oracle = oracle();
     for case in &oracle.cases {
         let aggregates = [Aggregate::Mean, Aggregate::Median, Aggregate::Iqm];

@@ -1,4 +1,4 @@
-//! Compares the probability of improvement with whole-run resampling against numpy: `tests/oracles/repeats_whole_runs.py`
+//! Checks the probability of improvement with whole-run resampling against numpy: `tests/oracles/repeats_whole_runs.py`
 //! describes how its numbers were made.
 
 use driftworld_metrics::{BootstrapOptions, Improvement, Interval, Resampling, ScoreTable, probability_of_improvement};
@@ -23,7 +23,7 @@ struct Comparison {
     resamples_of_strata: Vec<u32>,
 }
 
-/// From rows of runs.
+/// A table with one row per run.
 fn table(rows: &[Vec<Option<f64>>]) -> ScoreTable {
     let run = |row: &Vec<Option<f64>>| {
         let named = row.iter().enumerate();

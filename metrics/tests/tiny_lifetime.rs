@@ -67,7 +67,7 @@ const ALTERNATING: [Block<'static>; 11] = [
 ];
 
 #[test]
-fn maintenance_is_the_difference_to_the_evaluation_right_after_learning() {
+fn maintenance_is_the_difference_from_the_evaluation_right_after_learning() {
     let options = Options {
         maintenance_method: MaintenanceMethod::Both,
         ..plain()
@@ -222,7 +222,7 @@ fn last_pair_gets_the_transfer_of_a_shared_gap() {
 }
 
 #[test]
-fn ratio_over_0_is_no_transfer() {
+fn transfer_from_0_to_0_is_undefined() {
     let blocks: [Block<'_>; 3] = [(Test, "b_1", &[0.0]), (Train, "a_1", &[1.0]), (Test, "b_1", &[0.0])];
     let options = Options {
         transfer_method: TransferMethod::Both,

@@ -1,4 +1,4 @@
-//! A log may be torn at any byte: every state that a killed run can leave is resumed, and only the torn row is lost.
+//! A log may be torn at any byte: every state that a killed run can leave can be resumed, and only the torn row is lost.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -14,7 +14,7 @@ use crate::tier::quick_or_full;
 /// Bytes of every file by its path within the log.
 type Files = BTreeMap<String, Vec<u8>>;
 
-/// Records whose cells hold everything that makes tables hard: line breaks, tabs and quotes within quotes, multi-byte letters.
+/// Records whose cells hold everything that is hard for tables: line breaks, tabs and quotes within quotes, multi-byte characters.
 fn records() -> Vec<Record> {
     let record = |index: u64, block_num: u64, exp_num: u64, worker: &str, task: &str| {
         let stamp = Timestamp::from_unix_micros(1_600_000_000_000_000 + index as i64).unwrap();
@@ -64,7 +64,7 @@ fn stages(records: &[Record]) -> Vec<Files> {
     stages
 }
 
-/// How far cuts are apart in the quick tier, in bytes.
+/// Distance between cuts in the quick tier, in bytes.
 const QUICK_STEP: usize = 7;
 
 /// The states of the disk between one stage and the next: the one file that grew, cut at every byte, or fewer in the quick tier.
@@ -144,7 +144,7 @@ fn torn_rows_are_located_and_never_read() {
 }
 
 #[test]
-fn quote_that_swallowed_rows_is_no_torn_row_and_nothing_is_removed() {
+fn quote_that_swallowed_rows_is_not_a_torn_row_and_nothing_is_removed() {
     let mut records = records();
     for record in &mut records {
         record.task_name = "a_b".to_owned();
@@ -161,7 +161,7 @@ fn quote_that_swallowed_rows_is_no_torn_row_and_nothing_is_removed() {
     log.insert(path.to_owned(), text.replace("\\n\"\"", "n").into_bytes());
     let base = tempfile::tempdir().unwrap();
     lay_out(base.path(), &log);
-    // The quotes of the parameters close the cell again and again; the rest is no table, but all of it is kept.
+    // The quotes of the parameters close the cell again and again; the rest is not a table, but all of it is kept.
     LogWriter::resume(base.path()).unwrap_err();
     assert!(files_below(base.path()) == log);
 }

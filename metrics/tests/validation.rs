@@ -64,7 +64,7 @@ fn validate(files: &[(&str, String)], version: &str) -> (Vec<String>, Vec<String
     (problems.collect(), warnings.collect(), found)
 }
 
-/// Checks the problems and warnings of a log of one file.
+/// Checks the problems and warnings of a log with one file.
 fn check(text: String, problems: &[&str], warnings: &[&str]) {
     let (found_problems, found_warnings, _) = validate(&[("w/0-train", text)], "1.1");
     assert_eq!(found_problems, problems);
@@ -302,7 +302,7 @@ fn directory_without_a_log_has_one_problem() {
 }
 
 #[test]
-fn unclosed_quote_is_no_torn_row() {
+fn unclosed_quote_is_not_a_torn_row() {
     let open = row(0, 0, "complete").replace("a_b", "\"a_b");
     check(
         [HEADER, &open, &row(0, 1, "complete"), &row(0, 2, "complete")].concat(),
@@ -365,7 +365,7 @@ fn gaps_in_numbers_are_warned_about_once() {
         .collect();
     let warning = "LOG/w/0-train/data-log.tsv:4: found experience 7 after 4, expected 5; numbers without a row: 3";
     check([HEADER, &kept.concat()].concat(), &[], &[warning]);
-    // Numbers count over all workers.
+    // Numbers are counted over all workers.
     let shared = |lacking: usize| {
         let mut texts = [HEADER.to_owned(), HEADER.to_owned()];
         for place in (0..17).filter(|&place| place != lacking) {

@@ -80,7 +80,7 @@ pub enum ReportError {
     TooManyLifetimes {
         /// Number of lifetimes given.
         found: usize,
-        /// Largest number of lifetimes.
+        /// Maximum number of lifetimes.
         limit: usize,
     },
 }

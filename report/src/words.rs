@@ -8,8 +8,8 @@ const LONGEST: usize = 48;
 /// Maximum number of characters shown of a sentence.
 const LONGEST_SENTENCE: usize = 1000;
 
-/// A name for display: in one line, cut to a readable length, with characters escaped that break a page, are invisible or reverse
-/// the text direction.
+/// A name for display: on one line, cut to a readable length, with characters escaped that break a page, are invisible or
+/// reverse the text direction.
 pub(crate) fn shown(name: &str) -> String {
     cut(name, LONGEST)
 }

@@ -194,7 +194,7 @@ fn page_fits_every_screen_width_and_its_text_is_legible() {
             assert!(value("smallest").parse::<f64>().unwrap() >= 7.8, "{line}");
         }
     };
-    // The quick tier skips this page on its own: the same lifetime is one of the two on the next page.
+    // The quick tier does not check this page by itself: the same lifetime is one of the two on the next page.
     if crate::tier::quick_or_full(false, true) {
         check(&Life::default().live().page(), "5", "1");
     }
@@ -254,7 +254,7 @@ fn figures_are_drawn_in_both_colour_schemes_and_on_a_phone() {
             assert_eq!(
                 ground[0] > 128,
                 scheme == Scheme::Light,
-                "{name}: the ground is {ground:?}"
+                "{name}: the background is {ground:?}"
             );
             let band = BAND as usize * width;
             for (figure, rows) in pixels.chunks_exact(band).enumerate() {

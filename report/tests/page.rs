@@ -1,4 +1,4 @@
-//! The page without a browser: its form, its sections, what it must never hold, its size. How it looks is `browser.rs`'s.
+//! The page without a browser: well-formedness, sections, forbidden content, size. `browser.rs` tests how it looks.
 
 #![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
 
@@ -6,7 +6,7 @@ use driftworld_report::{Chapter, ChapterOptions, Figure, FigureOptions, Figures,
 
 use crate::lifetimes::{self, Life};
 
-/// Every tag of a page or a drawing: its name, and whether it closes.
+/// Every tag of a page or a drawing: its name, and whether it is a closing tag.
 fn tags(text: &str) -> Vec<(String, bool)> {
     const NEVER_CLOSED: [&str; 6] = ["meta", "link", "br", "wbr", "img", "!DOCTYPE"];
     let mut tags = Vec::new();
@@ -51,7 +51,7 @@ fn count(text: &str, part: &str) -> usize {
 }
 
 #[test]
-fn the_page_is_well_formed_and_has_every_section() {
+fn page_is_well_formed_and_has_every_section() {
     let page = Life::default().live().page();
     assert_well_formed(&page);
     for title in [
@@ -87,9 +87,9 @@ fn the_page_is_well_formed_and_has_every_section() {
     assert!(page.contains("Warning: data-log.tsv:7: something &lt;odd&gt;"));
 }
 
-/// Where a scenario says what tasks are called, the page says so in figures and tables, and the log's own name once beside it.
+/// If a scenario names its tasks, the page uses these names in figures and tables, and shows each log name once beside them.
 #[test]
-fn tasks_have_their_names_and_the_logs_beside_them() {
+fn display_names_are_shown_with_the_log_names_beside_them() {
     let life = Life {
         expert: false,
         ..Life::default()
@@ -112,12 +112,12 @@ fn tasks_have_their_names_and_the_logs_beside_them() {
     let rows = count(&page, "<th scope=\"row\">find_objects#red");
     let columns = count(&page, "<th scope=\"col\">find_<wbr>objects#<wbr>red<wbr></th>");
     assert!(rows == columns + 2 && columns >= 2, "{rows} rows, {columns} columns");
-    // What has no other name stands there as before.
+    // A task without a display name keeps its log name.
     assert!(page.contains("<th scope=\"row\">find_blue</th>") && !page.contains("in the log find_blue"));
 }
 
 #[test]
-fn headings_go_down_one_level_at_a_time() {
+fn headings_never_skip_a_level() {
     let page = Life::default().live().page();
     let levels: Vec<usize> = tags(&page)
         .into_iter()
@@ -130,7 +130,7 @@ fn headings_go_down_one_level_at_a_time() {
 }
 
 #[test]
-fn the_page_loads_nothing_and_runs_nothing() {
+fn page_loads_nothing_and_runs_nothing() {
     let page = Life::default().live().page();
     let calm = page.replace("xmlns=\"http://www.w3.org/2000/svg\"", "");
     for part in [
@@ -149,7 +149,7 @@ fn the_page_loads_nothing_and_runs_nothing() {
 }
 
 #[test]
-fn hostile_names_do_no_harm() {
+fn hostile_names_are_escaped_on_the_page() {
     let hostile = [
         "<script>alert(1)</script>_\"x\" onload=\"y",
         "a&b_</title></svg><b>",
@@ -173,13 +173,13 @@ fn hostile_names_do_no_harm() {
 }
 
 #[test]
-fn the_same_lifetime_gives_the_same_bytes() {
+fn same_lifetime_gives_the_same_bytes() {
     let life = Life::default();
     assert_eq!(life.live().page(), life.live().page());
 }
 
 #[test]
-fn several_lifetimes_have_an_index_a_chapter_each_and_intervals_together() {
+fn several_lifetimes_have_an_index_a_chapter_each_and_joint_intervals() {
     let page = lifetimes::page_of_two();
     assert_well_formed(&page);
     for part in [
@@ -188,7 +188,7 @@ fn several_lifetimes_have_an_index_a_chapter_each_and_intervals_together() {
         "id=\"life-2\"",
         "Over all lifetimes",
         "mine against theirs",
-        // Two lifetimes of each agent: p is 1/3 at least.
+        // Two lifetimes of each agent: p is at least 1/3.
         "too few lifetimes",
         "mean reward, evaluations",
         "Student’s t",
@@ -207,7 +207,7 @@ fn several_lifetimes_have_an_index_a_chapter_each_and_intervals_together() {
 }
 
 #[test]
-fn a_lifetime_without_experts_or_evaluations_says_so() {
+fn page_without_experts_says_so() {
     let life = Life {
         expert: false,
         ..Life::default()
@@ -224,7 +224,7 @@ fn a_lifetime_without_experts_or_evaluations_says_so() {
 }
 
 #[test]
-fn figures_count_steps_where_the_log_does() {
+fn figures_count_steps_if_the_log_has_them() {
     let options = FigureOptions {
         unit: Unit::Steps,
         ..FigureOptions::default()
@@ -263,13 +263,13 @@ fn few_variants_of_a_task_share_a_panel_and_many_do_not() {
         };
         let (lived, options) = (life.live(), FigureOptions::default());
         let figures = Figures::of(&lived.lifetime, "reward", &options).unwrap();
-        // The name of the axis stands once in each panel.
+        // The name of the axis appears once in each panel.
         count(&figures.svg(Figure::Evaluation).unwrap(), "experience\n</text>")
     };
     assert_eq!([1, 3, 5, 6, 8].map(panels), [1, 1, 1, 6, 8]);
 }
 
-/// How many pixels of a colour are below the line of names: in the plot itself.
+/// Number of pixels of a colour below the legend, in the plot itself.
 fn ink(figures: &Figures, figure: Figure, color: [u8; 3]) -> usize {
     let bytes = figures.png(figure).unwrap();
     let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().unwrap();
@@ -284,7 +284,7 @@ fn ink(figures: &Figures, figure: Figure, color: [u8; 3]) -> usize {
 }
 
 #[test]
-fn pictures_have_ink_in_the_colours_of_the_tasks() {
+fn figures_contain_the_colours_of_the_tasks() {
     let lived = Life::default().live();
     let options = FigureOptions::default();
     let figures = Figures::of(&lived.lifetime, "reward", &options).unwrap();
@@ -296,7 +296,7 @@ fn pictures_have_ink_in_the_colours_of_the_tasks() {
 }
 
 #[test]
-fn captions_say_what_was_done_to_the_values() {
+fn captions_describe_the_preprocessing() {
     let lived = Life::default().live();
     let page = |smoothed: bool| {
         let options = ChapterOptions {
@@ -318,7 +318,7 @@ fn captions_say_what_was_done_to_the_values() {
 }
 
 #[test]
-fn sleep_is_counted_alike_everywhere_and_said() {
+fn sleep_blocks_are_counted_consistently_and_mentioned() {
     let life = Life {
         sleeps: true,
         ..Life::default()
@@ -403,7 +403,7 @@ fn pages_of_long_lifetimes_and_many_tasks_stay_small() {
     );
 }
 
-/// Lightness as contrast is reckoned from (WCAG 2.2).
+/// Relative luminance, from which contrast is computed (WCAG 2.2).
 #[expect(clippy::disallowed_methods, reason = "compared within a tolerance")]
 fn luminance(color: &str) -> f64 {
     let digits: String = match color.len() {
@@ -422,7 +422,7 @@ fn luminance(color: &str) -> f64 {
 }
 
 #[test]
-fn every_text_has_contrast_in_light_and_in_the_dark() {
+fn text_has_enough_contrast_in_light_and_dark_mode() {
     let style = include_str!("../src/page/style.css");
     let schemes: Vec<&str> = style
         .split(":root{")

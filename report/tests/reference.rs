@@ -8,7 +8,7 @@ use driftworld_report::{Chapter, ChapterOptions, Report};
 use crate::reference_data::reference;
 
 #[test]
-fn the_reference_example_is_a_small_page_with_every_figure() -> Result<(), Box<dyn std::error::Error>> {
+fn reference_example_is_a_small_page_with_every_figure() -> Result<(), Box<dyn std::error::Error>> {
     let Some(dir) = reference("l2metrics") else {
         return Ok(());
     };
@@ -36,11 +36,11 @@ fn the_reference_example_is_a_small_page_with_every_figure() -> Result<(), Box<d
     }
     .to_html()?;
     assert_eq!(page.matches("<figure>").count(), 5);
-    // As the reference publishes them, to the digits of the page.
+    // The reference's published values, rounded as on the page.
     for part in ">−2.000< >83.82< >78.52< >3.863< >12.63< >1.082< >1.105< >0.913<".split(' ') {
         assert!(page.contains(part), "{part}");
     }
-    // Learning decides what is held against experts, so that nothing is said of it.
+    // Comparisons with experts also depend on learning, so they are not tested.
     for part in ["not tested", "9.552"] {
         assert!(page.contains(part), "{part}");
     }

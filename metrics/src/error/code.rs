@@ -1,4 +1,4 @@
-//! The stable code of an error for programs, and the line of the file that it is about.
+//! The stable code of an error for programs, and the line of the file that it concerns.
 
 use super::MetricsError;
 

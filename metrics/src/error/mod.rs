@@ -279,7 +279,7 @@ pub enum MetricsError {
         expected: String,
     },
 
-    /// The last line of a data file has no line end: its writer was stopped in the middle of a row.
+    /// The last line of a data file has no line ending: its writer was stopped in the middle of a row.
     #[error(
         "{0}: found a last line without a line end, expected complete rows; its writer was interrupted, or \
          an editor left the line end out: add one if the line is whole; else delete the line, or continue the log, which \
@@ -300,7 +300,7 @@ pub enum MetricsError {
     )]
     OpenQuote(LogLine),
 
-    /// A data file is not text.
+    /// A data file is not valid UTF-8.
     #[error("{0}: found bytes that are not UTF-8, expected text")]
     NotUtf8(LogLine),
 
@@ -449,7 +449,7 @@ pub enum MetricsError {
         column: String,
     },
 
-    /// A single-task expert's log must train exactly one task.
+    /// The log of a single-task expert trains no task, or several.
     #[error("single-task expert log {run_id}: found {found}, expected exactly one trained task; take \
          one log for each task, or compare with an agent that ran the same blocks by --against, with floors and \
          ceilings by --scales", run_id = one_line(run_id), found = one_line(found))]

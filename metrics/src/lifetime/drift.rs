@@ -19,7 +19,7 @@ pub struct Drift {
     pub from: String,
     /// Its last task, under the name used for scoring.
     pub to: String,
-    /// For each row whether the second end is nearer: the column `progress` is at least 0.5, or, without such a column, the row
+    /// For each row, whether the second end is nearer: the column `progress` is at least 0.5, or, without such a column, the row
     /// is in the second half of the regime.
     pub is_nearer_to: Vec<bool>,
 }
@@ -34,7 +34,7 @@ impl Drift {
         let (head, tail) = name.split_once('_')?;
         let [from, to] = ENDS.map(|key| params.get(key).and_then(|word| word.as_str()));
         let (from, to) = (from?, to?);
-        // An end of another task is written as `task#variant`.
+        // An end in a different task is written as `task#variant`.
         let logged = |end: &str| match end.split_once('#') {
             Some((task, variant)) => format!("{}_{}", logged_word(task), logged_word(variant)),
             None => format!("{head}_{}", logged_word(end)),
@@ -71,7 +71,7 @@ impl Drift {
     }
 }
 
-/// The letters and digits of a task's or variant's name, in lower case, as in logs; `x` if there are none.
+/// The ASCII letters and digits of a task's or variant's name, in lower case, as in logs; `x` if there are none.
 pub fn logged_word(name: &str) -> String {
     let plain: String = name.chars().filter(char::is_ascii_alphanumeric).collect();
     if plain.is_empty() {

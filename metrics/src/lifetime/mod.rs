@@ -54,7 +54,7 @@ impl Lifetime {
         self.regimes.iter().filter(move |regime| regime.task_name == task)
     }
 
-    /// The regimes in which a task is evaluated or learned, in order, including drifts that count as learning of it.
+    /// The regimes in which a task is evaluated or learned, in order, including drifts that count as learning it.
     pub(crate) fn regimes_about(&self, task: &str) -> impl Iterator<Item = &Regime> {
         self.regimes.iter().filter(move |regime| match regime.block_type {
             BlockType::Test => regime.task_name == task,
@@ -83,7 +83,7 @@ impl Lifetime {
     }
 
     /// Whether a regime counts for maintenance, transfer and average performance: all do, except wake evaluations in lifetimes
-    /// with sleep blocks, because the agent is judged by what it keeps after sleeping.
+    /// with sleep blocks, because the agent is judged by what it retains after sleeping.
     pub(crate) fn is_assessed(&self, regime: &Regime) -> bool {
         !(self.sleeps && regime.block_type == BlockType::Test && regime.block_subtype == BlockSubtype::Wake)
     }

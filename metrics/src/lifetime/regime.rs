@@ -39,8 +39,8 @@ pub struct Regime {
     pub task_params: TaskParams,
     /// Its ends, if the variant changes gradually.
     pub drift: Option<Drift>,
-    /// The tasks that it counts as training on, for maintenance and transfer: its own, or in a drift those that it
-    /// passes. Empty for an evaluation.
+    /// The tasks that it counts as learning, for maintenance and transfer: its own, or for a drift the ends that it
+    /// counts for. Empty for an evaluation.
     pub learns: Vec<String>,
     /// Its rows in the log that it was formed from; those of a shuffled block need not ascend.
     pub(crate) rows: Vec<usize>,
@@ -113,7 +113,7 @@ pub(crate) fn mean_per_experience(exp_nums: &[u64], performance: &[f64]) -> Vec<
 /// Splits rows, sorted by experience, into regimes.
 pub(crate) fn form(run_id: &str, usable: &Usable<'_>, options: &Options) -> Result<Vec<Regime>, MetricsError> {
     let rows = usable.rows;
-    // The names under which tasks are scored, and the one for each logged name.
+    // The names under which tasks are scored, and for each logged name its index among them.
     let mut names = IndexSet::new();
     let number = |name: &String| names.insert_full(options.variant_mode.scored_name(name)).0;
     let scored: Vec<usize> = rows.task_names().values().iter().map(number).collect();
@@ -166,7 +166,7 @@ pub(crate) fn form(run_id: &str, usable: &Usable<'_>, options: &Options) -> Resu
 }
 
 /// Environment steps up to the end of each usable row, in the order of `usable.indices`. Steps accumulate in the order
-/// of the log, which is a different one in shuffled blocks.
+/// of the log, which differs in shuffled blocks.
 fn cumulated_steps(usable: &Usable<'_>) -> Option<Vec<f64>> {
     let steps = usable.rows.metric("episode_step_count")?;
     let mut places: Vec<usize> = (0..usable.indices.len()).collect();

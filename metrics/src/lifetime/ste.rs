@@ -17,7 +17,7 @@ use crate::{BlockType, MetricsError, Options, VariantMode};
 pub struct SteLog {
     log: Arc<Log>,
     task_name: String,
-    /// Where it was read, for messages.
+    /// The folder that it was read from, for messages.
     dir: Option<PathBuf>,
 }
 
@@ -111,7 +111,7 @@ impl SteRun {
 
 /// The experts that a task is compared with, as positions in `trained`: the experts' tasks, with their variants.
 ///
-/// Experts of the task's own name; if there are none, those of its variants: `ferry_red` and `ferry_blue` serve `ferry`. This
+/// Experts with the task's own name; if there are none, those of its variants: `ferry_red` and `ferry_blue` serve `ferry`. This
 /// applies to a task that was logged without a variant, and to one that lost it because variants do not count. A variant is
 /// served only by its own experts. Names are compared in lower case.
 ///

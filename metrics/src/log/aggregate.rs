@@ -43,7 +43,7 @@ pub enum Delimiter {
 /// Corresponds to `python -m l2logger.aggregate`: `block_num`, `regime_num`, `exp_num`, the other standard columns, then the
 /// log's own in alphabetical order; task names in lower case; `regime_num` counts stretches of one block, subtype and task from
 /// 0. Unlike l2logger, it puts the `block_subtype` of a log of format 1.0 in its usual place and not last, writes task
-/// parameters uniformly (one space after `:` and `,`, `{}` for none), writes whole numbers of metrics with `.0`, and combines
+/// parameters uniformly (one space after `:` and `,`, `{}` for none), writes whole numbers in metrics with `.0`, and combines
 /// several logs in one table, with the log's name in the first column, `run_id`.
 ///
 /// At most [`MAX_RECORDS`] rows and [`MAX_CELLS`] cells of logs' own columns, over all logs.
@@ -89,8 +89,8 @@ impl LogTable {
         self.num_rows == 0
     }
 
-    /// Writes the table as text with a header line; lines end with `\n`, cells are quoted if necessary, and texts that look like
-    /// formulas are escaped unless raw cells are requested.
+    /// Writes the table as text with a header line; lines end with `\n`, cells are quoted if necessary, and text that looks like
+    /// a formula is escaped unless raw cells are requested.
     ///
     /// # Errors
     /// Those of the writer.
@@ -187,7 +187,7 @@ fn own_columns(log: &Log) -> impl Iterator<Item = &str> {
     log.rows.metric_names().chain(log.rows.text_names())
 }
 
-/// A cell of a non-standard column: a number as the shortest text that reads back exactly, or empty without one.
+/// A cell of a non-standard column: a number as the shortest string that reads back exactly; empty for a missing number.
 fn own_cell(row: Row, name: &str) -> String {
     match row.metric(name) {
         Some(number) if number.is_nan() => String::new(),
@@ -291,7 +291,7 @@ mod tests {
     }
 
     #[test]
-    fn column_may_hold_numbers_in_one_log_and_words_in_another() {
+    fn column_may_hold_numbers_in_one_log_and_text_in_another() {
         let row = "0\t0\tw\ttrain\ta_x\t{}\tcomplete\t20200101T000000.0\t1";
         let mut table = LogTable::new(KeptRows::Complete);
         for cell in ["2", "two"] {

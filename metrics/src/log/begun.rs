@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn files_that_are_no_log_leftovers_are_never_overwritten() {
+    fn files_that_are_not_leftovers_of_a_log_are_never_overwritten() {
         let check = |files: &[(&str, &str)], code: &str| {
             let dir = made(files);
             assert_eq!(begun_log(dir.path()).unwrap_err().code(), code);

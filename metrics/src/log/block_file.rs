@@ -1,4 +1,4 @@
-//! [`BlockFile`]: appends rows to a data file, and detects whether it was truncated, removed or replaced meanwhile.
+//! [`BlockFile`]: appends rows to a data file, and detects whether it was truncated, removed or replaced in the meantime.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{ErrorKind, Read, Write};
@@ -41,8 +41,8 @@ impl Written {
 
     /// Fails if the file at this path is missing, is a different file, or differs in length.
     ///
-    /// Some file systems change the id of a file while nobody has it open: under another id, it counts as the same file
-    /// if its bytes are the same.
+    /// Some file systems change the id of a file while nobody has it open: with a different id, it counts as the same
+    /// file if its bytes are the same.
     pub(super) fn check(&self, folder: &LogFolder, inside: &Path) -> Result<(), MetricsError> {
         let path = folder.place(inside);
         let found = match fs::metadata(&path) {

@@ -92,7 +92,7 @@ impl Cell<'_> {
     }
 }
 
-/// A number; an empty cell or a word that table writers use for "missing" is NaN. `None` for anything else.
+/// A number; NaN for an empty cell or a word that other programs write for a missing value. `None` for anything else.
 pub(super) fn number(text: &str) -> Option<f64> {
     let number = match text.parse() {
         Ok(number) => number,

@@ -34,7 +34,7 @@ pub(super) fn header(metrics: &[String]) -> Vec<String> {
         .collect()
 }
 
-/// One line of a data file, with quotes where necessary, and its line end.
+/// One line of a data file, with quotes where necessary, and its line ending.
 ///
 /// The crate `csv` quotes a bare carriage return only if lines end with one, so the line is written that way and its end
 /// replaced by a single `\n`, as in l2logger.
@@ -42,7 +42,7 @@ pub(crate) fn line(cells: impl IntoIterator<Item = impl AsRef<[u8]>>) -> Vec<u8>
     delimited(b'\t', cells)
 }
 
-/// Like [`line`], with another separator.
+/// Like [`line`], with a given separator.
 pub(super) fn delimited(delimiter: u8, cells: impl IntoIterator<Item = impl AsRef<[u8]>>) -> Vec<u8> {
     let mut writer = csv::WriterBuilder::new()
         .delimiter(delimiter)

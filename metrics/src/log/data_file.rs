@@ -39,7 +39,7 @@ pub(super) fn read<'a>(
         .has_headers(false)
         .flexible(true)
         .buffer_capacity(PIECE)
-        // Rows that a running writer adds meanwhile are left for the next reading.
+        // Rows that a running writer adds in the meantime are left for the next read.
         .from_reader((&source.file).take(source.whole));
     let mut row = StringRecord::new();
     if !next_row(&mut rows, &mut row, path)? {
@@ -68,7 +68,7 @@ pub(super) fn read<'a>(
         let line = rows.position().line() - line_breaks(&row) - line_ends;
         let start = row.position().map_or(0, csv::Position::byte);
         if is_last(&rows)
-            // A row that ends within quotes has no line end of its own.
+            // A row that ends within quotes has no line ending of its own.
             && let Some(fault) = source.open_quote(path, start, line + line_ends)?
         {
             faults.add(fault)?;
@@ -82,7 +82,7 @@ pub(super) fn read<'a>(
     Ok(header.names)
 }
 
-/// Line breaks within the cells of a row.
+/// Number of line breaks within the cells of a row.
 fn line_breaks(row: &StringRecord) -> u64 {
     row.as_slice().bytes().filter(|byte| *byte == b'\n').count() as u64
 }

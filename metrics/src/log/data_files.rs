@@ -58,7 +58,7 @@ pub(super) fn find(dir: &Path) -> Result<Vec<PathBuf>, MetricsError> {
 
 struct Search {
     to_search: Vec<Folder>,
-    /// Each with whether it was reached by a link.
+    /// Each with whether it was reached through a link.
     files: Vec<(PathBuf, bool)>,
 }
 
@@ -66,7 +66,7 @@ struct Folder {
     path: PathBuf,
     /// Depth below the log's directory.
     depth: usize,
-    /// Whether it was reached by a link.
+    /// Whether it was reached through a link.
     is_linked: bool,
 }
 
@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn path_that_is_no_directory_is_named() {
+    fn path_that_is_not_a_directory_is_named() {
         let dir = tempfile::tempdir().unwrap();
         let check = |path: &Path, found: &str| {
             let expected = "the directory of a log, which holds logger_info.json";
@@ -175,7 +175,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn links_are_followed_and_circles_end() {
+    fn links_are_followed_and_circular_links_end() {
         use std::os::unix::fs::symlink;
         let base = tempfile::tempdir().unwrap();
         let dir = base.path().join("log");
@@ -203,7 +203,7 @@ mod tests {
         fs::remove_dir_all(dir.join("w/1-train")).unwrap();
         symlink("../elsewhere/v", dir.join("v")).unwrap();
         assert_eq!(found().unwrap(), ["v/0-test", "v/1-test", "w/0-test"]);
-        // Links to files already found, circular ones, and one to no folder.
+        // Links to files already found, circular links, and a broken link with an extension.
         symlink(".", dir.join("circle")).unwrap();
         symlink("..", dir.join("w/circle")).unwrap();
         symlink("v", dir.join("again")).unwrap();

@@ -5,11 +5,11 @@ use std::path::Path;
 
 use crate::MetricsError;
 
-/// Longest folder name, in bytes: file systems allow 255, and a number may be appended.
+/// Maximum length of a folder name, in bytes: file systems allow 255, and a number may be appended.
 const MAX_BYTES: usize = 200;
 
-/// Writes everything except ASCII letters, digits, `_`, `-` and `.` as `%` and two digits; also a leading `.`, which would hide
-/// the folder or lead out of it, and a trailing one, which some file systems drop.
+/// Writes every byte except ASCII letters, digits, `_`, `-` and `.` as `%` and two hexadecimal digits; also a leading `.`, which
+/// would hide the folder or lead out of it, and a trailing one, which some file systems drop.
 ///
 /// `place`: named in the error if the name would be too long.
 pub(super) fn encoded(place: &Path, name: &str) -> Result<String, MetricsError> {

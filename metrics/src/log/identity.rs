@@ -27,7 +27,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn identity_survives_other_names_but_not_copies() {
+    fn identity_survives_renaming_but_not_copying() {
         let base = tempfile::tempdir().unwrap();
         let at = |name: &str| base.path().join(name);
         let of = |name: &str| Identity::of(&fs::metadata(at(name)).unwrap());

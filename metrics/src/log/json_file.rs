@@ -1,4 +1,4 @@
-//! The JSON files beside the rows: errors carry the place, and writes are atomic.
+//! Reads and writes the JSON files beside the rows: errors carry line and column, and writes are atomic.
 
 use std::path::Path;
 
@@ -14,7 +14,7 @@ use crate::MetricsError;
 /// Largest side file that is read, in bytes.
 pub const MAX_JSON_BYTES: u64 = 16 << 20;
 
-/// Maximum number of values in a side file: numbers, texts, lists, objects and so on. Each takes at least a hundred
+/// Maximum number of values in a side file: numbers, strings, arrays, objects and so on. Each takes at least a hundred
 /// bytes in memory.
 pub const MAX_JSON_VALUES: u64 = 1_000_000;
 
@@ -52,7 +52,7 @@ pub(super) fn read_object(path: &Path, expected: &'static str) -> Result<Map<Str
     }
 }
 
-/// Describes why a text is unreadable, in the same words as for documents.
+/// Says why this text cannot be parsed, in the same words as for documents.
 pub(super) fn fault(text: &str, error: &serde_json::Error, stop: Option<Stop>) -> String {
     match (stop, twice(text)) {
         (Some(Stop::LongKey), _) => {

@@ -83,7 +83,7 @@ impl LogFolder {
         })
     }
 
-    /// Fails if a recorded info file is missing or has another length.
+    /// Fails if a recorded info file is missing or has a different length.
     pub(super) fn check_info_files(&self) -> Result<(), MetricsError> {
         for (name, length) in &self.info {
             let (path, expected) = (self.shown.join(name), *length);

@@ -40,7 +40,7 @@ impl LoggerInfo {
         })
     }
 
-    /// Names of the metrics columns, in their author's order.
+    /// Names of the metrics columns, in the order in which they were declared.
     pub fn metrics_columns(&self) -> &[String] {
         &self.metrics_columns
     }

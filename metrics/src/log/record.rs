@@ -96,14 +96,14 @@ impl Record {
         }
     }
 
-    /// This record with one more number, or another value for it.
+    /// This record with this number added or replaced.
     #[must_use]
     pub fn with_metric(mut self, name: impl Into<String>, value: f64) -> Self {
         self.metrics.insert(name.into(), value);
         self
     }
 
-    /// This record with one more text column, or another text in it.
+    /// This record with this text column added or replaced.
     #[must_use]
     pub fn with_text(mut self, name: impl Into<String>, text: impl Into<String>) -> Self {
         self.texts.insert(name.into(), text.into());

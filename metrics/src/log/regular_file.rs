@@ -1,5 +1,5 @@
-//! Opens regular files only: reading a pipe could wait for ever, and a device may never end. Turns the errors of
-//! `driftworld-files` into those of logs.
+//! Opens regular files only: reading a pipe could block for ever, and a device may never end. Converts errors of
+//! `driftworld-files` to [`MetricsError`].
 
 use std::path::Path;
 
@@ -65,7 +65,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn irregular_file_is_named() {
+    fn path_that_is_not_a_regular_file_is_reported() {
         let base = tempfile::tempdir().unwrap();
         let found = |path: &Path| match check(path) {
             Err(MetricsError::NotAFile { found, .. }) => Some(found),

@@ -24,8 +24,8 @@ impl LogWriter {
     /// The log may have no record yet; its `logger_info.json` must exist.
     ///
     /// # Errors
-    /// Those of [`read_log`](crate::read_log), [`MetricsError::InUse`] while another writer has it, and
-    /// [`MetricsError::OtherColumns`] for a data file of format 1.0 or one with columns of its own.
+    /// Those of [`read_log`](crate::read_log), [`MetricsError::InUse`] while another writer is using it, and
+    /// [`MetricsError::OtherColumns`] for a data file of format 1.0 or one with different columns.
     pub fn resume(dir: impl AsRef<Path>) -> Result<Self, MetricsError> {
         let dir = dir.as_ref();
         // First reports a path that is not a directory.

@@ -131,7 +131,7 @@ impl ScenarioInfo {
     }
 }
 
-/// Takes a field out of the object. Warns about and drops a value that is not an accepted word.
+/// Removes a field from the object. Warns about and drops a value that is not an accepted word.
 fn take_word<T: FromStr>(
     field: &'static str,
     object: &mut Map<String, Value>,

@@ -1,8 +1,8 @@
-//! A column with few different values over many rows: each value is stored once, and rows refer to it by id.
+//! A column with few distinct values over many rows: each value is stored once, and rows refer to it by id.
 
 use std::collections::HashMap;
 
-/// Maximum number of distinct texts remembered; a log has few, but one with more can still be read.
+/// Maximum number of distinct strings remembered; a log has few, but one with more can still be read.
 const REMEMBERED: usize = 65_536;
 
 /// A column that stores each of its values once.
@@ -51,7 +51,7 @@ pub(super) fn reorder<T: Copy>(column: &mut Vec<T>, order: &[u32]) {
     *column = order.iter().map(|&row| column[row as usize]).collect();
 }
 
-/// Finds the id of a text seen before; fastest if it repeats the previous row's.
+/// Finds the id of a string seen before; fastest if it repeats the previous one.
 #[derive(Debug, Default)]
 pub(super) struct Seen {
     ids: HashMap<String, u32>,
@@ -59,7 +59,7 @@ pub(super) struct Seen {
 }
 
 impl Seen {
-    /// The id of a text's value; `make` creates the value of a new text.
+    /// The id of a string's value; `make` creates the value of a new string.
     pub(super) fn id<T, E>(
         &mut self,
         column: &mut SharedColumn<T>,
@@ -97,7 +97,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn equal_texts_share_a_value_and_survive_reordering() {
+    fn equal_strings_share_a_value_and_survive_reordering() {
         let (mut column, mut seen) = (SharedColumn::default(), Seen::default());
         for text in ["a", "a", "b", "a"] {
             let id = seen.id(&mut column, text, |text| Ok::<_, ()>(text.to_owned())).unwrap();

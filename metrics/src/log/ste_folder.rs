@@ -56,7 +56,7 @@ pub(super) fn give_name(new: &Path, task_dir: &Path, run: &str) -> Result<PathBu
         }
         match fs::rename(new, &dir) {
             Ok(()) => return Ok(dir),
-            // Another process took the name meanwhile.
+            // Another process took the name in the meantime.
             Err(_) if fs::symlink_metadata(&dir).is_ok() => {}
             Err(error) => return Err(MetricsError::io(&dir, "put the log here")(error)),
         }
@@ -74,7 +74,7 @@ pub(super) fn take_away(run: &Path, temporary: &ScratchFolder) -> Result<(), Met
         .collect();
     let above = grave.parent().unwrap_or(temporary.path());
     fs::create_dir_all(above).map_err(MetricsError::io(above, "make this directory"))?;
-    fs::rename(run, &grave).map_err(MetricsError::io(run, "take away this directory"))
+    fs::rename(run, &grave).map_err(MetricsError::io(run, "move this directory aside"))
 }
 
 pub(super) fn is_run(dir: &Path) -> bool {

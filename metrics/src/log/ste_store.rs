@@ -44,7 +44,8 @@ pub struct StoredTask {
 /// Copies an expert's log into a data folder, which is created if necessary. The run appears there whole or not at all, and
 /// other runs are removed only afterwards.
 ///
-/// Characters of names that not every file system accepts are written as `%` and two digits; no name leads out of the folder.
+/// In names, bytes that not every file system accepts are written as `%` and two hexadecimal digits; no name leads out of the
+/// folder.
 ///
 /// # Errors
 /// Those of [`read_ste_log`]; [`MetricsError::InUse`] while one of our writers is using the log; [`MetricsError::TooLarge`] for

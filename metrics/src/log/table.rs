@@ -35,7 +35,7 @@ pub(super) struct Table<'a> {
     pub(super) rows: Rows,
     /// Line of each row in its file.
     lines: Vec<u32>,
-    /// The files in order, each with its first row.
+    /// The files in order, each with the index of its first row.
     files: Vec<(&'a Path, usize)>,
     pub(super) workers: Seen,
     pub(super) task_names: Seen,
@@ -49,7 +49,7 @@ pub(super) struct Table<'a> {
 #[derive(Debug, Default)]
 struct Other {
     numbers: Vec<f64>,
-    /// Whether any cell held a word.
+    /// Whether any cell was not a number.
     has_words: bool,
     texts: SharedColumn<String>,
     seen: Seen,
@@ -100,7 +100,7 @@ impl<'a> Table<'a> {
         Ok(numbers)
     }
 
-    /// A buffer for the metrics of a row, which [`push`](Self::push) returns.
+    /// A buffer for the metrics of a row; [`push`](Self::push) takes it back.
     pub(super) fn spare_numbers(&mut self) -> Vec<f64> {
         std::mem::take(&mut self.spare)
     }
@@ -147,7 +147,7 @@ impl<'a> Table<'a> {
             .map(|((path, start), end)| (*path, *start..end))
     }
 
-    /// Appends the undeclared columns to the others: numeric ones, and text columns if they are kept.
+    /// Appends the undeclared columns to the declared ones: numeric columns, and text columns if they are kept.
     pub(super) fn complete(&mut self) -> Result<(), MetricsError> {
         let num_rows = self.rows.len();
         for (name, mut other) in std::mem::take(&mut self.others) {

@@ -167,7 +167,7 @@ impl Check {
         table.complete()
     }
 
-    /// Every file has the columns of the first, and those of the log's version.
+    /// Checks that every file has the columns of the first, and those of the log's version.
     fn headers(&mut self, headers: &[(&Path, Vec<String>)], logger_info: &LoggerInfo) -> Result<(), MetricsError> {
         let sorted = |names: &[String]| names.iter().cloned().collect::<BTreeSet<String>>();
         let Some((first, expected)) = headers.first() else {
@@ -226,7 +226,7 @@ impl Check {
         Ok(())
     }
 
-    /// Checks that rows are in the folder of their worker and block; others cause one warning per file.
+    /// Checks that rows are in the folder of their worker and block; stray rows cause one warning per file.
     fn folders(&mut self, dir: &Path, table: &Table<'_>) {
         let rows = &table.rows;
         for (path, mut range) in table.files() {
@@ -245,7 +245,7 @@ impl Check {
             let is_there = |row: usize| folder == Some(Path::new(&expected(row)));
             let mut last = None;
             let stray = range.find(|&row| {
-                // Compares paths once for many rows.
+                // Compares paths once for consecutive rows of one worker and block.
                 last.replace(place(row)) != Some(place(row)) && !is_there(row)
             });
             if let Some(row) = stray {
@@ -257,7 +257,8 @@ impl Check {
         }
     }
 
-    /// Each experience of a worker has exactly one complete row, its last; the worker's last experience may have none.
+    /// Checks that each experience of a worker has exactly one complete row, its last; the worker's last experience may
+    /// have none.
     fn completions(&mut self, table: &Table<'_>) -> Result<(), MetricsError> {
         let rows = &table.rows;
         let key = |row: usize| (rows.workers().ids()[row], rows.exp_nums()[row]);
@@ -295,8 +296,8 @@ impl Check {
         Ok(())
     }
 
-    /// Experience numbers increase by one, over all workers; gaps cause one warning per log, except where a regime with
-    /// a budget of decisions may leave numbers unused.
+    /// Checks that experience numbers increase by one, over all workers; gaps cause one warning per log, except where a
+    /// regime with a budget of decisions may leave numbers unused.
     fn missing(&mut self, table: &Table<'_>, scenario: &ScenarioInfo) {
         let numbers = table.rows.exp_nums();
         let (blocks, tasks) = (table.rows.block_nums(), table.rows.task_names().ids());
@@ -323,7 +324,8 @@ impl Check {
         }
     }
 
-    /// A declared metric without any number cannot be scored; a reader checks only the metric that is scored.
+    /// Warns about declared metrics without any number, which cannot be scored; a reader checks only the metric that is
+    /// scored.
     fn metrics(&mut self, table: &Table<'_>, declared: &[String]) {
         if matches!(self.faults, Faults::Stop) {
             return;
@@ -348,7 +350,7 @@ impl Check {
         self.counts.tasks = tasks.collect::<BTreeSet<_>>().len();
     }
 
-    /// Sorts the rows by experience; block numbers must then not fall.
+    /// Sorts the rows by experience; in that order, block numbers must not decrease.
     fn sort(&mut self, table: &mut Table<'_>) -> Result<(), MetricsError> {
         let order = table.rows.sort();
         let blocks = table.rows.block_nums();

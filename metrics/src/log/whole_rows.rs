@@ -136,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn quote_that_swallows_rows_is_no_torn_row() {
+    fn quote_that_swallows_rows_is_not_a_torn_row() {
         let row = "0\t1\t2\t3\t4\t5\t6\t7\t8\n";
         let check = |text: &str, swallowed: bool| {
             assert_eq!(measure(text.as_bytes()).unwrap().swallowed, swallowed, "{text:?}");
@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn carriage_return_line_ends_are_no_torn_row() {
+    fn carriage_return_line_endings_are_not_a_torn_row() {
         let check = |text: &str, returns: bool| {
             assert_eq!(measure(text.as_bytes()).unwrap().returns, returns, "{text:?}");
         };

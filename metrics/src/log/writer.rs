@@ -16,10 +16,10 @@ use crate::log::BlockType;
 /// The rules of the format are checked for every record: block and experience numbers never decrease, every record has the same
 /// metrics, a worker completes an experience once, and a worker's rows with one block number have one block type. Keeps
 /// one file open at a time, and syncs it to disk when it switches to the next: a power failure loses at most rows of
-/// the last block. A second writer on the directory is refused where the system can detect it.
+/// the last block. A second writer to the directory is refused where the system can detect it.
 ///
 /// Before each record, and at the end, it checks that the directory and the files are still those that it wrote, with the same
-/// lengths: if one was removed, renamed, replaced or truncated meanwhile, it fails and never recreates anything.
+/// lengths: if one was removed, renamed, replaced or truncated in the meantime, it fails and never recreates anything.
 #[derive(Debug)]
 pub struct LogWriter {
     folder: LogFolder,
@@ -62,7 +62,7 @@ impl LogWriter {
     /// Like [`LogWriter::create`], without syncing to disk: for a log that is read at once and thrown away.
     ///
     /// # Errors
-    /// As [`LogWriter::create`].
+    /// Those of [`LogWriter::create`].
     pub fn create_unsynced(
         dir: impl AsRef<Path>,
         logger_info: &LoggerInfo,
@@ -113,7 +113,7 @@ impl LogWriter {
         self.folder.shown()
     }
 
-    /// The non-standard columns, of metrics and of texts, in order; `None` before the first record.
+    /// The metrics and text columns, in order; `None` before the first record.
     pub fn columns(&self) -> Option<&[String]> {
         self.progress.columns.as_deref()
     }
@@ -121,8 +121,8 @@ impl LogWriter {
     /// Writes one record as one line and flushes it.
     ///
     /// # Errors
-    /// [`MetricsError::Record`] if it breaks a rule of the format: then nothing is written, and the log continues as if it had
-    /// not been passed. [`MetricsError::Io`] if the disk fails: a partial line is removed if possible.
+    /// [`MetricsError::Record`] if it breaks a rule of the format: then nothing is written, and the log continues as if this
+    /// had not been called. [`MetricsError::Io`] if the disk fails: a partial line is removed if possible.
     /// [`MetricsError::FolderLost`] and [`MetricsError::FileLost`] if what was written so far is no longer there: then nothing
     /// is written.
     pub fn write(&mut self, record: &Record) -> Result<(), MetricsError> {
@@ -193,7 +193,7 @@ impl LogWriter {
         let opened = BlockFile::open(&self.folder, inside.clone(), before, &header)?;
         self.files.remove(&inside);
         self.file = Some(opened);
-        // Checked again: if the directory was replaced meanwhile, the new files are in another one.
+        // Checked again: if the directory was replaced in the meantime, the new files are in a different one.
         self.check_folder()
     }
 
@@ -294,7 +294,7 @@ fn data_path(worker_id: &str, block_num: u64, block_type: BlockType) -> PathBuf 
         .join(data_files::FILE_NAME)
 }
 
-/// Checks a record by itself.
+/// Checks a record on its own.
 fn check_cells(record: &Record) -> Result<(), MetricsError> {
     if !is_worker_id(&record.worker_id) {
         let expected = "letters, digits, _, - and ., not only dots".to_owned();
@@ -336,7 +336,7 @@ fn cells(record: &Record, columns: &[String]) -> Vec<String> {
         record.exp_status.to_string(),
         record.timestamp.to_string(),
     ];
-    // The columns were compared with the record's, so each of them has a number or a text.
+    // The columns were compared with the record's, so each of them has a number or a string.
     let cell = |name: &String| match record.texts.get(name) {
         Some(text) => text.clone(),
         None => number(record.metrics[name.as_str()]),
@@ -344,7 +344,7 @@ fn cells(record: &Record, columns: &[String]) -> Vec<String> {
     standard.into_iter().chain(columns.iter().map(cell)).collect()
 }
 
-/// The shortest text that reads back as the same number.
+/// The shortest string that reads back as the same number.
 fn number(value: f64) -> String {
     if value.is_nan() {
         "nan".to_owned()

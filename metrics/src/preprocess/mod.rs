@@ -45,8 +45,8 @@ fn given_anchors(task: &str, options: &Options) -> Option<Anchors> {
     of_task.map(|(_, anchors)| anchors.clone()).reduce(hull)
 }
 
-/// The range given for a task, under the name used for scoring: its range in `data_range`, which must then have one; if
-/// `data_range` is not given, its floor and ceiling, or `None` without these.
+/// The range given for a task, under the name used for scoring: if `data_range` is given, its range there, which must
+/// exist; otherwise its floor and ceiling, or `None` without these.
 ///
 /// If variants do not count, the range of a task is the hull of its variants' ranges.
 pub(crate) fn given_range(

@@ -1,4 +1,4 @@
-//! Normal noise on the performances of a lifetime, after all other preprocessing.
+//! Gaussian noise on the performances of a lifetime, after all other preprocessing.
 
 use std::f64::consts::PI;
 

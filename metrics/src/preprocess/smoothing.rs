@@ -6,7 +6,7 @@ use crate::lifetime::Lifetime;
 use crate::statistics::sum;
 use crate::{BlockType, Options, SmoothingMethod};
 
-/// Longest default window.
+/// Maximum default window length.
 const LONGEST_DEFAULT: usize = 100;
 
 /// Smooths learning regimes, evaluation regimes if requested, and every regime of the experts.
@@ -48,7 +48,7 @@ pub(crate) fn smoothed(values: &[f64], window_length: Option<usize>, method: Smo
         .chain(values[num - length..num - 1].iter().rev())
         .copied()
         .collect();
-    // Of the num + length - 1 places where the window fits, num are kept, starting here.
+    // Of the num + length - 1 positions where the window fits, num are kept, starting here.
     let start = (length / 2).saturating_sub(1);
     moving_sums(&mirrored[start..start + num + length - 1], &shares)
 }
@@ -56,7 +56,7 @@ pub(crate) fn smoothed(values: &[f64], window_length: Option<usize>, method: Smo
 /// Windows summed in parallel: enough independent sums to hide the latency of additions.
 const SIDE_BY_SIDE: usize = 16;
 
-/// The weighted sum of each window, from the first place where it fits to the last.
+/// The weighted sum of each window, from the first position where it fits to the last.
 ///
 /// Each sum adds its values from the first to the last, so that its bits do not depend on its neighbours.
 fn moving_sums(values: &[f64], weights: &[f64]) -> Vec<f64> {
@@ -134,7 +134,7 @@ mod tests {
         check(&[1.0, 5.0], Some(1));
         check(&[1.0, 5.0, 2.0], Some(2));
         check(&[1.0; 14], None);
-        // A window longer than the data falls back to a fifth of four, which is none.
+        // A window longer than the data falls back to a fifth of four, which rounds down to 0.
         check(&[1.0, 5.0, 2.0, 4.0], Some(9));
     }
 

@@ -22,8 +22,8 @@ choice! {
         /// `Strata` if there is only one stratum. If runs lack scores, a stratum without any drawn score is left out of that
         /// resample.
         Runs = "runs",
-        /// Within each stratum as many scores as it has, independently. As in rliable; treats the scores of one run in
-        /// different strata as independent, and is much too narrow if they are not.
+        /// In each stratum, independently, as many scores as it has. As in rliable; treats the scores of one run in
+        /// different strata as independent: if they are not, intervals are much too narrow.
         Strata = "strata",
     }
 }

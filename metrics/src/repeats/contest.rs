@@ -23,8 +23,8 @@ impl Contests {
         }
     }
 
-    /// The probability that A wins in each stratum, and last the mean over strata with pairs. Before resampling, every stratum
-    /// has pairs.
+    /// The probability that A wins in each stratum, followed by the mean over strata with pairs. Before resampling, every
+    /// stratum has pairs.
     pub(super) fn probabilities(&self) -> Vec<Option<f64>> {
         let mut values = Vec::new();
         self.put_probabilities(&mut values);
@@ -40,7 +40,7 @@ impl Contests {
         values.push((num > 0).then(|| sum / num as f64));
     }
 
-    /// Intervals of the strata, and last that of their mean. `None` for a stratum that resampling cannot vary, or that had no
+    /// Intervals of the strata, followed by that of their mean. `None` for a stratum that resampling cannot vary, or that had no
     /// pair in any resample.
     pub(super) fn intervals(&mut self, options: &BootstrapOptions) -> Vec<Option<Interval>> {
         let resamples = options.resamples as usize;
@@ -62,8 +62,8 @@ impl Contests {
             .collect()
     }
 
-    /// Student's intervals of the strata, and last that of their mean, if an agent has few runs; within 0..=1. `None` for a
-    /// stratum in which an agent has one run.
+    /// Student's t intervals of the strata, followed by that of their mean, if an agent has few runs; within 0..=1. `None`
+    /// for a stratum in which an agent has one run.
     pub(super) fn t_intervals(&mut self, confidence: f64) -> Option<Vec<Option<Interval>>> {
         if self.drawn.iter().all(|runs| runs.len() >= FEW_RUNS) {
             return None;
@@ -127,7 +127,7 @@ struct Contest([Side; 2]);
 
 /// One agent's runs.
 struct Side {
-    /// Each run with a score: its rank among the different scores of both agents, and its position in the table.
+    /// Each run with a score: its rank among the distinct scores of both agents, and its position in the table.
     runs: Vec<(u32, u32)>,
     /// Number of runs at each rank.
     counts: Vec<u32>,

@@ -83,8 +83,8 @@ pub fn estimate<const N: usize>(
 
 /// A confidence interval. With the default options, a bootstrap interval contains the value for infinitely many runs in
 /// about 92 of 100 repetitions with 20 runs, in 87 with 9, in 82 with 5, in 76 with 3: few runs underestimate their own
-/// variation. Student's t interval contains it in 95, if runs are normal. `metrics/tests/repeats_coverage.rs` simulates
-/// both.
+/// variation. Student's t interval contains it in 95, if scores are normally distributed.
+/// `metrics/tests/repeats_coverage.rs` simulates both.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Interval {
     /// Lower end, in the unit of the value.
@@ -134,7 +134,7 @@ mod tests {
         }
     }
 
-    /// The exact numbers of this seed on every machine: if they change, the change breaks results.
+    /// The exact numbers for this seed on every machine: if they change, the change breaks results.
     #[test]
     fn intervals_are_reproducible() {
         let check = |resampling: Resampling, expected: (f64, f64)| {

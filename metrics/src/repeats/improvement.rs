@@ -15,7 +15,7 @@ pub struct Improvement {
     pub probability: Estimate,
     /// P-value of a permutation test: the share of ways to divide all runs between the two agents, as whole runs, in
     /// which the mean probability is at least as far from 0.5. Calling agents different at 0.05 or less is wrong for at
-    /// most 5 % of equal ones, whatever the correlation within runs. `None` for one run of each.
+    /// most 5 % of pairs of equal agents, whatever the correlation within runs. `None` for one run of each.
     #[serde(default)]
     pub p_value: Option<f64>,
     /// The smallest possible p-value with this number of runs: 0.1 for three of each.
@@ -179,7 +179,7 @@ mod tests {
         assert_eq!((found.probability.value, found.probability.interval), (0.5, None));
     }
 
-    /// The exact numbers of this seed on every machine: if they change, the change breaks results.
+    /// The exact numbers for this seed on every machine: if they change, the change breaks results.
     #[test]
     fn intervals_are_reproducible() {
         let a = table(&[

@@ -60,7 +60,7 @@ mod tests {
     }
 
     #[test]
-    fn one_run_gives_none_and_equal_runs_give_width_0() {
+    fn one_run_has_no_interval_and_equal_runs_have_one_of_width_0() {
         assert_eq!(t_interval(1.0, &[vec![1.0]], 0.95), None);
         let still = t_interval(1.0, &[vec![1.0; 3], vec![1.0; 2]], 0.95).unwrap();
         assert_eq!((still.low, still.high), (1.0, 1.0));

@@ -1,7 +1,7 @@
 //! Statistics over repeats: aggregates over many lifetimes of one agent, their uncertainty, and comparisons of two agents.
 //!
 //! The methods follow Agarwal et al. 2021, "Deep Reinforcement Learning at the Edge of the Statistical Precipice", and match
-//! the numbers of its package rliable 1.2. A [`ScoreTable`] takes any number per run and task.
+//! the numbers of its package rliable 1.2. A [`ScoreTable`] takes one number of any kind per run and task.
 
 mod aggregate;
 mod bootstrap;

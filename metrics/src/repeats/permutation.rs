@@ -9,7 +9,7 @@ use super::{BootstrapOptions, ScoreTable};
 /// Up to this number, all divisions of the runs are tried.
 const ALL_WAYS: u64 = 20_000;
 
-/// Share of a probability by which sums in another order may differ.
+/// Share of a probability by which sums in a different order may differ.
 const ROUNDING: f64 = 1e-12;
 
 /// The result of the test.
@@ -25,7 +25,7 @@ pub(super) struct Shared {
 struct Pool {
     num_of_a: usize,
     num_runs: usize,
-    /// Per stratum, the rank of each run's score among the different scores, A's runs first; `None` for a missing score.
+    /// Per stratum, the rank of each run's score among the distinct scores, A's runs first; `None` for a missing score.
     ranks: Vec<Vec<Option<u32>>>,
 }
 
@@ -33,7 +33,7 @@ struct Pool {
 /// won pairs is at least as far from one half as observed. If the agents were equal, every division would be equally likely,
 /// whatever the correlation across strata: then the result is at most p with a chance of at most p.
 ///
-/// `None` for one run of each agent, which cannot be divided in another way.
+/// `None` for one run of each agent, which can only be swapped.
 pub(super) fn shared_out(
     a: &ScoreTable,
     b: &ScoreTable,

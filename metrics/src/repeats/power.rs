@@ -1,26 +1,26 @@
-//! Statistical power of Welch's test: the chance to detect a difference between agents, the number of lifetimes needed, and the
-//! smallest effect that can be shown.
+//! Statistical power of Welch's test: the chance of detecting a difference between agents, the number of lifetimes needed, and
+//! the smallest effect that can be shown.
 
 use super::student::student_reach;
 
-/// The significance level of a two-sided test: the chance to call equal agents different.
+/// The significance level of a two-sided test: the chance of calling equal agents different.
 pub const POWER_LEVEL: f64 = 0.05;
 
 /// The default power.
 pub const POWER_WANTED: f64 = 0.8;
 
-/// Largest number of lifetimes per agent that the search considers.
+/// Maximum number of lifetimes per agent that the search considers.
 pub const MAX_POWER_LIFETIMES: usize = 100_000;
 
 /// Integration points per variance; the integrand is smooth, and vanishes at its ends.
 const NUM_POINTS: usize = 48;
 
-/// Points between which quantiles of Student's t are interpolated, linearly in one over the degrees of freedom.
+/// Number of intervals in which quantiles of Student's t are interpolated, linearly in one over the degrees of freedom.
 const NUM_QUANTILES: usize = 64;
 
 /// The chance, 0..=1, that a two-sided Welch's t test at 5 % calls two agents different, if their lifetimes are independent and
 /// normally distributed with these standard deviations and with means that differ by `effect`. `lifetimes` are those of each
-/// agent. `None` for fewer than two lifetimes of one, or without any deviation.
+/// agent. `None` for fewer than two lifetimes of either, or without any deviation.
 ///
 /// The difference of means is normal and independent of the two sample variances; given these, the chance follows from a normal
 /// distribution, and is integrated over their chi-squared distributions.

@@ -18,8 +18,8 @@ pub const MAX_SCORES: usize = 1_000_000;
 /// Maximum number of names listed in a caution; the others are counted.
 const NAMES_SHOWN: usize = 5;
 
-/// Scores of repeated runs. A *stratum* is scored in every run: a task or a pair of tasks; a *run* is one lifetime of the
-/// agent. A run may lack the score of a stratum.
+/// Scores of repeated runs. A *stratum* is a task or a pair of tasks; a *run* is one lifetime of the agent, and may lack the
+/// score of a stratum.
 ///
 /// Within the limits of [`MAX_RUNS`] runs, [`MAX_STRATA`] strata and [`MAX_SCORES`] scores in total, each stratum has at least
 /// one score, and each score is below 1e100 in magnitude.

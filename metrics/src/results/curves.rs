@@ -41,14 +41,14 @@ pub struct EvaluationCurve {
     /// half-way from its height there to the highest later point; at least 0. `None` if it never rises.
     pub lag: Option<f64>,
     /// The expert's level minus the curve, averaged over the learning experiences in which the task was present: its own, and
-    /// those of a drift to which it was nearer. Beyond its points the curve is constant. `None` without an expert, or if the
-    /// task was never present.
+    /// those of a drift in which it was the nearer end. Beyond its points the curve is constant. `None` without an expert,
+    /// or if the task was never present.
     pub regret: Option<f64>,
     /// Learning experiences in which the task was present.
     pub num_present: usize,
 }
 
-/// The curve of each evaluated task, in the lifetime's order; `reached` must be of the same lifetime.
+/// The curve of each evaluated task, in the lifetime's order; `reached` must be from the same lifetime.
 pub(crate) fn curves(lifetime: &Lifetime, reached: &IndexMap<String, Reached>) -> IndexMap<String, EvaluationCurve> {
     let courses = courses(lifetime);
     let of_task = |(task, reached): (&String, &Reached)| {

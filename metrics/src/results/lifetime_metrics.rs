@@ -50,7 +50,7 @@ pub struct LifetimeMetrics {
     /// Notes for readers of the values; in the JSON if there are any.
     #[serde(default)]
     pub notes: Vec<String>,
-    /// The null bands of metrics that depend on evaluations alone, by name: their range if the agent had never changed;
+    /// The null bands of metrics that permuting evaluations can test, by name: their range if the agent had never changed;
     /// includes contrasts of transfer even if only ratios were requested. Not in the JSON, which has the reference's fields.
     #[serde(default, rename = "null")]
     pub null_bands: IndexMap<String, NullBand>,
@@ -84,11 +84,11 @@ pub struct LifetimeMetrics {
     /// The values of each regime, in order; not in the JSON.
     #[serde(skip)]
     pub regimes: Vec<RegimeMetrics>,
-    /// The names of the values of a lifetime, in order; not in the JSON, and those of the built-in metrics for a lifetime that
-    /// was read back.
+    /// The names of the values of a lifetime, in order. Not in the JSON: a lifetime that was read back has those of the
+    /// built-in metrics.
     #[serde(skip, default = "crate::score::built_in_headlines")]
     pub headlines: Vec<Headline>,
-    /// The definitions it was scored by; in the JSON only if they are not the reference's.
+    /// The definitions it was scored with; in the JSON only if they are not the reference's.
     #[serde(default)]
     pub definitions: Definitions,
 }
@@ -162,7 +162,7 @@ pub struct SummaryRow {
     pub explanation: Cow<'static, str>,
     /// The good direction.
     pub good: Direction,
-    /// Its null band: the range if the agent had never changed; `None` for a metric that also depends on learning.
+    /// Its null band: the range if the agent had never changed; `None` for a metric that permuting evaluations cannot test.
     pub null_band: Option<NullBand>,
     /// The reading of the value; `None` for a metric without a neutral value.
     pub reading: Option<Reading>,
@@ -248,7 +248,7 @@ fn pairs<'a>(
     of(tasks).or_else(|| of(contrasts))
 }
 
-/// As [`LifetimeMetrics::parts`], from the values of tasks and the contrasts that were not requested.
+/// Like [`LifetimeMetrics::parts`], from the values of tasks and the contrasts that were not requested.
 pub(crate) fn parts<'a>(
     tasks: &'a IndexMap<String, Values>,
     contrasts: &'a IndexMap<String, Values>,

@@ -37,7 +37,7 @@ pub struct NullBand {
     pub standard_error: Option<f64>,
 }
 
-/// Share of a value by which sums in another order may differ.
+/// Share of a value by which sums in a different order may differ.
 const ROUNDING: f64 = 1e-9;
 
 impl NullBand {
@@ -64,8 +64,8 @@ impl NullBand {
     /// The band of a metric's mean over several lifetimes, from the means of the same permutations of each. Lifetimes without
     /// bands, such as those that were read back, do not count; `None` without any.
     ///
-    /// Evaluations are permuted in the same way in all lifetimes, so the band is valid even if these share their worlds or
-    /// their luck. It has no standard error: the variation between lifetimes is in their intervals.
+    /// Evaluations are permuted in the same way in all lifetimes, so the band is valid even if these share worlds or seeds.
+    /// It has no standard error: the variation between lifetimes is in their intervals.
     pub fn over_lifetimes(name: &str, lifetimes: &[LifetimeMetrics]) -> Option<Self> {
         let with_both = lifetimes.iter().filter_map(|lifetime| {
             let draws = lifetime.null_draws.get(name).filter(|draws| !draws.is_empty())?;

@@ -7,7 +7,7 @@ use super::{Headline, LifetimeMetrics};
 use crate::repeats::{lifetimes_for, smallest_effect, welch_power};
 use crate::statistics::variance;
 
-/// What a number of lifetimes can show about one metric, by a two-sided Welch's t test at 5 %.
+/// The power to show a difference in one metric, by a two-sided Welch's t test at 5 %.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MetricPower {
     /// The metric.
@@ -30,7 +30,7 @@ pub struct MetricPower {
 }
 
 /// The power for every metric with values in at least two lifetimes of each agent. If `others` is empty, the other agent is
-/// assumed to have equal variation and equally many lifetimes.
+/// assumed to have the same variation and the same number of lifetimes.
 pub fn metric_power(lifetimes: &[LifetimeMetrics], others: &[LifetimeMetrics], effect: f64) -> Vec<MetricPower> {
     let others = if others.is_empty() { lifetimes } else { others };
     let of_headline = |headline: Headline| {

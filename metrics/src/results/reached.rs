@@ -42,8 +42,8 @@ pub struct Reached {
     /// The best evaluation as a share of the expert's level: both measured from the task's floor, or else the lower end of the
     /// given range, or else 0. `None` if one is missing, or the expert is not above that end.
     pub share: Option<f64>,
-    /// The same for the first evaluation after each learning of the task, in order: how well it could still be learned. Empty
-    /// if there are no such shares.
+    /// The same for the first evaluation after each time the task was learned, in order: how well it could still be learned.
+    /// Empty if there are no such shares.
     #[serde(default)]
     pub shares: Vec<f64>,
     /// Reward of an agent that knows nothing about the task, if known.
@@ -52,8 +52,8 @@ pub struct Reached {
     /// Reward of an agent that knows the task, if known and above the floor.
     #[serde(default)]
     pub ceiling: Option<f64>,
-    /// Rewards of the best known agents that cannot distinguish the task from others of the lifetime that look alike, if known:
-    /// for the largest set of such tasks that are all in the lifetime.
+    /// Rewards of the best known agents that cannot distinguish the task from others of the lifetime that look the same, if
+    /// known: for the largest set of such tasks that are all in the lifetime.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unlabelled: Option<Unlabelled>,
     /// The scaling of the task's performances for the metrics.
@@ -250,7 +250,7 @@ mod tests {
     fn standard_error_is_that_of_a_mean() {
         assert_eq!(standard_error(&[1.0]), None);
         assert_eq!(standard_error(&[]), None);
-        // Variance 4 by n - 1, four values.
+        // Squares that add up to 8, divided by n - 1 = 3 for the variance and by n = 4 for the mean.
         let found = standard_error(&[1.0, 5.0, 3.0, 3.0]).expect("four values");
         assert!((found - (8.0_f64 / 3.0 / 4.0).sqrt()).abs() < 1e-12, "{found}");
     }

@@ -5,11 +5,11 @@ use serde::{Deserialize, Serialize};
 use super::{Direction, NullBand};
 use crate::repeats::Interval;
 
-/// Largest p-value at which an effect is named.
+/// Maximum p-value at which an effect is named.
 pub const LARGEST_P: f64 = 0.05;
 
-/// Minimum share of the effects of tasks, or of pairs of them, that must agree with the lifetime's value; below it, the
-/// effect is mixed.
+/// Minimum share, by size, of the effects of tasks, or of pairs of them, that must agree with the lifetime's value; below
+/// it, the effect is mixed.
 pub const AGREEING_PART: f64 = 0.75;
 
 /// The reading of a metric's value.
@@ -24,7 +24,7 @@ pub enum Reading {
     Mixed,
     /// Not more than noise, or no effect at all.
     Unclear,
-    /// Depends on learning, too, so there is nothing to compare a single lifetime with.
+    /// Without a null band, so there is nothing to compare a single lifetime with.
     Untested,
     /// Too few lifetimes for an interval.
     TooFew,
@@ -36,8 +36,8 @@ impl Reading {
     /// The reading of one lifetime's value, from its null band and the values of tasks, or pairs of them, behind it. `None` for
     /// a metric without a neutral value, such as a mean performance.
     ///
-    /// Good and bad as in [`NullBand::reading`]; mixed if less than [`AGREEING_PART`] of the effects in `parts` is on the
-    /// value's side.
+    /// Good and bad as in [`NullBand::reading`]; mixed if less than [`AGREEING_PART`] of the effects in `parts`, by size, is
+    /// on the value's side.
     ///
     /// ```
     /// use driftworld_metrics::{Direction, Reading};
@@ -201,7 +201,7 @@ mod tests {
         };
         check(&[], Reading::Bad);
         check(&[-0.4], Reading::Bad);
-        // A task that hardly changed does not count.
+        // A task that hardly changed hardly counts.
         check(&[-0.743, -0.688, 0.016], Reading::Bad);
         check(&[-0.9, 0.29], Reading::Bad);
         check(&[-0.9, 0.31], Reading::Mixed);

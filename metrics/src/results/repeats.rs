@@ -24,8 +24,8 @@ pub struct RepeatedMetric {
     pub num_runs: usize,
     /// Tasks that have a value; for transfer, pairs of tasks.
     pub num_strata: usize,
-    /// The null band of the metric's mean over lifetimes; `None` for a metric that also depends on learning. Differs from
-    /// `mean` if lifetimes lack some tasks.
+    /// The null band of the metric's mean over lifetimes; `None` for a metric that permuting evaluations cannot test. Its
+    /// value differs from `mean` if lifetimes lack some tasks.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub null: Option<NullBand>,
     /// The reading of the metric; `None` without a neutral value.

@@ -59,7 +59,7 @@ impl From<IndexMap<String, Option<Value>>> for Values {
 }
 
 impl Values {
-    /// Sets a value. A value with a number that is not finite is dropped; one of the same name is replaced.
+    /// Sets a value. A value with a number that is not finite is dropped; an earlier value of the same name is replaced.
     pub fn set(&mut self, name: impl Into<String>, value: impl Into<Value>) {
         let value = value.into();
         if value.is_finite() {

@@ -22,7 +22,7 @@ pub struct Assessment<'a> {
     pub(super) resolves_ties: bool,
 }
 
-/// Share of a performance by which sums of the same numbers in another order may differ.
+/// Share of a performance by which sums of the same numbers in a different order may differ.
 const ROUNDING: f64 = 1e-9;
 
 impl<'a> Assessment<'a> {

@@ -23,7 +23,7 @@ pub(super) struct Evaluations<'a> {
     pub(super) exchanged: Exchanged,
 }
 
-/// Lists of rows, each of one task in one world, all of equal length: a permutation moves all alike.
+/// Lists of rows, each of one task in one world or at one position, all of equal length: one permutation applies to all.
 type Bundle = Vec<Vec<usize>>;
 
 /// The unit of permutation: the scored task with the world, or with the position in the evaluation.
@@ -150,7 +150,7 @@ mod tests {
     use super::*;
     use crate::{LogWriter, LoggerInfo, NormalizationMethod, Options, Record, ScenarioInfo, Timestamp, read_log};
 
-    /// A block of one task: whether it is learning, and the world and reward of each row.
+    /// A block of one task: whether it is a learning block, and the world and reward of each row.
     type Block = (bool, &'static str, Vec<(Option<u8>, f64)>);
 
     fn blocks() -> impl Strategy<Value = Vec<Block>> {

@@ -1,4 +1,4 @@
-//! Null bands: what the metrics of a lifetime would be if the agent had never changed.
+//! Null bands: the range of a lifetime's metrics if the agent had never changed.
 
 use indexmap::IndexMap;
 use rand_chacha::ChaCha8Rng;
@@ -20,16 +20,16 @@ const SEED: u64 = 0;
 #[derive(Default)]
 pub(super) struct NullBands {
     pub(super) bands: IndexMap<String, NullBand>,
-    /// For each metric its value under each permutation, in order; infinite where it cannot be computed.
+    /// For each metric, its value for each permutation, in order; infinite where it cannot be computed.
     pub(super) drawn: IndexMap<String, Vec<f64>>,
 }
 
-/// Null bands, by name, of the metrics that depend on evaluations alone: maintenance if requested, transfer as a contrast, and
-/// as a ratio if requested. `term_perfs` are the lifetime's terminal performances, by regime number.
+/// Null bands, by name, of the metrics that permuting evaluations can test: maintenance if requested, transfer as a contrast,
+/// and as a ratio if requested. `term_perfs` are the lifetime's terminal performances, by regime number.
 ///
 /// If an agent never changes, its rewards in one world are exchangeable between evaluations. So the rows of each world are
 /// permuted among the evaluations of their task, and every metric is recomputed. Performances are permuted as scored: scaling
-/// and clamping treat every row alike. Smoothing does not, so there are no bands if evaluations are smoothed.
+/// and clamping treat every row in the same way. Smoothing does not, so there are no bands if evaluations are smoothed.
 pub(super) fn null_bands(log: &Log, lifetime: &Lifetime, options: &Options, term_perfs: &[f64]) -> NullBands {
     let mut statistics = performance_maintenance::statistics(lifetime, options);
     statistics.extend(transfer::statistics(lifetime, options));

@@ -107,7 +107,7 @@ impl Difference {
 ///
 /// The first evaluation after each learning regime is its reference. Every later evaluation that is not a reference
 /// gives one difference of terminal performances; runs of such evaluations end where the task is learned again. Drifts
-/// that pass the task count as learning of it.
+/// whose `learns` names the task count as learning it.
 fn differences(lifetime: &Lifetime, task: &str) -> Vec<Vec<Difference>> {
     let mut found: Vec<Vec<Difference>> = Vec::new();
     // The most recent learning regime; whether its reference is still to come.

@@ -32,7 +32,7 @@ impl Metric for PerformanceRecovery {
             times.iter_mut().for_each(Vec::clear);
         }
         for (task, times) in tasks.iter().zip(times) {
-            // A difference, because minus a slope of 0 would be -0.
+            // Subtracted from 0, because negating a slope of 0 would give -0.
             let faster = theil_sen_slope(&times).map(|slope| 0.0 - slope);
             assessment.set_task(task, NAME, faster);
             assessment.set_task(task, "recovery_times", Some(times));
@@ -44,7 +44,7 @@ impl Metric for PerformanceRecovery {
 /// Recovery time, in experiences, of the second and every later wake learning regime of a task.
 ///
 /// The first index at which the regime reaches the terminal performance of the one before; its number of rows plus one if it
-/// never does. If ties count as equal, a performance that is lower only by rounding reaches it, too.
+/// never does. With `resolves_ties`, a performance that is lower only by rounding reaches it, too.
 fn times_of(assessment: &Assessment<'_>, task: &str) -> Vec<f64> {
     let trained: Vec<_> = (assessment.lifetime().regimes_of(task))
         .filter(|regime| regime.is_wake_training())

@@ -1,4 +1,4 @@
-//! Sample efficiency: how good the agent gets and how fast, both against a single-task expert.
+//! Sample efficiency: how good the agent gets and how fast, both compared with a single-task expert.
 
 use super::saturation::{Peak, peak};
 use super::ste_relative_performance::{expert_runs, with_gaps};

@@ -33,7 +33,7 @@ pub(super) struct Peak {
 /// chosen there. Not so under the published definitions.
 ///
 /// Additions run in a fixed order, so the result is the same on every machine. If several windows tie in exact arithmetic,
-/// rounding decides which is the first maximum, and the reference's rounding may differ. If ties count as equal, the first
+/// rounding decides which is the first maximum, and the reference's rounding may differ. With `resolves_ties`, the first
 /// within a billionth is taken.
 pub(super) fn peak(per_experience: &[f64], assessment: &Assessment<'_>) -> Peak {
     let again;

@@ -13,7 +13,7 @@ use crate::results::{
 };
 use crate::{BlockType, Log, MetricsError, Options};
 
-/// Scores a lifetime by the metrics of this crate, compared with the given single-task experts.
+/// Scores a lifetime with the metrics of this crate, comparing it with the given single-task experts.
 ///
 /// A value that cannot be computed, for lack of experts, of evaluations between learning blocks, or of a second learning block,
 /// is absent and never NaN.
@@ -72,7 +72,7 @@ impl Scorer {
         Ok(self)
     }
 
-    /// Scores a lifetime, compared with the given single-task experts.
+    /// Scores a lifetime, comparing it with the given single-task experts.
     ///
     /// # Errors
     /// Those of [`Lifetime::prepare`] and of [`Scorer::judge`].
@@ -166,7 +166,7 @@ impl Default for Scorer {
     }
 }
 
-/// The reading of each metric. `is_negative`: whether transfer is based on performances of which some are negative.
+/// The reading of each metric. `is_negative`: whether some of the performances behind transfer are negative.
 fn readings(
     headlines: &[Headline],
     null_bands: &NullBands,
@@ -190,7 +190,7 @@ fn readings(
     all.into_iter().filter_map(reading).collect()
 }
 
-/// The caution about tasks that were never learned, in which there is nothing to keep; gives maintenance without them.
+/// The caution about tasks that were never learned, in which there is nothing to retain; also gives maintenance without them.
 fn never_learned(
     reached: &IndexMap<String, Reached>,
     tasks: &IndexMap<String, Values>,
@@ -219,7 +219,7 @@ fn never_learned(
     Some(parts.join("; "))
 }
 
-/// A caution about numbers that rounding of the performances would change, each with its value if performances within a
+/// A caution about numbers that depend on rounding of the performances, each with its value if performances within a
 /// billionth count as equal.
 fn decided_by_rounding(found: &Assessment<'_>) -> Result<Option<String>, MetricsError> {
     let mut resolved = Assessment::new(found.log(), found.lifetime(), found.options());
@@ -291,7 +291,7 @@ fn check_names(values: &Values, whose: &str, is_taken: impl Fn(&str) -> bool) ->
     }
 }
 
-/// Sorts headlines first in their order, then everything else in insertion order.
+/// Puts headlines first, in their order, then everything else in insertion order.
 fn headlines_first(values: &Values, headlines: &[Headline]) -> Values {
     let mut ordered = Values::default();
     let is_headline = |name: &str| headlines.iter().any(|headline| headline.name == name);

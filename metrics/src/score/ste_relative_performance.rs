@@ -63,7 +63,7 @@ pub(super) fn caution(lifetime: &Lifetime) -> Option<String> {
     })
 }
 
-/// One value per run of the task's expert (`metrics`), or one against their average (`time`).
+/// One value per run of the task's expert (`metrics`), or one for the average of all runs (`time`).
 ///
 /// Sum of the first n performances of the task's learning, over that of the expert's, n being the shorter length. Empty without
 /// experts or without learning. If a run sums to 0, the value is not finite; the mean skips NaN, as in the reference.

@@ -51,7 +51,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn learning_ends_with_its_last_tenth_and_evaluation_counts_whole() {
+    fn end_of_learning_is_its_last_tenth_and_of_an_evaluation_all_of_it() {
         let check = |num: u32, block_type: BlockType, value: f64, experiences: usize| {
             let values: Vec<f64> = (0..num).map(f64::from).collect();
             for &definitions in Definitions::ALL {

@@ -14,8 +14,7 @@ use crate::{BlockType, Definitions, MetricsError, Options};
 
 /// `forward_transfer_…` and `backward_transfer_…` of every trained task, by ratio and contrast as requested.
 ///
-/// Only without negative performances do contrasts lie in -1..=1, and ratios above 1 mean an improvement; otherwise [`caution`]
-/// warns.
+/// Contrasts lie in -1..=1, and ratios above 1 mean an improvement, only if no performance is negative; otherwise [`caution`] warns.
 ///
 /// QUIRK: for the lifetime's value, the first value of every pair of tasks counts, however often the pair occurs.
 pub(super) struct Transfer;
@@ -173,7 +172,7 @@ fn gaps<'a>(lifetime: &'a Lifetime, options: &Options) -> [Gaps<'a>; 2] {
             // A task that is never learned counts as learned after everything.
             let first_learned = learned.first().copied().unwrap_or(usize::MAX);
             for pair in evaluated.windows(2) {
-                // If a drift started to learn the task in between, the change is due to its own learning, not to transfer.
+                // If the task was first learned in between, in a drift, the change is due to learning the task itself, not to transfer.
                 if pair[0] < first_learned && first_learned < pair[1] && places.drifts.contains(&first_learned) {
                     continue;
                 }
@@ -201,8 +200,8 @@ fn above(places: &[usize], limit: usize) -> usize {
     places.partition_point(|place| *place <= limit)
 }
 
-/// Regime numbers of each task's learning and evaluation, ascending; tasks in order of appearance. Drifts count as learning of
-/// the tasks that they pass.
+/// Regime numbers of each task's learning and evaluation, ascending; tasks in order of appearance. Drifts count as learning
+/// the tasks in their `learns`.
 struct Places<'a> {
     tasks: IndexMap<&'a str, (Vec<usize>, Vec<usize>)>,
     /// Regime numbers of drifts.

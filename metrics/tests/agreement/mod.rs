@@ -3,10 +3,10 @@
 use driftworld_metrics::LifetimeMetrics;
 use serde_json::{Number, Value};
 
-/// The reference adds in another order; its values for lifetimes have ten decimals.
+/// The reference adds in a different order; its values for lifetimes have ten decimals.
 const TOLERANCE: f64 = 1e-9;
 
-/// Compares numbers within the tolerance, lists entry by entry; returns the number of numbers.
+/// Compares numbers within the tolerance, lists entry by entry; returns how many numbers were compared.
 pub(crate) fn compare(place: &str, found: &Value, expected: &Value) -> usize {
     // Differences of numbers around 100 lose precision by cancellation.
     compare_above(1.0, place, found, expected)
@@ -51,7 +51,7 @@ pub(crate) fn compare_above(least: f64, place: &str, found: &Value, expected: &V
     }
 }
 
-/// Compares a lifetime's table of regimes; returns the number of numbers.
+/// Compares a lifetime's table of regimes; returns how many numbers were compared.
 pub(crate) fn compare_regimes(place: &str, found: &LifetimeMetrics, expected: &Value) -> usize {
     let expected = expected.as_array().expect("the table is a list");
     assert_eq!(found.regimes.len(), expected.len(), "{place}: regimes");

@@ -48,8 +48,8 @@ fn any_record() -> impl Strategy<Value = Record> {
     })
 }
 
-/// A valid sequence of records: numbers stay or rise, also by much, and a worker's experience ends with its complete row. Each
-/// has a time stamp of its own.
+/// A valid sequence of records: numbers stay or rise, sometimes by a lot, and a worker's experience ends with its complete row.
+/// Each has a time stamp of its own.
 pub(crate) fn any_log() -> impl Strategy<Value = Vec<Record>> {
     let step = || prop_oneof![4 => Just(0_u64), 4 => Just(1), 1 => 2_u64..1_000_000];
     let rows = prop::collection::vec((any_record(), step(), step(), any::<bool>()), 1..10);

@@ -4,10 +4,10 @@
 
 use super::{Picture, Rgb};
 
-/// Sample lines in a row of pixels; coverage along a line is exact.
+/// Number of sample lines per row of pixels; coverage along a line is exact.
 const LINES: usize = 8;
 
-/// Largest number of dashes in a line.
+/// Maximum number of dashes in a line.
 const MOST_DASHES: usize = 20_000;
 
 /// Fills an upright rectangle: left, top, right, bottom.
@@ -39,7 +39,7 @@ fn as_rectangle(points: &[[f32; 2]]) -> Option<[f32; 4]> {
         .then(|| [a[0].min(c[0]), a[1].min(c[1]), a[0].max(c[0]), a[1].max(c[1])])
 }
 
-/// Fills the union of the polygons once: overlaps are no darker.
+/// Fills the union of the polygons once: overlaps are not darker.
 pub(super) fn fill(picture: &mut Picture, polygons: &[Vec<[f32; 2]>], color: Rgb, alpha: f32) {
     if let [polygon] = polygons
         && let Some(bounds) = as_rectangle(polygon)

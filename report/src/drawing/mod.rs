@@ -1,4 +1,4 @@
-//! [`Drawing`]s: lists of shapes, texts and pixels, which become PNG or SVG files.
+//! [`Drawing`]s: lists of shapes, text and pixels, which become PNG or SVG files.
 
 mod fill;
 mod pixels;
@@ -18,11 +18,11 @@ pub type Rgb = [u8; 3];
 /// Position of a text's anchor along its line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// At the first letter.
+    /// Before the first character.
     Left,
     /// In the middle.
     Middle,
-    /// After the last letter.
+    /// After the last character.
     Right,
 }
 
@@ -37,14 +37,14 @@ pub enum Level {
     Bottom,
 }
 
-/// A text in a drawing.
+/// A line of text in a drawing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TextLine {
-    /// Its content, in one line.
+    /// Its content, on one line.
     pub text: String,
     /// Position of its anchor, in pixels from the left and from the top.
     pub at: [f32; 2],
-    /// Size of the letters in pixels, as in CSS.
+    /// Font size in pixels, as in CSS.
     pub size: f32,
     /// Its colour.
     pub color: Rgb,
@@ -52,14 +52,14 @@ pub struct TextLine {
     pub side: Side,
     /// The anchor across the line.
     pub level: Level,
-    /// Colour of an outline around the letters, to make them readable on an image.
+    /// Colour of an outline around the characters, to make them readable on an image.
     pub rim: Option<Rgb>,
     /// Quarter turns clockwise around the anchor.
     pub turns: u8,
 }
 
 impl TextLine {
-    /// A text with its anchor at the top left.
+    /// Text with its anchor at the top left.
     pub fn new(text: impl Into<String>, at: [f32; 2], size: f32, color: Rgb) -> Self {
         Self {
             text: text.into(),
@@ -88,7 +88,7 @@ impl TextLine {
         }
     }
 
-    /// Its width in pixels, by the font.
+    /// Its width in pixels, according to the font.
     pub fn width(&self) -> f32 {
         text_width(&self.text, self.size)
     }
@@ -145,7 +145,7 @@ pub enum Shape {
         /// Its opacity.
         alpha: f32,
     },
-    /// A text.
+    /// Text.
     Text(TextLine),
     /// Another drawing, with its top left corner at `at`; parts outside it are cut off.
     Inner {
@@ -158,7 +158,7 @@ pub enum Shape {
     Pixels(Picture),
 }
 
-/// A list of shapes on white paper, the first lowest.
+/// A list of shapes on white paper, the lowest first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drawing {
     /// Pixels across.
@@ -232,7 +232,7 @@ impl Drawing {
         });
     }
 
-    /// Adds a text, with unprintable characters escaped.
+    /// Adds text, with unprintable characters escaped.
     #[expect(
         clippy::needless_pass_by_value,
         reason = "a line of text is handed over, as every other shape"
@@ -289,7 +289,7 @@ impl Drawing {
         self.to_picture().to_png()
     }
 
-    /// The drawing as an SVG file: shapes as vectors, texts as text, pixels as embedded PNG.
+    /// The drawing as an SVG file: shapes as vectors, text as text, pixels as embedded PNG.
     ///
     /// # Errors
     /// [`ReportError::Png`] for invalid pixels.

@@ -1,4 +1,4 @@
-//! Images of pixels, and their PNG files.
+//! Images in memory, and their PNG files.
 
 use crate::ReportError;
 
@@ -96,7 +96,7 @@ impl Picture {
     }
 
     /// A picture of this width and height with smooth edges: `draw` renders it at twice the size, and the result is halved. Pictures
-    /// over 2048 pixels are rendered at their own size.
+    /// over 2048 pixels wide or high are rendered at their own size.
     ///
     /// # Errors
     /// Those of `draw`.

@@ -45,7 +45,7 @@ impl<'a> Recorder<'a> {
     }
 }
 
-/// Lines of even width and polygons have sharp edges between pixels, other lines at pixel centres.
+/// Lines of even width have sharp edges if they run between pixels, other lines if they run through pixel centres.
 fn on_line(place: BackendCoord, style: &impl BackendStyle) -> [f32; 2] {
     if style.stroke_width().is_multiple_of(2) {
         corner(place)

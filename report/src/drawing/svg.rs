@@ -73,7 +73,7 @@ fn shapes(text: &mut String, drawing: &Drawing) -> Result<(), ReportError> {
     Ok(())
 }
 
-/// A text with its measured width, whatever the reader's font.
+/// A text element with its measured width, whatever the reader's font.
 fn text_element(words: &TextLine) -> String {
     let width = words.width();
     if width <= 0.0 {

@@ -1,6 +1,6 @@
-//! Renders texts with subpixel letter positions, as in the font.
+//! Renders text with subpixel glyph positions, according to the font.
 //!
-//! The plotting library itself draws each letter at a whole pixel and ignores its left side bearing, which makes words
+//! The plotting library itself draws each glyph at a whole pixel and ignores its left side bearing, which makes words
 //! fall apart ("ob jects").
 
 use std::sync::LazyLock;
@@ -13,16 +13,16 @@ static FONT: LazyLock<FontRef<'static>> = LazyLock::new(|| {
     FontRef::try_from_slice(epaint_default_fonts::UBUNTU_LIGHT).expect("the embedded font is a valid one")
 });
 
-/// Width of the outline around letters, as a share of their size.
+/// Width of the outline around glyphs, as a share of the font size.
 const RIM: f32 = 0.11;
 
-/// Converts a letter size to `ab_glyph`'s scale, which measures a font from its lowest to its highest line.
+/// Converts a font size to `ab_glyph`'s scale, which measures a font from its lowest to its highest line.
 fn scale(size: f32) -> PxScale {
     let em = FONT.units_per_em().unwrap_or(1000.0);
     PxScale::from(size * FONT.height_unscaled() / em)
 }
 
-/// The letters of a text, each with its position on a line that starts at 0.
+/// The glyphs of a text, each with its position on a line that starts at 0, and the width of that line.
 fn letters(text: &str, size: f32) -> (Vec<(GlyphId, f32)>, f32) {
     let font = FONT.as_scaled(scale(size));
     let (mut letters, mut x) = (Vec::new(), 0.0);
@@ -37,7 +37,7 @@ fn letters(text: &str, size: f32) -> (Vec<(GlyphId, f32)>, f32) {
     (letters, x)
 }
 
-/// The width of a text in pixels at letter size `size`, by the font.
+/// The width of a text in pixels at font size `size`, according to the font.
 pub fn text_width(text: &str, size: f32) -> f32 {
     letters(text, size).1
 }
@@ -72,7 +72,7 @@ pub(super) fn draw(picture: &mut Picture, words: &TextLine) {
 fn draw_once(picture: &mut Picture, words: &TextLine) {
     let [along, down] = words.offset();
     let turned = !words.turns.is_multiple_of(4);
-    // A turned text is drawn at 0, and its pixels are turned.
+    // Turned text is drawn at 0, and its pixels are turned.
     let origin = if turned { [0.0, 0.0] } else { words.at };
     for (id, x) in letters(&words.text, words.size).0 {
         let glyph: Glyph =
@@ -121,7 +121,7 @@ mod tests {
         runs
     }
 
-    /// Each letter's outline by the font, as left and right edge in pixels.
+    /// Each glyph's outline in the font, as left and right edge in pixels.
     fn outlines(text: &str, size: f32) -> Vec<[f32; 2]> {
         let placed = letters(text, size).0.into_iter();
         let outline = |(id, x): (GlyphId, f32)| {
@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn text_width_grows_with_letters_and_size() {
+    fn text_width_is_proportional_to_the_font_size() {
         let one = text_width("objects", 10.0);
         assert!((text_width("objects", 30.0) - 3.0 * one).abs() < 1e-3);
         assert!(one > 25.0 && one < 45.0, "{one}");

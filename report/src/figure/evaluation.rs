@@ -1,4 +1,4 @@
-//! The mean of each evaluation with its 95 % interval, a panel per task with all its variants, and the times of learning.
+//! The mean of each evaluation with its 95 % interval, one panel per task with all its variants, and when each was learned.
 
 use driftworld_metrics::student_reach;
 use indexmap::IndexMap;
@@ -9,9 +9,9 @@ use super::panels::{Grid, MOST_PANELS};
 use super::paper::{Area, Axes, Drawn, Entry, Paper, Sample, chart, draw_mark};
 use super::scene::{Scene, Stretch, joined, roomy, task_entry};
 
-/// Largest number of variants that share a panel; with more, each gets its own, because they would hide each other.
+/// Maximum number of variants that share a panel; with more, each gets its own, because they would hide each other.
 const MOST_VARIANTS: usize = 5;
-/// Largest number of points in all panels together; with more, neighbouring points are merged.
+/// Maximum number of points in all panels together; with more, neighbouring points are merged.
 const MOST_POINTS: usize = 3000;
 
 /// Tasks whose evaluations share a panel.
@@ -143,7 +143,7 @@ fn mean_and_reach(samples: &[f64]) -> (f64, f64) {
     (mean, student_reach(0.95, n - 1.0) * (squares / (n - 1.0) / n).sqrt())
 }
 
-/// The evaluations of a cluster's tasks; those in one pixel column are merged.
+/// The evaluations of a cluster's tasks; those in the same block or pixel column are merged.
 fn points(scene: &Scene, cluster: &Cluster, columns: i32) -> Vec<Point> {
     let column = scene.column(columns);
     let of_task = |task: usize| -> Vec<Point> {

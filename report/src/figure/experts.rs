@@ -1,4 +1,4 @@
-//! Learning curves of each task, its blocks joined end to end, against each run of its single-task expert.
+//! Learning curves of each task, its blocks joined end to end, compared with each run of its single-task expert.
 
 use plotters::prelude::*;
 
@@ -8,7 +8,7 @@ use super::paper::{Area, Axes, Drawn, Entry, Paper, Sample, chart, curve};
 use super::scene::{Scene, roomy};
 use super::thinning;
 
-/// Maximum number of runs drawn of an expert.
+/// Maximum number of runs drawn per expert.
 const MOST_RUNS: usize = 12;
 /// Pixel columns of all curves together; with more curves, each has fewer.
 const MOST_COLUMNS: usize = 16_000;

@@ -12,7 +12,7 @@ use super::thinning;
 
 /// Pixel columns between the axes, on wide and on narrow paper.
 pub(super) const COLUMNS: [i32; 2] = [900, 300];
-/// Largest number of evaluations joined by dotted lines, each a line of its own; more are joined by thin solid lines.
+/// Maximum number of evaluations joined by dotted lines, each a line of its own; more are joined by thin solid lines.
 const MOST_DOTTED: usize = 90;
 
 pub(super) fn height(scene: &Scene, paper: &Paper) -> i32 {

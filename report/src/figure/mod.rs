@@ -37,7 +37,7 @@ pub enum Figure {
     Learning,
     /// Means of evaluations with 95 % intervals, a panel per task.
     Evaluation,
-    /// The learning of each task, end to end, against its single-task expert.
+    /// The learning of each task, end to end, compared with its single-task expert.
     #[strum(serialize = "ste")]
     Experts,
     /// The blocks of the lifetime, a row per task, and the distances between neighbours.
@@ -93,7 +93,7 @@ pub enum Unit {
     /// Experiences, by their numbers (default).
     #[default]
     Experiences,
-    /// Steps of the environment, summed over the experiences before.
+    /// Environment steps, summed over the preceding experiences.
     Steps,
 }
 
@@ -120,8 +120,8 @@ pub struct FigureOptions {
     /// Distances between neighbouring learning blocks, in the order of [`neighbours`](crate::neighbours); `None` in the list for
     /// an unknown distance. Default none: the timeline has no distances.
     pub distances: Option<Vec<Option<f64>>>,
-    /// Display names of tasks in legends and tables, by their log names, which only have letters and digits; other tasks keep
-    /// theirs.
+    /// Display names of tasks in legends and tables, by their log names, which contain only letters and digits; other tasks keep
+    /// their log names.
     pub names: BTreeMap<String, String>,
 }
 
@@ -142,7 +142,7 @@ pub struct Figures<'a> {
 }
 
 impl<'a> Figures<'a> {
-    /// Prepares a lifetime's figures. `column` names its performance.
+    /// Prepares a lifetime's figures. `column` is the name of its performance column.
     ///
     /// # Errors
     /// [`ReportError::NoSteps`] if the unit is steps and the log has none, [`ReportError::Distances`] if their number differs
@@ -258,7 +258,7 @@ fn pixels(
     drawing.to_png()
 }
 
-/// Draws with a backend, which the figure consumes.
+/// Draws with a backend, which is consumed.
 fn drawn<DB: DrawingBackend<ErrorType: 'static>>(
     figure: &'static str,
     backend: DB,
@@ -273,7 +273,7 @@ fn drawn<DB: DrawingBackend<ErrorType: 'static>>(
     })
 }
 
-/// Removes the library's redundant output; texts have no quotation marks, so they cannot be affected.
+/// Removes the library's redundant output; text contains no quotation marks, so it cannot be affected.
 fn compact(svg: String) -> String {
     [
         (" opacity=\"1\"", ""),

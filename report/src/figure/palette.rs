@@ -18,11 +18,11 @@ impl Tone {
     }
 }
 
-/// Text, and the curves of experts.
+/// Text, and marks on the timeline and on strips.
 pub(super) const INK: Tone = Tone::new(RGBColor(38, 42, 48), "#e6e8eb");
-/// Secondary text, and axes.
+/// Secondary text, axis ticks, and the curves of experts.
 pub(super) const FAINT: Tone = Tone::new(RGBColor(95, 101, 109), "#a3a9b1");
-/// Grid lines.
+/// Grid lines, axes and borders.
 pub(super) const RIM: Tone = Tone::new(RGBColor(221, 224, 229), "#363c44");
 /// The background of evaluations.
 pub(super) const SHADE: Tone = Tone::new(RGBColor(238, 240, 243), "#262b31");

@@ -1,4 +1,4 @@
-//! The paper of a figure: its sizes, texts, axes, and legend.
+//! The paper of a figure: its sizes, text, axes, and legend.
 
 #![expect(
     clippy::disallowed_methods,
@@ -283,12 +283,12 @@ fn font_size(pixels: i32) -> f64 {
     f64::from(pixels * DOTS) * 1.24
 }
 
-/// Approximate width of a text in pixels of the layout: readers may have another font.
+/// Approximate width of a text in pixels of the layout: readers may have a different font.
 pub(super) fn text_width(text: &str, size: i32) -> i32 {
     load_font();
     let font = ("sans-serif", f64::from(size) * 1.24).into_font();
     let wide = font.box_size(text).map_or(0, |(wide, _)| wide as i32);
-    // Letters missing from the font have no width there.
+    // Characters missing from the font have no width there.
     wide.max(text.chars().count() as i32 * size * 2 / 5) * 11 / 10
 }
 

@@ -10,7 +10,7 @@ use super::scene::{Scene, Stretch, roomy};
 use super::thinning;
 use crate::words::shown;
 
-/// Largest number of points drawn individually, on wide and on narrow paper.
+/// Maximum number of points drawn individually, on wide and on narrow paper.
 const MOST_POINTS: [usize; 2] = [2400, 700];
 
 pub(super) fn height(scene: &Scene, paper: &Paper) -> i32 {

@@ -7,7 +7,7 @@ use super::palette::{FAINT, FROZEN, INK, Look, RIM, TASKS};
 use super::paper::{Area, Drawn, Entry, Paper, Sample, draw_mark, line, number, text_width};
 use super::scene::{Scene, Stretch};
 
-/// Further rows are left out.
+/// Maximum number of rows; further rows are left out.
 const MOST_ROWS: usize = super::scene::MOST_TASKS;
 /// Heights, in pixels of the layout: the strip of distances, a learning bar, the axis.
 const STRIP: i32 = 76;

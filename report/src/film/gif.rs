@@ -8,7 +8,7 @@ use super::palette::Palette;
 use crate::ReportError;
 use crate::picture::Picture;
 
-/// Colours of an image; one more is transparent, for unchanged pixels.
+/// Maximum number of colours of an image; one more is transparent, for unchanged pixels.
 const COLORS: usize = 255;
 
 /// A GIF encoder, fed image by image.

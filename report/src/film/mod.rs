@@ -86,7 +86,7 @@ impl<W: Write> Film<W> {
     /// Adds an image that is shown for `seconds`.
     ///
     /// # Errors
-    /// [`ReportError::FilmSize`] for an image of another size; otherwise as for [`Film::new`].
+    /// [`ReportError::FilmSize`] for an image of a different size; otherwise as for [`Film::new`].
     pub fn add(&mut self, picture: &Picture, seconds: f64) -> Result<(), ReportError> {
         expect_size(picture, self.size)?;
         let delay = self.delays.next(seconds);
@@ -102,7 +102,7 @@ impl<W: Write> Film<W> {
     /// Finishes the film.
     ///
     /// # Errors
-    /// As for [`Film::new`]; also if fewer images were added than announced.
+    /// As for [`Film::new`]; also if fewer images were added to an animated PNG than announced.
     pub fn finish(self) -> Result<(), ReportError> {
         match self.frames {
             Frames::Gif(frames) => frames.finish(),
@@ -111,7 +111,7 @@ impl<W: Write> Film<W> {
     }
 }
 
-/// Refuses an image of another size than the film's.
+/// Refuses an image whose size differs from the film's.
 fn expect_size(picture: &Picture, [width, height]: [u32; 2]) -> Result<(), ReportError> {
     let pixels = width as usize * height as usize;
     if [picture.width, picture.height] == [width, height] && picture.rgb.len() == 3 * pixels {
@@ -236,7 +236,7 @@ mod tests {
         seen
     }
 
-    /// The largest difference of a channel.
+    /// The largest difference in any channel.
     fn error(a: &[u8], b: &[u8]) -> u8 {
         a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0)
     }

@@ -31,7 +31,7 @@ pub struct ChapterOptions {
     pub facts: Vec<(String, String)>,
     /// Pictures of worlds in which it learned, or a sentence that says why there are none.
     pub worlds: Result<Vec<SheetRow>, String>,
-    /// Where to play worlds in which it failed: words and the address of each.
+    /// Links for playing worlds in which it failed: text and address of each.
     pub failed: Vec<(String, String)>,
     /// Warnings, such as those of the log's reader.
     pub warnings: Vec<String>,
@@ -181,7 +181,7 @@ fn failed(links: &[(String, String)]) -> Markup {
     }
 }
 
-/// Numbers of blocks of a kind: all, and sleeping ones.
+/// Numbers of blocks of a kind: all, and sleep blocks.
 fn blocks_of(lifetime: &Lifetime, kind: BlockType) -> (usize, usize) {
     let regimes = lifetime.regimes().iter();
     let of_kind = regimes.filter(|regime| regime.block_type == kind);

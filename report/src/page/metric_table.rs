@@ -65,13 +65,13 @@ pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics) -> Result<Ma
             }
         }
         p.note {
-            strong { "One lifetime shows what this agent did, not what its like would do. Several can, by confidence intervals. " }
+            strong { "One lifetime shows what this agent did, not what agents like it would do. Several lifetimes can show that, with confidence intervals. " }
             (reading_rule())
         }
         @if !metrics.null_bands.is_empty() {
             p.note {
                 "Null band: the central 95 % of values when the evaluation rows of each world are permuted across evaluations "
-                (NULL_PERMUTATIONS) " times, as if the agent never changed. “no null”: decided by learning, too. ±: the standard error over worlds."
+                (NULL_PERMUTATIONS) " times, as if the agent never changed. “no null”: permuting evaluations does not test this metric. ±: the standard error over worlds."
             }
         }
         @for note in metrics.notes.iter().chain(&metrics.cautions) { p.note { strong { "Note: " } (note_shown(note)) "." } }
@@ -117,9 +117,9 @@ fn standard_error(band: Option<NullBand>) -> Option<String> {
 /// Explains to readers how the words are chosen.
 fn reading_rule() -> String {
     format!(
-        "Words like “helps” need a value outside its null band, with p at most {LARGEST_P}, that differs from no effect by two \
-         standard errors. “mixed” means that less than {:.0}\u{a0}% of the effects of tasks, or of pairs of them, point \
-         that way; “not tested”, that there is no null.",
+        "Words like “helps” need a value outside its null band, with p at most {LARGEST_P}, that differs from no effect by at \
+         least two standard errors, if these are known. “mixed” means that less than {:.0}\u{a0}% of the effects of tasks, or of \
+         pairs of them, by size, are on the value’s side of no effect; “not tested”, that there is no null band.",
         100.0 * AGREEING_PART
     )
 }

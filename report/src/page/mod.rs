@@ -1,5 +1,5 @@
-//! Builds the report: one self-contained HTML page with a chapter per lifetime. The caller draws the figures, writes the file
-//! and passes the date.
+//! Builds the report: one self-contained HTML page with a chapter per lifetime. The caller passes in the date and writes the
+//! file.
 
 mod chapter;
 mod metric_table;
@@ -21,7 +21,7 @@ use crate::ReportError;
 use crate::figure::dark_rules;
 use crate::words::shown;
 
-/// Most lifetimes on one page.
+/// Maximum number of lifetimes on one page.
 pub const MAX_LIFETIMES: usize = 40;
 
 /// Content security policy: even a tampered page loads nothing.
@@ -30,7 +30,7 @@ const POLICY: &str =
 
 const STYLE: &str = include_str!("style.css");
 
-/// Everything that is on a page.
+/// Everything on a page.
 #[derive(Debug, Clone, Default)]
 pub struct Report {
     /// The heading; by default the lifetime's name, or the number of lifetimes.
@@ -142,7 +142,7 @@ impl Report {
 
 /// Things that a reader should know before believing the numbers.
 fn warnings(warnings: &[String]) -> Markup {
-    /// Most warnings shown.
+    /// Maximum number of warnings shown.
     const MOST: usize = 50;
     html! {
         @if !warnings.is_empty() {
@@ -221,7 +221,7 @@ fn breakable(name: &str) -> Markup {
 /// Sanitises a sentence from outside: control characters become spaces, and what exceeds a limit is cut. The limit is
 /// larger than that for names.
 fn calm(text: &str) -> String {
-    /// Most characters shown.
+    /// Maximum number of characters shown.
     const LONGEST: usize = 600;
     let mut calm: String = text
         .chars()

@@ -13,7 +13,7 @@ const NAME: f32 = 17.5;
 /// Opacity of a bar before deployment.
 const EARLY: f32 = 0.3;
 const EVALUATION: Rgb = [150, 154, 160];
-/// Largest number of rows; further variants share the last.
+/// Maximum number of rows; further variants share the last.
 const MOST_ROWS: usize = 60;
 
 /// One stretch of experiences of a variant.

@@ -3,26 +3,26 @@
 use super::lines::cut;
 use super::{Drawing, INK, Picture, TextLine, text_lines, text_width};
 
-/// Letter sizes, normal and above images narrower than [`NARROW`].
+/// Font sizes, normal and above images narrower than [`NARROW`].
 const LETTERS: f32 = 15.0;
 const SMALL_LETTERS: f32 = 11.0;
 const NARROW: u32 = 200;
 
-/// To the left and right of the text.
+/// Margin to the left and right of the text.
 const MARGIN: f32 = 6.0;
-/// Above the text.
+/// Margin above the text.
 const ABOVE: u32 = 5;
-/// Separator of two facts in a line.
+/// Separator between two facts on a line.
 const PARTED: &str = " · ";
 
-/// Largest number of lines of a caption; the rest is cut off.
+/// Maximum number of lines of a caption; the rest is cut off.
 pub const MAX_CAPTION_LINES: usize = 6;
 
 fn letters(width: u32) -> f32 {
     if width < NARROW { SMALL_LETTERS } else { LETTERS }
 }
 
-/// Breaks facts into lines for an image of this width: facts stay whole if they fit, otherwise they are broken between words. At
+/// Breaks facts into lines for an image of this width: facts stay whole if they fit, otherwise [`text_lines`] breaks them. At
 /// most [`MAX_CAPTION_LINES`].
 pub fn caption_lines(facts: &[String], width: u32) -> Vec<String> {
     let size = letters(width);
@@ -46,8 +46,8 @@ pub fn caption_lines(facts: &[String], width: u32) -> Vec<String> {
 }
 
 impl Picture {
-    /// The image with facts above it, in room for `num_lines` lines ([`caption_lines`]): all images of a film have the same room,
-    /// however long their captions.
+    /// The image with facts above it, in space for `num_lines` lines ([`caption_lines`]): all images of a film have the same
+    /// space, however long their captions.
     #[must_use]
     pub fn captioned(&self, facts: &[String], num_lines: usize) -> Self {
         let size = letters(self.width);

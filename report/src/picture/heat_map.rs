@@ -2,7 +2,7 @@
 
 use super::{Drawing, INK, Level, Rgb, Side, TextLine, WHITE, corner, letters, text_width};
 
-/// Letter sizes of names and title, in pixels.
+/// Font sizes of names and title, in pixels.
 const LABEL: f32 = 14.0;
 const TITLE: f32 = 20.0;
 

@@ -1,12 +1,13 @@
-//! Breaks texts into lines of a width: at spaces, and inside unbreakable parts only if necessary.
+//! Breaks texts into lines of a given width: at spaces, and inside unbreakable parts only if necessary.
 
 use driftworld_text::{NO_BREAK, with_blanks};
 
 use super::text_width;
 
-/// Breaks a text into lines of at most this width, at letter size `size` in pixels. Lines break at spaces;
-/// [whole](driftworld_text::whole) parts wider than a line break after commas and before brackets, and between words without
-/// numbers. Anything still too wide is cut.
+/// Breaks a text into lines of at most this width, at font size `size` in pixels. Lines break at spaces.
+/// [Whole](driftworld_text::whole) parts that do not fit into one line are broken after commas, semicolons and colons and before
+/// brackets; if a piece still does not fit, between words without numbers; and finally between any words. A single word that is
+/// still too wide is cut.
 ///
 /// # Example
 /// ```
@@ -68,7 +69,7 @@ fn broken(text: &str, may: fn(&str, char, &str) -> bool) -> Vec<String> {
     pieces
 }
 
-/// Whether a letter at the edge of a word belongs to a number or its unit.
+/// Whether a character at the edge of a word belongs to a number or its unit.
 fn is_of_number(letter: char) -> bool {
     letter.is_ascii_digit() || "×%−-+".contains(letter)
 }
@@ -118,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn too_wide_parts_break_after_commas_first_and_never_in_numbers() {
+    fn too_wide_parts_break_after_commas_first_and_numbers_that_fit_stay_whole() {
         let text = whole("layout maze 8 × 8, 50 % of dead ends open (maze 8 × 8)");
         let lines = |width| text_lines(&text, 13.0, width);
         assert_eq!(lines(400.0), ["layout maze 8 × 8, 50 % of dead ends open (maze 8 × 8)"]);

@@ -25,12 +25,12 @@ const INK: Rgb = [38, 42, 48];
 const FAINT: Rgb = [110, 116, 124];
 const WHITE: Rgb = [255; 3];
 
-/// Text at a corner, or at its anchor if one is set, with letters of a height.
+/// Text anchored at a pixel's corner, in a font with this height from its lowest to its highest line.
 fn words(text: impl Into<String>, at: (i32, i32), height: f64, color: Rgb) -> TextLine {
     TextLine::new(text, corner(at), letters(height), color)
 }
 
-/// The letter size of a font with this height from its lowest to its highest line.
+/// The size of a font with this height from its lowest to its highest line.
 fn letters(height: f64) -> f32 {
     (height / 1.24) as f32
 }

@@ -14,10 +14,10 @@ use crate::extent;
 const SIZE: (i32, i32) = (2000, 1600);
 /// Margins without items: left and right, above, and below.
 const MARGINS: [i32; 3] = [220, 240, 120];
-/// The letter size of the items' names, and the height at the top that they keep free, in pixels of the image.
+/// The font size of the items' names, and the height at the top that they leave free, in pixels of the image.
 const TEXT: f32 = 13.0;
 const TITLES: f32 = 66.0;
-/// With more items only the ends are named.
+/// With more items, only the ends are named.
 const MAX_NAMED: usize = 60;
 
 /// Draws an order of items as a path on a map of their distances, by classical scaling.
@@ -122,7 +122,7 @@ fn along(place: usize, last: usize) -> Rgb {
     [mix(236.0, 22.0), mix(140.0, 82.0), mix(44.0, 170.0)]
 }
 
-/// A triangle in the middle of a step, pointing along it; `None` if it would be longer than the step.
+/// A triangle in the middle of a step, pointing along it; `None` if the step is too short for it.
 fn arrow(from: (i32, i32), to: (i32, i32), size: i32) -> Option<[(i32, i32); 3]> {
     let (dx, dy) = (f64::from(to.0 - from.0), f64::from(to.1 - from.1));
     let length = dx.hypot(dy);
@@ -203,7 +203,7 @@ fn names(matrix: &DistanceMatrix, ordering: &Ordering, path: &[[f32; 2]], ends_o
     names
 }
 
-/// Candidate positions for a name of this size: on each side of its point, then in rings around it.
+/// Candidate positions for a name of this size: in rings around its point, the outer ones with a line to the point.
 fn spots([x, y]: [f32; 2], [wide, high]: [f32; 2]) -> impl Iterator<Item = ([f32; 4], Option<[[f32; 2]; 2]>)> {
     const DIRECTIONS: u16 = 24;
     let ring = move |number: u16| {

@@ -10,7 +10,7 @@ pub struct SheetRow {
     pub title: String,
     /// A few words below, continued on further lines if needed.
     pub words: String,
-    /// Its images, all of one height.
+    /// Its images, all of the same height.
     pub pictures: Vec<Drawing>,
 }
 
@@ -24,10 +24,10 @@ impl SheetRow {
 
 /// Gap between images, in pixels.
 const GAP: u32 = 12;
-/// Letter sizes, and line heights.
+/// Font sizes, and line heights.
 const TITLE: (f32, u32) = (19.0, 26);
 const WORDS: (f32, u32) = (13.0, 17);
-/// Largest number of lines below a title.
+/// Maximum number of lines below a title.
 const MOST_LINES: usize = 5;
 /// The border of an image, so that white ones have visible edges.
 const RIM: Rgb = [150, 154, 160];

@@ -1,4 +1,4 @@
-//! Lifetimes made up for tests. What is tested of them is in the files beside this folder.
+//! Synthetic lifetimes for the tests in the files beside this folder.
 
 use driftworld_metrics::{
     BlockSubtype, BlockType, BootstrapOptions, Lifetime, LifetimeMetrics, LogWriter, LoggerInfo, Options, Record,
@@ -14,9 +14,9 @@ use driftworld_report::{Chapter, ChapterOptions, Comparison, Report, neighbours}
 pub(crate) struct Life<'a> {
     pub(crate) name: &'a str,
     pub(crate) tasks: Vec<String>,
-    /// How often each task is learned.
+    /// Number of learning blocks per task.
     pub(crate) rounds: u64,
-    /// Experiences of a learning block; an evaluation has a tenth of them.
+    /// Experiences per learning block; an evaluation has a tenth of them, but at least two.
     pub(crate) length: u64,
     /// Whether the first task has an expert.
     pub(crate) expert: bool,
@@ -41,7 +41,7 @@ impl Default for Life<'_> {
     }
 }
 
-/// The lifetime and what was scored.
+/// A lifetime with its scores.
 pub(crate) struct Lived {
     pub(crate) lifetime: Lifetime,
     pub(crate) metrics: LifetimeMetrics,
@@ -122,7 +122,7 @@ impl Life<'_> {
 }
 
 impl Lived {
-    /// A page with this lifetime alone, distances and a warning included.
+    /// A page with this lifetime alone, including distances and a warning.
     pub(crate) fn page(&self) -> String {
         let mut options = ChapterOptions {
             warnings: vec!["data-log.tsv:7: something <odd>".to_owned()],
