@@ -1,8 +1,8 @@
-// Calls something so many times a second, never twice at once.
+// Calls a function at a given rate, never twice at once.
 
 import { useEffect, useRef } from "preact/hooks";
 
-/** Runs `tick` at a rate while `isRunning`; a tick that takes longer delays the next. `failed` hears what a tick throws, and ends it. */
+/** Runs `tick` at this rate while `isRunning`; a slow tick delays the next. An error of a tick goes to `failed` and stops the clock. */
 export function useClock(isRunning: boolean, perSecond: number, tick: () => Promise<void>, failed: (error: unknown) => void): void {
   const latest = useRef({ tick, failed });
   latest.current = { tick, failed };

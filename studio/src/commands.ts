@@ -1,8 +1,8 @@
-// What was done in the page as a command for a shell and as a program in Python.
+// Shell commands and Python programs that do what was done on the page.
 
 import type { Action, ActionSpace } from "./engine.ts";
 
-/** A world by the names that commands and Python take: `task` is a built-in task, or the file that the draft is saved as. */
+/** A world as commands and Python name it: `task` is a built-in task, or the file that the draft is saved as. */
 export interface Subject {
   task: string;
   variant: string;
@@ -16,12 +16,12 @@ export interface Recipe {
   python: string;
 }
 
-/** A word for a POSIX shell. */
+/** A word, quoted for a POSIX shell if necessary. */
 export function shellWord(word: string): string {
   return /^[\w@%+=:,./-]+$/.test(word) || /^[\w./-]+#[\w-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`;
 }
 
-/** A literal of Python. */
+/** A Python string literal. */
 export const pythonText = (text: string): string => JSON.stringify(text);
 
 const shell = (...words: (string | number)[]): string => ["driftworld", ...words.map(String).map(shellWord)].join(" ");
@@ -66,7 +66,7 @@ export const distance = (task: string, a: string, b: string, by: string): Recipe
     pythonText(name({ task, variant: b }))})\nprint(driftworld.distance(a, b, by=${pythonText(by)}))\n`,
 });
 
-/** Pairs of worlds in which the page tests what differs: enough to see something within seconds. */
+/** Number of pairs of worlds that the page compares to find differing elements: enough to show something within seconds. */
 export const ELEMENT_WORLDS = 8;
 
 export const elements = (task: string, a: string, b: string): Recipe => ({
@@ -95,7 +95,7 @@ export const replayLog = (log: string, episode: number): Recipe => ({
 /** The file that a recording is saved as. */
 export const RECORDING = "episode.jsonl";
 
-/** Equal actions that follow each other, counted. */
+/** Runs of equal actions, with their lengths. */
 export function runs(actions: Action[]): { action: Action; times: number }[] {
   const found: { action: Action; times: number }[] = [];
   for (const action of actions) {

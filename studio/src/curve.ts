@@ -1,17 +1,17 @@
-// The learning curve of a log: rewards of learning episodes, smoothed, and those of evaluations as they are.
+// The learning curve of a log: rewards of learning episodes, smoothed, and of evaluations, unsmoothed.
 
 import type { LoggedEpisode } from "./engine.ts";
 
 /** The curve of one task. */
 export interface Curve {
   task: string;
-  /** Learning: number of the experience and mean reward of those around it. */
+  /** Learning: number of the experience and mean reward of it and those before it. */
   learned: [number, number][];
   /** Evaluation: number of the experience and its reward. */
   tested: [number, number][];
 }
 
-/** The means of each number and so many before it. */
+/** For each number, the mean of the last `window` numbers up to it. */
 export function trailingMeans(numbers: number[], window: number): number[] {
   let sum = 0;
   return numbers.map((number, at) => {
@@ -20,7 +20,7 @@ export function trailingMeans(numbers: number[], window: number): number[] {
   });
 }
 
-/** A curve for each task, in the order in which they first come. */
+/** A curve for each task, in order of first appearance. */
 export function curves(episodes: LoggedEpisode[]): Curve[] {
   const tasks = [...new Set(episodes.map(({ task }) => task))];
   return tasks.map((task) => {

@@ -1,4 +1,4 @@
-// Where two pictures differ, as the outline of the squares in which they do.
+// Outlines of the squares in which two images differ.
 
 import type { Frame } from "./engine.ts";
 

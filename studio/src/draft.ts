@@ -1,7 +1,7 @@
 // The text of the author view: kept in the browser, so that a reload loses nothing.
 
 const KEY = "driftworld.draft";
-/** The text that another one replaced outside the editor. */
+/** The text that was replaced outside the editor. */
 const REPLACED = "driftworld.replaced";
 
 function stored(key: string): string {
@@ -20,17 +20,17 @@ function store(key: string, text: string): void {
   }
 }
 
-/** The name of the task in a text, as far as it can be read. */
+/** The name of the task in a text; a default if there is none. */
 export const nameIn = (text: string): string => /"name"\s*:\s*"([a-z][a-z0-9_]*)"/.exec(text)?.[1] ?? "my_task";
 
-/** The text of a built-in task as that of one's own, under a name of its own. */
+/** A copy of a built-in task's text, with a new name. */
 export const copyOf = (text: string): string => text.replace(`"name": "${nameIn(text)}"`, `"name": "my_${nameIn(text)}"`);
 
 export const draft = {
   text: stored(KEY),
-  /** Hears the name of the task when it changes. */
+  /** Called with the task's name when the text changes. */
   onname: null as ((name: string) => void) | null,
-  /** The name of the task in it; empty where there is no text. */
+  /** The name of the task in it; empty without a text. */
   get name(): string {
     return this.text && nameIn(this.text);
   },
@@ -43,12 +43,12 @@ export const draft = {
     store(KEY, text);
     this.onname?.(this.name);
   },
-  /** Takes the text of someone else's task; the editor can go back to the one before. */
+  /** Replaces the text from outside the editor, which can restore the one before. */
   take(text: string): void {
     if (this.text && this.text !== text) store(REPLACED, this.text);
     this.keep(text);
   },
-  /** The text before the last one that was taken, once; empty if there is none. */
+  /** The text that `take` replaced last, once; empty if there is none. */
   replaced(): string {
     const text = stored(REPLACED);
     store(REPLACED, "");

@@ -12,15 +12,15 @@ import type { Json, Problem, Task } from "./engine.ts";
 import { type Change, cursorAt } from "./json_text.ts";
 import { suggestions } from "./schema.ts";
 
-/** What the author view asks of its editor. */
+/** The editor as the author view uses it. */
 export interface Editor {
   text(): string;
-  /** Another text, or a change of this one; both can be undone. Changes of one `drag` are undone together. */
+  /** Replace or change the text; both can be undone. Changes of one `drag` are undone together. */
   replace(text: string): void;
   change(change: Change, kind?: "alone" | "drag"): void;
   /** Selects a part of the text and shows it. */
   show(from: number, to: number): void;
-  /** Marks problems at their places. */
+  /** Marks problems at their positions. */
   mark(problems: Problem[]): void;
   undo(): void;
   redo(): void;
@@ -49,7 +49,7 @@ const COLORS = HighlightStyle.define([
   { tag: [tags.separator, tags.squareBracket, tags.brace], color: "var(--faint)" },
 ]);
 
-/** Puts an editor into an element. `context` says by which schema and which task it completes. */
+/** Puts an editor into an element. `context` returns the schema and the task for completion. */
 export function createEditor(place: HTMLElement, text: string, context: () => { schema: Json; task: Task | null }, changed: (text: string) => void): Editor {
   const complete = (completion: CompletionContext): CompletionResult | null => {
     const cursor = cursorAt(completion.state.doc.toString(), completion.pos);

@@ -1,7 +1,7 @@
 // The typed client of the simulator: every call runs in one worker, with a time limit and a way to stop it.
 //
 // The worker holds the simulator compiled to WebAssembly. A call that takes too long, or that is stopped, ends the worker; the next
-// call starts a new one. Episodes that were open in the old worker are gone then: calls on them fail with the code `engine/lost`.
+// call starts a new one. Episodes that were open in the old worker are then lost: calls on them fail with the code `engine/lost`.
 
 import type { Answered, Asked } from "./worker.ts";
 
@@ -11,7 +11,7 @@ export type Json = null | boolean | number | string | Json[] | { [key: string]: 
 /** The elements of a decision process: state, action, transition, reward, observation; `p` and `phi` are the finer ones. */
 export type Element = "S" | "A" | "T" | "R" | "O" | "p" | "phi";
 
-/** A problem of a document, at its place. Lines and columns count from 1; 0 while the place is not known. */
+/** A problem of a document, with its position. Lines and columns count from 1; 0 if the position is unknown. */
 export interface Problem {
   code: string;
   pointer: string;
@@ -20,18 +20,18 @@ export interface Problem {
   found: string;
   expected: string;
   advice: string | null;
-  /** All of it in one sentence. */
+  /** The whole problem in one sentence. */
   message: string;
 }
 
-/** Why a call has no result. */
+/** The error of a failed call. */
 export class EngineError extends Error {
   /**
    * A stable name. From here: `engine/timeout`, `engine/stopped`, `engine/lost`, `engine/crashed`, `engine/load`. From links:
    * `link/damaged`, `link/version`, `link/too-long`. From the simulator: `spec/…`, `env/…`, `generator/…`, `request/…`.
    */
   readonly code: string;
-  /** Of a document that is wrong: every problem, in the order of the text. */
+  /** The problems of an invalid document, in the order of the text. */
   readonly problems: Problem[];
 
   constructor(code: string, message: string, problems: Problem[] = []) {
@@ -42,7 +42,7 @@ export class EngineError extends Error {
   }
 }
 
-/** A value of a parameter, as documents have it: a colour may be a name or a list of three numbers. */
+/** A value of a parameter, as in documents: a colour may be a name or a list of three numbers. */
 export type Value = Json;
 
 /** A declared parameter: what a slider or a picker needs. */
@@ -54,19 +54,19 @@ export interface Parameter {
   affects: Element[];
   unit: string | null;
   description: string | null;
-  /** Variant only: the least and the greatest number. */
+  /** Variant only: the minimum and the maximum. */
   range: [number, number] | null;
-  /** Variant only: the values there are; `name` where the task names them. A value in an override is `name`, if there is one. */
+  /** Variant only: the allowed values, with the names that the task gives them. An override uses the name, if there is one. */
   choices: { value: Value; name: string | null }[] | null;
-  /** The value where no variant says: the default of a variant parameter, the value of a fixed one. */
+  /** The value if no variant sets one: the default of a variant parameter, the value of a fixed one. */
   value: Value | null;
-  /** Randomized only: the distribution, as the task has it. */
+  /** Randomized only: the distribution, as in the task. */
   distribution: Json | null;
   /** The condition under which anything reads it. */
   read_if: string | null;
 }
 
-/** A variant and what it sets. */
+/** A variant and its values. */
 export interface Variant {
   name: string;
   description: string | null;
@@ -77,11 +77,11 @@ export interface Variant {
 /** A task in the gallery. */
 export interface TaskCard {
   name: string;
-  /** What it asks for, such as `navigation`. */
+  /** The kind of task, such as `navigation`. */
   group: string;
   description: string;
   variants: string[];
-  /** Variants that describe themselves, best first: what a card shows. */
+  /** The first variants with a description, which a card shows. */
   examples: { variant: string; description: string }[];
 }
 
@@ -98,10 +98,10 @@ export interface Task {
   requirements: string[];
 }
 
-/** Which world: one that a task draws, or one as it is. */
+/** A world: sampled from a task, or given as JSON. */
 export type WorldRequest =
   | {
-      /** The name of a built-in task, or the text of a task spec (what begins with `{`). */
+      /** The name of a built-in task, or the text of a task spec (which begins with `{`). */
       task: string;
       /** The variant; all parameters at their defaults if absent. */
       variant?: string;
@@ -109,7 +109,7 @@ export type WorldRequest =
       values?: Record<string, Value>;
       /** 0 if absent. */
       seed?: number;
-      /** Number of the world under the seed, 0 if absent. */
+      /** Index of the world for the seed; 0 if absent. */
       index?: number;
     }
   | {
@@ -117,13 +117,13 @@ export type WorldRequest =
       world: string;
     };
 
-/** What a text is, and what is wrong with it. */
+/** The kind of a text, and its problems. */
 export interface Validation {
   kind: "task" | "world" | "scenario" | "maps" | "l2explorer-world" | "l2explorer-scenario";
   problems: Problem[];
-  /** True where there are more problems than are listed. */
+  /** Whether there are more problems than listed. */
   more: boolean;
-  /** What is odd and not wrong, in sentences. */
+  /** Warnings about odd but valid parts, as sentences. */
   warnings: string[];
 }
 
@@ -133,21 +133,21 @@ export type Looks = "plain" | "natural";
 /** What an image shows. */
 export type Modality = "rgb" | "depth" | "segmentation" | "class" | "instance";
 
-/** What the agent sees, or all of the world from above. */
+/** The agent's view, or the whole world from above. */
 export type View = "agent" | "above";
 
-/** An image: `data` is RGBA, row 0 on top; what `ImageData` takes. */
+/** An image: `data` is RGBA, row 0 at the top, as for `ImageData`. */
 export interface Frame {
   width: number;
   height: number;
   data: Uint8ClampedArray<ArrayBuffer>;
 }
 
-/** Actions that a world takes. */
+/** The action space of a world. */
 export interface ActionSpace {
-  /** `discrete`: a row of a table. `continuous`: three numbers in units. `normalized`: three numbers in -1..1. */
+  /** `discrete`: a row of a table. `continuous`: three numbers in physical units. `normalized`: three numbers in -1..1. */
   kind: "discrete" | "continuous" | "normalized";
-  /** What the three numbers mean. `none` and `onrails` ignore actions. */
+  /** The meaning of the three numbers. `none` and `onrails` ignore actions. */
   model: "byvelocity" | "bywaypoint" | "onrails" | "none";
   /** Discrete: a name for each row, such as `ahead left`. Otherwise a name for each number. */
   names: string[];
@@ -156,14 +156,14 @@ export interface ActionSpace {
   can_interact: boolean;
   max_speed: number;
   max_turn_rate: number;
-  /** Seconds of the world in one step. */
+  /** Simulated seconds per step. */
   step_seconds: number;
 }
 
 /** A row of the table, or three numbers. */
 export type Action = number | [number, number, number];
 
-/** What keys ask for, in -1..1: the action of the world that comes nearest is taken. `turn` is to the right. */
+/** Input from keys, in -1..1: the world's nearest action is taken. Positive `turn` is to the right. */
 export interface Keys {
   ahead: number;
   turn: number;
@@ -180,11 +180,11 @@ export interface StepEvent {
   effect?: "opened" | "closed" | "switched" | "picked_up" | "put_down";
 }
 
-/** Where an episode stands, after a step or without one. */
+/** The state of an episode, after a step or at its start. */
 export interface Step {
-  /** How many steps have been taken. */
+  /** Number of steps taken. */
   step: number;
-  /** What the last step paid. */
+  /** Reward of the last step. */
   reward: number;
   terminated: boolean;
   truncated: boolean;
@@ -196,9 +196,9 @@ export interface Step {
   action: Action | null;
   /** Sum of rewards so far. */
   total: number;
-  /** Seconds of the world so far. */
+  /** Simulated seconds so far. */
   seconds: number;
-  /** The energy that is left, in worlds that count it. */
+  /** Remaining energy, in worlds that have it. */
   energy: number | null;
   agent: { x: number; y: number; heading: number };
 }
@@ -213,7 +213,7 @@ export interface MapWall {
 
 /** An object on the map. */
 export interface MapObject {
-  /** Its number in the world: what events and problems (`/objects/N`) name. */
+  /** Its index in the world, as in events and problems (`/objects/N`). */
   index: number;
   class: string;
   tag: string | null;
@@ -225,12 +225,12 @@ export interface MapObject {
   radius: number;
   /** sRGB in 0..1. */
   color: [number, number, number];
-  /** What it pays now. */
+  /** Its current reward. */
   reward: number;
-  /** False once it is gone, and of a thing that is carried. */
+  /** False once it is gone, and while it is carried. */
   present: boolean;
   carried: boolean;
-  /** A door that stands open. */
+  /** Whether it is an open door. */
   open: boolean;
 }
 
@@ -242,7 +242,7 @@ export interface MapZone {
   visible: boolean;
 }
 
-/** All that a flat map shows, in metres: x to the east, y to the north, (0, 0) in the middle. */
+/** Everything that a flat map shows, in metres: x to the east, y to the north, (0, 0) in the middle. */
 export interface WorldMap {
   width: number;
   depth: number;
@@ -252,13 +252,13 @@ export interface WorldMap {
   agent: { x: number; y: number; heading: number; radius: number };
 }
 
-/** Who acts: the built-in ones, or a network in the format safetensors as `driftworld.learners` exports it. */
+/** An agent: a built-in one, or a network in safetensors format, as exported by `driftworld.learners`. */
 export type Agent = "planner" | "random" | "still" | { network: Uint8Array };
 
-/** What two are compared by, such as `parameters`, `worlds`, `pictures`, `objects`, `rewards`, `dynamics` or `behavior`. */
+/** A measure, such as `parameters`, `worlds`, `pictures`, `objects`, `rewards`, `dynamics` or `behavior`. */
 export type Measure = string;
 
-/** One comparison that a distance is made of. */
+/** One part of a distance. */
 export interface DistancePart {
   name: string;
   element: Element;
@@ -271,35 +271,35 @@ export interface DistancePart {
   share: number;
 }
 
-/** How far apart two are. */
+/** The distance between two variants or worlds. */
 export interface Distance {
   by: Measure;
-  /** What 1 is, in a sentence. */
+  /** The meaning of 1, in a sentence. */
   unit: string;
-  /** By what, from how many worlds, and what else is to be known of the number, in words. */
+  /** The measure, the number of worlds, and other notes on the number, in words. */
   description: string;
   total: number;
-  /** Null where nothing could differ. */
+  /** Null if nothing could differ. */
   elements: Record<"S" | "A" | "T" | "R" | "O", number | null>;
   parts: DistancePart[];
 }
 
-/** Where an element of two variants was first seen to differ. */
+/** The first case found in which an element of two variants differs. */
 export interface Witness {
   element: Element;
   /** The case in a sentence. */
   message: string;
 }
 
-/** What two variants of a task differ in: what their parameters claim, and what was measured in their worlds. */
+/** The elements in which two variants of a task differ: as declared by their parameters, and as measured in their worlds. */
 export interface Elements {
   /** The parameters that differ. */
   parameters: string[];
   declared: Element[];
   measured: Witness[];
-  /** Sentences about what was measured and is not declared. */
+  /** Sentences about measured differences that are not declared. */
   contradictions: string[];
-  /** Parameters that differ and made no difference. */
+  /** Parameters that differ without a measured effect. */
   idle: string[];
   verdict: "sound" | "idle" | "contradicted";
 }
@@ -309,13 +309,13 @@ export interface Matrix {
   by: Measure;
   labels: string[];
   rows: number[][];
-  /** A point for each label: distances between points are near to those of the matrix. */
+  /** A point for each label: distances between points approximate those of the matrix. */
   points: [number, number][];
   /** Share of the distances that the flat map shows, in 0..1. */
   shown: number;
 }
 
-/** How variants are ordered. */
+/** An ordering method. */
 export type OrderMethod =
   | "nearest" | "exact" | "two-opt" | "abrupt" | "farthest" | "random" | "target-step" | "gradual" | "outward" | "given";
 
@@ -349,7 +349,7 @@ export interface LoggedEpisode {
 
 /** A log of a lifetime. */
 export interface Log {
-  /** The names of the tasks, in the order in which they first come. */
+  /** The names of the tasks, in order of first appearance. */
   tasks: string[];
   metrics: string[];
   episodes: LoggedEpisode[];
@@ -363,7 +363,7 @@ export interface Link {
   actions: Action[];
 }
 
-/** How an episode of an agent went. */
+/** The result of an agent's episode. */
 export interface Outcome {
   request: WorldRequest;
   steps: number;
@@ -378,49 +378,49 @@ export interface Episode {
   readonly id: number;
   readonly request: WorldRequest;
   readonly actionSpace: ActionSpace;
-  /** The side of the image that the world itself asks for, in pixels. */
+  /** The longer side of the world's own image size, in pixels. */
   readonly imageSize: number;
   /** The JSON of the world that it began in. */
   readonly world: string;
-  /** Takes an action, or the action nearest to what keys ask for. Steps after the end fail with `env/ended`. */
+  /** Takes an action, or the action nearest to the input from keys. Steps after the end fail with `env/ended`. */
   step(action: Action | Keys): Promise<Step>;
-  /** Takes several actions; ends early where the episode does. The steps that were taken. */
+  /** Takes several actions, until the episode ends; returns the steps taken. */
   steps(actions: Action[]): Promise<Step[]>;
-  /** What an agent would do now; changes nothing but the agent's own state. Agents begin anew where the episode does. */
+  /** The action that an agent would take now; changes only the agent's own state. An agent starts anew when it takes over. */
   choose(agent: Agent): Promise<Action>;
   /** `choose` and `step` at once. */
   act(agent: Agent): Promise<Step>;
-  /** Goes to the moment after so many steps, back or forth within what has been played. Playing on from there drops the rest. */
+  /** Goes to the state after this number of steps, back or forth within the steps played. Playing on from there drops the rest. */
   seek(step: number): Promise<Step>;
-  /** Where it stands. */
+  /** Its current state. */
   now(): Promise<Step>;
-  /** Draws what the agent sees, or the world from above. Size: that of `open`, unless it is given. */
+  /** Draws the agent's view, or the world from above; by default at the size given to `open`. */
   frame(view?: View, modality?: Modality, size?: { width: number; height: number }): Promise<Frame>;
   map(): Promise<WorldMap>;
   /** All actions so far, also those beyond the moment that `seek` went to. */
   actions(): Promise<Action[]>;
-  /** What was played up to now as a file, which `driftworld replay` plays. */
+  /** The episode so far as a file for `driftworld replay`. */
   recording(): Promise<string>;
   /** Frees it. */
   close(): Promise<void>;
 }
 
-/** How the engine is started. */
+/** Options of the engine. */
 export interface EngineOptions {
   /** The address of the folder with `worker.js`; that of the page if absent. */
   base?: string;
-  /** Milliseconds that a call may take; 10,000 if absent. */
+  /** Time limit of a call in milliseconds; 10,000 if absent. */
   limit?: number;
 }
 
-/** In which looks a world is opened, and how large its frames are. */
+/** The looks of a world, and the size of its frames. */
 export interface OpenOptions {
   looks?: Looks;
   width?: number;
   height?: number;
 }
 
-/** Which worlds a distance compares, and by what. */
+/** Options of a distance: the measure and the worlds. */
 export interface DistanceOptions {
   by?: Measure;
   worlds?: number;
@@ -428,14 +428,14 @@ export interface DistanceOptions {
   as?: "variants" | "worlds";
 }
 
-/** Which variants of a task are compared, and by what; all, and by what the task declares, if absent. */
+/** The variants of a task that are compared, and the measure; by default all variants, and a fitting measure. */
 export interface MatrixOptions {
   variants?: string[];
   by?: Measure;
   worlds?: number;
 }
 
-/** The same, and how they are ordered. */
+/** As `MatrixOptions`, with the ordering. */
 export interface OrderOptions extends MatrixOptions {
   method?: OrderMethod;
   start?: string;
@@ -444,19 +444,19 @@ export interface OrderOptions extends MatrixOptions {
 
 /** The simulator. Calls run one after the other. */
 export interface Engine {
-  /** Resolves when the simulator is loaded. The version of Driftworld in it, and how long loading took. */
+  /** Resolves when the simulator is loaded, with its version of Driftworld and the loading time. */
   ready(): Promise<{ version: string; milliseconds: number }>;
-  /** Ends what runs: the calls that wait fail with `engine/stopped`, open episodes are lost. */
+  /** Ends the simulator: running and waiting calls fail with `engine/stopped`, and open episodes are lost. */
   stop(): void;
-  /** Calls are told here when they begin and end, for a spinner and a stop button. */
+  /** Called when a call begins and ends, for a spinner and a stop button. */
   onbusy: ((busy: boolean) => void) | null;
 
   tasks(): Promise<TaskCard[]>;
   /** A task by its name, or from its text. */
   task(nameOrText: string): Promise<Task>;
-  /** The parameters of a task; those of `task`. */
+  /** The parameters of a task, as in `task`. */
   parameters(nameOrText: string): Promise<Parameter[]>;
-  /** All that is wrong with a text; a result, and not an error, also where much is. */
+  /** The problems of a text, as a result: an invalid text is not an error. */
   validate(text: string): Promise<Validation>;
   /** The JSON Schema of a kind of document. */
   schema(kind: "task" | "world" | "scenario"): Promise<Json>;
@@ -464,16 +464,16 @@ export interface Engine {
   sample(request: WorldRequest): Promise<string>;
   /** Begins an episode. Width and height are those of its frames; the world's own if absent. */
   open(request: WorldRequest, options?: OpenOptions): Promise<Episode>;
-  /** Runs a whole episode of an agent, in at most so many steps (1000 if absent). */
+  /** Runs a whole episode of an agent, for at most this number of steps (1000 if absent). */
   run(request: WorldRequest, agent: Agent, steps?: number): Promise<Outcome>;
   /** The first world from `request.index` on in which the agent does not succeed; null if it succeeds in all of them. */
   findFailure(request: WorldRequest, agent: Agent, options?: { worlds?: number; steps?: number }): Promise<Outcome | null>;
 
   /** The names of measures. */
   measures(): Promise<Measure[]>;
-  /** How far apart two are. Variants are compared as such, worlds as worlds (`as: "worlds"` compares the two worlds of requests). */
+  /** The distance between two variants or worlds; `as: "worlds"` compares the worlds of two requests for variants. */
   distance(a: WorldRequest, b: WorldRequest, options?: DistanceOptions): Promise<Distance>;
-  /** What two variants of one task differ in, with a witness of each element. */
+  /** The elements in which two variants of a task differ, with a witness of each. */
   elements(task: string, a: string, b: string, options?: { worlds?: number; seed?: number }): Promise<Elements>;
   /** All distances among the variants of a task, or among some of them. */
   matrix(task: string, options?: MatrixOptions): Promise<Matrix>;
@@ -501,7 +501,7 @@ interface Waiting {
   id: number;
   call: Record<string, unknown>;
   bytes: Uint8Array | undefined;
-  /** The worker that it is meant for: calls on episodes of another one are lost. */
+  /** The worker that it is meant for: calls on episodes of a different worker fail. */
   generation: number | null;
   resolve(answer: { value: Json; bytes: Uint8Array<ArrayBuffer> }): void;
   reject(error: EngineError): void;
@@ -510,7 +510,7 @@ interface Waiting {
 class WorkerEngine implements Engine {
   onbusy: ((busy: boolean) => void) | null = null;
   readonly limit: number;
-  /** The address of the folder that the page lies in. */
+  /** The address of the folder with `worker.js`. */
   private readonly base: string;
   readonly makeWorker: () => Worker;
   /** Counts the workers. */
@@ -522,7 +522,7 @@ class WorkerEngine implements Engine {
   private timer: ReturnType<typeof setTimeout> | undefined;
   private asked = 0;
   private milliseconds = 0;
-  /** Numbers of networks in the worker that runs. */
+  /** Numbers of networks in the current worker. */
   private networks = new WeakMap<Uint8Array, { generation: number; number: number }>();
 
   constructor({ base = document.baseURI, limit = 10_000 }: EngineOptions) {
@@ -553,7 +553,7 @@ class WorkerEngine implements Engine {
     this.loaded.catch(() => {});
   }
 
-  /** Ends the worker and all calls; the first that ran fails for `reason`. */
+  /** Ends the worker and all calls; the running one fails with `reason`. */
   private end(reason: EngineError): void {
     clearTimeout(this.timer);
     this.worker?.terminate();
@@ -648,7 +648,7 @@ class WorkerEngine implements Engine {
   }
 
   async tasks(): Promise<TaskCard[]> {
-    // The build asked the same simulator already.
+    // The build has already asked the same simulator.
     const kept = await fetch(new URL("tasks.json", this.base)).catch(() => null);
     return kept?.ok ? ((await kept.json()) as TaskCard[]) : this.ask({ call: "tasks" });
   }
@@ -719,13 +719,13 @@ class WorkerEngine implements Engine {
   decodeLink = (fragment: string): Promise<Link> => this.ask({ call: "decode_link", fragment });
 }
 
-/** How a world and its pictures are opened, as calls say it. */
+/** The options of a call that opens a world. */
 function drawn({ looks, width, height }: OpenOptions): Record<string, unknown> {
   const own = { ...(looks ? { style: looks } : {}) };
   return width && height ? { ...own, size: [width, height] } : own;
 }
 
-/** What the simulator says of an episode that begins. */
+/** The simulator's description of a new episode. */
 interface Opened {
   id: number;
   image_size: number;

@@ -2,7 +2,7 @@
 
 import { EngineError, type DroppedFile } from "./engine.ts";
 
-/** The most that is read: a log of a lifetime has some megabytes. */
+/** Maximum size of all files: a log of a lifetime has a few megabytes. */
 const MAX_BYTES = 256 * 1024 * 1024;
 const MAX_FILES = 20_000;
 
@@ -32,9 +32,9 @@ async function walk(entry: FileSystemEntry, found: { path: string; file: File }[
   }
 }
 
-/** All files that were dropped, also those in folders. */
+/** All files that were dropped, including those in folders. */
 export async function droppedFiles(transfer: DataTransfer): Promise<DroppedFile[]> {
-  // What was dropped is gone after the first wait: take all entries at once.
+  // The dropped items are gone after the first await: take all entries at once.
   const entries = [...transfer.items].flatMap((item) => item.webkitGetAsEntry() ?? []);
   const found: { path: string; file: File }[] = [];
   for (const entry of entries) await walk(entry, found);

@@ -2,10 +2,10 @@
 
 import type { Json } from "./engine.ts";
 
-/** The way to a value: keys of objects and indices of arrays. */
+/** The path to a value: keys of objects and indices of arrays. */
 export type Path = (string | number)[];
 
-/** A value with its place in the text: `to` is behind its last character. */
+/** A value with its position in the text: `to` is just after its last character. */
 export interface Span {
   from: number;
   to: number;
@@ -22,10 +22,10 @@ export interface Change {
 
 const SCALAR = /[^\s,\]}]+/y;
 const STRING = /"(?:[^"\\]|\\.)*"/y;
-/** Deeper documents are read by no one. */
+/** Maximum nesting depth. */
 const MAX_DEPTH = 200;
 
-/** All values of a document with their places; null if the text is no JSON. */
+/** All values of a document with their positions; null if the text is not JSON. */
 export function spans(text: string): Span | null {
   let at = 0;
   const space = () => {
@@ -104,7 +104,7 @@ export function oneLine(value: Json): string {
   return members.length ? `{ ${members.join(", ")} }` : "{}";
 }
 
-/** Whether two values are the same, in whatever order their keys stand. */
+/** Whether two values are equal, whatever the order of their keys. */
 export function same(a: Json, b: Json): boolean {
   if (a === null || b === null || typeof a !== "object" || typeof b !== "object") return a === b;
   const [left, right] = [Object.entries(a), Object.entries(b)];
@@ -113,7 +113,7 @@ export function same(a: Json, b: Json): boolean {
     && left.every(([key, value]) => key in other && same(value, other[key]!));
 }
 
-/** What puts a value at a path whose parent is there; null if that is not so. */
+/** The change that puts a value at a path; null if the path has no parent. */
 export function change(text: string, path: Path, value: Json): Change | null {
   const root = spans(text);
   const there = spanAt(root, path);
@@ -126,13 +126,13 @@ export function change(text: string, path: Path, value: Json): Change | null {
   const starts = isMember ? parent.members!.map((member) => member.from) : parent.items!.map((item) => item.from);
   const ends = isMember ? parent.members!.map((member) => member.value.to) : parent.items!.map((item) => item.to);
   if (!ends.length) return { from: parent.from + 1, to: parent.to - 1, insert: isMember ? ` ${insert} ` : insert };
-  // As the last one stands: on its own line, or behind a comma.
+  // Like the last one: on its own line, or after a comma.
   const before = text.slice(ends.at(-2) ?? parent.from + 1, starts.at(-1));
   const gap = before.includes("\n") ? before.slice(before.lastIndexOf("\n")) : " ";
   return { from: ends.at(-1)!, to: ends.at(-1)!, insert: `,${gap}${insert}` };
 }
 
-/** What takes an item out of an array, or a member out of an object; null if it is not there. */
+/** The change that removes an item from an array, or a member from an object; null if it does not exist. */
 export function removal(text: string, path: Path): Change | null {
   const root = spans(text);
   const parent = spanAt(root, path.slice(0, -1));
@@ -152,24 +152,24 @@ export function applied(text: string, { from, to, insert }: Change): string {
   return text.slice(0, from) + insert + text.slice(to);
 }
 
-/** The path of a JSON pointer, as far as the text has it: indices are numbers. */
+/** The path of a JSON pointer; numbers are taken as indices. */
 export function pathOf(pointer: string): Path {
   const steps = pointer.split("/").slice(1).map((step) => step.replaceAll("~1", "/").replaceAll("~0", "~"));
   return steps.map((step) => (/^\d+$/.test(step) ? Number(step) : step));
 }
 
-/** Where a cursor stands in a text that may be unfinished. */
+/** The position of a cursor in a text that may be unfinished. */
 export interface Cursor {
   path: Path;
   /** Whether a key or a value belongs here. */
   at: "key" | "value";
-  /** Where the token begins that is being typed. */
+  /** Start of the token that is being typed. */
   from: number;
   /** The keys before the cursor in the object around it. */
   keys: string[];
 }
 
-/** Where an offset stands: reads only what is before it. */
+/** The cursor at an offset; reads only the text before it. */
 export function cursorAt(text: string, offset: number): Cursor {
   const stack: { key: string | number; keys: string[] | null; isValue: boolean }[] = [];
   const token = /"(?:[^"\\]|\\.)*"?|[{}[\],:]|[^\s{}[\],:"]+/g;

@@ -1,4 +1,4 @@
-// Which keys are held, as what they ask of an agent.
+// Turns held keys into input for an agent.
 
 import { useLayoutEffect, useRef } from "preact/hooks";
 import type { Keys } from "./engine.ts";
@@ -8,23 +8,23 @@ const BACK = ["ArrowDown", "KeyS"];
 const LEFT = ["ArrowLeft", "KeyA"];
 const RIGHT = ["ArrowRight", "KeyD"];
 const USE = ["Space", "KeyE"];
-/** All keys that ask something of an agent. */
+/** All keys that control an agent. */
 export const HELD = [AHEAD, BACK, LEFT, RIGHT, USE].flat();
 
-/** What keys ask for. */
+/** The input from held keys. */
 export function askedBy(held: ReadonlySet<string>): Keys {
   const any = (codes: string[]) => Number(codes.some((code) => held.has(code)));
   return { ahead: any(AHEAD) - any(BACK), turn: any(RIGHT) - any(LEFT), interact: any(USE) === 1 };
 }
 
-/** Whether someone asks for anything. */
+/** Whether there is any input. */
 export const isAsking = (keys: Keys): boolean => keys.ahead !== 0 || keys.turn !== 0 || keys.interact;
 
 /** Whether a key is meant for a control, such as a list, and not for the world. */
 const isForControl = (target: EventTarget | null): boolean =>
   target instanceof Element && target.closest("input, select, textarea, button, a, summary, [contenteditable], .editor") !== null;
 
-/** Keys that are held while the page has the focus; `press` hears each new one. A short press lasts until it is read. */
+/** The keys held while the page has the focus; `press` is called for each new one. A short press counts until it is read. */
 export function useHeldKeys(press: (code: string) => void): { read(): Keys; set(code: string, isDown: boolean): void } {
   const held = useRef(new Set<string>());
   const tapped = useRef(new Set<string>());

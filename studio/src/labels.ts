@@ -1,14 +1,14 @@
-// Labels of points on a map, none on another.
+// Places labels of points on a map without overlaps.
 
 /** Left, top, right and bottom. */
 type Box = [number, number, number, number];
 
-/** What a character takes, in pixels of the map. */
+/** Width and height of a character, in pixels of the map. */
 const [WIDE, HIGH] = [6.6, 12];
 
 /**
- * Where the label of each point stands: over, under or beside it, where it covers no point and no other label. The first of its texts
- * that has room is taken; null where none has. Points that come first choose first.
+ * The position of each point's label: above, below or beside it, without covering a point or another label. The first of its texts
+ * that fits is used; null if none fits. Earlier points choose first.
  */
 export function placeLabels(points: { x: number; y: number; texts: string[] }[], width: number, height: number) {
   const taken = points.map(({ x, y }): Box => [x - 5, y - 5, x + 5, y + 5]);

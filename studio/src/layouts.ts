@@ -1,27 +1,27 @@
-// Maps of letters in a task spec: where they stand in its text, and what a click on a cell changes.
+// Text layouts in a task spec: finds them, and changes a cell.
 
 import type { Json } from "./engine.ts";
 import type { Path } from "./json_text.ts";
 
 /** A layout of type `text` in a document. */
 export interface TextLayout {
-  /** The way to its list of rows. */
+  /** The path to its list of rows. */
   path: Path;
-  /** Where it is, for people: `maze / choices / plus`. */
+  /** Its location for readers: `maze / choices / plus`. */
   label: string;
   rows: string[];
-  /** Letters that can be put into a cell, each with what it stands for. */
+  /** Letters that can be put into a cell, each with its meaning. */
   letters: { letter: string; meaning: string }[];
 }
 
 const USUAL: Record<string, string> = { "#": "wall", ".": "floor", A: "start" };
 
-/** What a letter of a legend stands for, in words. */
+/** The meaning of a letter of a legend, in words. */
 function meaning(entry: Json): string {
   return typeof entry === "string" ? entry : String(Object.values(entry as { [key: string]: Json })[0] ?? "");
 }
 
-/** Every layout of letters in a document, in its order. */
+/** Every text layout in a document, in order. */
 export function textLayouts(document: Json): TextLayout[] {
   const found: TextLayout[] = [];
   const visit = (value: Json, path: Path): void => {
@@ -44,24 +44,24 @@ export function textLayouts(document: Json): TextLayout[] {
   return found;
 }
 
-/** A row with another letter in a column; rows are counted in characters, as Driftworld does. */
+/** A row with one letter replaced; columns count characters, as in Driftworld. */
 export function withLetter(row: string, column: number, letter: string): string {
   const letters = [...row];
   letters[column] = letter;
   return letters.join("");
 }
 
-/** A group that stands at listed points. */
+/** A group whose objects are at listed points. */
 export interface PointGroup {
   name: string;
-  /** The way to its list of points. */
+  /** The path to its list of points. */
   path: Path;
-  /** The way to its count, where that is a number. */
+  /** The path to its count, if that is a number. */
   count: Path | null;
   points: [number, number][];
 }
 
-/** The groups of a task whose places are a list of points, which a click on the map extends. */
+/** The groups of a task whose positions are a list of points, which a click on the map extends. */
 export function pointGroups(document: Json): PointGroup[] {
   const groups = document !== null && typeof document === "object" && !Array.isArray(document) ? document["groups"] : null;
   return (Array.isArray(groups) ? groups : []).flatMap((group, index) => {

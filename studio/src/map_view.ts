@@ -1,11 +1,11 @@
-// The flat map of a world: metres to pixels and back, and what lies at a point.
+// The flat map of a world: converts metres to pixels and back, and describes a point.
 
 import type { WorldMap } from "./engine.ts";
 
-/** Metres around the arena that a map shows. */
+/** Margin around the arena that a map shows, in metres. */
 const RIM = 0.5;
 
-/** The scale of a map on a picture of some width: north is on top. */
+/** The scale of a map on an image of a given width: north is at the top. */
 export interface Scale {
   pixelsPerMetre: number;
   width: number;
@@ -33,7 +33,7 @@ function isWithin(points: [number, number][], [x, y]: readonly [number, number])
   return inside;
 }
 
-/** What lies at a point, in words, nearest first; `object` is the number of the object. */
+/** Describes what is at a point: the nearest object, else the agent, a zone or a wall; `object` is the object's index. */
 export function whatIsAt(map: WorldMap, point: readonly [number, number]): { text: string; object: number | null } {
   const place = `${point[0].toFixed(1)} m east, ${point[1].toFixed(1)} m north`;
   const reach = Math.max(map.width, map.depth) / 60;

@@ -1,9 +1,9 @@
-// What a world pays, and when it ends.
+// Describes a world's rewards, and when it ends.
 
-/** A number of points, with few digits and the sign that is as wide as a plus. */
+/** A number of points, with few digits and a typographic minus sign. */
 export const amount = (number: number): string => (Number.isInteger(number) ? String(number) : number.toFixed(2)).replace("-", "−");
 
-/** The keys of a world that say what it pays. */
+/** The parts of a world that determine its rewards and its end. */
 interface World {
   max_steps?: number;
   max_seconds?: number;
@@ -12,7 +12,7 @@ interface World {
   environment_params?: { zones?: { name?: string; reward_on_entering?: number }[] };
 }
 
-/** What a world pays, and when it ends, in one line. */
+/** The rewards of a world, and when it ends, on one line. */
 export function payOf(json: string, stepSeconds: number): string {
   const { max_steps: steps, max_seconds: seconds, rules, objects, environment_params: place } = JSON.parse(json) as World;
   const signed = (number: number) => `${number > 0 ? "+" : ""}${Number(number.toFixed(4))}`.replace("-", "−");

@@ -4,7 +4,7 @@
 export const VIEWS = ["gallery", "play", "author", "compare", "order", "replay"] as const;
 export type ViewName = (typeof VIEWS)[number];
 
-/** What the fragment of an address says. */
+/** The contents of an address's fragment. */
 export interface Route {
   view: ViewName;
   /** A built-in task, or `draft` for the text of the author view; empty if none is named. */
@@ -12,11 +12,11 @@ export interface Route {
   options: Record<string, string>;
   /** The fragment of an episode, for the view `replay`. */
   link: string | null;
-  /** What was asked for in place of a view; null if it is one. */
+  /** The unknown path, if it does not name a view; else null. */
   unknown: string | null;
 }
 
-/** Reads a fragment, with or without its `#`. What is no view is the gallery. */
+/** Parses a fragment, with or without its `#`. An unknown view becomes the gallery. */
 export function parseRoute(fragment: string): Route {
   const text = fragment.replace(/^#/, "");
   if (text && !text.startsWith("/")) return { view: "replay", task: "", options: {}, link: text, unknown: null };
@@ -34,7 +34,7 @@ export function hrefOf(view: ViewName, task = "", options: Record<string, string
   return `#/${view}${task ? `/${encodeURIComponent(task)}` : ""}${query.size ? `?${query}` : ""}`;
 }
 
-/** A whole number of an option; what is none, or too large, is 0. */
+/** An option as a whole number; 0 if it is not one, or is too large. */
 export function wholeNumber(text: string | undefined): number {
   const number = Number(text ?? 0);
   return Number.isSafeInteger(number) && number >= 0 ? number : 0;

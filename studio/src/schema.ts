@@ -1,4 +1,4 @@
-// What a JSON Schema allows at a place of a document: keys and values to complete.
+// Completions from a JSON Schema: the keys and values that are allowed at a position of a document.
 
 import type { Json, Task } from "./engine.ts";
 import { type Cursor, type Path, oneLine } from "./json_text.ts";
@@ -13,7 +13,7 @@ export interface Suggestion {
 
 const isSchema = (value: Json | undefined): value is Schema => typeof value === "object" && value !== null && !Array.isArray(value);
 
-/** A schema and all that it may stand for, without references. */
+/** A schema and all its alternatives, with references resolved. */
 function branches(root: Schema, schema: Json | undefined, seen = new Set<Json>()): Schema[] {
   if (!isSchema(schema) || seen.has(schema)) return [];
   seen.add(schema);
@@ -31,7 +31,7 @@ function branches(root: Schema, schema: Json | undefined, seen = new Set<Json>()
   return found;
 }
 
-/** The schemas that hold at a path. */
+/** The schemas that apply at a path. */
 function schemasAt(root: Schema, path: Path): Schema[] {
   let here = branches(root, root);
   for (const step of path) {
@@ -53,7 +53,7 @@ const sentence = (schema: Json | undefined): string => {
   return typeof text === "string" ? text.split("\n")[0]!.split(/(?<=\.)\s/)[0]! : "";
 };
 
-/** What a task adds to its schema: the names of its parameters, and in variants their choices. */
+/** Completions from a task: the names of its parameters, and in variants their choices. */
 function ofTask(task: Task | null, { path, at }: Cursor): Suggestion[] {
   if (!task) return [];
   const variables = task.parameters.filter((parameter) => parameter.role === "variant");
@@ -70,7 +70,7 @@ function ofTask(task: Task | null, { path, at }: Cursor): Suggestion[] {
   return [];
 }
 
-/** What may be typed at a cursor, without repetition. */
+/** The completions at a cursor, without duplicates. */
 export function suggestions(schema: Json, cursor: Cursor, task: Task | null = null): Suggestion[] {
   if (!isSchema(schema)) return [];
   const found = new Map(ofTask(task, cursor).map((suggestion) => [suggestion.insert, suggestion]));

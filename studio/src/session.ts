@@ -1,25 +1,25 @@
-// An episode with who acts in it: by keys or an agent, with the last picture and the last map.
+// An episode with its player, keys or an agent, and with the latest image and map.
 
 import type { Action, Agent, Episode, Frame, Keys, Step, WorldMap, WorldRequest } from "./engine.ts";
 import { engine } from "./simulator.ts";
 
-/** Pixels of the agent's view in the play view. */
+/** Size of the agent's view in the play view, in pixels. */
 export const VIEW = { width: 320, height: 240 };
 
 export class Session {
   frame: Frame | null = null;
   map: WorldMap | null = null;
   step: Step;
-  /** What was done in each step so far. */
+  /** The actions taken so far. */
   readonly actions: Action[] = [];
-  /** What was met, the latest first. */
+  /** The events so far, latest first. */
   readonly log: { step: number; text: string; reward: number }[] = [];
 
   private constructor(readonly episode: Episode, readonly agent: Agent | null, step: Step) {
     this.step = step;
   }
 
-  /** Begins an episode; `agent` null waits for keys. */
+  /** Starts an episode; with `agent` null, keys control it. */
   static async open(request: WorldRequest, agent: Agent | null, size = VIEW): Promise<Session> {
     const episode = await engine.open(request, size);
     const session = new Session(episode, agent, await episode.now());
@@ -31,7 +31,7 @@ export class Session {
     return this.step.terminated || this.step.truncated;
   }
 
-  /** Whether the world has an action for someone who presses nothing; where it has not, it waits for keys. */
+  /** Whether the world has an action for no input; otherwise it waits for keys. */
   get canWait(): boolean {
     const { table } = this.episode.actionSpace;
     return !table || table.some((row) => row.every((number) => number === 0));
@@ -67,7 +67,7 @@ export class Session {
 
 const EFFECTS: Record<string, string> = { AgentCollide: "touched", AgentInteract: "used", AgentInRange: "came near" };
 
-/** How an episode ended, for people. */
+/** How an episode ended, in words. */
 export function ending(step: Step): string {
   if (!step.terminated && !step.truncated) return "";
   if (step.success) return "Solved";

@@ -7,19 +7,19 @@ import { draft } from "./draft.ts";
 /** Long measures take tens of seconds; the bar has a button that stops them. */
 export const engine = createEngine({ limit: 60_000 });
 
-/** What became of a call. While another is under way, the last value stays. */
+/** The outcome of a call. While a new call is pending, the last value stays. */
 export interface Outcome<T> {
   value: T | null;
   error: EngineError | null;
   pending: boolean;
 }
 
-/** Any failure as one of the simulator. */
+/** Converts any error to an `EngineError`. */
 export function asError(error: unknown): EngineError {
   return error instanceof EngineError ? error : new EngineError("page/failed", error instanceof Error ? error.message : String(error));
 }
 
-/** Calls again when one of `inputs` changes, and keeps the last answer that is still asked for; null asks for nothing. */
+/** Calls again when one of `inputs` changes, and ignores outdated answers; null makes no call. */
 export function useAnswer<T>(call: (() => Promise<T>) | null, inputs: unknown[]): Outcome<T> {
   const [outcome, setOutcome] = useState<Outcome<T>>({ value: null, error: null, pending: call !== null });
   useEffect(() => {
@@ -40,7 +40,7 @@ export function useAnswer<T>(call: (() => Promise<T>) | null, inputs: unknown[])
   return outcome;
 }
 
-/** Which world a view shows: `draft` is the text of the author view. */
+/** The world that a view shows: `draft` is the text of the author view. */
 export function requestOf(task: string, variant: string, seed: number, index: number): WorldRequest {
   const text = task === "draft" ? draft.text : task;
   return { task: text, ...(variant ? { variant } : {}), seed, index };

@@ -1,4 +1,4 @@
-// Tasks to begin with in the author view. Each is valid, and small enough to be read at once.
+// Tasks to start from in the author view. Each is valid, and small enough to be read at a glance.
 
 import map from "./templates/map.json";
 import maze from "./templates/maze.json";

@@ -1,4 +1,4 @@
-// The moments of a replayed episode: what they paid, where a loop ends, and which moment keys lead to.
+// The timeline of a replayed episode: marks, loops, and the next moment.
 
 import type { Step } from "./engine.ts";
 
@@ -9,7 +9,7 @@ export interface Mark {
   text: string;
 }
 
-/** The moments with an event, or with a reward that is not that of most steps. */
+/** The moments with an event, or with a reward that differs from the most common one. */
 export function marks(steps: Step[]): Mark[] {
   const counts = new Map<number, number>();
   for (const { reward } of steps) counts.set(reward, (counts.get(reward) ?? 0) + 1);
@@ -21,19 +21,19 @@ export function marks(steps: Step[]): Mark[] {
   });
 }
 
-/** A part of an episode that is played over and over. */
+/** A part of an episode that is played repeatedly. */
 export interface Loop {
   from: number;
   to: number;
 }
 
-/** The moment after another, back at the start of the loop where that ends; null at the end of all. */
+/** The next moment: back to the start of the loop at its end; null at the end of the episode. */
 export function following(moment: number, last: number, loop: Loop | null): number | null {
   if (loop && moment >= loop.to) return loop.from;
   return moment < last ? moment + 1 : null;
 }
 
-/** The loop after its start or its end was put at a moment: the other end gives way. */
+/** The loop with its start or end moved to a moment, and the other end moved along if necessary. */
 export function looped(loop: Loop | null, end: "from" | "to", moment: number, last: number): Loop {
   const { from, to } = loop ?? { from: 0, to: last };
   return end === "from" ? { from: moment, to: Math.max(moment, to) } : { from: Math.min(from, moment), to: moment };

@@ -1,4 +1,4 @@
-// The simulator as an instance of WebAssembly: a call is JSON with bytes beside it, and so is its answer.
+// The simulator as a WebAssembly instance: a call is JSON with bytes beside it, and so is its answer.
 
 interface Exports {
   memory: WebAssembly.Memory;
@@ -12,7 +12,7 @@ export interface Answer {
   bytes: Uint8Array<ArrayBuffer>;
 }
 
-/** What runs a call. */
+/** Runs a call. */
 export type Caller = (call: unknown, bytes?: Uint8Array) => Answer;
 
 /** Starts the simulator. The module has no imports: it reads no clock, no files and no network. */
@@ -37,7 +37,7 @@ export async function start(module: WebAssembly.Module): Promise<Caller> {
   };
 }
 
-/** The module that lies beside the page, brotli where the browser can unpack it and gzip elsewhere; no server need do anything. */
+/** The module beside the page: brotli if the browser can unpack it, else gzip; the server needs no configuration. */
 export async function load(base: string): Promise<WebAssembly.Module> {
   const [name, unpacked] = unpacker();
   const reply = await fetch(new URL(name, base));

@@ -2,14 +2,14 @@
 
 import { type Caller, load, start } from "./wasm.ts";
 
-/** A call, numbered. */
+/** A numbered call. */
 export interface Asked {
   id: number;
   call: unknown;
   bytes?: Uint8Array;
 }
 
-/** The answer to a call, or why the simulator itself failed; number -1 is the loading. */
+/** The answer to a call, or the reason why the simulator itself failed; id -1 is about loading. */
 export interface Answered {
   id: number;
   json?: string;
@@ -17,7 +17,7 @@ export interface Answered {
   failed?: string;
 }
 
-// The types of a worker and of a page exclude each other; this is all of a worker that is used.
+// The types of workers and of pages conflict; this declares the part of a worker that is used.
 const scope = self as unknown as {
   location: Location;
   onmessage: ((event: MessageEvent<Asked>) => void) | null;

@@ -1,8 +1,8 @@
-// Parameters as their author wrote them: `gold`, where the simulator has three numbers; a maze without its defaults.
+// Parameters as their author wrote them: `gold` instead of three numbers; a maze without its defaults.
 
 import type { Json, Parameter, Task, Value } from "./engine.ts";
 
-/** A choice as it is written, and in full, as variants have it. */
+/** A choice as it is written, and in full, as in variants. */
 export interface WrittenChoice {
   value: Value;
   full: Value;
@@ -12,7 +12,7 @@ export interface WrittenChoice {
 /** A parameter whose choices are as they are written. */
 export type WrittenParameter = Omit<Parameter, "choices"> & { choices: WrittenChoice[] | null };
 
-/** The parameters of a task, with the choices that stand in its text. */
+/** The parameters of a task, with the choices as written in its text. */
 export function written({ text, parameters }: Pick<Task, "text" | "parameters">): WrittenParameter[] {
   const document = JSON.parse(text) as { parameters?: Record<string, { choices?: Json }> };
   return parameters.map((parameter) => {

@@ -26,19 +26,19 @@ from mlagents_envs.side_channel.side_channel import OutgoingMessage, SideChannel
 
 RESET_CHANNEL = uuid.UUID("621f0a70-4f87-11ea-a6bf-784f4387d1f7")
 
-# Twenty objects in a ring, around which the agent drives in a circle.
+# Twenty objects in a ring; the agent drives in a circle.
 OBJECTS = 20
 RADIUS_M = 12.0
 
 
 class ResetChannel(SideChannel):
-    """Sends worlds; answers are not looked at."""
+    """Sends worlds, and ignores answers."""
 
     def __init__(self) -> None:
         super().__init__(RESET_CHANNEL)
 
     def on_message_received(self, msg: Any) -> None:
-        """Answers are JSON, which says `ok` here."""
+        """Ignores the answer, JSON that says `ok`."""
 
     def send(self, world: dict[str, Any]) -> None:
         """Queues a reset to a world."""
@@ -48,7 +48,7 @@ class ResetChannel(SideChannel):
 
 
 def ring(size: int) -> dict[str, Any]:
-    """A world of twenty objects as a reset file of L2Explorer has it."""
+    """A world of twenty objects, in the format of L2Explorer's reset files."""
     kinds = ["tree", "barrel", "chair", "rock", "geometric"]
     angles = [2.0 * np.pi * number / OBJECTS for number in range(OBJECTS)]
     return {
@@ -68,7 +68,7 @@ def cpu_seconds(pid: int) -> float:
 
 
 def actor(env: Any, name: str) -> Any:
-    """How this version of the client takes an action of three numbers."""
+    """A function that sets an action of three numbers with this version of the client."""
     numbers = np.array([[5.0, 15.0, 0.0]], dtype=np.float32)
     try:
         from mlagents_envs.base_env import ActionTuple
@@ -78,7 +78,7 @@ def actor(env: Any, name: str) -> Any:
 
 
 def main() -> None:
-    """Measures, and prints what came of it."""
+    """Measures, and prints the result."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("executable", type=pathlib.Path)
     parser.add_argument("--steps", type=int, default=2000)
@@ -87,7 +87,7 @@ def main() -> None:
     parser.add_argument("--world", type=pathlib.Path, help="a reset file of L2Explorer in place of the ring")
     parser.add_argument("--profile", action="store_true", help="where the client spends its time")
     options = parser.parse_args()
-    # The executable inherits it.
+    # The executable inherits this affinity.
     os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))

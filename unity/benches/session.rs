@@ -1,4 +1,4 @@
-//! Time of a session's commands, without a network: a step with its images in both forms, a reset, a state message.
+//! Benchmarks of a session's commands, without a network: a step with its images in both forms, and a reset.
 
 #![expect(clippy::disallowed_methods, reason = "only its speed is measured")]
 

@@ -1,4 +1,4 @@
-//! Parses the arguments: our own, and those that clients give to any Unity executable, which are ignored.
+//! Parses the arguments: our own, and those that clients pass to any Unity executable, which are ignored.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -8,7 +8,7 @@ use driftworld_spec::nearest;
 use crate::error::UnityError;
 use crate::observation::PictureForm;
 
-/// The text by which the executable identifies itself.
+/// The string with which the executable identifies itself.
 pub const MARK: &str = "driftworld-unity: a stand-in for the L2Explorer executable";
 
 /// The output of `--help`.
@@ -200,7 +200,7 @@ fn is_option(word: &str) -> bool {
     word.len() > 1 && word.starts_with('-') && word.parse::<f64>().is_err()
 }
 
-/// The option of ours that an unknown word probably means.
+/// The one of our options that an unknown word probably means.
 fn meant(word: &str) -> Option<String> {
     // Most programs use this name.
     if word.trim_start_matches('-').eq_ignore_ascii_case("port") {

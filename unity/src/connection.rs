@@ -12,7 +12,7 @@ use tonic_prost::ProstCodec;
 use crate::error::UnityError;
 use crate::protocol::UnityMessageProto;
 
-/// Longest message that is read, in bytes: far more than the limits on texts and values allow.
+/// Maximum length of an incoming message, in bytes: far more than the limits on strings and values allow.
 pub const MAX_INCOMING_BYTES: usize = 48 << 20;
 
 /// Time of silence after which TCP checks whether the other side is still there.
@@ -75,7 +75,7 @@ impl Connection {
         &self.address
     }
 
-    /// The first call, which detects servers that are not clients: they have to answer within `wait`.
+    /// The first call, which detects servers that are not clients: a client has to answer within `wait`.
     pub(crate) async fn greet(&mut self, greeting: UnityMessageProto, wait: Duration) -> Result<Reply, UnityError> {
         let address = self.address.clone();
         match timeout(wait, self.call(greeting)).await {
@@ -126,7 +126,7 @@ fn is_transport(status: &Status) -> bool {
     std::error::Error::source(status).is_some()
 }
 
-/// A status as text, with the innermost cause.
+/// A status as text: its innermost cause, if there is one.
 fn reason(status: &Status) -> String {
     let mut cause: &dyn std::error::Error = status;
     while let Some(inner) = cause.source() {

@@ -18,7 +18,7 @@ pub enum UnityError {
     /// Invalid arguments: what was found where, and what was expected.
     #[error("{}", one_line(.0))]
     Arguments(String),
-    /// A file cannot be read: it is no regular file, too large or not text.
+    /// A file cannot be read: it is not a regular file, too large, or not text.
     #[strum(serialize = "file")]
     #[error("{option} {source}")]
     Reading {
@@ -74,7 +74,7 @@ pub enum UnityError {
         /// What it did.
         reason: String,
     },
-    /// The client uses this other major version of the protocol.
+    /// The client uses this unsupported version of the protocol.
     #[error("client: found version {0:?} of the protocol, expected 1.x, which mlagents-envs 0.16 to 1.1 speak")]
     ClientVersion(String),
     /// A message is invalid, or too long: the reason, with the limit if it is too long.
@@ -94,7 +94,7 @@ pub enum UnityError {
         /// Its message.
         text: String,
     },
-    /// Actions for other agents than the only one.
+    /// Actions for an unknown agent, or not exactly one for the only agent.
     #[error("actions: found {found} for behaviour {behavior:?}, expected exactly one, for {BEHAVIOR:?}")]
     WrongAgent {
         /// The behaviour of the actions.

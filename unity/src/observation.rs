@@ -108,7 +108,7 @@ fn vector(state: Vec<f32>) -> ObservationProto {
     }
 }
 
-/// Encodes 8-bit RGB as PNG with fast compression, because it is used only for a millisecond.
+/// Encodes 8-bit RGB as PNG with fast compression, because the file exists only for a millisecond.
 pub(crate) fn png([width, height]: [u32; 2], rgb: &[u8]) -> Result<Vec<u8>, UnityError> {
     let failed = |error: png::EncodingError| UnityError::Picture(error.to_string());
     let mut bytes = Vec::new();

@@ -6,7 +6,7 @@ use uuid::Uuid;
 
 use crate::side_channel::{RECORD_HEAD, write_record};
 
-/// Longest message that is sent, in bytes: the default limit of gRPC servers.
+/// Maximum length of an outgoing message, in bytes: the default limit of gRPC servers.
 pub(crate) const MAX_OUTGOING_BYTES: usize = 4 << 20;
 
 /// Maximum number of queued messages: if a client requests more than it accepts, later ones are dropped.
@@ -30,7 +30,7 @@ impl Outbox {
         }
     }
 
-    /// Takes messages that fit into `room` bytes; the rest stays queued. Drops messages too long to fit alone.
+    /// Takes messages that fit into `room` bytes; the rest stays queued. Drops messages too long to fit on their own.
     pub(crate) fn take(&mut self, room: usize) -> Vec<u8> {
         let mut bytes = Vec::new();
         while let Some((channel, payload)) = self.waiting.front() {

@@ -18,7 +18,7 @@ const KNOWN: [&str; 8] = [
     "max_angular_speed",
 ];
 
-/// The integer ones, with the least value of each.
+/// The integer parameters, with the minimum of each.
 const WHOLE: [(&str, u32); 3] = [("frame_skip", 1), ("max_steps", 0), ("supersampling", 1)];
 
 /// The parameters that are set.

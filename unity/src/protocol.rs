@@ -89,7 +89,7 @@ pub struct UnityRlInitializationInputProto {
 /// A command, with actions and side channel messages.
 #[derive(Clone, PartialEq, prost::Message)]
 pub struct UnityRlInputProto {
-    /// Behaviours by name.
+    /// Actions by name of behaviour.
     #[prost(btree_map = "string, message", tag = "1")]
     pub agent_actions: BTreeMap<String, ListAgentActionProto>,
     /// The command.
@@ -127,7 +127,7 @@ pub struct AgentActionProto {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, prost::Enumeration)]
 #[repr(i32)]
 pub enum CommandProto {
-    /// Make one step.
+    /// Take one step.
     Step = 0,
     /// Begin an episode.
     Reset = 1,
@@ -204,10 +204,10 @@ pub struct UnityRlInitializationOutputProto {
     /// The version of the protocol that the world speaks.
     #[prost(string, tag = "2")]
     pub communication_version: String,
-    /// Its behaviours. Python registers one only together with an agent of it.
+    /// Its behaviours. Python registers a behaviour only together with one of its agents.
     #[prost(message, repeated, tag = "5")]
     pub brain_parameters: Vec<BrainParametersProto>,
-    /// The version of the package that it stands in for.
+    /// The version of its package.
     #[prost(string, tag = "7")]
     pub package_version: String,
     /// Its capabilities.
@@ -258,7 +258,7 @@ pub struct ActionSpecProto {
 /// Results of a step.
 #[derive(Clone, PartialEq, prost::Message)]
 pub struct UnityRlOutputProto {
-    /// Behaviours by name.
+    /// Agents by name of behaviour.
     #[prost(btree_map = "string, message", tag = "2")]
     pub agent_infos: BTreeMap<String, ListAgentInfoProto>,
     /// Side channel messages: identifier, length and bytes of each, concatenated.

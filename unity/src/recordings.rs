@@ -22,8 +22,8 @@ impl RecordingFile {
     /// Opens a new file, or an existing one after its last complete episode.
     ///
     /// # Errors
-    /// [`UnityError::Writing`] if it cannot be written, or another process writes it; [`UnityError::Recording`] if it has other
-    /// contents, or is damaged.
+    /// [`UnityError::Writing`] if it cannot be written, or another process is writing it; [`UnityError::Recording`] if it has
+    /// other contents, or is damaged.
     pub fn open(path: &Path) -> Result<Self, UnityError> {
         let failed = |source: std::io::Error| UnityError::Writing {
             option: "--record",
@@ -75,7 +75,7 @@ impl RecordingFile {
         })
     }
 
-    /// Appends an episode, under the next index.
+    /// Appends an episode, with the next index.
     ///
     /// # Errors
     /// [`UnityError::Writing`].

@@ -7,7 +7,7 @@ use std::path::{Component, Path, PathBuf};
 use driftworld_atomic_files::AtomicFile;
 use driftworld_text::ShownPath;
 
-/// Longest file name, in bytes.
+/// Maximum length of a file name, in bytes.
 const LONGEST_NAME: usize = 200;
 
 /// The first bytes of every PNG file.

@@ -38,7 +38,7 @@ const FAREWELL: Duration = Duration::from_millis(500);
 ///
 /// # Errors
 /// [`UnityError`] for unusable files, for a missing client, and for a client that violates the protocol, which is sent
-/// the error first. A client that quits or disconnects is no error.
+/// the error first. A client that quits or disconnects is not an error.
 pub fn run(options: &Options, journal: &mut Journal) -> Result<(), UnityError> {
     let maps = match &options.maps {
         Some(path) => MapLibrary::from_json(&path.display().to_string(), &read("--maps", path)?)?,
@@ -94,7 +94,7 @@ fn world(path: &Path, maps: &MapLibrary, journal: &mut Journal) -> Result<World,
         Ok(world) => return Ok(world),
         Err(error) => error,
     };
-    // Only our format has a version. If neither format fits, reports our reader's errors, which are stricter.
+    // Only our format has a version. If neither format fits, reports the errors of our reader, which is stricter.
     let is_ours = serde_json::from_str::<Ours>(&text).is_ok_and(|ours| ours.version.is_some());
     match World::from_l2explorer_with(&name, &text, maps) {
         Ok((world, warnings)) if !is_ours => {
@@ -238,7 +238,7 @@ fn message(output: UnityOutputProto) -> UnityMessageProto {
     }
 }
 
-/// Tells the client the reason for the end; its answer does not matter.
+/// Sends the client the reason for the end; its answer does not matter.
 async fn farewell(connection: &mut Connection, error: &UnityError) {
     let last = UnityMessageProto {
         header: Some(HeaderProto {

@@ -1,4 +1,4 @@
-//! Recorded conversations: what clients of three releases send, and every answer, down to pixels and texts.
+//! Recorded conversations: the messages of clients of three releases, and every answer, down to pixels and wording.
 //!
 //! `golden/record.py` records the clients; `INSTA_UPDATE=always` rewrites the answers. Images are compared by a checksum of
 //! their pixels, because the bytes of a PNG file depend on the encoder.
@@ -164,7 +164,7 @@ fn answers(release: &str) -> Result<String, std::fmt::Error> {
 }
 
 #[test]
-fn each_release_is_answered_as_ever() {
+fn answers_to_each_release_are_unchanged() {
     for release in RELEASES {
         let name = format!("answers_to_{release}");
         insta::assert_snapshot!(name, answers(release).expect("texts can be written"));
@@ -179,8 +179,8 @@ fn same_conversation_gives_the_same_answers() {
 /// Field by field: decoding a message loses nothing.
 #[test]
 fn only_the_number_of_areas_is_skipped_in_clients_messages() {
-    // The number of copies of its scene that Unity should build, which does not apply here. The last field of a client's first
-    // message.
+    // The number of copies of its scene that Unity should build, which does not apply here. It is the last field of a client's
+    // first message.
     let areas = [5 << 3, 1];
     for release in RELEASES {
         for (about, mut bytes) in messages(release) {

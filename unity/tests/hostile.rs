@@ -73,7 +73,7 @@ fn actions(lists: &[(&str, &[&[f32]])]) -> UnityRlInputProto {
     }
 }
 
-/// The session still answers a reset and a step.
+/// Checks that the session still answers a reset and a step.
 fn assert_well(session: &mut Session) {
     let reset = UnityRlInputProto {
         command: CommandProto::Reset.into(),
@@ -155,7 +155,7 @@ fn wrong_lengths_are_refused_at_both_levels() {
     }
 }
 
-/// Longer ones do not arrive: the transport refuses more than 48 MiB.
+/// Longer messages do not arrive: the transport refuses more than 48 MiB.
 #[test]
 fn text_of_40_megabytes_gets_a_short_answer() {
     let long = "x".repeat(40_000_000);
@@ -199,7 +199,7 @@ fn json_bombs_are_refused_before_parsing() {
     }
 }
 
-/// As many as messages may have; each gets a remark or a refusal, in one pass over the text.
+/// As many mistakes as a message may have; each gets a remark or a refusal, in one pass over the text.
 #[test]
 fn texts_with_many_mistakes_are_read_once() {
     let keys: Vec<String> = (0..50_000).map(|key| format!("\"k{key}\":1")).collect();
@@ -253,7 +253,7 @@ fn surplus_messages_are_refused_with_a_message() {
     assert!(remarks.iter().any(|remark| remark == cut), "{remarks:?}");
 }
 
-/// While texts are being read, a disconnected client is not noticed, so together they may not exceed one of the largest.
+/// While texts are being read, a disconnected client is not noticed, so all texts of a batch share the limit of a single one.
 #[test]
 fn texts_of_one_batch_are_limited() {
     let zeros = vec!["0"; 150_000].join(",");
@@ -349,9 +349,9 @@ fn surplus_answers_wait_for_the_next_turn_up_to_a_limit() {
     let mut listen = told(listen);
     listen[..16].copy_from_slice(&debug);
     answer(&mut session, &step_with(listen)).expect("messages do not end a session");
-    // Each key gives a remark, with more bytes than a client takes at a time, and more messages than may be queued.
+    // Each key causes a remark: more bytes than a client accepts at a time, and more messages than may be queued.
     let keys: Vec<String> = (0..12_000).map(|key| format!("\"{key:0>200}\":1")).collect();
-    // Each message reports its first 300.
+    // Each message reports its first 300 keys.
     let wide = keys.chunks(300).flat_map(|keys| {
         told(&format!(
             "{{\"action\":\"reset_environment\",\"payload\":{{{}}}}}",

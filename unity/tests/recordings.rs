@@ -1,4 +1,4 @@
-//! Recordings of a session replay each episode to the bit, even if the client changes the world during an episode.
+//! Recordings of a session replay each episode bit for bit, even if the client changes the world during an episode.
 
 use std::collections::BTreeMap;
 use std::io::BufReader;
@@ -15,7 +15,7 @@ const RESET: [u8; 16] = [
     0x70, 0x0a, 0x1f, 0x62, 0x87, 0x4f, 0xea, 0x11, 0xa6, 0xbf, 0x78, 0x4f, 0x43, 0x87, 0xd1, 0xf7,
 ];
 
-/// A cube that pays, on the agent's path.
+/// A cube that gives a reward, on the agent's path.
 fn cube(x: f64, y: f64) -> Object {
     let mut object = Object::new("cube", [x, y]);
     object.reward = 5.0;
@@ -67,7 +67,8 @@ fn act() -> impl Strategy<Value = Act> {
     ]
 }
 
-/// Carries it out; returns the rewards of its steps, with the last one of an episode first if another has begun.
+/// Carries out an act; returns rewards, each with whether it ends an episode. If a new episode begins, the last reward of the
+/// old one comes first.
 fn carry_out(session: &mut Session, act: &Act) -> Vec<(f32, bool)> {
     let (command, action, side_channel) = match act {
         Act::Step(action) => (CommandProto::Step, Some(action), Vec::new()),
@@ -124,7 +125,7 @@ fn paid(recording: &Recording) -> Vec<f32> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
     #[test]
-    fn recorded_episodes_replay_to_the_bit(acts in prop::collection::vec(act(), 1..60)) {
+    fn recorded_episodes_replay_bit_for_bit(acts in prop::collection::vec(act(), 1..60)) {
         let mut session = session();
         carry_out(&mut session, &Act::Reset);
         let mut episodes: Vec<Vec<f32>> = vec![Vec::new()];

@@ -23,7 +23,7 @@ fn float(field: u8, value: f32) -> Vec<u8> {
     [&[field << 3 | 5], value.to_le_bytes().as_slice()].concat()
 }
 
-/// A text, bytes, a message or a packed list, of fewer than 128 bytes.
+/// A string, bytes, a message or a packed list, of fewer than 128 bytes.
 fn block(field: u8, bytes: impl AsRef<[u8]>) -> Vec<u8> {
     let bytes = bytes.as_ref();
     assert!(bytes.len() < 128, "longer ones take two bytes for their length");
@@ -35,7 +35,7 @@ fn floats(field: u8, values: &[f32]) -> Vec<u8> {
     block(field, bytes)
 }
 
-/// The value encodes to these bytes and decodes from them.
+/// Checks that the value encodes to these bytes and decodes from them.
 fn check<M: Message + Default + PartialEq + std::fmt::Debug>(message: &M, parts: &[Vec<u8>]) {
     let bytes = parts.concat();
     assert_eq!(message.encode_to_vec(), bytes, "{message:?} is written so");

@@ -15,7 +15,7 @@ use driftworld_unity::protocol::{
 use driftworld_unity::{BEHAVIOR, PictureForm, Screenshots, Session, Setup, Turn};
 use proptest::prelude::*;
 
-/// A session with a client of the first generation, or of the last.
+/// A session with a client of the first generation, or of the latest.
 fn session(world: WorldDraft, catalogue: Catalogue, is_new: bool) -> Session {
     let setup = Setup {
         world: world.check().expect("the world is sound"),
@@ -166,7 +166,7 @@ fn photographs_are_shown_one_per_step_until_the_last() {
             .take(view, &mut frame.target())
             .expect("the view is of this studio");
         let rgb = floats(agent, 1);
-        // Channels first, as the last generation expects.
+        // Channels first, as the latest generation expects.
         let expected: Vec<f32> = (0..3)
             .flat_map(|channel| {
                 frame

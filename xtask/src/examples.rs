@@ -7,7 +7,7 @@ use std::time::Instant;
 use crate::process::{Result, Workspace, about, ended, run};
 use crate::stage::Outcome;
 
-/// Runs them all; the note is their number.
+/// Runs all examples; the note is their number.
 pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome> {
     let folder = workspace.root.join("examples");
     let entries = fs::read_dir(&folder).map_err(about(&folder))?;

@@ -13,7 +13,7 @@ const UNSAFE: &str = "docs/unsafe.md";
 // In two pieces, because this file is checked, too.
 const TO_DO: &str = concat!("TO", "DO");
 
-/// Developer tools, whose users are developers and name their own files.
+/// Developer tools, which read only files of the developers who run them.
 const TOOLS: [&str; 1] = ["xtask/"];
 
 /// Pages whose paths in backticks all belong to this repository. Other pages also name their readers' files.

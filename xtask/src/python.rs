@@ -23,7 +23,7 @@ const ANY_GYMNASIUM: [&str; 4] = [
     "tests/test_check.py",
 ];
 
-/// What the package's quick tests import.
+/// The requirements of the package's quick tests.
 const PACKAGE_LIST: &str = "python/tests/requirements.txt";
 
 /// A virtual environment.
@@ -57,7 +57,7 @@ fn python(interpreter: &Path, arguments: &[&str]) -> Command {
 impl Environment {
     /// The environment of this name with the packages of all these lists; created if it does not work.
     pub(crate) fn with(workspace: &Workspace, interpreter: &Path, name: &str, lists: &[&str]) -> Result<Self> {
-        // `--all` makes that of the learners beside other stages.
+        // With `--all`, the environment of the learners is made while other stages run.
         static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
         let _turn = ONE_AT_A_TIME.lock();
         let folder = workspace.target.join("python").join(name);
@@ -70,7 +70,7 @@ impl Environment {
             run(make)?;
         }
         for list in lists {
-            // Modules are compiled when they are imported, and most never are.
+            // Modules are compiled when they are imported, and most are never imported.
             environment.pip(workspace, "install --quiet --no-compile --requirement", &[list])?;
         }
         Ok(environment)
@@ -90,7 +90,7 @@ impl Environment {
         run(pip)
     }
 
-    /// Installs the wheel without dependencies, which exist already. One interpreter builds it for all environments, so that
+    /// Installs the wheel without dependencies, which already exist. One interpreter builds it for all environments, so that
     /// Cargo has nothing to rebuild.
     pub(crate) fn install_driftworld(&self, workspace: &Workspace) -> Result {
         let builder = Self::with(workspace, &interpreter(ANY).ok_or(NO_INTERPRETER)?, "newcomer", &[])?;
@@ -171,7 +171,7 @@ pub(crate) fn learners_environment(workspace: &Workspace) -> Result<Environment>
     Environment::with(workspace, &interpreter, "learners", &list)
 }
 
-/// Tests with what people train with.
+/// Tests with the libraries that people train with.
 pub(crate) fn learners(workspace: &Workspace) -> Result<Outcome> {
     match learners_environment(workspace) {
         Ok(learners) => {

@@ -74,8 +74,8 @@ pub(crate) fn check(metadata: &Value) -> Vec<String> {
     findings
 }
 
-/// Dependencies of a manifest with their own version or path. `features/` may have them: it names third-party crates that no
-/// crate of ours imports.
+/// Dependencies of a manifest with their own version or path. `features/` may have them: it names third-party crates that none
+/// of our crates imports.
 pub(crate) fn versions(path: &str, manifest: &str) -> Vec<String> {
     let mut is_dependency = false;
     let mut findings = Vec::new();

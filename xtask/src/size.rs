@@ -109,7 +109,7 @@ fn count(sources: &Sources) -> Vec<(&'static str, usize)> {
     counts
 }
 
-/// The endings of the files that count in a room.
+/// The extensions of the files that count in a room.
 fn endings(room: &str) -> &'static [&'static str] {
     match room {
         PYTHON => &["py"],
@@ -152,7 +152,7 @@ fn table(counts: &[(&str, usize)], written: &[Row]) -> String {
     text
 }
 
-/// Problems of the written rows. Differences below 20 lines are never out of date.
+/// Problems of the written rows. Counts that differ by at most 20 lines are never out of date.
 fn complaints(counts: &[(&str, usize)], written: &[Row], are_counts_compared: bool) -> Vec<String> {
     let mut complaints = Vec::new();
     for &(room, lines) in counts {

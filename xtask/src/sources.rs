@@ -173,7 +173,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn blank_lines_and_comments_are_no_code() {
+    fn blank_lines_and_comments_are_not_code() {
         let rust = "//! Opens.\n\nuse a; // why\n/* one\n   two */\n/* three */\nfn f() {\n    // note\n}\n";
         assert_eq!(
             lines_of_code("spec/src/a.rs", rust),

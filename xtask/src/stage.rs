@@ -227,7 +227,7 @@ pub(crate) fn list() {
 pub(crate) fn run_all(workspace: &Workspace, stages: &[&Stage]) -> Result {
     thread::scope(|scope| {
         if stages.len() == STAGES.len() {
-            // Fetched while the tests are built; the stage `learners` says what went wrong.
+            // Fetched while the tests are built; the stage `learners` reports any failure.
             scope.spawn(|| python::learners_environment(workspace));
         }
         run_in_order(workspace, stages)

@@ -76,7 +76,7 @@ fn npm(workspace: &Workspace, arguments: &[&str]) -> Command {
     npm
 }
 
-/// Builds the page, checks its types, and compares its simulator with the native one, in Node.js and, if any, Chromium.
+/// Builds the page, checks its types, and compares its simulator with the native one, in Node.js and, if installed, Chromium.
 pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome> {
     if let Err(lack) = tools(workspace) {
         return missing("STUDIO", lack.join("; "));
@@ -88,7 +88,7 @@ pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome> {
         );
     }
     thread::scope(|scope| {
-        // Linking the simulator as one unit keeps one core busy.
+        // Linking the simulator as one unit uses only one core.
         let page = scope.spawn(|| bundle(workspace));
         // The native tests have already built most of this.
         run(workspace.cargo_everywhere(&["build", "--example", "answers", "--bin", "driftworld"]))?;

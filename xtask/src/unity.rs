@@ -30,7 +30,7 @@ pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome> {
         }
         if client == COMPARED {
             environment.install_driftworld(workspace)?;
-            // A test that misses the package would be skipped.
+            // Without the package, its tests would be skipped.
             run(environment.python(workspace, &["-c", "import driftworld, gymnasium"]))?;
         }
         let mut pytest = environment.python(

@@ -56,7 +56,7 @@ struct Use<'a> {
 /// A file's path and its lines; comments and tests are empty lines.
 type File<'a> = (&'a str, Vec<&'a str>);
 
-/// Every unused item that is not kept, sorted by place.
+/// Every unused item that is not kept, sorted by path and line.
 pub(crate) fn find(sources: &Sources) -> Vec<Item<'_>> {
     let rust = sources.with_extensions(&["rs"]);
     let shipped = rust.filter(|(path, _)| !is_test_file(path) || path.starts_with("examples/"));

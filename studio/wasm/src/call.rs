@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::request::WorldRequest;
 
-/// A call, with its arguments. Files and new networks are bytes beside the call; later calls give networks by number.
+/// A call, with its arguments. Files and new networks are bytes beside the call; later calls refer to networks by number.
 #[derive(Debug, Deserialize)]
 #[serde(tag = "call", rename_all = "snake_case", deny_unknown_fields)]
 pub(crate) enum Call {
@@ -154,7 +154,7 @@ pub(crate) struct Link {
     pub(crate) actions: Vec<Taken>,
 }
 
-/// What to do in a step.
+/// The input of a step.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(untagged)]
 pub(crate) enum Command {
@@ -193,7 +193,7 @@ impl From<Taken> for Action {
     }
 }
 
-/// The agent that acts; a network is given by the number that it got when it was handed over.
+/// The agent that acts; a network is identified by the number that it got when it was handed over.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum AgentName {

@@ -29,7 +29,7 @@ pub(crate) fn distance(a: &Side, b: &Side, by: Option<By>, worlds: Option<u64>, 
     }))
 }
 
-/// What a number by this measure means, in a sentence.
+/// The meaning of a measure's numbers, in a sentence or two.
 fn unit(by: By) -> &'static str {
     match by {
         By::Parameters => {

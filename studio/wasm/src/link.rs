@@ -1,5 +1,5 @@
-//! Encodes an episode as the fragment of an address: base64url of the format's version, a checksum, and deflated data,
-//! which are a line of JSON with the world and the outcome, then a number for each step.
+//! Encodes an episode as the fragment of an address: base64url of the format's version, a checksum, and deflated data:
+//! a line of JSON with the world and the outcome, then a number for each step.
 //!
 //! Actions of three numbers would take 24 bytes a step. But the planner and the random agent repeat their actions
 //! exactly, so a step takes a few bits: the number of the agent that chose it, or an index into a list of actions.
@@ -236,7 +236,7 @@ fn unpacked(fragment: &str) -> Result<(Header, std::collections::VecDeque<u8>), 
     Ok((header, all.drain(end + 1..).collect()))
 }
 
-/// What is wrong inside a link tells nobody how to mend it, so the message is the same for all damage.
+/// Knowing the kind of damage does not help to mend a link, so the message is the same for all damage.
 fn damaged() -> Fault {
     Fault::new("link/damaged", "this link is cut or was changed; copy all of it")
 }

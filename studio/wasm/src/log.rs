@@ -155,7 +155,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rows_are_read_as_the_log_quotes_them() {
+    fn quoted_cells_are_read_and_short_rows_are_left_out() {
         let text = "block_num\texp_num\tblock_type\ttask_name\treward\r\n0\t7\ttrain\t\"a\t\"\"b\"\"\"\t2.5\r\n0\t8\ttrain\r\n";
         let file = File {
             path: "log/data-log.tsv".to_owned(),

@@ -1,4 +1,4 @@
-//! [`WorldRequest`]: how a page or a link names a world; finds or draws that world.
+//! [`WorldRequest`]: how a page or a link identifies a world; [`TaskCache`] parses or samples it.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -39,7 +39,7 @@ fn is_zero(number: &u64) -> bool {
 /// The name of a variant whose values were changed.
 const CHANGED: &str = "changed";
 
-/// Caches the task that was read last, because a page requests many worlds of the same text.
+/// Caches the task that was read last, because a page requests many worlds of the same task.
 #[derive(Debug, Default)]
 pub(crate) struct TaskCache(Option<(String, Arc<TaskSpec>)>);
 
@@ -102,7 +102,7 @@ pub(crate) fn is_text(called: &str) -> bool {
     called.trim_start().starts_with(['{', '/', '\u{feff}'])
 }
 
-/// The world in another style.
+/// The world in the given style, or its own.
 pub(crate) fn in_style(world: World, style: Option<Style>) -> Result<World, Fault> {
     let Some(style) = style else { return Ok(world) };
     Ok(world.edit(|world| world.environment_params.looks.style = style)?)

@@ -1,4 +1,4 @@
-//! What a page shows of tasks: the gallery, a task's parameters for sliders and pickers, and the problems of a text.
+//! Describes tasks for the page: the gallery, a task's parameters for sliders and pickers, and the problems of a text.
 
 use driftworld::documents::{self, Kind};
 use driftworld::env::Catalogue;

@@ -16,14 +16,15 @@ use crate::side_channel::{
 const MOST_MESSAGES: usize = 1000;
 
 /// Maximum number of values in the JSON texts of one batch of messages, enough for a world of about twenty thousand
-/// objects. Reading a text of that many brackets takes half a gigabyte before it is refused; one of 4 MB took 2.8.
+/// objects. Parsing that many brackets takes half a gigabyte of memory before they are refused; 4 MB of brackets took 2.8.
 /// While texts are being read, a disconnected client is not noticed.
 const MOST_VALUES: usize = 400_000;
 
 /// Maximum number of messages that are parsed, so that those beyond [`MOST_MESSAGES`] can be refused one by one.
 const MOST_LOOKED_AT: usize = 10_000;
 
-/// Maximum screenshot pixels per batch, two of the largest: while they are drawn, a disconnected client is not noticed.
+/// Maximum number of screenshot pixels per batch, enough for two of the largest: while they are drawn, a disconnected client is
+/// not noticed.
 const MOST_POINTS: u64 = 2 << 24;
 
 /// An L2Explorer message: its channel, and its text or the reason why there is none.
@@ -94,7 +95,7 @@ impl Session {
             Ok(setting) => {
                 if let Err(reason) = self.parameters.set(&setting) {
                     let remark = format!("{what}: {reason}");
-                    // For an unknown name, another value is nothing new.
+                    // For an unknown name, a different value is nothing new.
                     let thing = if Parameters::knows(&setting.key) {
                         remark.clone()
                     } else {
@@ -107,7 +108,7 @@ impl Session {
         }
     }
 
-    /// Handles the requests in messages; returns whether the world was reset to another one.
+    /// Handles the requests in messages; returns whether one of them reset the world.
     pub(super) fn receive(&mut self, messages: &[Told]) -> bool {
         let mut is_renewed = false;
         let mut points = 0;
@@ -161,7 +162,7 @@ impl Session {
     /// Renders and writes a screenshot; returns its path.
     fn draw(&mut self, screenshot: &Screenshot) -> Result<String, String> {
         let size = [screenshot.width, screenshot.height];
-        // At the observations' size it is an observation, with the same smoothing.
+        // At the observations' size it is an observation, with the same antialiasing.
         let png = if size == self.environment.world().agent_params.picture_size() {
             png(size, &self.environment.observe().rgb)
         } else {
@@ -173,7 +174,7 @@ impl Session {
         Ok(path.display().to_string())
     }
 
-    /// Sends an L2Explorer message. Refusals also give a remark, because the original client ignores answers.
+    /// Sends an L2Explorer message. Refusals also cause a remark, because the original client ignores answers.
     pub(super) fn send(&mut self, message: &Outgoing) {
         if let Some(texts) = message.refusal() {
             let channel = message.channel.name();

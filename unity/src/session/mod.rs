@@ -161,7 +161,7 @@ impl Session {
     /// Reads the client's first message.
     ///
     /// # Errors
-    /// [`UnityError::ClientVersion`] for a client of another major version of the protocol.
+    /// [`UnityError::ClientVersion`] for a client with a different major version of the protocol.
     pub fn begin(&mut self, said: &UnityRlInitializationInputProto) -> Result<(), UnityError> {
         self.client = Client::new(said)?;
         if said.seed != 0 {
@@ -229,7 +229,7 @@ impl Session {
         self.keep_recording(None);
     }
 
-    /// Records what messages did to the world: nothing, a change during the episode, or another world.
+    /// Records what messages did to the world: nothing, a change during the episode, or a new world.
     fn note_change(&mut self, recording: Recording, before: &World, is_renewed: bool) {
         if is_renewed {
             if !recording.actions.is_empty() {
@@ -263,7 +263,7 @@ impl Session {
         self.keep_recording(None);
         let mut world = self.start.clone();
         if !self.parameters.is_empty() {
-            // Each number is valid by itself, but may be invalid in this world.
+            // Each number is valid on its own, but may be invalid in this world.
             match self.parameters.try_world(world.clone()) {
                 Ok(changed) => world = changed,
                 Err(problem) => {
@@ -326,7 +326,7 @@ impl Session {
         Ok(vec![agent, self.decision(0.0, 0)?])
     }
 
-    /// Checks that the end of an episode and the start of the next fit into one message. Images of floats always have
+    /// Checks that the end of an episode and the start of the next fit into one message. Images as floats always have
     /// the same size, so the error is raised at the start and not during training.
     fn check_end_fits(&self, agent: &AgentInfoProto) -> Result<(), UnityError> {
         let world = self.environment.world();

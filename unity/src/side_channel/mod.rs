@@ -1,4 +1,4 @@
-//! Side channel messages: their packing, and the channels.
+//! Side channel messages: their encoding, and the channels.
 
 mod engine;
 mod payload;
@@ -95,7 +95,7 @@ pub(crate) fn write_record(bytes: &mut Vec<u8>, id: Uuid, payload: &[u8]) {
     bytes.extend_from_slice(payload);
 }
 
-/// Encodes a text as a payload: its length in bytes, then its bytes.
+/// Encodes a string as a payload: its length in bytes, then its bytes.
 pub(crate) fn text_payload(text: &str) -> Vec<u8> {
     let mut payload = Vec::with_capacity(text.len() + 4);
     payload.extend_from_slice(&(text.len() as i32).to_le_bytes());

@@ -1,4 +1,4 @@
-//! [`Payload`]: reads numbers and texts from a message's bytes, never past their end.
+//! [`Payload`]: reads numbers and strings from a message's bytes, never past their end.
 
 /// The unread rest of a message.
 #[derive(Clone, Copy, Debug)]
@@ -19,7 +19,7 @@ impl<'a> Payload<'a> {
         self.word().map(f32::from_le_bytes)
     }
 
-    /// Reads a text: its length in bytes, then its bytes.
+    /// Reads a string: its length in bytes, then its bytes.
     pub(crate) fn text(&mut self) -> Result<&'a str, String> {
         let length = self.int()?;
         let split = usize::try_from(length)

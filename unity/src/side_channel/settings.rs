@@ -9,7 +9,7 @@ pub(crate) struct Setting {
     pub(crate) value: f32,
 }
 
-/// Longest name, in bytes.
+/// Maximum length of a name, in bytes.
 const LONGEST_KEY: usize = 200;
 
 /// Reads an environment parameter; samplers are refused.

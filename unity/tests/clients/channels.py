@@ -1,7 +1,4 @@
-"""L2Explorer's three side channels as a client has them: JSON out, JSON back, each answer kept.
-
-What the messages do is in the tests; how they travel is the client's.
-"""
+"""L2Explorer's three side channels on the client's side: they send and receive JSON, and keep every answer."""
 
 from __future__ import annotations
 
@@ -23,7 +20,7 @@ class RawChannel(SideChannel):
 
     def __init__(self, guid: str) -> None:
         super().__init__(uuid.UUID(guid))
-        #: What came, oldest first.
+        #: Received messages, oldest first.
         self.received: list[bytes] = []
 
     def on_message_received(self, msg: IncomingMessage) -> None:
@@ -36,13 +33,13 @@ class RawChannel(SideChannel):
 
 
 class JsonChannel(RawChannel):
-    """One of the three."""
+    """One of L2Explorer's three channels."""
 
     def __init__(self, name: str) -> None:
         super().__init__(GUIDS[name])
 
     def say(self, action: str, payload: Any = None, **beside: Any) -> str:
-        """Queues a message for the next reset or step; hands back its token."""
+        """Queues a message for the next reset or step; returns its token."""
         token = str(uuid.uuid4())
         message = {"token": token, "msg_time": "2026-01-02T03:04:05", "action": action, **beside}
         if payload is not None:
@@ -51,24 +48,24 @@ class JsonChannel(RawChannel):
         return token
 
     def send_text(self, text: str) -> None:
-        """Queues a text, letters beyond ASCII included, which clients do not write by themselves."""
+        """Queues a string, including characters beyond ASCII, which clients do not send by themselves."""
         data = text.encode()
         self.send_bytes(len(data).to_bytes(4, "little") + data)
 
     def take(self) -> list[dict[str, Any]]:
-        """What has come since the last time; old clients read nothing but ASCII."""
+        """The messages received since the last call; old clients read only ASCII."""
         texts = [data[4:].decode("ascii") for data in self.received]
         self.received = []
         return [json.loads(text) for text in texts]
 
     def answer(self, token: str) -> dict[str, Any]:
-        """The one answer to a message, out of what has come since the last time."""
+        """The only answer to a message, among those received since the last call."""
         (answer,) = (message for message in self.take() if message["req_token"] == token)
         return dict(answer)
 
 
 class Channels:
-    """The three, for one client."""
+    """The three channels of one client."""
 
     def __init__(self) -> None:
         self.reset, self.state, self.debug = (JsonChannel(name) for name in GUIDS)

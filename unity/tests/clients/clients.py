@@ -1,7 +1,4 @@
-"""One way to speak to the clients of every generation, and to start the executable under them.
-
-What is said on side channels is in ``channels.py``; what must be true of all of it, in the tests.
-"""
+"""A common interface to clients of every generation, which also starts their executable."""
 
 from __future__ import annotations
 
@@ -26,7 +23,7 @@ GENERATION = tuple(int(number) for number in re.findall(r"\d+", mlagents_envs.__
 #: The behaviour's name.
 BEHAVIOR = "L2Explorer?team=0"
 
-#: How long to wait for what comes in a moment: a bound, not a measure.
+#: Timeout for events that normally take a moment.
 PATIENCE_SECS = 30
 
 #: An action that does nothing.
@@ -41,14 +38,14 @@ class Seen:
 
     agent_id: int
     reward: float
-    #: As the client has them.
+    #: The observations, as the client returns them.
     arrays: list[Floats]
-    #: Whether an episode ended at its last step; of an end only.
+    #: Whether a limit of steps ended the episode; only set at an end.
     truncated: bool = False
 
     @property
     def pictures(self) -> list[Floats]:
-        """Depth, colours, segmentation as (height, width, channels), whatever the client's order."""
+        """Depth, colour and segmentation as (height, width, channels), whatever the client's order of axes."""
         axes = (1, 2, 0) if GENERATION >= (1, 0) else (0, 1, 2)
         return [array.transpose(axes) for array in self.arrays if array.ndim == 3]
 
@@ -70,7 +67,7 @@ class Seen:
         return self.arrays[3]
 
     def equals(self, other: Seen) -> bool:
-        """Whether both have seen the same, to the last bit."""
+        """Whether both have the same observations, bit for bit."""
         return len(self.arrays) == len(other.arrays) and all(
             mine.shape == theirs.shape and bool((mine == theirs).all())
             for mine, theirs in zip(self.arrays, other.arrays)
@@ -79,7 +76,7 @@ class Seen:
 
 @dataclass(frozen=True)
 class Moment:
-    """What a reset or a step led to."""
+    """The result of a reset or a step."""
 
     #: The agent before its next action.
     now: Seen
@@ -88,7 +85,7 @@ class Moment:
 
 
 class Client:
-    """A client of whatever generation is installed, and the executable under it."""
+    """A client of the installed generation, and its executable."""
 
     def __init__(self, env: UnityEnvironment, process: subprocess.Popen[Any] | None) -> None:
         self.env = env
@@ -105,7 +102,7 @@ class Client:
         return self.moment()
 
     def choose(self, row: int) -> Moment:
-        """A step of a world with a table of actions."""
+        """Takes a step with a row of the world's action table."""
         if GENERATION < (0, 17):
             self.env.set_actions(BEHAVIOR, np.array([[row]], dtype=np.int32))
         else:
@@ -116,7 +113,7 @@ class Client:
         return self.moment()
 
     def branches(self) -> tuple[int, ...]:
-        """How many choices each discrete number of an action has."""
+        """The number of choices for each discrete number of an action."""
         spec = self.spec()
         if GENERATION < (0, 17):
             return tuple(spec.discrete_action_branches or ())
@@ -158,7 +155,7 @@ class Client:
         return self.env.get_behavior_spec(BEHAVIOR) if GENERATION < (0, 17) else self.env.behavior_specs[BEHAVIOR]
 
     def shapes(self) -> list[tuple[int, ...]]:
-        """The shapes of observations as the client was told them, pictures as (height, width, channels)."""
+        """The observation shapes that the client was given, pictures as (height, width, channels)."""
         spec = self.spec()
         if GENERATION < (0, 17):
             return list(spec.observation_shapes)
@@ -166,11 +163,11 @@ class Client:
         return [(*shape[1:], shape[0]) if GENERATION >= (1, 0) and len(shape) == 3 else shape for shape in shapes]
 
     def communicator(self) -> Any:
-        """What carries messages, for what the client itself never says."""
+        """The client's communicator, for messages that the client itself never sends."""
         return self.env.communicator if GENERATION < (0, 17) else self.env._communicator
 
     def close(self) -> int:
-        """Ends the session; the exit code of the executable."""
+        """Ends the session; returns the executable's exit code."""
         self.env.close()
         return self.process.wait(PATIENCE_SECS)
 
@@ -181,7 +178,7 @@ class Launcher:
     def __init__(self, executable: Path, folder: Path) -> None:
         #: The executable under its own name.
         self.executable = executable
-        # Clients look for this ending.
+        # Clients look for this extension.
         self.file_name = folder / "l2explorer.x86_64"
         self.file_name.symlink_to(executable)
         self._clients: list[Client] = []
@@ -209,7 +206,7 @@ class Launcher:
         return self._clients[-1]
 
     def run(self, *args: str) -> subprocess.Popen[str]:
-        """The executable alone, started by hand; what it says can be read."""
+        """Starts the executable alone; its output can be read."""
         process = subprocess.Popen(
             [str(self.executable), *args], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
         )
@@ -217,7 +214,7 @@ class Launcher:
         return process
 
     def meet(self, *args: str, channels: Sequence[SideChannel] = ()) -> Client:
-        """A client that starts nothing (Unity's editor mode), and the executable, started by hand."""
+        """A client that starts nothing (Unity's editor mode), with an executable that is started separately."""
         port = free_port()
         process = self.run("--mlagents-port", str(port), *args)
         self._clients.append(Client(self.await_executable(port, channels), process))
@@ -241,12 +238,12 @@ class Launcher:
                     pipe.close()
 
 
-#: What the clients call further arguments for the executable.
+#: The clients' name for additional arguments of the executable.
 ARGS = "args" if GENERATION < (0, 20) else "additional_args"
 
 
 def free_port(count: int = 1) -> int:
-    """The first of that many ports in a row that nobody listens at."""
+    """The first of ``count`` consecutive free ports."""
     while True:
         with closing(socket.create_server(("127.0.0.1", 0))) as first:
             port = int(first.getsockname()[1])
@@ -259,14 +256,14 @@ def free_port(count: int = 1) -> int:
 
 
 def said(process: subprocess.Popen[str]) -> tuple[int, str]:
-    """The exit code of an executable that ends by itself, and what it said."""
+    """The exit code and the error output of an executable that ends by itself."""
     _, errors = process.communicate(timeout=PATIENCE_SECS)
     return process.returncode, errors
 
 
 @contextmanager
 def told_version(version: str, monkeypatch: Any) -> Iterator[None]:
-    """Clients of that version of the protocol."""
+    """Makes clients announce this version of the protocol."""
     with monkeypatch.context() as patch:
         patch.setattr(UnityEnvironment, "API_VERSION", version)
         yield

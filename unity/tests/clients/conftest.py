@@ -1,7 +1,4 @@
-"""What the tests with the Python clients share: the executable, and a launcher that leaves no process behind.
-
-What must be true stands in the tests.
-"""
+"""Fixtures of the tests with the Python clients: the executable, and a launcher that leaves no process behind."""
 
 from __future__ import annotations
 
@@ -14,7 +11,7 @@ import pytest
 from channels import Channels
 from clients import Launcher
 
-# Where the original's files are if nobody says otherwise: beside the checkout.
+# The default folder of the original's files, beside the checkout.
 BESIDE = Path(__file__).parents[4] / "shared" / "reference"
 
 
@@ -29,7 +26,7 @@ def executable() -> Path:
 
 @pytest.fixture
 def launcher(executable: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Launcher]:
-    """Starts clients in a folder of the test's own."""
+    """A launcher that starts clients in the test's own folder."""
     monkeypatch.chdir(tmp_path)
     folder = tmp_path / "application"
     folder.mkdir()

@@ -1,4 +1,4 @@
-"""How sessions end: the client closes, quits, dies, stops for a while, loses its connection, or sends what cannot be."""
+"""How sessions end: the client closes, quits, dies, pauses, loses its connection, or sends invalid data."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def test_a_client_that_closes_ends_the_executable_with_0(launcher: Launcher, ste
     assert client.close() == 0
 
 
-def test_closing_twice_is_refused_by_the_client_and_harms_nobody(launcher: Launcher) -> None:
+def test_closing_twice_is_refused_by_the_client_and_does_no_harm(launcher: Launcher) -> None:
     client = launcher.start()
     client.reset()
     assert client.close() == 0
@@ -47,7 +47,7 @@ def test_closing_twice_is_refused_by_the_client_and_harms_nobody(launcher: Launc
     assert client.process.returncode == 0
 
 
-def test_a_client_in_editor_mode_closes_as_any_other(launcher: Launcher) -> None:
+def test_a_client_in_editor_mode_closes_like_any_other(launcher: Launcher) -> None:
     client = launcher.meet()
     client.reset()
     client.step(AHEAD)
@@ -77,7 +77,7 @@ def test_the_command_quit_ends_the_executable_with_0(launcher: Launcher) -> None
 
 
 @pytest.mark.parametrize("number", [float("nan"), float("inf"), float("-inf")])
-def test_an_action_that_is_no_number_ends_both_at_once_and_is_explained(launcher: Launcher, number: float) -> None:
+def test_an_action_that_is_not_finite_ends_both_at_once_and_is_explained(launcher: Launcher, number: float) -> None:
     client = launcher.meet()
     client.reset()
     with pytest.raises(UnityCommunicatorStoppedException):
@@ -87,7 +87,7 @@ def test_an_action_that_is_no_number_ends_both_at_once_and_is_explained(launcher
 
 
 @pytest.mark.parametrize("version", ["0.15.0", "2.0.0"])
-def test_a_client_of_another_major_version_is_refused_on_both_sides(
+def test_a_client_of_a_different_major_version_is_refused_on_both_sides(
     launcher: Launcher, monkeypatch: pytest.MonkeyPatch, version: str
 ) -> None:
     port = free_port()
@@ -101,7 +101,8 @@ def test_a_client_of_another_major_version_is_refused_on_both_sides(
     assert code == 1 and f'found version "{version}" of the protocol, expected 1.x' in errors
 
 
-#: A client in a process of its own: starts what it is told to, says the executable's process id, and steps when it reads a line.
+#: A client in a separate process: starts the named executable, prints its process id, and takes a step for each line
+#: that it reads.
 CLIENT = """
 import sys
 sys.path.insert(0, {folder!r})
@@ -118,7 +119,7 @@ env.close()
 
 
 class Other:
-    """A client in a process of its own."""
+    """A client in a separate process."""
 
     def __init__(self, name: str, port: int) -> None:
         code = CLIENT.format(folder=str(Path(__file__).parent))
@@ -246,7 +247,7 @@ def test_a_connection_that_is_lost_ends_the_executable_with_0(
     initialize = RpcCommunicator.initialize
 
     def start_the_other_end(*args: Any) -> Any:
-        # Now the client listens, and looks for nobody yet.
+        # The client already listens, but does not wait for the executable yet.
         processes.append(launcher.run("--mlagents-port", str(cable.port)))
         return initialize(*args)
 
@@ -261,7 +262,7 @@ def test_a_connection_that_is_lost_ends_the_executable_with_0(
     env.close()
 
 
-def test_a_log_file_holds_what_is_said_and_unitys_options_do_no_harm(launcher: Launcher, channels: Channels) -> None:
+def test_log_file_has_all_messages_and_unitys_options_do_no_harm(launcher: Launcher, channels: Channels) -> None:
     Path("remarks.log").write_text("before\n", encoding="utf-8")
     client = launcher.start(
         "-logFile",
@@ -294,7 +295,7 @@ def test_a_log_file_holds_what_is_said_and_unitys_options_do_no_harm(launcher: L
 
 
 @pytest.mark.skipif(GENERATION < (0, 28), reason="older clients have no log_folder")
-def test_newer_clients_have_the_log_file_in_a_folder_of_theirs(launcher: Launcher, tmp_path: Path) -> None:
+def test_newer_clients_have_the_log_file_in_their_own_folder(launcher: Launcher, tmp_path: Path) -> None:
     client = launcher.start(log_folder=str(tmp_path))
     client.reset()
     assert client.close() == 0
@@ -318,7 +319,7 @@ def test_a_log_file_that_cannot_be_written_is_an_error(launcher: Launcher) -> No
         ('{"version": 1, "objects": [{"class": 3}]}', "/objects/0/class"),
     ],
 )
-def test_a_world_file_that_is_none_is_an_error_before_a_client_comes(
+def test_an_invalid_world_file_is_an_error_before_a_client_connects(
     launcher: Launcher, text: str | None, expected: str
 ) -> None:
     if text is not None:
@@ -327,7 +328,7 @@ def test_a_world_file_that_is_none_is_an_error_before_a_client_comes(
     assert code == 1 and expected in errors
 
 
-def test_what_a_reset_file_of_the_originals_has_beyond_its_form_is_remarked(launcher: Launcher) -> None:
+def test_unknown_keys_of_a_reset_file_of_the_original_are_logged(launcher: Launcher) -> None:
     Path("own.json").write_text(json.dumps({**world(), "objcts": []}), encoding="utf-8")
     client = launcher.start("--world", "own.json", "-logFile", "remarks.log")
     client.reset()

@@ -1,4 +1,4 @@
-"""The Python in docs/l2explorer.md runs as it stands. What it shows is tested in the files beside this one."""
+"""The Python in docs/l2explorer.md runs unchanged."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def test_the_guides_example_runs(tmp_path: Path) -> None:
     link.symlink_to(Path(os.environ["DRIFTWORLD_UNITY"]).resolve())
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
-        # Ports count from 5005.
+        # The port is 5005 plus the worker's number.
         worker = free.getsockname()[1] - 5005
     blocks = BLOCK.findall(GUIDE.read_text(encoding="utf-8"))
     assert len(blocks) == 1

@@ -30,7 +30,7 @@ def client(launcher: Launcher, channels: Channels, parameters: EnvironmentParame
 
 
 def sampler(name: str) -> OutgoingMessage:
-    """A parameter that is to be drawn from a uniform distribution, as newer clients say it."""
+    """A parameter that is to be drawn from a uniform distribution, as newer clients send it."""
     message = OutgoingMessage()
     message.write_string(name)
     for number in (1, 7, 0):
@@ -43,14 +43,14 @@ def log() -> str:
     return Path("remarks.log").read_text(encoding="utf-8")
 
 
-def test_a_parameter_takes_hold_at_the_next_reset(client: Client, parameters: EnvironmentParametersChannel) -> None:
+def test_a_parameter_takes_effect_at_the_next_reset(client: Client, parameters: EnvironmentParametersChannel) -> None:
     parameters.set_float_parameter("time_step", 0.02)
     assert client.step((5.0, 0.0, 0.0)).now.vector[2] == pytest.approx(0.5), "not yet"
     client.reset()
     assert client.step((5.0, 0.0, 0.0)).now.vector[2] == pytest.approx(0.1)
 
 
-def test_a_parameter_takes_hold_in_the_reset_that_brings_it(
+def test_a_parameter_takes_effect_in_the_reset_that_sends_it(
     client: Client, parameters: EnvironmentParametersChannel
 ) -> None:
     parameters.set_float_parameter("frame_skip", 4)
@@ -58,7 +58,7 @@ def test_a_parameter_takes_hold_in_the_reset_that_brings_it(
     assert client.step((5.0, 0.0, 0.0)).now.vector[2] == pytest.approx(2)
 
 
-def test_a_parameter_is_laid_over_worlds_that_messages_bring(
+def test_a_parameter_overrides_worlds_sent_by_messages(
     client: Client, channels: Channels, parameters: EnvironmentParametersChannel
 ) -> None:
     parameters.set_float_parameter("max_steps", 2)
@@ -70,7 +70,7 @@ def test_a_parameter_is_laid_over_worlds_that_messages_bring(
     assert [client.step().end is not None for _ in range(4)] == [False, True, False, True], "and stays"
 
 
-def test_limits_of_speed_are_parameters(client: Client, parameters: EnvironmentParametersChannel) -> None:
+def test_speed_limits_are_parameters(client: Client, parameters: EnvironmentParametersChannel) -> None:
     parameters.set_float_parameter("max_linear_speed", 2)
     parameters.set_float_parameter("max_angular_speed", 10)
     client.reset()
@@ -89,7 +89,7 @@ def test_a_parameter_changes_what_is_seen(
     assert (after.rgb.mean() < before.rgb.mean() / 2) == (name == "light_intensity")
 
 
-def test_nonsense_is_ignored_and_remarked_once(client: Client, parameters: EnvironmentParametersChannel) -> None:
+def test_invalid_parameters_are_ignored_and_logged(client: Client, parameters: EnvironmentParametersChannel) -> None:
     before = client.reset().now
     for _ in range(3):
         for name, value in [
@@ -123,14 +123,14 @@ def test_nonsense_is_ignored_and_remarked_once(client: Client, parameters: Envir
         assert remarks.count(expected) == 1, (expected, remarks)
 
 
-def test_a_bad_value_leaves_the_one_before(client: Client, parameters: EnvironmentParametersChannel) -> None:
+def test_an_invalid_value_keeps_the_previous_one(client: Client, parameters: EnvironmentParametersChannel) -> None:
     parameters.set_float_parameter("frame_skip", 3)
     parameters.set_float_parameter("frame_skip", -3)
     client.reset()
     assert client.step((5.0, 0.0, 0.0)).now.vector[2] == pytest.approx(1.5)
 
 
-def test_float_properties_do_the_same(launcher: Launcher, channels: Channels) -> None:
+def test_float_properties_act_like_parameters(launcher: Launcher, channels: Channels) -> None:
     properties = FloatPropertiesChannel()
     client = launcher.start("-logFile", "remarks.log", channels=[*channels.all, properties])
     channels.reset.say("reset_environment", world())
@@ -142,7 +142,7 @@ def test_float_properties_do_the_same(launcher: Launcher, channels: Channels) ->
     assert 'float property: "gravity" = 1: ignored' in log()
 
 
-def test_the_engines_configuration_changes_nothing_and_is_remarked(launcher: Launcher, channels: Channels) -> None:
+def test_the_engines_configuration_changes_nothing_and_is_logged(launcher: Launcher, channels: Channels) -> None:
     engine = EngineConfigurationChannel()
     client = launcher.start("-logFile", "remarks.log", channels=[*channels.all, engine])
     channels.reset.say("reset_environment", world(thing(0, 8)))

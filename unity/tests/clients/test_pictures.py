@@ -1,4 +1,4 @@
-"""How pictures travel: as PNG files or as floats, and what becomes of them when their size changes."""
+"""Pictures are sent as PNG files or as floats, and may change their size."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from worlds import AHEAD, thing, world
 THINGS = (thing(0, 6, 1.0), thing(2, 8), thing(-2, 5, -1.0))
 
 
-def test_floats_are_what_png_files_say_and_depth_has_its_fractions(launcher: Launcher) -> None:
+def test_floats_equal_the_png_files_except_for_finer_depth(launcher: Launcher) -> None:
     seen = []
     for options in ([], ["--raw-observations"]):
         channels = Channels()
@@ -33,7 +33,7 @@ def test_floats_are_what_png_files_say_and_depth_has_its_fractions(launcher: Lau
         assert len(np.unique(floats.depth)) > len(np.unique(png.depth)), "there is more in it"
 
 
-def test_another_size_in_mid_session_is_told_and_seen(launcher: Launcher, channels: Channels) -> None:
+def test_size_change_mid_session_changes_shapes_and_pictures(launcher: Launcher, channels: Channels) -> None:
     client = launcher.start(channels=channels.all)
     for size in (32, 20, 100, 1, 32):
         channels.reset.say("reset_environment", world(*THINGS, agent={"observation_size": size}))
@@ -44,7 +44,7 @@ def test_another_size_in_mid_session_is_told_and_seen(launcher: Launcher, channe
         assert [picture.shape for picture in later.pictures] == [(size, size, 3)] * 3
 
 
-def test_another_size_can_come_with_a_step(launcher: Launcher, channels: Channels) -> None:
+def test_size_can_change_with_a_step(launcher: Launcher, channels: Channels) -> None:
     client = launcher.start(channels=channels.all)
     client.reset()
     channels.reset.say("reset_environment", world(*THINGS))
@@ -52,7 +52,7 @@ def test_another_size_can_come_with_a_step(launcher: Launcher, channels: Channel
     assert client.shapes()[0] == (32, 32, 3)
 
 
-def test_pictures_larger_than_a_message_may_be_end_the_session_clearly(launcher: Launcher, channels: Channels) -> None:
+def test_pictures_too_large_for_a_message_end_the_session_with_advice(launcher: Launcher, channels: Channels) -> None:
     client = launcher.meet("--raw-observations", channels=channels.all)
     client.reset()
     channels.reset.say("reset_environment", world(agent={"observation_size": 400}))

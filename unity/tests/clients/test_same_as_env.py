@@ -1,6 +1,6 @@
-"""The client sees what the environment of the same package shows, bit by bit: same worlds, same actions, five hundred steps.
+"""The client sees the same as our Gymnasium environment, bit for bit, with the same actions in the same worlds.
 
-Our own Gymnasium environment says what is right; where the package is not installed these are skipped.
+These tests are skipped if the Python package is not installed.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ pytest.importorskip("gymnasium", reason="compares with the package driftworld, w
 driftworld = pytest.importorskip("driftworld", reason="compares with the package driftworld, which is not installed")
 import gymnasium as gym
 
-#: The colours of categories: sky, map, building, what pays, what does not, what costs.
+#: The colours of categories: sky, map, building, then objects with a positive, zero and negative reward.
 COLORS = np.array(
     [(0, 0, 0), (255, 255, 255), (178, 255, 178), (0, 255, 255), (255, 178, 178), (255, 0, 255)], dtype=np.uint8
 )
 
 STIMULI = {"reward_stimulus": ["AgentCollide"], "destroy_stimulus": ["AgentInteract"]}
 
-#: Something of everything, and much in the way.
+#: Objects of all kinds, with many in the agent's way.
 OWN = world(
     *(thing(x, y, reward, **STIMULI) for x, y, reward in [(0, 4, 1.5), (3, 3, -2.0), (-3, 2, 0.0), (2, -5, 4.0)]),
     *(thing(x, y, x / 4, **STIMULI) for x in range(-16, 17, 8) for y in range(-15, 16, 6) if abs(x) + abs(y) > 6),
@@ -45,7 +45,7 @@ OWN = world(
 
 
 def actions() -> Iterator[Floats]:
-    """Five hundred actions: forwards in bends, sometimes a step back or out of range, which meets much."""
+    """Five hundred actions: forwards in curves, sometimes backwards or out of range, so that much is met."""
     chance = np.random.default_rng(7)
     for step in range(500):
         action = chance.uniform([-3, -20, 0], [14, 20, 1])
@@ -54,18 +54,18 @@ def actions() -> Iterator[Floats]:
 
 
 def converted(original: Path) -> str:
-    """A file of L2Explorer's in our form, as our command converts it."""
+    """A file of L2Explorer's, converted to our format by our command."""
     command = [sys.executable, "-m", "driftworld", "convert", str(original), "--l2explorer"]
     return subprocess.run(command, check=True, capture_output=True, encoding="utf-8").stdout
 
 
 def shares(levels: npt.NDArray[np.uint8]) -> Floats:
-    """Levels of 8 bits as clients have them."""
+    """8-bit levels as the floats that clients return."""
     return levels.astype(np.float32) / np.float32(255)
 
 
 def check(seen: Seen, observation: dict[str, Any]) -> None:
-    """All four observations are the same, to the last bit."""
+    """Expects all four observations to be equal, bit for bit."""
     assert (seen.depth == shares(observation["depth"].repeat(3, axis=2))).all()
     assert (seen.rgb == shares(observation["rgb"])).all()
     assert (seen.segmentation == shares(COLORS[observation["segmentation"][..., 0]])).all()
@@ -73,7 +73,7 @@ def check(seen: Seen, observation: dict[str, Any]) -> None:
 
 
 def live(client: Client, environment: Any) -> tuple[int, list[float]]:
-    """Lives the same life in both; how many episodes it had, and what they paid."""
+    """Takes the same actions in both; returns the number of finished episodes, and the rewards other than 0."""
     observation, _ = environment.reset(seed=0)
     check(client.reset().now, observation)
     episodes, rewards = 0, []
@@ -101,7 +101,7 @@ def environment(world: str, **options: Any) -> Any:
     return gym.make("driftworld/World-v0", world=world, modalities=modalities, actions="continuous", **options)
 
 
-def test_in_an_example_of_the_originals(launcher: Launcher, channels: Channels, reference: Path) -> None:
+def test_in_an_example_world_of_the_original(launcher: Launcher, channels: Channels, reference: Path) -> None:
     original = reference / "map_findobjects_0.json"
     client = launcher.start(channels=channels.all)
     channels.reset.say("reset_environment", json.loads(original.read_text(encoding="utf-8")))
@@ -120,14 +120,14 @@ def test_in_a_world_where_much_happens(launcher: Launcher, channels: Channels) -
 
 
 @pytest.mark.parametrize("task", ["find_objects#red", "moving_object", "scavenger_hunt"])
-def test_in_a_world_of_a_task_of_ours(launcher: Launcher, task: str) -> None:
+def test_in_a_world_of_a_built_in_task(launcher: Launcher, task: str) -> None:
     sample = driftworld.variant(task).sample_json(5, 0) if "#" in task else None
     text = sample or driftworld.TaskSpec.load(task).variant().sample_json(5, 0)
     Path("own.json").write_text(text, encoding="utf-8")
     live(launcher.start("--world", "own.json"), environment(text))
 
 
-def test_after_an_object_came_in_mid_episode(launcher: Launcher, channels: Channels) -> None:
+def test_with_an_object_created_by_a_message(launcher: Launcher, channels: Channels) -> None:
     client = launcher.start(channels=channels.all)
     new = thing(1, 3, 2.5, reward_stimulus=["AgentCollide"])
     channels.reset.say("reset_environment", OWN | {"objects": []})

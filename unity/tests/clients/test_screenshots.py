@@ -1,4 +1,4 @@
-"""Pictures on request: what is in them, and that whatever name a message has, nothing is written outside of one folder."""
+"""Screenshots: their contents, and that no file name leads outside their folder."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from worlds import AHEAD, thing, world
 
 @pytest.fixture
 def client(launcher: Launcher, channels: Channels, tmp_path: Path) -> Client:
-    """A client whose screenshots go into ``pictures``, three folders further in."""
+    """A client whose screenshots go into ``a/b/pictures``."""
     client = launcher.start("--screenshots", str(tmp_path / "a" / "b" / "pictures"), channels=channels.all)
     channels.reset.say("reset_environment", world(thing(0, 6, 1.0), thing(2, 8)))
     client.reset()
@@ -24,7 +24,7 @@ def client(launcher: Launcher, channels: Channels, tmp_path: Path) -> Client:
 
 
 def written(folder: Path) -> set[str]:
-    """All files below a folder, but for the executable."""
+    """All files below a folder, except the executable."""
     names = {str(path.relative_to(folder)) for path in folder.rglob("*") if not path.is_dir()}
     return names - {"application/l2explorer.x86_64"}
 
@@ -40,7 +40,7 @@ def seen_pixels(seen: Seen) -> npt.NDArray[np.uint8]:
     return levels
 
 
-def test_a_screenshot_is_what_the_agent_sees_when_it_is_asked_for(
+def test_a_screenshot_shows_what_the_agent_sees_when_it_is_requested(
     client: Client, channels: Channels, tmp_path: Path
 ) -> None:
     before = client.step(AHEAD).now
@@ -53,7 +53,7 @@ def test_a_screenshot_is_what_the_agent_sees_when_it_is_asked_for(
 
 
 @pytest.mark.parametrize("factor", [None, 1, 2, 5, 128])
-def test_a_screenshot_is_as_many_times_as_large_as_it_should_be(
+def test_a_screenshot_is_upscaled_by_the_requested_factor(
     client: Client, channels: Channels, tmp_path: Path, factor: int | None
 ) -> None:
     payload = {"filename": "a.png"} if factor is None else {"filename": "a.png", "upscale_factor": factor}
@@ -71,7 +71,7 @@ def test_a_screenshot_is_as_many_times_as_large_as_it_should_be(
 
 
 @pytest.mark.parametrize("factor", [0, -1, 1.5, 129, 1e300, "2", [1], True])
-def test_a_size_that_cannot_be_is_refused(client: Client, channels: Channels, tmp_path: Path, factor: object) -> None:
+def test_invalid_upscale_factors_fail(client: Client, channels: Channels, tmp_path: Path, factor: object) -> None:
     token = channels.debug.say("save_screenshot", {"filename": "a.png", "upscale_factor": factor})
     client.step()
     answer = channels.debug.answer(token)
@@ -108,7 +108,7 @@ def test_whatever_its_name_a_screenshot_is_written_inside_the_folder(
     assert written(tmp_path) == {f"a/b/pictures/{expected}"}
 
 
-def test_an_absolute_name_is_written_inside_the_folder_and_not_there(
+def test_an_absolute_path_is_written_inside_the_folder(
     client: Client, channels: Channels, tmp_path: Path
 ) -> None:
     (tmp_path / "mine.png").write_text("mine", encoding="utf-8")
@@ -121,7 +121,7 @@ def test_an_absolute_name_is_written_inside_the_folder_and_not_there(
 @pytest.mark.parametrize(
     "name", ["", ".", "..", "/", "a/", ".hidden", "a\0.png", "a\n.png", "a" * 300, "a/" * 2000 + "a"]
 )
-def test_a_name_that_is_none_is_refused(client: Client, channels: Channels, tmp_path: Path, name: str) -> None:
+def test_an_invalid_name_is_refused(client: Client, channels: Channels, tmp_path: Path, name: str) -> None:
     token = channels.debug.say("save_screenshot", {"filename": name})
     client.step()
     answer = channels.debug.answer(token)
@@ -129,7 +129,7 @@ def test_a_name_that_is_none_is_refused(client: Client, channels: Channels, tmp_
     assert written(tmp_path) == set()
 
 
-def test_links_lead_nowhere(client: Client, channels: Channels, tmp_path: Path) -> None:
+def test_links_are_not_followed(client: Client, channels: Channels, tmp_path: Path) -> None:
     outside, pictures = tmp_path / "outside", tmp_path / "a" / "b" / "pictures"
     outside.mkdir()
     (outside / "mine.png").write_text("mine", encoding="utf-8")
@@ -167,7 +167,7 @@ def test_without_an_option_they_go_into_screenshots_of_the_working_directory(
     assert written(tmp_path) == {"screenshots/a.png"}
 
 
-def test_a_folder_that_cannot_be_written_is_an_answer_and_no_end(launcher: Launcher, channels: Channels) -> None:
+def test_an_unwritable_folder_is_answered_by_an_error_and_ends_nothing(launcher: Launcher, channels: Channels) -> None:
     Path("taken").write_text("a file", encoding="utf-8")
     client = launcher.start("--screenshots", "taken", channels=channels.all)
     client.reset()

@@ -1,4 +1,4 @@
-"""Episodes as clients live them: what they are told of the behaviour, what they see, what pays, how an episode ends."""
+"""Episodes from a client's side: the behaviour's spec, observations, rewards, and the end of an episode."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from clients import BEHAVIOR, GENERATION, REST, Launcher
 from worlds import AHEAD, GRAB, thing, world
 
 
-def test_a_client_is_told_of_one_behaviour_with_three_continuous_actions(launcher: Launcher) -> None:
+def test_a_client_gets_one_behaviour_with_three_continuous_actions(launcher: Launcher) -> None:
     client = launcher.start()
     client.reset()
     assert client.behaviors() == [BEHAVIOR]
@@ -27,7 +27,7 @@ def test_a_client_is_told_of_one_behaviour_with_three_continuous_actions(launche
 
 
 @pytest.mark.skipif(GENERATION < (0, 28), reason="older clients are told no properties of dimensions")
-def test_newer_clients_are_told_along_which_dimensions_pictures_have_neighbours(launcher: Launcher) -> None:
+def test_newer_clients_get_the_dimension_properties_of_pictures(launcher: Launcher) -> None:
     from mlagents_envs.base_env import DimensionProperty as Property
     from mlagents_envs.base_env import ObservationType
 
@@ -57,7 +57,7 @@ def test_depth_is_grey_and_the_sky_is_far_and_black(launcher: Launcher) -> None:
     assert now.depth[-1, 0, 0] < 0.1 and now.segmentation[-1, 0].tolist() == [1, 1, 1], "the ground is near, of the map"
 
 
-def test_five_hundred_steps_go_by_and_the_agent_is_the_same(launcher: Launcher, channels: Channels) -> None:
+def test_the_agent_stays_the_same_for_five_hundred_steps(launcher: Launcher, channels: Channels) -> None:
     client = launcher.start(channels=channels.all)
     channels.reset.say("reset_environment", world())
     start = client.reset().now
@@ -79,7 +79,7 @@ def test_the_state_vector_is_collected_x_y_heading_velocity(launcher: Launcher, 
     assert turned == pytest.approx([0, 0, 0.5, 9, 0, 0], abs=1e-5), "90 degrees/s for 0.1 s, to the right"
 
 
-def test_a_step_without_an_action_rests(launcher: Launcher, channels: Channels) -> None:
+def test_a_step_without_an_action_leaves_the_agent_at_rest(launcher: Launcher, channels: Channels) -> None:
     client = launcher.start(channels=channels.all)
     channels.reset.say("reset_environment", world())
     start = client.reset()
@@ -101,7 +101,7 @@ def test_an_object_that_is_touched_pays_once_for_each_contact(launcher: Launcher
     assert sum(client.step(AHEAD).now.reward for _ in range(10)) == 7, "a new contact pays again"
 
 
-def test_an_object_that_is_interacted_with_pays_and_goes(launcher: Launcher, channels: Channels) -> None:
+def test_an_object_that_is_interacted_with_pays_and_disappears(launcher: Launcher, channels: Channels) -> None:
     client = launcher.start(channels=channels.all)
     stimuli = {"reward_stimulus": ["AgentInteract"], "destroy_stimulus": ["AgentInteract"]}
     channels.reset.say("reset_environment", world(thing(0, 4, 100.0, **stimuli)))
@@ -117,7 +117,7 @@ def test_an_object_that_is_interacted_with_pays_and_goes(launcher: Launcher, cha
     assert not (taken.segmentation == cyan).all(axis=2).any(), "and is gone"
 
 
-def test_what_costs_costs(launcher: Launcher, channels: Channels) -> None:
+def test_an_object_with_a_negative_reward_costs(launcher: Launcher, channels: Channels) -> None:
     client = launcher.start(channels=channels.all)
     channels.reset.say("reset_environment", world(thing(0, 4, -2.5, reward_stimulus=["AgentCollide"])))
     client.reset()
@@ -138,7 +138,7 @@ def test_the_last_step_brings_the_end_and_the_start_of_the_next_episode(launcher
     assert [each and each.agent_id for each in ends] == [None, None, 2, None, None, 3]
 
 
-def test_an_end_by_the_worlds_own_rules_is_no_truncation(launcher: Launcher) -> None:
+def test_an_end_by_the_worlds_own_rules_is_not_a_truncation(launcher: Launcher) -> None:
     target = {"class": "geometric", "coordinates": [0, 3], "reward": 7, "reward_stimulus": ["AgentCollide"]}
     own = {
         "version": 1,
@@ -164,7 +164,7 @@ def test_the_reward_of_the_last_step_is_in_its_end(launcher: Launcher, channels:
     assert (last.end.reward, last.end.vector[0], last.now.reward, last.now.vector[0]) == (7, 1, 0, 0)
 
 
-def test_a_reset_in_mid_episode_is_another_agent_in_the_same_world(launcher: Launcher, channels: Channels) -> None:
+def test_a_reset_mid_episode_gives_a_new_agent_in_the_same_world(launcher: Launcher, channels: Channels) -> None:
     client = launcher.start(channels=channels.all)
     channels.reset.say("reset_environment", world(thing(0, 4)))
     start = client.reset().now
@@ -173,7 +173,7 @@ def test_a_reset_in_mid_episode_is_another_agent_in_the_same_world(launcher: Lau
     assert again.end is None and again.now.equals(start) and again.now.agent_id == start.agent_id + 1
 
 
-def test_the_world_of_an_option_is_there_until_a_message_brings_another(launcher: Launcher, channels: Channels) -> None:
+def test_the_world_of_an_option_is_used_until_a_message_sends_another(launcher: Launcher, channels: Channels) -> None:
     Path("own.json").write_text(json.dumps(world(agent={"coordinates": [7, 8]})), encoding="utf-8")
     client = launcher.start("--world", "own.json", channels=channels.all)
     assert client.reset().now.vector[1:3].tolist() == [7, 8]

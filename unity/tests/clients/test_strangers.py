@@ -1,4 +1,4 @@
-"""What happens when nobody is at the port, or somebody who is no client."""
+"""Errors if nothing listens at the port, or something that is not a client; invalid arguments, help and version."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ def test_without_a_client_the_exit_code_is_3_and_the_advice_names_the_port(launc
     assert f"127.0.0.1:{port}: no client within 0.5 s; start it first" in errors and "--mlagents-port" in errors
 
 
-def test_the_port_without_an_option_is_that_of_the_editor_mode(launcher: Launcher) -> None:
+def test_the_default_port_is_that_of_the_editor_mode(launcher: Launcher) -> None:
     code, errors = said(launcher.run("--wait", "0.1"))
-    # Somebody on this machine may be listening there: then the error names the same port.
+    # Something on this machine may be listening there: then the error names the same port.
     assert code in (1, 3) and "127.0.0.1:5004" in errors
 
 
@@ -36,7 +36,7 @@ def silent() -> Iterator[int]:
 
 @contextmanager
 def talking(answer: bytes) -> Iterator[int]:
-    """Says something to everybody, reads what it is told, and hangs up."""
+    """A server that sends everyone the same bytes, reads once, and hangs up."""
 
     def serve() -> None:
         while True:
@@ -59,7 +59,7 @@ def talking(answer: bytes) -> Iterator[int]:
 
 
 class Web(BaseHTTPRequestHandler):
-    """A web server of old."""
+    """A web server that speaks HTTP/1.0."""
 
     def log_message(self, *_: object) -> None:
         pass
@@ -99,7 +99,7 @@ def other_grpc() -> Iterator[int]:
     ],
     ids=["silent", "web server", "another gRPC server", "secure shell", "zeros"],
 )
-def test_what_is_no_client_is_named_and_ends_with_1(launcher: Launcher, stranger: object, expected: str) -> None:
+def test_a_server_that_is_not_a_client_is_reported(launcher: Launcher, stranger: object, expected: str) -> None:
     with stranger() as port:  # type: ignore[operator]
         code, errors = said(launcher.run("--mlagents-port", str(port), "--wait", "1"))
     assert code == 1, errors
@@ -117,13 +117,13 @@ def test_what_is_no_client_is_named_and_ends_with_1(launcher: Launcher, stranger
         ["--world", "--wait"],
     ],
 )
-def test_arguments_that_cannot_be_end_with_2_and_name_the_help(launcher: Launcher, arguments: list[str]) -> None:
+def test_invalid_arguments_end_with_2_and_name_the_help(launcher: Launcher, arguments: list[str]) -> None:
     code, errors = said(launcher.run(*arguments))
     assert code == 2 and errors.startswith(f"driftworld-unity: {arguments[0]}: found ")
     assert errors.endswith("\n`driftworld-unity --help` lists the options\n") and errors.count("\n") == 2
 
 
-def test_help_and_version_are_said_and_end_with_0(launcher: Launcher) -> None:
+def test_help_and_version_are_printed_and_end_with_0(launcher: Launcher) -> None:
     for option, expected in [("--help", "Usage: driftworld-unity"), ("--version", "stand-in for the L2Explorer")]:
         process = launcher.run(option)
         out, errors = process.communicate(timeout=10)

@@ -1,4 +1,4 @@
-"""Worlds that ask for more than three numbers: tables of actions, and photographs of the objects, one a step."""
+"""Worlds with a table of actions, and worlds whose objects are photographed, one photograph a step."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ TABLE = [[10, 0, 0], [0, 90, 0], [0, 0, 0]]
 
 
 @pytest.mark.parametrize("beside", [False, True])
-def test_a_table_is_one_choice_and_its_rows_are_taken(
+def test_a_table_is_one_choice_among_its_rows(
     launcher: Launcher, channels: Channels, tmp_path: Path, beside: bool
 ) -> None:
     own = world(agent={"actions": {"discrete": TABLE}})

@@ -1,4 +1,4 @@
-"""Several sessions beside each other, and long ones."""
+"""Several sessions at the same time, and long ones."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from worlds import thing, world
 WORLDS = [world(thing(0, 4), thing(3, 5)), world(thing(2, 6, 1.0), agent={"heading": 20, "observation_size": 24})]
 
 
-def test_two_workers_at_once_live_as_each_would_alone(launcher: Launcher) -> None:
+def test_two_workers_at_once_give_the_same_results_as_alone(launcher: Launcher) -> None:
     def start(number: int, port: int) -> tuple[Channels, list[Seen]]:
         channels = Channels()
         client = launcher.start(channels=channels.all, port=port, worker=number)
@@ -39,12 +39,12 @@ def test_two_workers_at_once_live_as_each_would_alone(launcher: Launcher) -> Non
 
 
 def resident_kib(pid: int) -> int:
-    """Memory that a process holds."""
+    """The resident memory of a process."""
     lines = Path(f"/proc/{pid}/status").read_text(encoding="utf-8").splitlines()
     return next(int(line.split()[1]) for line in lines if line.startswith("VmRSS:"))
 
 
-def test_a_thousand_resets_hold_no_more_memory_than_a_hundred(launcher: Launcher, channels: Channels) -> None:
+def test_a_thousand_resets_use_no_more_memory_than_a_hundred(launcher: Launcher, channels: Channels) -> None:
     client = launcher.start(channels=channels.all)
     chance = np.random.default_rng(1)
 
@@ -60,5 +60,5 @@ def test_a_thousand_resets_hold_no_more_memory_than_a_hundred(launcher: Launcher
 
     before = resets(100)
     after = resets(1000)
-    # The allocator of the system keeps some hundred KiB more or less from one time to the next.
+    # The system's allocator keeps a few hundred KiB more or less from one run to the next.
     assert after - before < 2048, (before, after)

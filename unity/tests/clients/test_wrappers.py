@@ -1,4 +1,4 @@
-"""ML-Agents' own wrapper for Gym over the executable: what a client that knows nothing of L2Explorer makes of it."""
+"""ML-Agents' own Gym wrapper, which knows nothing about L2Explorer, works with the executable."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ pytest.importorskip("gym", reason="the wrapper needs gym")
 
 @pytest.fixture
 def wrapper(monkeypatch: pytest.MonkeyPatch) -> Any:
-    """The module of the wrapper, of clients from 1.0 on. The package that it is in asks the network as soon as it is imported."""
+    """The wrapper's module, in clients from 1.0 on, without its package, which accesses the network on import."""
     folder = Path(mlagents_envs.__file__).parent / "envs"
     if not (folder / "unity_gym_env.py").is_file():
         pytest.skip("older clients have no wrapper")
@@ -33,7 +33,7 @@ def wrapper(monkeypatch: pytest.MonkeyPatch) -> Any:
 
 @pytest.mark.filterwarnings("ignore:.*Box bound precision lowered")
 @pytest.mark.parametrize("uint8", [False, True])
-def test_the_wrapper_lives_episodes(launcher: Launcher, channels: Channels, wrapper: Any, uint8: bool) -> None:
+def test_the_wrapper_runs_episodes(launcher: Launcher, channels: Channels, wrapper: Any, uint8: bool) -> None:
     client = launcher.start(channels=channels.all)
     channels.reset.say("reset_environment", world(max_steps=5))
     env = wrapper.UnityToGymWrapper(client.env, uint8_visual=uint8, allow_multiple_obs=True)

@@ -1,12 +1,12 @@
-"""Worlds for the tests, as L2Explorer's clients write them. What is done in them stands in the tests."""
+"""Worlds for the tests, as L2Explorer's clients write them."""
 
 from __future__ import annotations
 
 from typing import Any
 
-#: An action at full speed straight on.
+#: Straight ahead at full speed.
 AHEAD = (10.0, 0.0, 0.0)
-#: The same, interacting with what is in front.
+#: The same, while interacting with the object in front.
 GRAB = (10.0, 0.0, 1.0)
 
 
@@ -31,7 +31,7 @@ def world(*objects: dict[str, Any], agent: dict[str, Any] | None = None, **optio
 
 
 def thing(x: float, y: float, reward: float = 0.0, **options: Any) -> dict[str, Any]:
-    """A cube that stands there."""
+    """A cube at this position."""
     return {
         "class": "geometric",
         "model": "1",

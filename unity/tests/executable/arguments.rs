@@ -180,7 +180,7 @@ fn unusable_files_are_reported_before_connecting() {
 /// Neither an endless device nor an unused pipe blocks the executable.
 #[cfg(unix)]
 #[test]
-fn irregular_files_are_reported_without_blocking() {
+fn devices_and_pipes_are_reported_without_blocking() {
     let folder = folder();
     std::os::unix::fs::symlink("/dev/zero", folder.path().join("zeros")).expect("the folder can be written");
     let made = std::process::Command::new("mkfifo")

@@ -1,4 +1,4 @@
-//! Clients that violate the protocol: they and the terminal get the reason before the end.
+//! Clients that violate the protocol: before the end, the reason is sent to them and written to the terminal.
 
 use driftworld_spec::World;
 use driftworld_unity::protocol::ListAgentActionProto;
@@ -10,7 +10,7 @@ use driftworld_unity::{BEHAVIOR, MAX_INCOMING_BYTES};
 use super::played::{Answer, command, says, status, who};
 use super::session;
 
-/// Checks that a client whose last answers are invalid gets this message, and the terminal as well.
+/// Checks that a client whose last answers are invalid gets this message, and that the terminal shows it as well.
 fn check(last: Vec<Answer>, expected: &str) {
     let (ended, client) = session([vec![who("1.0.0")], last].concat(), &[]);
     assert_eq!(ended.code, Some(1), "{ended:?}");
@@ -91,7 +91,7 @@ fn too_long_messages_are_refused_before_reading() {
 }
 
 #[test]
-fn client_of_another_version_is_told_if_it_listens() {
+fn client_with_a_different_version_gets_the_reason_if_it_listens() {
     let expected =
         "client: found version \"2.0.0\" of the protocol, expected 1.x, which mlagents-envs 0.16 to 1.1 speak";
     // A client that quits before its first command does not listen; the terminal gets the reason.

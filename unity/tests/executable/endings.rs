@@ -1,4 +1,4 @@
-//! Ends that are not errors: the client quits or disconnects.
+//! Endings that are not errors: the client quits or disconnects.
 
 use driftworld_unity::protocol::{CommandProto, HeaderProto, UnityInputProto, UnityMessageProto, UnityOutputProto};
 use driftworld_unity::{Screenshots, Session, Setup, Turn};

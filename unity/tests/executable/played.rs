@@ -1,5 +1,4 @@
-//! [`Client`]: a simulated client: the gRPC server that Python is, at the byte level, so that it can also send invalid
-//! messages.
+//! [`Client`]: simulates a Python client, a gRPC server, at the byte level, so that it can also send invalid messages.
 
 use std::convert::Infallible;
 use std::net::TcpListener;
@@ -119,7 +118,7 @@ impl Client {
 
     /// Disconnects, even during a call.
     pub(crate) fn leave(&mut self) {
-        // May already have been told to leave.
+        // The client may already have left.
         let _ = self.leave.take().map(|leave| leave.send(()));
         if let Some(thread) = self.thread.take() {
             thread.join().expect("the client does not panic");
@@ -181,7 +180,7 @@ pub(crate) fn status(status: i32) -> Answer {
     input(status, None).into()
 }
 
-/// The service of clients.
+/// The gRPC service of a client.
 #[derive(Clone)]
 struct Played {
     answers: Arc<Mutex<std::vec::IntoIter<Answer>>>,

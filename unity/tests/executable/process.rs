@@ -6,7 +6,7 @@ use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 
-/// How long to wait for a process that should end.
+/// Maximum time to wait for a process to end.
 const PATIENCE: Duration = Duration::from_mins(1);
 
 /// A running process.
@@ -64,7 +64,7 @@ fn reading(mut pipe: impl Read + Send + 'static) -> Receiver<String> {
         let mut bytes = Vec::new();
         let read = pipe.read_to_end(&mut bytes);
         let text = String::from_utf8_lossy(&bytes).into_owned();
-        // A test that has failed meanwhile has dropped the receiver.
+        // A test that has failed in the meantime has dropped the receiver.
         let _ = done.send(read.map_or_else(|error| error.to_string(), |_| text));
     });
     text

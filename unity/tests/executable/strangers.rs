@@ -51,28 +51,28 @@ fn client_that_starts_later_is_found() {
 }
 
 #[test]
-fn silent_listener_is_no_client() {
+fn silent_listener_is_not_a_client() {
     let listener = free_port();
     let ended = run(&listener, &["--wait", "0.5"]).ended();
     assert_no_client(&ended, "silence for 0.5 s");
 }
 
 #[test]
-fn client_without_a_first_answer_is_no_client() {
+fn client_without_a_first_answer_is_not_a_client() {
     let (ended, client) = session(vec![], &["--wait", "0.5"]);
     assert_no_client(&ended, "silence for 0.5 s");
     assert_eq!(client.calls().len(), 1, "it was asked");
 }
 
 #[test]
-fn server_of_another_service_is_no_client() {
+fn server_with_a_different_service_is_not_a_client() {
     let client = Client::of_another_kind();
     let ended = start(&client, &[], &std::env::temp_dir()).ended();
     assert_no_client(&ended, "Unimplemented");
 }
 
 #[test]
-fn web_server_is_no_client() {
+fn web_server_is_not_a_client() {
     let listener = free_port();
     let executable = run(&listener, &[]);
     let (mut stream, _) = listener.accept().expect("somebody calls");
@@ -86,7 +86,7 @@ fn web_server_is_no_client() {
 }
 
 #[test]
-fn listener_that_hangs_up_is_no_client() {
+fn listener_that_hangs_up_is_not_a_client() {
     let listener = free_port();
     let executable = run(&listener, &[]);
     let (mut stream, _) = listener.accept().expect("somebody calls");

@@ -1,9 +1,9 @@
-"""Records what a published Python client says to a world: the bytes of each of its messages, in order.
+"""Records the messages that a published Python client sends: the bytes of each, in order.
 
     python record.py EXECUTABLE > client_0.16.json
 
-runs the executable under the mlagents-envs of that Python, and writes a line per message: what it is, and its bytes as they
-travel, in hexadecimal digits. `conversation.rs` plays them to a session. Each file says which versions made it.
+runs the executable with that Python's mlagents-envs, and writes a line for each message: a description, and its bytes
+on the wire, in hexadecimal. `conversation.rs` replays them to a session. Each file names the versions that made it.
 """
 
 import json
@@ -62,7 +62,7 @@ about = "who the client is"
 
 
 class Recorder(rpc.UnityToExternalServicerImplementation):
-    """Writes down what goes out."""
+    """Records outgoing messages."""
 
     def Exchange(self, request, context):
         reply = super().Exchange(request, context)
@@ -71,7 +71,7 @@ class Recorder(rpc.UnityToExternalServicerImplementation):
 
 
 class Json(SideChannel):
-    """A channel of L2Explorer's."""
+    """One of L2Explorer's channels."""
 
     def __init__(self, channel):
         super().__init__(uuid.UUID(channel))
@@ -83,14 +83,14 @@ class Json(SideChannel):
     def say(self, number, **fields):
         message = OutgoingMessage()
         token = f"00000000-0000-4000-8000-{number:012}"
-        # The original's client tells the time without a zone.
+        # The original's client sends the time without a time zone.
         fields = {"token": token, "msg_time": "2026-01-01T12:00:00.000001", **fields}
         message.write_string(json.dumps(fields))
         super().queue_message_to_send(message)
 
 
 def main(executable):
-    """Holds the conversation."""
+    """Runs the conversation."""
     global about
     rpc.UnityToExternalServicerImplementation = Recorder
     worlds, states, debug = Json(RESET), Json(STATE), Json(DEBUG)
