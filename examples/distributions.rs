@@ -1,4 +1,4 @@
-//! Compare two distributions of a parameter by every measure of the library: some see a shift, others only overlap.
+//! Compare two distributions of a parameter with every measure in the library: some see a shift, others only the overlap.
 #![expect(clippy::print_stdout, reason = "an example shows what it does")]
 
 use driftworld::similarity::distribution::{

@@ -1,4 +1,4 @@
-//! Score a lifetime by a custom metric alongside the built-in ones: how much an agent forgets at worst.
+//! Score a lifetime with a custom metric alongside the built-in ones: how much an agent forgets at worst.
 #![expect(clippy::print_stdout, reason = "an example shows what it does")]
 
 use driftworld::metrics::{

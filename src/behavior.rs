@@ -28,12 +28,12 @@ pub struct ExpertPair {
 }
 
 impl ExpertPair {
-    /// How many points `b`'s expert earns less in `a`'s world than that world's own expert; negative if more.
+    /// How many points less `b`'s expert earns in `a`'s world than that world's own expert; negative if more.
     pub fn regret_in_a(&self) -> f64 {
         self.a_in_a.earned - self.b_in_a.earned
     }
 
-    /// How many points `a`'s expert earns less in `b`'s world than that world's own expert; negative if more.
+    /// How many points less `a`'s expert earns in `b`'s world than that world's own expert; negative if more.
     pub fn regret_in_b(&self) -> f64 {
         self.b_in_b.earned - self.a_in_b.earned
     }
@@ -67,8 +67,8 @@ pub struct BehaviorOutcome {
 /// world; [`Expertise::abroad`] describes this in detail.
 ///
 /// The distance is symmetric, and 0 from a variant to itself. It may be 0 between different variants, and violate the triangle
-/// inequality. An expert visits what pays, nearest first: that is not optimal, and if another's route happens to be better, the
-/// regret is negative.
+/// inequality. An expert visits what pays, nearest first: that is not optimal, and if the foreign expert's route happens to be
+/// better, the regret is negative.
 ///
 /// # Errors
 /// [`Failure`] if a world cannot be drawn, or `worlds` is out of range.

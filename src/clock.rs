@@ -1,4 +1,4 @@
-//! The clock for time stamps in logs: the system's, or a stopped one, so that two runs are equal to the byte.
+//! The clock for timestamps in logs: the system clock, or a stopped one, so that repeated runs are byte-identical.
 
 use driftworld_metrics::Timestamp;
 
@@ -11,13 +11,13 @@ const STAMPS: std::ops::RangeInclusive<i64> = -62_135_596_800_000_000..=253_402_
 /// The source of the time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Clock {
-    /// The system's clock.
+    /// The system clock.
     System,
     /// A stopped clock.
     Stopped(Timestamp),
 }
 
-/// The variable holds no valid time.
+/// The variable does not hold a valid time.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "{VARIABLE}: found {found:?}, expected a UTC time such as 2026-01-31T12:00:00Z, in the years 1 to 9999; unset it \
@@ -29,7 +29,7 @@ pub struct ClockError {
 }
 
 impl Clock {
-    /// The system's clock, or the time in `DRIFTWORLD_CLOCK`, which then stamps every row.
+    /// The system clock, or the time in `DRIFTWORLD_CLOCK`, which then stamps every row.
     ///
     /// # Errors
     /// [`ClockError`] if that is not a valid time.

@@ -1,5 +1,5 @@
-//! Contact sheets: the agent's view and the map of several variants, choosing the world and camera that best show their
-//! differences.
+//! Contact sheets: the agent's view and the map of several variants, with the world and camera chosen that best show what the
+//! variants are about.
 
 use driftworld_env::{Agent, Environment, Renderer, Scene, StillAgent};
 use driftworld_generator::Sampler;
@@ -208,8 +208,8 @@ impl Candidates {
         sight(renderer, &candidate.scene, &camera, &candidate.subjects)
     }
 
-    /// The joint choice if it shows this variant's subject; else another camera, else another world; if none shows it, the most
-    /// open view of the joint world.
+    /// The joint choice if it shows this variant's subject; else a different camera, else a different world; if no view shows it,
+    /// the most open view of the joint world.
     fn own_choice(&self, renderer: &mut Renderer, joint: Choice, look: Look) -> Result<(Choice, bool), Failure> {
         if self.sight(renderer, joint)?.is_enough() {
             return Ok((joint, true));
@@ -250,7 +250,7 @@ fn turns(look: Look) -> Vec<f32> {
     look.turn.map_or_else(|| TURNS.to_vec(), |turn| vec![turn])
 }
 
-/// The world and camera that show most variants' subjects, then most objects, up to three each; ties go to the first.
+/// The world and camera that show the most variants' subjects, then the most objects, up to three each; ties go to the first.
 fn joint_choice(renderer: &mut Renderer, worlds: &[Candidates], look: Look) -> Result<Choice, Failure> {
     let most = worlds.iter().map(|candidates| candidates.all.len()).max().unwrap_or(1) as u64;
     let mut best = (

@@ -18,9 +18,9 @@ pub(crate) fn has_info(folder: &Path) -> bool {
 pub enum Contents {
     /// A task spec.
     Task,
-    /// A world, in our format or the original's.
+    /// A world, in our format or L2Explorer's.
     World,
-    /// A scenario, in our format or the original's.
+    /// A scenario, in our format or L2Explorer's.
     Scenario,
     /// Layouts.
     Maps,
@@ -30,7 +30,7 @@ pub enum Contents {
     Matrix,
     /// The folder of a log, or its info file.
     Log,
-    /// A folder that is no log.
+    /// A folder that is not a log.
     Folder,
 }
 
@@ -125,7 +125,7 @@ impl Contents {
     }
 }
 
-/// The error for a document of another kind. Names the file, both kinds, and what to do.
+/// The error for a document of the wrong kind. Names the file, both kinds, and what to do.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{path}: found {found}, expected {expected}; {advice}", found = found.name())]
 pub struct OtherContents {
@@ -136,7 +136,7 @@ pub struct OtherContents {
 }
 
 impl OtherContents {
-    /// The error if `found` is none of the wanted kinds; `None` if it is one, or is unrecognised.
+    /// The error if `found` is not one of the wanted kinds; `None` if it is, or if it is unrecognised.
     pub(crate) fn check(path: &Path, found: Option<Contents>, wanted: &[Contents]) -> Option<Self> {
         let found = found.filter(|found| !wanted.contains(found))?;
         Some(Self {

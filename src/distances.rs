@@ -322,7 +322,7 @@ pub fn between(
     })
 }
 
-/// The weights of elements in the total, if not all 1.
+/// The weights of elements in the total, if not all are 1.
 fn weighing(weights: &Weights) -> String {
     let other = Element::ALL.into_iter().filter(|element| weights.of(*element) != 1.0);
     let other: Vec<String> = other

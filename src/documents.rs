@@ -21,13 +21,13 @@ use crate::top_level::TopLevel;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum DocumentError {
-    /// The file cannot be read, is no regular file, is too large, or is not text.
+    /// The file cannot be read, is not a regular file, is too large, or is not text.
     #[error(transparent)]
     File(#[from] FileError),
     /// Standard input cannot be read, is too long, or is not text.
     #[error("standard input: {0}")]
     StandardInput(String),
-    /// The document is of another kind.
+    /// The document is of the wrong kind.
     #[error(transparent)]
     OtherContents(#[from] OtherContents),
     /// The document is wrong.
@@ -91,7 +91,7 @@ fn standard_input() -> Result<String, DocumentError> {
 /// standard input.
 ///
 /// # Errors
-/// [`DocumentError::File`], also if it is no regular file; [`DocumentError::StandardInput`].
+/// [`DocumentError::File`], also if it is not a regular file; [`DocumentError::StandardInput`].
 pub fn text(path: &Path) -> Result<String, DocumentError> {
     if is_standard_input(path) {
         return standard_input();
@@ -102,7 +102,7 @@ pub fn text(path: &Path) -> Result<String, DocumentError> {
 /// The text of a file that should be one of several kinds of documents.
 ///
 /// # Errors
-/// As [`text`], and [`DocumentError::OtherContents`] for a folder, and for a text of a recognised other kind.
+/// As [`text`], and [`DocumentError::OtherContents`] for a folder, and for a text of a different recognised kind.
 pub fn text_of(path: &Path, wanted: &[Contents]) -> Result<String, DocumentError> {
     if let Some(other) = OtherContents::check(path, Contents::of_folder(path), wanted) {
         return Err(other.into());
@@ -255,7 +255,7 @@ pub fn check(
         }
         Kind::L2ExplorerWorld => {
             let read = World::from_l2explorer(name, text);
-            // The original accepts unknown classes, too, so they are only warned about.
+            // L2Explorer accepts unknown classes, too, so they only cause warnings.
             if let Ok((world, _)) = &read {
                 let unknown = world.unknown_classes(classes).into_iter();
                 let unknown =

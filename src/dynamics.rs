@@ -154,7 +154,7 @@ mod tests {
         assert!(one.bisimulation.lower > 0.0);
         assert!((two.bisimulation.lower - 2.0 * one.bisimulation.lower).abs() < 1e-9);
         let all = from_base(|world| world.rules.step_reward = -2.0);
-        // Five steps of each action everywhere; bisimulation gives equal shares to each.
+        // Every action takes five steps, so it loses 10 points in every state; bisimulation takes a discounted mean.
         assert_eq!(all.motion, 0.0);
         assert!((all.w1() - 0.1).abs() < 1e-12, "{all:?}");
         assert!((all.bisimulation.lower - 0.1).abs() < 1e-9, "{all:?}");

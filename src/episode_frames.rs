@@ -45,7 +45,7 @@ pub(crate) fn recorded(
 /// A recorded episode as rows of a sheet: the agent's view, the map with the path since the previous row, or both. At
 /// an event, the view shows what the agent saw when it acted, and the map shows the result.
 ///
-/// Contains the start, the end, and as many events as fit into `most` rows; if there are few, also steps in between.
+/// Contains the start, the end, and as many events as fit into `most` rows; if there are few, also steps between them.
 pub(crate) fn rows(
     recording: &Recording,
     catalogue: &Catalogue,

@@ -24,7 +24,7 @@ pub(crate) fn argument(name: &str) -> String {
     format!("{MARK}{name}{MARK}")
 }
 
-/// Refuses an argument's number out of range.
+/// Refuses a number that is out of an argument's range.
 pub(crate) fn within(name: &str, found: u64, range: RangeInclusive<u64>) -> Result<(), Failure> {
     if range.contains(&found) {
         return Ok(());
@@ -48,7 +48,7 @@ pub(crate) fn within(name: &str, found: u64, range: RangeInclusive<u64>) -> Resu
 /// ```
 #[derive(Clone, Debug)]
 pub enum Failure {
-    /// The input, or the place for the output, is invalid.
+    /// The input or the output path is invalid.
     Input(FailureText, Option<Cause>),
     /// The arguments contradict each other.
     Usage(FailureText),
@@ -204,7 +204,7 @@ mod tests {
             "window_length: found 0, expected 1 or more; leave noise out"
         );
     }
-    /// Every text of up to four of these letters: a mark, one that no name has, and one that an option begins with.
+    /// Every text of up to four of these characters: the mark, one that no name contains, and one that options begin with.
     fn texts() -> Vec<String> {
         let mut all = vec![String::new()];
         let mut longest = all.clone();

@@ -1,4 +1,4 @@
-//! Writes the figures of lifetimes into a folder, under the reference's names.
+//! Writes the figures of lifetimes into a folder, with l2metrics' file names.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -32,7 +32,7 @@ impl Files {
             1 => drawn.run_id.clone(),
             number => format!("{}_{number}", drawn.run_id),
         };
-        // Of one more candidate than there are names in use, one is free.
+        // With one more candidate than names in use, at least one is free.
         let mut names = (1..=self.names.len() + 1).map(numbered);
         let name = names.find(|name| !self.names.contains(name)).unwrap_or_default();
         for (ending, bytes) in &drawn.files {

@@ -211,7 +211,7 @@ pub fn film(
     Ok(replay.check()?)
 }
 
-/// The captions above the frames of a film: computed before the first frame, because each has room for the longest.
+/// The captions above the frames of a film: computed before the first frame, because every frame has room for the longest.
 #[derive(Default)]
 struct Captions {
     /// By the number of steps before the frame, ascending.

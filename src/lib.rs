@@ -123,7 +123,7 @@ pub use libraries::MAX_LIBRARY_BYTES;
 #[cfg(not(target_family = "wasm"))]
 pub use matrix_file::MAX_MATRIX_BYTES;
 
-/// The Rust code of the page is compiled with the doc tests.
+/// Compiles the Rust code of `docs/rust.md` with the doc tests.
 #[cfg(doctest)]
 #[doc = include_str!("../docs/rust.md")]
 struct RustPage;

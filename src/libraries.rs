@@ -6,7 +6,7 @@ use driftworld_env::{Catalogue, Library};
 
 use crate::Failure;
 
-/// The largest library in bytes.
+/// Maximum size of a library in bytes.
 pub const MAX_LIBRARY_BYTES: u64 = 1 << 30;
 
 /// The built-in assets, overridden by these libraries; later ones override earlier ones.

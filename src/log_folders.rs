@@ -11,7 +11,7 @@ use crate::documents;
 use crate::{Failure, argument};
 use driftworld_text::ShownPath;
 
-/// Maximum depth of the search below a folder that is no log itself.
+/// Maximum depth of the search below a folder that is not a log itself.
 const MOST_LEVELS: usize = 4;
 
 /// Maximum number of logs in one search.
@@ -56,7 +56,7 @@ pub(crate) fn below(arguments: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     Ok(each_once(found))
 }
 
-/// The arguments, which must all be logs, in order, each once. A folder with logs only below is refused with advice.
+/// The arguments, which must all be logs, in order, each once. A folder that only has logs below it is refused with advice.
 pub(crate) fn named(arguments: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     if let Some(folder) = arguments.iter().find(|folder| !is_log(folder)) {
         let below = search(folder)?;
@@ -220,7 +220,7 @@ fn too_many(path: &Path, logs: usize) -> Result<(), Failure> {
 
 /// Whether a folder is a log, even an incomplete one.
 fn is_log(folder: &Path) -> bool {
-    // A folder with more subfolders than the limit is no log.
+    // A folder with more subfolders than the limit is not a log.
     has_info(folder) || Search::default().is_log(folder).unwrap_or(false)
 }
 
@@ -255,7 +255,8 @@ fn listed(folder: &Path) -> Vec<PathBuf> {
     folders.map(|(_, path)| path).collect()
 }
 
-/// A message prefixed with the log, unless it begins with it: some messages name a file below the log, others only the fault.
+/// The message prefixed with the log's path, unless it begins with that: some messages name a file below the log, others only
+/// the fault.
 pub(crate) fn placed(log: &Path, message: &str) -> String {
     let log = log.shown().to_string();
     if message.starts_with(&log) {
@@ -270,7 +271,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn logs_with_one_name_are_distinguished_by_parent_folders() {
+    fn logs_with_the_same_name_are_distinguished_by_parent_folders() {
         let check = |logs: &[&str], expected: &[&str]| {
             let logs: Vec<PathBuf> = logs.iter().map(PathBuf::from).collect();
             assert_eq!(names(&logs), expected, "{logs:?}");

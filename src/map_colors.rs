@@ -102,7 +102,7 @@ impl MapColors {
     }
 }
 
-/// Places in a picture, indexed by square cells.
+/// Positions in a picture, indexed by square cells.
 struct Nearest<'a> {
     places: &'a [[f32; 2]],
     columns: usize,
@@ -113,7 +113,7 @@ impl<'a> Nearest<'a> {
     /// Pixels per cell side.
     const CELL: usize = 4;
 
-    /// Places outside the picture go to the nearest cell at its edge.
+    /// Positions outside the picture go to the nearest cell at its edge.
     fn of(places: &'a [[f32; 2]], size: [u32; 2]) -> Self {
         let [columns, rows] = size.map(|pixels| (pixels as usize).div_ceil(Self::CELL).max(1));
         let mut cells = vec![Vec::new(); columns * rows];
@@ -124,7 +124,7 @@ impl<'a> Nearest<'a> {
         Self { places, columns, cells }
     }
 
-    /// The place nearest to a point of the picture, the first of equals.
+    /// The position nearest to a point of the picture; the first of equally near ones.
     fn to(&self, at: [f32; 2]) -> Option<usize> {
         let rows = self.cells.len() / self.columns;
         let [column, row] = at.map(|pixel| pixel as usize / Self::CELL);
@@ -196,10 +196,10 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(24))]
 
-        /// Cubes in several paints have as many colours, up to three, each the paint of some cube, and no more frequent one is
-        /// omitted; for any size of the arena.
+        /// A group of cubes has as many colours as paints, up to three, each the paint of some cube, and no more frequent paint
+        /// is omitted, whatever the size of the arena.
         #[test]
-        fn group_colours_are_its_most_frequent_ones(
+        fn group_has_its_most_frequent_colours(
             paints in prop::collection::vec(0_usize..5, 1..8),
             side in 20.0..80.0_f64,
         ) {
@@ -232,7 +232,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
 
         #[test]
-        fn nearest_place_matches_brute_force(
+        fn nearest_position_matches_brute_force(
             places in prop::collection::vec(prop::array::uniform2(-9.0..60.0_f32), 0..40),
             at in (0_u32..50, 0_u32..37),
         ) {
@@ -243,7 +243,7 @@ mod tests {
         }
     }
 
-    /// Trees are green, not as brown as their wood; doors of three colours have all three.
+    /// Trees are green, not brown like their wood; doors of three colours have all three.
     #[test]
     fn issue_24_groups_of_several_colors() {
         let of_class = |name: &str, class: &str| {

@@ -19,7 +19,7 @@ pub(crate) const RING: Rgb = [255, 214, 0];
 pub(crate) const TRAIL: Rgb = [255, 120, 200];
 const PAYS: Rgb = [0, 110, 50];
 const COSTS: Rgb = [190, 0, 20];
-/// With more rewarding objects than this, none has a sign.
+/// With more rewarding objects than this, none of them has a sign.
 const MOST_SIGNS: usize = 60;
 /// On a smaller map, signs would hide the things beside them.
 const LEAST_SIGNED: u32 = 100;
@@ -31,7 +31,7 @@ const MOST_OBLONG: f32 = 2.0;
 /// Movements to show on a map.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Moves {
-    /// The agent's place, and its heading in degrees.
+    /// The agent's position, and its heading in degrees.
     pub(crate) agent: ([f32; 2], f32),
     /// The path that the agent took.
     pub(crate) way: Vec<[f32; 2]>,
@@ -60,7 +60,7 @@ pub(crate) fn map(world: &World, scene: &Scene, moves: &Moves, size: u32) -> Dra
     }
     let places = Places::of(scene, [size, size]);
     let visible = scene.items.iter().filter(|item| item.visible);
-    // The agent's place has the highest priority.
+    // The agent's position has the highest priority.
     let mut marks = vec![(places.pixel(moves.agent.0), 1_000.0)];
     marks.extend(visible.map(|item| (places.pixel(item.position), 1.0)));
     marks.extend(places.pixels(&moves.way).into_iter().map(|place| (place, 0.01)));
@@ -114,7 +114,7 @@ pub(crate) fn trigger_radius(world: &World, scene: &Scene, index: usize) -> Opti
     if reach <= 0.0 || !stimuli.any(|stimulus| *stimulus == Stimulus::AgentInRange) {
         return None;
     }
-    // Range is measured between centres, at half of each one's height.
+    // Range is measured between the centres of agent and object, each at half its height.
     let item = scene.items.get(index)?;
     let rise = (item.body.height * item.scale - world.agent_params.agent_height as f32) / 2.0;
     let square = reach * reach - rise * rise;
@@ -203,7 +203,7 @@ fn from_rim(points: &[[f32; 2]], radius: f32) -> Vec<[f32; 2]> {
         return Vec::new();
     };
     let (from, to) = (points[out.max(1) - 1], points[out]);
-    // The path leaves the disc between them: bisects to a fraction of a pixel.
+    // The path leaves the disc between these two points: bisects to a fraction of a pixel.
     let (mut low, mut high) = (0.0_f32, 1.0_f32);
     let at = |share: f32| [0, 1].map(|axis| from[axis] + share * (to[axis] - from[axis]));
     for _ in 0..12 {
@@ -219,7 +219,7 @@ fn from_rim(points: &[[f32; 2]], radius: f32) -> Vec<[f32; 2]> {
     rest
 }
 
-/// A plus or a minus beside an object with this centre and radius, at the corner where it covers other objects least.
+/// A plus or a minus beside an object with this centre and radius, at the corner where it covers the least of other objects.
 fn sign(map: &mut Drawing, [x, y]: [f32; 2], radius: f32, pay: f64, size: u32, things: &[([f32; 2], f32)]) {
     let (text, color) = if pay > 0.0 { ("+", PAYS) } else { ("−", COSTS) };
     let letters = (size as f32 / 17.0).clamp(9.0, 30.0);
@@ -385,7 +385,7 @@ mod tests {
 
         /// Paths start beside their object, which stays visible, and their end is drawn.
         #[test]
-        fn paths_hide_none_of_their_objects(angle in 0.0..6.2_f32, far in 4.0..20.0_f32, size in 64_u32..400) {
+        fn paths_do_not_hide_their_objects(angle in 0.0..6.2_f32, far in 4.0..20.0_f32, size in 64_u32..400) {
             let world = world(60.0, vec![object("geometric", [1.0, 2.0], 0.0, 0.0)]);
             let scene = Scene::from_world(&world);
             let trail: Vec<[f32; 2]> = (0..50)
@@ -430,7 +430,7 @@ mod tests {
         }
     }
 
-    /// As many signs as there are objects with rewards.
+    /// There are as many signs as objects with rewards.
     #[test]
     fn positive_rewards_have_a_plus_and_negative_ones_a_minus() {
         let objects = vec![
@@ -444,7 +444,7 @@ mod tests {
         assert_eq!((count("+"), count("−"), count("N")), (1, 1, 1));
     }
 
-    /// A dark world's map is as bright as a light one's.
+    /// The map of a dark world is as bright as that of a light one.
     #[test]
     fn dark_worlds_have_readable_maps() {
         let bright = |light: f64| {

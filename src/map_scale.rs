@@ -111,7 +111,7 @@ impl Bar {
         [wide, (self.letters * 1.1 + self.thick + 7.0).ceil()]
     }
 
-    /// Draws it with its top left corner at a place; on a map, with a light background.
+    /// Draws it with its top left corner at this position; on a map, with a light background.
     pub(crate) fn draw(&self, on: &mut Drawing, [left, top]: [f32; 2], on_a_map: bool) {
         let [wide, high] = self.size();
         if on_a_map {
@@ -133,7 +133,7 @@ pub(crate) fn north_size(size: f32) -> f32 {
     (1.72 * (size / 14.0).clamp(12.0, 44.0)).round()
 }
 
-/// An arrow to the north in a disc with this corner and side.
+/// A north arrow in a disc whose bounding square has this top left corner and side.
 pub(crate) fn north(map: &mut Drawing, [left, top]: [f32; 2], side: f32) {
     let high = side / 1.72;
     let x = left + side / 2.0;

@@ -57,7 +57,7 @@ impl OrderRequest {
         }
         let last = self.options(matrix, seed)?.last;
         let mut best: Option<(Method, Ordering)> = None;
-        // The requested last item cannot be the first, too.
+        // The requested last item cannot also be the first.
         for first in firsts.iter().filter(|first| Some(**first) != last) {
             let from = Self {
                 start: Some(matrix.labels()[*first].clone()),
@@ -100,7 +100,7 @@ pub(crate) fn position_of<S: AsRef<str>>(labels: &[S], name: &str) -> Result<usi
     if let Some(place) = labels.iter().position(|label| label.as_ref() == name) {
         return Ok(place);
     }
-    // A task given by its path may be called by its name, too.
+    // A task given by its path may also be called by its name.
     if name.contains('#') {
         let is_it = |label: &S| bare(label.as_ref()) == bare(name) && tasks::label_of(label.as_ref()) == name;
         return labels.iter().position(is_it).ok_or("");

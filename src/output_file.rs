@@ -29,7 +29,7 @@ pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
 
 /// Writes a picture: as SVG if the name ends in `.svg`, else as PNG.
 ///
-/// Refuses a name with the extension of another format.
+/// Refuses a name with the extension of any other format.
 pub(crate) fn write_picture(path: &Path, picture: &Drawing) -> Result<(), Failure> {
     const OTHERS: [&str; 14] = [
         "jpg", "jpeg", "gif", "bmp", "webp", "tif", "tiff", "pdf", "csv", "html", "json", "jsonl", "parquet", "txt",

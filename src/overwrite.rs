@@ -1,4 +1,4 @@
-//! Refuses to overwrite files of a log, and the command's own inputs: a typing error must not destroy data.
+//! Refuses to overwrite files of a log, and the command's own inputs: a typo must not destroy data.
 
 use std::path::{Path, PathBuf};
 
@@ -40,7 +40,7 @@ pub(crate) fn refuse_log_files(target: &Path) -> Result<(), Failure> {
     }
 }
 
-/// Refuses one file for two outputs: `targets` are options with the files that they name.
+/// Refuses the same file for two outputs: `targets` are options with the files that they name.
 pub(crate) fn refuse_same(targets: &[(&str, PathBuf)]) -> Result<(), Failure> {
     // Resolves the folder, because the file may not exist yet.
     let place = |path: &Path| {

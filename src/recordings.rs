@@ -55,7 +55,7 @@ impl RecordedEpisodes {
             return Err(other.into());
         }
         let log = read_log_with_texts(path)?;
-        // In other programs' logs, columns of these names may have another meaning, such as a scaled reward.
+        // In other programs' logs, columns with these names may have a different meaning, such as a scaled reward.
         this.is_ours = log.scenario_info.extra.contains_key("made_from");
         let rows: &mut BTreeMap<u64, Vec<LoggedRow>> = this.rows.get_or_insert_default();
         for row in log.rows.iter() {

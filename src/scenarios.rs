@@ -1,4 +1,4 @@
-//! Reads scenario files, ours and the original's, and finds the tasks and world files that they name.
+//! Reads scenario files, ours and L2Explorer's, and finds the tasks and world files that they name.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -26,12 +26,12 @@ pub struct ScenarioFile {
     /// The scenario.
     pub scenario: Scenario,
     path: PathBuf,
-    /// Whether the file, and therefore its world files, are in the original's format.
+    /// Whether the file, and therefore its world files, are in L2Explorer's format.
     pub original: bool,
 }
 
 impl ScenarioFile {
-    /// Reads a scenario file in our format or in the original's.
+    /// Reads a scenario file in our format or in L2Explorer's.
     ///
     /// # Errors
     /// [`DocumentError`] if it cannot be read or is invalid.
@@ -67,7 +67,7 @@ impl ScenarioFile {
         })
     }
 
-    /// Another scenario, as if it were in the same file.
+    /// A different scenario, as if it were in the same file.
     #[must_use]
     pub fn with_scenario(&self, scenario: &Scenario) -> Self {
         Self {
@@ -257,12 +257,12 @@ pub fn task_from(scenario: &Path, name: &str) -> Result<Arc<TaskSpec>, TaskError
 pub enum Missing {
     /// It is an error.
     Refused,
-    /// The one with the most similar name is used instead.
+    /// The file with the most similar name is used instead.
     StandIn,
 }
 
 impl Missing {
-    /// [`Self::StandIn`] if another world may replace it, else [`Self::Refused`].
+    /// [`Self::StandIn`] if a different world may replace it, else [`Self::Refused`].
     pub fn may_stand_in(may: bool) -> Self {
         if may { Self::StandIn } else { Self::Refused }
     }
@@ -284,7 +284,7 @@ pub fn plan(scenario: &Scenario, undrawable: Undrawable) -> Result<Plan, Curricu
     Plan::with_undrawable(scenario, &mut sources, undrawable)
 }
 
-/// Whether a text is a scenario in the original's format.
+/// Whether a text is a scenario in L2Explorer's format.
 pub fn is_original(text: &str) -> bool {
     Kind::of(text) == Kind::L2ExplorerScenario
 }

@@ -117,7 +117,7 @@ pub(crate) fn is_set_off(text: &str) -> bool {
     text.contains(BEGIN)
 }
 
-/// Replaces the marks of [`Style::on`] by terminal codes; `shown` is applied to all text in between.
+/// Replaces the marks of [`Style::on`] with terminal codes; `shown` is applied to all text between marks.
 pub(crate) fn paint(text: &str, shown: impl Fn(&str) -> String) -> String {
     let mut painted = String::with_capacity(text.len());
     let mut rest = text;

@@ -114,7 +114,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 40)))]
 
-        /// A cube is visible if its centre lies within the margins, and not if it lies entirely in a margin.
+        /// A cube is visible if it lies entirely between the margins, and not if it lies entirely in a margin.
         #[test]
         fn objects_in_a_margin_are_not_visible(place in -1.2..1.2_f64) {
             let mut draft = WorldDraft::default();

@@ -61,10 +61,10 @@ pub enum TaskError {
         /// The name asked for.
         name: String,
     },
-    /// The file exists, but cannot be read, is no regular file, is too large, or is not text.
+    /// The file exists, but cannot be read, is not a regular file, is too large, or is not text.
     #[error(transparent)]
     Unreadable(FileError),
-    /// The file holds another kind of document, or is a folder.
+    /// The file holds a different kind of document, or is a folder.
     #[error(transparent)]
     Document(DocumentError),
     /// The document is invalid, or has no such variant.
@@ -269,7 +269,7 @@ fn is_word(name: &str) -> bool {
     !name.contains(['/', '\\', '.']) && did_you_mean(name, names()).is_empty()
 }
 
-/// Whether a readable file exists; a folder, which may have the name of a variant, does not count.
+/// Whether a file exists; a folder, which may have the name of a variant, does not count.
 fn is_document(path: &Path) -> bool {
     path.exists() && !path.is_dir()
 }
@@ -286,7 +286,7 @@ pub(crate) fn with_tasks(names: &[String]) -> Vec<String> {
         }
         match task(of) {
             Ok(spec) => known.push((of.to_owned(), spec)),
-            // After a task, an unknown word is a misspelt variant of it, unless it is a path or like a task's name.
+            // After a task, an unknown word is a misspelt variant of it, unless it is a path or similar to a task's name.
             Err(TaskError::Unknown { .. }) if own.is_none() && is_word(name) => {
                 if let Some((task, _)) = known.last() {
                     return format!("{task}#{name}");
@@ -320,8 +320,8 @@ pub fn variants_of(names: &[String]) -> Result<Vec<(String, Variant)>, TaskError
     Ok(found)
 }
 
-/// The names of variants in tables: `TASK#VARIANT` by the tasks' own names, even if given by a path; by the path if two would
-/// be equal.
+/// The names of variants in tables: `TASK#VARIANT` with the task's own name, even if it was given by a path; with the path if
+/// two names would be equal.
 pub(crate) fn labels_of(variants: &[(String, Variant)]) -> Vec<String> {
     let ids: Vec<String> = variants.iter().map(|(_, variant)| variant.id()).collect();
     let is_alone = |id: &String| ids.iter().filter(|other| *other == id).count() == 1;
@@ -415,7 +415,7 @@ mod tests {
             names(&["find_objects#*held"]),
             ["find_objects#held", "find_objects#long_held"]
         );
-        // A folder with a variant's name is no document: this crate has one called `docs`.
+        // A folder with a variant's name is not a document: this crate has a folder called `docs`.
         assert!(!is_document(Path::new("docs")) && is_document(Path::new("Cargo.toml")));
         let unknown = variants_of(&["find_objects#red".to_owned(), "dsk".to_owned()]).unwrap_err();
         assert!(unknown.to_string().ends_with("did you mean \"dusk\"?"), "{unknown}");

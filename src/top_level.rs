@@ -13,7 +13,7 @@ pub(crate) struct TopLevel {
 }
 
 impl TopLevel {
-    /// From a text; `None` if it is no JSON object, or longer than any document may be.
+    /// From a text; `None` if it is not a JSON object, or longer than any document may be.
     pub(crate) fn of(text: &str) -> Option<Self> {
         let text = text.trim_start_matches('\u{feff}');
         if text.len() > MAX_BYTES {
@@ -35,7 +35,7 @@ impl TopLevel {
         keys.iter().any(|key| self.has(key))
     }
 
-    /// Whether these are the keys of a scenario in the original's format.
+    /// Whether these are the keys of a scenario in L2Explorer's format.
     pub(crate) fn is_l2explorer_scenario(&self) -> bool {
         self.keys.get("scenario") == Some(&true) && !self.has("blocks")
     }
@@ -57,7 +57,7 @@ mod tests {
     }
 
     #[test]
-    fn original_scenario_is_a_list() {
+    fn l2explorer_scenario_is_a_list() {
         let is_one = |text: &str| TopLevel::of(text).is_some_and(|keys| keys.is_l2explorer_scenario());
         assert!(is_one("{\"scenario\": []}"));
         assert!(!is_one("{\"scenario\": {}}"));

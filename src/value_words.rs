@@ -18,13 +18,13 @@ pub(crate) fn short(value: &Value) -> String {
     }
 }
 
-/// Numbers of a place or a list.
+/// The numbers of a point or a vector, in brackets.
 fn bracketed(numbers: &[f64]) -> String {
     let numbers: Vec<String> = numbers.iter().map(|number| rounded(*number)).collect();
     cut(&format!("[{}]", numbers.join(", ")))
 }
 
-/// Texts and lists of texts without JSON's syntax, `null` as `none`; anything else as JSON.
+/// Strings and lists of strings without JSON syntax, `null` as `none`; anything else as JSON.
 fn json_words(json: &serde_json::Value) -> String {
     match json {
         serde_json::Value::Null => "none".to_owned(),
@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn lists_and_places_are_words() {
+    fn lists_and_points_are_shown_in_short() {
         let json = |text: &str| Value::Json(Box::new(serde_json::from_str(text).expect("it is JSON")));
         for (value, words) in [
             (json(r#"["rgb", "depth"]"#), "rgb, depth"),

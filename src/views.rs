@@ -74,7 +74,7 @@ impl Seen {
         drawing.line(rim, 1.0, INK);
         let is_beyond = self.distances.iter().any(|metres| *metres > white);
         let mut taken: Vec<[f32; 2]> = Vec::new();
-        // The ends first: labels in between use the remaining room.
+        // The ends first: the labels between them use the remaining room.
         for quarter in [4_u8, 0, 2, 1, 3] {
             let share = f32::from(quarter) / 4.0;
             let (side, words) = match quarter {
@@ -211,7 +211,7 @@ impl<'a> Views<'a> {
         }
     }
 
-    /// Uses another renderer than the CPU's.
+    /// Uses a renderer other than the CPU's.
     pub(crate) fn drawn_by(self, renderer: Renderer) -> Self {
         Self {
             renderer: Rc::new(RefCell::new(renderer)),
@@ -219,7 +219,7 @@ impl<'a> Views<'a> {
         }
     }
 
-    /// With another size.
+    /// With a different size.
     pub(crate) fn of_size(&self, size: u32) -> Self {
         Self {
             size,
@@ -262,8 +262,8 @@ impl<'a> Views<'a> {
             .collect();
         let tangent = (camera.field_of_view_deg / 2.0).to_radians().tan() * (1.0 - RIM_OF_OVERVIEW);
         let edges = [tangent * width as f32 / self.size as f32, tangent];
-        // The camera's position on these axes. A plane through the left edge must not pass the leftmost point, and so on: the
-        // camera is where the planes of opposite edges meet, and behind all of them.
+        // The camera's position on these axes. The plane through the left edge must not cut off the leftmost point, and so on:
+        // the camera is where the planes of opposite edges meet, and behind all of them.
         let bound = |axis: usize, sign: f32| {
             let reach = |point: &[f32; 3]| sign * point[axis] - edges[axis] * point[2];
             seen.iter().map(reach).fold(f32::MIN, f32::max)
@@ -351,7 +351,7 @@ impl<'a> Views<'a> {
         [0.0, 90.0, 180.0, 270.0].into_iter().map(look).collect()
     }
 
-    /// For each name of objects, the name and a close-up of the object nearest to the agent, preferring rewarding ones.
+    /// For each object name, the name and a close-up of the object nearest to the agent, preferring rewarding objects.
     /// Objects that are not visible from nearby are left out.
     pub(crate) fn close_ups(&self, most: usize) -> Result<Vec<(String, Picture)>, Failure> {
         let start = self.world.agent_params.coordinates;
@@ -388,7 +388,7 @@ impl<'a> Views<'a> {
         for (turn, closeness) in places {
             let camera = self.close_to(index, turn, closeness);
             let pixels = sight(&mut self.renderer.borrow_mut(), &self.scene, &camera, &[index])?.pixels;
-            // Another place must show clearly more.
+            // A later candidate must show clearly more.
             if pixels > best.0 + best.0 / 4 {
                 best = (pixels, Some(camera));
             }
@@ -491,7 +491,7 @@ mod tests {
 
         /// The labels of a depth scale never overlap or leave the picture, at any size, and the scale's end is always labelled.
         #[test]
-        fn depth_scale_labels_stand_apart(size in 84_u32..700, farthest in 0.5..150.0_f32, sky in any::<bool>()) {
+        fn depth_scale_labels_do_not_overlap(size in 84_u32..700, farthest in 0.5..150.0_f32, sky in any::<bool>()) {
             let drawing = seen(size, farthest, sky).depth_with_legend();
             let mut words = words(&drawing);
             words.sort_by(|a, b| a.1[0].total_cmp(&b.1[0]));

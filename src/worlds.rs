@@ -1,4 +1,4 @@
-//! Finds worlds by name: files in our format or the original's, or variants with a seed and an index.
+//! Finds worlds by name: files in our format or L2Explorer's, or variants with a seed and an index.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -18,7 +18,7 @@ use driftworld_text::ShownPath;
 
 use crate::{Failure, Warn, argument};
 
-/// A world file in our format or the original's, with its maps resolved to layouts.
+/// A world file in our format or L2Explorer's, with its maps resolved to layouts.
 fn world_file(path: &Path, l2explorer: bool, maps: &MapLibrary) -> Result<(World, Vec<Warning>), Failure> {
     let name = documents::name_of(path);
     let text = documents::text_of(path, &[Contents::World])?;
@@ -43,11 +43,11 @@ pub(crate) fn is_world_file(name: &str) -> bool {
     let Ok(text) = documents::text(path) else {
         return false;
     };
-    // Text that is no JSON object is reported by the reader of tasks.
+    // Text that is not a JSON object is reported by the reader of tasks.
     TopLevel::of(&text).is_some_and(|keys| !keys.has_any(&["name", "parameters", "groups"]))
 }
 
-/// Refuses a folder, and a file recognised as another kind of document than a world or a task spec.
+/// Refuses a folder, and a file recognised as a document other than a world or a task spec.
 pub(crate) fn expect_world_or_task(name: &str) -> Result<(), Failure> {
     let path = Path::new(tasks::split(name).0);
     let shown = || Contents::of_text(&documents::text(path).ok()?);
@@ -158,7 +158,7 @@ impl WorldRequest {
         Ok(sampler.world(index)?)
     }
 
-    /// Another world, with the same options: a file, or the first world of a variant.
+    /// A different world, with the same options: a file, or the first world of a variant.
     pub(crate) fn named(&self, name: &str, warn: Warn<'_>) -> Result<World, Failure> {
         let maps = self.maps.as_deref().map(maps).transpose()?.unwrap_or_default();
         if !self.l2explorer && !is_world_file(name) {

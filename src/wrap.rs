@@ -62,7 +62,7 @@ pub(crate) fn wrap_lines(text: &str, width: Option<usize>) -> String {
         return text.to_owned();
     };
     let wrapped = text.split('\n').map(|line| {
-        // Highlighted text was laid out already.
+        // Highlighted text has already been laid out.
         if columns_of(line) <= width || style::is_set_off(line) {
             return line.to_owned();
         }

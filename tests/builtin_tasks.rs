@@ -176,7 +176,7 @@ fn reward_variants_change_the_optimum_and_reveal_it_within_an_episode() {
             optimum.turned && optimum.regret > 50.0,
             "{task}: {a} and {b}: {optimum:?}"
         );
-        // In one's world, the other's expert gets different rewards before half of its route is done.
+        // In the worlds of `b`, the actions of `a`'s expert earn different rewards before half of its route is done.
         for index in 0..WORLDS {
             let (expected, actions) = replayed(&variant(a), index, None);
             let (paid, _) = replayed(&variant(b), index, Some(&actions));

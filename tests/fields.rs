@@ -32,7 +32,7 @@ fn full() -> Json {
     world
 }
 
-/// The same world with a layout of the kind that has this place; there is one of each kind.
+/// The same world with the kind of zone or layout that has this place.
 fn full_with(place: &FieldPlace) -> Json {
     let mut world = full();
     if place.pointer.starts_with("/environment_params/zones/*/polygon") {
@@ -284,7 +284,7 @@ fn every_place_takes_json_whose_variants_differ_by_its_elements_and_carry_their_
                 element.letter()
             );
         }
-        // It switches half-way, and nothing lies in between.
+        // A drift switches half-way, without values in between.
         for (t, expected) in [(0.25, &first), (0.75, &second)] {
             let between = drift(&first, &second, t).unwrap_or_else(|error| panic!("{pointer}: {error}"));
             assert_eq!(between.value("tried"), expected.value("tried"), "{pointer}");
@@ -406,7 +406,7 @@ fn change(world: &mut Json, place: &FieldPlace, full: &Json) -> bool {
     true
 }
 
-/// A world whose object moves in such a way that the value at a place is read.
+/// A world in which the value at a place is read.
 fn read_by(place: &FieldPlace) -> Json {
     let mut full = full_with(place);
     match place.pointer.as_str() {

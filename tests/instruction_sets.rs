@@ -1,4 +1,4 @@
-//! Pictures do not depend on the instructions that a CPU has: those of all families, along the planner's ways.
+//! Pictures do not depend on the instructions that a CPU has: tested in all families, along the planner's paths.
 
 use driftworld::env::{Agent, CpuRenderer, Environment, Frame, OnRailsAgent};
 use driftworld::{generator, tasks};
@@ -8,7 +8,7 @@ use crate::tier::quick_or_full;
 /// Widths that are multiples of each vector's length, and others.
 const SIZES: [[u32; 2]; 6] = [[160, 120], [84, 84], [101, 77], [90, 60], [33, 32], [7, 9]];
 
-/// Compares the pictures of each instruction set along the first steps of a variant's world; returns their number.
+/// Compares the pictures of each instruction set along the first steps of a variant's world; returns the number of steps.
 fn compare(name: &str, place: usize, sizes: &[[u32; 2]], steps: usize) -> usize {
     let task = tasks::task(name).expect("it is built in");
     let variants = task.all_variants();

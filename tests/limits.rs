@@ -152,7 +152,7 @@ fn filled((open, part, close): (&str, &str, &str), bytes: usize) -> String {
     text + close
 }
 
-/// Fillings without repetition.
+/// Further fillings: deep nesting, long strings and keys, and blanks.
 fn others(bytes: usize) -> Vec<String> {
     let deep = |open: &str, inner: &str, close: &str| open.repeat(100) + inner + &close.repeat(100);
     let many = |part: &str| format!("[{}0]", format!("{part},").repeat(bytes / part.len()));
@@ -169,7 +169,7 @@ fn others(bytes: usize) -> Vec<String> {
     ]
 }
 
-/// The kinds that a text is checked as: a world may also be one of the original's.
+/// The kinds that a text is checked as: a world may also be one of L2Explorer's.
 fn kinds(text: &str) -> Vec<Kind> {
     match Kind::of(text) {
         Kind::World => vec![Kind::World, Kind::L2ExplorerWorld],
@@ -182,15 +182,15 @@ fn measured(text: &str, kind: Kind, classes: &Classes) -> (usize, Checked) {
     let before = TAKEN.get();
     MOST.set(before);
     let checked = check("d.json", text, kind, &mut tasks::task, classes);
-    // Formatting the error is part of it.
+    // Formatting the error is part of the check.
     drop(checked.error.as_ref().map(ToString::to_string));
     ((MOST.get() - before).unsigned_abs(), checked)
 }
 
-/// Checks the law for every filling at these places.
+/// Checks the memory limit for every filling at these places.
 fn hold(places: &[&str]) {
     let classes = tasks::classes(&driftworld::env::Catalogue::default());
-    // Larger ones can be tried by hand: they take minutes.
+    // Larger documents can be tried by hand, which takes minutes.
     let bytes = std::env::var("DRIFTWORLD_LIMITS_BYTES");
     let bytes = bytes.ok().and_then(|bytes| bytes.parse().ok()).unwrap_or(60_000);
     let mut wrong = Vec::new();

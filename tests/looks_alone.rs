@@ -15,7 +15,7 @@ const STEPS: usize = 300;
 /// Worlds per variant.
 const WORLDS: u64 = 6;
 
-/// A task with a modified text.
+/// A built-in task with its text modified.
 fn task(name: &str, change: impl Fn(&str) -> String) -> Arc<TaskSpec> {
     let (_, text) = tasks::BUILT_IN
         .iter()
@@ -44,7 +44,7 @@ fn of_looks(task: &Arc<TaskSpec>) -> Vec<Variant> {
     variants.iter().filter(claims_looks).cloned().collect()
 }
 
-/// Everything along a walk, as bits: places, headings, presences and rewards, step by step, and the number of steps in which
+/// Everything along a walk, as bits: positions, headings, presence and rewards, step by step, and the number of steps in which
 /// something happened to an object.
 fn path(world: World, actions: &[Action]) -> (Vec<Vec<u64>>, usize) {
     let mut environment = Environment::new(world);
@@ -71,7 +71,7 @@ fn path(world: World, actions: &[Action]) -> (Vec<Vec<u64>>, usize) {
     (path, touches)
 }
 
-/// The actions of an agent that touches one thing after the other, with random steps in between.
+/// The actions of an agent that touches one thing after another, in some walks with random steps between them.
 fn walk(world: &World, seed: u64) -> Vec<Action> {
     let tags: BTreeSet<&str> = world
         .objects
@@ -101,7 +101,7 @@ fn walk(world: &World, seed: u64) -> Vec<Action> {
     actions
 }
 
-/// For each variant of looks: its name, the number of walks that touched something, and of those whose path differs.
+/// For each variant of looks: its name, the number of walks that touched something, and the number of walks whose path differs.
 fn paths(task: &Arc<TaskSpec>) -> Vec<(String, usize, usize)> {
     let first = &task.all_variants()[0];
     let world = |variant: &Variant, index| {

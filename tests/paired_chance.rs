@@ -168,7 +168,7 @@ fn documents() -> Vec<Value> {
     files.map(read).collect()
 }
 
-/// A world of each built-in task, each of another variant, with an example of everything that moves, pays randomly, returns or
+/// A world of each built-in task, each of a different variant, with an example of everything that moves, pays randomly, returns or
 /// can be pushed.
 fn worlds() -> Vec<World> {
     let mut worlds = Vec::new();
@@ -177,7 +177,7 @@ fn worlds() -> Vec<World> {
         let variant = &variants[(7 * number + 3) % variants.len()];
         let world = draw(variant, number as u64, 5).edit(|world| {
             spice(world);
-            // Every other one has none, so that the places of things decide.
+            // Every other world has no seed, so that the positions of things decide.
             world.seed = world.seed.filter(|_| number % 2 == 0);
             if number % 2 == 0 {
                 world.environment_params.looks = Looks::default();
@@ -243,7 +243,7 @@ fn spice(world: &mut WorldDraft) {
     world.environment_params.zones.push(zone);
 }
 
-/// All paths of an episode, as bits: the agent's and every object's place, heading and presence, step by step. The agent acts
+/// All paths of an episode, as bits: the agent's and every object's position, heading and presence, step by step. The agent acts
 /// at random, with its own seed.
 fn ways(world: &World, seed: u64) -> Vec<Vec<u32>> {
     let mut environment = Environment::new(world.clone());
@@ -285,7 +285,7 @@ fn other(value: &Value, examples: &[Value]) -> Option<Value> {
     }
 }
 
-/// Changes a key wherever it is or could be, if the world is valid afterwards.
+/// Changes a key wherever it occurs or could occur, if the world is valid afterwards.
 fn change(world: &World, key: &str, examples: &[Value]) -> Option<World> {
     let mut document = serde_json::to_value(world).expect("a world serialises");
     let path: Vec<&str> = key.split('/').skip(1).collect();
@@ -323,7 +323,7 @@ fn put(place: &mut Value, path: &[&str], examples: &[Value], number: &mut usize)
 }
 
 #[test]
-fn every_key_has_a_verdict_and_idle_keys_change_no_path() {
+fn every_key_has_a_verdict_and_idle_keys_do_not_change_paths() {
     let mut found = BTreeMap::new();
     for document in documents() {
         leaves(&document, "", &mut found);
@@ -405,7 +405,7 @@ fn every_key_has_a_verdict_and_idle_keys_change_no_path() {
 }
 
 #[test]
-fn endings_change_no_path_before_the_end() {
+fn endings_do_not_change_paths_before_the_end() {
     let world = &worlds()[0];
     let before = ways(world, 9);
     for (key, value) in [

@@ -111,7 +111,7 @@ static ALL_VARIANTS: LazyLock<Vec<Variant>> = LazyLock::new(|| {
     variants.flatten().collect()
 });
 
-/// A world with another action interface, if requested.
+/// A world with a different action interface, if requested.
 fn acted_in(world: World, actions: Option<ActionSpace>, frame_skip: u32, interact: bool) -> World {
     let edited = world.edit(|world| {
         let agent = &mut world.agent_params;
@@ -180,7 +180,7 @@ proptest! {
     }
 
     /// Any changed byte is detected, with its line; episodes on other lines can still be read. A truncated text gives the
-    /// episodes before.
+    /// episodes before the cut.
     #[test]
     fn damage_is_located_and_other_episodes_are_readable(place in any::<Index>(), flip in 1u8..128) {
         let recordings: &[Recording] = &THREE;
@@ -214,7 +214,7 @@ proptest! {
                 prop_assert!(!errors.is_empty() && found.len() < 3, "a change is noticed");
                 prop_assert_eq!(line_of(&errors[0]), line);
                 prop_assert!(found.iter().all(|recording| recordings.contains(recording)));
-                // Each episode has its own world, so a damaged line costs one episode, a line end two.
+                // Each episode has its own world, so a damaged line costs one episode, a damaged line break two.
                 let lost = if text.as_bytes()[place] == b'\n' { 2 } else { 1 };
                 prop_assert!(found.len() + lost >= 3, "{} are left", found.len());
             }

@@ -182,7 +182,7 @@ fn task_tables_match_the_specs() {
     });
 }
 
-/// The curricula, one row each: what each learns, and how often.
+/// The curricula, one row each: what each learns, and its number of experiences.
 fn curricula() -> String {
     let mut text = "| file | learned, in this order | experiences | |\n|---|---|---|---|\n".to_owned();
     for name in "reward state transition observation action blue_red_green map modality interaction drift \

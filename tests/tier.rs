@@ -1,7 +1,7 @@
 //! The amount of testing: quick for every change, or complete with `DRIFTWORLD_FULL=1`, as set by `cargo xtask test --all`.
 //! Each crate includes this file as its module `tier`.
 
-/// The first in the quick tier, the second with `DRIFTWORLD_FULL=1`.
+/// The first value in the quick tier, the second with `DRIFTWORLD_FULL=1`.
 pub(crate) fn quick_or_full<T>(quick: T, full: T) -> T {
     if std::env::var_os("DRIFTWORLD_FULL").is_some() {
         full

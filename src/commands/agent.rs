@@ -74,8 +74,7 @@ pub(crate) struct NamedAgent {
     /// Its name in logs.
     pub(crate) name: String,
     pub(crate) agent: Box<dyn Agent>,
-    /// What a log depends on, for the plan's fingerprint: the checksum of the agent's file, or how it chooses its actions while
-    /// learning.
+    /// The agent's part of the plan's fingerprint: the checksum of its file, or how it chooses actions while learning.
     pub(crate) fingerprint: Option<(&'static str, String)>,
 }
 
@@ -111,7 +110,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn agents_are_named_and_a_script_by_its_file() {
+    fn agents_are_parsed_and_scripts_are_named_by_their_file() {
         assert_eq!("random".parse(), Ok(AgentArg::Random));
         assert_eq!("onrails".parse(), Ok(AgentArg::Onrails));
         assert_eq!("expert".parse(), Ok(AgentArg::Onrails));

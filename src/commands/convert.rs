@@ -50,7 +50,7 @@ impl Convert {
         )
     }
 
-    /// Warns of world files whose paths in the output do not resolve from its own folder.
+    /// Warns about world files that the output names by paths which do not resolve from its folder.
     fn warn_of_lost_worlds(&self, scenario: &Scenario) {
         if self.output == Path::new("-") {
             return;

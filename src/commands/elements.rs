@@ -1,4 +1,4 @@
-//! `driftworld elements`: measures which elements of the decision process variants change, beside those declared.
+//! `driftworld elements`: measures which elements of the decision process each variant changes, next to the declared ones.
 
 use clap::Args;
 use driftworld_text::joined_or;

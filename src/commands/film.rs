@@ -15,7 +15,7 @@ use super::assets::LibraryChoice;
 use super::film_choice::{self, summary, tell};
 use super::{Failure, output};
 
-/// Default number of steps of a film in a world without a step limit: 5 minutes at 0.1 s per step.
+/// Default maximum number of steps of a film in a world without a step limit: 5 minutes at 0.1 s per step.
 const MOST_WITHOUT_LIMIT: u32 = 3000;
 
 /// Let an agent act in a world, and film it.

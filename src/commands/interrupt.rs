@@ -1,5 +1,5 @@
 //! Signal handling: long work polls for a signal and stops by itself; work that cannot poll, or does not stop in time, is
-//! terminated. Either way no partial files stay, and the exit code is that of a program ended by the signal: 130 for an
+//! terminated. Either way no partial files remain, and the exit code is that of a program ended by the signal: 130 for an
 //! interrupt.
 //!
 //! Active only if the command runs as a separate program ([`watch`]): a host program handles signals itself.
@@ -13,10 +13,10 @@ use system::follow_signals;
 /// Set by the first signal while a command listens.
 static ASKED: LazyLock<Arc<AtomicBool>> = LazyLock::new(Arc::default);
 
-/// The number of the first signal while a command listened; an interrupt's if unknown.
+/// The number of the first signal that arrived while a command listened; that of SIGINT if unknown.
 static SIGNAL: AtomicU8 = AtomicU8::new(INTERRUPT);
 
-/// The number of an interrupt.
+/// The number of SIGINT.
 const INTERRUPT: u8 = 2;
 
 /// Whether a command gave up because of a signal.
@@ -33,7 +33,7 @@ fn parting() -> MutexGuard<'static, Option<String>> {
     PARTING.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Tells long work whether a signal came, so that it can stop. Dropping it stops listening.
+/// Tells long work whether a signal has arrived, so that it can stop. Dropping it stops listening.
 pub(crate) struct Interrupt(());
 
 impl Interrupt {

@@ -61,7 +61,7 @@ static WORDS: Mutex<Vec<OsString>> = Mutex::new(Vec::new());
 
 /// Runs the command like the `driftworld` program, and prints its output; `args` begins with the program's name.
 ///
-/// Returns the exit code: 0 for success, 1 for invalid input or an invalid place for the output, 2 for invalid
+/// Returns the exit code: 0 for success, 1 for invalid input or an invalid output path, 2 for invalid
 /// arguments. If the reader of the output goes away, as with `| head`, the process ends. It also ends within two
 /// seconds of an interrupt, a termination or a hang-up, leaving no partial files: with a message if the work can be
 /// resumed or repeated, otherwise by the signal. Either way the exit code is 128 plus the signal's number: 130 for an
@@ -162,7 +162,7 @@ fn outputs(matches: &clap::ArgMatches) -> Outputs {
     }
     let file = |option| match leaf.try_get_one::<PathBuf>(option) {
         Ok(path) => Some((option, path?.clone())),
-        // No option of this command, or none that names a file.
+        // The command has no such option, or the option does not name a file.
         Err(_) => None,
     };
     ["output", "record", "matrix", "plot"]

@@ -1,4 +1,4 @@
-//! Optional parts of a build, which few need and which take long to build: each is a Cargo feature.
+//! Optional parts of a build, which few users need and which are slow to compile: each is a Cargo feature.
 
 #[cfg(any(test, not(feature = "gltf")))]
 use super::Failure;

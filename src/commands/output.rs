@@ -29,7 +29,7 @@ pub(crate) fn answers_by_code() {
     ANSWERS_BY_CODE.store(true, Ordering::Relaxed);
 }
 
-/// Written files with descriptions that were not reported yet.
+/// Written files that have not been reported yet, with their descriptions.
 static WRITTEN: Mutex<Vec<(PathBuf, String)>> = Mutex::new(Vec::new());
 
 fn written() -> MutexGuard<'static, Vec<(PathBuf, String)>> {
@@ -91,7 +91,7 @@ pub(crate) fn print_json(json: &str) -> Result<(), Failure> {
     print_as_is(&printable_json(json))
 }
 
-/// Prints data for another program: to a terminal as [`print`], else unchanged.
+/// Prints data for another program: to a terminal like [`print`], else unchanged.
 pub(crate) fn print_data(text: &str) -> Result<(), Failure> {
     carries_data();
     if std::io::stdout().is_terminal() {

@@ -1,4 +1,4 @@
-//! `driftworld photograph`: pictures of every object of a world from around and above, as PNG files with a manifest.
+//! `driftworld photograph`: photographs every object of a world from all sides and from above, into PNG files with a manifest.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -46,7 +46,7 @@ pub(crate) struct Photograph {
     json: bool,
 }
 
-/// Common properties of the pictures in a folder, and their list.
+/// The properties that the pictures in a folder share, and a list of the pictures.
 #[derive(Serialize)]
 struct Manifest<'a> {
     world: String,
@@ -220,7 +220,7 @@ fn degrees(angle: f32, digits: usize) -> String {
     format!("{angle:0width$.2}", width = digits + 3)
 }
 
-/// A text of a document as part of a file name: anything but letters, digits and `-` becomes `-`.
+/// A string from the document as part of a file name: anything but letters, digits and `-` becomes `-`.
 fn safe(text: &str) -> String {
     let plain = |letter: char| {
         if letter.is_ascii_alphanumeric() {

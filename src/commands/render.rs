@@ -1,4 +1,4 @@
-//! `driftworld render`: pictures of a world, and sheets of several.
+//! `driftworld render`: draws pictures of a world, and sheets of several pictures.
 
 use std::path::PathBuf;
 
@@ -212,7 +212,7 @@ impl Render {
 /// Maximum number of warnings that are printed.
 const MOST_WARNINGS: usize = 10;
 
-/// Warns of requests in the world that may surprise its author.
+/// Warns about parts of the world that may surprise its author.
 fn warn(world: &World, catalogue: &Catalogue) {
     let warnings = Environment::with_catalogue(world.clone(), catalogue.clone()).warnings();
     for warning in warnings.iter().take(MOST_WARNINGS) {

@@ -1,4 +1,4 @@
-//! `driftworld replay`: repeats recorded episodes, compares them with their log, and films them.
+//! `driftworld replay`: replays recorded episodes, compares them with their log, and films them.
 
 use std::path::PathBuf;
 

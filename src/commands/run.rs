@@ -97,7 +97,7 @@ fn jobs(text: &str) -> Result<NonZeroUsize, String> {
 }
 
 impl Run {
-    /// Refuses the name of a task instead of a scenario file; a task file is recognised when it is read.
+    /// Refuses the name of a task in place of a scenario file; a task file is recognised when it is read.
     fn refuse_task(&self) -> Result<(), Failure> {
         let called = self.scenario.to_str().unwrap_or_default();
         let is_task = !self.scenario.exists() && tasks::variants(called).is_ok();
@@ -113,7 +113,7 @@ impl Run {
     pub(crate) fn run(self) -> Result<(), Failure> {
         self.refuse_task()?;
         let file = ScenarioFile::read(&self.scenario, &mut output::warning)?;
-        // The original's own scenario names a map that it does not include, and must run unchanged.
+        // L2Explorer's own scenario names a map that L2Explorer does not include, and must run unchanged.
         let may = self.stand_in || (file.original && !self.no_stand_in);
         let missing = Missing::may_stand_in(may);
         let undrawable = if self.skip_undrawable {
@@ -243,7 +243,7 @@ impl LifetimeRun<'_> {
     /// Runs it, with a progress bar on a terminal. Whatever stops it, the log holds whole experiences, and the message says how
     /// to continue.
     pub(crate) fn run(mut self) -> Result<Summary, Failure> {
-        // Before the log exists, so that a process that sees the log may already stop this one.
+        // Listens before the log exists: a process that sees the log can already stop this one.
         let interrupt = Interrupt::listen(format!(
             "interrupted in the middle of a step\n{}: all experiences in it are complete; continue with the same \
              command and --resume",

@@ -119,14 +119,14 @@ impl std::str::FromStr for Shard {
 }
 
 impl Shard {
-    /// Its part of `first..first + count`; some parts are longer by one if it does not divide evenly.
+    /// Its part of `first..first + count`; some parts are longer by one if `count` does not divide evenly.
     fn of(self, first: u64, count: u64) -> std::ops::Range<u64> {
         let start = |part: u64| first + (u128::from(count) * u128::from(part) / u128::from(self.parts)) as u64;
         start(self.part - 1)..start(self.part)
     }
 }
 
-/// Draws the world with an index.
+/// Draws the world with a given index.
 type Draw = Box<dyn Fn(u64) -> Result<World, GeneratorError> + Sync>;
 
 impl Sample {
@@ -189,7 +189,7 @@ impl Sample {
             let sampler = sampler(variant);
             return Ok(Box::new(move |index| sampler.world(index)));
         };
-        // The other variant is of the same task if named without one.
+        // The target variant belongs to the same task if its name has no task.
         let (_, own) = tasks::split(name);
         let to = match own {
             Some(_) => tasks::variant(name)?,
@@ -259,7 +259,7 @@ fn each(
     left: &str,
     mut take: impl FnMut(u64, World) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
-    // On cancellation, the partial output is removed.
+    // On cancellation, incomplete output is removed.
     let interrupt = Interrupt::listen(format!("interrupted; {left}"));
     let bar = output::progress(range.end - range.start, "sampling");
     let mut first = range.start;

@@ -44,7 +44,7 @@ pub(crate) struct Scoring {
 }
 
 impl Scoring {
-    /// Converts them to the library's settings.
+    /// Converts the options to the library's settings.
     pub(crate) fn settings(&self) -> Result<ScoringSettings, Failure> {
         let noise = self.noise.as_deref().and_then(|noise| match noise {
             [mean, std] => Some(Noise {

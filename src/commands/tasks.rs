@@ -161,7 +161,7 @@ fn differing(variant: &Variant) -> String {
     differing.collect::<Vec<_>>().join(", ")
 }
 
-/// A value as in captions, without line breaks beside numbers or after the commas of a place.
+/// A value as in captions, without line breaks beside numbers or after the commas of a list.
 fn in_few_words(value: &Value, parameter: &Parameter) -> String {
     let typed = parameter.typed(value);
     let value = typed.as_ref().unwrap_or(value);

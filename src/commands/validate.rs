@@ -1,4 +1,4 @@
-//! `driftworld validate`: lists every problem of a document with its place.
+//! `driftworld validate`: lists every problem of a document with its location.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -86,7 +86,7 @@ struct Verdict {
 /// The result for a document that could be read.
 struct Found {
     checked: Checked,
-    /// Another problem of a scenario, with its code.
+    /// A problem that is not in `checked.error`, with its code.
     failure: Option<(&'static str, String)>,
     trials: Vec<Trial>,
     /// Remarks on the worlds of a task, as sentences.
@@ -191,7 +191,7 @@ impl Validate {
                 let plan = file.plan(Missing::Refused, Undrawable::Skipped, warn)?;
                 plan.tasks().values().map(Arc::clone).collect()
             }
-            // The tasks of the original's scenarios, and worlds, make no claims.
+            // L2Explorer's scenarios, worlds and maps make no claims about elements.
             Kind::L2ExplorerScenario | Kind::World | Kind::Maps | Kind::L2ExplorerWorld => Vec::new(),
         };
         let tried = tasks.iter().map(|task| {

@@ -73,7 +73,7 @@ impl Vary {
         };
         let measured = VariantMeasure::new(from.task(), Weights::of_task(from.task()));
         let measure = |other: &Variant| {
-            // Distributions of unboundedly large numbers have no finite distance: farther than any requested.
+            // Distributions of unbounded numbers have no finite distance: they count as farther than any requested.
             let distance = measured.between(&from, other);
             distance.map_or(f64::INFINITY, |distance| distance.within(self.element))
         };
@@ -124,7 +124,7 @@ impl Vary {
     }
 }
 
-/// The document of a variant's task with that variant appended. Its declaration makes the same variant again.
+/// The document of a variant's task with that variant appended. Its declaration reproduces the same variant.
 fn with_variant(found: &Variant, name: &str, declared: &Map<String, Value>) -> Result<String, Failure> {
     let mut document: Value = serde_json::from_str(&found.task().to_json())?;
     document["variants"][name] = Value::Object(declared.clone());

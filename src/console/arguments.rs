@@ -82,7 +82,7 @@ pub(super) fn step(words: &[&str]) -> Result<(Action, u32), String> {
     Ok((action, count))
 }
 
-/// An action and its number of repeats, with options.
+/// An action and its number of repeats, given as options.
 pub(super) fn action(words: &[&str]) -> Result<(Action, u32), String> {
     let (count, words) = match words {
         ["-c", steps, rest @ ..] | [rest @ .., "-c", steps] => (count(steps)?, rest),

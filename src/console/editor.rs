@@ -87,7 +87,7 @@ impl Completer for Completions {
         let before: Vec<&str> = line[..start].split_whitespace().collect();
         let mut words = self.after(&before);
         words.retain(|word| word.starts_with(&line[start..]));
-        // After a complete word a space follows; after a key, its value.
+        // A complete word is followed by a space; a key, by its value.
         if let [only] = &mut words[..]
             && !only.ends_with('=')
         {

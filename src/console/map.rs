@@ -1,4 +1,4 @@
-//! The map as text: walls are `#`, zones have signs by their effect, objects the first letter of their class, the agent is an
+//! The map as text: walls are `#`, zones a sign for their effect, objects the first letter of their class, and the agent an
 //! arrow.
 
 use crate::env::Environment;
@@ -24,7 +24,7 @@ fn sign(zone: &Zone) -> (char, &'static str) {
     }
 }
 
-/// The world from above, north at the top: capital letters are objects that pay. Below it, a legend of the zones and open doors
+/// The world from above, north at the top: objects that pay have capital letters. Below it, a legend of the zones and open doors
 /// on the map, if any.
 pub(super) fn letters(environment: &Environment, columns: u32) -> String {
     let scene = environment.scene();

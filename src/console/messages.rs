@@ -48,7 +48,7 @@ impl Session<'_> {
     }
 }
 
-/// The messages of a text: one message, one with its channel (`{"channel", "message"}`), or a list of these under `tests`.
+/// The messages of a text: one message, a message with its channel (`{"channel", "message"}`), or a list of these under `tests`.
 ///
 /// A message without a channel goes to the channel that knows its action. Text that is not a message is passed on
 /// unchanged, and is then refused.

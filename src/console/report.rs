@@ -97,7 +97,7 @@ impl Session<'_> {
 pub(super) fn short(number: f32) -> String {
     driftworld_text::short(f64::from(number), 2)
 }
-/// What divides the arena, and the number of zones, if any.
+/// The layout or map of the arena, and the number of zones, if any.
 fn ground(environment: &EnvironmentParams) -> String {
     let kind = environment.layout.as_ref().map(|layout| match layout {
         Layout { maze: Some(_), .. } => "layout maze".to_owned(),

@@ -147,7 +147,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn two_pixels_share_a_letter_and_colour_codes_are_not_repeated() {
+    fn two_pixels_share_a_character_and_colour_codes_are_not_repeated() {
         let text = half_blocks(2, &[1, 2, 3, 1, 2, 3, 4, 5, 6, 4, 5, 6]);
         assert_eq!(text, "\x1b[38;2;1;2;3;48;2;4;5;6m▀▀\x1b[0m\n");
     }

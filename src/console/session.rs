@@ -42,7 +42,7 @@ pub(crate) enum Reply {
     Said(String),
     /// A JSON document.
     Json(String),
-    /// A picture made of letters, or of our own colour codes.
+    /// A picture made of characters, or of our own colour codes.
     Picture(String),
     Quit,
 }

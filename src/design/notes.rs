@@ -1,4 +1,4 @@
-//! Notes on a design that go beyond its request: named variants that are not learned, unbalanced orders, experts of mixtures.
+//! Notes on what may be unexpected in a design: named variants that are not learned, unbalanced orders, experts of mixtures.
 
 use driftworld_spec::{DriftSwitch, ScenarioForm};
 

@@ -17,7 +17,7 @@ const WORLDS: u64 = 16;
 pub struct PairOptimum {
     /// The variant that is learned first.
     pub a: String,
-    /// The other.
+    /// The other variant.
     pub b: String,
     /// The loss of `a`'s expert in worlds of `b`, and the reverse.
     pub optimum: Optimum,

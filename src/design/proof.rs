@@ -15,7 +15,7 @@ impl DesignRequest {
     /// Tests the variants of a probe; `None` without a probe, or if nothing is to be tested before writing.
     ///
     /// # Errors
-    /// [`Failure`] that lists every variant that changes something else, too.
+    /// [`Failure`] that lists every variant that also changes something else.
     pub(super) fn prove(&self, chosen: &Chosen) -> Result<Option<ScenarioProof>, Failure> {
         let (picked, element) = match &chosen.evidence {
             Some(Evidence::Probe { picked, element }) => (picked, Some(*element)),
@@ -66,7 +66,7 @@ impl DesignRequest {
     }
 }
 
-/// Refuses a probe whose variants change another element than the probed one.
+/// Refuses a probe whose variants change an element other than the probed one.
 fn refuse_others(found: &ElementsOutcome, element: Element, modalities: &[Modality]) -> Result<(), Failure> {
     let others = found.variants.iter().filter_map(|variant| {
         let other = variant.measured.iter().find(|own| !element.covers(own.element))?;

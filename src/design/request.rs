@@ -27,7 +27,7 @@ pub enum DesignOrder {
     Abrupt,
     /// The shortest path from the first: neighbours are as similar as possible.
     Path,
-    /// Greedy: each next one is the farthest from all before it.
+    /// Greedy: the next variant is always the farthest from all before it.
     Farthest,
     /// In the given order, whatever their distances.
     Named,

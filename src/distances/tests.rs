@@ -259,7 +259,7 @@ fn measures_describe_what_they_are_based_on() {
 }
 
 #[test]
-fn shaping_gives_distance_0_and_the_reverse_1() {
+fn shaping_gives_distance_0_and_reversed_rewards_1() {
     let side = |name: &str| Side::Variant(tasks::variant(name).expect("it is built in"));
     let rewards = Sample::by(By::Rewards);
     let apart = |a: &str, b: &str| {

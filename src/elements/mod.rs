@@ -169,7 +169,7 @@ impl Trial {
             ..*self
         };
         let mut idle: Vec<String> = Vec::new();
-        // Resets one after the other, the last first: of two equivalent ones, only one is without effect.
+        // Resets the parameters one by one, from the last: of two equivalent ones, only one counts as idle.
         for name in names.iter().rev() {
             let back = idle.iter().chain([name]);
             let values: Vec<_> = back

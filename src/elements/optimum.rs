@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn clear_regret_means_another_optimum() {
+    fn clear_regret_means_a_different_optimum() {
         assert!(exchanged(&[100.0, 100.0, 100.0]).turned);
         assert!(exchanged(&[40.0, 60.0, 50.0]).turned);
         assert!(!exchanged(&[0.0, 0.0]).turned, "the same tour");

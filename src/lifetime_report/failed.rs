@@ -12,7 +12,7 @@ const MOST_OF_A_TASK: usize = 3;
 /// Maximum number of links for a lifetime.
 const MOST: usize = 24;
 
-/// Refuses what is no address: it becomes a link.
+/// Refuses anything but a web address: it becomes a link.
 pub(super) fn check_address(workbench: &str) -> Result<(), Failure> {
     if ["http://", "https://"].iter().any(|start| workbench.starts_with(start)) {
         return Ok(());
@@ -23,7 +23,7 @@ pub(super) fn check_address(workbench: &str) -> Result<(), Failure> {
     )))
 }
 
-/// Each link with its words; only worlds of built-in tasks have one, and only logs with a column `success`.
+/// Each link with its text; only worlds of built-in tasks have one, and only in logs with a column `success`.
 pub(super) fn links(log: &Log, workbench: &str) -> Vec<(String, String)> {
     let page = workbench.split('#').next().unwrap_or_default();
     let evaluated = || log.rows.iter().filter(|row| row.block_type() == BlockType::Test);
@@ -44,7 +44,7 @@ pub(super) fn links(log: &Log, workbench: &str) -> Vec<(String, String)> {
     links
 }
 
-/// The world of an experience, in words and as the fragment of an address; `None` unless a variant of a built-in task drew it.
+/// The world of an experience, in words and as the fragment of a URL; `None` unless a variant of a built-in task drew it.
 fn world(row: Row<'_>) -> Option<(String, String)> {
     let params = row.task_params();
     let known = ["task", "variant", "seed", "max_steps"];

@@ -33,7 +33,7 @@ pub struct ReportRequest {
     pub figures: Vec<Figure>,
     /// How they are drawn.
     pub figure_options: FigureOptions,
-    /// A folder to which the figures are written, too.
+    /// A folder that the figures are also written to.
     pub plots: Option<PathBuf>,
     /// The address of a workbench; the page links to the worlds in which the last evaluation failed.
     pub studio: Option<String>,
@@ -184,7 +184,7 @@ fn facts(log: &Log) -> Vec<(String, String)> {
     said.collect()
 }
 
-/// A common name for the lifetimes under these folders: the folder's, or the first of several.
+/// A common name for the lifetimes under these folders: the folder's name, or the first name and the number of others.
 fn called(folders: &[PathBuf]) -> String {
     let name = |path: &PathBuf| {
         let path = path.canonicalize().unwrap_or_else(|_| path.clone());

@@ -19,7 +19,7 @@ use crate::distances::{Sample, fitting, variant_matrix};
 use crate::sheet_words::Worlds;
 use crate::{Failure, argument, matrix_file, tasks};
 
-/// Most variants whose worlds are drawn.
+/// Maximum number of variants whose worlds are drawn.
 const MOST_PICTURED: usize = 12;
 
 const LOOK: Look = Look {
@@ -43,7 +43,7 @@ pub(super) struct Neighbours {
     pictured: BTreeSet<String>,
 }
 
-/// A matrix, with its variants by their names in logs.
+/// A matrix, with the indices of its variants by log name.
 struct Named {
     matrix: DistanceMatrix,
     index: BTreeMap<String, Ends>,
@@ -58,7 +58,7 @@ struct Ends {
     last: usize,
 }
 
-/// A block of learning: its name in the log, and its variants at its beginning and, if it drifts, at its end.
+/// A learning block: its name in the log, and its variants at its beginning and, if it drifts, at its end.
 type Learned = (String, Regime, Variant, Option<Variant>);
 
 /// Distances of neighbours, with a sentence about them.
@@ -87,7 +87,7 @@ impl Neighbours {
         })
     }
 
-    /// Pictures of the worlds that a lifetime learned in, or why there are none. Lifetimes of one scenario share them.
+    /// Pictures of the worlds that a lifetime learned in, or why there are none. Lifetimes of the same scenario share them.
     pub(super) fn worlds_of(&mut self, log: &Log) -> Result<Vec<SheetRow>, String> {
         let scenario = log.scenario_info.extra.get("scenario").map(ToString::to_string);
         let scenario = scenario.ok_or("No pictures of worlds: the log does not say which scenario was run.")?;

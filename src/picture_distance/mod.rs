@@ -1,4 +1,4 @@
-//! Compares how two worlds look to an agent in them, by pictures from the same places.
+//! Compares how two worlds look to an agent in them, by pictures from the same positions.
 
 mod poses;
 
@@ -139,7 +139,7 @@ impl Views {
     /// Mean distance of the pictures of two worlds, pose by pose, in `0..=1`.
     ///
     /// # Errors
-    /// [`PictureDistanceError::Compare`] unless both have the same number of pictures of one size.
+    /// [`PictureDistanceError::Compare`] unless both have the same number of pictures, all of the same size.
     pub fn distance(&self, other: &Self, measure: PictureMeasure) -> Result<f64, PictureDistanceError> {
         Ok(views_distance(&self.pictures(), &other.pictures(), measure)?)
     }
@@ -245,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn solid_places_are_excluded() {
+    fn occupied_places_are_excluded() {
         let catalogue = Catalogue::default();
         let empty = world("", "");
         assert_eq!(poses(&[&empty], &catalogue).expect("all is free").len(), 64);

@@ -35,7 +35,7 @@ pub fn poses(worlds: &[&World], catalogue: &Catalogue) -> Result<Vec<Pose>, Pict
     let mut poses = Vec::new();
     for (row, column) in (0..ACROSS).flat_map(|row| (0..ACROSS).map(move |column| (row, column))) {
         let position = [middle(column, width), middle(row, depth)];
-        // Without a world there is no arena either.
+        // Without worlds there is no arena.
         if environments.is_empty()
             || environments
                 .iter_mut()

@@ -77,7 +77,7 @@ impl ScalesFile {
     /// Reads a file.
     ///
     /// # Errors
-    /// [`Failure`] if it cannot be read or has other contents.
+    /// [`Failure`] if it cannot be read or has the wrong contents.
     pub fn read(path: &Path) -> Result<Self, Failure> {
         let expected = "scales, such as {\"scales\": {\"find_red\": {\"floor\": 0, \"ceiling\": 10}}}";
         serde_json::from_str(&documents::text(path)?).map_err(|error| {

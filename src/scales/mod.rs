@@ -26,7 +26,7 @@ pub const DEFAULT_SCALES_WORLDS: u64 = 50;
 /// Maximum number of worlds per agent.
 pub const MAX_SCALES_WORLDS: u64 = 10_000;
 
-/// The agents for the floor: they know nothing of a variant.
+/// The agents for the floor: they know nothing about a variant.
 const FLOOR: [&str; 2] = ["random", "still"];
 
 /// The agent for the ceiling: it knows the map and the rewards.
@@ -72,7 +72,7 @@ fn names(set: &str) -> Result<Vec<String>, Infallible> {
 /// map. The better of the first two is the floor, the third the ceiling. `progress` is called after each variant.
 ///
 /// For each set of variants in `unlabelled`, further agents run in all of them: one that stands still, one that acts at random,
-/// the expert of each variant held fixed, and that expert until a reward reveals another variant of the set. The
+/// the expert of each variant held fixed, and that expert until a reward reveals a different variant of the set. The
 /// ceilings are the highest means over the set: among agents that act alike in all variants, and among all. These are
 /// the best known agents; better ones may exist.
 ///

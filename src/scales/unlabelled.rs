@@ -21,7 +21,7 @@ const PICTURES: u64 = 5;
 pub struct UnlabelledCeiling {
     /// The variants, equally likely, by their names in logs.
     pub among: Vec<String>,
-    /// The best agent that acts alike in all of them, such as one without memory.
+    /// The best agent that acts alike in all of them, such as an agent without memory.
     pub fixed: BestAgent,
     /// The best agent that may also infer the variant from rewards within an episode.
     pub finds_out: BestAgent,
@@ -54,7 +54,7 @@ enum Ignorant {
     Random,
     /// The expert of one variant throughout.
     Fixed(usize),
-    /// The expert of one variant until a reward reveals another.
+    /// The expert of one variant until a reward reveals a different one.
     FindsOut(usize),
 }
 
@@ -77,7 +77,7 @@ impl Ignorant {
         }
     }
 
-    /// Runs it in one of these worlds, one of each variant; returns its reward and whether it succeeds.
+    /// Runs it in the world at `place`; `worlds` has one of each variant. Returns its reward and whether it succeeds.
     fn run(self, worlds: &[World], place: usize, seed: u64, expertise: &Expertise) -> Result<(f64, bool), Failure> {
         let (abroad, catalogue) = (&worlds[place], &expertise.catalogue);
         let found = match self {
@@ -208,7 +208,7 @@ fn unlike(
     Ok(None)
 }
 
-/// A world without rewards, their conditions, and the ends of episodes.
+/// A world without rewards, their conditions, and end conditions of episodes.
 fn unpaid(world: &World) -> Result<World, Failure> {
     let bare = world.clone().edit(|world| {
         world.rules = Rules::default();

@@ -30,7 +30,7 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// From lifetimes, and another agent's, if any.
+    /// From lifetimes, and those of another agent, if any.
     pub(super) fn new(
         lifetimes: &[LifetimeMetrics],
         others: &[LifetimeMetrics],

@@ -1,4 +1,4 @@
-//! The single-task experts that lifetimes are compared with: given logs, and those stored in a folder, read on demand.
+//! The single-task experts that lifetimes are compared with: given logs, and logs stored in a folder, which are read on demand.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -97,7 +97,7 @@ impl Experts {
 }
 
 /// For each task, keeps only the experts designed with the lifetime, recognised by the name of its scenario, if there
-/// are any: several lifetimes may be scored together, with the experts of all.
+/// are any: several lifetimes may be scored together, with the experts of all of them.
 fn of_the_lifetime(log: &Log, experts: Vec<SteLog>) -> Vec<SteLog> {
     let Some(own) = scenario_name(log).map(|name| format!("{name}-")) else {
         return experts;
@@ -158,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn each_lifetime_uses_its_own_experts_or_else_others() {
+    fn each_lifetime_uses_its_own_experts_or_else_all() {
         let expert = |scenario, task| SteLog::new(log_of(scenario, task)).expect("one task");
         let experts = vec![
             expert("c-1-red", "f_red"),

@@ -1,4 +1,4 @@
-//! [`score`]: scores logs by folder: what agents kept and transferred.
+//! [`score`]: scores the logs in folders: what agents retained and transferred.
 
 mod comparison;
 mod experts;

@@ -27,7 +27,7 @@ pub struct ScoringRequest {
     pub settings: ScoringSettings,
     /// Whether to scale each task by its range over all lifetimes, not each lifetime by its own; always so with `against`.
     pub common_ranges: bool,
-    /// Difference, in each metric's own unit, to compute how many lifetimes show it; needs several lifetimes.
+    /// A difference in each metric's own unit, to compute how many lifetimes show it; needs several lifetimes.
     pub power: Option<f64>,
     /// How intervals over several lifetimes are computed.
     pub intervals: BootstrapOptions,

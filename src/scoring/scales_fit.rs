@@ -1,4 +1,4 @@
-//! Warnings about scales that do not fit a log: none applies, a name is slightly different, or a set of tasks that look alike
+//! Warnings about scales that do not fit a log: no scale applies, a name is slightly different, or a set of tasks that look alike
 //! was measured with other tasks.
 
 use driftworld_metrics::{Log, Options, Scales};

@@ -22,7 +22,7 @@ pub(crate) struct ScoredLog {
 }
 
 impl ScoredLog {
-    /// Reads a log and scores it; `name` distinguishes it from others, by default its folder's.
+    /// Reads a log and scores it; `name` distinguishes it from others, by default its folder's name.
     pub(crate) fn read(
         folder: &Path,
         name: Option<&str>,

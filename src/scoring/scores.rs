@@ -25,7 +25,7 @@ pub struct Scores {
     pub lifetimes_against: Vec<LifetimeMetrics>,
     /// Their aggregates; `None` for a single lifetime.
     pub comparison: Option<Comparison>,
-    /// The differences between them; `None` for a single one.
+    /// The differences between them; `None` for a single lifetime.
     pub varied: Option<Varied>,
     /// The scoring options.
     pub options: Options,
@@ -83,7 +83,7 @@ impl Scores {
     /// `name` defaults to the log's, or `ll_metrics` for several.
     ///
     /// # Errors
-    /// [`Failure`] if a file cannot be written, or for a name that no file can have.
+    /// [`Failure`] if a file cannot be written, or the name is not a valid file name.
     pub fn save(&self, folder: &Path, name: Option<&str>) -> Result<Vec<PathBuf>, Failure> {
         let logs = self.asked.iter().map(|log| log.display().to_string());
         let settings = Settings {

@@ -94,7 +94,7 @@ pub(super) fn load(path: &Path) -> Result<Loaded, Failure> {
     Ok(Loaded { options, log_dir })
 }
 
-/// l2metrics writes noise as `[MEAN, STD]`, and `[0, 0]` for none.
+/// l2metrics writes noise as `[MEAN, STD]`, and `[0, 0]` for no noise.
 fn noise_of_l2metrics(noise: &Value) -> Value {
     match noise.as_array().map(Vec::as_slice) {
         Some([mean, std]) if mean.as_f64() == Some(0.0) && std.as_f64() == Some(0.0) => Value::Null,
@@ -106,7 +106,7 @@ fn noise_of_l2metrics(noise: &Value) -> Value {
 /// Reads the ranges of tasks from a file: `{"find_red": {"min": 0, "max": 10}}`. Names are lower-cased, as in the metrics.
 ///
 /// # Errors
-/// [`Failure`] if it cannot be read or has other contents.
+/// [`Failure`] if it cannot be read or has the wrong contents.
 pub fn data_ranges(path: &Path) -> Result<DataRanges, Failure> {
     let expected = "an object of ranges, such as {\"find_red\": {\"min\": 0, \"max\": 10}}";
     let mut ranges = DataRanges::new();

@@ -6,11 +6,11 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use driftworld_metrics::{BlockType, Log};
 use serde::Serialize;
 
-/// The properties of a lifetime that others may share.
+/// The properties of a lifetime that other lifetimes may share.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Makeup {
     order: Vec<String>,
-    /// A hash of tasks, seeds and world indices in any order; `None` if not logged.
+    /// A hash of seeds or world files, with world indices, whatever their order; `None` if not logged.
     learned: Option<u64>,
     evaluated: Option<u64>,
     agent: String,

@@ -15,7 +15,7 @@ use super::{Figures, rate, rates};
 /// 20 objects of 2,652 triangles spread over a walled arena of 100 × 100 m; rewards for touching and approaching.
 const ARENA_20: &str = include_str!("arena_20.json");
 
-/// The same with 8 objects.
+/// The same arena with 8 objects.
 const ARENA_8: &str = include_str!("arena_8.json");
 
 /// A maze drawn for each world, with a goal. The agent starts at the centre of a cell.
@@ -103,7 +103,7 @@ fn measure_graphics(round: Duration) -> Result<Figures, Failure> {
 }
 
 /// Mazes of 8 × 8 cells with a goal and images of 84 × 84 pixels in colour, depth and segmentation; each world has a different
-/// one.
+/// maze.
 fn mazes() -> Result<Sampler, Failure> {
     let task = TaskSpec::from_json("maze.json", MAZE)?;
     Ok(Sampler::new(&task.variant("default")?, 7))

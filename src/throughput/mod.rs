@@ -12,7 +12,7 @@ pub(crate) type Figures = Map<String, Value>;
 /// Number of rounds for the median.
 const ROUNDS: usize = 5;
 
-/// How often a job runs per second: the median of several rounds, after one to warm up.
+/// How often a job runs per second: the median of several rounds, after a warm-up round.
 fn rate<E>(round: Duration, mut job: impl FnMut(u64) -> Result<(), E>) -> Result<f64, E> {
     let mut rates = Vec::with_capacity(ROUNDS);
     let mut index = 0;

@@ -1,4 +1,4 @@
-//! A user's path of models from a file to a world: packed, listed, drawn, collided with.
+//! Follows models from a file into a world: packed, listed, drawn, collided with.
 
 use std::path::{Path, PathBuf};
 

@@ -10,7 +10,7 @@ use crate::reference_data::reference;
 
 const WORLD: &str = "examples/console/world.json";
 
-/// Runs the console with lines on its standard input, and `--out` in the test's own folder.
+/// Runs the console with lines on its standard input, and `--output` in the test's own folder.
 fn console(arguments: &[&str], out: &Path, lines: impl AsRef<[u8]>) -> Output {
     let mut command = driftworld(&["console"]);
     command.args(arguments).arg("--output").arg(out);
@@ -22,7 +22,7 @@ fn said(output: &Output, out: &Path) -> String {
     String::from_utf8_lossy(&output.stdout).replace(&out.display().to_string(), "OUT")
 }
 
-/// A transcript without the world's hash, which changes as soon as worlds get another key.
+/// A transcript without the world's hash, which changes as soon as worlds get a new key.
 fn without_hash(transcript: &str) -> String {
     let path = root().join(WORLD);
     let text = std::fs::read_to_string(path).expect("the example is there");
@@ -186,7 +186,7 @@ fn variant_has_numbered_worlds() {
 }
 
 #[test]
-fn original_messages_run_completely() {
+fn l2explorer_messages_run_completely() {
     let Some(messages) = reference("l2explorer/channel_messages.json") else {
         return;
     };
@@ -207,7 +207,7 @@ fn original_messages_run_completely() {
 }
 
 #[test]
-fn binary_lines_are_an_error_and_no_panic() {
+fn binary_lines_are_an_error_and_not_a_panic() {
     let folder = scratch();
     let output = console(&["find_objects"], folder.path(), b"info\n\xff\xfe\n");
     let error = String::from_utf8_lossy(&output.stderr);

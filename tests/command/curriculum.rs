@@ -17,7 +17,7 @@ fn with_park() -> tempfile::TempDir {
     folder
 }
 
-/// The scenario printed by `driftworld curriculum`, and the other output.
+/// The scenario printed by `driftworld curriculum`, and standard error.
 #[track_caller]
 fn designed(arguments: &str) -> (Value, String) {
     let folder = with_park();

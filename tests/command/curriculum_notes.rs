@@ -31,7 +31,7 @@ fn note_names_held_out_variants() {
     assert_eq!(bare, whole);
 }
 
-/// Other starts and ends of a random order are refused.
+/// For a random order, ends are refused, and so are starts without a probe.
 #[test]
 fn start_of_a_probe_is_the_base_of_comparison() {
     let folder = scratch();

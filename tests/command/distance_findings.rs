@@ -1,4 +1,4 @@
-//! Findings of an audit of distances by the command, each with the former answer.
+//! Bugs that an audit of the command's distances found, each with the former answer.
 
 use serde_json::Value;
 

@@ -102,7 +102,7 @@ fn scenario_is_refused_for_false_claims_of_its_tasks() {
     }
 }
 
-/// A lever that opens a door after the agent has walked for some seconds: too late for a few steps.
+/// A door that opens by itself late in the episode: too late for a few steps.
 #[test]
 fn more_steps_find_later_differences() {
     let folder = scratch();

@@ -1,5 +1,5 @@
-//! Runs that are killed, stopped by signals or out of disk space at random moments continue to the bytes of an undisturbed run.
-//! Other commands leave existing files unchanged.
+//! Runs that are killed, stopped by signals or out of disk space at random moments and then resumed write the same bytes as
+//! undisturbed runs. Other commands leave existing files unchanged.
 //!
 //! `DRIFTWORLD_FAULTS` sets the number of faults, `DRIFTWORLD_FAULTS_SEED` their seed.
 #![cfg(unix)]
@@ -16,7 +16,7 @@ use super::run_files::{is_table, write};
 use super::terminal::{driftworld_in, output, root, scratch, signals, succeed_in};
 use crate::files_below::files_below;
 
-/// Most faults in one lifetime; after that it runs undisturbed.
+/// Maximum number of faults in one lifetime; after that it runs undisturbed.
 const MOST: u64 = 12;
 
 /// The time of all rows, so that logs can be compared byte for byte.
@@ -77,7 +77,7 @@ fn scenario(folder: &Path) {
     write(&folder.join("scenario.json"), &scenario);
 }
 
-/// Starts or resumes a run and applies one fault; returns whether it ended before.
+/// Starts or resumes a run and applies one fault; returns whether the run ended before the fault.
 fn meet_a_fault(folder: &Path, arguments: &[&str], took: Duration, size: u64, rng: &mut Rng) -> bool {
     let kind = rng.below(4);
     if kind == 0 {

@@ -1,4 +1,4 @@
-//! A newcomer's first hour: each test was a defect once (docs of issue 24).
+//! A newcomer's first hour: each test was once a defect (docs of issue 24).
 
 use std::path::Path;
 
@@ -84,7 +84,7 @@ fn colours_appear_only_on_request() {
 }
 
 #[test]
-fn colours_change_no_word() {
+fn colours_do_not_change_the_text() {
     let plain = succeed(&["tasks", "show", "get_to_goal"]);
     let colored = succeed(&["tasks", "show", "get_to_goal", "--color", "always"]);
     let mut stripped = String::new();

@@ -39,7 +39,7 @@ fn doctor_lists_the_working_renderers() {
 }
 
 #[test]
-fn validate_accepts_the_examples_and_the_maps_of_the_original() {
+fn validate_accepts_the_examples_and_l2explorer_maps() {
     let said = succeed(&["validate", "examples/tasks"]);
     assert_eq!(said.lines().count(), 7, "{said}");
     let files = std::fs::read_dir("examples/curricula").expect("the folder can be read");
@@ -97,7 +97,7 @@ fn folder_of_worlds_has_exactly_one_file_each() {
 }
 
 #[test]
-fn render_draws_a_map_of_the_original() {
+fn render_draws_an_l2explorer_map() {
     let Some(map) = reference("l2explorer/map_findobjects_0.json") else {
         return;
     };
@@ -256,7 +256,7 @@ fn family_of_variants_has_one_name() {
 }
 
 #[test]
-fn maps_of_the_original_can_be_used_in_worlds() {
+fn l2explorer_maps_can_be_used_in_worlds() {
     let Some(maps) = reference("l2explorer/predefined_maps.json") else {
         return;
     };

@@ -1,4 +1,4 @@
-//! If `sample` fails, is stopped or is killed, no partial output stays.
+//! If `sample` fails, is stopped or is killed, no partial output remains.
 #![cfg(unix)]
 
 use std::path::Path;
@@ -60,7 +60,7 @@ fn leftovers_of_a_killed_sample_are_removed_but_not_files_in_progress() {
     let folder = scratch();
     let path = folder.path();
     let mut child = begun(path);
-    // Another process writing the same file removes nothing meanwhile.
+    // A second process that writes the same file at the same time removes nothing.
     succeed_in(path, "sample find_objects --count 3 --jsonl -o worlds.jsonl");
     assert_eq!(names(path).len(), 2, "{:?}", names(path));
     signal(&child, "-KILL");

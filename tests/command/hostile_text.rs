@@ -1,4 +1,4 @@
-//! Documents, logs, settings and file names that try to control the terminal: escape sequences, line ends that fake a line,
+//! Documents, logs, settings and file names that try to control the terminal: escape sequences, line breaks that fake a line,
 //! text with reversed direction. No subcommand prints them unescaped.
 
 use std::collections::BTreeSet;
@@ -54,7 +54,7 @@ impl Stage {
         for bytes in [&said.stdout, &said.stderr] {
             let shown = String::from_utf8_lossy(bytes);
             let raw = shown.find(is_hostile);
-            // A line end within a table's cell belongs to the cell.
+            // A line break within a table's cell belongs to the cell.
             let is_table = arguments.get(1) == Some(&"aggregate");
             let faked = !is_table && shown.lines().any(|line| line.starts_with("error: FAKE"));
             if raw.is_some() || faked || shown.contains("panicked") {
@@ -148,7 +148,7 @@ fn write_log(folder: &Path, column: &str, task: &str) {
     }
 }
 
-/// Subcommands that print only file names and arguments from others.
+/// Subcommands that print nothing hostile but file names and arguments.
 const OF_ARGUMENTS: &str = "bench completions demo doctor export new play schema";
 
 /// Subcommands that are tried with logs.
@@ -271,7 +271,7 @@ fn documents(stage: &mut Stage) {
         stage.run(&["validate", &name]);
         let json = stage.run(&["validate", &name, "--json"]);
         serde_json::from_slice::<Value>(&json.stdout).expect("--json prints JSON");
-        // In the quick tier one of them for each document.
+        // In the quick tier, one command for each document.
         let commands = "sample render console photograph sheet order curriculum convert";
         let tried = commands.split(' ').enumerate();
         for (_, command) in tried.filter(|(turn, _)| is_turn(turn + number, 8)) {
@@ -525,7 +525,7 @@ fn arguments(stage: &mut Stage) {
 }
 
 #[test]
-fn unprintable_letters_of_an_option_are_escaped_once() {
+fn unprintable_characters_of_an_option_are_escaped_once() {
     for arguments in [
         ["curriculum", "find_objects", "--name", "a\u{202e}b"],
         ["sample", "find_objects", "--count", "\u{202e}"],

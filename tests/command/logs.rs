@@ -98,7 +98,7 @@ fn budgets_leave_numbers_unused_without_a_warning() {
     let (out, error) = run(base.path(), 0, "logs validate run");
     assert_eq!(error, "");
     assert!(out.contains("3 blocks"), "{out}");
-    // A row that is lost in the middle of a regime is still missed.
+    // A row that is lost in the middle of a regime is still reported as missing.
     let path = log.join("worker-default/0-train/data-log.tsv");
     let text = fs::read_to_string(&path).expect("it was written");
     let rows: Vec<&str> = text.lines().collect();

@@ -139,7 +139,7 @@ fn new_run_in_a_replaced_folder_is_undisturbed() {
 }
 
 #[test]
-fn stopped_clock_makes_two_logs_equal_to_the_byte() {
+fn stopped_clock_makes_logs_byte_identical() {
     let folder = scratch();
     let scenario = scenario(folder.path()).replace("scenario.json", "small.json");
     let text_of = fs::read_to_string(folder.path().join("scenario.json")).expect("it was written");

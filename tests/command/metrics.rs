@@ -7,7 +7,7 @@ use crate::reference_data::reference;
 use driftworld::metrics::{BlockType, LogWriter, LoggerInfo, Record, ScenarioInfo, Timestamp};
 use serde_json::{Value, json};
 
-/// A lifetime of two alternating tasks, evaluated around each; `skill` is its final level.
+/// A lifetime in which tasks are learned in turn, all evaluated before and after each; `skill` sets its level.
 fn live(folder: &Path, tasks: &[&str], skill: f64) {
     let info = LoggerInfo::new(["reward"]).expect("a column");
     let mut log = LogWriter::create(folder, &info, &ScenarioInfo::default()).expect("the folder is new");
@@ -55,7 +55,7 @@ fn parsed(text: &str) -> Value {
 }
 
 #[test]
-fn references_example_gives_its_files() {
+fn l2metrics_example_gives_its_files() {
     let Some(dir) = reference("l2metrics") else { return };
     let folder = scratch();
     let of = |name: &str| dir.join(name).display().to_string();
@@ -165,8 +165,8 @@ fn many_lifetimes_have_intervals_and_tables() {
         shown,
         "the same seed, the same intervals"
     );
-    // Four whole runs have so few different resamples that their percentiles hardly depend on the seed; scores within tasks
-    // have more.
+    // Four whole runs have so few distinct resamples that their percentiles hardly depend on the seed; resampling within tasks
+    // has more.
     let by_strata = |seed: u8| {
         let line = format!("metrics -R mine --resamples 500 --resampling strata --bootstrap-seed {seed}");
         succeed_in(folder.path(), &line)
@@ -216,7 +216,7 @@ fn figures_are_written_beside_the_results() {
         ["run0_learning.png", "run0_learning.svg", "run0_raw.png", "run0_raw.svg"]
     );
     assert!(read(plots.join("run0_raw.svg")).contains("find_red"));
-    // Lifetimes with one name do not overwrite each other.
+    // Lifetimes with the same name do not overwrite each other.
     succeed_in(folder.path(), "metrics mine/run0 theirs/run0 -P -T raw -O both");
     let both = folder.path().join("both/plots");
     assert!(both.join("mine_run0_raw.png").is_file() && both.join("theirs_run0_raw.png").is_file());
@@ -299,7 +299,7 @@ fn agents_of_different_levels_are_compared_on_one_scale() {
 }
 
 #[test]
-fn lifetimes_with_one_name_are_distinguished() {
+fn lifetimes_with_the_same_name_are_distinguished() {
     let folder = scratch();
     for seed in ["a", "b"] {
         live(&folder.path().join(seed).join("log"), &TASKS, 1.0);

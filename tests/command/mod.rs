@@ -1,4 +1,4 @@
-//! The `driftworld` command, one file per subcommand.
+//! The `driftworld` command, one file per subcommand or topic.
 
 #[cfg(feature = "gltf")]
 mod assets;

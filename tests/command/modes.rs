@@ -58,7 +58,7 @@ fn mode(path: &Path) -> u32 {
     fs::metadata(path).expect("it is there").permissions().mode() & 0o777
 }
 
-/// Runs a command with an umask in a folder.
+/// Runs a command with this umask in a folder.
 fn under(umask: &str, folder: &Path, command: &str) {
     let mut shell = Command::new("sh");
     let script = format!("umask {umask}; exec \"$0\" {command}");
@@ -78,7 +78,7 @@ fn prepare(folder: &Path) {
     fs::write(folder.join("expert.json"), expert).expect("the folder is ours");
 }
 
-/// Runs all of them; returns the modes of the written files.
+/// Runs all commands.
 fn write_all(umask: &str, folder: &Path) {
     for command in COMMANDS {
         if command.contains("out/expert ") {
@@ -90,7 +90,7 @@ fn write_all(umask: &str, folder: &Path) {
         }
         under(umask, folder, command);
     }
-    // Written with another umask, to check that copies do not keep its modes.
+    // Written with a different umask, to check that copies do not keep its modes.
     let _ = fs::remove_dir_all(folder.join("out/expert"));
 }
 
@@ -120,7 +120,7 @@ fn new_files_follow_the_umask_and_overwritten_ones_keep_their_mode() {
     }
 }
 
-/// Overwrites everything, with other modes than the umask's.
+/// Overwrites everything, after setting modes other than the umask's.
 fn write_over(folder: &Path, found: &[PathBuf]) {
     let is_kept = |path: &&PathBuf| {
         let inside = text(path.strip_prefix(folder).expect("it lies there")).to_owned();

@@ -8,7 +8,7 @@ use super::terminal::{Says, driftworld, fail, output, scratch, succeed, text};
 use crate::reference_data::reference;
 
 #[test]
-fn original_scenario_runs_unchanged() {
+fn l2explorer_scenario_runs_unchanged() {
     let Some(original) = reference("l2explorer/scenario_findobjects.json") else {
         return;
     };
@@ -16,7 +16,7 @@ fn original_scenario_runs_unchanged() {
         return;
     };
     let folder = scratch();
-    // As in the original: the maps are above the scenario.
+    // As in L2Explorer: the maps are one folder above the scenario.
     let scenario = folder.path().join("scenarios/scenario_findobjects.json");
     let copy = |from: &Path, to: &Path| write(to, &fs::read_to_string(from).expect("the reference can be read"));
     copy(&original, &scenario);
@@ -70,7 +70,7 @@ fn original_scenario_runs_unchanged() {
 }
 
 #[test]
-fn original_scenario_is_converted() {
+fn l2explorer_scenario_is_converted() {
     let Some(original) = reference("l2explorer/scenario_findobjects.json") else {
         return;
     };

@@ -1,4 +1,4 @@
-//! Every command that takes a document reports one of another kind: what it is, what was expected, and what to do.
+//! Every command that takes a document reports one of the wrong kind: what it is, what was expected, and what to do.
 
 use std::fs;
 use std::path::Path;
@@ -73,7 +73,7 @@ fn arguments(command: &str, document: &str) -> Vec<String> {
 }
 
 #[test]
-fn document_of_another_kind_is_named() {
+fn document_of_the_wrong_kind_is_named() {
     let folder = everything();
     for (number, (command, taken)) in COMMANDS.into_iter().enumerate() {
         for (kind, (document, name)) in KINDS.into_iter().enumerate() {
@@ -109,7 +109,7 @@ fn advice_in_messages_works() {
     assert!(fs::read_to_string(path.join("scenario.json")).is_ok_and(|text| text.contains("\"blocks\"")));
 }
 
-/// Copies of the documents with the byte order mark that some editors add.
+/// Gives the documents the byte order mark that some editors add.
 fn marked(folder: &Path) {
     for (document, _) in KINDS.into_iter().filter(|(document, _)| *document != "log") {
         let path = folder.join(document);

@@ -34,7 +34,7 @@ fn pipe_reader_gets_the_first_world_before_the_last_is_drawn() {
         child.try_wait().expect("it can be asked").is_none(),
         "it is still drawing"
     );
-    // The reader is gone: that is reported.
+    // The reader has gone, which is reported.
     drop(reader);
     let ended = child.wait_with_output().expect("it ends");
     let error = String::from_utf8_lossy(&ended.stderr).into_owned();

@@ -15,7 +15,7 @@ pub(super) const PARK: &str = r#"{ "version": 2, "name": "park", "parameters": {
   "variants": { "blue": {}, "red": { "color": "red" }, "green": { "color": "green" }, "dusk": { "extends": "red", "light": 0.6 },
     "huddle": { "spread": 6 }, "penalty": { "extends": "red", "reward": -100 } } }"#;
 
-/// Refused commands with their messages. For another one, add its line `$ driftworld …` and accept what is printed.
+/// Refused commands with their messages. To add a command, add its line `$ driftworld …` and accept what is printed.
 const REFUSED: &str =
     include_str!("snapshots/all__command__refused__every_refusal_has_its_exit_code_and_its_words.snap");
 

@@ -1,4 +1,4 @@
-//! `driftworld run` when interrupted: killed at any moment, told to stop, out of disk space.
+//! `driftworld run`: runs that are stopped and resumed, inputs that change between runs, and files that scenarios name.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -12,7 +12,7 @@ fn scenario(folder: &Path) -> PathBuf {
     longer_scenario(folder, 80)
 }
 
-/// The same with at most this number of steps per experience.
+/// The same lifetime with at most this number of steps per experience.
 fn longer_scenario(folder: &Path, max_steps: u32) -> PathBuf {
     let path = folder.join("scenario.json");
     let regime = |variant: &str, count: u32| {
@@ -38,7 +38,7 @@ fn start(arguments: &[&str]) -> Child {
     command.spawn().expect("the command was built by cargo and starts")
 }
 
-/// Rows of a log that is being written, or does not exist yet.
+/// Number of whole rows in a log that is being written, or does not exist yet.
 #[cfg(unix)]
 fn num_whole_rows(log: &Path) -> usize {
     let table = log.join("worker-default/0-test/data-log.tsv");

@@ -16,7 +16,7 @@ pub(crate) fn write(path: &Path, text: &str) {
     fs::write(path, text).expect("the scratch folder can be written");
 }
 
-/// All files of a log by path, without the time stamps of rows.
+/// All files of a log by path, without the timestamps of rows.
 pub(crate) fn files(log: &Path) -> BTreeMap<String, String> {
     let file = |(name, bytes): (String, Vec<u8>)| {
         let text = String::from_utf8(bytes).expect("logs are text");
@@ -41,7 +41,7 @@ pub(crate) fn timeless(table: &str) -> String {
     table.lines().map(row).collect()
 }
 
-/// Number of rows in a log, all with a line end.
+/// Number of rows in a log.
 pub(crate) fn num_rows(log: &Path) -> usize {
     let tables = files(log).into_iter().filter(|(name, _)| is_table(name));
     tables.map(|(_, text)| text.lines().count() - 1).sum()

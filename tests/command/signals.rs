@@ -1,5 +1,5 @@
-//! A signal ends a command anywhere, even while it waits for somebody who never comes, and shells see the same exit code for
-//! all: 130 for an interrupt. A command that does not end lets the test reach its time limit.
+//! A signal ends a command at any point, even while it waits for a reader that never comes, and shells see the same exit code
+//! from all commands: 130 for an interrupt. If a command does not end, the test reaches its time limit.
 #![cfg(unix)]
 
 use std::fs;

@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 use super::terminal::{output, root, scratch, subcommands, succeed_in, text};
 use crate::is_turn;
 
-/// The place of the special file in a command line.
+/// Placeholder for the special file in a command line.
 const FILE: &str = "SPECIAL";
 
 /// Every place in a command line that names a file or folder to read.
@@ -137,7 +137,7 @@ fn folder_is_not_read_as_a_file() {
     });
 }
 
-/// Runs every command line with such a thing in place of its file; in the quick tier every fourth, different ones for each
+/// Runs every command line with such a file in place of its own; in the quick tier every fourth, different ones for each
 /// `kind`.
 fn everywhere(kind: usize, found: &str, make: impl Fn(&Path)) {
     let scratch = scratch();
@@ -209,7 +209,7 @@ fn read_task() -> String {
     super::terminal::read(root().join("examples/tasks/find_objects.json"))
 }
 
-/// The exit code and the output of a command line. More than ten seconds or four gigabytes fail the test.
+/// The exit code and the standard error of a command line. More than ten seconds or four gigabytes fail the test.
 fn ended(folder: &Path, line: &[&str]) -> (Option<i32>, String) {
     let said = folder.join("said.txt");
     let mut child = Command::new("sh")

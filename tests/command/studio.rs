@@ -7,7 +7,7 @@ use std::process::{Child, Command, Stdio};
 
 use super::terminal::{driftworld_in, output, scratch};
 
-/// A folder that looks like a page, and beside it what nobody should see.
+/// A folder that looks like a page, and beside it a file that nobody should see.
 fn page(root: &Path) -> std::path::PathBuf {
     let folder = root.join("page");
     std::fs::create_dir_all(folder.join("networks")).expect("the folder is ours");
@@ -27,7 +27,7 @@ fn studio(folder: &Path, arguments: &[&str]) -> Command {
     command
 }
 
-/// Ended at the end of its test, however that ends.
+/// A server that is killed at the end of its test, however the test ends.
 struct Serving(Child);
 
 impl Drop for Serving {
@@ -62,7 +62,7 @@ fn parts(address: &str) -> (&str, &str, &str) {
     (host, token, fragment)
 }
 
-/// What a path of a host gets: the status, and the body.
+/// Requests a path from a host; returns the status and the body.
 fn get(host: &str, path: &str) -> (u16, String) {
     let mut stream = TcpStream::connect(host).expect("it listens");
     write!(stream, "GET {path} HTTP/1.1\r\nHost: {host}\r\n\r\n").expect("it listens");
@@ -100,7 +100,7 @@ fn only_the_page_is_served_and_only_below_its_token() {
 }
 
 #[test]
-fn a_task_of_a_file_lies_beside_the_page() {
+fn task_from_a_file_is_served_beside_the_page() {
     let folder = scratch();
     page(folder.path());
     let text = "{ \"name\": \"mine\", \"world\": {} }";
@@ -112,7 +112,7 @@ fn a_task_of_a_file_lies_beside_the_page() {
 }
 
 #[test]
-fn the_page_is_written_into_a_folder() {
+fn page_is_written_into_a_folder() {
     let folder = scratch();
     page(folder.path());
     let done = output(&mut studio(folder.path(), &["--export", "out"]));
@@ -126,7 +126,7 @@ fn the_page_is_written_into_a_folder() {
 }
 
 #[test]
-fn a_missing_page_or_task_says_what_to_do() {
+fn error_for_a_missing_page_or_task_says_what_to_do() {
     let folder = scratch();
     let said = |arguments: &[&str]| {
         let done = output(studio(folder.path(), arguments).arg("--no-open"));

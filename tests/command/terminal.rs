@@ -11,7 +11,7 @@ pub(crate) fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Arguments of a command: one text, split at spaces, or a list.
+/// Arguments of a command: one string, split at spaces, or a list.
 pub(crate) trait Arguments {
     fn words(&self) -> Vec<&str>;
 }
@@ -63,7 +63,7 @@ pub(crate) fn driftworld(arguments: &(impl Arguments + ?Sized)) -> Command {
     driftworld_in(root(), arguments)
 }
 
-/// The command in another folder.
+/// The command, to be run in this folder.
 pub(crate) fn driftworld_in(folder: &Path, arguments: &(impl Arguments + ?Sized)) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_driftworld"));
     // The developer's terminal may be narrow, or have colours configured.
@@ -85,7 +85,7 @@ pub(crate) fn succeed(arguments: &(impl Arguments + ?Sized)) -> String {
     succeed_in(root(), arguments)
 }
 
-/// Its standard output in another folder; it must succeed.
+/// Its standard output when run in this folder; it must succeed.
 #[track_caller]
 pub(crate) fn succeed_in(folder: &Path, arguments: &(impl Arguments + ?Sized)) -> String {
     let output = output(&mut driftworld_in(folder, arguments));
@@ -100,7 +100,7 @@ pub(crate) fn json(arguments: &(impl Arguments + ?Sized)) -> Value {
     json_in(root(), arguments)
 }
 
-/// The JSON that it prints in another folder; it must succeed.
+/// The JSON that it prints when run in this folder; it must succeed.
 #[track_caller]
 pub(crate) fn json_in(folder: &Path, arguments: &(impl Arguments + ?Sized)) -> Value {
     serde_json::from_str(&succeed_in(folder, arguments)).expect("--json prints JSON")
@@ -120,7 +120,7 @@ pub(crate) fn fail(code: i32, arguments: &(impl Arguments + ?Sized)) -> String {
     fail_in(root(), code, arguments)
 }
 
-/// Its standard error in another folder; it must end with this exit code.
+/// Its standard error when run in this folder; it must end with this exit code.
 #[track_caller]
 pub(crate) fn fail_in(folder: &Path, code: i32, arguments: &(impl Arguments + ?Sized)) -> String {
     let output = output(&mut driftworld_in(folder, arguments));

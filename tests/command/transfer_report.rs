@@ -25,7 +25,7 @@ const ORDERS: [[usize; 6]; 6] = [
 /// The effect of learning one variant on another: a share of what it still lacks.
 type Kernel = fn(usize, usize) -> f64;
 
-/// The nearer, the more.
+/// The nearer the variants, the larger the effect.
 #[expect(clippy::disallowed_methods, reason = "compared within a tolerance")]
 fn by_distance(a: usize, b: usize) -> f64 {
     (-(PLACES[a] - PLACES[b]).abs() / 0.3).exp()
@@ -84,7 +84,7 @@ impl Life {
     }
 }
 
-/// Runs all variants in this order, evaluated before and after each unless disabled.
+/// Learns the variants in this order, with evaluations before and after each unless disabled.
 fn live(folder: &Path, order: &[usize], kernel: Kernel, evaluations: bool) {
     let info = LoggerInfo::new(["reward"]).expect("a column");
     let log = LogWriter::create(folder, &info, &ScenarioInfo::default()).expect("the folder is new");

@@ -1,5 +1,5 @@
 //! Valid documents can be run: undrawable worlds, forbidden drifts, name collisions and unknown classes are found by `validate`
-//! and `curriculum`, and `run` skips them on request.
+//! and `curriculum`, and `run` skips undrawable worlds on request.
 
 #[cfg(feature = "gltf")]
 use std::fs;
@@ -11,7 +11,7 @@ use super::run_files::write;
 use super::terminal::{Says, driftworld_in, fail_in, json_in, output, scratch, succeed, succeed_in, text};
 use crate::tier::quick_or_full;
 
-/// Rocks that find no place in some worlds, a number whose middle is forbidden, and variants with one name in logs.
+/// Rocks that do not fit into some worlds, a number whose middle range is forbidden, and variants with the same name in logs.
 fn quarry(folder: &Path) -> PathBuf {
     let path = folder.join("quarry.json");
     write(
@@ -74,7 +74,7 @@ fn drift_across_a_forbidden_value_is_found_before_the_run() {
     let error = fail_in(folder.path(), 1, "validate s.json --worlds 2");
     assert!(error.contains("worlds cannot be drawn"), "{error}");
 
-    // It stops there, says so, and suggests how to continue.
+    // The run stops there, says so, and suggests how to continue.
     let run = "run s.json --agent random --output log";
     let error = fail_in(folder.path(), 1, run);
     error.says("experience 27, quarry#low..high at 0.425 of its way");
@@ -146,7 +146,7 @@ fn unknown_class_is_an_error_that_suggests_a_library() {
     error.says("(/groups/0/object/class): found the unknown class \"bushh\"");
     assert!(error.contains("--assets LIBRARY"), "{error}");
     assert!(fail_in(here, 1, &["curriculum", "t.json", "-o", "s.json"]).contains("bushh"));
-    // A scenario with such a task is refused as by `run`.
+    // A scenario with such a task is refused, as by `run`.
     write(
         &here.join("s.json"),
         r#"{ "version": 1, "name": "s", "blocks": [{ "type": "learning", "regimes": [{ "task": "t.json", "variant": "default", "count": 1 }] }] }"#,
@@ -215,7 +215,7 @@ fn unknown_model_is_refused_by_every_command_that_trains() {
         &["found the unknown model \"foxx\"", advice],
     );
     check("geometric", "\"Sphere\"", &[]);
-    // The original draws unknown classes all the same.
+    // L2Explorer draws objects of unknown classes and models anyway.
     let original = r#"{ "objects": [{ "class": "Tree", "model": "77", "coordinates": ["3", 4] }] }"#;
     write(&here.join("o.json"), original);
     let said = output(&mut driftworld_in(here, "validate --l2explorer o.json"));

@@ -11,7 +11,7 @@ fn scenario(folder: &Path) -> std::path::PathBuf {
     scenario_with(folder, "examples/worlds/key_corridor.json")
 }
 
-/// The same with another second task that has a variant `red`.
+/// The same with a different second task, which must have a variant `red`.
 fn scenario_with(folder: &Path, second: &str) -> std::path::PathBuf {
     let path = folder.join("scenario.json");
     let regime = |task: &str, variant: &str, count: u32| {
@@ -222,7 +222,7 @@ fn episode_becomes_a_film_or_a_sheet() {
 /// A drawing of an episode depends on the options, not on the file's extension: different options give different pictures,
 /// equal ones equal pictures.
 #[test]
-fn each_view_and_modality_is_a_different_picture() {
+fn each_view_and_modality_gives_a_different_picture() {
     let folder = scratch();
     let kept = folder.path().join("kept.jsonl");
     let first = folder.path().join("first.png");

@@ -3,7 +3,7 @@
 use super::terminal::{driftworld_in, output, scratch, succeed_in};
 use crate::tier::quick_or_full;
 
-/// The text output of a command at a width.
+/// The text output of a command at this width.
 fn at(columns: usize, folder: &std::path::Path, arguments: &str) -> String {
     let arguments: Vec<&str> = arguments.split(' ').collect();
     let mut command = driftworld_in(folder, &arguments);
@@ -77,7 +77,7 @@ fn tables_fit_80_and_120_columns_without_broken_words() {
     }
 }
 
-/// Values are shown in full at every width: none is cut, separated from its unit, or broken within a place.
+/// Values are shown in full at every width: none is cut, separated from its unit, or broken inside brackets.
 #[test]
 fn values_of_tasks_are_never_broken() {
     let folder = scratch();

@@ -45,7 +45,7 @@ pub(crate) fn distance(spec: &Spec, a: &str, b: &str) -> ByHand {
     found
 }
 
-/// The value of each variant parameter that is read.
+/// The value of each parameter: the one that a variant sets if it is read, else the default.
 fn settled(parameters: &Map<String, Json>, set: &Map<String, Json>) -> BTreeMap<String, Json> {
     let is_open = set.get("gate").is_none_or(|gate| gate == true);
     let value = |(name, parameter): (&String, &Json)| {

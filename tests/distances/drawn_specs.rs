@@ -10,7 +10,7 @@ use serde_json::{Map, Value as Json, json};
 /// The variants of a random spec. The last extends the one before.
 pub(crate) const NAMES: [&str; 4] = ["v0", "v1", "v2", "v3"];
 
-/// Least distance between the two ends of a random uniform distribution, by its requirement.
+/// Minimum distance between the two ends of a random uniform distribution, which a requirement ensures.
 pub(crate) const APART: f64 = 0.125;
 
 const COLORS: [[f64; 3]; 6] = [
@@ -22,7 +22,7 @@ const COLORS: [[f64; 3]; 6] = [
     [0.5, 0.5, 0.5],
 ];
 
-/// The kind of a parameter; some need others for their distributions.
+/// The kind of a parameter; some need further parameters for their distributions.
 #[derive(Clone, Copy, Debug)]
 enum Kind {
     Number,

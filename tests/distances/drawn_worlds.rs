@@ -3,7 +3,7 @@
 use driftworld::spec::{Color, MotionModel, Object, Stimulus, World, WorldDraft};
 use proptest::prelude::*;
 
-/// Most objects in a random world.
+/// Maximum number of objects in a random world.
 pub(crate) const MOST_OBJECTS: usize = 6;
 
 /// A class that no random world contains.

@@ -1,4 +1,4 @@
-//! Findings of an audit of distances by parameters, each with the former answer.
+//! Bugs that an audit of distances by parameters found, each with the former answer.
 
 use std::sync::Arc;
 
@@ -34,8 +34,8 @@ fn apart(a: &Variant, b: &Variant) -> f64 {
         .total
 }
 
-/// A parameter that is the same in both and used nowhere changed 0.1194 into 0.0895, and four randomized ones beside one change
-/// of sign changed an R of 1.0 into 0.2.
+/// A parameter that is the same in both and used nowhere changed 0.1194 into 0.0895, and four randomized parameters beside one
+/// whose sign changed turned an R of 1.0 into 0.2.
 #[test]
 fn equal_parameters_do_not_dilute_the_distance() {
     let mut task = json!({ "name": "t", "parameters": {
@@ -66,8 +66,8 @@ fn scale_depends_on_declarations_and_not_on_other_variants() {
     assert!((between(&load(&task), "a", "far").total - 1.0).abs() < 1e-12);
 }
 
-/// As above, depending on the defaults: if they break a requirement, the feasible ends were those beside the document's first
-/// variant, so that the distance of a pair depended on which variant that is.
+/// As above, depending on the defaults: if they break a requirement, the ends were those feasible for the document's first
+/// variant, so that the distance of a pair depended on which variant comes first.
 #[test]
 fn scale_does_not_depend_on_the_first_variant_if_defaults_break_a_requirement() {
     let task = |variants: Json| {
@@ -119,7 +119,7 @@ fn scale_covers_everything_that_a_distribution_reads() {
     assert_eq!(parts(by_choice, "c", "d"), [("law".to_owned(), 0.0)]);
 }
 
-/// A possible finding: among more than 24 distributions, the search for the widest pair starts at the first.
+/// A suspected bug: among more than 24 distributions, the search for the widest pair starts at the first.
 #[test]
 fn scale_does_not_depend_on_the_order_of_parameters() {
     let task = |is_reversed: bool| {
@@ -223,8 +223,8 @@ fn declared_measure_of_a_placement_is_used_or_refused() {
     }
 }
 
-/// Different distributions were 0 apart in a measure that claims to be a metric: places that keep 1 m or 10 m between them,
-/// places in turn or at random, shares that are all or nothing or always alike.
+/// Different distributions were 0 apart in a measure that claims to be a metric: points at least 1 m or 10 m apart, points in
+/// turn or at random, shares that are all or nothing or always alike.
 #[test]
 fn different_distributions_are_not_0_apart() {
     let poisson =

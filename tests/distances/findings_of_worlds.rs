@@ -1,4 +1,4 @@
-//! Findings of an audit of distances by worlds, each with the former answer.
+//! Bugs that an audit of distances by worlds found, each with the former answer.
 
 use driftworld::generator::Sampler;
 use driftworld::similarity::{Distance, Weights, world_distance, world_sets_distance};
@@ -28,8 +28,8 @@ fn drawn(name: &str, index: u64) -> World {
         .unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// A full reversal of all pay gave an R of 0.048, because five other parts of the reward were 0; many smaller changes were as
-/// far.
+/// A full reversal of all pay gave an R of 0.048, because five other parts of the reward were 0; many smaller changes gave as
+/// much.
 #[test]
 fn reversal_of_all_pay_is_not_diluted() {
     let pays = |sign: f64| {
@@ -46,8 +46,8 @@ fn reversal_of_all_pay_is_not_diluted() {
     assert_eq!(d(&a, &b).total, 6.0);
 }
 
-/// Red in the north that pays and blue in the south that costs, against the two places swapped: 0 in every element, because
-/// places, colours and rewards were compared separately.
+/// Red in the north that pays and blue in the south that costs, compared with the two swapped, gave 0 in every element, because
+/// positions, colours and rewards were compared separately.
 #[test]
 fn opposite_worlds_differ() {
     let worlds = |red: f64| {
@@ -58,12 +58,12 @@ fn opposite_worlds_differ() {
         })
     };
     let found = d(&worlds(10.0), &worlds(-10.0));
-    // Whichever are matched: two that are 20 m apart, or two of different colours and 20 points.
+    // Whichever are matched: two that are 20 m apart, or two that differ in colour and by 20 points.
     assert!(found.total > 0.5, "{found:#?}");
     assert!(found.total >= 2.0 * 20.0 / 100.0);
 }
 
-/// The same objects in another order in the file were up to 0.037 apart.
+/// The same objects in a different order in the file were up to 0.037 apart.
 #[test]
 fn reordered_objects_are_0_apart() {
     for (task, _) in tasks::BUILT_IN {
@@ -169,7 +169,7 @@ fn magnitudes_are_graded() {
     assert_eq!(d(&sized([100.0, 50.0]), &sized([50.0, 100.0])).total, 1.0);
 }
 
-/// A tree that was moved by 4 mm over a cell's border was as far as one moved to another cell.
+/// A tree moved by 4 mm across a cell border counted as much as one moved to a different cell.
 #[test]
 fn places_have_no_borders() {
     let tree = |x: f64| world(|world| world.objects.push(Object::new("tree", [x, 1.0])));

@@ -77,7 +77,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: crate::tier::quick_or_full(24, 128), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn number_is_the_documented_sum(spec in specs()) {
+    fn distance_is_the_documented_sum(spec in specs()) {
         let task = spec.task();
         let measure = measure(&task);
         for (a, b) in pairs(&variants(&task)) {

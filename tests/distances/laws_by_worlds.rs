@@ -78,7 +78,7 @@ proptest! {
         let more = |world: &World| with(world, |objects| objects.push(object.clone()));
         let (apart, still) = (d(&a, &b), d(&more(&a), &more(&b)));
         let near = |a: f64, b: f64| (a - b).abs() <= 1e-12 * (1.0 + a);
-        // At equal costs, objects with equal pay are matched: a detour by the new one is no cheaper.
+        // At equal costs, objects with equal pay are matched: a detour via the new object is not cheaper.
         prop_assert!(near(apart.total, still.total), "{apart:#?} and {still:#?}");
     }
 

@@ -1,4 +1,4 @@
-//! Distances of tasks with look-ups: by parameters they equal those of the cases, and what depends on a random draw still
+//! Distances of tasks with look-ups: by parameters they equal those of the cases, and dependence on a random draw still
 //! counts.
 
 use driftworld::similarity::{Distance, VariantMeasure, Weights};

@@ -96,7 +96,7 @@ fn apart(a: &Object, b: &Object) -> (f64, f64) {
     (all, (reward(a) - reward(b)).abs() / 100.0 + (odds(a) - odds(b)).abs())
 }
 
-/// The cheapest matching of the fewer objects with the more: the cost that selects it, and its total contribution.
+/// The cheapest matching of a set of objects with a larger set: the cost that selects it, and its total contribution.
 fn matched(fewer: &[&Object], more: &[&Object]) -> (f64, f64) {
     let Some((first, rest)) = fewer.split_first() else {
         // Unmatched objects: presence, looks, reward.

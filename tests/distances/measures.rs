@@ -22,8 +22,7 @@ fn names() -> Vec<String> {
     names
 }
 
-/// A parameter of every type and of every kind of distribution, and another value of it. Random ones change through the
-/// parameter `to`.
+/// A parameter of every type and of every kind of distribution, each with a different value of it.
 fn parameters() -> Vec<(&'static str, Json, Json)> {
     let variant = |kind: &str, domain: [&str; 1], values: Json, default: Json| {
         let mut one = json!({ "role": "variant", "type": kind, "affects": ["O"], "default": default });

@@ -7,7 +7,7 @@ pub(crate) struct Block {
     pub(crate) language: String,
     /// The further words, such as `output` or `file=my_task.json`.
     pub(crate) marks: Vec<String>,
-    /// With a line end after each line.
+    /// With a line break after each line.
     pub(crate) text: String,
     /// The line of the opening fence, from 1.
     pub(crate) line: usize,

@@ -1,4 +1,4 @@
-//! The short answers are as many as the book says, each with something that can be run.
+//! The how-to index lists every question in order, and there are at least 40 short answers, each with something that can be run.
 
 use super::blocks::blocks;
 use super::{all_pages, read};

@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 
 use blocks::{Block, blocks};
 
-/// One test per page with commands; and the list of them.
+/// One test per page with commands, and the list of these pages.
 macro_rules! pages {
     ($($test:ident: $page:literal,)*) => {
         $(#[test]
@@ -48,7 +48,7 @@ pages! {
     worlds_run: "docs/worlds.md",
 }
 
-/// Blocks of commands marked `by-hand`: the number on a page, and who else runs them.
+/// Blocks of commands marked `by-hand`: the number on a page, and what else runs them.
 const BY_HAND: &[(&str, usize, &str)] = &[
     ("README.md", 2, ".ci/run, and the stage `wheel`"),
     ("docs/benchmarks.md", 8, "benches: the stage `benches`"),

@@ -9,7 +9,7 @@ const CAST: &str = "docs/recordings/first-hour.cast";
 pub(crate) struct Recorded {
     /// As on a page: continuation lines are indented.
     pub(crate) command: String,
-    /// With a line end after each line.
+    /// With a line break after each line.
     pub(crate) output: String,
 }
 
@@ -28,7 +28,7 @@ fn sent(cast: &str) -> String {
     events.into_iter().map(|(_, _, text)| text).collect()
 }
 
-/// The final lines of a terminal: letters, line ends, erased lines; colours are ignored.
+/// The final lines of a terminal: characters, line breaks, erased lines; colours are ignored.
 fn screen(sent: &str) -> Vec<String> {
     let mut lines: Vec<Vec<char>> = vec![Vec::new()];
     let mut column = 0;

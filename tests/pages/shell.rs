@@ -20,10 +20,10 @@ use super::recording::{self, Recorded};
 use super::{read, root};
 use crate::tier::quick_or_full;
 
-/// Stands for any output, either lines or the rest of one.
+/// Stands for any output, either lines or the rest of a line.
 const LEFT_OUT: &str = "…";
 
-/// In the quick tier only if the page is to be updated.
+/// Runs the commands of a page; in the quick tier, only if pages are to be updated.
 pub(crate) fn run(page: &str) {
     if !quick_or_full(updates(), true) {
         return;
@@ -94,7 +94,7 @@ pub(crate) fn run(page: &str) {
     }
 }
 
-/// Takes the commands of a block off a recording, and compares their output.
+/// Removes the commands of a block from a recording, and compares their output.
 fn compare(page: &str, block: &Block, printed: &str, recorded: &mut Vec<Recorded>) {
     let advice = "python book/record.py target/release/driftworld records it anew";
     let (mut commands, mut output) = (String::new(), String::new());
@@ -148,7 +148,7 @@ fn pictures(page: &str, text: &str) -> Vec<(String, String)> {
     let prefix = format!("images/{stem}-");
     let places = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
     let own = places.filter_map(|place| Some((place.strip_prefix(&prefix)?.to_owned(), place.to_owned())));
-    // A page's picture is taken by a browser.
+    // The picture of the report is taken by a browser.
     own.filter(|(name, _)| name != "report.png").collect()
 }
 
@@ -206,7 +206,7 @@ fn command(words: &[&str], folder: &Path) -> Command {
 fn on_a_terminal(bash: &[&str], keys: &str, folder: &Path) -> (ExitStatus, String) {
     let sized = format!("stty cols 80 rows 24\n{}", bash[4]);
     let words: Vec<&str> = if cfg!(target_os = "linux") {
-        // It passes its command to a shell as one text.
+        // `script` passes its command to a shell as one string.
         let names = [
             "script",
             "-qec",

@@ -225,7 +225,7 @@ fn cut_out(class: &str, name: &str, size: u32) -> Picture {
     large.halved().halved()
 }
 
-/// A camera this far south of an item and this high, turned to its middle.
+/// A camera this far south of an item and this high, pointed at its middle.
 fn towards(item: &Item, [back, height]: [f32; 2], field_of_view_deg: f32) -> Camera {
     let middle = item.asset.height * item.scale / 2.0;
     Camera {

@@ -229,7 +229,7 @@ const LABELS: [&str; 3] = [
 const COMPLEXITIES: [&str; 3] = ["1-low", "2-intermediate", "3-high"];
 const DIFFICULTIES: [&str; 3] = ["1-easy", "2-medium", "3-hard"];
 
-/// What the worlds of evaluation are for.
+/// What the evaluation worlds are used for.
 const SPLITS: [&str; 2] = [
     "validation: For choosing hyperparameters and agents",
     "test: For what you report",

@@ -102,7 +102,7 @@ fn exact(distance: f64) -> String {
     }
 }
 
-/// What is learned in a scenario's deployment phase, on one line: names, and the length of the path.
+/// The variants learned in a scenario's deployment phase, on one line: their names, and the length of the path.
 pub(super) fn path(scenario: &Scenario, matrix: &DistanceMatrix) -> String {
     let learning = |block: &&Block| block.kind == BlockKind::Learning && block.phase == Phase::Deployment;
     let blocks = scenario.blocks.iter().filter(learning);
@@ -131,13 +131,13 @@ pub(super) fn path(scenario: &Scenario, matrix: &DistanceMatrix) -> String {
     format!("{}; length {length:.4}", names.join(", "))
 }
 
-/// The place of a regime's variant in a matrix.
+/// The index of a regime's variant in a matrix.
 fn label(matrix: &DistanceMatrix, regime: &Regime, name: &str) -> Option<usize> {
     let id = format!("{}#{name}", regime.task);
     matrix.labels().iter().position(|label| *label == id)
 }
 
-/// The place of a regime at its first or last experience: at a variant of the matrix, or a share of the way between two.
+/// The position of a regime at an experience: at a variant of the matrix, or part of the way between two.
 fn place(matrix: &DistanceMatrix, regime: &Regime, experience: u32) -> Option<(usize, usize, f64)> {
     let start = label(matrix, regime, regime.variant_name())?;
     let Some(drift) = &regime.drift else {
@@ -154,7 +154,7 @@ fn place(matrix: &DistanceMatrix, regime: &Regime, experience: u32) -> Option<(u
     })
 }
 
-/// The distance between two places; unknown if one is between variants.
+/// The distance between two positions; unknown if either is between variants.
 fn step(matrix: &DistanceMatrix, from: (usize, usize, f64), to: (usize, usize, f64)) -> Option<f64> {
     if from == to {
         return Some(0.0);
@@ -276,7 +276,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn block_distance_is_from_the_last_end_to_its_start() {
+    fn block_distance_is_from_the_previous_blocks_end_to_its_own_start() {
         let at = [0.0_f64, 1.0, 3.0];
         let names = ["t#a", "t#b", "t#c"].map(str::to_owned).to_vec();
         let matrix = DistanceMatrix::measure(names, |a, b| {

@@ -5,14 +5,14 @@ use crate::spec::BlockKind;
 use crate::table::table;
 use crate::tasks;
 
-/// The mean reward of a variant before and after learning another.
+/// The mean reward of a variant before and after a different variant was learned.
 struct Change {
     /// The variant that was learned.
     learned: String,
     variant: String,
     before: f64,
     after: f64,
-    /// Whether the variant that changed was learned before.
+    /// Whether the variant that changed had already been learned.
     was_learned: bool,
 }
 

@@ -1,4 +1,4 @@
-//! `driftworld demo`: runs the whole pipeline once on `find_objects`, and keeps every product. Each step is also a separate
+//! `driftworld demo`: runs the whole pipeline once on `find_objects`, and keeps all its output. Each step is also a separate
 //! subcommand.
 
 mod effects;
@@ -110,7 +110,7 @@ impl Demo {
         output::line(format!("\nEverything is in {}\n\n{CONTENTS}", folder.shown()))
     }
 
-    /// One world of each variant with its map, each in a file; and all side by side, from the agent's view and from above.
+    /// Writes one world of each variant, its map, and a contact sheet of all variants, from the agent's view and from above.
     fn pictures(&self, variants: &[(String, Variant)]) -> Result<(), Failure> {
         let mut cells = Vec::new();
         for (_, variant) in variants {

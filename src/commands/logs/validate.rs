@@ -1,4 +1,4 @@
-//! `driftworld logs validate`: lists every problem of a log with its place.
+//! `driftworld logs validate`: lists every problem of a log with its location.
 
 use std::path::PathBuf;
 

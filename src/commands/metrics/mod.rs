@@ -1,4 +1,4 @@
-//! `driftworld metrics`: what agents kept and transferred, from the logs of their lifetimes.
+//! `driftworld metrics`: scores what agents retained and transferred, from the logs of their lifetimes.
 
 mod power_table;
 mod reached_table;

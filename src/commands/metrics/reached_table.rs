@@ -82,7 +82,7 @@ pub(super) fn reached(scores: &LifetimeMetrics, names: &VariantNames) -> Option<
     Some(lines.join("\n"))
 }
 
-/// Rewards of agents that cannot distinguish tasks that look alike: a line for each set of them.
+/// Rewards of agents that cannot distinguish tasks that look alike: a line for each set of such tasks.
 fn unlabelled(scores: &LifetimeMetrics, names: &VariantNames) -> Vec<String> {
     let tasks = &scores.reached;
     let mut sets: Vec<&Vec<String>> = Vec::new();

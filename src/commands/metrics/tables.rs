@@ -23,7 +23,7 @@ pub(super) fn scores(scores: &Scores, names: &VariantNames) -> String {
     several(scores, comparison, names)
 }
 
-/// The lifetime's values as a table for a newcomer.
+/// The lifetime's values as a table for newcomers.
 fn summary(scores: &LifetimeMetrics, names: &VariantNames) -> String {
     let rows = scores.summary().into_iter().filter_map(|row| {
         let error = row.null_band.and_then(|band| band.standard_error);
@@ -116,7 +116,7 @@ fn scaled(scores: &LifetimeMetrics, names: &VariantNames) -> Option<String> {
     Some(text)
 }
 
-/// What metrics are based on if nothing is known of the tasks.
+/// What metrics are based on if nothing is known about the tasks.
 const SCALED: &str = "Metrics are computed after scaling each task to 1..101, by default between this lifetime's own \
      worst and best. They show how performance changed, not how good it was. To compare agents, use the rows above, \
      --scales, or --common-ranges.";
@@ -147,7 +147,7 @@ fn as_logged(agents: &[(&str, &[LifetimeMetrics])]) -> String {
     table(["as logged", "learning", "evaluation"], rows, &[1, 2])
 }
 
-/// Several lifetimes, with a comparison with another agent's.
+/// Several lifetimes, compared with those of another agent if there are any.
 fn several(scores: &Scores, together: &Comparison, names: &VariantNames) -> String {
     let (lifetimes, others) = (scores.lifetimes.as_slice(), scores.lifetimes_against.as_slice());
     let options = &scores.options;
@@ -274,7 +274,7 @@ fn repeats(metrics: &[RepeatedMetric], share: &str) -> String {
             "Null band: the central 95% of means over lifetimes when the rows of each world are permuted across evaluations \
              {NULL_PERMUTATIONS} times, in all lifetimes alike, as if the agent never changed. An effect is named where the {} \
              of the IQM is beside no effect and, if there is a null, the mean over lifetimes is outside its band, with p at \
-             most {LARGEST_P}. no null: decided by learning, too.",
+             most {LARGEST_P}. no null: permuting evaluations does not test this metric.",
             if few { &t } else { share }
         ));
     }
@@ -285,7 +285,7 @@ fn repeats(metrics: &[RepeatedMetric], share: &str) -> String {
     lines.join("\n")
 }
 
-/// Caution about intervals of few lifetimes.
+/// Caution about intervals from few lifetimes.
 const FEW: &str = "below ten lifetimes, bootstrap intervals contain the true value less often than they claim (82 \
      instead of 95 times in 100 with five lifetimes); use Student's (t), which assumes that lifetimes are normally \
      distributed";

@@ -9,7 +9,7 @@ use super::{Failure, output, overwrite};
 use crate::spec::{TaskSpec, did_you_mean};
 use crate::tasks;
 
-/// A small task whose descriptions explain each part, under this name.
+/// Name and JSON of a small task whose descriptions explain each part.
 const SCAFFOLD: (&str, &str) = ("my_task", include_str!("scaffold.json"));
 
 /// Write a small task spec to begin with.

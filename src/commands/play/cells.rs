@@ -8,7 +8,7 @@ use crate::report::picture::Picture;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Cells {
     columns: usize,
-    /// The upper and the lower pixel, row after row.
+    /// The upper and the lower pixel of each cell, row by row.
     cells: Vec<[[u8; 3]; 2]>,
 }
 
@@ -37,12 +37,12 @@ impl Cells {
         }
     }
 
-    /// The codes that turn a terminal showing `before` into this picture: from its first row on, everything if `before` is
-    /// missing or of another size.
+    /// The codes that make a terminal that shows `before` show this picture, from the terminal's first row on; the whole picture
+    /// if `before` is missing or has a different size.
     pub(super) fn drawn_over(&self, before: Option<&Self>) -> String {
         let before = before.filter(|before| (before.columns, before.cells.len()) == (self.columns, self.cells.len()));
         let mut out = String::new();
-        // Tracks the cursor's place and the colours set.
+        // Tracks the cursor's position and the current colours.
         let (mut cursor, mut colors) = (None, None);
         for (place, cell) in self.cells.iter().enumerate() {
             if before.is_some_and(|before| before.cells[place] == *cell) {

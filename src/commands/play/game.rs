@@ -77,7 +77,7 @@ impl Game {
         (self.last, self.said) = (None, String::new());
     }
 
-    /// Handles a key pressed at a time in seconds; returns whether the picture changes.
+    /// Handles a key press at the time `now`, in seconds; returns whether the picture changes.
     pub(super) fn press(&mut self, key: Key, now: f64) -> bool {
         match key {
             Key::View => {
@@ -99,7 +99,7 @@ impl Game {
         true
     }
 
-    /// Makes the step that is due, if any; returns whether it did.
+    /// Takes the step that is due, if any; returns whether it did.
     pub(super) fn go_on(&mut self, now: f64) -> Result<bool, Failure> {
         if now < self.due || self.environment.ended() {
             return Ok(false);

@@ -1,4 +1,4 @@
-//! Keys of a terminal, and which are held down: a terminal reports key presses, but never releases.
+//! The keys of a terminal, and which of them are held down: a terminal reports key presses, but never releases.
 
 /// The meaning of a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,4 +1,4 @@
-//! `driftworld play`: walk through a world with the keys of a terminal.
+//! `driftworld play`: lets the user walk through a world with the keys of a terminal.
 
 mod cells;
 mod game;

@@ -95,7 +95,7 @@ fn begin_with(called: &str) -> Result<(String, Option<String>), Failure> {
     Ok((fragment.trim_end_matches('&').to_owned(), Some(text)))
 }
 
-/// A word, percent-encoded for an address.
+/// A word, percent-encoded for a URL.
 fn encoded(word: &str) -> String {
     let plain = |byte: u8| byte.is_ascii_alphanumeric() || b"-_.".contains(&byte);
     word.bytes().fold(String::new(), |encoded, byte| {

@@ -66,7 +66,7 @@ impl Page {
     }
 }
 
-/// The page in the build folder that a program lies in.
+/// The page in the build folder that contains the program.
 fn built_beside(program: &Path) -> Option<PathBuf> {
     let folders = program.ancestors().skip(1).take(4).map(|folder| folder.join("studio"));
     folders
