@@ -10,7 +10,7 @@ final screen. The last two are made from the first. Tests in `tests/pages/` chec
 same.
 
 The commands run in a temporary folder, in a pseudo-terminal. Their timing is recorded; that of typing and reading is
-simulated. Needs only Python on a Unix.
+simulated. Needs only Python on Unix.
 """
 
 from __future__ import annotations

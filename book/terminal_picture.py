@@ -1,6 +1,6 @@
 """A terminal's output as an animated SVG: `screen` is its final lines, `picture` the animation.
 
-Supports only what Driftworld's commands send: text, line ends, carriage returns, erased lines, and colours. The SVG
+Supports only what Driftworld's commands send: text, newlines, carriage returns, erased lines, and colours. The SVG
 needs no script and no network; it stands still for readers who prefer reduced motion.
 """
 
@@ -13,7 +13,7 @@ from html import escape
 LETTER, LINE, RIM, BAR = 7.8, 17, 14, 26
 # The shortest time between two frames in seconds: progress bars are redrawn more often than anyone can see.
 SHORTEST = 0.2
-# Seconds that the last frame stays.
+# Seconds for which the last frame stays.
 END = 6.0
 CLASSES = {"1": "b", "2": "d", "31": "r", "32": "g", "33": "y", "34": "u", "36": "c"}
 STYLE = """text{font:13px ui-monospace,SFMono-Regular,Menlo,Consolas,"DejaVu Sans Mono",monospace;fill:#d8dee9;white-space:pre}

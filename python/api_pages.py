@@ -163,7 +163,7 @@ def find(module: str, name: str) -> Found:
     """The definition of a name, followed through re-exports."""
     path = module_file(module)
     tree = ast.parse(path.read_text(encoding="utf-8"))
-    # The last definition: those before a function of the same name are its overloads.
+    # The last definition: earlier ones of the same name are overloads.
     own = [node for node in tree.body if isinstance(node, Definition) and node.name == name]
     if own:
         return Found(own[-1], path.suffix == ".pyi")
@@ -341,7 +341,7 @@ def contents() -> str:
 
 
 def pages() -> dict[str, str]:
-    """Every page by the name of its file."""
+    """Every page by its file name."""
     named = {name for _, _, modules in LAYOUT.values() for name in modules.get("driftworld", [])}
     missing = exported() - named - set(WITHOUT_A_PAGE)
     if missing:

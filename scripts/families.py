@@ -112,8 +112,8 @@ def measure(command: str, name: str, variants: list[str]) -> dict[str, Any]:
 
 
 def film(command: str, name: str, variants: list[str]) -> None:
-    """Films the planner in a world of the first variant, in at most 160 kB, and draws all variants in one image, the
-    first 16 if there are more.
+    """Films the planner in a world of the first variant, in at most 160 kB if possible, and draws all variants, at most
+    16, in one image.
     """
     variant = variants[0]
     FILMS.mkdir(parents=True, exist_ok=True)

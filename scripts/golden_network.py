@@ -1,8 +1,8 @@
-"""Writes the network and its log-probabilities that env/src/agents/network/tests.rs compares with.
+"""Writes a network and its log-probabilities, for env/src/agents/network/tests.rs to compare with.
 
     python scripts/golden_network.py
 
-Needs driftworld.learners and torch; another version of torch may change the last digits.
+Needs driftworld.learners and torch; a different version of torch may change the last digits.
 """
 
 from __future__ import annotations

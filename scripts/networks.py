@@ -22,7 +22,7 @@ from learn_families import ACTIONS, MEASURED, NUM_ENVS, OPTIONS, WORLDS
 
 ROOT = Path(__file__).parents[1]
 NETWORKS, FILM = ROOT / "examples/networks", ROOT / "docs/images/trained.gif"
-#: The variant of each family, and for how many decisions it is learned.
+#: The variant of each family, and the number of decisions to learn from.
 LEARNED = {
     "obstacle_course": ("crowded", 150_000), "hallway": ("plain", 100_000), "one_room": ("plain", 150_000), "t_maze": ("left", 150_000),
     "sidewalk": ("plain", 200_000), "y_maze": ("either", 500_000), "collect_health": ("four", 500_000),
@@ -54,7 +54,7 @@ def train(name: str) -> tuple[str, float, float]:
 
 
 def halve(file: Path) -> None:
-    """Rounds the numbers of a network from four bytes to two, as BF16; the value head, which nobody reads, goes."""
+    """Rounds the numbers of a network from four bytes to two, as BF16; drops the value head, which nothing reads."""
     import numpy as np
 
     content = file.read_bytes()

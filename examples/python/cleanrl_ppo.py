@@ -127,14 +127,14 @@ class Learner:
         self.optimizer = torch.optim.Adam(self.agent.parameters(), lr=5e-4, eps=1e-5)
         self.rollout = Rollout(arguments.rollout, envs.num_envs)
         observation, _ = envs.reset(seed=arguments.seed)
-        # The environment returns views of buffers that its next step overwrites, so they must be copied.
+        # A copy: with `copy=False` the environment would return views that its next step overwrites.
         self.image = torch.tensor(observation)
         self.just_ended = torch.zeros(envs.num_envs, dtype=torch.bool)
         self.returns = np.zeros(envs.num_envs)
 
     @torch.no_grad()
     def live(self) -> list[float]:
-        """Fills the rollout; returns the returns of the episodes that ended meanwhile."""
+        """Fills the rollout; gives the returns of the episodes that ended in it."""
         rollout, finished = self.rollout, []
         for t in range(len(rollout.rewards)):
             policy, value = self.agent(self.image)
@@ -166,7 +166,7 @@ class Learner:
         images, actions = rollout.images.flatten(0, 1), rollout.actions.flatten()
         log_probs = rollout.log_probs.flatten()
         for _ in range(epochs):
-            # Parts of about equal size: a single leftover step would have an advantage without deviation.
+            # Minibatches of about equal size: a single leftover step would have no standard deviation.
             for part in counts[torch.randperm(len(counts))].tensor_split(max(1, round(len(counts) / minibatch))):
                 policy, value = self.agent(images[part])
                 advantage = advantages[part]

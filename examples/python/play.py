@@ -105,7 +105,7 @@ class Episodes(gymnasium.Wrapper[Any, Any, Any, Any]):
         return observation, info
 
     def step(self, action: Any) -> tuple[Any, Any, bool, bool, dict[str, Any]]:
-        """Forwards the step."""
+        """Takes a step, and prints its events."""
         observation, reward, terminated, truncated, info = self.env.step(action)
         self.num_steps += 1
         self._length += 1

@@ -1,4 +1,4 @@
-"""Not an example: how the examples write a result down, so that it can be reproduced.
+"""Not an example: records the results of the examples, so that they can be reproduced.
 
 A result is a folder: `config.json` (command, seeds, options, versions, machine, and the hashes of variants and first
 worlds), `curve.csv`, `curve.png`, and a `README.md` generated from them.
@@ -238,7 +238,7 @@ class Record:
 
 
 def _spoken(arguments: Iterable[str]) -> list[str]:
-    """The arguments without the result folder, which differs between readers."""
+    """The arguments without the result folder, which differs between users."""
     words = list(arguments)
     if "--results" in words:
         place = words.index("--results")

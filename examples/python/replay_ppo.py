@@ -4,7 +4,7 @@ After Rolnick et al. 2019 (arXiv:1811.11682): a reservoir keeps a uniform sample
 from new experience is paired with one from the same amount of old experience, by V-trace, and *cloning* keeps policy
 and values close to what they were when the old experience was collected. The learner does not know where one task ends
 and another begins. Network, worlds, curriculum, counts and optimiser steps are those of
-`experts_and_sequential_ppo.py`. The logs of that program are used for comparison, and made first if they are missing.
+`experts_and_sequential_ppo.py`. The logs of that program are used for comparison, and are made first if missing.
 The experts here use replay as well, so that comparing with them shows the effect of the order of tasks, not of the
 learner.
 

@@ -5,7 +5,7 @@
     python examples/python/rllib_ppo.py --quick            # does it run?
 
 Unlike sampling and measuring (`ray_sample_and_measure.py`), learning depends on the number of runners: the experience
-comes from other worlds, in another order. Needs `pip install "./python[ray]" torch`.
+comes from different worlds, in a different order. Needs `pip install "./python[ray]" torch`.
 """
 
 from __future__ import annotations

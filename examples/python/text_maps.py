@@ -7,10 +7,10 @@ DeepMind Lab: the entity layer of a text level. `*` is a wall, `P` where an agen
 that ends the episode, `A` an apple of 1 point, `I` and `H` doors, which open when the agent comes to them. Cells are
 3.125 m wide, as in DeepMind Lab. A variations layer after an empty line is ignored: it only affects the look of rooms.
 
-MiniGrid: what `env.unwrapped.pprint_grid()` gives, two characters a cell, the second its colour. `W` is a wall, `F` and
-two spaces are floor, `G` a goal of 1 point that ends the episode, `V` lava, which ends it as a failure, `K` a key, `A`
-a ball, `B` a box, `D` a closed door, `L` one that a key of its colour unlocks, `__` an open one; `>>`, `VV`, `<<` and
-`^^` are the agent. It carries one thing at a time. Cells are 2 m wide.
+MiniGrid: the output of `env.unwrapped.pprint_grid()`, two characters a cell, the second its colour. `W` is a wall, `F`
+and two spaces are floor, `G` a goal of 1 point that ends the episode, `V` lava, which ends it as a failure, `K` a key,
+`A` a ball, `B` a box, `D` a closed door, `L` one that a key of its colour unlocks, `__` an open one; `>>`, `VV`, `<<`
+and `^^` are the agent. It carries one object at a time. Cells are 2 m wide.
 
 Unknown characters are read as floor, and reported on standard error with line and column. Needs no packages.
 """
@@ -30,7 +30,7 @@ HEADINGS = {">>": 90.0, "VV": 180.0, "<<": 270.0, "^^": 0.0}
 
 
 class Map:
-    """The layout read so far, in letters, and the things on it."""
+    """The layout read so far, in letters, and the objects on it."""
 
     def __init__(self, name: str, cell: float) -> None:
         self.name, self.cell = name, cell
@@ -47,7 +47,7 @@ class Map:
         print(f"warning: {self.name}{place}: {text}", file=sys.stderr)
 
     def put(self, letter: str, thing: dict[str, Any], at: tuple[int, int]) -> str:
-        """Adds a thing; returns the letter of its group, a new one if the given letter is taken by another group."""
+        """Adds an object; returns its group's letter, a new one if the given letter is taken by a different group."""
         group = {"group": thing["tag"]}
         self.objects.append((thing, at))
         letters = [letter, letter.lower(), *"123456789"]
@@ -77,7 +77,7 @@ class Map:
         return 0 <= row < len(self.rows) and 0 <= column < len(self.rows[0]) and self.rows[row][column] not in "#*"
 
     def start(self) -> tuple[tuple[int, int], float] | None:
-        """Where the agent starts: the first place marked, else the first free cell."""
+        """Where the agent starts: at the first marked position, else in the first free cell."""
         if self.starts:
             if len(self.starts) > 1:
                 self.warn("", f"of {len(self.starts)} places where the agent may start, it starts in the first")
@@ -130,7 +130,7 @@ class Map:
             "height": min(self.cell, 4.0),
             "legend": {letter: meaning for letter, meaning in sorted(self.legend.items()) if letter in used},
         }
-        # Whatever fits through a cell in the other program fits here.
+        # The agent fits through a single cell, as in the other program.
         agent: dict[str, Any] = {"agent_width": min(self.cell / 3, 1.0)}
         if start := self.start():
             agent |= {"coordinates": self.place(start[0]), "heading": start[1]}
@@ -210,7 +210,7 @@ def minigrid(name: str, text: str) -> dict[str, Any]:
 
 
 def cell_of_minigrid(found: Map, pair: str, at: tuple[int, int], place: tuple[int, int]) -> str:
-    """The layout letter for two characters; also adds the thing there."""
+    """The layout letter for two characters; also adds the object there."""
     what, color = pair[0], COLORS.get(pair[1])
     toggled = {"closes_on": ["AgentInteract"]}
     if pair in HEADINGS:

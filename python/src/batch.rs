@@ -136,7 +136,7 @@ impl PyBatch {
         Ok(self.lock()?.batch.renderer().name())
     }
 
-    /// Makes an environment draw worlds under another seed, from this index on.
+    /// Makes an environment draw its worlds with a different seed, from this index on.
     fn seed(&self, env: usize, seed: u64, index: u64) -> Result<()> {
         self.supply(env)?.seed(seed, index);
         Ok(())
@@ -170,24 +170,24 @@ impl PyBatch {
         Ok(self.supply(env)?.place())
     }
 
-    /// Sets the supply of an environment to the place of another.
+    /// Moves an environment's supply to this place.
     fn set_place(&self, env: usize, place: (u64, u64, u64)) -> Result<()> {
         self.supply(env)?.set_place(place);
         Ok(())
     }
 
-    /// Steps of an environment's current episode, as counted for the limit in addition to the worlds' own.
+    /// Steps of an environment's current episode, as counted for `max_episode_steps`.
     fn episode_steps(&self, env: usize) -> Result<u32> {
         let steps = self.lock()?.batch.episode_steps(env);
         of_env(steps, env, self.supplies.len())
     }
 
-    /// Sets that number of steps.
+    /// Sets the number that `episode_steps` returns.
     fn set_episode_steps(&self, env: usize, steps: u32) -> Result<()> {
         Ok(self.lock()?.batch.set_episode_steps(env, steps)?)
     }
 
-    /// Begins the next episode in all environments, or in those where `mask` is true. After Ctrl-C some have not begun.
+    /// Begins the next episode in all environments, or in those where `mask` is true. After Ctrl-C, some may not have begun.
     #[pyo3(signature = (mask=None))]
     fn reset(&self, py: Python<'_>, mask: Option<PyReadonlyArray1<'_, bool>>) -> Result<()> {
         self.expect_own_process()?;
@@ -198,7 +198,7 @@ impl PyBatch {
         run_between_envs(py, count, |go_on| batch.reset_where_while(&chosen, go_on))
     }
 
-    /// One step with numeric actions, `(num_envs, 3)` or without interaction `(num_envs, 2)`.
+    /// One step with numeric actions, `(num_envs, 3)`, or `(num_envs, 2)` without interaction.
     fn step_numbers<'py>(&self, py: Python<'py>, actions: PyReadonlyArray2<'py, f64>) -> Result<Stepped<'py>> {
         let mut stepping = self.lock()?;
         let actions = actions.as_array();
@@ -262,8 +262,8 @@ impl PyBatch {
         views(&slf, stepping.batch.outputs())
     }
 
-    /// Like `buffers`, for the last observations of episodes that ended in the last step; `None` unless autoreset is in the
-    /// same step.
+    /// Like `buffers`, for the last observations of episodes that ended in the last step; `None` unless the autoreset mode is
+    /// `same_step`.
     fn final_buffers(slf: Bound<'_, Self>) -> Result<Option<Bound<'_, PyDict>>> {
         let stepping = slf.get().lock()?;
         let finals = stepping.batch.final_outputs();
@@ -294,8 +294,8 @@ impl PyBatch {
         Ok(())
     }
 
-    /// The recording of an environment's episode so far; before its first step that of the previous one. `None` unless it is
-    /// recorded.
+    /// The recording of an environment's episode so far; before its first step, that of the previous episode. `None` unless it
+    /// was recorded.
     fn recording(&self, env: usize) -> Result<Option<PyRecording>> {
         Ok(self.lock()?.batch.recording(env).map(PyRecording::from))
     }
@@ -307,7 +307,7 @@ impl PyBatch {
         Ok(usually_rounded(|| environment.state().to_json()))
     }
 
-    /// Warnings about settings of an environment's world that may not be as intended.
+    /// Warnings about settings of an environment's world that may be unintended.
     fn warnings(&self, env: usize) -> Result<Vec<String>> {
         let stepping = self.lock()?;
         let environment = stepping.environment(env)?;

@@ -78,7 +78,7 @@ struct Said {
     task: String,
     values: WorldDraft,
     drawn: Vec<String>,
-    /// The values of the task's own defaults.
+    /// The values of the task's default variant.
     usual: Option<WorldDraft>,
     variant: Option<Variant>,
 }
@@ -173,7 +173,7 @@ impl EnvOption {
 /// Number of worlds compared before two variants count as the same.
 const HIDDEN_WORLDS: u64 = 3;
 
-/// The first two variants whose worlds differ only in colours and light, if no image shows colours: `laid` applies all options
+/// The first two variants whose worlds differ only in colours and light, if no image shows colours. `laid` applies all options
 /// to a world.
 fn hidden(all: &[Said], laid: &dyn Fn(&WorldDraft) -> WorldDraft) -> Option<Json> {
     let worlds = |variant: &Variant| -> Option<Vec<WorldDraft>> {
@@ -207,7 +207,7 @@ fn hidden(all: &[Said], laid: &dyn Fn(&WorldDraft) -> WorldDraft) -> Option<Json
     None
 }
 
-/// A world without the values that only affect colours.
+/// A world in which all values that only affect colours are the defaults.
 fn without_colors(mut world: WorldDraft) -> WorldDraft {
     let (usual, environment) = (EnvironmentParams::default(), &mut world.environment_params);
     environment.bounding_wall_color = usual.bounding_wall_color;
@@ -222,7 +222,7 @@ fn without_colors(mut world: WorldDraft) -> WorldDraft {
     world
 }
 
-/// The differences that options hide, as a JSON list: for each option the first one.
+/// The differences that options hide, as a JSON list: the first one for each option.
 fn taken(all: &[Said], overrides: &str, shown: Option<&str>) -> Result<String> {
     let overrides = overrides_of(overrides)?;
     let shown: Option<Vec<Modality>> = shown

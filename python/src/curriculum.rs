@@ -118,7 +118,7 @@ impl PyPlan {
         Ok(to_py(py, self.plan.scenario())?)
     }
 
-    /// The scenario as the text of a file.
+    /// The scenario as the contents of a file.
     fn text(&self) -> String {
         self.plan.scenario().to_json_pretty()
     }
@@ -224,7 +224,7 @@ impl PyJournal {
         Ok(Self(Some(journal)))
     }
 
-    /// Whether it keeps recordings; then the rollout is asked for them.
+    /// Whether it keeps recordings; if so, the rollout is asked for them.
     #[getter]
     fn records(&mut self) -> Result<bool> {
         Ok(self.open()?.records())
@@ -232,7 +232,7 @@ impl PyJournal {
 
     /// Runs the plan from the first experience that is not in the log, and returns the result as a dictionary. `learned`:
     /// number of experiences that the agent has learned from. `rollout` has the methods of [`Rollout`]. `check_frozen`: whether
-    /// to repeat some evaluations of each block; its attribute `repeats_first` says whether these are the first ones.
+    /// to repeat some evaluations of each block; the rollout's attribute `repeats_first` says whether these are the first ones.
     fn run<'py>(
         &mut self,
         py: Python<'py>,
@@ -251,7 +251,7 @@ impl PyJournal {
         Ok(to_py(py, &summary)?)
     }
 
-    /// Removes the last logged block, after it led to the refusal of the agent.
+    /// Removes the last logged block, after the agent was refused because of it.
     fn withdraw_block(&mut self) -> Result<()> {
         Ok(self.open()?.withdraw_block()?)
     }
@@ -328,7 +328,7 @@ impl Rollout for PythonRollout<'_> {
     fn recording(&mut self, number: u64, experience: &Experience) -> Result<Option<Recording>> {
         let found = self.rollout.call_method1("recording", (number,))?;
         let found: Option<Bound<'_, PyRecording>> = found.extract().map_err(PyErr::from)?;
-        // A limit that was set from outside may also have ended it.
+        // A limit set from outside may also have ended the episode.
         Ok(found.map(|recording| Recording {
             ended_by: experience.ended_by,
             ..Recording::clone(&recording.get().0)

@@ -19,8 +19,8 @@ const REFUSED: &str = "CurriculumError";
 /// Scenarios, by name and text: the designed ones, and their controls.
 type Texts = (Vec<(String, String)>, Vec<(String, String)>);
 
-/// Designs scenarios by the options of `Curriculum.design`, or their experts if requested; draws the blocks if a file is given
-/// for it.
+/// Designs scenarios with the options of `Curriculum.design`, or their experts if requested; plots the blocks if a file is given
+/// for that.
 #[pyfunction]
 pub(crate) fn design_curriculum(py: Python<'_>, tasks: Vec<String>, options: Bound<'_, PyDict>) -> Result<Texts> {
     let options = Options::new(options, REFUSED);

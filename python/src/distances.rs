@@ -22,7 +22,7 @@ use crate::interruptible::{run_cancellable, run_detached};
 use crate::rounding::usually_rounded;
 use crate::variant::PyVariant;
 
-/// Weights of elements, by letters or names.
+/// Weights of elements, by letter or name.
 type Weighing = Option<BTreeMap<String, f64>>;
 
 /// A variant, or the name and the text of a world.
@@ -180,7 +180,7 @@ impl PyMatrix {
         self.0.properties().is_metric()
     }
 
-    /// The items as points of a plane, ``(items, 2)``, and the share of the matrix that the plane represents.
+    /// The items as points in a plane, ``(items, 2)``, and the share of the matrix that the plane represents.
     fn map<'py>(&self, py: Python<'py>) -> Result<(Bound<'py, PyArray2<f64>>, f64)> {
         let matrix = Arc::clone(&self.0);
         let map = run_detached(py, move || classical_map(&matrix))?;

@@ -62,7 +62,7 @@ pub(crate) fn from_python(value: &Bound<'_, PyAny>) -> PyResult<Value> {
     value.map_err(|error| PyValueError::new_err(format!("found {text}: {error}")))
 }
 
-/// An integer from 0 on, such as a seed.
+/// A non-negative integer, such as a seed.
 #[derive(Clone, Copy)]
 pub(crate) struct Whole(pub(crate) u64);
 
@@ -84,8 +84,8 @@ impl<'py> FromPyObject<'_, 'py> for Whole {
 /// The document's kind, its problems, its warnings, and the error to raise.
 type Verdict<'py> = (&'static str, Bound<'py, PyList>, Vec<String>, Option<Py<PyAny>>);
 
-/// Checks a document: returns its kind, its problems and its warnings. `name` is used in messages: a path if it has one, from
-/// whose folder a scenario's tasks are resolved.
+/// Checks a document: returns its kind, its problems and its warnings. `name` is used in messages; if it is the path of a file,
+/// a scenario's tasks are resolved from its folder.
 ///
 /// `libraries` are the bytes of asset libraries, whose classes are known in addition to the built-in ones.
 #[pyfunction]

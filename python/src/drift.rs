@@ -13,9 +13,10 @@ use crate::variant::PyVariant;
 
 /// The way from one variant of a task to another: ``Drift(blue, dusk, schedule="cosine").at(0.25)``.
 ///
-/// ``schedule`` is ``"linear"``, ``"cosine"``, ``{"steps": n}`` or ``{"sawtooth": n}``; ``switch`` says when values with nothing
-/// in between change: ``"at_point"``, or by chance under ``seed``, more likely as the drift goes on, with ``"mixture"``; with
-/// ``"task"`` the whole variant is one of the two by chance, and they may be of two tasks.
+/// ``schedule`` is ``"linear"``, ``"cosine"``, ``{"steps": n}`` or ``{"sawtooth": n}``; ``switch`` says when values that cannot
+/// be interpolated change: at a fixed progress with ``"at_point"``; at random with ``"mixture"``, drawn with ``seed``, more
+/// likely as the drift goes on. With ``"task"`` the whole variant is one of the two at random; they may belong to different
+/// tasks.
 #[pyclass(name = "Drift", module = "driftworld._native", frozen)]
 pub(crate) struct PyDrift {
     drift: Drift,
@@ -83,7 +84,7 @@ impl PyDrift {
         Ok((again, self.made.clone()))
     }
 
-    /// The variant when ``progress``, 0..=1, has passed; ``index`` is the number of the world, which only mixtures look at.
+    /// The variant at ``progress``, 0..=1; ``index`` is the number of the world, used only with ``"mixture"`` and ``"task"``.
     #[pyo3(signature = (progress, index=Whole(0)), text_signature = "($self, progress, index=0)")]
     fn at(&self, progress: f64, index: Whole) -> Result<PyVariant> {
         if !(0.0..=1.0).contains(&progress) {

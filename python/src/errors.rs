@@ -112,7 +112,7 @@ impl Error {
         let details = PyDict::new(py);
         let (class, text) = match self {
             Self::Cause(cause) => {
-                // The details are those of the invalid variant on the way of the drift.
+                // The details describe the invalid variant along the drift.
                 if let Some(GeneratorError::Between(source)) = cause.downcast_ref() {
                     of_spec(&details, source)?;
                 }

@@ -153,8 +153,8 @@ pub(crate) fn read_log(py: Python<'_>, folder: PathBuf, texts: bool) -> Result<R
     ))
 }
 
-/// Checks a log: whether it is valid, problems as pairs of code and message, number of further ones, warnings, number of
-/// further ones, counts.
+/// Checks a log: whether it is valid, problems as pairs of code and message, number of further problems, warnings, number of
+/// further warnings, counts.
 #[pyfunction]
 pub(crate) fn validate_log(py: Python<'_>, folder: PathBuf) -> Result<Bound<'_, PyAny>> {
     let found = detach(py, || driftworld_metrics::validate_log(&folder));
@@ -199,7 +199,7 @@ fn scenario_info(said: Value) -> Result<ScenarioInfo> {
     })
 }
 
-/// The columns of a log: integers and floats as arrays, words as lists.
+/// The columns of a log: numbers as arrays, strings as lists.
 fn columns<'py>(py: Python<'py>, rows: &Rows) -> Result<Bound<'py, PyDict>> {
     let columns = PyDict::new(py);
     columns.set_item("block_num", rows.block_nums().to_pyarray(py))?;

@@ -139,7 +139,7 @@ impl<'py> Options<'py> {
     }
 }
 
-/// Quotes a text as Python does.
+/// Quotes a string as Python does.
 fn quoted(text: &str) -> String {
     format!("'{text}'")
 }

@@ -76,7 +76,7 @@ impl WorldOverrides {
 pub(crate) struct Reach {
     speed: Option<f64>,
     turn: Option<f64>,
-    /// The longest side of an arena, for actions that are places.
+    /// The longest side of an arena, for actions that are waypoints.
     side: Option<f64>,
 }
 
@@ -146,7 +146,7 @@ fn layout(world: &World, reach: &Reach) -> Json {
     })
 }
 
-/// The number of rows, or the bounds of the numbers that are used.
+/// The number of rows of the action table, or the bounds of the numbers that actions use.
 fn action(agent: &AgentParams, [x, y]: [f64; 2], reach: &Reach) -> Json {
     if let Some(rows) = agent.num_actions() {
         return json!({ "n": rows });

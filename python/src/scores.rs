@@ -27,7 +27,7 @@ pub(crate) struct PyScores(Scores);
 
 #[pymethods]
 impl PyScores {
-    /// Scores logs by the options of `driftworld.metrics`; returns warnings as well.
+    /// Scores logs with the options of `driftworld.metrics`; returns warnings as well.
     #[staticmethod]
     fn of(py: Python<'_>, logs: Vec<PathBuf>, options: Bound<'_, PyDict>) -> Result<(Self, Vec<String>)> {
         let request = scoring(logs, &Options::new(options, REFUSED))?;

@@ -14,7 +14,7 @@ use crate::overrides::{Reach, WorldOverrides};
 use crate::rounding::usually_rounded;
 use crate::variant::PyVariant;
 
-/// An endless sequence of worlds: number *i* under a seed.
+/// An endless sequence of worlds: world number *i* under a seed.
 #[derive(Clone)]
 pub(crate) enum Stream {
     /// Worlds of these variants, one per episode, in a repeating order.
@@ -228,8 +228,8 @@ impl Supply {
             state.next = state.next.saturating_add(1);
             state.turn = state.turn.saturating_add(1);
         }
-        // Without a seed, random numbers depend on the places of objects in the world as drawn; options that are applied must
-        // not change them.
+        // Without a seed, random numbers depend on the positions of objects in the world as drawn; options that are applied
+        // must not change them.
         let is_seedless = world.seed.is_none() && world.progress.is_none();
         let hash = (is_seedless && !self.overrides.is_empty()).then(|| world.hash_of_places());
         state.origin = origin;
@@ -255,7 +255,7 @@ impl Supply {
         self.lock().origin.clone()
     }
 
-    /// Draws under another seed from now on, starting at this index.
+    /// Draws with a different seed from now on, starting at this index.
     pub(crate) fn seed(&self, seed: u64, index: u64) {
         let mut state = self.lock();
         if state.seed != seed {

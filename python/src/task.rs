@@ -59,7 +59,7 @@ impl PyTask {
         self.0.name()
     }
 
-    /// What it is, in its author's words.
+    /// The author's description of it.
     #[getter]
     fn description(&self) -> &str {
         self.0.description()
@@ -91,7 +91,7 @@ impl PyTask {
         self.0.variant_names()
     }
 
-    /// The same as `variants`.
+    /// Same as `variants`.
     fn all_variants(&self) -> Vec<PyVariant> {
         self.variants()
     }
@@ -105,7 +105,7 @@ impl PyTask {
             .collect()
     }
 
-    /// One variant; without a name the one in which every parameter has its default.
+    /// One variant; without a name, the one in which every parameter has its default.
     #[pyo3(signature = (name=None))]
     fn variant(&self, name: Option<&str>) -> Result<PyVariant> {
         let name = name.unwrap_or(DEFAULT_VARIANT);
@@ -171,7 +171,7 @@ fn name_of(name_or_path: &Bound<'_, PyAny>) -> PyResult<String> {
         .map_err(|_| PyTypeError::new_err(format!("found {name_or_path}, expected a name or a path as text")))
 }
 
-/// A hash of a text, for Python's `hash`.
+/// A hash of a string, for Python's `hash`.
 pub(crate) fn hash_of(text: &str) -> u64 {
     let mut hasher = DefaultHasher::new();
     text.hash(&mut hasher);

@@ -18,9 +18,9 @@ use crate::portions::{draw, numbers};
 use crate::rounding::{detach, usually_rounded};
 use crate::task::{PyTask, hash_of, specs};
 
-/// One variant of a task, in which every parameter that is not drawn anew in each world has its value.
+/// One variant of a task, in which every parameter that is not drawn anew for each world has a fixed value.
 ///
-/// Never changes; equal when worlds and distances are the same. Pickles.
+/// Immutable; equal if worlds and distances are the same. Can be pickled.
 #[pyclass(name = "Variant", module = "driftworld._native", frozen)]
 #[derive(Clone)]
 pub(crate) struct PyVariant(pub(crate) Variant);
@@ -50,7 +50,7 @@ impl PyVariant {
         specs(slf.py(), "_variant_html")?.call1((slf,))
     }
 
-    /// What its author says of it, if anything.
+    /// What its author says about it, if anything.
     #[getter]
     fn description(&self) -> Option<&str> {
         self.0.task().variant_description(self.0.name())
@@ -68,7 +68,7 @@ impl PyVariant {
         self.0.hash()
     }
 
-    /// A variant like this one under another name, with some parameters at other values: ``with_values("dim", light=0.5)``.
+    /// A copy of this variant with a new name and different values of some parameters: ``with_values("dim", light=0.5)``.
     #[pyo3(signature = (name, /, **changes))]
     fn with_values(&self, name: &str, changes: Option<&Bound<'_, PyDict>>) -> Result<Self> {
         let mut values: Vec<(String, Value)> = Vec::new();
@@ -81,9 +81,9 @@ impl PyVariant {
         Ok(Self(usually_rounded(|| self.0.with(name, values))?))
     }
 
-    /// A variant at a wanted distance, 0 or more, from this one, by as few changed parameters as will do: what may change is an element of the decision process
-    /// (``"reward"`` or ``"R"``, and the distance is the one in it), or a list of parameters (and the distance is the whole one).
-    /// Returns the variant and its distance.
+    /// Finds a variant at a given distance, 0 or more, from this one, changing as few parameters as possible. ``subject`` is what
+    /// may change: an element of the decision process (``"reward"`` or ``"R"``; the distance is the one in this element), or a
+    /// list of parameters (the distance is the total). Returns the variant and its distance.
     #[pyo3(signature = (distance, subject, *, tolerance=1e-3, name="found"))]
     fn at_distance(
         &self,
@@ -127,14 +127,14 @@ impl PyVariant {
         Ok(to_py(py, &world)?)
     }
 
-    /// The same as one line of JSON.
+    /// Like ``sample``, as one line of JSON.
     #[pyo3(signature = (seed=Whole(0), index=Whole(0)), text_signature = "($self, seed=0, index=0)")]
     fn sample_json(&self, py: Python<'_>, seed: Whole, index: Whole) -> Result<String> {
         let world = detach(py, || driftworld_generator::sample(&self.0, seed.0, index.0))?;
         Ok(world.to_json())
     }
 
-    /// ``count`` worlds from number ``start`` on, as dictionaries, drawn by several threads: 0 for one on each processor.
+    /// ``count`` worlds from number ``start`` on, as dictionaries, drawn by ``threads`` threads; 0 means one per processor.
     #[pyo3(
         signature = (count, *, seed=Whole(0), start=Whole(0), threads=Whole(0)),
         text_signature = "($self, count, *, seed=0, start=0, threads=0)"
@@ -151,7 +151,7 @@ impl PyVariant {
         self.many(py, [seed, start, count, threads], value, |value| json_to_py(py, &value))
     }
 
-    /// The same, each world as one line of JSON.
+    /// Like ``sample_many``, each world as one line of JSON.
     #[pyo3(
         signature = (count, *, seed=Whole(0), start=Whole(0), threads=Whole(0)),
         text_signature = "($self, count, *, seed=0, start=0, threads=0)"
@@ -170,7 +170,7 @@ impl PyVariant {
         })
     }
 
-    /// Draws the first ``count`` worlds under a seed, and says how often that fails, and why.
+    /// Draws the first ``count`` worlds under a seed, and reports how often that fails, and why.
     #[pyo3(signature = (count, *, seed=Whole(0)), text_signature = "($self, count, *, seed=0)")]
     fn try_worlds<'py>(&self, py: Python<'py>, count: Whole, seed: Whole) -> Result<Bound<'py, PyAny>> {
         let trial = detach(py, || driftworld_curriculum::try_worlds(&self.0, seed.0, count.0));
@@ -228,7 +228,7 @@ pub(crate) fn variant_again(task: &Bound<'_, PyTask>, name: &str, values: &str) 
     {
         return Ok(PyVariant(declared));
     }
-    // Values that equal the base variant's are not set again: they may be ones that cannot be set.
+    // Values that equal the base variant's are not set again: some values cannot be set.
     let mut bases = usually_rounded(|| task.all_variants());
     bases.extend(task.variant(DEFAULT_VARIANT));
     let mut refused = None;

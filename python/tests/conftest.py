@@ -9,7 +9,7 @@ from typing import Any
 import driftworld
 import pytest
 
-#: The checkout of the tests.
+#: The root of the checkout.
 ROOT = Path(__file__).parents[2]
 
 TASKS = {

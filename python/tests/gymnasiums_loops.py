@@ -8,7 +8,7 @@ import driftworld
 
 
 def spread(envs: Any) -> Any:
-    """Makes a reset under one seed spread it like Driftworld; Gymnasium's own environments add 0, 1, 2 and so on."""
+    """Makes a reset with one seed spread it as Driftworld does; Gymnasium's own environments add 0, 1, 2 and so on."""
     reset = envs.reset
 
     def reset_spread(*, seed: Any = None, options: dict[str, Any] | None = None) -> Any:

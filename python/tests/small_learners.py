@@ -15,12 +15,12 @@ from driftworld import Curriculum, VectorTransition
 ACTIONS = [[10, 0, 0], [10, 27, 0], [10, -27, 0], [3, 90, 0], [3, -90, 0]]
 OPTIONS: dict[str, Any] = {"modalities": "rgb", "actions": ACTIONS, "interact": False, "frame_skip": 5}
 T_MAZE = str(ROOT / "examples" / "worlds" / "t_maze.json")
-#: Few and small, for tests that ignore what is learned.
+#: Small images and short episodes, for tests that ignore what is learned.
 TINY: dict[str, Any] = {"size": 8, "max_steps": 6}
 
 
 def package() -> Any:
-    """``driftworld.learners``, with one thread of torch; the test is skipped without torch."""
+    """``driftworld.learners``, with torch on one thread; the test is skipped without torch."""
     pytest.importorskip("torch", reason="the learners are networks").set_num_threads(1)
     return importlib.import_module("driftworld.learners")
 
@@ -91,7 +91,7 @@ class Steps:
                     {},
                 )
             )
-            # An ended episode is followed by another one's first image.
+            # An ended episode is followed by the first image of the next.
             ended = (terminated | truncated) & active
             self.seen = np.where(ended[:, None, None, None], self.images(), following)
             for env in np.flatnonzero(ended).tolist():

@@ -13,7 +13,7 @@ from driftworld import Curriculum, Transition, read_log
 
 
 class Circler:
-    """Walks in circles, and counts its rewards."""
+    """Walks in circles, and stores its rewards."""
 
     name = "circler"
 
@@ -39,7 +39,7 @@ class Circler:
 
 
 class Pupil(Circler):
-    """An agent whose every action depends on all that it has learned, and that can be saved."""
+    """An agent that can be saved, and whose every action depends on everything that it has learned."""
 
     name = "pupil"
 

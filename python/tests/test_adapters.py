@@ -262,7 +262,7 @@ def test_sb3_check_passes_without_warnings(env_id: str, actions: str) -> None:
 
 
 @pytest.mark.learners
-def test_torch_takes_observations_without_another_copy() -> None:
+def test_torch_takes_observations_without_copying() -> None:
     torch = pytest.importorskip("torch", reason="needs PyTorch")
     envs = gym.make_vec(FIND, num_envs=2, vectorization_mode="vector_entry_point", size=40)
     observations, _ = envs.reset(seed=0)

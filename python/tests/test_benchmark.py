@@ -21,7 +21,7 @@ from driftworld.benchmark import Cell, Results, Sequence, run_cells
 from driftworld.benchmark import runner as running
 from driftworld.benchmark.command import main
 
-#: Takes seconds: few decisions in the smoke sequence.
+#: Runs in seconds: few decisions in the smoke sequence.
 TINY = {"decisions": 600, "evaluations": 2, "num_envs": 8}
 
 

@@ -1,4 +1,4 @@
-"""Regimes with a budget of decisions: which experiences run, against an independent computation, and after a kill."""
+"""Regimes with a budget of decisions: the experiences that run match an independent computation, also after a kill."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from test_vector_lifetimes import Many
 
 
 class Stroller(Circler):
-    """Walks a course that depends on its number."""
+    """Walks a random course, drawn with the experience's seed."""
 
     def begin(self, label: str | None, seed: int) -> None:
         self.random = np.random.default_rng(seed)
@@ -36,7 +36,7 @@ def scenario(budgets: dict[str, int], **block: Any) -> dict[str, Any]:
 
 
 def expected(curriculum: Curriculum, lengths: dict[int, int], num_envs: int) -> set[int]:
-    """The numbers of the experiences that run, computed step by step like the environments."""
+    """The numbers of the experiences that run, computed step by step as in the environments."""
     run: set[int] = set()
     for block in curriculum:
         waiting, left, spent = list(block), [0] * num_envs, {}

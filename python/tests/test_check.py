@@ -102,7 +102,7 @@ def test_incomplete_state_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     state = DriftworldEnv.state
 
     def forgetful(self: DriftworldEnv) -> dict[str, Any]:
-        # Without both, wandering objects have no goal, and draw another.
+        # Without both, wandering objects have no goal, and draw a new one.
         world = state(self)
         del world["progress"]
         for thing in world["objects"]:
@@ -187,5 +187,5 @@ def test_counts_below_1_are_refused() -> None:
     ],
     ids=str,
 )
-def test_first_difference_is_reported_with_its_place(left: Any, right: Any, difference: str | None) -> None:
+def test_first_difference_is_reported_with_its_position(left: Any, right: Any, difference: str | None) -> None:
     assert first_difference(left, right, "x") == difference

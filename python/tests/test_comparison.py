@@ -1,4 +1,4 @@
-"""The page of the comparison with other systems is made from its logs, and a run is summed up as the page says."""
+"""The page of the comparison with other systems is made from its logs, and a run is summarised as the page says."""
 
 import importlib.util
 import json
@@ -23,11 +23,11 @@ def compare(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
     return module
 
 
-def test_page_is_that_of_the_logs(compare: ModuleType) -> None:
+def test_page_matches_the_logs(compare: ModuleType) -> None:
     assert compare.PAGE.read_text(encoding="utf-8") == compare.page()
 
 
-def test_another_page_is_found(compare: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_changed_page_is_reported(compare: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     other = tmp_path / "comparison.md"
     other.write_text(compare.page().replace("| MiniGrid |", "| MiniGird |"), encoding="utf-8")
     monkeypatch.setattr(compare, "PAGE", other)
@@ -36,7 +36,7 @@ def test_another_page_is_found(compare: ModuleType, tmp_path: Path, monkeypatch:
         compare.main()
 
 
-def test_a_run_is_learned_after_eighty_of_a_hundred_episodes(
+def test_run_is_learned_after_80_successes_in_100_episodes(
     compare: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def row(decisions: int, episodes: str) -> str:
@@ -54,14 +54,14 @@ def test_a_run_is_learned_after_eighty_of_a_hundred_episodes(
     assert compare.summary("room", 0)["reached"] is None
 
 
-def test_a_log_says_what_it_is_of(compare: ModuleType) -> None:
+def test_log_names_its_task_and_seed(compare: ModuleType) -> None:
     logs = sorted(compare.LOGS.glob("*/*.jsonl"))
     assert logs
     for log in logs:
         head, *rows = compare.read(log)
         assert (head["task"], str(head["seed"])) == (log.parent.name, log.stem)
         assert head["task"] in compare.tasks()["tasks"]
-        # The budget is whole, but for the step of all environments in which it ends.
+        # The budget is spent, except for less than one rollout of all environments.
         assert rows[-1]["decisions"] > head["decisions"] - head["num_envs"] * head["settings"]["rollout"]
 
 
@@ -77,7 +77,9 @@ def test_without_logs_of_jaxenstein_the_page_has_four_systems_and_says_so(
     assert "| JAXenstein | `simple` | 3 |" not in found
 
 
-def test_run_and_speed_go_on_where_they_stopped(compare: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_run_and_speed_resume_where_they_stopped(
+    compare: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     started: list[tuple[str, ...]] = []
 
     def python(_: object, system: str, core: int, *arguments: str) -> str:
@@ -104,7 +106,7 @@ def test_run_and_speed_go_on_where_they_stopped(compare: ModuleType, tmp_path: P
     assert [row["repeat"] for row in compare.read(tmp_path / "speed.jsonl")] == [0, 0, 1, 1, 2, 2]
 
 
-def test_a_folder_that_is_no_checkout_is_refused(compare: ModuleType, tmp_path: Path) -> None:
+def test_folder_that_is_not_a_checkout_is_refused(compare: ModuleType, tmp_path: Path) -> None:
     with pytest.raises(SystemExit, match=r"--jaxenstein: found no jaxenstein/__init__\.py in .*, expected a checkout"):
         compare.Systems(tmp_path, tmp_path)
     (tmp_path / "jaxenstein").mkdir()

@@ -65,7 +65,7 @@ def regimes(*variants: str) -> Curriculum:
 
 
 def world(variant: str, options: dict[str, Any]) -> dict[str, Any]:
-    """Its first world under options, without parts that the images of observations do not show."""
+    """A variant's first world with these options, without the modalities that observations do not have."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         env = DriftworldEnv(variant, **{"size": 8, **options})
@@ -79,7 +79,7 @@ def world(variant: str, options: dict[str, Any]) -> dict[str, Any]:
 
 
 def expect_told_apart(variants: list[str], options: dict[str, Any]) -> None:
-    """Two different variants are refused together, or their first worlds also differ under the options."""
+    """Expects that variants whose first worlds differ still differ with the options."""
     plain = {name: world(name, {"actions": None}) for name in variants}
     under: dict[str, Any] = {}
     for one, other in itertools.combinations(variants, 2):

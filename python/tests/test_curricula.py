@@ -136,7 +136,7 @@ def test_curriculum_pickles() -> None:
     assert again.scenario == small().scenario and again[2][4].world() == small()[2][4].world()
 
 
-def test_invalid_curriculum_is_refused_with_its_place() -> None:
+def test_invalid_curriculum_is_refused_with_pointer() -> None:
     regime = {"task": "find_objects", "variant": "rde", "count": 1}
     with pytest.raises(SpecError, match='did you mean "red"') as refused:
         Curriculum.from_dict({"name": "s", "blocks": [{"type": "learning", "regimes": [regime]}]})

@@ -4,7 +4,7 @@ import driftworld
 import pytest
 
 
-def test_variant_with_another_reward_changes_only_the_reward():
+def test_variant_with_a_different_reward_changes_only_the_reward():
     found = driftworld.elements("find_objects", "blue", "modest", worlds=2)
     (variant,) = found["variants"]
     assert (found["base"], variant["variant"], variant["verdict"]) == ("blue", "modest", "sound")

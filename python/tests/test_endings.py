@@ -1,6 +1,4 @@
-"""Infos name what ended an episode, in single and vector environments; a puzzle continues from its state to the last
-bit.
-"""
+"""Infos name what ended an episode, in single and vector environments; puzzles continue from a state bit for bit."""
 
 from __future__ import annotations
 
@@ -31,7 +29,7 @@ GATE = thing("door", "gate", [0.0, 3.0], scale=2.0, door={})
 LAVA = {"disc": {"center": [0.0, 6.0], "radius": 2.0}, "ends": "failure"}
 BOX = thing("barrel", "box", [3.0, 1.0])
 
-#: For each word, a world in which an agent that runs ahead and interacts ends that way, and whether it is a success.
+#: For each word, a world that ends that way for an agent that runs ahead and interacts, and whether it is a success.
 WORLDS: dict[str, tuple[dict[str, Any], bool]] = {
     "all_collected": (
         {"objects": [thing("barrel", "coin", [0, 4], **COIN)], "rules": {"success": ["all_collected"]}},
@@ -152,7 +150,7 @@ def to_the_open_door(env: Any) -> int:
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_puzzle_continues_from_its_state_to_the_last_bit(seed: int) -> None:
+def test_puzzle_continues_from_its_state_bit_for_bit(seed: int) -> None:
     env = single(puzzle(1000.0))
     env.reset(seed=seed)
     steps = to_the_open_door(env)
@@ -170,7 +168,7 @@ def test_puzzle_continues_from_its_state_to_the_last_bit(seed: int) -> None:
     assert first_difference(env._members.observation(0), again._members.observation(0)) is None
     draw = np.random.default_rng(seed)
     for number in range(400):
-        # The first runs to the goal, the others wander.
+        # With seed 0 the agent runs to the goal, otherwise it wanders.
         action = [1.0, 0.0, 0.0] if seed == 0 else [draw.uniform(-0.5, 1), draw.uniform(-1, 1), draw.integers(2)]
         one, other = (each.step(np.array(action, dtype=np.float32)) for each in (env, again))
         assert first_difference(one, other) is None, number
@@ -181,6 +179,6 @@ def test_puzzle_continues_from_its_state_to_the_last_bit(seed: int) -> None:
     assert (one[1], one[4]["is_success"]) == ((5.0, True) if seed == 0 else (one[1], one[4]["ended_by"] == "touch"))
 
 
-def test_every_word_has_its_world() -> None:
+def test_every_documented_word_has_a_world() -> None:
     documented = set(re.findall(r'``"(\w+)"``', driftworld.DriftworldEnv.step.__doc__ or ""))
     assert documented == {word_of(name) for name in WORLDS} - {None}

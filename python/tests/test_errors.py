@@ -1,4 +1,4 @@
-"""Every exception has the text, code and place of the native error."""
+"""Every exception has the text, code and position of the native error."""
 
 from __future__ import annotations
 
@@ -123,7 +123,7 @@ def test_invalid_document_is_refused_with_pointer_line_and_column() -> None:
     assert (refused.value.pointer, refused.value.line, refused.value.column) == (None, 2, 11)
 
 
-def test_all_problems_are_reported_in_order_of_place() -> None:
+def test_all_problems_are_reported_in_document_order() -> None:
     with pytest.raises(driftworld.SpecError) as refused:
         TaskSpec.from_json("mine.json", '{ "name": "x", "b": 1,\n "a": 2, "world": { "c": 3 } }')
     assert [(problem["pointer"], problem["line"]) for problem in refused.value.problems] == [
@@ -185,7 +185,7 @@ def test_file_that_is_not_utf8_is_refused(tmp_path: Path) -> None:
     assert refused.value.code == "task/unreadable"
 
 
-def test_document_of_another_kind_is_named_as_such(tmp_path: Path, world_file: Path) -> None:
+def test_document_of_the_wrong_kind_is_named(tmp_path: Path, world_file: Path) -> None:
     for path, found in ((tmp_path, "a folder"), (world_file, "a world")):
         with pytest.raises(driftworld.TaskError, match=f"found {found}, expected a task spec; ") as refused:
             TaskSpec.load(path)
@@ -199,7 +199,7 @@ def test_byte_order_mark_is_ignored(tmp_path: Path) -> None:
     assert TaskSpec.from_json("marked", path.read_text(encoding="utf-8")).name == "marked"
 
 
-def test_errors_of_commands_have_code_and_place(tmp_path: Path) -> None:
+def test_errors_of_commands_have_code_and_line(tmp_path: Path) -> None:
     with driftworld.LogWriter(tmp_path / "log") as log:
         log.write(block_num=0, exp_num=0, block_type="train", task_name="find_red", reward=1.0)
     (tmp_path / "log" / "logger_info.json").write_text('{\n  "metrics_columns": [\n', encoding="utf-8")
@@ -211,7 +211,7 @@ def test_errors_of_commands_have_code_and_place(tmp_path: Path) -> None:
     assert refused_design.value.code == "curriculum/no-such-place"
 
 
-def test_broken_task_of_a_scenario_is_reported_with_its_place(tmp_path: Path) -> None:
+def test_broken_task_of_a_scenario_is_reported_with_its_position(tmp_path: Path) -> None:
     (tmp_path / "mine.json").write_text('{\n  "name": "mine",\n  "paramters": {}\n}', encoding="utf-8")
     regime = {"task": "mine.json", "variant": "red", "count": 1}
     with pytest.raises(driftworld.CurriculumError) as refused:

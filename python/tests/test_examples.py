@@ -171,8 +171,8 @@ def one_environment(**columns: list[Any]) -> dict[str, Any]:
 
 
 def arguments_of_a_lifetime(**changes: Any) -> argparse.Namespace:
-    """Arguments for a few experiences of the examples' curriculum; its second evaluation uses other worlds than the
-    first block.
+    """Arguments for a few experiences of the examples' curriculum; its second evaluation uses different worlds from the
+    first block's.
     """
     return argparse.Namespace(**{"learn": 12, "evaluate": 4, "num_envs": 4, "again": True, "policy": "sampled", **changes})
 
@@ -223,7 +223,7 @@ def test_lifetime_starts_like_its_expert_and_replay_takes_as_many_steps(tmp_path
 
     assert block(first) == block(whole) and len(block(first)) == 12
     assert lifetime.updates == rehearsing.updates > expert.updates > 0
-    # The log contains the policy: another policy is another run.
+    # The log contains the policy: a different policy is a different run.
     info = json.loads((tmp_path / "lifetime" / "scenario_info.json").read_text(encoding="utf-8"))
     assert info["made_from"]["policy"] == "sampled"
 

@@ -20,7 +20,7 @@ EPISODES = 20
 def test_built_in_agent_acts_like_the_learner_in_whole_episodes(tmp_path: Path) -> None:
     torch, learners = pytest.importorskip("torch"), package()
     learner = learners.PPO(len(ACTIONS), 1, seed=2, size=32, policy="greedy")
-    # Makes the policy as decided as a trained one; an untrained policy always takes one action.
+    # Makes the policy as decisive as a trained one; an untrained greedy policy always takes the same action.
     with torch.no_grad():
         learner.network.policy.weight.mul_(300)
     learner.export(tmp_path / "net.safetensors", actions=ACTIONS, frame_skip=5, interact=False)
@@ -47,14 +47,14 @@ def test_built_in_agent_acts_like_the_learner_in_whole_episodes(tmp_path: Path) 
 
 
 @pytest.mark.parametrize("kind", ["RecurrentPPO", "PackNet"])
-def test_learner_that_acts_by_more_than_its_network_is_refused(kind: str, tmp_path: Path) -> None:
+def test_learner_that_acts_with_more_than_its_network_is_refused(kind: str, tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="expected a PatchNetwork alone"):
         small(kind).export(tmp_path / "net.safetensors", actions=ACTIONS)
     assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize("actions", [ACTIONS[:4], [[10, 0]] * 5])
-def test_another_action_table_is_refused(actions: Any, tmp_path: Path) -> None:
+def test_wrong_action_table_is_refused(actions: Any, tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="actions: found .*, expected a table of 5 rows of three numbers"):
         small().export(tmp_path / "net.safetensors", actions=actions)
     assert not list(tmp_path.iterdir())

@@ -1,4 +1,4 @@
-"""Long native calls work in processes forked after earlier ones."""
+"""Long native calls work in processes forked after earlier calls."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ from driftworld import Curriculum, CurriculumError
 TASKS = [*driftworld.built_in_tasks(), *map(str, sorted((ROOT / "examples" / "worlds").glob("*.json")))]
 
 
-#: One lifetime in each, four with DRIFTWORLD_FULL=1.
+#: Number of lifetimes: one in each task, four with DRIFTWORLD_FULL=1.
 LIFETIMES = len(TASKS) * (4 if os.environ.get("DRIFTWORLD_FULL") == "1" else 1)
 
 
@@ -75,7 +75,7 @@ class Counter(Uniform):
 
 
 class Many:
-    """A vector agent with one such agent for each environment."""
+    """A vector agent made of one single agent for each environment."""
 
     def __init__(self, kind: type[Uniform], num_envs: int) -> None:
         self.agents = [kind() for _ in range(num_envs)]

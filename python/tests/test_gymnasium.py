@@ -33,7 +33,7 @@ def bare(env_id: str, **options: Any) -> Any:
 
 
 def walk(env: Any, seed: int | None, steps: int = 12) -> list[Any]:
-    """The start of an episode: the reset, and steps with random actions from the seed."""
+    """The start of an episode: the reset, and steps with the same random actions in every call."""
     env.action_space.seed(7)
     results = [env.reset(seed=seed)]
     for _ in range(steps):
@@ -238,7 +238,7 @@ def test_restored_state_continues_bit_for_bit(env_id: str) -> None:
 
 
 def test_steps_report_events_and_success(small: dict[str, Any]) -> None:
-    # In a clearing the agent soon meets objects; the rewards of its events must add up to the reward.
+    # In a clearing the agent soon meets objects.
     env = bare(FIND, variant="near", **small)
     seen: list[dict[str, Any]] = []
     env.action_space.seed(0)
@@ -375,7 +375,7 @@ def test_a_wrong_action_is_refused_and_changes_nothing(action: Any) -> None:
     assert first_difference(before, env.state()) is None
 
 
-def test_invalid_world_is_refused_with_its_place(tmp_path: Path) -> None:
+def test_invalid_world_is_refused_with_its_position(tmp_path: Path) -> None:
     path = tmp_path / "wrong.json"
     path.write_text('{\n  "objects": [{"shape": "cube", "colour": "red"}]\n}')
     with pytest.raises(SpecError) as caught:
@@ -445,7 +445,7 @@ def test_window_shows_the_rendered_image(monkeypatch: pytest.MonkeyPatch) -> Non
 
 
 def test_images_have_the_requested_size() -> None:
-    # With both, the view from above is a square beside the other.
+    # With both, the view from above is a square beside the agent's view.
     for camera, width in (("agent", 90), ("above", 90), ("both", 150)):
         env = bare(FIND, render_mode="rgb_array", render_size=(60, 90), camera=camera)
         env.reset(seed=0)

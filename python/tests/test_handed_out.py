@@ -149,7 +149,7 @@ def test_threads_can_write_into_one_log(tmp_path: Any) -> None:
                 for _ in range(50):
                     params = {"light": np.float64(0.5)}
                     log.write(block_num=0, exp_num=0, block_type="train", task_name="a_b", task_params=params, exp_status="incomplete", reward=Slow())
-            except BaseException as error:  # noqa: BLE001 - whatever it is, it is the finding
+            except BaseException as error:  # noqa: BLE001 - any exception is a finding
                 errors.append(error)
 
         threads = [threading.Thread(target=write) for _ in range(4)]

@@ -1,5 +1,5 @@
-"""PPO: advantages against a direct sum, what is learned from, evaluations without effect on learning, bit-exact
-resumption.
+"""PPO: advantages match a direct sum, idle environments are not learned from, evaluations do not change learning, and
+resumption is bit-exact.
 """
 
 from __future__ import annotations
@@ -250,7 +250,7 @@ def test_more_environments_than_declared_are_refused(learners: Any) -> None:
 
 
 @needs_torch
-def test_images_of_another_size_are_refused_with_the_matching_options(learners: Any) -> None:
+def test_images_of_the_wrong_size_are_refused_with_the_matching_options(learners: Any) -> None:
     with pytest.raises(ValueError, match=r'found observations \(4, 16, 16, 3\).*modalities="rgb", size=8'):
         live(small(), None, "left", size=16)
 
@@ -262,7 +262,7 @@ def test_no_minibatch_has_a_single_step(learners: Any, steps: int) -> None:
     learner, rollout = learners.PPO(5, 8, size=8), learners.Rollout(512, 8, 8, 5)
     rollout.active.view(-1)[torch.randperm(4096)[:steps]] = True
     parts = list(learner.parts(rollout))
-    # A deviation needs two steps; a rollout of one step teaches nothing.
+    # A standard deviation needs two steps; a rollout of one step is not learned from.
     assert sum(len(part) for part in parts) == (steps if steps > 1 else 0)
     assert all(2 <= len(part) <= 768 for part in parts)
     assert sorted(torch.cat(parts).tolist() if parts else []) == (

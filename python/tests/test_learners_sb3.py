@@ -33,7 +33,7 @@ TOTAL = 96
 
 
 def curriculum(learn: int, *, evaluate: int = 0, seed: int = 4, task_label: str = "none") -> Curriculum:
-    """One task, or with evaluations two tasks, evaluated before, between and after."""
+    """One task; or, with evaluations, two tasks, evaluated before, between and after."""
 
     def block(kind: str, *variants: str) -> dict[str, Any]:
         count = learn if kind == "learning" else evaluate
@@ -90,7 +90,7 @@ def watched(model: Any) -> list[tuple[int, str]]:
 
 
 class Dealt(gym.Wrapper[Any, Any, Any, Any]):
-    """An environment that starts with the next experience of a plan shared by several."""
+    """An environment whose resets take the next experience of a plan; several environments share the plan."""
 
     def __init__(self, env: Any, plan: Curriculum, dealt: list[int]) -> None:
         super().__init__(env)
@@ -117,7 +117,7 @@ def test_model_learns_the_same_weights_as_with_its_own_learn(kind: str, num_envs
         plan.run(agent, **options)
     else:
         plan.run_vector(agent, num_envs=num_envs, **options)
-    # The last one may have a learning rate of 0.
+    # The last update may have a learning rate of 0.
     assert len({digest for _, digest in expected}) >= max(2, len(expected) - 1)
     assert found[: len(expected)] == expected
 

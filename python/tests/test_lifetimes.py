@@ -68,7 +68,7 @@ def test_random_agents_log_has_the_commands_form(tmp_path: Path) -> None:
         def act(self, observation: Any, info: dict[str, Any]) -> Any:
             return space.sample()
 
-    # Its action space is not seeded.
+    # The action space is not seeded, so the agent behaves differently in repeated evaluations.
     curriculum.run(Random(), tmp_path / "mine", check_frozen=False, **SMALL)
     assert rows(tmp_path / "mine", OF_THE_PLAN) == rows(tmp_path / "theirs", OF_THE_PLAN)
 
@@ -80,11 +80,11 @@ def test_agent_learns_in_learning_blocks_only(tmp_path: Path) -> None:
     assert agent.frozen == [False, True, False, True, False, True]
     assert len(agent.learned) == 7 * (2 + 5 + 3) and len(agent.begun) == 19
     assert {label for label, _ in agent.begun} == {None}
-    # No world can be recognised by its seed in another block; variants share that of a world's number under a seed.
+    # Within a block, all variants share the agent's seed for the same world number; no seed recurs in another block.
     chances = [seed for _, seed in agent.begun]
     assert chances[2] == chances[4] and chances[5:7] == chances[7:9]
     assert len(set(chances)) == 2 + 2 + 3 + 2 + 3 + 2
-    # With `paired_chance`, every evaluation of a world has the same seed, and learning another.
+    # With `paired_chance`, every evaluation of a world has the same seed, and learning a different one.
     paired = Circler()
     small(max_steps=7).run(paired, check_frozen=False, paired_chance=True, **SMALL)
     chances = [seed for _, seed in paired.begun]
@@ -93,7 +93,7 @@ def test_agent_learns_in_learning_blocks_only(tmp_path: Path) -> None:
 
 
 class Memoriser(Circler):
-    """Learns nothing in learning blocks, and counts its evaluations."""
+    """Acts by the number of experiences so far, so that evaluations change it."""
 
     def act(self, observation: Any, info: dict[str, Any]) -> Any:
         return np.array([len(self.begun), 20 * (len(self.begun) % 3), 0], dtype=np.float32)
@@ -254,7 +254,7 @@ def test_l2explorer_scenario_runs_like_the_command(tmp_path: Path) -> None:
         regimes.append({"task": "trees", "count": count, "params": {"map": f"maps/{name}.json", "maxsteps": 5}})
     blocks = [{"type": "train", "regimes": regimes}, {"type": "test", "regimes": regimes}]
     theirs.write_text(json.dumps({"logging_base_dir": "logs", "scenario": blocks}), encoding="utf-8")
-    # A missing map is replaced by another, as the original's own scenario needs it.
+    # A missing map is replaced by a different one: L2Explorer's own scenario needs that.
     min(maps.iterdir()).unlink()
     with pytest.warns(UserWarning, match="stood in for it"):
         curriculum = Curriculum.load(theirs)

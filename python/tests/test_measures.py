@@ -1,4 +1,4 @@
-"""The benchmark's measures against the formulae of their references (scripts/golden_measures.py), and invariants."""
+"""The benchmark's measures match the formulae of their references (scripts/golden_measures.py), and keep invariants."""
 
 from __future__ import annotations
 
@@ -108,7 +108,7 @@ def test_permuting_seeds_changes_nothing(case: dict[str, Any]) -> None:
 
 
 @EACH_CASE
-def test_longer_scale_scales_everything_but_cora(case: dict[str, Any]) -> None:
+def test_larger_scale_scales_everything_but_cora(case: dict[str, Any]) -> None:
     values, ends = np.array(case["values"]), np.array(case["values"])[:, -1]
     once, thrice = Matrix(values[0]), Matrix(3 * values[0])
     assert thrice.performance() == near(3 * once.performance())

@@ -15,7 +15,7 @@ import pytest
 from driftworld.miniworld import Actions, MiniWorldEnv, names, task
 from gymnasium.utils.env_checker import check_env
 
-#: By MiniWorld's names: the number of actions in the space, and the limit of steps (MiniWorld 2.1.0).
+#: By MiniWorld's name: the number of actions in the space, and the limit of steps (MiniWorld 2.1.0).
 PUBLISHED = {
     "CollectHealth": (8, 1000),
     "FourRooms": (3, 250),
@@ -41,7 +41,7 @@ PUBLISHED = {
     "YMazeLeft": (3, 280),
     "YMazeRight": (3, 280),
 }
-#: Environments that pay for a success by its time, without things to carry.
+#: Environments in which a success pays more the earlier it comes, and nothing can be carried.
 BOXES = [name for name, (actions, _) in PUBLISHED.items() if actions == 3 and name != "ThreeRooms"]
 FAST = {"MazeS3Fast", "OneRoomS6Fast", "Sign"}
 
@@ -51,7 +51,7 @@ def made(name: str, **options: Any) -> Any:
 
 
 def in_the_open(env: Any, name: str, objects: dict[str, list[tuple[float, float]]] | None = None) -> None:
-    """Starts an episode on open ground: the agent faces north, and objects of each tag stand at the given places."""
+    """Starts an episode on open ground: the agent faces north, and objects of each tag are at the given positions."""
     world = task(name).variant().sample(seed=0)
     world["environment_params"] = {}
     world["agent_params"].update(coordinates=[0, 0], heading=0)
@@ -70,7 +70,7 @@ def place(env: Any) -> tuple[float, float, float]:
     return (*agent["coordinates"], agent["heading"])
 
 
-def test_every_published_name_has_its_id() -> None:
+def test_every_published_name_has_an_id() -> None:
     assert sorted(names()) == sorted(PUBLISHED)
     ids = [env_id for env_id in gym.registry if env_id.startswith("driftworld/MiniWorld-")]
     assert sorted(ids) == sorted(f"driftworld/MiniWorld-{name}-v0" for name in PUBLISHED)
@@ -184,7 +184,7 @@ def test_health_runs_out_in_fifty_steps_and_a_box_restores_it() -> None:
         assert (reward, terminated, info["health"]) == ((-100, True, 0) if step == 50 else (2, False, 100 - 2 * step))
 
 
-def test_thing_is_carried_to_another() -> None:
+def test_object_is_carried_to_another() -> None:
     env = made("PutNext")
     in_the_open(env, "PutNext", {"ball": [(0, 1)], "barrel_of_balls": [(0, 4)]})
 
@@ -196,7 +196,7 @@ def test_thing_is_carried_to_another() -> None:
             [event["effect"] for one in told for event in one[4]["events"] if event["effect"]],
         )
 
-    assert step(Actions.drop) == (0, False, [])  # although a thing is in reach
+    assert step(Actions.drop) == (0, False, [])  # although an object is in reach
     assert step(Actions.pickup) == (0, False, ["picked_up"])
     assert step(Actions.pickup, Actions.toggle, Actions.done) == (0, False, [])  # keeps it
     assert step(*[Actions.move_forward] * 12) == (0, False, [])
@@ -275,7 +275,7 @@ def test_saved_world_keeps_its_step_count() -> None:
     assert other.step_count == 18 and reward == pytest.approx(1 - 0.2 * 18 / 250)
 
 
-def test_several_step_in_gymnasiums_loop() -> None:
+def test_several_environments_step_in_gymnasiums_loop() -> None:
     envs = gym.make_vec("driftworld/MiniWorld-OneRoomS6Fast-v0", num_envs=3)
     envs.reset(seed=0)
     observations, rewards, *_ = envs.step(envs.action_space.sample())

@@ -1,4 +1,4 @@
-"""Options of environments and resets: their effects, and that invalid ones change nothing."""
+"""Options of environments and resets: valid ones have their effect, and invalid ones change nothing."""
 
 from __future__ import annotations
 
@@ -94,7 +94,7 @@ def test_minus_one_means_no_limit() -> None:
     assert ends == [False, False, True]
 
 
-def test_variants_with_other_actions_are_refused() -> None:
+def test_variants_with_different_actions_are_refused() -> None:
     env = env_of(actions="continuous")
     for variant in ("slow", "waypoints"):
         with pytest.raises(ValueError, match="found actions of numbers in"):
@@ -130,7 +130,7 @@ def test_numpy_numbers_are_accepted() -> None:
     assert env.action_space.shape == (2,)
 
 
-def test_threads_are_at_most_the_environments() -> None:
+def test_threads_are_limited_to_the_number_of_environments() -> None:
     envs = vector(2, num_threads=100_000)
     envs.reset(seed=0)
     with pytest.raises(ValueError, match="num_threads: found -1"):

@@ -13,7 +13,7 @@ from pathlib import Path
 import driftworld
 import pytest
 
-#: Allowed at run time, with the standard library; other imports are inside functions, in adapters, or in learners.
+#: Allowed besides the standard library; other imports are inside functions, in adapters, or in learners.
 ALLOWED = {"driftworld", "gymnasium", "numpy"}
 
 

@@ -1,6 +1,6 @@
 """Every Python block in README.md and on the pages of `docs/` runs unchanged. `tests/pages/` runs the other blocks.
 
-The blocks of a page run one after the other in one interpreter, as a reader would type them, in an empty folder. A
+The blocks of a page run one after another in one interpreter, as a reader would type them, in an empty folder. A
 block that starts with ```` ```python learners ```` needs packages of gigabytes, and runs only with those, after the
 blocks above it; one with ```` ```python by-hand ```` needs an ML-Agents client, which the stage `unity` has.
 """

@@ -21,7 +21,7 @@ def kept(log: Path) -> dict[str, str]:
 
 
 class Wanderer:
-    """Acts at random in each environment, from the experience's seed."""
+    """Acts at random in each environment, seeded by the experience."""
 
     name = "wanderer"
 
@@ -40,7 +40,7 @@ class Wanderer:
 
 
 def check(log: Path) -> None:
-    """Replays every episode of a log: reading compares it with its row, and drawing runs it."""
+    """Replays every episode of a log: reading compares it with its row, and rendering runs it."""
     rows = read_log(log)
     for number, reward, steps in zip(rows["exp_num"], rows["reward"], rows["episode_step_count"], strict=True):
         recording = Recording.read(log, int(number))

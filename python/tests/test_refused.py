@@ -53,7 +53,7 @@ def test_every_environment_needs_a_reset() -> None:
     envs.step(action)
 
 
-# -- what would take too much ------------------------------------------------------------------------------------------
+# -- excessive requests ------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(("num_envs", "size"), [(65_536, 4096), (400, 4096), (65_536, 300)])

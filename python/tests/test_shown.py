@@ -1,4 +1,4 @@
-"""Contents of observations and forms of actions follow the task, also if its variants differ in them."""
+"""Contents of observations and forms of actions follow the task, even if its variants differ in them."""
 
 from __future__ import annotations
 
@@ -131,7 +131,7 @@ class _Watcher:
 
 
 class _Watchers(_Watcher):
-    """The same for many environments."""
+    """Like `_Watcher`, for many environments."""
 
     def act(self, observations: Any, infos: dict[str, Any]) -> Any:
         num_envs = len(observations["state"])

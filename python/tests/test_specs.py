@@ -198,7 +198,7 @@ def test_valid_document_has_no_problems(lamps: TaskSpec) -> None:
     assert validate(world, kind="world", check=True) == []
 
 
-def test_problems_have_their_places(tmp_path: Path) -> None:
+def test_problems_have_their_positions(tmp_path: Path) -> None:
     path = tmp_path / "wrong.json"
     path.write_text('{ "name": "x",\n  "paramters": {},\n  "world": { "max_stepps": 3 } }', encoding="utf-8")
     problems = validate(path)

@@ -55,7 +55,7 @@ def test_task_is_a_variant_and_its_completion_a_share_of_the_ceiling(monkeypatch
 
 
 def live(curriculum: Any, episodes: int, update: Any = None) -> list[str]:
-    """The variants of ``episodes`` episodes chosen by a curriculum, in its own wrapper."""
+    """Runs ``episodes`` episodes chosen by a curriculum, in Syllabus's wrapper; returns their variants."""
     from syllabus.core import GymnasiumSyncWrapper, make_multiprocessing_curriculum
 
     shared = make_multiprocessing_curriculum(curriculum, timeout=20)

@@ -1,4 +1,4 @@
-"""The example that reads letter maps: walls, things, doors and lava are where their letters are, and the world is
+"""The example that reads letter maps: walls, objects, doors and lava are where their letters are, and the world is
 valid.
 """
 
@@ -46,7 +46,7 @@ def maps() -> ModuleType:
 
 
 def problems(world: dict[str, Any]) -> list[dict[str, Any]]:
-    """The problems of a world. Warnings are ignored: drawn maps have unreachable cells."""
+    """The problems of a world. Warnings are ignored: random maps have unreachable cells."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         return validate(world)
@@ -126,7 +126,7 @@ def test_text_that_is_not_a_map_is_refused(maps: ModuleType, text: str) -> None:
         maps.dmlab("letter.txt", text)
 
 
-def test_things_are_at_their_letters(maps: ModuleType) -> None:
+def test_objects_are_at_their_letters(maps: ModuleType) -> None:
     chance, read = random.Random(3), 0
     for _ in range(100):
         rows = ["".join(chance.choices("*PGA IH?", k=chance.randint(1, 12))) for _ in range(chance.randint(1, 9))]

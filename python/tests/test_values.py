@@ -112,7 +112,7 @@ def test_copies_have_their_own_random_generators(way: Callable[[Any], Any]) -> N
     envs.reset()
     expected = way(envs)
     other = way(envs)
-    # Draws of the original meanwhile have no effect on it.
+    # Draws from the original's generators have no effect on its copies.
     [generator.integers(9) for generator in envs.np_random]
     envs.reset(seed=77)
     same_life(other, expected)

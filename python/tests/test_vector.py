@@ -83,7 +83,7 @@ def test_each_mode_of_autoreset_is_gymnasiums(mode: Any) -> None:
 @NEEDS_MASKS
 @ANY_MODE
 def test_episodes_that_end_at_different_times_are_handled(mode: Any) -> None:
-    # The goal is in the agent's way: each episode ends at its own time, when the goal is reached.
+    # The goal is straight ahead of the agent: each episode ends at its own time, when the goal is reached.
     options = {"variant": "plain", "modalities": "state", "size": 16, "max_episode_steps": 60}
     ours, theirs = (
         native("driftworld/GetToGoal-v0", 3, autoreset_mode=mode, **options),
@@ -369,7 +369,7 @@ def test_neighbouring_seeds_share_no_world(seed: int) -> None:
             hashes |= set(ours.step(ours.action_space.sample())[4]["world_hash"])
         seen.append(hashes)
     assert [len(hashes) for hashes in seen] == [128, 128] and not seen[0] & seen[1]
-    # The first is the seed itself, as for a single environment, and the others do not depend on the number.
+    # The first is the seed itself, as for a single environment, and the others do not depend on how many there are.
     assert driftworld.spread_seeds(seed, 1) == [seed]
     assert driftworld.spread_seeds(seed, 5) == driftworld.spread_seeds(seed, 32)[:5]
 

@@ -1,4 +1,4 @@
-"""Curricula run in many environments at the same time log the same as in one."""
+"""Curricula run in many environments at the same time write the same log as in a single one."""
 
 from __future__ import annotations
 
@@ -14,9 +14,7 @@ from test_lifetimes import QUARRY
 
 
 class Looker:
-    """Turns depending on its observations and its number; learns nothing. One per environment acts like a single
-    one.
-    """
+    """Turns depending on its observations and its seed; learns nothing. One per environment acts like one alone."""
 
     name = "looker"
 
@@ -38,7 +36,7 @@ class Looker:
 
 
 class Many:
-    """A single environment's agent in each of many; with ``shared``, they share all their knowledge."""
+    """A vector agent made of one single agent for each environment."""
 
     def __init__(self, num_envs: int, make: Any) -> None:
         self.agents = [make() for _ in range(num_envs)]

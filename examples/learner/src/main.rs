@@ -37,7 +37,7 @@ const EPOCHS: usize = 2;
 const MINIBATCH: usize = 512;
 const LEARNING_RATE: f64 = 1e-3;
 const DISCOUNT: f32 = 0.98;
-/// λ of generalised advantages.
+/// λ of generalised advantage estimation.
 const TRACE: f32 = 0.95;
 const CLIP: f32 = 0.2;
 const ENTROPY: f64 = 0.03;
@@ -55,7 +55,7 @@ fn world(variant: &Variant, seed: u64, index: u64, actions: ActionSpace) -> Resu
     })?)
 }
 
-/// Environments whose episodes are worlds 0, 64, 128 …, 1, 65 … of a seed.
+/// Environments for a seed's worlds: environment `k` runs worlds `k`, `k + 64`, `k + 128` ….
 fn environments(variant: &Variant, seed: u64) -> Result<Batch> {
     let variant = variant.clone();
     let source: WorldSource = Arc::new(move |episode| {
@@ -79,7 +79,7 @@ struct Layer {
 }
 
 impl Layer {
-    /// Normal weights of variance gain² / inputs, and no biases.
+    /// Normal weights with variance gain² / inputs, and zero biases.
     fn new(name: &'static str, inputs: usize, outputs: usize, gain: f64, rng: &mut ChaCha8Rng) -> Result<Self> {
         let mut normal = || {
             // The Box–Muller transform.
@@ -145,7 +145,7 @@ impl Network {
         Ok((log_policy.flatten_all()?.to_vec1()?, values.to_vec1()?))
     }
 
-    /// A step of Adam down the gradient, whose norm is clipped.
+    /// An Adam step, with the gradient's norm clipped.
     fn step(&mut self, loss: &Tensor, rate: f64) -> Result<()> {
         let gradients = loss.backward()?;
         let of = |var: &Var| gradients.get(var).ok_or("the loss depends on all parameters");
@@ -222,7 +222,7 @@ fn draw(log_policy: &[f32], rng: &mut ChaCha8Rng) -> Vec<usize> {
     log_policy.chunks_exact(ACTIONS.len()).map(row).collect()
 }
 
-/// What all environments saw and did since the last update, step by step.
+/// The experience of all environments since the last update, step by step.
 #[derive(Default)]
 struct Rollout {
     images: Vec<u8>,
@@ -256,7 +256,7 @@ impl Rollout {
         &self.images[step * IMAGE..(step + 1) * IMAGE]
     }
 
-    /// PPO's loss on some steps: the clipped surrogate (eq. 7), half the squared error of values, and entropy.
+    /// The PPO loss of a minibatch: the clipped surrogate (eq. 7), half the squared error of values, and entropy.
     fn loss(&self, network: &Network, advantages: &[f32], part: &[usize]) -> Result<Tensor> {
         let column = |of: &dyn Fn(usize) -> f32| Tensor::from_iter(part.iter().map(|k| of(*k)), &Device::Cpu);
         let images: Vec<u8> = part.iter().flat_map(|k| self.image(*k)).copied().collect();
@@ -352,7 +352,7 @@ fn evaluate(network: &Network, variant: &Variant) -> Result<f64> {
     Ok(mean(&returns))
 }
 
-/// The planner's mean reward there. It knows the map, moves and turns at any rate, and holds its actions as long.
+/// The planner's mean reward in the same worlds. It knows the map, moves and turns at any rate, and holds each action for as long.
 fn ceiling(variant: &Variant) -> Result<f64> {
     let episode = |index| -> Result<f64> {
         let mut environment = Environment::new(world(variant, TEST_SEED, index, ActionSpace::Continuous)?);

@@ -1,13 +1,14 @@
 """Compares MiniGrid, MiniWorld, ViZDoom, JAXenstein and Driftworld under one PPO: installs, runs them, and writes docs/comparison.md.
 
-    python examples/python/comparison/compare.py all WHEEL       # everything below; goes on where an earlier call stopped
-    python examples/python/comparison/compare.py install WHEEL   # an environment of Python for each system; WHEEL is of `scripts/dist.sh`
-    python examples/python/comparison/compare.py run             # three seeds of each task; a run whose log is there is not repeated
-    python examples/python/comparison/compare.py speed           # steps a second alone, the systems in turn
-    python examples/python/comparison/compare.py page            # docs/comparison.md from the logs; with --check compares
+    python examples/python/comparison/compare.py all WHEEL       # everything below; resumes an earlier call
+    python examples/python/comparison/compare.py install WHEEL   # a Python environment for each system
+    python examples/python/comparison/compare.py run             # three seeds of each task, except those with a log
+    python examples/python/comparison/compare.py speed           # steps a second without a learner, the systems in turn
+    python examples/python/comparison/compare.py page            # docs/comparison.md from the logs; --check compares it
 
-Needs Python 3.10 or later and Linux; MiniWorld needs Mesa (Debian: libegl-mesa0 libgl1-mesa-dri libglu1-mesa). JAXenstein is in no
-registry: name a checkout of its repository by --jaxenstein CHECKOUT before the command, or it is left out.
+`scripts/dist.sh` makes WHEEL. Needs Python 3.10 or later and Linux; MiniWorld needs Mesa (Debian: libegl-mesa0
+libgl1-mesa-dri libglu1-mesa). JAXenstein is not in any registry: pass a checkout of its repository with --jaxenstein
+CHECKOUT before the command, or it is left out.
 """
 
 from __future__ import annotations
@@ -32,12 +33,12 @@ LOGS, PAGE = HERE / "logs", ROOT / "docs/comparison.md"
 SYSTEMS = ["minigrid", "miniworld", "vizdoom", "jaxenstein", "driftworld"]
 SEEDS = range(3)
 NUMBERS = ["no", "one", "two", "three", "four", "five"]
-#: Successes among the last hundred episodes that count as learned.
+#: A task counts as learned at this share of successes among this many last episodes.
 SCORE, WINDOW = 0.8, 100
 
 
 def tasks() -> dict[str, Any]:
-    """The systems and their tasks, by the names of their logs."""
+    """The systems and their tasks, by log name."""
     return json.loads((HERE / "tasks.json").read_text(encoding="utf-8"))
 
 
@@ -45,7 +46,7 @@ def tasks() -> dict[str, Any]:
 
 
 class Systems:
-    """The environments of Python in a folder, and JAXenstein's checkout, if there is one."""
+    """The Python environments in a folder, and JAXenstein's checkout, if there is one."""
 
     def __init__(self, envs: Path, checkout: Path | None) -> None:
         self.envs, self.checkout = envs.resolve(), checkout.resolve() if checkout else None
@@ -54,7 +55,7 @@ class Systems:
         self.names = [name for name in SYSTEMS if checkout or name != "jaxenstein"]
 
     def asked(self, kinds: list[str], only: list[str]) -> dict[str, str]:
-        """The tasks (and rates) of the systems that are there: the system of each."""
+        """The requested tasks (and rates) of the available systems, each with its system."""
         found = {name: task["system"] for kind in kinds for name, task in tasks()[kind].items() if not only or name in only}
         left = [name for name, system in found.items() if system not in self.names]
         if left:
@@ -62,11 +63,11 @@ class Systems:
         return {name: system for name, system in found.items() if name not in left}
 
     def python(self, system: str, core: int, *arguments: str) -> str:
-        """What ``learn.py`` prints in the environment of a system, on one core."""
+        """Runs ``learn.py`` in a system's environment, on one core; returns its output."""
         program = [str(self.envs / system / "bin/python"), "-W", "ignore", str(HERE / "learn.py"), *arguments]
         paths = [str(self.checkout)] if system == "jaxenstein" else []
         variables = {**os.environ, "PYTHONPATH": os.pathsep.join([*paths, *filter(None, [os.environ.get("PYTHONPATH")])])}
-        # ViZDoom leaves a file of settings in the folder that it runs in.
+        # ViZDoom leaves a settings file in its working directory.
         command = ["taskset", "-c", str(core), *program]
         done = subprocess.run(command, check=False, capture_output=True, text=True, cwd=self.envs, env=variables)
         if done.returncode:
@@ -75,9 +76,10 @@ class Systems:
 
 
 def install(systems: Systems, wheel: Path, torch: Path | None, only: list[str], keep: bool) -> None:
-    """Makes environments, and writes down how long each took and how large it is.
+    """Creates environments, and records how long each took and how large it is.
 
-    ``torch`` is a folder of packages with torch. ``keep`` leaves what is there, and gives Driftworld's the wheel.
+    ``torch`` is a folder of packages with torch. ``keep`` keeps existing environments, and installs the wheel in
+    Driftworld's.
     """
     noted = LOGS / "install.json"
     found = json.loads(noted.read_text(encoding="utf-8")) if noted.is_file() else {}
@@ -98,14 +100,14 @@ def install(systems: Systems, wheel: Path, torch: Path | None, only: list[str], 
         seconds = time.perf_counter() - began
         found[system] = {"seconds": round(seconds, 1), "megabytes": round((size(folder) - before) / 1e6), "load": round(os.getloadavg()[0], 1)}
         print(system, found[system], flush=True)
-        # Looked into behind the system's own packages, whose versions come first.
+        # Searched after the system's own packages, whose versions take precedence.
         others = [torch or own_packages(systems.envs / "learner"), own_packages(systems.envs / "driftworld")]
         whole.write_text("".join(f"{each}\n" for each in others if system != "learner" and each != whole.parent), encoding="utf-8")
     write(noted, json.dumps({system: found[system] for system in SYSTEMS if system in found}, indent=1) + "\n")
 
 
 def own_packages(environment: Path) -> Path:
-    """Where an environment of Python has its packages, made or not."""
+    """The folder of a Python environment's packages, which need not exist yet."""
     return environment / f"lib/python{sys.version_info.major}.{sys.version_info.minor}/site-packages"
 
 
@@ -115,7 +117,7 @@ def size(folder: Path) -> int:
 
 
 def run(systems: Systems, cores: list[int], seeds: range, only: list[str], decisions: int | None, anew: bool) -> None:
-    """All seeds of all tasks whose logs are not there, one at a time on each core."""
+    """Runs all seeds of all tasks that have no log, one at a time on each core."""
     asked = systems.asked(["tasks"], only)
     for log in [log_of(name, seed) for seed in seeds for name in asked if anew]:
         log.unlink(missing_ok=True)
@@ -133,12 +135,14 @@ def run(systems: Systems, cores: list[int], seeds: range, only: list[str], decis
         try:
             list(pool.map(one, cores))
         finally:
-            # After an error or an interrupt, no core begins another.
+            # After an error or an interrupt, no core starts another run.
             left.clear()
 
 
 def speed(systems: Systems, core: int, repeats: int, seconds: float, only: list[str], anew: bool) -> None:
-    """Rates without a learner, the systems in turn, so that a busy moment falls on all of them. Repeats that are whole are kept."""
+    """Measures rates without a learner, the systems in turn, so that a busy moment affects all of them. Keeps complete
+    repeats.
+    """
     path, asked = LOGS / "speed.jsonl", systems.asked(["tasks", "rates"], only)
     old = [row for row in read(path) if not (anew and row["task"] in asked)] if path.is_file() else []
     for repeat in range(repeats):
@@ -153,12 +157,12 @@ def speed(systems: Systems, core: int, repeats: int, seconds: float, only: list[
 
 
 def log_of(name: str, seed: int) -> Path:
-    """Where the log of a run is."""
+    """The path of a run's log."""
     return LOGS / name / f"{seed}.jsonl"
 
 
 def write(path: Path, text: str) -> None:
-    """Writes a file whole."""
+    """Writes a file atomically."""
     path.parent.mkdir(parents=True, exist_ok=True)
     path.with_suffix(".part").write_text(text, encoding="utf-8")
     path.with_suffix(".part").rename(path)
@@ -173,7 +177,7 @@ def read(path: Path) -> list[dict[str, Any]]:
 
 
 def summary(name: str, seed: int) -> dict[str, Any]:
-    """What a run came to."""
+    """The results of a run."""
     head, *rows = read(log_of(name, seed))
     outcomes, reached = "", None
     for row in rows:
@@ -189,12 +193,12 @@ def summary(name: str, seed: int) -> dict[str, Any]:
 
 
 def share(outcomes: str) -> float:
-    """Successes among episodes."""
+    """The share of successes among episodes."""
     return outcomes.count("1") / max(1, len(outcomes))
 
 
 def rates(rows: Iterable[dict[str, Any]], name: str) -> list[float]:
-    """Decisions in a second of one core, of each repeat in order."""
+    """Decisions per second of one core, for each repeat in order."""
     return [row["decisions"] / row["processor"] for row in sorted(rows, key=lambda row: row["repeat"]) if row["task"] == name]
 
 
@@ -202,19 +206,19 @@ def rates(rows: Iterable[dict[str, Any]], name: str) -> list[float]:
 
 
 def versions(systems: dict[str, str]) -> list[str]:
-    """The peers with the versions that are installed."""
+    """The peers with their installed versions."""
     lists = {key: (HERE / f"requirements/{key}.txt").read_text(encoding="utf-8").splitlines() for key in systems}
     found = {key: [line.partition("==")[2] for line in lines if line.startswith(f"{key}==")] for key, lines in lists.items()}
     return [f"{systems[key]} {own[0]}" for key, own in found.items() if own]
 
 
 def listed(names: list[str]) -> str:
-    """Names as in a sentence."""
+    """Names joined as in a sentence."""
     return " and ".join([", ".join(names[:-1]), names[-1]])
 
 
 def spread(values: list[float], form: str) -> str:
-    """The least and the largest of some numbers, or both in one if they look alike."""
+    """The minimum and maximum of some numbers, or a single number if they are formatted alike."""
     ends = [format(each, form) for each in (min(values), max(values))]
     return ends[0] if ends[0] == ends[1] else f"{ends[0]} to {ends[1]}"
 
@@ -226,13 +230,13 @@ def table(head: list[str], rows: list[list[str]]) -> str:
 
 
 def rounded(rate: float) -> str:
-    """A rate to two digits: more of them do not repeat."""
+    """A rate rounded to two digits: further digits are not reproducible."""
     digits = len(str(int(rate))) - 2
     return f"{round(rate, -digits):,.0f}"
 
 
 def page() -> str:
-    """The page."""
+    """The page as Markdown."""
     named = tasks()
     runs = {name: [summary(name, seed) for seed in SEEDS if log_of(name, seed).is_file()] for name in named["tasks"]}
     runs = {name: found for name, found in runs.items() if found}
@@ -277,7 +281,7 @@ def page() -> str:
     shown = {named["tasks"][name]["system"] for name in runs}
     texts = {
         "count": NUMBERS[len(shown)], "names": listed([label for key, label in named["systems"].items() if key in shown]),
-        "benchmarks": "[Benchmarks](benchmarks.md)",  # A link from docs/, where the template does not lie.
+        "benchmarks": "[Benchmarks](benchmarks.md)",  # A link relative to docs/, where the template is not.
         "compiled": f"in {spread(compiled, '.1f')} seconds of the processor" if compiled else "not measured here",
         "unfinished": f"**Not finished**: of {len(SEEDS)} seeds these are missing: {unfinished}. `compare.py run` runs them. " * bool(unfinished),
         "learned": table(
@@ -301,7 +305,7 @@ def page() -> str:
 
 
 def wrapped(part: str) -> str:
-    """A paragraph in lines of at most 120 letters; anything else as it is."""
+    """Wraps a paragraph at 120 characters; returns anything else unchanged."""
     is_paragraph = not part.startswith(("#", "|", "- ", "```"))
     end = "\n" if part.endswith("\n") else ""
     return textwrap.fill(part, 120, break_long_words=False, break_on_hyphens=False) + end if is_paragraph else part

@@ -3,7 +3,7 @@
     python learn.py learn TASK SEED LOG [DECISIONS]
     python learn.py speed TASK SECONDS
 
-``compare.py`` starts it; every number that the page needs is in what it writes.
+``compare.py`` starts it; every number that the page needs is in its output.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ SIZE, NUM_ENVS, ROLLOUT, DECISIONS = 32, 16, 128, 60_000
 
 
 def processor_seconds() -> float:
-    """Of this process and of all that it started, such as ViZDoom's engines."""
+    """Processor seconds of this process and of all that it started, such as ViZDoom's engines."""
     tick, total, left = os.sysconf("SC_CLK_TCK"), time.process_time(), [os.getpid()]
     while left:
         parent = left.pop()
@@ -38,18 +38,18 @@ def processor_seconds() -> float:
 
 
 def learn(name: str, seed: int, log: Path, decisions: int) -> None:
-    """The budget once. A line for each rollout; the file has its name only when it is whole."""
+    """Learns for a budget of decisions. Writes a line for each rollout; the log gets its name when it is complete."""
     task = TASKS[name]
     envs = task.make(NUM_ENVS, SIZE)
     observations, infos = envs.reset(seed=1000 * (seed + 1))
-    # torch loads it if it is there, and its LLVM crashes beside the one of Mesa, which draws MiniWorld.
+    # torch loads triton if it is installed, and triton's LLVM crashes together with Mesa's, which renders MiniWorld.
     sys.modules["triton"] = None  # type: ignore[assignment]
     import torch
     from driftworld.learners import PPO, Settings
     from driftworld.vector_lifetimes import VectorTransition
 
     torch.set_num_threads(1)
-    # The one number that is a task's: with it a success pays 1 everywhere.
+    # The only setting that depends on the task: it scales a success to 1.
     settings = Settings(rollout=ROLLOUT, reward_scale=1.0 / task.pays)
     learner = PPO(int(envs.single_action_space.n), NUM_ENVS, seed=seed, size=SIZE, settings=settings)
     for env in range(NUM_ENVS):
@@ -90,7 +90,9 @@ def learn(name: str, seed: int, log: Path, decisions: int) -> None:
 
 
 def speed(name: str, seconds: float) -> None:
-    """Random actions for so many seconds of the processor, or a rate of ``RATES``; prints how many decisions they were, resets included."""
+    """Takes random actions, or steps of an entry in ``RATES``, for this many processor seconds; prints the number of
+    decisions, resets included.
+    """
     work, facts = (RATES[name](), {}) if name in RATES else random_actions(name)
     work()
     count, processor, began, began_processor = 0, 0.0, time.perf_counter(), processor_seconds()
@@ -102,7 +104,7 @@ def speed(name: str, seconds: float) -> None:
 
 
 def random_actions(name: str) -> tuple[Callable[[], int], dict[str, Any]]:
-    """Steps of all environments of a task, and what its system says of itself."""
+    """A function that steps all environments of a task, and facts about its system."""
     envs = TASKS[name].make(NUM_ENVS, SIZE)
     envs.reset(seed=0)
     table = np.random.default_rng(0).integers(int(envs.single_action_space.n), size=(16, NUM_ENVS))

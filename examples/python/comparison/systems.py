@@ -1,6 +1,7 @@
-"""The tasks of the comparison as vector environments of one shape: pictures ``(num_envs, size, size, 3)`` and a few actions.
+"""The tasks of the comparison as vector environments of one shape: images ``(num_envs, size, size, 3)`` and a few
+actions.
 
-Each function imports its own system alone, since each system is installed in an environment of its own.
+Each function imports only its own system, since each system is installed in a separate environment.
 """
 
 from __future__ import annotations
@@ -24,12 +25,12 @@ class Task:
     """A task of a system.
 
     Attributes:
-        system: The environment of Python that it runs in.
-        name: As the system calls it.
-        about: What is to be done, in a few words.
-        pays: What a success pays at most. An episode whose last step pays more than half of it is a success.
-        frames: Steps of the engine in a decision.
-        make: Makes ``num_envs`` environments with pictures of ``size`` pixels a side.
+        system: The Python environment that it runs in.
+        name: Its name in the system.
+        about: The goal, in a few words.
+        pays: The maximum reward of a success. An episode whose last step pays more than half of it is a success.
+        frames: Engine steps per decision.
+        make: Makes ``num_envs`` environments with images of ``size`` × ``size`` pixels.
     """
 
     system: str
@@ -41,7 +42,9 @@ class Task:
 
 
 def minigrid(num_envs: int, size: int) -> VectorEnv[Any, Any, Any]:
-    """MiniGrid's partial view as a picture: 7 × 7 tiles, and a black border where they do not fill it. All seven actions."""
+    """MiniGrid's partial view as an image: 7 × 7 tiles, with a black border where they do not fill it. Has all seven
+    actions.
+    """
     import minigrid  # noqa: F401
     from minigrid.wrappers import ImgObsWrapper, RGBImgPartialObsWrapper
 
@@ -57,7 +60,7 @@ def minigrid(num_envs: int, size: int) -> VectorEnv[Any, Any, Any]:
 
 
 def miniworld(num_envs: int, size: int) -> VectorEnv[Any, Any, Any]:
-    """MiniWorld without a display: OpenGL by EGL."""
+    """MiniWorld without a display: OpenGL through EGL."""
     import pyglet
 
     pyglet.options["headless"] = True
@@ -68,7 +71,7 @@ def miniworld(num_envs: int, size: int) -> VectorEnv[Any, Any, Any]:
 
 
 class Doom(gym.Env[Any, Any]):
-    """A scenario of ViZDoom, with three of its buttons, 4 tics a decision. Every so many pixels of 160 × 120 are the picture."""
+    """A ViZDoom scenario, with three of its buttons and 4 tics per decision. Its 160 × 120 images are subsampled."""
 
     def __init__(self, scenario: str, buttons: list[str], pays: float, size: int) -> None:
         self.game, self.pays = doom(scenario, buttons), pays
@@ -86,7 +89,7 @@ class Doom(gym.Env[Any, Any]):
         return self._seen(), {}
 
     def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
-        """Presses a button for 4 tics. When an episode has ended, its last picture is the one before."""
+        """Presses a button for 4 tics. At the end of an episode there is no new image: the previous one is returned."""
         reward = self.game.make_action(self.rows[int(action)], 4)
         ended = self.game.is_episode_finished()
         success = ended and reward > self.pays / 2
@@ -99,7 +102,7 @@ class Doom(gym.Env[Any, Any]):
         return self.picture
 
     def close(self) -> None:
-        """Ends the engine."""
+        """Stops the engine."""
         self.game.close()
 
 
@@ -120,20 +123,20 @@ def doom(scenario: str, buttons: list[str], depth_and_labels: bool = False) -> A
 
 
 def vizdoom(scenario: str, buttons: str, pays: float) -> Callable[[int, int], VectorEnv[Any, Any, Any]]:
-    """An engine, a process of its own, for each environment."""
+    """One engine, which is a process of its own, for each environment."""
     return lambda num_envs, size: SyncVectorEnv([lambda: Doom(scenario, buttons.split(), pays, size)] * num_envs)
 
 
-#: Starts and the goal as in MiniGrid's room (more goals would cost JAXenstein time to draw); size, steps, turns, limit and the distance
-#: of a touch as in MiniWorld's, a cell a metre.
+#: Start positions and the goal are those of MiniGrid's room (more goals would cost JAXenstein time to draw); size,
+#: steps, turns, step limit and touch distance are those of MiniWorld's, with cells of 1 m.
 ROOM = "\n".join(["#" * 8, *["#SSSSSS#"] * 5, "#SSSSSG#", "#" * 8])
 ROOM_TURN, ROOM_STEP, ROOM_TOUCH, ROOM_LIMIT, ROOM_ACTIONS = np.pi / 4, 0.7, 0.97, 50, 3
 
 
 class Jaxenstein(VectorEnv[Any, Any, Any]):
-    """A maze of JAXenstein in one batch by ``vmap``: a decision of all environments is one call of a compiled function.
+    """A JAXenstein maze, batched by ``vmap``: one call of a compiled function steps all environments.
 
-    As in ``SyncVectorEnv``, the step after an episode's last begins the next one. Only the picture that is seen is drawn.
+    As in ``SyncVectorEnv``, the step after an episode's last starts the next one. Only the returned image is rendered.
     """
 
     def __init__(self, maze: str, num_envs: int, size: int) -> None:
@@ -166,22 +169,22 @@ class Jaxenstein(VectorEnv[Any, Any, Any]):
             seen = jax.vmap(env.render)(states), jnp.where(ended, 0, rewards), terminated, done & ~terminated
             return (states, done, key), seen
 
-        # An ended environment begins anew, whatever its state was.
+        # An ended environment starts a new episode, whatever its state was.
         shapes = jax.eval_shape(jax.vmap(env.reset), jax.random.split(jax.random.key(0), num_envs))[1]
         self.states = jax.tree.map(lambda each: jnp.zeros(each.shape, each.dtype), shapes)
         self.function, self.compiled = step, jax.jit(step)
         began = time.process_time()
         self.reset(seed=0)
-        #: What a log says of it: the processor's seconds of the first call, in which XLA compiles, and which checkout this is.
+        #: Facts for the log: processor seconds of the first call, in which XLA compiles, JAX's version, and the commit.
         self.facts = {"compiling": round(time.process_time() - began, 2), "jax": jax.__version__, "commit": commit(jaxenstein)}
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
-        """Begins an episode in all."""
+        """Begins an episode in all environments."""
         self.carried = self.states, np.ones(self.num_envs, dtype=bool), self.jax.random.key(seed or 0)
         return self.step(np.zeros(self.num_envs, dtype=np.int32))[0], {}
 
     def step(self, actions: Any) -> tuple[Any, Any, Any, Any, dict[str, Any]]:
-        """One decision of each; waits for it."""
+        """Takes one decision in each environment, and waits for the results."""
         self.carried, seen = self.compiled(*self.carried, np.asarray(actions, dtype=np.int32))
         pictures, rewards, terminated, truncated = (np.array(each) for each in seen)
         return pictures, rewards.astype(np.float64), terminated, truncated, {}
@@ -197,12 +200,12 @@ def commit(package: Any) -> str:
 
 
 def jaxenstein(maze: str) -> Callable[[int, int], VectorEnv[Any, Any, Any]]:
-    """A maze of its own with its five actions and limit of steps, or ``ROOM``."""
+    """One of JAXenstein's mazes, with its five actions and step limit, or ``ROOM``."""
     return lambda num_envs, size: Jaxenstein(maze, num_envs, size)
 
 
 def driftworld_miniworld(num_envs: int, size: int) -> VectorEnv[Any, Any, Any]:
-    """MiniWorld's task by the id of ours, in the same loop as MiniWorld."""
+    """MiniWorld's task in Driftworld, in the same loop as MiniWorld."""
     import driftworld  # noqa: F401
 
     name = "driftworld/MiniWorld-OneRoomS6Fast-v0"
@@ -210,7 +213,7 @@ def driftworld_miniworld(num_envs: int, size: int) -> VectorEnv[Any, Any, Any]:
 
 
 def driftworld_family(family: str, frames: int, rows: list[list[float]]) -> Callable[[int, int], VectorEnv[Any, Any, Any]]:
-    """A family of ours in its native batch, on one thread."""
+    """A Driftworld family in its native batch, on one thread."""
 
     def make(num_envs: int, size: int) -> VectorEnv[Any, Any, Any]:
         from driftworld.envs import DriftworldVectorEnv
@@ -240,7 +243,7 @@ def rate_of_doom() -> Callable[[], int]:
 
 
 def rate_of_jaxenstein() -> Callable[[], int]:
-    """32 decisions of 16 environments in one compiled call, as a learner written in JAX would have them."""
+    """32 decisions of 16 environments in one compiled call, as a learner written in JAX would run them."""
     envs, steps = Jaxenstein("my-way-home", 16, 32), 32
     table = np.random.default_rng(0).integers(int(envs.single_action_space.n), size=(steps, envs.num_envs), dtype=np.int32)
     compiled = envs.jax.jit(lambda carried, table: envs.jax.lax.scan(lambda last, actions: envs.function(*last, actions), carried, table))
@@ -256,7 +259,9 @@ def rate_of_jaxenstein() -> Callable[[], int]:
 
 
 def rate_of_driftworld() -> Callable[[], int]:
-    """One of ours alone: colour, depth and classes at 160 × 120 in a room with a box, a step of the engine for each decision."""
+    """One Driftworld environment: colour, depth and classes at 160 × 120 in a room with a box, one engine step per
+    decision.
+    """
     from driftworld.envs import DriftworldVectorEnv
 
     envs = DriftworldVectorEnv(
@@ -273,7 +278,7 @@ def rate_of_driftworld() -> Callable[[], int]:
     return work
 
 
-#: Rates of something else than the loop of a learner: what makes them.
+#: Rates that are measured outside a learner's loop, each with the function that makes its work.
 RATES = {"vizdoom-depth": rate_of_doom, "driftworld-depth": rate_of_driftworld, "jaxenstein-rollouts": rate_of_jaxenstein}
 
 _MAKE = {
@@ -287,7 +292,7 @@ _MAKE = {
     "driftworld-house": driftworld_family("way_home", 5, [[0, -90, 0], [0, 90, 0], [4, 0, 0]]),
     "vizdoom-basic": vizdoom("basic", "MOVE_LEFT MOVE_RIGHT ATTACK", 100.0),
 }
-#: The tasks of ``tasks.json`` by the names of their logs.
+#: The tasks of ``tasks.json`` by log name.
 TASKS = {
     name: Task(**said, make=_MAKE[name])
     for name, said in json.loads(Path(__file__).with_name("tasks.json").read_text(encoding="utf-8"))["tasks"].items()

@@ -35,9 +35,9 @@ WORK = Path(tempfile.mkdtemp())
 # %% [markdown]
 # ## The document
 #
-# An orchard: red spheres are ripe and pay, green ones are not and cost. The world is a walled square of 16 m. What may differ
-# between variants is a *parameter*, and each says which element of the decision process it touches: `R` is the reward, `O` what is
-# observed, `S` the states.
+# An orchard: red spheres are ripe and pay, green ones are unripe and cost. The world is a walled square of 16 m.
+# Everything that may differ between variants is a *parameter*, which says which element of the decision process it
+# touches: `R` is the reward, `O` the observations, `S` the states.
 
 # %%
 orchard = {
@@ -91,7 +91,7 @@ except driftworld.SpecError as error:
 # ## Its worlds
 #
 # World number *i* under a seed is always the same, on every machine, and variants share their random
-# numbers: with one seed the spheres lie in the same places in all four.
+# numbers: with one seed the spheres are at the same positions in all four.
 
 # %%
 figure, axes = plt.subplots(2, 4, figsize=(12, 5.6), layout="constrained")
@@ -122,8 +122,8 @@ print(driftworld.distance(task.variant("day"), task.variant("swapped")).explain(
 # ## Does each change what it says?
 #
 # The document declares that `dusk` changes what is observed and nothing else. An experiment checks it: both worlds of a pair are run
-# side by side with the same actions. `phi` is the part of `O` that says how things look; *sound* means that what was measured is
-# what was declared.
+# side by side with the same actions. `phi` is the part of `O` that says how things look; *sound* means that the
+# measurement agrees with the declaration.
 
 
 # %%
@@ -137,7 +137,8 @@ experiment(task)
 
 # %% [markdown]
 # *Idle*: `swapped` makes no difference in any world, so the document has a mistake that no check of its keys can find. The
-# spheres have a reward, and nothing says *when* it is paid. Here it is: once, when the agent touches one, which then vanishes.
+# spheres have a reward, and nothing says *when* it is paid. Now it is paid once, when the agent touches a sphere, which
+# then vanishes.
 
 # %%
 for group in orchard["groups"]:
@@ -149,7 +150,8 @@ experiment(task)
 # %% [markdown]
 # ## Can it be learned?
 #
-# A hundred thousand decisions of PPO on 32 × 32 pixels, before and after them a test in 50 worlds that it never learns from.
+# A hundred thousand decisions of PPO on 32 × 32 pixels, with a test before and after, in 50 worlds that it never learns
+# from.
 
 # %%
 ACTIONS = [[6, 0, 0], [6, 45, 0], [6, -45, 0], [2, 120, 0], [2, -120, 0]]  # m/s, degrees per second, interact

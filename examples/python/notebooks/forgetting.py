@@ -35,7 +35,7 @@ LOGS = Path(tempfile.mkdtemp())
 # ## Two tasks
 #
 # The agent starts in the hallway of a T. In the variant `left` a red cue hangs there, and the left arm pays; in `right` the cue is
-# blue, and the right arm pays. The cue tells the tasks apart. What the agent sees is 32 × 32 pixels.
+# blue, and the right arm pays. The cue tells the tasks apart. The agent sees 32 × 32 pixels.
 
 # %%
 TASKS = ["t_maze#left", "t_maze#right"]
@@ -49,7 +49,8 @@ for axis, task in zip(axes, TASKS, strict=True):
 plt.show()
 
 # %% [markdown]
-# How far apart are they, and in what? The letters are the elements of the decision process: `R` is what pays, `O` what is seen.
+# How far apart are they, and in what? The letters are the elements of the decision process: `R` is the reward, `O` the
+# observations.
 
 # %%
 print(driftworld.distance(*TASKS).explain())
@@ -77,8 +78,8 @@ curriculum = driftworld.Curriculum.from_dict({"version": 1, "name": "see_forgett
 # %% [markdown]
 # ## Two learners
 #
-# They have the same network and the same PPO, and the same worlds. `FineTuning` just goes on learning. `CLEAR` keeps old steps and
-# repeats them (Rolnick et al. 2019).
+# They have the same network, the same PPO and the same worlds. `FineTuning` just continues to learn. `CLEAR` keeps old
+# steps and replays them (Rolnick et al. 2019).
 
 # %%
 ACTIONS = [[10, 0, 0], [10, 27, 0], [10, -27, 0], [3, 90, 0], [3, -90, 0]]  # m/s, degrees per second, interact
@@ -123,14 +124,15 @@ for name in learners:
     print(name, {task: [round(share, 2) for share in shares] for task, shares in successes(name).items()})
 
 # %% [markdown]
-# The blue line of `FineTuning` is forgetting: it rises when *left* is learned and falls when *right* is. With these settings `CLEAR`
-# forgets as well. A method that helps in one sequence need not help in the next: that is what you test it for.
+# The blue line of `FineTuning` shows forgetting: it rises when *left* is learned and falls when *right* is. With
+# these settings `CLEAR` forgets as well. A method that helps in one sequence need not help in the next: that is why
+# you test it.
 #
 # ## The numbers of a paper
 #
-# *Performance maintenance* below 0 is forgetting, *forward transfer* above 1 is help for what comes next. These numbers come from
-# one lifetime with one seed: enough to see an effect, not enough to claim one. `docs/metrics.md` explains them, and says what to do
-# about luck.
+# *Performance maintenance* below 0 is forgetting, *forward transfer* above 1 is one task helping the next. These
+# numbers come from one lifetime with one seed: enough to see an effect, not enough to claim one. `docs/metrics.md`
+# explains them, and says what to do about chance.
 
 # %%
 for name in learners:
@@ -139,8 +141,8 @@ for name in learners:
 # %% [markdown]
 # ## Your turn
 #
-# - Why does rehearsal not help? Learn the two tasks in one block of both: can this network solve them together at all?
+# - Why does rehearsal not help? Learn both tasks in one block: can this network solve them together at all?
 # - Swap `TASKS`, or take two variants of another family: `driftworld tasks` lists them.
-# - Write a method of your own: subclass `driftworld.learners.PPO` and override `extra_loss`; `driftworld benchmark new NAME` writes
-#   the file to begin with.
+# - Write a method of your own: subclass `driftworld.learners.PPO` and override `extra_loss`; `driftworld benchmark new
+#   NAME` writes a file to start from.
 # - Make a page of it: `driftworld.report(LOGS / "FineTuning", "report.html")`.

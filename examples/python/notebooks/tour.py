@@ -44,8 +44,8 @@ variants = [task.variant(name) for name in NAMES]
 # %% [markdown]
 # ## Worlds
 #
-# World number i under a seed is a pure function of the variant, the seed and i. Under one seed variants share their
-# random numbers: equal parts of their specs are equal in their worlds.
+# World number i under a seed is a pure function of the variant, the seed and i. With the same seed, variants share
+# their random numbers: equal parts of their specs are equal in their worlds.
 
 # %%
 world = task.variant("blue").sample(seed=3, index=0)
@@ -59,7 +59,7 @@ for name, drawn in (("blue", world), ("wide", wide)):
 # %% [markdown]
 # ## What an agent sees
 #
-# Colour, distance, and the value of things: the modalities of one observation.
+# Colour, distance, and the value of objects: the modalities of one observation.
 
 # %%
 env = gym.make(
@@ -132,7 +132,7 @@ for block in curriculum:
 
 
 # %% [markdown]
-# Any agent with `act`, `learn` and `freeze` can run through it; the other notebook, `lifetime.py`, scores the log.
+# Any agent with `act`, `learn` and `freeze` can run through it; the notebook `lifetime.py` scores the log.
 
 
 # %%

@@ -8,7 +8,7 @@ from typing import Literal
 
 from driftworld import _native
 
-#: What a file is read as; each kind has its own size limit (docs/limits.md).
+#: The kinds of files; each has its own size limit (docs/limits.md).
 FileKind = Literal["document", "library", "matrix"]
 
 
@@ -38,8 +38,8 @@ def read_text(path: str | os.PathLike[str], kind: FileKind = "document") -> str:
 
 
 def write_whole(path: Path, content: bytes) -> None:
-    """Writes a file atomically: under a temporary name in its folder, which is created if missing, then renames it. The
-    file keeps its mode, and a new one gets the mode that the umask leaves; devices and pipes are written directly.
+    """Writes a file atomically: writes a temporary file in its folder, which is created if missing, and renames it.
+    The file keeps its mode, and a new one gets the mode that the umask leaves; devices and pipes are written directly.
     """
     try:
         _native.write_file(path, content)

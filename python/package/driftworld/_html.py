@@ -39,7 +39,7 @@ def table(
 
 
 def _is_number(text: str) -> bool:
-    """Whether a cell holds a number or the sign for a missing one."""
+    """Whether a cell holds a number or the placeholder for a missing one."""
     return text in ("", "-") or text.lstrip("-+\N{MINUS SIGN}")[:1].isdigit()
 
 

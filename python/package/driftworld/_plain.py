@@ -21,4 +21,6 @@ def plain(value: Any) -> Any:
     if isinstance(value, os.PathLike):
         return os.fspath(value)
     found = type(value).__name__
-    raise TypeError(f"found a value of type {found}, expected what JSON can say: numbers, words, lists, dictionaries")
+    raise TypeError(
+        f"found a value of type {found}, expected what JSON can express: numbers, strings, lists, dictionaries"
+    )

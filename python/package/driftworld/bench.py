@@ -283,7 +283,7 @@ def _table(figures: dict[str, Any]) -> str:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """The command; returns its exit status."""
+    """Runs the command; returns its exit status."""
     parser = argparse.ArgumentParser(prog="python -m driftworld.bench", description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--seconds", type=float, default=2.0, help="for each rate (default: %(default)s)")
     parser.add_argument("--quick", action="store_true", help="a moment for each, and no peers")

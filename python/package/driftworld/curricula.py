@@ -242,8 +242,8 @@ class Curriculum(Sequence[Block]):
             start: The variant that comes first; by default the one that is named first.
             end: The variant that comes last.
             target_step: The step of the method ``target-step``.
-            order: From ``start`` on: ``"gradual"``, ``"outward"``, ``"abrupt"``, ``"path"``, ``"farthest"``, or as they
-                are ``"named"``.
+            order: The order from ``start`` on: ``"gradual"``, ``"outward"``, ``"abrupt"``, ``"path"``, ``"farthest"``,
+                or ``"named"``, as given.
             by: The basis of comparison, as for :func:`driftworld.distance`; not with ``probe`` or ``step_distance``.
             probe: Take variants that differ from the start in this element alone: ``"state"``, ``"action"``,
                 ``"transition"``, ``"reward"`` or ``"observation"``.
@@ -255,7 +255,7 @@ class Curriculum(Sequence[Block]):
             drift: Learning blocks drift from each variant to the next: ``"linear"``, ``"cosine"``, ``"step:N"`` or
                 ``"sawtooth:N"``.
             mix: Values that cannot be interpolated switch at random; with ``"task"`` each experience uses one of the
-                two variants, which may belong to two tasks.
+                two variants, which may belong to different tasks.
             task_label: Whether the learner gets a task label: ``"none"`` (default), ``"info"`` or ``"observation"``.
             seed: The seed of all worlds.
             split: The evaluation worlds: ``"validation"`` to choose hyperparameters, ``"test"`` (default) for reported
@@ -299,8 +299,8 @@ class Curriculum(Sequence[Block]):
         """Designs ``count`` lifetimes, each with its own worlds and, in the permuted form, the default, with its own
         order.
 
-        The orders are the rows of a balanced Latin square: each variant comes equally often in each place and after
-        each other variant. If an order, blocks or a drift is given, all share one order.
+        The orders are the rows of a balanced Latin square: each variant comes equally often in each position and after
+        every other variant. If an order, blocks or a drift is given, all share one order.
 
         Args:
             count: Number of lifetimes, 1 to 10,000.
@@ -409,11 +409,11 @@ class Curriculum(Sequence[Block]):
             check_frozen: Repeat 4 randomly chosen evaluations of each block at its end, unlogged, and refuse an agent
                 that behaves differently: evaluations change it, or it does not draw its random numbers from the seed of
                 the experience.
-            seed: Also seeds the agent's random numbers in each experience: another seed is a repeat in the same worlds.
-                0 is the curriculum's own run.
+            seed: Varies the agent's random numbers in each experience: a run with a different seed is a repeat in the
+                same worlds. 0 is the curriculum's own run.
             paired_chance: Give ``begin`` the same seed in every evaluation of a world, so that an unchanged agent earns
-                the same reward in it. An agent can recognise a world by that seed; by default every block uses another
-                one.
+                the same reward in it. An agent can recognise a world by that seed; by default every block uses a
+                different one.
             record: Record the actions of each experience in an ``actions.jsonl`` beside its rows, for
                 :func:`driftworld.replay` and ``driftworld replay``. A log started with this keeps recording when
                 resumed.
@@ -460,8 +460,8 @@ class Curriculum(Sequence[Block]):
 
         Each environment takes the block's next experience when its last one has ended; a block starts when the one
         before has finished. The log has the same columns and worlds, in the order of the curriculum. An agent that
-        behaves in each environment as another one does in :meth:`run` earns the same rewards in evaluations; with one
-        environment, in all experiences.
+        behaves in each environment as a single agent does in :meth:`run` earns the same rewards in evaluations; with
+        one environment, in all experiences.
 
         Args:
             agent: See :class:`driftworld.VectorAgent`.
@@ -471,12 +471,13 @@ class Curriculum(Sequence[Block]):
             resume: As for :meth:`run`. Experiences under way when a learning block was interrupted have been learned
                 from and are not in the log: only an agent with ``save`` and ``load`` continues as if nothing had
                 happened.
-            skip_undrawable: As for :meth:`run`, like all that follows.
-            check_frozen: As there, for the first 4 evaluations of each block, which are repeated in the same batches.
-            seed: As there.
-            paired_chance: As there.
-            watch: As there.
-            options: As there.
+            skip_undrawable: As for :meth:`run`.
+            check_frozen: As for :meth:`run`, but for the first 4 evaluations of each block, repeated in the same
+                batches.
+            seed: As for :meth:`run`.
+            paired_chance: As for :meth:`run`.
+            watch: As for :meth:`run`.
+            options: As for :meth:`run`.
 
         Raises:
             CurriculumError, MetricsError, EnvError, TypeError, ValueError: As :meth:`run`.
@@ -494,8 +495,8 @@ class Curriculum(Sequence[Block]):
         return Lifetime(plan, agent, log, resume, check_frozen, record).live(made_with, rollout)
 
     def _own_plan(self, skip_undrawable: bool, seed: int) -> _native.Plan:
-        """The plan of one run, in which its settings are noted. It uses the loaded tasks, even if their files have
-        changed since.
+        """The plan of one run, with the run's settings. It uses the loaded tasks, even if their files have changed
+        since.
         """
         plan = _native.Plan.from_values(self._plan.values(), skip_undrawable)
         plan.set_run_seed(seed)
@@ -547,7 +548,7 @@ class Curriculum(Sequence[Block]):
         self._begin(state["_plan"])
 
 
-#: Blocks that a notebook shows.
+#: Maximum number of blocks that a notebook shows.
 _SHOWN = 60
 
 #: Options of a design that are whole numbers.
@@ -565,7 +566,7 @@ def _designed(options: dict[str, Any]) -> list[str]:
         raise ValueError('tasks: found none, expected at least one, such as "find_objects#red"')
     if not all(isinstance(task, str) for task in tasks):
         raise TypeError('tasks: expected names such as "find_objects#red": a scenario calls tasks by their names')
-    # Checks the tasks first, so that their errors are raised with their place.
+    # Checks the tasks first, so that their errors are raised with their position.
     variants(*tasks)
     for name in _WHOLE:
         if options.get(name) is not None and not _is_whole(options[name]):

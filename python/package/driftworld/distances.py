@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 #: The elements of the decision process, by letter.
 ELEMENTS = {"S": "state", "A": "action", "T": "transition", "R": "reward", "O": "observation"}
 
-#: Rows and columns of a matrix that a notebook shows.
+#: Maximum number of rows and columns of a matrix that a notebook shows.
 SHOWN = 20
 
 Weights = Mapping[str, float]
@@ -142,8 +142,8 @@ def distance(
             world.
         b: The other variant or world.
         weights: Weights of elements, overriding the task's: ``{"R": 2}`` or ``{"reward": 2}``, each 0 to 1,000,000.
-        worlds: Number of worlds of each to compare, 1 to 100,000, even if both are variants of one task; otherwise the
-            default is 16, 4 by pictures and dynamics, 64 by placements.
+        worlds: Number of worlds of each to compare, 1 to 100,000; by default 16, or 4 by pictures and dynamics, or 64
+            by placements. If given, variants of one task are compared by worlds instead of by parameters.
         seed: The seed of drawn worlds.
         index: The number of the first drawn world.
         by: ``"parameters"`` (two variants of one task), ``"worlds"``, ``"pictures"``, ``"occupancy"``,
@@ -307,12 +307,12 @@ class DistanceMatrix:
 
     @property
     def ndim(self) -> int:
-        """2."""
+        """Always 2."""
         return 2
 
     @property
     def dtype(self) -> np.dtype[np.float64]:
-        """float64."""
+        """Always float64."""
         return self.values.dtype
 
     def to_pandas(self) -> pandas.DataFrame:
@@ -363,7 +363,7 @@ class DistanceMatrix:
     def _repr_html_(self) -> str:
         shown = min(len(self), SHOWN)
         labels = self.labels[:shown]
-        # Column heads omit the task if all variants belong to the same one.
+        # Column heads omit the task if all variants belong to the same task.
         tasks = {label.partition("#")[0] for label in labels}
         heads = [label.partition("#")[2] or label for label in labels] if len(tasks) == 1 else labels
         more = f"; the first {shown} are shown" if shown < len(self) else ""
@@ -391,19 +391,19 @@ def _ending(path: Path) -> str:
 
 @dataclass(frozen=True)
 class Order(Sequence[str]):
-    """Items in an order by their distances.
+    """Items ordered by their distances.
 
     A sequence of their labels: ``order[0]``, ``order[-2:]``, ``"task#a" in order``.
 
     Attributes:
         method: The method that found it.
         order: The labels, in order.
-        indices: The same as item indices, from 0.
+        indices: The same order as item indices, from 0.
         steps: The distance from each item to the next.
         length: The sum of the steps.
         largest_step: The largest of them.
         mean_step: Their mean.
-        anchor_correlation: Rank correlation, in −1..=1, between place and distance from the first item, or ``None``.
+        anchor_correlation: Rank correlation, in −1..=1, of position with distance from the first item, or ``None``.
         share_of_shorter_random_orders: The share of 1,000 random orders, drawn from ``seed``, that are shorter.
     """
 
@@ -439,7 +439,7 @@ class Order(Sequence[str]):
         return table(("", "item", "from the one before"), self._rows(False)) + note(self._summary())
 
     def _rows(self, padded: bool) -> list[tuple[str, str, str]]:
-        """A row for each item: its place, its label, and the step to it."""
+        """A row for each item: its position, its label, and the step to it."""
         wide = max(map(len, self.order), default=0) if padded else 0
         steps = ["", *(f"{step:.4f}" for step in self.steps)]
         return [(f"{place}", f"{label:<{wide}}", step) for place, (label, step) in enumerate(zip(self.order, steps), start=1)]
@@ -469,8 +469,8 @@ def distance_matrix(
         items: Names, variants and task specs; a task adds all its variants, and each variant is taken once.
         weights: As for :func:`distance`.
         by: As for :func:`distance`, by default as the variants' task declares; required for variants of several tasks.
-        worlds: Number of worlds of each to compare, drawn under seed 0, 1 to 10,000; by default 16, 4 by pictures and
-            dynamics, 64 by placements.
+        worlds: Number of worlds of each to compare, drawn under seed 0, 1 to 10,000; by default 16, or 4 by pictures
+            and dynamics, or 64 by placements.
         scale: As for :func:`distance`.
         assets: Paths of asset libraries with classes that the worlds use.
 
@@ -512,7 +512,7 @@ def order(
         method: ``nearest``, ``exact`` (up to 15), ``two-opt``, ``abrupt``, ``farthest``, ``random``, ``target-step``,
             ``gradual``, ``outward`` or ``given``; by default exact where possible, else two-opt.
         start: The label that comes first. By default, methods that search for a path from a first item start at the
-            variant named first, or at the best one of a matrix or of a whole task.
+            variant named first, or, in a matrix or a whole task, at the best one.
         end: The label that comes last.
         seed: The seed of ``random``.
         target_step: The step of ``target-step``.

@@ -17,8 +17,8 @@ class DriftworldError(Exception):
         line: Its line in the text, from 1.
         column: Its column, in characters from 1.
         expected: What was expected there.
-        problems: Every problem of a document, in the order of places: dictionaries with ``code``, ``pointer``,
-            ``line``, ``column``, ``found``, ``expected``, ``advice`` and ``message``.
+        problems: Every problem of a document, ordered by position: dictionaries with ``code``, ``pointer``, ``line``,
+            ``column``, ``found``, ``expected``, ``advice`` and ``message``.
     """
 
     def __init__(
@@ -56,7 +56,7 @@ def _again(
 
 
 class SpecError(DriftworldError, ValueError):
-    """A task spec, world or scenario is wrong; each problem has its place."""
+    """A task spec, world or scenario is wrong; each problem has its position."""
 
 
 class TaskError(DriftworldError, LookupError, ValueError):

@@ -36,7 +36,7 @@ def elements(
         modalities: The learner's images, such as ``["rgb", "depth"]``; by default those that the worlds ask for.
         worlds: Number of pairs of worlds to try, 1 to 1,000.
         seed: The seed of the worlds.
-        steps: Largest number of steps in an episode, 1 to 100,000.
+        steps: Maximum number of steps in an episode, 1 to 100,000.
         assets: An asset library with classes that the task uses.
 
     Returns:

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from driftworld.curricula import Experience
 
 
-#: The file among an agent's saves that identifies their lifetime.
+#: The file among an agent's saves that says which lifetime they belong to.
 WHOSE = "lifetime.json"
 
 
@@ -74,8 +74,8 @@ class Agent(Protocol):
     - ``begin(label, seed)``, called before each experience with the name of its variant if the scenario reveals it,
       else ``None``, and the seed of its random numbers: unless ``paired_chance`` is used, it differs between blocks, so
       that it does not identify a world;
-    - ``policy``, how it chooses its actions in evaluations, such as ``"sampled"`` or ``"greedy"``; it is noted in the
-      log;
+    - ``policy``, how it chooses its actions in evaluations, such as ``"sampled"`` or ``"greedy"``; it is recorded in
+      the log;
     - ``save(path)`` and ``load(path)``: ``save`` is called after each learning block, with a path where nothing exists;
       ``load`` when a log is resumed, with the path of the last save.
     """
@@ -83,8 +83,8 @@ class Agent(Protocol):
     def act(self, observation: Any, info: dict[str, Any]) -> Any:
         """Returns an action for an observation; ``info`` comes from the last reset or step.
 
-        It has ``is_success``, and ``task_label`` if the scenario reveals it; with ``info="full"`` also the world's
-        origin.
+        It has ``is_success``, ``ended_by``, and ``task_label`` if the scenario reveals it; with ``info="full"`` also
+        the other entries and the world's origin.
         """
 
     def learn(self, transition: Transition) -> None:
@@ -220,7 +220,7 @@ class Lifetime:
         return Summary(**said, log=self._log)
 
     def _own_saves(self, done: int, lifetime: dict[str, Any]) -> None:
-        """Makes sure that the saves beside the log belong to this lifetime: those of another one are removed."""
+        """Makes sure that the saves beside the log belong to this lifetime: those of a different one are removed."""
         if self._saves is None:
             return
         self._whose = json.dumps(lifetime, sort_keys=True, indent=2)
@@ -236,7 +236,7 @@ class Lifetime:
             return
         self._saves.mkdir(parents=True, exist_ok=True)
         write_whole(self._saves / WHOSE, self._whose.encode())
-        # Renamed when complete: a save under a number is always whole.
+        # Renamed when complete: a save named by a number is never partial.
         unfinished = self._saves / "unfinished"
         _remove(unfinished)
         self._agent.save(unfinished)
@@ -270,7 +270,7 @@ class Lifetime:
 
 
 class Rollout:
-    """An agent in its environment; the native loop calls it for one experience after the other.
+    """An agent in its environment; the native loop calls it for one experience after another.
 
     Args:
         agent: The agent.
@@ -282,7 +282,7 @@ class Rollout:
         save: Saves the agent after a number of experiences.
     """
 
-    #: Which evaluations of a block are repeated: the first ones, or a random sample drawn from seeds.
+    #: Whether the first evaluations of a block are repeated, rather than a random sample drawn from seeds.
     repeats_first = False
 
     def __init__(
@@ -412,7 +412,7 @@ def refuse_covering(plan: _native.Plan, options: Mapping[str, Any]) -> None:
 
 
 def first_world(plan: _native.Plan, options: Mapping[str, Any]) -> tuple[_native.Stream, dict[str, Any]]:
-    """A world of a plan whose spaces fit all its others, and options to go with it.
+    """A world of a plan whose spaces fit all its other worlds, and options to go with it.
 
     Without the option ``modalities``, observations have all modalities that any world of the plan asks for; those that
     a world does not ask for are 0.
@@ -428,8 +428,8 @@ def first_world(plan: _native.Plan, options: Mapping[str, Any]) -> tuple[_native
 
 
 def _some_worlds(plan: _native.Plan) -> list[_native.Stream]:
-    """Worlds of all regimes of a plan, from both ends of drifts. If a regime's world cannot be drawn, another of its
-    worlds is used if possible.
+    """Worlds of all regimes of a plan, from both ends of drifts, without those that cannot be drawn. If none can be
+    drawn, the first world of the plan that can be.
     """
     found, refused = [], None
     for number in plan.ends_of_regimes():

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class LogWriter:
-    """Writes a log, row by row, each flushed as soon as it is written.
+    """Writes a log row by row, and flushes each row.
 
     Use it as a context manager::
 
@@ -34,8 +34,8 @@ class LogWriter:
         path: A new or empty folder; with ``resume``, that of an interrupted log.
         columns: The metrics of every row: a name, or several.
         scenario_info: Description of the run, written into ``scenario_info.json``: ``complexity``, ``difficulty`` and
-            ``scenario_type`` (``condensed``, ``dispersed``, ``permuted``, ``alternating``, ``ste``, ``custom``) are
-            words of the format, anything else is stored unchanged.
+            ``scenario_type`` (``condensed``, ``dispersed``, ``permuted``, ``alternating``, ``ste``, ``custom``) must be
+            words of the format; anything else is stored unchanged.
         resume: Resume the log in the folder.
 
     Raises:
@@ -119,8 +119,8 @@ class Log:
     Attributes:
         run_id: The name of its folder.
         columns: Every column by its name, each an array (rows,): int64 for ``block_num`` and ``exp_num``,
-            datetime64[us] for ``timestamp``, float64 for metrics, objects for words and for ``task_params``, which are
-            dictionaries.
+            datetime64[us] for ``timestamp``, float64 for metrics, objects for strings and for ``task_params``, which
+            are dictionaries.
         metrics: The names of its metrics columns.
         scenario_info: Contents of ``scenario_info.json``.
         logger_info: Contents of ``logger_info.json``.

@@ -3,8 +3,7 @@ rewards and limits, with worlds of Driftworld's task families.
 
 ``miniworld.json`` describes each by MiniWorld's name: Driftworld's ``task`` and ``variant``, what is ``laid`` over
 the task's document (a value for each JSON pointer, null to remove one), the limit of ``steps`` (0 for none), the number
-of MiniWorld's ``actions``, what ``pays``, and whether a step is a ``fast`` one. ``like`` copies all entries of another
-name.
+of MiniWorld's ``actions``, what ``pays``, and whether steps are ``fast``. ``like`` copies all entries of another name.
 """
 
 from __future__ import annotations
@@ -61,7 +60,7 @@ class _Published:
     laid: dict[str, Any] = field(default_factory=dict)
 
     def rows(self) -> list[list[float]]:
-        """All of MiniWorld's actions as rows of Driftworld's: speed, turn rate, and whether to interact."""
+        """All of MiniWorld's actions as rows of an action table: speed, turn rate, and whether to interact."""
         _, speed, turn = _STEPS[self.fast]
         handles = [0.0, 0.0, float(self.actions > Actions.pickup)]
         still = [0.0, 0.0, 0.0]
@@ -190,7 +189,7 @@ class MiniWorldEnv(DriftworldEnv):
 
     def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
         """Executes one action of the agent, like :meth:`driftworld.DriftworldEnv.step`, with MiniWorld's rewards."""
-        # Driftworld has one action for both; MiniWorld's has no effect here.
+        # Driftworld has one action for both; in MiniWorld, this one has no effect now.
         if action == (Actions.pickup if self._carries else Actions.drop):
             action = Actions.done
         seen, _, terminated, truncated, info = super().step(action)

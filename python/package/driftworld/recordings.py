@@ -25,7 +25,7 @@ class Recording:
         experience: Its number in the log, or in its file.
         block: Its block.
         task, variant, seed, index: The origin of its world, if known.
-        steps: Its steps.
+        steps: Number of its steps.
         reward: Their total reward.
         ended_by: What ended it, in the log's words; ``None`` if nothing did.
         seconds_per_step: Simulated seconds in a step.
@@ -62,7 +62,7 @@ class Recording:
 
         Raises:
             DriftworldError: If it does not exist; :class:`CurriculumError` if it is damaged; :class:`MetricsError` if
-                the log is.
+                the log is damaged.
         """
         return cls(_native.read_recording(Path(log), episode, worker))
 
@@ -117,7 +117,7 @@ class Recording:
         Args:
             file: The file.
             size, view, modality, every, captions, renderer, assets: As for :meth:`frames`.
-            fps: Frames per second; by default simulated time.
+            fps: Frames per second; by default a film plays in simulated time.
 
         Raises:
             EnvError, ValueError: Like :meth:`frames`.

@@ -63,7 +63,7 @@ class Metrics:
             bootstrap intervals; ``null`` is the null band of the mean over lifetimes, if the metric depends on
             evaluations alone; ``reading`` and ``word`` interpret it, as in :attr:`readings`. Empty for one lifetime.
         improvement: With ``against``, for each metric the probability that a lifetime is better than one of the other
-            agent.
+            agent's.
         lifetimes_against: The other agent's lifetimes.
         repeats_against: Each metric over the other agent's lifetimes.
         intervals: How the intervals were computed.
@@ -72,7 +72,7 @@ class Metrics:
             the ``smallest_effect`` that these lifetimes can show.
         varied: For several lifetimes, whether ``order``, ``learning_worlds``, ``evaluation_worlds``, ``agent`` and
             ``run_seed`` differ between them, which shows the sources of variation behind the intervals; ``None`` if the
-            logs do not have it.
+            logs do not say.
     """
 
     lifetimes: list[dict[str, Any]]
@@ -117,7 +117,7 @@ class Metrics:
 
     @property
     def tasks(self) -> dict[str, dict[str, Any]]:
-        """The values of each task of the one lifetime.
+        """The values of each task of a single lifetime.
 
         Raises:
             ValueError: If there are several lifetimes; use each of :attr:`lifetimes` instead.
@@ -127,7 +127,7 @@ class Metrics:
 
     @property
     def null(self) -> dict[str, dict[str, Any]]:
-        """The null band of each metric of the one lifetime that depends on evaluations alone.
+        """For a single lifetime, the null band of each metric that depends on evaluations alone.
 
         Each has ``value``; ``low`` and ``high``, the central 95 % of values when the evaluation rows of each world are
         permuted across evaluations 1,000 times, as if the agent never changed; ``p``, from 0 to 1; and ``exchanged``,
@@ -142,7 +142,7 @@ class Metrics:
 
     @property
     def readings(self) -> dict[str, dict[str, Any]]:
-        """The interpretation of each metric of the one lifetime: the rows of the table that ``driftworld metrics``
+        """For a single lifetime, the interpretation of each metric: the rows of the table that ``driftworld metrics``
         prints.
 
         Each has ``value``; ``explanation``, its meaning; ``good``, the good direction; ``null_band``, as in
@@ -160,10 +160,10 @@ class Metrics:
 
     @property
     def reached(self) -> dict[str, dict[str, Any]]:
-        """The performance reached in each task of the one lifetime, in the log's unit.
+        """For a single lifetime, the performance reached in each task, in the log's unit.
 
         Each has ``evaluations``, a list of ``block``, ``mean``, ``standard_error`` over worlds and ``num_worlds``;
-        ``best``, the place of the highest after learning; ``expert``, the expert's level; and ``share``, the best over
+        ``best``, the index of the highest after learning; ``expert``, the expert's level; and ``share``, the best over
         the expert. Below 0.2 the task was never learned. With scales, ``unlabelled`` has the rewards of the best known
         agents that cannot tell the task from others (``among``): ``fixed`` and ``finds_out``.
 
@@ -175,7 +175,7 @@ class Metrics:
 
     @property
     def curves(self) -> dict[str, dict[str, Any]]:
-        """Measures of each task's evaluation curve in the one lifetime, independent of task borders.
+        """For a single lifetime, measures of each task's evaluation curve, independent of task borders.
 
         Each has ``points``, a list of ``learned``, ``mean`` and ``standard_error``; ``area``, ``forgetting`` and its
         ``forgetting_error``, ``regret`` (or ``None``), in the log's unit, or if ``is_scaled``, as fractions of the
@@ -189,7 +189,7 @@ class Metrics:
         return tasks
 
     def _only(self, name: str, field: str) -> Any:
-        """A field of the one lifetime, for the property ``name``."""
+        """A field of the only lifetime, for the property ``name``."""
         if len(self.lifetimes) != 1:
             raise ValueError(f"{name}: found {len(self.lifetimes)} lifetimes, expected one; see `lifetimes`")
         return self.lifetimes[0][field]

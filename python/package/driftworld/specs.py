@@ -34,7 +34,7 @@ def task_groups() -> dict[str, list[str]]:
 
 
 def variant(name: str | os.PathLike[str]) -> Variant:
-    """The variant with a name: ``"find_objects#red"``, ``"my.json#night"``; without ``#`` the one with all defaults.
+    """The variant of this name: ``"find_objects#red"``, ``"my.json#night"``; without ``#``, the one with all defaults.
 
     Raises:
         TaskError: If there is no such task, file or variant.
@@ -126,7 +126,7 @@ def validate(
     check: bool = False,
     assets: str | os.PathLike[str] | Iterable[str | os.PathLike[str]] = (),
 ) -> list[dict[str, Any]]:
-    """Lists every problem of a document, in the order of places; empty if it is valid.
+    """Lists every problem of a document, ordered by position; empty if it is valid.
 
     Args:
         document: A path, the name of a built-in task, JSON text, or a dictionary.

@@ -83,7 +83,7 @@ class VectorAgent(Protocol):
 
 
 class VectorRollout(Rollout):
-    """An agent in its environments. The native loop asks for one experience after the other, some of which have already
+    """An agent in its environments. The native loop asks for one experience after another, some of which have already
     run by then.
 
     Args:
@@ -224,7 +224,7 @@ class VectorRollout(Rollout):
             if now.block != self._block:
                 return False
             if now.steps is not None and self._decisions[now.regime] >= now.steps:
-                # Skips what a spent budget leaves out, like the native loop.
+                # Skips experiences beyond the regime's budget, like the native loop.
                 self._next = self._plan.after(self._next)
                 continue
             self._next += 1

@@ -46,7 +46,7 @@ def studio(task: str | PathLike[str] | None = None, *, height: int = 720) -> Stu
     """Opens the workbench: play, author, compare, order and replay worlds in a page, also in a notebook.
 
     Args:
-        task: What to begin with, as ``driftworld studio`` takes it: a built-in task such as ``"maze"`` or
+        task: The initial task, as for ``driftworld studio``: a built-in one such as ``"maze"`` or
             ``"find_objects#red"``, or the path of a task spec; ``None`` for the gallery.
         height: The height in pixels of the frame in a notebook.
 

@@ -74,7 +74,7 @@ class DriftworldPuffer(PufferEnv):  # type: ignore[misc, unused-ignore] # Any wh
         super().__init__(buf)
 
     def reset(self, seed: int | None = None) -> tuple[npt.NDArray[Any], list[dict[str, Any]]]:
-        """Starts new episodes everywhere, under :func:`driftworld.spread_seeds`."""
+        """Starts new episodes in all environments, with the seeds of :func:`driftworld.spread_seeds`."""
         seed, self._seed = self._seed if seed is None else seed, None
         self.observations[:], told = self.envs.reset(seed=seed)
         self._variants = list(told["variant_id"])

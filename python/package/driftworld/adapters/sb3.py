@@ -48,14 +48,14 @@ def make_vec_env(
     Args:
         env_id: Such as ``"driftworld/FindObjects-v0"``.
         num_envs: Number of environments, from 1.
-        seed: Worlds are drawn under :func:`driftworld.spread_seeds` of it; ``None`` draws a random seed.
+        seed: The seed of the worlds, for :func:`driftworld.spread_seeds`; ``None`` draws a random seed.
         monitor_dir: A folder for ``monitor.csv``, the returns of all episodes; ``None`` writes no file. Returns and
             lengths are in ``info["episode"]`` either way, so that Stable-Baselines3 prints ``ep_rew_mean``.
         **options: Options of the environment, such as ``variant``, ``modalities`` or ``num_threads``;
             ``autoreset_mode`` and ``copy`` are fixed.
 
     Returns:
-        A :class:`DriftworldVecEnv` within ``VecMonitor``.
+        A :class:`DriftworldVecEnv` wrapped in ``VecMonitor``.
     """
     environments = DriftworldVecEnv(env_id, num_envs, **options)
     environments.seed(seed)
@@ -111,8 +111,8 @@ class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where
         """Sets the options of each environment from its next episode on; also works during ``learn``.
 
         Args:
-            options: What ``reset(options=…)`` of a single environment takes, for all or as a list with one entry each,
-                such as ``[{"variant": "red"}, {"variant": "blue"}]``. :meth:`reset` applies them again.
+            options: Options of a single environment's reset: one dictionary for all, or a list with one for each, such
+                as ``[{"variant": "red"}, {"variant": "blue"}]``. :meth:`reset` applies them again.
         """
         super().set_options(cast(Any, options))
         groups = self._groups()
@@ -130,7 +130,7 @@ class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where
             self.envs.set_next(**asked, mask=mask)
 
     def reset(self) -> Any:
-        """Starts new episodes everywhere, with the seeds and options set before; both are used once.
+        """Starts new episodes in all environments, with the seeds and options set before; both are used once.
 
         Returns:
             The first observations, ``(num_envs, …)``.
@@ -164,7 +164,7 @@ class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where
         return groups
 
     def step_async(self, actions: npt.NDArray[Any]) -> None:
-        """Stores the actions, ``(num_envs, …)``; :meth:`step_wait` makes the step."""
+        """Stores the actions, ``(num_envs, …)``; :meth:`step_wait` takes the step."""
         self._actions = actions
 
     def step_wait(self) -> tuple[Any, npt.NDArray[np.float32], npt.NDArray[np.bool_], list[dict[str, Any]]]:
@@ -247,12 +247,12 @@ class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where
         return [self._parts[index] for index in self._get_indices(indices)]
 
 
-#: The options that an environment accepts.
+#: The options that an environment accepts for its next episode.
 _NEXT = ("variant", "index", "world", "queue")
 
 
 class _Monitor(VecMonitor):  # type: ignore[misc, unused-ignore] # Any where it is not installed.
-    """Also restarts the episode counts of environments that are reset individually, by :meth:`env_method`."""
+    """Also clears the returns and lengths of environments that are reset individually, by :meth:`env_method`."""
 
     def env_method(
         self,

@@ -339,7 +339,7 @@ def _refuse(model: Any, total: int | None) -> None:
 
 def _active_samples(buffer: Any, places: NDArray[np.intp], batch_size: int | None = None) -> Iterator[Any]:
     """Like ``buffer.get``, for these positions of its flattened arrays only."""
-    # A first call of `get` flattens the arrays.
+    # The first call of `get` flattens the arrays.
     next(type(buffer).get(buffer, 1))
     shuffled = np.random.permutation(places)
     for start in range(0, len(shuffled), batch_size or len(shuffled)):

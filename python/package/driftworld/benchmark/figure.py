@@ -1,4 +1,4 @@
-"""A figure of a table: each learner's performance over its lifetime."""
+"""Draws the figure for a table: each learner's performance over its lifetime."""
 
 from __future__ import annotations
 

@@ -103,7 +103,7 @@ def gem(values: ArrayLike) -> dict[str, float]:
 def cora(values: ArrayLike) -> dict[str, Floats]:
     """Isolated forgetting and zero-shot transfer of CORA (Powers et al. 2022, arXiv:2110.10067).
 
-    Both are the change of task ``i`` while task ``j`` is learned, over the largest absolute evaluation of ``i`` in any
+    Both are the change in task ``i`` while task ``j`` is learned, over the largest absolute evaluation of ``i`` in any
     seed (CORA: in its whole smoothed curve, and undefined if that is 0). Forgetting is defined where ``j`` comes after
     ``i``, transfer where it comes before; other entries are NaN. Entries are means over seeds. CORA prints ten times
     the entries; the averages beside its tables are means of rows, of columns and of all entries, ignoring NaN.
@@ -139,8 +139,8 @@ def interquartile_mean(values: ArrayLike) -> float:
 def interval(values: ArrayLike, draws: int = 10_000, seed: int = 0) -> tuple[float, float]:
     """The 95 % interval of the interquartile mean, by rliable's stratified percentile bootstrap.
 
-    For ``(seeds, tasks)``, seeds are drawn for each task separately. rliable takes 50,000 draws from another generator.
-    For a few seeds without tasks, every possible draw is taken once, and the interval is exact.
+    For ``(seeds, tasks)``, seeds are drawn for each task separately. rliable takes 50,000 draws, with a different
+    generator. For a few seeds without a task axis, every possible draw is taken once, and the interval is exact.
     """
     found = np.asarray(values, dtype=float)
     if found.ndim == 1 and len(found) ** len(found) <= draws:

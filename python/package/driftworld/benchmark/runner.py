@@ -1,9 +1,9 @@
 """Runs the cells of a table: each once, in any free process, and resumes killed ones.
 
-A cell's folder is ``FOLDER/SEQUENCE/LEARNER/SEED``. While it runs, its logs and its learner are in ``work/``; only
-``report.json`` and ``logs.tar.xz`` remain. Several processes and several machines may share the folder: the process
-that creates the folder ``claim/`` runs the cell, and touches the folder meanwhile. A claim that is no longer touched is
-removed by renaming it.
+A cell's folder is ``FOLDER/SEQUENCE/LEARNER/SEED``. While it runs, its logs and its learner are in ``work/``; in the
+end only ``report.json`` and ``logs.tar.xz`` remain. Several processes and several machines may share the folder: the
+process that creates the folder ``claim/`` runs the cell, and keeps touching that folder. A claim that is no longer
+touched is renamed, then removed.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ from driftworld.logs import read_log
 #: Seconds after which an untouched claim is stale; can be set by ``DRIFTWORLD_STALE_SECONDS`` in the environment, to
 #: the same value in all processes that share the folder.
 STALE = float(os.environ.get("DRIFTWORLD_STALE_SECONDS", "60"))
-#: Seconds between two touches.
+#: Seconds between touches.
 TOUCH = STALE / 12
 
 
@@ -114,8 +114,7 @@ def _claim(claim: Path) -> Iterator[bool]:
     """Yields whether this process created the folder."""
     with contextlib.suppress(FileNotFoundError):
         if time.time() - claim.stat().st_mtime > STALE:
-            # Only one process can rename a folder; meanwhile another may have renamed the stale one and created its
-            # own.
+            # Only one process can rename a folder; another may already have renamed the stale one and created its own.
             gone = claim.with_name(f"claim-{uuid.uuid4().hex}")
             with contextlib.suppress(FileNotFoundError):
                 claim.rename(gone)
@@ -237,7 +236,7 @@ def _live(cell: Cell, folder: Path) -> None:
     evaluations = [block for block in curriculum.scenario["blocks"] if block["type"] == "evaluation"]
     saves = sorted(kept.iterdir())
     if len(saves) < len(evaluations) - 1:
-        # The process was killed between a block's last row and the save, so that state of the learner is lost.
+        # The process was killed between a block's last row and the save: the learner's state at that time is lost.
         shutil.rmtree(work)
         _live(cell, folder)
         return
@@ -293,7 +292,7 @@ def run_cells(
         results: The folder, which several machines may share.
         jobs: Number of local processes.
         ray: The address of a Ray cluster whose nodes share the folder: they run the cells instead of local processes.
-        watch: Called with each cell and its report, in order, as soon as the report is there.
+        watch: Called with each cell and its report, in order, as soon as the report is available.
 
     Returns:
         The reports, in order; ``None`` for cells that another process is running.
@@ -315,7 +314,7 @@ def run_cells(
         return note(_run_by_ray(cells, folder, ray))
     if jobs == 1:
         return note(cell.run(folder) for cell in cells)
-    # A separate process for each cell, so that none affects another.
+    # A separate process for each cell, so that cells cannot affect each other.
     with ProcessPoolExecutor(jobs, mp_context=get_context("spawn"), max_tasks_per_child=1) as pool:
         return note(pool.map(partial(Cell.run, results=folder), cells))
 

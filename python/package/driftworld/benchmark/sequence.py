@@ -22,7 +22,7 @@ _WORLDS_APART = 10**9
 
 @dataclass(frozen=True)
 class Sequence:
-    """What all learners of a table have in common.
+    """A sequence of tasks, with the settings that all learners of a table share.
 
     Attributes:
         name: The file's name without its extension.
@@ -83,7 +83,7 @@ class Sequence:
         regimes = {f"{regime['task']}#{regime['variant']}": regime for block in blocks[::2] for regime in block["regimes"]}
         lifetime = [evaluation]
         for place, task in enumerate(self.tasks):
-            # A task that occurs again is learned in other worlds.
+            # A task that occurs again is learned in different worlds.
             again = self.tasks[:place].count(task) * _WORLDS_APART
             regime = {**regimes[task], "steps": self.decisions, "first_index": regimes[task]["first_index"] + again}
             lifetime += [{"type": "learning", "regimes": [regime]}, evaluation]

@@ -37,8 +37,8 @@ def check(
     Args:
         task: A built-in task or a path, with or without ``#variant``; the path of a world; or the id of an environment.
         num_envs: Number of environments in vector environments, from 1.
-        steps: Number of random steps in each comparison, from 1; episodes are cut to 9 steps, so that 60 steps contain
-            many ends.
+        steps: Number of random steps in each comparison, from 1; episodes are cut to 9 steps, so that many of them end
+            within 60 steps.
         seed: Of worlds and actions.
         processes: Whether to compare with ``AsyncVectorEnv`` as well, which starts a process for each environment.
         **options: Options of the environment, such as ``modalities="rgb"``.

@@ -16,7 +16,7 @@ from driftworld.check import Finding, Report, check, versions
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """The command; returns its exit status."""
+    """Runs the command; returns its exit status."""
     parser = argparse.ArgumentParser(
         prog="python -m driftworld.check", description="Holds tasks against the contract that environments keep."
     )

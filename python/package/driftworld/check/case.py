@@ -1,4 +1,4 @@
-"""``Case``: a task with its options, as each kind of environment that the rules compare."""
+"""``Case``: makes each kind of environment that the rules compare, from a task and its options."""
 
 from __future__ import annotations
 

@@ -47,7 +47,7 @@ class Rule:
                 self.check(case)
         except NotHere as reason:
             return Finding(self.text, "skipped", str(reason))
-        except Exception as error:  # noqa: BLE001 - a broken rule may show itself as any error at all
+        except Exception as error:  # noqa: BLE001 - a broken rule may raise any error at all
             kind = "" if isinstance(error, (Broken, AssertionError)) else f"{type(error).__name__}: "
             return Finding(self.text, "failed", f"{kind}{error}", self.advice)
         return Finding(self.text, "passed")
@@ -63,7 +63,7 @@ def _passes_gymnasiums_check(case: Case) -> None:
     from gymnasium.utils.env_checker import check_env
 
     env = case.bare(render_mode="rgb_array")
-    # `check_env` opens a window if windows are among the modes; a separate rule checks that.
+    # `check_env` opens a window if "human" is among the render modes; a separate rule checks that.
     env.metadata = {**env.metadata, "render_modes": ["rgb_array"]}
     check_env(env)
 

@@ -106,7 +106,7 @@ class Members:
         last = self.batch.final_buffers()
         self._final_views = None if last is None else self._arranged(last)
         self.has_seed = [False] * self.num_envs
-        #: Which environments have been reset; before that, nobody has chosen their worlds.
+        #: Which environments have been reset; the worlds of the others have not been chosen yet.
         self.has_begun = np.zeros(self.num_envs, dtype=np.bool_)
         self._names = [""] * self.num_envs
 
@@ -180,7 +180,7 @@ class Members:
         Args:
             options: As passed to ``reset``.
             many: Whether there may be one variant for each environment.
-            deals: Whether a queue is dealt out among all environments; otherwise each has the queue for itself.
+            deals: Whether a queue is dealt out among all environments; otherwise each has a copy of the queue.
         """
         known = ["variant", "index", "world", "queue", *(["variants"] if many else [])]
         unknown = [key for key in options if key not in known]
@@ -199,7 +199,7 @@ class Members:
         return Prepared(sources, streams, self._indices(options.get("index")), given)
 
     def take(self, prepared: Prepared, env: int, seed: int | None) -> None:
-        """Applies checked options to an environment's next episode; with a seed, under that seed."""
+        """Applies checked options, and a seed if given, to an environment's next episode."""
         if prepared.sources is not None and prepared.streams is not None:
             self.batch.stream(env, prepared.streams[env])
             self._sources[env] = prepared.sources[env]
@@ -217,7 +217,8 @@ class Members:
 
         Args:
             envs: The environments.
-            asked: Options of a reset, each for all of them or as a list with one for each; a queue applies to all.
+            asked: Options of a reset, each one value for all of them or a list with one for each; a queue applies to
+                all.
         """
         queue = asked.get("queue")
         spread = {name: _each(name, value, len(envs)) for name, value in asked.items() if name != "queue"}

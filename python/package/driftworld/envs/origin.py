@@ -34,7 +34,7 @@ class OneVariant:
 
 @dataclass(frozen=True, eq=False)
 class OneWorld:
-    """One world over and over: its name and its JSON."""
+    """The same world in every episode: its name and its JSON."""
 
     name: str
     text: str
@@ -90,7 +90,7 @@ class Queue:
 
 @dataclass(frozen=True, eq=False)
 class OwnQueue(Queue):
-    """A queue that each environment has for itself, starting with the first variant."""
+    """A queue of which each environment has a copy, starting with the first variant."""
 
     def streams(self, num_envs: int) -> list[_native.Stream]:
         """The whole queue, for each environment."""
@@ -102,7 +102,7 @@ Source = OneVariant | OneWorld | DrawnWorld | Drifting | Queue
 
 
 class Home:
-    """The task, or the one world, that an environment is made for.
+    """The task, or the single world, that an environment is made for.
 
     Args:
         task: A built-in name or a path, with or without ``#variant``; a task spec or a variant.
@@ -135,8 +135,8 @@ class Home:
         return {**self.__dict__, "_known": {}}
 
     def labels(self, sources: Iterable[Source]) -> list[str]:
-        """The ids of the variants that have a label: those of the task, then any others that it or the sources start
-        with.
+        """The ids of the variants that have a label: those of the task, then any others that the environment or the
+        sources start with.
         """
         if self.task is None or self.first is None:
             return []

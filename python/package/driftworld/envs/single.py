@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 class DriftworldEnv(gymnasium.Env[Any, Any]):
-    """A first-person world of a task. It belongs to one thread at a time.
+    """A first-person world of a task. Only one thread may use it at a time.
 
     Args:
         task: A built-in name or a path, with or without ``#variant``; a task spec or a variant.
@@ -48,14 +48,14 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
         interact: Whether the agent can interact; by default as in the task.
         frame_skip: Time steps for which each action is held; by default the task's.
         max_steps: Steps after which an episode is truncated, 0 for never; by default the task's.
-        supersampling: Points per pixel along each side, 1 to 4; more is smoother and slower.
+        supersampling: Samples per pixel along each side, 1 to 4; more is smoother and slower.
         renderer: ``"cpu"``, ``"gpu"``, or ``"auto"`` for a graphics card if there is one.
         drift: A drift to another variant, such as ``{"to": "dusk", "episodes": 500, "schedule": "cosine"}``.
         task_label: Whether the agent gets the label of its variant: ``"none"``; in ``"info"``, a number; or in the
             ``"observation"``, as ``"task"``, one-hot (in the info instead if the observation is a single image).
-        info: ``"agent"``: infos name task and variant only if ``task_label`` tells the agent. ``"full"``: always, for
-            records. ``"none"``: infos are empty, which saves time in large batches; ``final_obs`` of the autoreset
-            ``"same_step"`` stays.
+        info: ``"agent"``: infos name task and variant only if there is a ``task_label``. ``"full"``: always, for
+            records. ``"none"``: infos are empty, which saves time in large batches; with the autoreset mode
+            ``"same_step"`` they still have ``final_obs``.
         assets: Paths of asset libraries (``driftworld assets pack``).
         render_mode: ``"rgb_array"``, ``"human"`` or ``None``.
         render_size: Height and width of rendered images.
@@ -118,8 +118,8 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
 
         Args:
             seed: Starts with world 0 under this seed, a whole number from 0; one of 2⁶³ or more is folded by a hash,
-                whose result is in ``info["seed"]`` (docs/python.md). Without a seed, the next world under the current
-                seed. An environment that never had a seed draws one from ``np_random``.
+                whose result is in ``info["seed"]`` (docs/python.md). Without a seed, continues with the next world
+                under the current seed. An environment that never had a seed draws one from ``np_random``.
             options: ``"variant"``, a name; ``"queue"``, a list of variants, one for each episode in turn, cycling; both
                 stay in effect until replaced. ``"index"``, the number of the world. ``"world"``, a world (path, JSON,
                 dictionary) for this episode only, such as one from :meth:`state`.
@@ -236,7 +236,7 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
 
     def warnings(self) -> list[str]:
         """Suspicious parts of the world: an unknown class, a switch without a door, a key behind its own door. Remarks
-        about its document start with the place there.
+        about its document start with a JSON pointer.
         """
         return self._members.batch.warnings(0)
 
@@ -256,7 +256,7 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
 
     def __getstate__(self) -> dict[str, Any]:
         kept = {name: value for name, value in self.__dict__.items() if name not in ("_members", "_window")}
-        # Copied in shallow copies, too: otherwise both copies would draw from it in turn.
+        # Copied even for a shallow copy: otherwise both copies would draw from it in turn.
         kept["_np_random"] = copy.deepcopy(self._np_random)
         return {"kept": kept, "members": self._members.written()}
 

@@ -14,9 +14,9 @@ from driftworld.envs.options import Options
 FAR_DEPTH = 1000.0
 #: Bound of velocities, which are unbounded; a space needs one.
 _LARGE = 1e6
-#: Bound of rewards, which have no bound either; each part of a reward is at most 1e9.
+#: Bound of rewards, which are unbounded, too; each part of a reward is at most 1e9.
 _REWARD = 1e12
-#: Least and greatest value of each number of a state feature.
+#: Minimum and maximum of each number of a state feature.
 _FEATURES: dict[str, list[tuple[float, float]]] = {
     "position": [(-300.0, 300.0)] * 2,
     "heading": [(0.0, 360.0)],

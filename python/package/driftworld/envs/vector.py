@@ -61,7 +61,7 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         SpecError, TaskError, ValueError: Like :class:`DriftworldEnv`.
         EnvError: If the observations would need more than 16 GiB, or more memory than there is.
 
-    It belongs to one thread at a time.
+    Only one thread may use it at a time.
     """
 
     metadata: dict[str, Any] = {
@@ -481,7 +481,7 @@ def _some(numbers: list[int]) -> str:
 
 
 def _limit(steps: Any) -> int | None:
-    """A limit of steps as for Gymnasium's ``TimeLimit``; −1 is none, as for ``gymnasium.make``."""
+    """A limit of steps as for Gymnasium's ``TimeLimit``; −1 means no limit, as for ``gymnasium.make``."""
     if steps is None or steps == -1:
         return None
     found = whole("max_episode_steps", steps)

@@ -13,7 +13,7 @@ values at the time of the action. Source: Rolnick et al. 2019 (arXiv:1811.11682)
 Known traps:
 
 - Its learner is PPO, not IMPALA, and its losses are means, not sums: the paper's cloning weights do not carry over.
-- It takes more optimiser steps than PPO with the same number of epochs. For an equal number, use one epoch less.
+- It takes more optimiser steps than PPO with the same number of epochs. For an equal number, use one epoch fewer.
 - The reservoir takes megabytes: ``report()["method_bytes"]`` is its size.
 - A stretch that ends during an episode is bootstrapped with the current value of its last image. An episode truncated
   by a limit of steps is bootstrapped with the value that its last image had at the time, because that image is not
@@ -35,7 +35,7 @@ class Reservoir:
     """A uniform sample of all stretches of experience ever offered: each is kept with probability capacity / offered.
 
     Args:
-        capacity: Largest number of stretches, from 1.
+        capacity: Maximum number of stretches, from 1.
         seed: The seed of the sampling, from 0.
 
     Attributes:
@@ -95,9 +95,9 @@ class CLEAR(PPO):
     Args:
         num_actions: Number of rows in the action table.
         num_envs: Number of environments.
-        capacity: Largest number of stretches in the reservoir, from 1; one is 100 kB at 32 × 32 pixels and 32 steps.
-        policy_cloning: Weight of the divergence from the policy at the time, from 0.
-        value_cloning: Weight of the squared distance from the value at the time, from 0.
+        capacity: Maximum number of stretches in the reservoir, from 1; one is 100 kB at 32 × 32 pixels and 32 steps.
+        policy_cloning: Weight of the divergence from the policy at the time of the action, from 0.
+        value_cloning: Weight of the squared distance from the value at the time of the action, from 0.
         **options: As for :class:`PPO`.
 
     Attributes:

@@ -9,14 +9,14 @@ Online EWC (Schwarz et al. 2018, arXiv:1805.06370) has one set: F ← decay · F
 
 Known traps:
 
-- The square is of each sample's gradient. The square of a batch's mean gradient is something else, and almost 0 after
+- Each sample's gradient is squared. The square of a batch's mean gradient is something else, and almost 0 after
   learning.
 - Actions are weighted by the policy, not sampled: otherwise it is the empirical Fisher.
 - Fisher information falls as a policy becomes certain, so that the best learned tasks would be protected least.
   Importances are therefore scaled to mean 1 in each task, over the tensors that the policy depends on; ``strength``
   then means the same for every task.
 - The policy does not depend on the value head, which is therefore unconstrained.
-- A task that occurs again gets a second set of springs, with other targets than the first.
+- A task that occurs again gets a second set of springs, with different targets.
 """
 
 from __future__ import annotations
@@ -33,8 +33,8 @@ Weights = dict[str, torch.Tensor]
 
 
 def fisher(network: nn.Module, images: torch.Tensor, chunk: int = 32) -> Weights:
-    """The diagonal of the policy's Fisher information, for each parameter of a network: squares per sample, actions by
-    the policy.
+    """The diagonal of the policy's Fisher information, for each parameter of a network: squares per sample, actions
+    weighted by the policy.
 
     Args:
         network: Maps images ``(n, …)`` to log-probabilities ``(n, num_actions)`` and anything else.

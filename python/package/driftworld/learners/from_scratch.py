@@ -1,9 +1,9 @@
 """From scratch: a new network for every task, so that nothing carries over.
 
-Its learning curves are the reference of forward transfer, and its forgetting is complete by construction.
+Its learning curves are the reference for forward transfer, and its forgetting is complete by construction.
 
-Known traps: a task that occurs again is learned again from scratch; each visit draws other weights. Lifetimes with
-different orders see the same initial weights at the same *place*, not for the same task.
+Known traps: a task that occurs again is learned again from scratch; each visit draws new weights. Lifetimes with
+different orders see the same initial weights at the same *position*, not for the same task.
 """
 
 from __future__ import annotations

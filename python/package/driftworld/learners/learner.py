@@ -75,7 +75,7 @@ class Learner:
         return PatchNetwork(self.num_actions, self.size)
 
     def fresh_network(self, *more: int) -> nn.Module:
-        """A network as at the start of a lifetime; further numbers extend the seed and draw another one."""
+        """A network as at the start of a lifetime; further numbers extend the seed and draw a different one."""
         with torch.random.fork_rng(devices=[]):
             torch.manual_seed(int(np.random.SeedSequence([self.seed, *more]).generate_state(1)[0]))
             return self.make_network()
@@ -143,7 +143,7 @@ class Learner:
         """Images ``(num_envs, size, size, 3)``, bytes, from image observations or from their entry ``"rgb"``.
 
         Raises:
-            ValueError: If the images have another shape.
+            ValueError: If the images have a different shape.
         """
         found = observations["rgb"] if isinstance(observations, Mapping) else observations
         expected = (self.num_envs, self.size, self.size, 3)
@@ -155,9 +155,7 @@ class Learner:
         return torch.from_numpy(found)
 
     def state_dict(self) -> dict[str, Any]:
-        """The complete state between two experiences: after :meth:`load_state_dict`, another learner continues
-        identically to the bit.
-        """
+        """The complete state between two experiences: a learner that loads it continues identically, bit for bit."""
         counts = ("task", "tasks", "decisions", "task_decisions", "updates", "seconds")
         return {
             "network": self.network.state_dict(), "shuffles": self.shuffles.get_state(),
@@ -178,7 +176,7 @@ class Learner:
         torch.save(self.state_dict(), path)
 
     def load(self, path: Path) -> None:
-        """Loads a file of :meth:`save`: tensors and plain values, no code."""
+        """Loads a file written by :meth:`save`: tensors and plain values, no code."""
         self.load_state_dict(torch.load(path, weights_only=True))
 
     def export(
@@ -199,7 +197,7 @@ class Learner:
         write_network(self, path, actions, frame_skip, interact)
 
     def digest(self) -> str:
-        """SHA-256 of :meth:`state_dict` without the seconds: equal if two learners are equal to the bit."""
+        """SHA-256 of :meth:`state_dict` without the seconds: equal if two learners are bit-identical."""
         state = self.state_dict()
         del state["counts"]["seconds"]
         print = hashlib.sha256()

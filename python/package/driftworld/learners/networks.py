@@ -12,7 +12,7 @@ PATCH = 4
 class Patches(nn.Module):
     """Features of images: patches of 4 × 4 pixels, then 2 × 2 patches, then a hidden layer.
 
-    Both patch layers are matrix products. On one thread they cost a third of convolutions of the same width.
+    Both patch layers are matrix products. On one thread they take a third of the time of equally wide convolutions.
 
     Args:
         size: Side of the images in pixels, a multiple of 8.
@@ -40,7 +40,9 @@ class Patches(nn.Module):
 
 
 def initialize(network: nn.Module) -> None:
-    """Draws orthogonal weights and zero biases: gain √2, 1 for ``value`` and 0.01 for ``policy``, which then starts almost uniform."""
+    """Sets orthogonal weights and zero biases. The gain is √2, except 1 for ``value`` and 0.01 for ``policy``, which
+    then starts almost uniform.
+    """
     gains = {"policy": 0.01, "value": 1.0}
     for name, module in network.named_modules():
         if isinstance(module, (nn.Linear, nn.GRUCell)):
@@ -115,6 +117,6 @@ class RecurrentNetwork(nn.Module):
         for step in range(length):
             state = self.memory(features[step], state * ~starts[step].unsqueeze(-1))
             states.append(state)
-        # The heads also get the image features directly: what needs no memory is learned as fast as without one.
+        # The heads also get the image features directly: anything that needs no memory is learned as fast as without.
         seen = torch.stack(states) + features
         return torch.log_softmax(self.policy(seen), dim=-1), self.value(seen).squeeze(-1), state

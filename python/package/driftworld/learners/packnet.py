@@ -10,7 +10,7 @@ Known traps:
 
 - A gradient of 0 does not stop Adam: its moments keep moving a weight. They are cleared at borders and after pruning.
 - The learner must know the length of a task (``task_decisions``) and the number of tasks (``max_tasks``). Retraining is
-  included: it takes the last share ``retraining`` of the task. A task that ends earlier is not retrained, and its
+  included: it takes the last fraction of the task, ``retraining``. A task that ends earlier is not retrained, and its
   policy is worse.
 - The label selects the weights of an evaluation. Evaluating without labels is a different problem.
 - The value head is not constrained: it is only needed for learning, and forgetting it affects no score.
@@ -37,7 +37,7 @@ class PackNet(PPO):
         num_envs: Number of environments.
         max_tasks: Number of tasks in the lifetime, counting each visit, from 1.
         task_decisions: Number of decisions in each task, from 1.
-        retraining: Share of them after pruning, 0 to 1.
+        retraining: Share of these decisions that comes after pruning, 0 to 1.
         **options: As for :class:`PPO`; ``borders`` is ``"labels"`` by default.
 
     Attributes:
@@ -87,7 +87,7 @@ class PackNet(PPO):
 
     @torch.no_grad()
     def prune(self) -> None:
-        """Assigns to the task its share of each layer's free weights, the largest, and sets the others to 0."""
+        """Gives the task its share of each layer's free weights, the largest ones, and sets the others to 0."""
         for name, weight in self.network.named_parameters():
             if name not in self.owners:
                 continue

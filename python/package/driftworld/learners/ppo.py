@@ -37,11 +37,11 @@ class Settings:
             constant.
         discount: For each decision, 0 to 1.
         trace: λ of generalised advantage estimation, 0 to 1.
-        clip: Largest deviation of a probability ratio from 1, above 0.
+        clip: Maximum deviation of a probability ratio from 1, above 0.
         entropy: Weight of the policy's entropy, from 0. With 0.01 the policy becomes deterministic after an easy task
             and learns no other.
-        reward_scale: Factor of rewards, above 0: 0.01 if an object pays 100.
-        max_gradient: Largest gradient norm, above 0; larger gradients are clipped to it.
+        reward_scale: Factor for rewards, above 0: 0.01 if an object pays 100.
+        max_gradient: Maximum gradient norm, above 0; larger gradients are clipped to it.
 
     Raises:
         ValueError: If a number is out of its range.
@@ -116,7 +116,7 @@ class PPO(Learner):
         """Actions ``(num_envs,)`` for images ``(num_envs, size, size, 3)``, alone or as ``"rgb"`` of a dictionary.
 
         Raises:
-            ValueError: If the images have another shape.
+            ValueError: If the images have a different shape.
         """
         began = time.process_time()
         images = self.images(observations)
@@ -143,7 +143,7 @@ class PPO(Learner):
         rollout.terminated[t] = torch.from_numpy(transition.terminated)
         rollout.ended[t] = torch.from_numpy(transition.terminated | transition.truncated)
         rollout.active[t] = torch.from_numpy(transition.active)
-        # The next call of act replaces it, with the next episode's first image if one has ended.
+        # The next call of act replaces it, with the next episode's first image if an episode has ended.
         rollout.images[t + 1] = following = self.images(transition.next_observations)
         cut_off = torch.from_numpy(np.flatnonzero(transition.truncated & ~transition.terminated))
         if len(cut_off):
@@ -198,8 +198,8 @@ class PPO(Learner):
         self.after_update(rollout)
 
     def parts(self, rollout: Rollout) -> Iterator[torch.Tensor]:
-        """Indices of active steps in the flattened rollout, shuffled, in parts of about equal size: a single advantage
-        has no deviation.
+        """Indices of active steps in the flattened rollout, shuffled, in minibatches of about equal size. A single step
+        is left out: one advantage has no standard deviation.
         """
         places = rollout.active.flatten().nonzero().squeeze(-1)
         if len(places) > 1:
@@ -235,9 +235,7 @@ class PPO(Learner):
         self.optimizer = torch.optim.Adam(self.network.parameters(), lr=rate, eps=1e-5, foreach=True)
 
     def state_dict(self) -> dict[str, Any]:
-        """The complete state between two experiences: after :meth:`load_state_dict`, another learner continues
-        identically to the bit.
-        """
+        """The complete state between two experiences: a learner that loads it continues identically, bit for bit."""
         return {
             **super().state_dict(), "optimizer": self.optimizer.state_dict(), "rollout": dict(vars(self.rollout)), "time": self.time
         }  # fmt: skip

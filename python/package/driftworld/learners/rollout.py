@@ -8,7 +8,7 @@ import torch
 class Rollout:
     """``length`` steps of ``num_envs`` environments.
 
-    Tensors are ``(length, num_envs, …)``, with one step more for images and values.
+    Tensors are ``(length, num_envs, …)``, with one more step for images and values.
 
     Attributes:
         images: Bytes ``(length + 1, num_envs, size, size, 3)``.

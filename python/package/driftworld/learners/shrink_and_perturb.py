@@ -8,7 +8,7 @@ Known traps:
 
 - Adam's moments belong to the old weights; they are cleared, so compare this method with ``ResetOptimizer``.
 - Shrinking a ReLU network of n layers without biases by s scales its outputs by sⁿ: the policy becomes less certain,
-  which is part of the effect. Compare with another ``entropy``, too.
+  which is part of the effect. Compare with a different ``entropy``, too.
 """
 
 from __future__ import annotations
