@@ -197,27 +197,59 @@ fn one_bad_action_changes_no_environment() {
 #[test]
 fn missing_world_stops_only_its_environment() {
     let source: WorldSource = Arc::new(|episode| match episode {
-        Episode { env: 1, index: 1 } => Err("the well is dry".to_owned()),
+        Episode { env: 1 | 60, index: 1 } => Err("the well is dry".to_owned()),
         _ => Ok(world(episode)
             .edit(|world| world.max_steps = 1)
             .expect("one step is sound")),
     });
-    let options = BatchOptions {
-        autoreset: Autoreset::NextStep,
-        num_threads: 1,
-        ..BatchOptions::default()
-    };
-    let mut batch = Batch::new(3, source, options).expect("first episodes are there");
-    let still = [Action::Continuous([0.0; 3]); 3];
-    batch.step(&still).expect("all step");
-    for _ in 0..2 {
-        let error = batch.step(&still).expect_err("environment 1 has no second world");
-        assert_eq!(
-            error.to_string(),
-            "environment 1 of the batch: no world for episode 1: the well is dry"
-        );
+    for num_threads in [1, 3] {
+        let options = BatchOptions {
+            num_threads,
+            ..options(Autoreset::NextStep)
+        };
+        let mut batch = Batch::new(64, Arc::clone(&source), options).expect("first episodes are there");
+        let still = [Action::Continuous([0.0; 3]); 64];
+        batch.step(&still).expect("all step");
+        for _ in 0..2 {
+            let error = batch
+                .step(&still)
+                .expect_err("environments 1 and 60 have no second world");
+            assert_eq!(
+                error.to_string(),
+                "environment 1 of the batch: no world for episode 1: the well is dry"
+            );
+        }
+        assert_eq!(batch.episode(0), Some(Episode { env: 0, index: 1 }));
     }
-    assert_eq!(batch.episode(0), Some(Episode { env: 0, index: 1 }));
+}
+
+/// A batch that does not fit into a processor's cache is stepped in other ways than a small one.
+#[test]
+fn large_batch_gives_what_its_environments_give_alone() {
+    const MANY: usize = 150;
+    for num_threads in [1, 3] {
+        let options = BatchOptions {
+            num_threads,
+            ..options(Autoreset::NextStep)
+        };
+        let mut batch = Batch::new(MANY, source(), options).expect("the worlds are sound");
+        let mut alone: Vec<Environment> = (0..MANY)
+            .map(|env| Environment::new(world(Episode { env, index: 0 })))
+            .collect();
+        for step in 0..4 {
+            let actions: Vec<Action> = (0..MANY).map(|env| action(step, env)).collect();
+            batch.step(&actions).expect("the actions are sound");
+            for (env, alone) in alone.iter_mut().enumerate() {
+                // Targets are reached at different times; what follows an end is tested with few environments.
+                if !alone.ended() {
+                    let found = alone.step(actions[env]).expect("the action is sound");
+                    assert_eq!(batch.outputs().rewards[env], found.reward, "step {step} of {env}");
+                    same(batch.outputs(), env, alone);
+                }
+            }
+        }
+        assert!(alone.iter().filter(|alone| !alone.ended()).count() > MANY / 4);
+    }
 }
 
 #[test]

@@ -76,7 +76,7 @@ impl BroadPhase {
         }
     }
 
-    /// The bodies of these groups whose rectangles on the ground meet this one, in no particular order.
+    /// All bodies of these groups whose rectangles on the ground meet this one, and perhaps some of others, in no particular order.
     pub(super) fn around(&self, groups: Group, [least, most]: Rectangle) -> impl Iterator<Item = u32> {
         let listed = if self.are_many { &[] } else { self.listed.as_slice() };
         let meets = move |&([from, to], _): &(Rectangle, u32)| {
@@ -108,4 +108,41 @@ impl BroadPhase {
 
 fn place_of(group: Group) -> usize {
     HELD.iter().position(|held| held.contains(group)).unwrap_or(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn list_of_few_bodies_finds_what_the_trees_find(
+            bodies in prop::collection::vec((0..4_usize, -9.0..9.0_f32, -9.0..9.0_f32, 0.0..3.0_f32), 1..FEW),
+            removed in prop::collection::vec(0..FEW, 0..6),
+            [x, y, side] in [-9.0..9.0_f32, -9.0..9.0_f32, 0.0..6.0_f32],
+        ) {
+            let mut places = BroadPhase::default();
+            let group = |at: usize| [WALL, SOLID, AGENT, GHOST][at];
+            for (number, (kind, x, y, half)) in (0..).zip(&bodies) {
+                places.put(group(*kind), number, Aabb::from_half_extents(Vector::new(*x, *y, 1.0), Vector::splat(*half)));
+            }
+            for number in removed.into_iter().filter(|number| *number < bodies.len()) {
+                places.remove(group(bodies[number].0), number as u32);
+            }
+            for groups in [WALL, SOLID | WALL, GHOST, Group::ALL] {
+                let found = |places: &BroadPhase| {
+                    let around = places.around(groups, [[x, y], [x + side, y + side]]);
+                    // A tree may have bodies of other groups, too.
+                    let mut found: Vec<u32> = around.filter(|number| group(bodies[*number as usize].0).intersects(groups)).collect();
+                    found.sort_unstable();
+                    found
+                };
+                let few = found(&places);
+                places.are_many = true;
+                prop_assert_eq!(few, found(&places));
+                places.are_many = false;
+            }
+        }
+    }
 }
