@@ -1,7 +1,7 @@
-"""A new user's first steps after reading the README, run by an interpreter with nothing but `pip install ./python`.
+"""A new user's first steps, run by an interpreter with nothing but `pip install ./python`.
 
-Runs every Python block of README.md unchanged, each in its own folder and interpreter; then the command. `cargo xtask
-python` starts it and shows its output. The guide's blocks are run by `test_readme.py`.
+Runs the first Python block of docs/python.md unchanged, and then the command. `cargo xtask test` starts it and shows its output.
+The blocks of all pages, README.md among them, are run by `test_readme.py`.
 """
 
 from __future__ import annotations
@@ -14,7 +14,8 @@ import sys
 import tempfile
 from pathlib import Path
 
-README = Path(__file__).parents[2] / "README.md"
+ROOT = Path(__file__).parents[2]
+GUIDE = ROOT / "docs/python.md"
 
 
 def run(arguments: list[str], folder: Path) -> None:
@@ -28,7 +29,7 @@ def optional(command: str, folder: Path) -> None:
     of the feature.
     """
     report = json.loads(subprocess.run([command, "doctor", "--json"], capture_output=True, check=True, timeout=300).stdout)
-    lighthouse = README.parent / "examples" / "assets" / "lighthouse.gltf"
+    lighthouse = ROOT / "examples" / "assets" / "lighthouse.gltf"
     for feature, arguments in {
         "gltf": ["assets", "pack", str(lighthouse), "-o", "lighthouse.assets"],
         "gpu": ["render", "find_objects", "--renderer", "gpu", "-o", "gpu.png"],
@@ -50,14 +51,13 @@ def main() -> None:
     unexpected = brought & {"torch", "pandas", "pygame", "pytest", "scipy", "matplotlib"}
     if "driftworld" not in brought or unexpected:
         sys.exit(f"newcomer: found {sorted(brought)}, expected driftworld and little more: make an empty environment")
-    blocks = re.findall(r"^```python\n(.*?)^```", README.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
-    if not blocks:
-        sys.exit(f"newcomer: found no block of Python in {README}, expected the example that users begin with")
+    block = re.search(r"^```python\n(.*?)^```", GUIDE.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
+    if not block:
+        sys.exit(f"newcomer: found no block of Python in {GUIDE}, expected the example that users begin with")
     command = str(Path(sys.executable).with_name("driftworld"))
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        for block in blocks:
-            run([sys.executable, "-W", "error", "-c", block], folder)
+        run([sys.executable, "-W", "error", "-c", block[1]], folder)
         run([command, "--version"], folder)
         run([sys.executable, "-m", "driftworld", "--version"], folder)
         optional(command, folder)
