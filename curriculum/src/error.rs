@@ -10,7 +10,7 @@ use driftworld_similarity::{MIN_CORRELATED, SimilarityError};
 use driftworld_spec::MAX_EXPERIENCES;
 use driftworld_text::{ShownPath, one_line, when};
 
-use crate::design::{MAX_BLOCKS, MAX_PROBED, MAX_SEED, MAX_STEPS, Steps};
+use crate::design::wanted::{MAX_BLOCKS, MAX_PROBED, MAX_SEED, MAX_STEPS, Steps};
 
 /// An error of this crate.
 #[derive(Debug, thiserror::Error, strum::IntoStaticStr, strum::VariantNames)]

@@ -3,10 +3,8 @@
 use driftworld_spec::ScenarioForm;
 
 use super::balanced::balanced_order;
+use super::wanted::MAX_BLOCKS;
 use crate::CurriculumError;
-
-/// Maximum number of learning blocks in a scenario.
-pub const MAX_BLOCKS: u32 = 10_000;
 
 /// Default number of rounds in the forms with recurring tasks.
 const ROUNDS: u32 = 3;

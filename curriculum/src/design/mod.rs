@@ -12,6 +12,7 @@ mod probe;
 mod steps;
 mod streams;
 mod walk;
+pub(crate) mod wanted;
 
 use std::collections::BTreeSet;
 
@@ -24,18 +25,15 @@ pub use choice::Choice;
 pub use drifting::Drifting;
 pub use evaluation::Evaluate;
 pub use experts::{experts, experts_of};
-pub use form::MAX_BLOCKS;
 pub use hypothesis::{Control, arrange, control};
 pub use picked::{Picked, distances};
-pub use probe::{MAX_PROBED, probe, probe_named};
-pub use steps::{MAX_STEPS, Steps, steps};
+pub use probe::{probe, probe_named};
+pub use steps::steps;
 pub use streams::Split;
+pub use wanted::{MAX_BLOCKS, MAX_PROBED, MAX_SEED, MAX_STEPS, Steps};
 
 use crate::CurriculumError;
 use streams::Streams;
-
-/// The largest seed of a design.
-pub const MAX_SEED: u64 = 1 << 52;
 
 /// Default number of experiences in a learning block.
 ///

@@ -7,10 +7,8 @@ use driftworld_similarity::{Method, OrderOptions, VariantMeasure, order};
 
 use super::choice::changes;
 use super::picked::{Picked, apart, distances, farthest, is_alone, measure_of};
+use super::wanted::MAX_PROBED;
 use crate::CurriculumError;
-
-/// Maximum number of variants in a probe, because all pairs are compared.
-pub const MAX_PROBED: usize = 200;
 
 /// Number of variants by default, if as many can be made.
 const DEFAULT_COUNT: usize = 4;

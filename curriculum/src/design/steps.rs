@@ -1,26 +1,11 @@
 //! Sequences of variants whose neighbours are a given distance apart. The search is in `walk.rs`.
 
-use driftworld_spec::{Element, Variant};
+use driftworld_spec::Variant;
 
 use super::picked::Picked;
 use super::walk::{MOST_COMPARISONS, Walk};
+use super::wanted::{MAX_STEPS, Steps};
 use crate::CurriculumError;
-
-/// Maximum number of steps in a sequence.
-pub const MAX_STEPS: u32 = 1000;
-
-/// The sequence to find.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Steps {
-    /// Distance between neighbours, above 0 and at most 1.
-    pub distance: f64,
-    /// Allowed deviation from `distance`, at least 0 and below it.
-    pub tolerance: f64,
-    /// Number of steps, one less than the number of variants; at most [`MAX_STEPS`].
-    pub count: u32,
-    /// The only element that changes and is measured; `None` for all elements together.
-    pub element: Option<Element>,
-}
 
 /// Variants of one task, beginning with `anchor`, each `distance ± tolerance` from the one before.
 ///
@@ -68,7 +53,7 @@ pub fn steps(task: &str, pool: &[Variant], anchor: &Variant, wanted: &Steps) -> 
 mod tests {
     use super::super::picked::is_alone;
     use super::*;
-    use driftworld_spec::TaskSpec;
+    use driftworld_spec::{Element, TaskSpec};
     use std::sync::Arc;
 
     fn task() -> Arc<TaskSpec> {

@@ -4,7 +4,8 @@
 use driftworld_spec::{MAX_EXPERIENCES, Regime};
 use serde::Deserialize;
 
-use super::{Choice, Design, MAX_BLOCKS};
+use super::wanted::MAX_BLOCKS;
+use super::{Choice, Design};
 use crate::hash::number_of;
 
 /// The purpose of the worlds in evaluation blocks. The two splits share no world.

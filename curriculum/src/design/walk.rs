@@ -8,7 +8,7 @@ use driftworld_spec::{Domain, Parameter, ParameterType, Role, Value, Variant};
 
 use super::choice::changes;
 use super::picked::{Picked, apart, farthest, is_alone, measure_of};
-use super::steps::Steps;
+use super::wanted::Steps;
 use crate::CurriculumError;
 
 /// Maximum number of variants from which the search tries to extend the path.

@@ -1,12 +1,20 @@
-//! Detects variants whose names become equal when reduced to letters and digits for the log.
+//! The names of variants in a log, and variants whose names there would be the same.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use driftworld_metrics::logged_word;
 use driftworld_spec::{Regime, Scenario, TaskSpec};
 
-use super::plan::log_name;
 use crate::CurriculumError;
+
+/// The name of a variant in a log: letters and digits of the task's name, an underscore, and those of the variant's.
+///
+/// The format requires `task_variant` with letters and digits only: `find_objects` and `red` become `findobjects_red`. A name
+/// without any becomes `x`.
+pub fn log_name(task: &str, variant: &str) -> String {
+    format!("{}_{}", logged_word(task), logged_word(variant))
+}
 
 /// The names in a log, with the scenario's names for them.
 #[derive(Default)]
@@ -84,4 +92,18 @@ fn called(regime: &Regime) -> String {
         Some(drift) => format!("..{}#{}", regime.end_task(), drift.variant_name()),
     };
     format!("{}#{}{to}", regime.task, regime.variant_name())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn log_names_are_letters_and_digits() {
+        let check = |task: &str, variant: &str, expected: &str| assert_eq!(log_name(task, variant), expected);
+        check("find_objects", "red", "findobjects_red");
+        check("Task1", "map_findobjects_0", "task1_mapfindobjects0");
+        check("tasks/my-own.json", "élan 2", "tasksmyownjson_lan2");
+        check("任务", "#", "x_x");
+    }
 }

@@ -6,14 +6,12 @@ use std::sync::Arc;
 
 use driftworld_env::Label;
 use driftworld_generator::{Drift, Sampler};
-use driftworld_metrics::logged_word;
 use driftworld_spec::{Block, BlockKind, BlockMix, Regime, Scenario, TaskLabel, TaskSpec, Variant, World};
 use indexmap::IndexSet;
 use serde_json::{Value, json};
 
-use super::log_names::LogNames;
-use super::planned::{Planned, Source, end_name};
-use super::rollout::Repeats;
+use super::log_names::{LogNames, log_name};
+use super::planned::{Planned, Repeats, Source, end_name};
 use super::shuffle::Shuffle;
 use super::undrawable::Undrawable;
 use crate::CurriculumError;
@@ -479,27 +477,5 @@ impl Finder<'_, '_> {
             way: Box::new(way),
             drift: Box::new(drift.clone()),
         })
-    }
-}
-
-/// The name of a variant in a log: letters and digits of the task's name, an underscore, and those of the variant's.
-///
-/// The format requires `task_variant` with letters and digits only: `find_objects` and `red` become `findobjects_red`. A name
-/// without any becomes `x`.
-pub fn log_name(task: &str, variant: &str) -> String {
-    format!("{}_{}", logged_word(task), logged_word(variant))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn log_names_are_letters_and_digits() {
-        let check = |task: &str, variant: &str, expected: &str| assert_eq!(log_name(task, variant), expected);
-        check("find_objects", "red", "findobjects_red");
-        check("Task1", "map_findobjects_0", "task1_mapfindobjects0");
-        check("tasks/my-own.json", "élan 2", "tasksmyownjson_lan2");
-        check("任务", "#", "x_x");
     }
 }

@@ -277,3 +277,12 @@ pub(super) fn end_name(task: &str, to: &Variant) -> String {
         to.id()
     }
 }
+
+/// Which evaluations of each block are run once more at its end.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Repeats {
+    /// How many.
+    pub count: usize,
+    /// Repeat the block's first evaluations instead of a seeded sample: for cases where order matters, as in batches.
+    pub first: bool,
+}

@@ -9,17 +9,8 @@ use driftworld_spec::{BlockKind, World};
 use super::budget::Budget;
 use super::journal::FinishedExperience;
 use super::worlds::Worlds;
-use super::{Experience, Journal, Plan, Progress, Summary};
+use super::{Experience, Journal, Plan, Progress, Repeats, Summary};
 use crate::CurriculumError;
-
-/// Which evaluations of each block are run once more at its end.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Repeats {
-    /// How many.
-    pub count: usize,
-    /// Repeat the block's first evaluations instead of a seeded sample: for cases where order matters, as in batches.
-    pub first: bool,
-}
 
 /// Runs single experiences: an agent with an environment of its own.
 pub trait Rollout {
