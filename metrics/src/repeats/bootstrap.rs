@@ -4,9 +4,8 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use serde::{Deserialize, Serialize};
 
-use super::Interval;
+use super::{Interval, Resampling};
 use crate::MetricsError;
-use crate::choice::choice;
 use crate::statistics::quantile;
 
 /// Maximum number of resamples per interval.
@@ -14,19 +13,6 @@ pub const MAX_RESAMPLES: u32 = 1_000_000;
 
 /// Maximum number of scores drawn per interval, over all resamples: about a minute's work.
 pub const MAX_SCORES_DRAWN: u64 = 10_000_000_000;
-
-choice! {
-    /// The unit of resampling.
-    Resampling, "resampling" {
-        /// Whole runs with all their scores (default). Keeps the correlation between the scores of one lifetime; the same as
-        /// `Strata` if there is only one stratum. If runs lack scores, a stratum without any drawn score is left out of that
-        /// resample.
-        Runs = "runs",
-        /// In each stratum, independently, as many scores as it has. As in rliable; treats the scores of one run in
-        /// different strata as independent: if they are not, intervals are much too narrow.
-        Strata = "strata",
-    }
-}
 
 /// Options of bootstrap intervals.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::jackknife::{FEW_RUNS, t_interval};
 use super::resample::Resample;
-use super::{Aggregate, BootstrapOptions, ScoreTable};
+use super::{Aggregate, BootstrapOptions, Interval, ScoreTable};
 use crate::MetricsError;
 
 /// A number with its uncertainty.
@@ -79,25 +79,6 @@ pub fn estimate<const N: usize>(
         }
     }
     Ok(estimates)
-}
-
-/// A confidence interval. With the default options, a bootstrap interval contains the value for infinitely many runs in
-/// about 92 of 100 repetitions with 20 runs, in 87 with 9, in 82 with 5, in 76 with 3: few runs underestimate their own
-/// variation. Student's t interval contains it in 95, if scores are normally distributed.
-/// `metrics/tests/repeats_coverage.rs` simulates both.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Interval {
-    /// Lower end, in the unit of the value.
-    pub low: f64,
-    /// Upper end.
-    pub high: f64,
-}
-
-impl Interval {
-    /// Whether a number lies within, ends included.
-    pub fn contains(&self, number: f64) -> bool {
-        (self.low..=self.high).contains(&number)
-    }
 }
 
 #[cfg(test)]

@@ -2,11 +2,41 @@
 
 use serde::Serialize;
 
-use super::{Headline, LifetimeMetrics, NullBand, Part, Reading, disagreements};
+use super::{Exchanged, Headline, LifetimeMetrics, NullBand, Part, Reading, disagreements};
 use crate::MetricsError;
 use crate::repeats::{
     Aggregate, BootstrapOptions, Estimate, Improvement, ScoreTable, estimate, probability_of_improvement,
 };
+use crate::statistics::mean;
+
+impl NullBand {
+    /// The band of a metric's mean over several lifetimes, from the means of the same permutations of each. Lifetimes without
+    /// bands, such as those that were read back, do not count; `None` without any.
+    ///
+    /// Evaluations are permuted in the same way in all lifetimes, so the band is valid even if these share worlds or seeds.
+    /// It has no standard error: the variation between lifetimes is in their intervals.
+    pub fn over_lifetimes(name: &str, lifetimes: &[LifetimeMetrics]) -> Option<Self> {
+        let with_both = lifetimes.iter().filter_map(|lifetime| {
+            let draws = lifetime.null_draws.get(name).filter(|draws| !draws.is_empty())?;
+            Some((lifetime.null_bands.get(name)?, draws))
+        });
+        let (bands, draws): (Vec<&Self>, Vec<&Vec<f64>>) = with_both.unzip();
+        let values: Vec<f64> = bands.iter().map(|band| band.value).collect();
+        let num_permutations = draws.iter().map(|draws| draws.len()).min()?;
+        let of_permutation = |number: usize| {
+            let of_each: Vec<f64> = draws.iter().map(|draws| draws[number]).collect();
+            mean(&of_each).filter(|mean| mean.is_finite())
+        };
+        let permuted: Vec<f64> = (0..num_permutations).filter_map(of_permutation).collect();
+        let first = bands.first()?.exchanged;
+        let exchanged = if bands.iter().all(|band| band.exchanged == first) {
+            first
+        } else {
+            Exchanged::WorldsAndPositions
+        };
+        Self::new(mean(&values)?, &permuted, exchanged)
+    }
+}
 
 /// One metric over repeated lifetimes of one agent.
 #[derive(Debug, Clone, PartialEq, Serialize)]

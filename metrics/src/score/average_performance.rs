@@ -1,6 +1,7 @@
 //! Average performance during learning and during evaluation.
 
-use super::{Assessment, Metric};
+use super::assessment::Assessment;
+use super::metric::Metric;
 use crate::results::{Direction, Headline};
 use crate::statistics::mean;
 use crate::{BlockType, MetricsError, Options};

@@ -2,9 +2,9 @@
 
 use std::rc::Rc;
 
-use super::assessment::aggregate;
+use super::assessment::{Assessment, aggregate};
+use super::metric::Metric;
 use super::null_bands::Statistic;
-use super::{Assessment, Metric};
 use crate::lifetime::Lifetime;
 use crate::results::{Direction, Headline};
 use crate::statistics::mean;

@@ -1,6 +1,7 @@
 //! Performance recovery: whether an agent recovers faster and faster.
 
-use super::{Assessment, Metric};
+use super::assessment::Assessment;
+use super::metric::Metric;
 use crate::results::{Direction, Headline};
 use crate::statistics::theil_sen_slope;
 use crate::{Definitions, MetricsError, Options};

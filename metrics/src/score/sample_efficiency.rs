@@ -1,8 +1,9 @@
 //! Sample efficiency: how good the agent gets and how fast, both compared with a single-task expert.
 
+use super::assessment::Assessment;
+use super::metric::Metric;
 use super::saturation::{Peak, peak};
 use super::ste_relative_performance::{expert_runs, with_gaps};
-use super::{Assessment, Metric};
 use crate::lifetime::{SteRun, mean_per_experience};
 use crate::results::{Direction, Headline};
 use crate::statistics::{mean_of_known, trend_falls};

@@ -1,6 +1,7 @@
 //! Saturation: the best performance reached, and the time until then.
 
-use super::{Assessment, Metric};
+use super::assessment::Assessment;
+use super::metric::Metric;
 use crate::preprocess::smoothed;
 use crate::{Definitions, MetricsError, SmoothingMethod};
 

@@ -1,7 +1,8 @@
 //! Performance relative to a single-task expert: the rewards gathered while learning, as a share of those of an agent that has
 //! only this task to learn.
 
-use super::{Assessment, Metric};
+use super::assessment::Assessment;
+use super::metric::Metric;
 use crate::lifetime::{Lifetime, SteRun};
 use crate::results::{Direction, Headline};
 use crate::statistics::{mean, mean_of_known};

@@ -1,6 +1,7 @@
 //! Terminal performance: the performance at the end of a regime.
 
-use super::{Assessment, Metric};
+use super::assessment::Assessment;
+use super::metric::Metric;
 use crate::statistics::mean;
 use crate::{BlockType, Definitions, MetricsError};
 

@@ -5,9 +5,9 @@ use std::rc::Rc;
 
 use indexmap::{IndexMap, IndexSet};
 
-use super::assessment::aggregate;
+use super::assessment::{Assessment, aggregate};
+use super::metric::Metric;
 use super::null_bands::Statistic;
-use super::{Assessment, Metric};
 use crate::lifetime::Lifetime;
 use crate::results::{Direction, Headline, PairValues, Values};
 use crate::{BlockType, Definitions, MetricsError, Options};

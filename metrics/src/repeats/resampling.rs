@@ -1,0 +1,16 @@
+//! [`Resampling`]: what is drawn together in a resample.
+
+use crate::choice::choice;
+
+choice! {
+    /// The unit of resampling.
+    Resampling, "resampling" {
+        /// Whole runs with all their scores (default). Keeps the correlation between the scores of one lifetime; the same as
+        /// `Strata` if there is only one stratum. If runs lack scores, a stratum without any drawn score is left out of that
+        /// resample.
+        Runs = "runs",
+        /// In each stratum, independently, as many scores as it has. As in rliable; treats the scores of one run in
+        /// different strata as independent: if they are not, intervals are much too narrow.
+        Strata = "strata",
+    }
+}
