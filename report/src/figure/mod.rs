@@ -3,6 +3,7 @@
 mod evaluation;
 mod experts;
 mod learning;
+mod options;
 mod palette;
 mod panels;
 mod paper;
@@ -12,12 +13,10 @@ mod strip;
 mod thinning;
 mod timeline;
 
-use std::collections::BTreeMap;
-use std::str::FromStr;
-
 use driftworld_metrics::Lifetime;
 use plotters::prelude::*;
 
+pub use options::{FigureOptions, Layout, Unit};
 pub(crate) use palette::{dark_rules, task_color};
 pub(crate) use strip::{strip, thinned_count};
 
@@ -75,64 +74,6 @@ impl Figure {
                 return Err(ReportError::UnknownFigure { found: shown(word) });
             }
         }])
-    }
-}
-
-/// The width that a figure is drawn for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Layout {
-    /// 960 pixels, for screens and paper.
-    Wide,
-    /// 360 pixels, for phones.
-    Narrow,
-}
-
-/// The unit of the horizontal axis.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Unit {
-    /// Experiences, by their numbers (default).
-    #[default]
-    Experiences,
-    /// Environment steps, summed over the preceding experiences.
-    Steps,
-}
-
-impl FromStr for Unit {
-    type Err = ReportError;
-
-    /// Parses the reference's names: `exp_num` or `steps`.
-    fn from_str(word: &str) -> Result<Self, ReportError> {
-        match word {
-            "exp_num" => Ok(Self::Experiences),
-            "steps" => Ok(Self::Steps),
-            _ => Err(ReportError::UnknownUnit { found: shown(word) }),
-        }
-    }
-}
-
-/// Options of figures.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FigureOptions {
-    /// The unit of the horizontal axis; by default experiences.
-    pub unit: Unit,
-    /// Whether the means of evaluations are joined across learning; default yes.
-    pub show_eval_lines: bool,
-    /// Distances between neighbouring learning blocks, in the order of [`neighbours`](crate::neighbours); `None` in the list for
-    /// an unknown distance. Default none: the timeline has no distances.
-    pub distances: Option<Vec<Option<f64>>>,
-    /// Display names of tasks in legends and tables, by their log names, which contain only letters and digits; other tasks keep
-    /// their log names.
-    pub names: BTreeMap<String, String>,
-}
-
-impl Default for FigureOptions {
-    fn default() -> Self {
-        Self {
-            unit: Unit::Experiences,
-            show_eval_lines: true,
-            distances: None,
-            names: BTreeMap::new(),
-        }
     }
 }
 

@@ -59,7 +59,7 @@ impl Grid {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Layout;
+    use super::super::options::Layout;
     use super::*;
 
     #[test]

@@ -15,7 +15,7 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{FontStyle, register_font};
 
-use super::Layout;
+use super::options::Layout;
 use super::palette::{FAINT, INK, Look, Mark, RIM};
 
 pub(super) type Area<DB> = DrawingArea<DB, Shift>;

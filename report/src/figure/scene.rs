@@ -5,9 +5,9 @@ use std::ops::Range;
 
 use driftworld_metrics::{BlockType, Lifetime, Regime};
 
+use super::options::{FigureOptions, Unit};
 use super::palette::{Look, SHADE};
 use super::paper::{Entry, Sample};
-use super::{FigureOptions, Unit};
 use crate::words::shown;
 use crate::{ReportError, extent};
 
