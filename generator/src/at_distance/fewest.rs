@@ -4,8 +4,9 @@ use driftworld_spec::{Domain, ParameterType, Value, Variant};
 
 use super::level::Profiles;
 use super::reach::{Reach, Way};
+use super::search::{Found, Search};
 use super::space::Space;
-use super::{Found, FreeParameters, Search};
+use super::subject::FreeParameters;
 
 /// Budgets in measured variants: for straight lines, and for scans where requirements cut these off, each per number of changed
 /// parameters; and the total beyond which no larger number of changes is tried.

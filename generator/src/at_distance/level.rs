@@ -7,8 +7,9 @@ use std::collections::HashMap;
 use driftworld_spec::{Value, Variant};
 
 use super::reach::Way;
+use super::search::{Changes, Found, Search, with};
 use super::space::Space;
-use super::{Changes, Found, Free, Search, with};
+use super::subject::Free;
 
 /// Number of parts into which the range of a number is divided for measuring, and each range of a vector.
 const PARTS: usize = 128;

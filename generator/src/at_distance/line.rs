@@ -3,8 +3,9 @@
 
 use driftworld_spec::{ParameterType, Variant};
 
+use super::search::{Changes, Found, Search, with};
 use super::space::Space;
-use super::{Changes, Found, Free, Search, with};
+use super::subject::Free;
 
 /// Bisection steps per interval.
 const HALVINGS: u32 = 60;

@@ -5,6 +5,7 @@ mod level;
 mod line;
 mod reach;
 mod scan;
+mod search;
 mod space;
 mod straight;
 mod subject;
@@ -12,26 +13,15 @@ mod subject;
 use driftworld_spec::{Domain, Value, Variant};
 
 use crate::GeneratorError;
-use scan::Scan;
+pub use search::Found;
+use search::{Changes, MOST_COMBINATIONS, Search, with};
 use space::Space;
 pub use subject::Subject;
 use subject::{Free, FreeParameters, parameters_of};
 
-/// Maximum number of combinations of choices to try.
-const MOST_COMBINATIONS: usize = 4096;
-
 /// Maximum number of variants to measure where requirements cut off the straight line, and minimum per combination.
 const MOST_LOOKS: usize = 60_000;
 const FEWEST_LOOKS: usize = 1500;
-
-/// A found variant with its distance.
-#[derive(Clone, Debug)]
-pub struct Found {
-    /// The variant.
-    pub variant: Variant,
-    /// Its distance from the given variant.
-    pub distance: f64,
-}
 
 /// Finds a variant whose distance from `from` is `target` within `tolerance`, with as few changed parameters as possible.
 ///
@@ -88,9 +78,6 @@ pub fn at_distance(
     search.finish()
 }
 
-/// Changed values, by parameter name.
-type Changes = Vec<(String, Value)>;
-
 /// All combinations of choices, fewest changes first, and whether the list is complete: its length is limited.
 fn combinations(from: &Variant, listed: &[Free]) -> (Vec<Changes>, bool) {
     let mut all: Vec<Changes> = vec![Vec::new()];
@@ -118,28 +105,6 @@ fn combinations(from: &Variant, listed: &[Free]) -> (Vec<Changes>, bool) {
     (all, are_all)
 }
 
-fn with(changes: &Changes, more: &Changes) -> Changes {
-    changes.iter().chain(more).cloned().collect()
-}
-
-struct Search<'a, D> {
-    from: &'a Variant,
-    /// Name of the variants on the way.
-    name: String,
-    target: f64,
-    tolerance: f64,
-    distance: D,
-    /// The nearest variant in the part being searched.
-    nearest: Option<Found>,
-    nearest_of_all: Option<Found>,
-    farthest: Option<Found>,
-    num_looks: usize,
-    /// Number of variants that the task did not allow.
-    num_refused: u64,
-    /// Whether the search has covered everything.
-    is_complete: bool,
-}
-
 impl<'a, D: FnMut(&Variant) -> f64> Search<'a, D> {
     /// Searches every combination of choices and all of the ranges until the target is met.
     fn whole(&mut self, free: &FreeParameters<'a>) {
@@ -164,102 +129,5 @@ impl<'a, D: FnMut(&Variant) -> f64> Search<'a, D> {
             }
         }
         self.is_complete &= cut.len() <= most;
-    }
-
-    /// Searches one combination of choices in every direction; true if the target was met.
-    fn scan(&mut self, space: &Space<'a>, combination: &Changes, budget: usize) -> bool {
-        let scan = Scan {
-            search: self,
-            space,
-            combination,
-            budget,
-        };
-        scan.run()
-    }
-
-    /// Whether the nearest variant so far meets the target.
-    fn is_met(&self) -> bool {
-        self.nearest.as_ref().is_some_and(|nearest| self.meets(nearest))
-    }
-
-    /// Measures a variant and records it; `None` if the task does not allow it.
-    fn look(&mut self, changes: Changes) -> Option<Found> {
-        self.num_looks += 1;
-        let Ok(variant) = self.from.with(&self.name, changes) else {
-            self.num_refused += 1;
-            return None;
-        };
-        let distance = (self.distance)(&variant);
-        let found = Found { variant, distance };
-        let miss = |found: &Found| (found.distance - self.target).abs();
-        for nearest in [&mut self.nearest, &mut self.nearest_of_all] {
-            if nearest.as_ref().is_none_or(|nearest| miss(&found) < miss(nearest)) {
-                *nearest = Some(found.clone());
-            }
-        }
-        if self
-            .farthest
-            .as_ref()
-            .is_none_or(|farthest| found.distance > farthest.distance)
-        {
-            self.farthest = Some(found.clone());
-        }
-        Some(found)
-    }
-
-    /// The distance of a variant that need not meet the requirements; `None` if its worlds cannot be drawn.
-    fn beyond(&mut self, changes: Changes) -> Option<f64> {
-        self.num_looks += 1;
-        let variant = self.from.beyond_requirements(&self.name, changes).ok()?;
-        Some((self.distance)(&variant))
-    }
-
-    fn meets(&self, found: &Found) -> bool {
-        (found.distance - self.target).abs() <= self.tolerance
-    }
-
-    /// The nearest variant if it meets the target, else the error that describes the search's outcome.
-    fn finish(&mut self) -> Result<Found, GeneratorError> {
-        let (target, variant) = (self.target, self.from.id());
-        let (Some(nearest), Some(farthest)) = (self.nearest_of_all.clone(), self.farthest.clone()) else {
-            return Err(GeneratorError::NothingToVary {
-                variant,
-                asked: "variants that the task allows".to_owned(),
-            });
-        };
-        if (nearest.distance - target).abs() <= self.tolerance {
-            return Ok(nearest);
-        }
-        if self.is_complete && farthest.distance < target {
-            let values = shown(self.from, &farthest.variant);
-            return Err(GeneratorError::TooFar {
-                variant,
-                target,
-                farthest: farthest.distance,
-                values,
-            });
-        }
-        let values = shown(self.from, &nearest.variant);
-        Err(GeneratorError::NoneBetween {
-            variant,
-            target,
-            tolerance: self.tolerance,
-            nearest: nearest.distance,
-            values,
-        })
-    }
-}
-
-/// The values in which a variant differs from another, as text.
-fn shown(from: &Variant, to: &Variant) -> String {
-    let different = to
-        .values()
-        .iter()
-        .filter(|(name, value)| from.value(name) != Some(*value));
-    let shown: Vec<String> = different.map(|(name, value)| format!("{name} = {value}")).collect();
-    if shown.is_empty() {
-        "as it stands".to_owned()
-    } else {
-        shown.join(", ")
     }
 }

@@ -8,9 +8,10 @@ use std::collections::HashMap;
 
 use driftworld_spec::{Domain, Value, Variant};
 
+use super::search::{Changes, MOST_COMBINATIONS, Search, with};
 use super::space::Space;
 use super::straight::ends_of;
-use super::{Changes, Free, FreeParameters, MOST_COMBINATIONS, Search, with};
+use super::subject::{Free, FreeParameters};
 
 /// Widest range of integers that are tried one by one.
 const WIDEST_LIST: f64 = 128.0;

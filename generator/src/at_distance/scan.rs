@@ -6,8 +6,8 @@
 
 use driftworld_spec::Variant;
 
+use super::search::{Changes, Search, with};
 use super::space::{Axis, Point, Space};
-use super::{Changes, Search, with};
 
 /// Points on each line, except the first.
 const PARTS: usize = 32;
@@ -46,6 +46,19 @@ fn directions(axes: usize) -> Vec<Vec<(usize, f64)>> {
 
 /// An allowed point, and its distance.
 type Seen = (Point, f64);
+
+impl<'a, D: FnMut(&Variant) -> f64> Search<'a, D> {
+    /// Searches one combination of choices in every direction; true if the target was met.
+    pub(super) fn scan(&mut self, space: &Space<'a>, combination: &Changes, budget: usize) -> bool {
+        let scan = Scan {
+            search: self,
+            space,
+            combination,
+            budget,
+        };
+        scan.run()
+    }
+}
 
 /// A search through one combination of choices.
 pub(super) struct Scan<'s, 'a, D> {

@@ -2,7 +2,8 @@
 
 use driftworld_spec::{Domain, ParameterType, Value, Variant};
 
-use super::{Changes, Free};
+use super::search::Changes;
+use super::subject::Free;
 
 /// One number that may move.
 pub(super) struct Axis {

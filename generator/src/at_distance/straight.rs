@@ -2,7 +2,8 @@
 
 use driftworld_spec::{Domain, Parameter, ParameterType, Value, Variant};
 
-use super::{Changes, Found, Free, Search, with};
+use super::search::{Changes, Found, Search, with};
+use super::subject::Free;
 use crate::interpolation::interpolate;
 
 /// Maximum number of corners of the ranges to try if distances do not add up.
