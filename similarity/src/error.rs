@@ -130,10 +130,12 @@ pub enum SimilarityError {
     #[error("order: found no items, expected at least 1")]
     Empty,
     /// An unknown method.
-    #[error("method: found {found:?}, {}", crate::Method::advice_for(found))]
+    #[error("method: found {found:?}, {advice}")]
     UnknownMethod {
         /// The word.
         found: String,
+        /// What to write instead.
+        advice: String,
     },
     /// Lists to correlate have different lengths.
     #[error("correlation: found lists of {a} and {b} numbers, expected as many in both")]
@@ -407,6 +409,7 @@ mod tests {
             SimilarityError::Empty,
             SimilarityError::UnknownMethod {
                 found: "shortest".into(),
+                advice: "expected one of nearest, exact".into(),
             },
             SimilarityError::CorrelationLengths { a: 3, b: 2 },
             SimilarityError::CorrelationTooFew { found: 2, needed: 3 },

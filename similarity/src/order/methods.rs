@@ -55,18 +55,17 @@ impl Method {
     pub fn name(self) -> &'static str {
         self.into()
     }
-
-    /// The suggestion for an unknown method name.
-    pub(crate) fn advice_for(word: &str) -> String {
-        removed(WordKind::Order, word).unwrap_or_else(|| {
-            let names: Vec<&str> = Self::ALL.iter().map(|method| method.name()).collect();
-            format!("expected one of {}", names.join(", "))
-        })
-    }
 }
 
 fn unknown(word: &str) -> SimilarityError {
-    SimilarityError::UnknownMethod { found: word.to_owned() }
+    let advice = removed(WordKind::Order, word).unwrap_or_else(|| {
+        let names: Vec<&str> = Method::ALL.iter().map(|method| method.name()).collect();
+        format!("expected one of {}", names.join(", "))
+    });
+    SimilarityError::UnknownMethod {
+        found: word.to_owned(),
+        advice,
+    }
 }
 
 #[cfg(test)]
