@@ -1,5 +1,6 @@
 //! [`Agent`]: the interface of agents, and the task label that they may see.
 
+use super::steering::in_space;
 use crate::sim::{Action, Environment, Step};
 
 /// Something that acts in an environment.
@@ -45,4 +46,11 @@ pub struct Label {
     pub of: usize,
     /// Whether the label is part of the observation; otherwise it is given separately from the observation.
     pub observed: bool,
+}
+
+impl Environment {
+    /// The action of this world that is nearest to a speed in m/s, a clockwise turn rate in °/s, and whether to interact.
+    pub fn action_near(&self, speed: f64, turn: f64, interact: bool) -> Action {
+        in_space([speed, turn, if interact { 1.0 } else { 0.0 }], self.sim())
+    }
 }

@@ -17,6 +17,7 @@ mod scripted;
 mod shield;
 mod steering;
 mod still;
+mod tiers;
 
 pub use agent::{Agent, Label};
 pub use network::NetworkAgent;

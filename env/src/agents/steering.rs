@@ -3,7 +3,7 @@
 use driftworld_spec::{ActionModel, ActionSpace, EndCondition, MotionModel, Object, World, Zone};
 
 use super::route::Route;
-use crate::sim::{Action, Environment, SimRef};
+use crate::sim::{Action, SimRef};
 
 /// Distance in metres within which it walks straight at an object, ignoring the path.
 const NEAR: f32 = 2.0;
@@ -226,13 +226,6 @@ pub(super) fn in_space_where(numbers: [f64; 3], sim: SimRef, is_allowed: impl Fn
     });
     let nearest = misses.min_by(|(_, a), (_, b)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
     Action::Discrete(nearest.map_or(0, |(row, _)| row))
-}
-
-impl Environment {
-    /// The action of this world that is nearest to a speed in m/s, a clockwise turn rate in °/s, and whether to interact.
-    pub fn action_near(&self, speed: f64, turn: f64, interact: bool) -> Action {
-        in_space([speed, turn, if interact { 1.0 } else { 0.0 }], self.sim())
-    }
 }
 
 /// Converts a speed and a turn to a waypoint: the point that the velocity reaches in one step.

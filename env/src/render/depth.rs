@@ -1,6 +1,6 @@
 //! Converts depth to millimetres and grey; [`DepthForm`] names the number formats of a batch's depth images.
 
-/// The number format of a batch's depth images, named like NumPy's dtypes.
+/// The number format of a batch's depth images, named like the dtypes of `NumPy`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, strum::EnumString)]
 pub enum DepthForm {
     /// Metres, as rendered.

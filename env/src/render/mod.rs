@@ -18,6 +18,7 @@ mod hand;
 mod hidden;
 mod kind;
 mod lanes;
+mod material;
 mod natural;
 mod patch;
 mod picture;

@@ -9,6 +9,7 @@ use super::cpu::{CpuRenderer, category};
 use super::daylight::Daylight;
 use super::frame::CATEGORY_MAP;
 use super::lanes::Lanes;
+use super::material::{GROUND, MATERIAL_SHIFT, WALLS};
 use super::patch::{Patch, Sheet};
 use super::raster::{Shading, dot, draw_block};
 use super::rows::{Rows, packed};
@@ -23,21 +24,6 @@ use crate::camera::Camera;
 use crate::looks::NaturalLooks;
 use crate::scene::{Item, PanelGroup, Scene};
 
-/// Position in a packed pixel of the covering's number, above the category; 0 means no covering.
-pub(super) const MATERIAL_SHIFT: u32 = 27;
-pub(super) const MATERIAL: u32 = 31 << MATERIAL_SHIFT;
-
-/// Bits of a category that the map's pixels never have: if all are 0, the number above them is that of the covering; otherwise
-/// it is the item's class, or 0.
-pub(super) const NO_MAP: u32 = 6 << 24;
-
-/// Bare ground in shadow, on which only the shadow was drawn.
-pub(super) const BARE: u32 = 1;
-/// Zones on the ground; the next number is for those in shadow.
-pub(super) const GROUND: u32 = 2;
-pub(super) const GROUND_IN_SHADOW: u32 = GROUND + 1;
-/// Walls that face along x; the next numbers are for those along y, and for their tops.
-pub(super) const WALLS: u32 = 4;
 /// Number of classes that fit into a label.
 const CLASSES: u16 = 32;
 

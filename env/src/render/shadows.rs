@@ -5,7 +5,7 @@ use super::canvas::{Canvas, Triangle, at_top};
 use super::daylight::Daylight;
 use super::hidden::Hidden;
 use super::lanes::Lanes;
-use super::natural::{BARE, GROUND, MATERIAL, MATERIAL_SHIFT, NO_MAP};
+use super::material::{BARE, GROUND, MATERIAL, MATERIAL_SHIFT, NO_MAP};
 use super::raster::Shading;
 use super::view::{NEAR, Placement, Pose, View};
 use super::visibility::{Drawable, Visible};

@@ -3,42 +3,13 @@
 use driftworld_spec::{Door, MotionModel, World};
 
 use super::collision_world::slot;
+use super::door_state::ticks_of;
 use super::groups::{GHOST, SOLID};
 use super::state::SimState;
 use super::views::Views;
 
 /// Overlap in metres from which a body counts as standing in a door.
 const INSIDE: f64 = 1e-6;
-
-/// A door's state besides being open or closed.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct DoorState {
-    /// Index of its object.
-    pub(super) object: usize,
-    /// Whether its key was used.
-    pub(super) unlocked: bool,
-    /// The time step from which it closes as soon as nothing stands in it.
-    pub(super) closes_at: Option<u64>,
-}
-
-impl DoorState {
-    pub(super) fn new(index: usize, door: &Door, time_step: f64) -> Self {
-        Self {
-            object: index,
-            unlocked: false,
-            closes_at: door
-                .closes_after
-                .filter(|_| door.open)
-                .map(|seconds| ticks_of(seconds, time_step)),
-        }
-    }
-}
-
-/// Number of time steps until `seconds` have passed: at least one.
-fn ticks_of(seconds: f64, time_step: f64) -> u64 {
-    // Slightly less, because 0.1 is inexact in binary: 60 s are 600 time steps of 0.1 s.
-    ((seconds / time_step - 1e-6).ceil() as u64).max(1)
-}
 
 /// Opens a door. Opening an open door restarts its closing timer.
 pub(super) fn open(world: &World, state: &mut SimState, views: &mut Views, index: usize) {

@@ -2,10 +2,10 @@
 
 use driftworld_spec::{Object, StateFeature, Stimulus, World};
 
+use super::areas::Zones;
 use super::environment::Environment;
 use super::state::{ObjectState, SimState};
 use super::termination::pays_now;
-use super::zones::Zones;
 
 impl Environment {
     /// The numbers of the requested features, in the world's order, followed by its instruction. The default features are

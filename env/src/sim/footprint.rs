@@ -197,6 +197,20 @@ fn convex_hull(mut points: Vec<Point>) -> Vec<Point> {
     hull
 }
 
+/// The squared distance between a point and a line segment.
+pub(super) fn squared_distance(point: Point, from: Point, to: Point) -> f64 {
+    let way = [to[0] - from[0], to[1] - from[1]];
+    let off = [point[0] - from[0], point[1] - from[1]];
+    let length = way[0] * way[0] + way[1] * way[1];
+    let share = if length > 0.0 {
+        ((off[0] * way[0] + off[1] * way[1]) / length).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    let [x, y] = [0, 1].map(|axis| off[axis] - way[axis] * share);
+    x * x + y * y
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -10,6 +10,7 @@ use super::doors::advance_doors;
 use super::encounters::Encounters;
 use super::energy::give_energy;
 use super::event::{Effect, Event, Step};
+use super::footprint::squared_distance;
 use super::rng::ObjectRng;
 use super::sim_ref::SimRef;
 use super::state::SimState;
@@ -269,18 +270,4 @@ fn is_range(sim: SimRef, index: usize, squared: f64, reach: f64) -> bool {
     let height = f64::from(item.body.height * item.scale);
     let dz = (height - sim.world.agent_params.agent_height) / 2.0;
     squared + dz * dz < reach * reach
-}
-
-/// The squared distance between a point and a line segment.
-pub(super) fn squared_distance(point: [f64; 2], from: [f64; 2], to: [f64; 2]) -> f64 {
-    let way = [to[0] - from[0], to[1] - from[1]];
-    let off = [point[0] - from[0], point[1] - from[1]];
-    let length = way[0] * way[0] + way[1] * way[1];
-    let share = if length > 0.0 {
-        ((off[0] * way[0] + off[1] * way[1]) / length).clamp(0.0, 1.0)
-    } else {
-        0.0
-    };
-    let [x, y] = [0, 1].map(|axis| off[axis] - way[axis] * share);
-    x * x + y * y
 }

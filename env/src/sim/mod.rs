@@ -2,11 +2,13 @@
 
 mod action;
 mod agent_motion;
+mod areas;
 mod body_shape;
 mod broad_phase;
 mod budget;
 mod collision_world;
 mod contact;
+mod door_state;
 mod doors;
 mod editing;
 mod encounters;
@@ -23,6 +25,7 @@ mod mover;
 mod moving_body;
 mod neighbours;
 mod observation;
+mod obstacle;
 mod outline;
 mod presence;
 mod progress;
@@ -51,10 +54,11 @@ pub use action::Action;
 pub(crate) use action::{Intent, in_units};
 pub use environment::Environment;
 pub use event::{Effect, EndedBy, Event, Step};
+pub use obstacle::Obstacle;
 pub(crate) use sim_ref::SimRef;
 pub use snapshot::Snapshot;
 pub use state::{AgentState, ObjectState};
 pub(crate) use things::{answering, put_down_place};
 pub(crate) use transplant::Unlike;
-pub use walls::Obstacle;
+
 pub use warning::Warning;

@@ -2,7 +2,7 @@
 
 use driftworld_spec::{LastEvent, Object, World};
 
-use super::doors::DoorState;
+use super::door_state::DoorState;
 use super::mover::Mover;
 use super::pushed::Pushed;
 use super::rng::{Identities, ObjectRng, Seed};

@@ -2,9 +2,9 @@
 
 use driftworld_spec::{Object, World};
 
+use super::areas::Zones;
 use super::collision_world::CollisionWorld;
 use super::state::{ObjectState, SimState};
-use super::zones::Zones;
 use crate::assets::Catalogue;
 use crate::scene::Scene;
 

@@ -2,26 +2,9 @@
 
 use driftworld_spec::World;
 
+use super::obstacle::Obstacle;
 use super::sim_ref::SimRef;
 use crate::polygon::is_near_or_inside;
-
-/// An obstacle where the agent should stand.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, strum::Display)]
-#[non_exhaustive]
-pub enum Obstacle {
-    /// The position is outside the arena, or not finite.
-    #[strum(to_string = "no ground of the arena")]
-    Outside,
-    /// A wall, or a region that cannot be entered.
-    #[strum(to_string = "a wall")]
-    Wall,
-    /// A solid object.
-    #[strum(to_string = "object {index}")]
-    Object {
-        /// Its index in the world.
-        index: usize,
-    },
-}
 
 /// The part of the arena's boundary or walls that is in the way of a round body with this radius in metres.
 pub(super) fn obstacle(world: &World, position: [f64; 2], radius: f64) -> Option<Obstacle> {

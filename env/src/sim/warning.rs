@@ -2,7 +2,7 @@
 
 use driftworld_spec::Enclosure;
 
-use super::walls::Obstacle;
+use super::obstacle::Obstacle;
 
 /// A setting of a world that may not be as intended.
 #[derive(Clone, Debug, PartialEq, Eq, strum::Display)]

@@ -3,7 +3,7 @@
 
 use driftworld_spec::{EndCondition, Object, Stimulus};
 
-use super::super::on_rails::{reacts_to, wanted};
+use super::super::tiers::{reacts_to, wanted};
 use super::plan::{can_interact, usable};
 use crate::sim::SimRef;
 

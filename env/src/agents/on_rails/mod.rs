@@ -1,15 +1,17 @@
 //! [`OnRailsAgent`] knows the map and visits whatever pays: a practical ceiling for learners. It also steers worlds on rails.
 
+mod agent;
+
 use driftworld_spec::{Object, RailsProgress, Stimulus, World, Zone};
 
-use super::Agent;
 use super::nearest::Goal;
 use super::planner::Planner;
 use super::route::Route;
-use super::steering::{Purpose, Target, avoided, distance, fails, walk};
+use super::steering::{Purpose, Target, avoided, distance, walk};
+use super::tiers::{reacts_to, tiers, wanted};
 use crate::ground;
 use crate::scene::Scene;
-use crate::sim::{Action, Environment, SimRef};
+use crate::sim::SimRef;
 
 /// Steps after which an unreached target is postponed.
 const PATIENCE: u32 = 150;
@@ -242,34 +244,6 @@ impl OnRailsAgent {
     }
 }
 
-impl Agent for OnRailsAgent {
-    fn act(&mut self, environment: &Environment) -> Action {
-        let sim = environment.sim();
-        let step = self.steer(sim);
-        self.planner.shield().in_space(step, sim)
-    }
-
-    // The route checks its cached ground before using it, so it can be kept.
-    fn begin(&mut self, _seed: u64) {
-        let route = std::mem::take(&mut self.route);
-        let mut planner = std::mem::take(&mut self.planner);
-        planner.begin();
-        *self = Self {
-            route,
-            planner,
-            ..Self::default()
-        };
-    }
-
-    fn learns(&self) -> bool {
-        false
-    }
-
-    fn frozen(&self) -> Option<Box<dyn Agent + Send>> {
-        Some(Box::new(self.clone()))
-    }
-}
-
 /// Whether each object was given up; empty if none was.
 struct GivenUp(Vec<bool>);
 
@@ -288,38 +262,6 @@ impl GivenUp {
     }
 }
 
-/// Objects worth going to, by index: those that pay now without ending the episode; if there are none, those that pay
-/// and end it as a success; failing that, those that only end it as a success.
-pub(super) fn wanted(sim: SimRef) -> Vec<usize> {
-    tiers(sim).into_iter().find(|tier| !tier.is_empty()).unwrap_or_default()
-}
-
-/// Objects worth going to, by index, in tiers: those that pay without ending the episode, those that pay and end it as a
-/// success, those that only end it as a success. Objects whose touch is a failure are left out.
-fn tiers(sim: SimRef) -> [Vec<usize>; 3] {
-    let world = sim.world;
-    let states = sim.objects();
-    // In a sequence only the first remaining object pays.
-    let left = world.objects.iter().zip(states).filter(|(_, state)| !state.collected);
-    let first = left.filter_map(|(object, _)| object.order).min();
-    let in_turn = |index: &usize| {
-        let order = world.objects[*index].order;
-        order.is_none_or(|own| first.is_none_or(|first| own <= first))
-    };
-    let pays =
-        |index: &usize| world.objects[*index].is_target() && states[*index].present && states[*index].reward > 0.0;
-    let is_safe = |index: &usize| !fails(world, &world.objects[*index]);
-    let ends = |index: &usize| {
-        let mut conditions = world.rules.success.iter();
-        conditions.any(|condition| condition.is_touch_of(&world.objects[*index]))
-    };
-    let paying = (0..states.len()).filter(pays).filter(in_turn).filter(is_safe);
-    let (last, before): (Vec<usize>, Vec<usize>) = paying.partition(ends);
-    let is_left = |index: &usize| states[*index].present && !last.contains(index);
-    let ending = (0..states.len()).filter(ends).filter(is_left).collect();
-    [before, last, ending]
-}
-
 /// Whether the agent stands where a paying object would respawn.
 fn stands_in_the_way(sim: SimRef) -> bool {
     let here = sim.agent().position;
@@ -334,8 +276,4 @@ fn stands_in_the_way(sim: SimRef) -> bool {
 
 fn back(sim: SimRef) -> [f64; 3] {
     [-sim.world.agent_params.max_linear_speed / 2.0, 0.0, 0.0]
-}
-
-pub(super) fn reacts_to(object: &Object, stimulus: Stimulus) -> bool {
-    object.reward_stimulus.contains(&stimulus) || object.reward_once_stimulus.contains(&stimulus)
 }

@@ -1,0 +1,43 @@
+//! Chooses the objects that are worth going to.
+
+use driftworld_spec::{Object, Stimulus};
+
+use super::steering::fails;
+use crate::sim::SimRef;
+
+/// Objects worth going to, by index: those that pay now without ending the episode; if there are none, those that pay
+/// and end it as a success; failing that, those that only end it as a success.
+pub(super) fn wanted(sim: SimRef) -> Vec<usize> {
+    tiers(sim).into_iter().find(|tier| !tier.is_empty()).unwrap_or_default()
+}
+
+/// Objects worth going to, by index, in tiers: those that pay without ending the episode, those that pay and end it as a
+/// success, those that only end it as a success. Objects whose touch is a failure are left out.
+pub(super) fn tiers(sim: SimRef) -> [Vec<usize>; 3] {
+    let world = sim.world;
+    let states = sim.objects();
+    // In a sequence only the first remaining object pays.
+    let left = world.objects.iter().zip(states).filter(|(_, state)| !state.collected);
+    let first = left.filter_map(|(object, _)| object.order).min();
+    let in_turn = |index: &usize| {
+        let order = world.objects[*index].order;
+        order.is_none_or(|own| first.is_none_or(|first| own <= first))
+    };
+    let pays =
+        |index: &usize| world.objects[*index].is_target() && states[*index].present && states[*index].reward > 0.0;
+    let is_safe = |index: &usize| !fails(world, &world.objects[*index]);
+    let ends = |index: &usize| {
+        let mut conditions = world.rules.success.iter();
+        conditions.any(|condition| condition.is_touch_of(&world.objects[*index]))
+    };
+    let paying = (0..states.len()).filter(pays).filter(in_turn).filter(is_safe);
+    let (last, before): (Vec<usize>, Vec<usize>) = paying.partition(ends);
+    let is_left = |index: &usize| states[*index].present && !last.contains(index);
+    let ending = (0..states.len()).filter(ends).filter(is_left).collect();
+    [before, last, ending]
+}
+
+/// Whether an object pays for this stimulus.
+pub(super) fn reacts_to(object: &Object, stimulus: Stimulus) -> bool {
+    object.reward_stimulus.contains(&stimulus) || object.reward_once_stimulus.contains(&stimulus)
+}

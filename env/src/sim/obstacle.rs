@@ -1,0 +1,19 @@
+//! [`Obstacle`]: what is in the way of a body.
+
+/// An obstacle where the agent should stand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, strum::Display)]
+#[non_exhaustive]
+pub enum Obstacle {
+    /// The position is outside the arena, or not finite.
+    #[strum(to_string = "no ground of the arena")]
+    Outside,
+    /// A wall, or a region that cannot be entered.
+    #[strum(to_string = "a wall")]
+    Wall,
+    /// A solid object.
+    #[strum(to_string = "object {index}")]
+    Object {
+        /// Its index in the world.
+        index: usize,
+    },
+}
