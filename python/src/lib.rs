@@ -16,6 +16,7 @@ mod elements;
 mod errors;
 mod files;
 mod interruptible;
+mod json;
 mod logs;
 mod options;
 mod overrides;

@@ -13,9 +13,10 @@ use pyo3::types::PyDict;
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
 
-use crate::document::{json_to_py, to_py};
+use crate::document::to_py;
 use crate::errors::{Result, refused};
 use crate::interruptible::run_detached;
+use crate::json::json_to_py;
 use crate::options::Options;
 use crate::rounding::detach;
 
