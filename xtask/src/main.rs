@@ -15,6 +15,7 @@ mod schemas;
 mod size;
 mod sources;
 mod stage;
+mod stages;
 mod studio;
 mod unity;
 mod unreached;
@@ -25,7 +26,8 @@ use std::process::ExitCode;
 
 use process::{Result, Workspace, output};
 use serde_json::Value;
-use stage::{STAGES, Stage};
+use stage::Stage;
+use stages::STAGES;
 
 const USAGE: &str = "\
 Usage:
@@ -49,7 +51,7 @@ fn main() -> ExitCode {
             Ok(())
         }
         ["test", "--list"] => {
-            stage::list();
+            stages::list();
             Ok(())
         }
         ["schemas"] => workspace(false).and_then(|workspace| schemas::rewrite(&workspace)),
@@ -60,7 +62,7 @@ fn main() -> ExitCode {
             Ok(())
         }),
         _ => match parse(&words) {
-            Ok((stages, is_full)) => workspace(is_full).and_then(|workspace| stage::run_all(&workspace, &stages)),
+            Ok((stages, is_full)) => workspace(is_full).and_then(|workspace| stages::run_all(&workspace, &stages)),
             Err(complaint) => {
                 eprintln!("xtask: {complaint}\n\n{USAGE}");
                 return ExitCode::from(2);
