@@ -10,7 +10,8 @@ use driftworld_atomic_files::ScratchFolder;
 use driftworld_text::{ShownPath, counted};
 use serde_json::json;
 
-use super::{Failure, output};
+use super::output;
+use crate::Failure;
 
 /// Test a curriculum with agents whose scores are known.
 ///

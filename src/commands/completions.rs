@@ -3,7 +3,8 @@
 use clap::Args;
 use clap_complete::{Shell, generate};
 
-use super::{Failure, output};
+use super::output;
+use crate::Failure;
 
 /// Print completions for bash, zsh, fish, elvish or PowerShell.
 #[derive(Args)]

@@ -7,9 +7,10 @@ use crate::spec::Scenario;
 use clap::Args;
 use driftworld_text::ShownPath;
 
-use super::{Failure, output, overwrite};
+use super::output;
 use crate::scenarios::ScenarioFile;
 use crate::worlds::WorldRequest;
+use crate::{Failure, overwrite};
 
 /// Convert worlds and scenarios of L2Explorer.
 ///

@@ -7,7 +7,8 @@ use clap::Args;
 use serde_json::{Value, json};
 
 use super::optional::FEATURES;
-use super::{Failure, output};
+use super::output;
+use crate::Failure;
 
 /// Report which renderers and features work on this machine.
 ///

@@ -7,7 +7,8 @@ use crate::elements::{ElementsOutcome, ElementsRequest, VariantElements, element
 use crate::spec::Element;
 use crate::table::table;
 
-use super::{Failure, output};
+use super::output;
+use crate::Failure;
 
 /// Test what variants change: state, action, reward and so on.
 ///

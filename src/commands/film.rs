@@ -13,7 +13,8 @@ use serde_json::json;
 use super::agent::AgentArg;
 use super::assets::LibraryChoice;
 use super::film_choice::{self, summary, tell};
-use super::{Failure, output};
+use super::output;
+use crate::Failure;
 
 /// Default maximum number of steps of a film in a world without a step limit: 5 minutes at 0.1 s per step.
 const MOST_WITHOUT_LIMIT: u32 = 3000;

@@ -7,7 +7,7 @@
 use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
 use std::sync::{Arc, LazyLock, Mutex, MutexGuard, OnceLock, PoisonError};
 
-use super::Failure;
+use crate::Failure;
 use system::follow_signals;
 
 /// Set by the first signal while a command listens.

@@ -54,7 +54,7 @@ use clap::{ColorChoice, CommandFactory, FromArgMatches, Parser, Subcommand, Valu
 use driftworld_text::{WordKind, is_unprintable, printable, removed};
 
 pub(crate) use crate::Failure;
-use crate::{documents, log_folders, matrix_file, overwrite, style};
+use crate::{documents, overwrite, style};
 
 /// The arguments of the running command.
 static WORDS: Mutex<Vec<OsString>> = Mutex::new(Vec::new());

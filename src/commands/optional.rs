@@ -1,7 +1,7 @@
 //! Optional parts of a build, which few users need and which are slow to compile: each is a Cargo feature.
 
 #[cfg(any(test, not(feature = "gltf")))]
-use super::Failure;
+use crate::Failure;
 
 /// The features, and whether this build has them.
 pub(crate) const FEATURES: [(&str, bool); 3] = [

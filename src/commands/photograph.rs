@@ -11,7 +11,8 @@ use crate::spec::{Modality, Object, World};
 use clap::Args;
 use serde::Serialize;
 
-use super::{Failure, output};
+use super::output;
+use crate::Failure;
 use crate::modality::{self, metres_per_level};
 use crate::numbers::documented;
 use crate::worlds::WorldRequest;

@@ -8,7 +8,8 @@ use clap::{Args, ValueEnum};
 
 use super::agent::AgentArg;
 use super::assets::LibraryChoice;
-use super::{Failure, output};
+use super::output;
+use crate::Failure;
 use crate::contact_sheet::ways;
 use crate::episode_frames::{recorded, rows};
 use crate::film::{FilmModality, FilmOptions, FilmView};

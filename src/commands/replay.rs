@@ -11,7 +11,8 @@ use serde_json::json;
 
 use super::assets::LibraryChoice;
 use super::film_choice::{self, summary, tell};
-use super::{Failure, output};
+use super::output;
+use crate::Failure;
 
 /// Run recorded episodes once more, check them, and draw them.
 ///

@@ -19,7 +19,8 @@ use driftworld_text::{ShownPath, printable, when};
 use super::agent::{AgentArg, NamedAgent};
 use super::assets::LibraryChoice;
 use super::interrupt::Interrupt;
-use super::{Failure, output};
+use super::output;
+use crate::Failure;
 use crate::table::table;
 
 /// Maximum number of experiences that run in parallel.

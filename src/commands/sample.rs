@@ -15,7 +15,8 @@ use super::assets::LibraryChoice;
 use super::interrupt::Interrupt;
 use crate::{Failure, worlds};
 
-use super::{output, overwrite};
+use super::output;
+use crate::overwrite;
 
 /// Maximum number of worlds drawn at once while streaming.
 const CHUNK: u64 = 1024;

@@ -8,7 +8,8 @@ use crate::scales::{AgentLevel, BestAgent, ScalesFile, ScalesRequest, num_varian
 use crate::table::table;
 use crate::tasks::built_in_names;
 
-use super::{Failure, output};
+use super::output;
+use crate::Failure;
 
 /// Measure the floor and the ceiling of each variant.
 ///

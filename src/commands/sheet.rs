@@ -7,7 +7,8 @@ use crate::tasks;
 use clap::Args;
 use driftworld_text::ShownPath;
 
-use super::{Failure, output};
+use super::output;
+use crate::Failure;
 use crate::contact_sheet::{Look, Shown, contact_sheet};
 use crate::contents::Contents;
 use crate::documents;

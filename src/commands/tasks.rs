@@ -8,7 +8,8 @@ use clap::{Args, Subcommand};
 use driftworld_text::{NO_BREAK, first_of, one_line, printable, whole};
 use serde_json::json;
 
-use super::{Failure, output};
+use super::output;
+use crate::Failure;
 use crate::table::table;
 use crate::value_words::short;
 

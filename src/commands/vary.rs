@@ -9,7 +9,8 @@ use crate::{numbers, tasks};
 use clap::Args;
 use serde_json::{Map, Value, json};
 
-use super::{Failure, output, overwrite};
+use super::output;
+use crate::{Failure, overwrite};
 
 /// Find a variant at a given distance from another.
 ///

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use crate::env::{Library, MAX_IMPORT_BYTES};
 
-use super::super::Failure;
+use crate::Failure;
 
 /// Refuses to overwrite a file that is not a library, such as a model.
 pub(super) fn check_output(path: &Path) -> Result<(), Failure> {

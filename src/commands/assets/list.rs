@@ -8,7 +8,8 @@ use crate::spec::Model;
 use clap::Args;
 use serde_json::{Value, json};
 
-use super::super::{Failure, output};
+use super::super::output;
+use crate::Failure;
 use crate::table::table;
 
 /// List the built-in classes, or the models in libraries.

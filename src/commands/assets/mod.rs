@@ -11,7 +11,7 @@ pub(crate) use source::LibraryChoice;
 
 use clap::{Args, Subcommand};
 
-use super::Failure;
+use crate::Failure;
 
 /// Pack glTF models into asset libraries, and inspect them.
 #[derive(Args)]

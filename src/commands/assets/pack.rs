@@ -12,11 +12,11 @@ use clap::Args;
 #[cfg(feature = "gltf")]
 use driftworld_text::ShownPath;
 
-use super::super::Failure;
 #[cfg(feature = "gltf")]
 use super::super::output;
 #[cfg(feature = "gltf")]
 use super::{gltf, list};
+use crate::Failure;
 
 /// Pack glTF files into a library, with levels of detail and colliders.
 #[derive(Args)]

@@ -13,8 +13,9 @@ use crate::spec::{Model, Object, Style, WorldDraft};
 use clap::Args;
 use driftworld_text::counted;
 
-use super::super::{Failure, output};
+use super::super::output;
 use super::LibraryChoice;
+use crate::Failure;
 use crate::report::picture::{Picture, SheetRow, sheet};
 
 /// Draw the models of a class, one model from four sides at each level of detail, or some of each built-in class.

@@ -4,8 +4,9 @@ use std::path::{Path, PathBuf};
 
 use driftworld_text::ShownPath;
 
-use crate::commands::{Failure, output, overwrite};
+use crate::commands::output;
 use crate::spec::Scenario;
+use crate::{Failure, overwrite};
 
 /// Refuses standard output and files as the folder of several scenarios.
 pub(super) fn refuse_no_folder(path: &Path) -> Result<(), Failure> {

@@ -18,9 +18,10 @@ use serde_json::json;
 
 use super::assets::LibraryChoice;
 use super::order::OrderArgs;
+use super::output;
 use super::sample::Mix;
-use super::{Failure, output, overwrite};
 use crate::numbers::{self, documented};
+use crate::{Failure, overwrite};
 use folders::write_into;
 use tables::blocks;
 pub(crate) use tables::choices;

@@ -7,7 +7,7 @@ use crate::design::{Evidence, PairOptimum};
 use crate::similarity::{Distance, DistanceMatrix};
 use crate::spec::{Block, BlockKind, By, Element, Phase, Regime, Scenario, Variant};
 
-use crate::commands::Failure;
+use crate::Failure;
 use crate::table::table;
 use crate::tasks;
 

@@ -22,8 +22,9 @@ use super::agent::AgentArg;
 use super::curriculum::choices;
 use effects::effects_table;
 
+use super::output;
 use super::run::{LifetimeRun, processors};
-use super::{Failure, output};
+use crate::Failure;
 use crate::contact_sheet::{self, ways};
 use crate::report::picture::heat_map;
 use crate::table::table;

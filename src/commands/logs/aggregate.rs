@@ -6,10 +6,11 @@ use std::path::PathBuf;
 use crate::metrics::{Delimiter, KeptRows, LogTable, read_log_with_texts};
 use clap::Args;
 
-use super::super::{Failure, log_folders, output, overwrite};
+use super::super::output;
 use super::count;
 use crate::numbers::documented;
 use crate::table::cells;
+use crate::{Failure, log_folders, overwrite};
 
 /// Write the rows of one or several logs as one table.
 ///

@@ -5,7 +5,7 @@ mod validate;
 
 use clap::{Args, Subcommand};
 
-use super::Failure;
+use crate::Failure;
 
 /// Check logs, or merge their rows into one table.
 ///

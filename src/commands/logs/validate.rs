@@ -7,8 +7,9 @@ use clap::Args;
 use driftworld_text::{ShownPath, printable};
 use serde_json::{Value, json};
 
-use super::super::{Failure, log_folders, output};
+use super::super::output;
 use super::{count, grouped};
+use crate::{Failure, log_folders};
 
 /// Report every problem of logs with its file and line.
 ///

@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use driftworld_text::ShownPath;
 
-use super::{Failure, output, overwrite};
+use super::output;
 use crate::spec::{TaskSpec, did_you_mean};
 use crate::tasks;
+use crate::{Failure, overwrite};
 
 /// Name and JSON of a small task whose descriptions explain each part.
 const SCAFFOLD: (&str, &str) = ("my_task", include_str!("scaffold.json"));

@@ -16,9 +16,10 @@ pub(crate) use arguments::OrderArgs;
 use compare::Comparison;
 
 use super::assets::LibraryChoice;
+use super::output;
 use super::weights::WeightArgs;
-use super::{Failure, matrix_file, output, overwrite};
 use crate::table::{cells, table};
+use crate::{Failure, matrix_file, overwrite};
 
 /// Order variants by their distances.
 ///

@@ -21,7 +21,8 @@ use self::terminal::RawTerminal;
 use super::assets::LibraryChoice;
 use super::film_choice::{self, summary};
 use super::interrupt::Interrupt;
-use super::{Failure, output};
+use super::output;
+use crate::Failure;
 
 /// Interval for polling the keyboard and drawing.
 const FRAME: Duration = Duration::from_millis(50);

@@ -10,7 +10,8 @@ use std::process::{Command, Stdio};
 use clap::Args;
 use driftworld_text::counted;
 
-use super::{Failure, output};
+use super::output;
+use crate::Failure;
 use crate::contents::Contents;
 use crate::{documents, output_file, tasks};
 use page::Page;

@@ -9,10 +9,11 @@ use crate::metrics::{NormalizationMethod, Options, SmoothingMethod, TransferMeth
 use crate::similarity::MAX_RELABELLINGS;
 use clap::Args;
 
-use super::{Failure, log_folders, matrix_file, output, overwrite};
+use super::output;
 use crate::numbers::documented;
 use crate::report::picture::scatter;
 use crate::scoring::{Experts, score_logs};
+use crate::{Failure, log_folders, matrix_file, overwrite};
 
 /// Test whether similar variants transferred more.
 ///
