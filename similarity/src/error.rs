@@ -409,7 +409,7 @@ mod tests {
             SimilarityError::Empty,
             SimilarityError::UnknownMethod {
                 found: "shortest".into(),
-                advice: "expected one of nearest, exact".into(),
+                advice: "expected one of nearest, exact, two-opt".into(),
             },
             SimilarityError::CorrelationLengths { a: 3, b: 2 },
             SimilarityError::CorrelationTooFew { found: 2, needed: 3 },

@@ -149,7 +149,7 @@ fn commands_in_the_readme_are_run() {
             ".ci/run runs no `{line}`"
         );
     }
-    assert_eq!(command(&second.text), "pip install ./python");
+    assert_eq!(command(&second.text), "pip install \"./python[learners]\"");
     assert!(read("xtask/src/python.rs").contains("\"install --quiet ./python\""));
 }
 

@@ -86,8 +86,8 @@ fn what_bands_are(scores: &LifetimeMetrics) -> String {
     format!(
         "Null band: the central 95% of values when {rows} are permuted across evaluations {NULL_PERMUTATIONS} times, as if the \
          agent never changed. An effect is named outside the band, with p at most {LARGEST_P}, and two standard errors over \
-         worlds (±) from no effect. mixed: less than {:.0}% of the effects of tasks or pairs point that way. no null: decided \
-         by learning, too, and not tested.",
+         worlds (±) from no effect. mixed: less than {:.0}% of the effects of tasks or pairs point that way. no null: \
+         permuting evaluations does not test that metric.",
         100.0 * AGREEING_PART
     )
 }
