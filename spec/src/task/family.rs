@@ -300,7 +300,7 @@ fn member_of(
     (own, declared)
 }
 
-/// A value as part of a name: letters, digits, `.`, `+` and `_`, and the minus sign of a real number.
+/// A value as part of a name: letters, digits, `.`, `+` and `_`, and the minus sign of a number.
 fn word(value: &Value, index: usize) -> String {
     let numbers = |numbers: &[f64]| numbers.iter().map(f64::to_string).collect::<Vec<_>>().join("_");
     match value {
@@ -309,6 +309,7 @@ fn word(value: &Value, index: usize) -> String {
         Value::Point(point) => numbers(point),
         Value::Vector(vector) => numbers(vector),
         Value::Number(number) => number.to_string(),
+        Value::Integer(number) => number.to_string(),
         Value::Json(json) => word_of_json(json, index),
         Value::Layout(_) => word_of_json(&value.to_json(), index),
         other => {
@@ -419,8 +420,8 @@ mod tests {
     #[test]
     fn grid_unfolds_into_all_combinations_with_the_last_axis_fastest() {
         assert_eq!(
-            family(r#"{ "look": { "grid": { "color": ["red", [0.1, 0.2, 0.3]], "light": [0.5, 2] } } }"#),
-            ["look-red-0.5", "look-red-2", "look-1a334d-0.5", "look-1a334d-2"]
+            family(r#"{ "look": { "grid": { "color": ["red", [0.1, 0.2, 0.3]], "light": [0.5, -2] } } }"#),
+            ["look-red-0.5", "look-red--2", "look-1a334d-0.5", "look-1a334d--2"]
         );
     }
 
