@@ -237,17 +237,17 @@ impl Supply {
         if hash.is_none() && self.overrides.is_empty() {
             return Ok(world);
         }
-        let world = world.edit(|world| {
-            if hash.is_some() {
-                world.progress = Some(Progress {
-                    seed: hash,
-                    objects: vec![ObjectProgress::default(); world.objects.len()],
-                    ..Progress::default()
-                });
-            }
-            self.overrides.apply(world);
-        });
-        world.map_err(|error| error.to_string())
+        let mut world = world.into_draft();
+        if hash.is_some() {
+            world.progress = Some(Progress {
+                seed: hash,
+                objects: vec![ObjectProgress::default(); world.objects.len()],
+                ..Progress::default()
+            });
+        }
+        self.overrides.apply(&mut world);
+        // The options' values were checked when the environment was made: see `WorldOverrides::checked_layout`.
+        world.check_in_range().map_err(|error| error.to_string())
     }
 
     /// The origin of the last world.
