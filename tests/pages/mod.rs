@@ -51,7 +51,7 @@ pages! {
 /// Blocks of commands marked `by-hand`: the number on a page, and what else runs them.
 const BY_HAND: &[(&str, usize, &str)] = &[
     ("README.md", 2, ".ci/run, and the stage `wheel`"),
-    ("docs/benchmarks.md", 8, "benches: the stage `benches`"),
+    ("docs/benchmarks.md", 9, "benches: the stage `benches`"),
     ("docs/comparison.md", 1, "an hour: six environments of Python"),
     ("docs/curricula.md", 1, "half a minute, and tests of `curriculum`"),
     ("docs/first-hour.md", 1, "how the command is installed"),
