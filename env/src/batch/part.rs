@@ -11,7 +11,8 @@ use crate::prefetch::prefetch;
 use crate::render::CpuRenderer;
 use crate::sim::Action;
 
-/// Number of parts per thread into which the rest of a batch is divided: several, because environments near many objects take longer.
+/// Number of parts per thread into which the rest of a batch is divided: several, because environments near many objects take
+/// longer.
 const PARTS_PER_THREAD: usize = 4;
 
 /// How often to check whether the other threads have finished, before sleeping: about 100 µs.
@@ -140,9 +141,9 @@ impl Part<'_> {
 
     fn run_here(mut self, first: usize, renderer: &mut CpuRenderer, work: Work<'_>) -> Result<(), EnvError> {
         let mut outcome = Ok(());
-        let is_large = self.slots.len() > MOST_CACHED;
+        let is_prefetched = matches!(work, Work::Step { .. }) && self.slots.len() > MOST_CACHED;
         for index in 0..self.slots.len() {
-            if is_large {
+            if is_prefetched {
                 self.prefetch_after(index);
             }
             let slot = &mut self.slots[index];

@@ -23,7 +23,7 @@ use crate::render::{Frame, Renderer, RendererKind};
 use crate::scene::Scene;
 
 /// Number of walls whose geometry is prefetched: enough for an arena with a few walls.
-const MOST_PREFETCHED: usize = 8;
+const MOST_WALLS_PREFETCHED: usize = 8;
 
 /// A running world: reset, step, observe.
 ///
@@ -98,7 +98,7 @@ impl Environment {
     /// Prefetches what those lists point to.
     pub(crate) fn prefetch_contents(&self) {
         self.world.objects.first().inspect(|object| prefetch(*object));
-        for group in self.views.scene.panels.iter().take(MOST_PREFETCHED) {
+        for group in self.views.scene.panels.iter().take(MOST_WALLS_PREFETCHED) {
             prefetch(group.edges.as_slice());
             group.blocks.first().inspect(|block| prefetch(*block));
         }
