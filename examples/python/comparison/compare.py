@@ -295,7 +295,8 @@ def page() -> str:
         "decisions": f"{head['decisions']:,}", "size": str(head["size"]), "num_envs": str(head["num_envs"]), "settings": settings,
         "load": spread(loads, ".0f"), "speed_load": spread([row["load"] for row in measured], ".0f"),
         "repeats": str(1 + max(row["repeat"] for row in measured)), "score": f"{100 * SCORE:.0f}", "window": str(WINDOW),
-        "versions": ", ".join(f"{key} {' or '.join(sorted({each['versions'].get(key, '?') for each in heads}))}" for key in head["versions"]),
+        "versions": ", ".join(
+            f"{key} {' or '.join(sorted({each['versions'].get(key, '?') for each in heads}))}" for key in head["versions"]),
         "systems": ", ".join([*versions(named["systems"]), *commits]), "date": min(head["began"] for head in heads),
     }  # fmt: skip
     text = (HERE / "page.md").read_text(encoding="utf-8")
