@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import builtins
 import importlib
+import pickle
 import re
 import subprocess
 import sys
@@ -211,6 +212,66 @@ def test_task_borders_follow_the_option(learners: Any) -> None:
     with pytest.raises(ValueError, match=r'without a label.*task_label="info".*borders="blocks"'):
         live(small("EWC"), None, "left", task_label="none")
     live(small("EWC", borders="blocks"), None, "left", "right", task_label="none")
+
+
+@needs_torch
+def test_finished_log_refuses_a_learner_made_otherwise(learners: Any, tmp_path: Path) -> None:
+    log = tmp_path / "log"
+    digest = live(small("L2", strength=0.5), log, "left").digest()
+    assert live(small("L2", strength=0.5), log, "left").digest() == digest
+    for options, place in [
+        ({"seed": 4}, "seed: found 3, expected 4"),
+        ({"strength": 0.25}, "strength: found 0.5, expected 0.25"),
+        ({"borders": "blocks"}, 'borders: found nothing, expected "blocks"'),
+        ({"settings": learners.Settings(rollout=8, minibatch=16, clip=0.1)}, "settings/clip: found 0.2, expected 0.1"),
+    ]:
+        with pytest.raises(driftworld.CurriculumError, match=f"/made_from/agent/{place} as in this run"):
+            live(small("L2", **{"strength": 0.5, **options}), log, "left")
+
+
+@needs_torch
+def test_arguments_are_noted_with_defaults_however_they_are_passed(learners: Any) -> None:
+    class Own(learners.PPO):  # type: ignore[misc, name-defined]
+        def __init__(self, *arguments: Any, own: int = 2, **options: Any) -> None:
+            super().__init__(*arguments, **options)
+
+    noted = Own(5, 4).made_with
+    assert noted == Own(num_actions=5, num_envs=4, seed=0, settings=learners.Settings()).made_with
+    assert (noted["num_envs"], noted["own"], noted["settings"]["clip"]) == (4, 2, 0.2)
+    assert pickle.loads(pickle.dumps(small("EWC"))).made_with == small("EWC").made_with
+
+
+@needs_torch
+@pytest.mark.parametrize("value", [None, float("nan"), "inf"])
+def test_loss_that_is_not_finite_ends_the_run(learners: Any, value: Any) -> None:
+    class Own(learners.PPO):  # type: ignore[misc, name-defined]
+        name = "own"
+
+        def extra_loss(self) -> Any:
+            return sys.modules["torch"].tensor([float(value)]) if value == "inf" else value
+
+    with pytest.raises(ValueError, match=f"own: extra_loss: found {value} in update 1, expected a finite number"):
+        live(small(Own), None, "left")
+
+
+@needs_torch
+def test_border_hooks_without_borders_are_refused(learners: Any) -> None:
+    class Own(learners.PPO):  # type: ignore[misc, name-defined]
+        name = "own"
+
+        def end_task(self, label: str | None) -> None:
+            pass
+
+    with pytest.raises(ValueError, match=r'own: found end_task without borders.*own_borders = "labels"'):
+        small(Own)
+    assert small(Own, borders="none").borders == "none"
+
+
+@needs_torch
+def test_action_table_of_another_length_is_refused(learners: Any, tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="actions: found 4 rows, expected 5 as in the agent's num_actions"):
+        live(small(), tmp_path / "log", "left", actions=OPTIONS["actions"][:4])
+    assert not (tmp_path / "log").exists()
 
 
 @needs_torch

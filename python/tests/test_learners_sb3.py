@@ -54,7 +54,7 @@ def made(kind: str, env: Any, **settings: Any) -> Any:
     dictionary = isinstance(env.observation_space, gym.spaces.Dict)
     policy = "MultiInputPolicy" if dictionary else "CnnPolicy"
     small = {"features_extractor_kwargs": {"cnn_output_dim" if dictionary else "features_dim": 16}, "net_arch": [8]}
-    return getattr(sb3, name)(policy, env, seed=3, device="cpu", policy_kwargs=small, **{**MODELS[kind][0], **settings})
+    return getattr(sb3, name)(policy, env, device="cpu", policy_kwargs=small, **{"seed": 3, **MODELS[kind][0], **settings})
 
 
 def shows(plan: Curriculum, num_envs: int, **options: Any) -> Any:
@@ -140,8 +140,8 @@ def test_evaluations_change_no_weights(kind: str, num_envs: int) -> None:
 def test_killed_run_goes_on_to_the_same_weights(kind: str, num_envs: int, tmp_path: Path) -> None:
     plan = curriculum(10, evaluate=2)
 
-    def live(log: str, **options: Any) -> Any:
-        agent = agent_of(kind, plan, num_envs)
+    def live(log: str, seed: int = 3, **options: Any) -> Any:
+        agent = agent_of(kind, plan, num_envs, seed=seed)
         if num_envs == 1:
             summary = plan.run(agent, tmp_path / log, **MODELS[kind][1], **options)
         else:
@@ -156,6 +156,8 @@ def test_killed_run_goes_on_to_the_same_weights(kind: str, num_envs: int, tmp_pa
     saved = tmp_path / "killed.agent"
     own = type(model).load(next(saved.glob("0*")) / "model.zip", device="cpu")
     assert own.num_timesteps == model.num_timesteps
+    with pytest.raises(CurriculumError, match="/made_from/agent/seed: found 3, expected 4 as in this run"):
+        live("killed", seed=4)
 
 
 @pytest.mark.parametrize("kind", ["PPO", "PPO dict", "A2C"])

@@ -216,6 +216,10 @@ def test_log_resumes_only_with_the_same_settings(tmp_path: Path) -> None:
     greedy.policy = "greedy"  # type: ignore[attr-defined]
     with pytest.raises(CurriculumError, match="/made_from/policy"):
         small(max_steps=3).run(greedy, log, **SMALL)
+    tuned = Circler()
+    tuned.made_with = {"rate": 0.5}  # type: ignore[attr-defined]
+    with pytest.raises(CurriculumError, match=r"/made_from/agent: found nothing, expected .*rate"):
+        small(max_steps=3).run(tuned, log, **SMALL)
     with pytest.raises(driftworld.MetricsError) as refused:
         small(max_steps=3).run(Circler(), log, resume=False, **SMALL)
     assert refused.value.code == "metrics/log-exists"
@@ -382,4 +386,6 @@ def test_undrawable_worlds_are_found_and_skipped(tmp_path: Path) -> None:
     rewards = read_log(log).columns["reward"]
     assert len(rewards) == 25 and np.isnan(rewards).sum() == 3
     again = curriculum.run(Circler(), log, skip_undrawable=True, modalities="rgb", size=8)
-    assert again == summary
+    assert again == summary and (summary.resumed, again.resumed) == (11, 25)
+    assert str(summary).endswith(f"\nresumed {log} after 11 experiences")
+    assert str(again).endswith(f"\nnothing was run: {log} is already finished; for another lifetime, pass another folder")

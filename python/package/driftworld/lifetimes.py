@@ -76,6 +76,8 @@ class Agent(Protocol):
       that it does not identify a world;
     - ``policy``, how it chooses its actions in evaluations, such as ``"sampled"`` or ``"greedy"``; it is recorded in
       the log;
+    - ``made_with``, its settings as a dictionary, such as ``{"seed": 1, "learning_rate": 0.001}``; recorded, too, and a
+      log is only resumed with the same ones;
     - ``save(path)`` and ``load(path)``: ``save`` is called after each learning block, with a path where nothing exists;
       ``load`` when a log is resumed, with the path of the last save.
     """
@@ -116,6 +118,7 @@ class Summary:
         regimes: One dictionary for each regime started: ``block``, ``kind``, ``variant``, ``experiences``, ``skipped``,
             ``mean_reward`` and ``success_rate``.
         log: The folder of the log, if one was written.
+        resumed: Number of experiences that were in the log before; if that is all of them, nothing was run.
     """
 
     experiences: int
@@ -126,6 +129,7 @@ class Summary:
     skipped: int = 0
     left_out: list[dict[str, Any]] = field(default_factory=list)
     ended_by: dict[str, int] = field(default_factory=dict)
+    resumed: int = field(default=0, compare=False)
 
     def _repr_html_(self) -> str:
         head = ("variant", "block", "kind", "experiences", "mean reward", "success")
@@ -140,7 +144,7 @@ class Summary:
             )
             for regime in self.regimes
         ]
-        return table(head, rows, f"{self.experiences} experiences, {self.steps} steps")
+        return table(head, rows, f"{self.experiences} experiences, {self.steps} steps{self._from_before()}")
 
     def __str__(self) -> str:
         rows = [("block", "kind", "variant", "experiences", "mean reward", "success")]
@@ -151,7 +155,16 @@ class Summary:
         lines = [
             "  ".join(f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows
         ]
-        return "\n".join(lines)
+        return "\n".join(lines) + self._from_before()
+
+    def _from_before(self) -> str:
+        """How much of it an earlier run had logged, in words."""
+        total = self.experiences + self.skipped
+        if self.resumed == 0:
+            return ""
+        if self.resumed < total:
+            return f"\nresumed {self.log} after {self.resumed} experiences"
+        return f"\nnothing was run: {self.log} is already finished; for another lifetime, pass another folder"
 
 
 class Lifetime:
@@ -200,7 +213,9 @@ class Lifetime:
             lived = rollout(self._save)
             stack.callback(lived.close)
             policy = getattr(self._agent, "policy", None)
+            settings = getattr(self._agent, "made_with", None)
             notes = {**made_with, **({} if policy is None else {"policy": str(policy)})}
+            notes |= {} if settings is None else {"agent": noted(settings)}
             for what, print in notes.items():
                 self._plan.add_fingerprint(what, print)
             name = str(getattr(self._agent, "name", type(self._agent).__name__))
@@ -217,7 +232,7 @@ class Lifetime:
                 if error.code == "curriculum/not-frozen":
                     journal.withdraw_block()
                 raise
-        return Summary(**said, log=self._log)
+        return Summary(**said, log=self._log, resumed=done)
 
     def _own_saves(self, done: int, lifetime: dict[str, Any]) -> None:
         """Makes sure that the saves beside the log belong to this lifetime: those of a different one are removed."""
@@ -527,7 +542,7 @@ def _beside(log: Path) -> Path:
 
 
 def noted(options: Mapping[str, Any]) -> dict[str, Any]:
-    """Environment options in a canonical form for the log, however they were written; options set to ``None`` are left
+    """Options in a canonical form for the log, however they were written; options set to ``None`` are left
     out.
     """
     told: dict[str, Any] = json.loads(json.dumps(options, default=_said, sort_keys=True))

@@ -62,7 +62,7 @@ class VectorAgent(Protocol):
 
     See :meth:`driftworld.Curriculum.run_vector`.
 
-    It may have ``name``, ``policy``, ``save`` and ``load`` like :class:`driftworld.Agent`, and ``begin(env, label,
+    It may have ``name``, ``policy``, ``made_with``, ``save`` and ``load`` like :class:`driftworld.Agent`, and ``begin(env, label,
     seed)``, called before each experience with the number of its environment and the arguments of ``Agent.begin``.
     """
 
@@ -121,6 +121,9 @@ class VectorRollout(Rollout):
             world=world, num_envs=num_envs, num_threads=num_threads, copy=False, **options
         )
         super().__init__(agent, envs, experience, options, paired_chance, watch, save)
+        rows, expected = getattr(envs.single_action_space, "n", None), getattr(agent, "num_actions", None)
+        if rows is not None and isinstance(expected, int) and expected != rows:
+            raise ValueError(f"actions: found {rows} rows, expected {expected} as in the agent's num_actions")
         self._plan, self._num_envs, self._full = plan, num_envs, options.get("info") == "full"
         label = plan.experience_spec(0)["label"]
         self._labelled, self._observed = label is not None, is_observed(label, envs.single_observation_space)

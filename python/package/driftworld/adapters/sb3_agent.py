@@ -10,6 +10,7 @@ The model's environment only defines the spaces and the number of environments; 
 from __future__ import annotations
 
 import copy
+import inspect
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from functools import partial
@@ -76,6 +77,11 @@ class Agent:
         self.policy = policy or ("sampled" if kind is OnPolicyAlgorithm else "greedy")
         if self.policy not in ("sampled", "greedy"):
             raise ValueError(f"policy: found {policy!r}, expected sampled or greedy")
+        arguments = {name: getattr(model, name, None) for name in inspect.signature(type(model).__init__).parameters}
+        #: The model's arguments, where they are plain: a log can only be resumed with the same ones.
+        self.made_with = {
+            name: value for name, value in arguments.items() if isinstance(value, (int, float)) and name not in ("verbose", "device")
+        } | {"total_timesteps": total_timesteps}  # fmt: skip
         if not model.verbose and model.tensorboard_log is None and not model._custom_logger:
             # Stable-Baselines3's own logger creates a temporary folder and never removes it, even if it writes nothing.
             model.set_logger(Logger(folder=None, output_formats=[]))

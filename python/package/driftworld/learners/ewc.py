@@ -102,10 +102,10 @@ class EWC(PPO):
         """Adds the springs of a task to the others."""
         self.springs.append((importance, anchor))
 
-    def extra_loss(self) -> torch.Tensor | None:
-        """The energy of all springs; ``None`` in the first task."""
+    def extra_loss(self) -> torch.Tensor | float:
+        """The energy of all springs; 0 in the first task."""
         if not self.springs:
-            return None
+            return 0.0
         weights = dict(self.network.named_parameters())
         energy = sum(
             (importance[name] * (weight - anchor[name]).square()).sum()

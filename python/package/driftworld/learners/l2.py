@@ -39,10 +39,10 @@ class L2(PPO):
         """Sets the springs' targets to the current weights."""
         self.anchor = {name: weight.detach().clone() for name, weight in self.network.named_parameters()}
 
-    def extra_loss(self) -> torch.Tensor | None:
-        """The energy of the springs; ``None`` in the first task."""
+    def extra_loss(self) -> torch.Tensor | float:
+        """The energy of the springs; 0 in the first task."""
         if not self.anchor:
-            return None
+            return 0.0
         weights = self.network.named_parameters()
         return 0.5 * self.strength * sum((weight - self.anchor[name]).square().sum() for name, weight in weights)
 

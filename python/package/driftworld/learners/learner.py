@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import dataclasses
 import hashlib
+import inspect
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import torch
@@ -15,6 +17,9 @@ from torch import nn
 
 from driftworld.learners.export import write_network
 from driftworld.learners.networks import PatchNetwork
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
 
 
 class Learner:
@@ -41,14 +46,22 @@ class Learner:
         seconds: Processor seconds spent in acting while learning, in learning, and at borders.
         task: Label of the current task, if it has one.
         tasks: Number of tasks started; 1 without borders.
+        made_with: The arguments that it was made with, by name: a log can only be resumed with the same ones.
 
     Raises:
-        ValueError: If ``policy``, ``borders`` or ``size`` is not one of those above.
+        ValueError: If ``policy``, ``borders`` or ``size`` is not one of those above; or if the method overrides
+            :meth:`begin_task` or :meth:`end_task`, and there are no borders by default.
     """
 
     name = "learner"
     #: The meaning of ``borders=None``.
     own_borders = "none"
+
+    def __new__(cls, *arguments: Any, **options: Any) -> Self:
+        """Makes it, and notes the arguments."""
+        learner = super().__new__(cls)
+        learner.made_with = _arguments(cls, arguments, options)
+        return learner
 
     def __init__(
         self, num_actions: int, num_envs: int, *, seed: int = 0, size: int = 32, policy: str = "sampled", borders: str | None = None
@@ -59,6 +72,12 @@ class Learner:
         for option, values in known.items():
             if getattr(self, option) not in values:
                 raise ValueError(f"{option}: found {getattr(self, option)!r}, expected one of {', '.join(values)}")
+        unused = [hook for hook in ("begin_task", "end_task") if getattr(type(self), hook) is not getattr(Learner, hook)]
+        if unused and borders is None and self.borders == "none":
+            raise ValueError(
+                f'{self.name}: found {unused[-1]} without borders, so that no task ever ends, expected own_borders = "labels" or "blocks" in '
+                'the class, or borders="labels", "blocks" or "none" among the arguments'
+            )
         self.network = self.fresh_network()
         self.shuffles = torch.Generator().manual_seed(seed)
         self.chances = [np.random.default_rng(seed) for _ in range(num_envs)]
@@ -84,7 +103,9 @@ class Learner:
         """Called before the first experience of each task, including the first task."""
 
     def end_task(self, label: str | None) -> None:
-        """Called at the end of a task, before :meth:`begin_task`, when everything in it has been learned from."""
+        """Called at the end of a task, before :meth:`begin_task`, when everything in it has been learned from. The last
+        task of a lifetime has no end.
+        """
 
     def method_state(self) -> dict[str, Any]:
         """The method's own state, in tensors, numbers, strings, lists and dictionaries; it is saved, and counted as
@@ -219,6 +240,25 @@ class Learner:
             "updates": self.updates, "tasks": self.tasks, "seconds": round(self.seconds, 3),
             "memory_bytes": memory(kept), "method_bytes": memory(kept["method"]),
         }  # fmt: skip
+
+
+def _arguments(kind: type, arguments: tuple[Any, ...], options: dict[str, Any]) -> dict[str, Any]:
+    """The arguments of a learner, with the defaults of its class and of those that it passes ``**options`` on to."""
+    own = [inspect.signature(each.__init__) for each in kind.__mro__ if "__init__" in vars(each) and each is not object]
+    named = ([name for name, each in signature.parameters.items() if each.kind is each.POSITIONAL_OR_KEYWORD] for signature in own)
+    names = next(names[1:] for names in named if len(names) > 1)
+    given = {
+        name: parameter.default
+        for signature in reversed(own)
+        for name, parameter in signature.parameters.items()
+        if parameter.default is not parameter.empty
+    }
+    given |= {**dict(zip(names, arguments, strict=False)), **options}
+    return {
+        name: dataclasses.asdict(value) if dataclasses.is_dataclass(value) and not isinstance(value, type) else value
+        for name, value in given.items()
+        if value is not None
+    }
 
 
 def leaves(value: Any, name: str = "") -> Iterator[tuple[str, Any]]:

@@ -7,9 +7,10 @@ random numbers, so that evaluating more often does not change learning.
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
@@ -98,18 +99,23 @@ class PPO(Learner):
     def __init__(self, num_actions: int, num_envs: int, *, settings: Settings | None = None, **options: Any) -> None:
         super().__init__(num_actions, num_envs, **options)
         self.settings = settings or Settings()
+        self.made_with["settings"] = asdict(self.settings)
         self.rollout, self.time = Rollout(self.settings.rollout, num_envs, self.size, num_actions), 0
         self.reset_optimizer()
 
-    def extra_loss(self) -> torch.Tensor | None:
-        """A scalar loss to add in each optimiser step."""
-        return None
+    def extra_loss(self) -> torch.Tensor | float:
+        """A scalar to add to the loss in each optimiser step, computed from the weights; a loss on experience belongs into
+        :meth:`after_update`.
+        """
+        return 0.0
 
     def mask_gradients(self) -> None:
         """Called before each optimiser step, before gradients are clipped; may change them in place."""
 
     def after_update(self, rollout: Rollout) -> None:
-        """Called after the passes over a rollout; may take more steps with :meth:`step`."""
+        """Called after the passes over a rollout; may take more steps with :meth:`step`. ``rollout`` holds the steps that
+        were just learned from, in buffers that the next rollout overwrites.
+        """
 
     @torch.no_grad()
     def act(self, observations: Any, infos: dict[str, Any]) -> NDArray[np.int64]:
@@ -220,10 +226,18 @@ class PPO(Learner):
         return 0.5 * (values - target).square().mean() - gain - self.settings.entropy * entropy
 
     def step(self, loss: torch.Tensor) -> None:
-        """One optimiser step, with the method's loss and mask."""
+        """One optimiser step, with the method's loss and mask.
+
+        Raises:
+            ValueError: If a loss is not a finite number.
+        """
         extra = self.extra_loss()
+        for what, value in (("loss", loss), ("extra_loss", extra)):
+            found = value.detach().squeeze().tolist() if isinstance(value, torch.Tensor) else value
+            if not isinstance(found, (int, float)) or not math.isfinite(found):
+                raise ValueError(f"{self.name}: {what}: found {found} in update {self.updates + 1}, expected a finite number")
         self.optimizer.zero_grad()
-        (loss if extra is None else loss + extra).backward()
+        (loss + extra).backward()
         self.mask_gradients()
         nn.utils.clip_grad_norm_(self.network.parameters(), self.settings.max_gradient, foreach=True)
         self.optimizer.step()
