@@ -96,8 +96,17 @@ fn unknown(name: &str) -> String {
             printable(name)
         );
     }
-    let (all, near) = (built_in_names().join(", "), did_you_mean(name, names()));
-    format!("found task {name:?}, expected the path of a task spec or one of {all}{near}")
+    format!(
+        "found task {name:?}, expected the path of a task spec or {}",
+        one_of_ours(name)
+    )
+}
+
+/// The tasks that come with Driftworld, at the end of a message about a misspelt one.
+pub(crate) fn one_of_ours(misspelt: &str) -> String {
+    let (paper, more) = (built_in_names().join(", "), names().count() - BUILT_IN.len());
+    let near = did_you_mean(misspelt, names());
+    format!("one of {paper} and {more} more, which `driftworld tasks` lists{near}")
 }
 
 /// The classes and models allowed for objects of worlds, given the libraries. Messages about unknown ones explain how to name a
@@ -367,7 +376,8 @@ mod tests {
         assert_eq!(
             variant("find_object#red").unwrap_err().to_string(),
             "found task \"find_object\", expected the path of a task spec or one of find_objects, get_to_goal, \
-             select_object, moving_object, scavenger_hunt, blue_red_green; did you mean \"find_objects\"?"
+             select_object, moving_object, scavenger_hunt, blue_red_green and 50 more, which `driftworld tasks` lists; \
+             did you mean \"find_objects\"?"
         );
         assert_eq!(
             variant("find_objects#rde").unwrap_err().to_string(),

@@ -5,7 +5,7 @@ use driftworld_text::joined_or;
 
 use crate::elements::{ElementsOutcome, ElementsRequest, VariantElements, elements};
 use crate::spec::Element;
-use crate::table::table;
+use crate::table::without_empty;
 
 use super::output;
 use crate::Failure;
@@ -73,13 +73,15 @@ pub(crate) fn shown(found: &ElementsOutcome) -> String {
         let letters: Vec<&str> = elements.iter().map(|element| element.letter()).collect();
         joined_or(&letters, " ", "-")
     };
+    let has_optima = found.variants.iter().any(|variant| variant.optimum.is_some());
     let row = |variant: &VariantElements| {
         let proof = &variant.proof;
-        [
+        let best_changes = if has_optima { optimum(variant) } else { String::new() };
+        vec![
             variant.variant.clone(),
             letters(&variant.declared),
             letters(&variant.elements()),
-            optimum(variant),
+            best_changes,
             proof.worlds.to_string(),
             proof.runs.to_string(),
             proof.steps.to_string(),
@@ -98,11 +100,11 @@ pub(crate) fn shown(found: &ElementsOutcome) -> String {
         "looks",
         "verdict",
     ];
-    let rows = found.variants.iter().map(row);
+    let rows: Vec<Vec<String>> = found.variants.iter().map(row).collect();
     format!(
         "{}, beside {}:\n{}",
         found.task,
         found.base,
-        table(headings, rows, &[4, 5, 6, 7])
+        without_empty(&headings, &rows, &[4, 5, 6, 7])
     )
 }

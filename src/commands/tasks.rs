@@ -37,6 +37,9 @@ enum Action {
         #[arg(long)]
         json: bool,
     },
+    /// Anything else.
+    #[command(external_subcommand)]
+    Other(Vec<String>),
 }
 
 impl Tasks {
@@ -46,6 +49,12 @@ impl Tasks {
             Some(Action::Show { task, json }) => {
                 let own = tasks::split(&task).1;
                 show(&tasks::task(&task)?, own, json || self.json)
+            }
+            Some(Action::Other(words)) => {
+                let word = &words[0];
+                Err(Failure::usage(format!(
+                    "found {word:?}, expected show; `driftworld tasks show {word}` describes a task"
+                )))
             }
         }
     }

@@ -3,6 +3,7 @@
 mod failed;
 mod neighbours;
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use driftworld_metrics::{LifetimeMetrics, Log, Options, SmoothingMethod, compare_agents, over_repeats};
@@ -88,6 +89,7 @@ pub fn write_report(request: &ReportRequest, warn: Warn<'_>) -> Result<Page, Fai
     let mut failures = Vec::new();
     let mut chapters = Vec::new();
     let mut scores: Vec<LifetimeMetrics> = Vec::new();
+    let mut names = BTreeMap::new();
     for (log, name) in logs.iter().zip(&log_folders::names(logs)) {
         let name = (logs.len() > 1).then_some(name.as_str());
         let log = match ScoredLog::read(log, name, experts, options, warn) {
@@ -98,6 +100,7 @@ pub fn write_report(request: &ReportRequest, warn: Warn<'_>) -> Result<Page, Fai
             }
         };
         let chapter = chapter_options(&log, &mut neighbours, request, options);
+        names.extend(chapter.figures.names.clone());
         chapters.push(Chapter::write(&log.lifetime, &log.metrics, &chapter)?);
         if let Some(files) = &mut files {
             let column = &log.metrics.metrics_column;
@@ -111,10 +114,13 @@ pub fn write_report(request: &ReportRequest, warn: Warn<'_>) -> Result<Page, Fai
     let mut comparisons = Vec::new();
     if !asked.against.is_empty() {
         let others = score_logs(others, experts, options, warn)?;
+        let num_others = others.len();
         comparisons.push(Comparison {
             agent: called(&asked.logs),
             other: called(&asked.against),
             metrics: compare_agents(&scores, &others, &asked.intervals)?,
+            others_lifetime: others.into_iter().next().filter(|_| num_others == 1),
+            names,
         });
     }
     let overall = if scores.len() > 1 {

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Mutex;
 
-use crate::process::{Result, Workspace, about, run, works};
+use crate::process::{Result, Workspace, about, output, run, works};
 use crate::stage::{Outcome, missing};
 
 pub(crate) const NO_INTERPRETER: &str =
@@ -25,6 +25,9 @@ const ANY_GYMNASIUM: [&str; 4] = [
 
 /// The requirements of the package's quick tests.
 const PACKAGE_LIST: &str = "python/tests/requirements.txt";
+
+/// What the environment of the learners takes while it is installed (10 GiB), and what is built beside it.
+const LEARNERS_GIB: u64 = 20;
 
 /// A virtual environment.
 pub(crate) struct Environment {
@@ -86,7 +89,10 @@ impl Environment {
     /// Runs its pip in the root, with `words` split at spaces, followed by arguments that may contain spaces.
     pub(crate) fn pip(&self, workspace: &Workspace, words: &str, rest: &[&str]) -> Result {
         let mut pip = self.python(workspace, &["-m", "pip", "--disable-pip-version-check"]);
-        pip.args(words.split(' ')).args(rest);
+        // Downloads may be larger than what a system keeps in memory for temporary files.
+        pip.args(words.split(' '))
+            .args(rest)
+            .env("TMPDIR", workspace.target.join("python"));
         run(pip)
     }
 
@@ -167,8 +173,28 @@ pub(crate) fn package(workspace: &Workspace) -> Result<Outcome> {
 /// The environment with torch, Stable-Baselines3, Minari and Ray, which take gigabytes.
 pub(crate) fn learners_environment(workspace: &Workspace) -> Result<Environment> {
     let interpreter = interpreter(ANY).ok_or(NO_INTERPRETER)?;
+    let folder = workspace.target.join("python/learners");
+    if !folder.exists()
+        && let Some(free) = free_gib(&workspace.target)
+        && free < LEARNERS_GIB
+    {
+        return Err(format!(
+            "{free} GiB are free for torch and Ray, expected {LEARNERS_GIB}"
+        ));
+    }
     let list = ["python/tests/requirements-learners.txt"];
-    Environment::with(workspace, &interpreter, "learners", &list)
+    Environment::with(workspace, &interpreter, "learners", &list).inspect_err(|_| {
+        // Half of it would take room from the other stages.
+        let _ = fs::remove_dir_all(&folder);
+    })
+}
+
+/// Free space where a folder is, in GiB, if `df` says it.
+fn free_gib(folder: &Path) -> Option<u64> {
+    let mut df = Command::new("df");
+    df.arg("-Pk").arg(folder);
+    let free = output(df).ok()?.lines().last()?.split_whitespace().nth(3)?.parse();
+    free.ok().map(|kib: u64| kib >> 20)
 }
 
 /// Tests with the libraries that people train with.
@@ -205,6 +231,13 @@ mod tests {
         let command = python(Path::new("python3"), &["-c", ""]);
         assert_eq!(command.get_envs().filter(|(_, value)| value.is_none()).count(), 3);
         assert!(!works(python(Path::new("no-such-python"), &["-c", ""])));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn free_space_is_read_from_df() {
+        assert!(free_gib(Path::new("/")).is_some());
+        assert_eq!(free_gib(Path::new("/no/such/folder")), None);
     }
 
     #[test]

@@ -108,7 +108,7 @@ impl Chapter {
             (false, false) => "in the log's unit",
         };
         let body = html! {
-            (reached::section(metrics, &options.figures.names))
+            (reached::section("Reached", metrics, &options.figures.names))
             (warnings(&options.warnings))
             (facts(lifetime, metrics, &options.facts))
             (worlds(&options.worlds)?)

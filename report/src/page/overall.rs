@@ -1,14 +1,16 @@
 //! Values over all lifetimes with their intervals, and comparisons of two agents.
 
+use std::collections::BTreeMap;
+
 use driftworld_metrics::{
-    BootstrapOptions, ComparedMetric, Estimate, Improvement, Interval, LARGEST_P, RepeatedMetric,
+    BootstrapOptions, ComparedMetric, Estimate, Improvement, Interval, LARGEST_P, LifetimeMetrics, RepeatedMetric,
 };
 use driftworld_text::short;
 use indexmap::IndexMap;
 use maud::{Markup, html};
 
 use super::verdict::{self, Verdict, pill};
-use super::{calm, count, metric_table, number};
+use super::{calm, count, metric_table, number, reached};
 use crate::words::shown;
 
 /// The probabilities that one agent is better than another.
@@ -20,6 +22,10 @@ pub struct Comparison {
     pub other: String,
     /// The comparison of each metric.
     pub metrics: Vec<ComparedMetric>,
+    /// The other agent's lifetime, if it is a single one.
+    pub others_lifetime: Option<LifetimeMetrics>,
+    /// Display names of tasks, by their names in logs.
+    pub names: BTreeMap<String, String>,
 }
 
 /// The values over all lifetimes and the comparisons, if there are any.
@@ -31,7 +37,9 @@ pub(super) fn section(overall: &[RepeatedMetric], comparisons: &[Comparison], in
                 h2 id="overall-name" { "Over all lifetimes" }
                 (values(overall, &percent))
                 @for comparison in comparisons { (improvement(comparison, &percent, intervals.confidence)) }
-                p.note { "Intervals: " (intervals.resamples) " resamples of " (intervals.resampling) ", seed " (intervals.seed) "." }
+                @if !overall.is_empty() || comparisons.iter().any(is_tested) {
+                    p.note { "Intervals: " (intervals.resamples) " resamples of " (intervals.resampling) ", seed " (intervals.seed) "." }
+                }
             }
         }
     }
@@ -123,12 +131,16 @@ fn improvement(comparison: &Comparison, percent: &str, confidence: f64) -> Marku
     let title = format!("{} against {}", shown(&comparison.agent), shown(&comparison.other));
     html! {
         h3 { (title) }
-        p.note {
+        @if !is_tested(comparison) {
+            p.note {
+                "Below each agent: its value. One lifetime of each does not show which agent is better: run several, with other seeds."
+            }
+        } @else { p.note {
             "Below each agent: the interquartile mean of its lifetimes. Probability of improvement: how likely a lifetime of " bdi { (shown(&comparison.agent)) } " has the better value; 0.5 means that "
             "neither is better. In brackets: its " (percent) " bootstrap interval, and Student’s t interval for few lifetimes. p: how often two "
             "equal agents would differ at least as much, by permuting lifetimes between them. Agents differ where p is at most "
             (short(1.0 - confidence, 2)) "."
-        }
+        } }
         div.scroll role="region" aria-label=(title) tabindex="0" {
             table.stacked {
                 thead {
@@ -148,26 +160,38 @@ fn improvement(comparison: &Comparison, percent: &str, confidence: f64) -> Marku
                             @for (agent, value) in [&comparison.agent, &comparison.other].into_iter().zip(row.values) {
                                 td.number data-name=(shown(agent)) { (estimate(value)) }
                             }
-                            td.number data-name="Probability of improvement" { (estimate(row.improvement.probability)) }
+                            td.number data-name="Probability of improvement" {
+                                @if row.improvement.p_value.is_some() { (estimate(row.improvement.probability)) }
+                            }
                             td.number data-name="p" { (row.improvement.p_value.map_or(String::new(), number)) }
-                            td { @if let Some(judged) = better(&row.improvement, 1.0 - confidence) { (pill(judged)) } }
+                            td { (pill(better(&row.improvement, 1.0 - confidence))) }
                         }
                     }
                 }
             }
         }
+        @if let Some(lifetime) = &comparison.others_lifetime {
+            (reached::section(&format!("Reached by {}", shown(&comparison.other)), lifetime, &comparison.names))
+        }
     }
 }
 
+/// Whether there are enough lifetimes for a test.
+fn is_tested(comparison: &Comparison) -> bool {
+    comparison.metrics.iter().any(|row| row.improvement.p_value.is_some())
+}
+
 /// Whether two agents differ, with a chance of at most `alpha` that equal ones appear to.
-fn better(improvement: &Improvement, alpha: f64) -> Option<Verdict> {
+fn better(improvement: &Improvement, alpha: f64) -> Verdict {
     // The rounding error of 1 - 0.95 must not matter.
     let alpha = alpha + 1e-12;
-    let (class, sign, word) = match improvement.p_value? {
-        p if p <= alpha && improvement.probability.value > 0.5 => ("good", "▲", "better"),
-        p if p <= alpha => ("bad", "▼", "worse"),
-        _ if improvement.least_p_value? > alpha => ("even", "●", "too few lifetimes"),
-        _ => ("even", "●", "no clear difference"),
+    let (class, sign, word) = match improvement.p_value {
+        Some(p) if p <= alpha && improvement.probability.value > 0.5 => ("good", "▲", "better"),
+        Some(p) if p <= alpha => ("bad", "▼", "worse"),
+        Some(_) if improvement.least_p_value.is_some_and(|least| least <= alpha) => {
+            ("even", "●", "no clear difference")
+        }
+        _ => ("even", "●", "too few lifetimes"),
     };
-    Some(Verdict { class, sign, word })
+    Verdict { class, sign, word }
 }

@@ -16,21 +16,21 @@ const CLEAR: f64 = 2.0;
 const MOST_ROWS: usize = 200;
 
 /// `called` maps a task's log name to its display name.
-pub(super) fn section(metrics: &LifetimeMetrics, called: &BTreeMap<String, String>) -> Markup {
+pub(super) fn section(title: &str, metrics: &LifetimeMetrics, called: &BTreeMap<String, String>) -> Markup {
     let tasks = || metrics.reached.iter().filter(|(_, task)| !task.evaluations.is_empty());
     let verdicts: Vec<Verdict> = tasks().filter_map(|(_, task)| verdict(task)).collect();
     let is_nothing = !verdicts.is_empty() && verdicts.iter().all(|verdict| verdict.class != "good");
     let scaled = metrics.reached.values().any(Reached::is_scaled);
     html! {
         @if tasks().next().is_some() {
-            h3 { "Reached" }
+            h3 { (title) }
             @if is_nothing {
                 ul.warnings aria-label="Nothing was learned" {
                     li { "⚠ Nothing was learned: no task is better after it was learned than before. What is said of its \
                           maintenance and transfer says nothing." }
                 }
             }
-            div.scroll role="region" aria-label="Reached" tabindex="0" {
+            div.scroll role="region" aria-label=(title) tabindex="0" {
                 table.stacked {
                     thead {
                         tr {

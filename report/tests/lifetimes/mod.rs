@@ -1,5 +1,7 @@
 //! Synthetic lifetimes for the tests in the files beside this folder.
 
+use std::collections::BTreeMap;
+
 use driftworld_metrics::{
     BlockSubtype, BlockType, BootstrapOptions, Lifetime, LifetimeMetrics, LogWriter, LoggerInfo, Options, Record,
     ScenarioInfo, Scorer, SteLog, Timestamp, compare_agents, over_repeats, read_log, read_ste_log,
@@ -165,6 +167,8 @@ pub(crate) fn page_of_two() -> String {
             agent: "mine".to_owned(),
             other: "theirs".to_owned(),
             metrics: compare_agents(&scores, &scores, &options).expect("both were scored alike"),
+            others_lifetime: None,
+            names: BTreeMap::new(),
         }],
         date: Some("21 November 2026".to_owned()),
         ..Report::default()

@@ -187,12 +187,15 @@ fn several(scores: &Scores, together: &Comparison, names: &VariantNames) -> Stri
             counted(others.len(), "lifetime")
         ));
         parts.push(repeats(&together.repeats_against, &share));
-        parts.push(format!(
+        let is_tested = together.improvement.iter().any(|row| row.improvement.p_value.is_some());
+        parts.push(if is_tested { format!(
             "Probability that a lifetime of the first agent is better than one of the other; 0.5 means neither is. p: \
              how often two equal agents would differ at least as much, by permuting lifetimes between them. Agents \
              differ where p is at most {}; that share of equal agents is called different by mistake.",
             number(1.0 - together.intervals.confidence)
-        ));
+        ) } else {
+            "One lifetime of each does not show which agent is better: run several, with other seeds.".to_owned()
+        });
         parts.push(improvements(together, &share));
     }
     parts.extend(super::power_table::power(&together.power));
@@ -216,14 +219,17 @@ fn improvements(together: &Comparison, share: &str) -> String {
         // The rounding of 1 - 0.95 must not matter.
         Some(p) if p <= alpha + 1e-12 && improvement.probability.value > 0.5 => "first is better",
         Some(p) if p <= alpha + 1e-12 => "other is better",
-        Some(_) if improvement.least_p_value.is_some_and(|least| least > alpha + 1e-12) => "too few lifetimes",
-        Some(_) => "no clear difference",
-        None => "",
+        Some(_) if improvement.least_p_value.is_some_and(|least| least <= alpha + 1e-12) => "no clear difference",
+        _ => "too few lifetimes",
     };
     let rows = together.improvement.iter().map(|row| {
         [
             row.headline.name.to_string(),
-            number(row.improvement.probability.value),
+            if row.improvement.p_value.is_some() {
+                number(row.improvement.probability.value)
+            } else {
+                String::new()
+            },
             interval(row.improvement.probability.best_interval()),
             row.improvement.p_value.map_or_else(String::new, number),
             verdict(&row.improvement).to_owned(),
@@ -235,7 +241,12 @@ fn improvements(together: &Comparison, share: &str) -> String {
         .iter()
         .any(|row| row.improvement.probability.t_interval.is_some());
     let share = if by_t { format!("{share} (t)") } else { share.to_owned() };
-    table(["metric", "P(better)", &share, "p", "", "tasks"], rows, &[1, 3, 5])
+    let rows: Vec<Vec<String>> = rows.map(Vec::from).collect();
+    without_empty(
+        &["metric", "P(better)", &share, "p", "reading", "tasks"],
+        &rows,
+        &[1, 3, 5],
+    )
 }
 
 /// Each metric over the lifetimes, with notes on the intervals.

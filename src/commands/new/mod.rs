@@ -6,7 +6,7 @@ use clap::Args;
 use driftworld_text::ShownPath;
 
 use super::output;
-use crate::spec::{TaskSpec, did_you_mean};
+use crate::spec::TaskSpec;
 use crate::tasks;
 use crate::{Failure, overwrite};
 
@@ -84,11 +84,9 @@ impl Export {
         let (task, _) = tasks::split(&self.task);
         let mut known = tasks::groups().flat_map(|(_, tasks)| tasks);
         let Some(&built_in) = known.find(|(name, _)| *name == task) else {
-            let names = tasks::built_in_names();
-            let near = did_you_mean(task, names.iter().copied());
-            let names = names.join(", ");
+            let ours = tasks::one_of_ours(task);
             return Err(Failure::input(format!(
-                "found {task:?}, expected a built-in task, one of {names}{near}"
+                "found {task:?}, expected a built-in task, {ours}"
             )));
         };
         let name = self.name.as_deref().unwrap_or(built_in.0);
