@@ -50,12 +50,10 @@ impl Tasks {
                 let own = tasks::split(&task).1;
                 show(&tasks::task(&task)?, own, json || self.json)
             }
-            Some(Action::Other(words)) => {
-                let word = &words[0];
-                Err(Failure::usage(format!(
-                    "found {word:?}, expected show; `driftworld tasks show {word}` describes a task"
-                )))
-            }
+            Some(Action::Other(words)) => Err(Failure::usage(format!(
+                "found {:?}, expected show; `driftworld tasks show NAME` describes a task",
+                words[0]
+            ))),
         }
     }
 }

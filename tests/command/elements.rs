@@ -32,6 +32,8 @@ fn declared_and_measured_elements_are_shown_together() {
     assert_eq!(row("b")[1..6], ["S", "R", "S", "yes", "3"]);
     assert_eq!(row("d")[1..8], ["S", "R", "O", "S", "phi", "yes", "3"]);
     assert_eq!(row("d").last().map(String::as_str), Some("sound"));
+    let looks_alone = succeed(&["elements", "find_objects", "blue", "red", "--worlds", "1"]);
+    assert!(!looks_alone.contains("best changes"), "{looks_alone}");
 }
 
 #[test]

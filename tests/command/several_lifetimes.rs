@@ -112,6 +112,24 @@ fn notes_of_two_agents_are_labelled() {
 }
 
 #[test]
+fn one_lifetime_of_each_agent_gets_no_verdict() {
+    let folder = scratch();
+    live(&folder.path().join("mine"), 50.0);
+    live(&folder.path().join("theirs"), -50.0);
+    let shown = succeed_in(folder.path(), &["metrics", "mine", "--against", "theirs", "-n", "none"]);
+    let row = shown.lines().rfind(|line| line.starts_with("avg_eval_perf"));
+    assert!(row.is_some_and(|row| row.contains("too few lifetimes")), "{shown}");
+    assert!(!shown.contains("P(better)"), "{shown}");
+    succeed_in(
+        folder.path(),
+        &["report", "mine", "--against", "theirs", "-o", "page.html"],
+    );
+    let page = std::fs::read_to_string(folder.path().join("page.html")).expect("it was written");
+    assert!(page.contains("too few lifetimes") && page.contains("Reached by theirs"));
+    assert!(!page.contains("resamples of"), "nothing was resampled");
+}
+
+#[test]
 fn constant_metric_is_listed_with_power() {
     let folder = scratch();
     for number in 0..3 {
