@@ -82,6 +82,8 @@ pub mod recordings;
 #[cfg(not(target_family = "wasm"))]
 mod remarks;
 #[cfg(not(target_family = "wasm"))]
+pub mod request;
+#[cfg(not(target_family = "wasm"))]
 pub mod scales;
 #[cfg(not(target_family = "wasm"))]
 pub mod scenarios;

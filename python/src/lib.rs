@@ -49,6 +49,7 @@ mod native {
         elements::elements,
         files::{read_file, write_file},
         logs::{PyLogFile, read_log, validate_log},
+        options::requests,
         recordings::{PyRecording, png, read_recording},
         scores::{PyScores, report},
         supply::PyStream,

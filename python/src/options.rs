@@ -1,13 +1,18 @@
 //! Keyword arguments as typed values; errors name the argument.
 
-use std::fmt::Display;
+use std::cell::Cell;
+use std::collections::BTreeMap;
+use std::fmt::{self, Display};
 use std::path::PathBuf;
 use std::str::FromStr;
 
+use driftworld::elements::ElementsRequest;
+use driftworld::request;
 use pyo3::exceptions::PyOverflowError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
-use serde::de::DeserializeOwned;
+use pyo3::types::{PyDict, PyString};
+use serde::de::value::{MapDeserializer, SeqDeserializer};
+use serde::de::{DeserializeOwned, Deserializer, IntoDeserializer, Visitor};
 
 use crate::document::from_python;
 use crate::errors::{Error, Result};
@@ -22,6 +27,24 @@ pub(crate) struct Options<'py> {
 impl<'py> Options<'py> {
     pub(crate) fn new(given: Bound<'py, PyDict>, class: &'static str) -> Self {
         Self { given, class }
+    }
+
+    /// A request with the keywords that are its fields; one that is not given has the request's default.
+    pub(crate) fn request<R: DeserializeOwned>(&self) -> Result<R> {
+        let mut given = Vec::new();
+        for &name in request::names::<R>() {
+            given.extend(self.value(name)?.map(|value| (name, value)));
+        }
+        // The one being read, for the error.
+        let read = Cell::new(None);
+        let reading = given.iter().map(|(name, value)| {
+            read.set(Some((*name, value)));
+            (*name, Given(value.clone()))
+        });
+        R::deserialize(MapDeserializer::new(reading)).map_err(|Wrong(what)| match read.get() {
+            Some((name, value)) => self.refuse(format!("{name}: found {}{what}", shown(value))),
+            None => self.refuse(format!("options: found {}{what}", self.given)),
+        })
     }
 
     fn value(&self, name: &str) -> Result<Option<Bound<'py, PyAny>>> {
@@ -142,4 +165,141 @@ impl<'py> Options<'py> {
 /// Quotes a string as Python does.
 fn quoted(text: &str) -> String {
     format!("'{text}'")
+}
+
+/// The request of each operation: its fields, each with the default in the command's help, if it has one there.
+#[pyfunction]
+pub(crate) fn requests() -> BTreeMap<&'static str, Vec<(&'static str, Option<String>)>> {
+    BTreeMap::from([("elements", request::defaults::<ElementsRequest>())])
+}
+
+/// A value as Python writes it.
+fn shown(value: &Bound<'_, PyAny>) -> String {
+    value
+        .repr()
+        .map_or_else(|error| error.to_string(), |text| text.to_string())
+}
+
+/// What follows in a message after the value that was found.
+#[derive(Debug)]
+struct Wrong(String);
+
+impl Wrong {
+    fn expected(what: impl Display) -> Self {
+        Self(format!(", expected {what}"))
+    }
+}
+
+impl Display for Wrong {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for Wrong {}
+
+impl serde::de::Error for Wrong {
+    fn custom<T: Display>(error: T) -> Self {
+        // Serde puts words in backticks.
+        let said = error.to_string().replace('`', "");
+        match said.split_once("expected ") {
+            Some((_, expected)) => Self::expected(expected),
+            None => Self(format!(": {said}")),
+        }
+    }
+}
+
+/// A keyword's value, which a request reads by its own types.
+struct Given<'py>(Bound<'py, PyAny>);
+
+impl<'py> Given<'py> {
+    fn extract<T: FromPyObjectOwned<'py>>(&self, expected: &str) -> std::result::Result<T, Wrong> {
+        self.0.extract::<T>().map_err(|error| {
+            let is_large = error.into().is_instance_of::<PyOverflowError>(self.0.py()) && self.0.gt(0).unwrap_or(false);
+            Wrong::expected(if is_large { "a smaller number" } else { expected })
+        })
+    }
+
+    /// A text, or a path as text.
+    fn text(&self) -> std::result::Result<String, Wrong> {
+        let path = self.extract::<PathBuf>("a text")?;
+        path.into_os_string()
+            .into_string()
+            .map_err(|_| Wrong::expected("a text in UTF-8"))
+    }
+}
+
+impl IntoDeserializer<'_, Wrong> for Given<'_> {
+    type Deserializer = Self;
+
+    fn into_deserializer(self) -> Self {
+        self
+    }
+}
+
+/// Methods that read whole numbers.
+macro_rules! whole {
+    ($($method:ident)*) => {
+        $(fn $method<V: Visitor<'de>>(self, visitor: V) -> std::result::Result<V::Value, Wrong> {
+            let number = self.extract("a whole number from 0 on")?;
+            visitor.visit_u64(number).map_err(|_: Wrong| Wrong::expected("a smaller number"))
+        })*
+    };
+}
+
+/// Methods that read what can be written as JSON.
+impl<'de> Deserializer<'de> for Given<'_> {
+    type Error = Wrong;
+
+    whole! { deserialize_u8 deserialize_u16 deserialize_u32 deserialize_u64 }
+
+    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> std::result::Result<V::Value, Wrong> {
+        let json = from_python(&self.0).map_err(serde::de::Error::custom)?;
+        json.deserialize_any(visitor).map_err(serde::de::Error::custom)
+    }
+
+    fn deserialize_bool<V: Visitor<'de>>(self, visitor: V) -> std::result::Result<V::Value, Wrong> {
+        visitor.visit_bool(self.extract("True or False")?)
+    }
+
+    fn deserialize_f64<V: Visitor<'de>>(self, visitor: V) -> std::result::Result<V::Value, Wrong> {
+        visitor.visit_f64(self.extract("a number")?)
+    }
+
+    fn deserialize_string<V: Visitor<'de>>(self, visitor: V) -> std::result::Result<V::Value, Wrong> {
+        visitor.visit_string(self.text()?)
+    }
+
+    fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> std::result::Result<V::Value, Wrong> {
+        visitor.visit_some(self)
+    }
+
+    /// Several values, or one.
+    fn deserialize_seq<V: Visitor<'de>>(self, visitor: V) -> std::result::Result<V::Value, Wrong> {
+        let is_one = self.0.is_instance_of::<PyString>() || self.0.hasattr("__fspath__").unwrap_or(false);
+        let items = self.0.try_iter().ok().filter(|_| !is_one);
+        let items: Vec<Bound<'_, PyAny>> = match items {
+            Some(items) => items.collect::<PyResult<_>>().map_err(serde::de::Error::custom)?,
+            None => vec![self.0],
+        };
+        visitor.visit_seq(SeqDeserializer::new(items.into_iter().map(Given)))
+    }
+
+    fn deserialize_enum<V: Visitor<'de>>(
+        self,
+        _: &'static str,
+        words: &'static [&'static str],
+        visitor: V,
+    ) -> std::result::Result<V::Value, Wrong> {
+        let word = self.text()?;
+        if !words.contains(&word.as_str()) {
+            return Err(Wrong::expected(format!("one of {}", words.join(", "))));
+        }
+        visitor.visit_enum(word.into_deserializer())
+    }
+
+    serde::forward_to_deserialize_any! {
+        i8 i16 i32 i64 f32 char str bytes byte_buf unit unit_struct newtype_struct tuple tuple_struct map struct
+        identifier ignored_any
+    }
 }

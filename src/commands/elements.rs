@@ -31,11 +31,6 @@ use crate::Failure;
 pub(crate) struct Elements {
     #[command(flatten)]
     request: ElementsRequest,
-    /// A variant of the task.
-    #[arg(requires = "b")]
-    a: Option<String>,
-    /// The variant that is compared with it.
-    b: Option<String>,
     /// Print the result as JSON.
     #[arg(long)]
     json: bool,
@@ -43,10 +38,7 @@ pub(crate) struct Elements {
 
 impl Elements {
     pub(crate) fn run(self) -> Result<(), Failure> {
-        let found = elements(&ElementsRequest {
-            between: self.a.zip(self.b).map(|(a, b)| [a, b]),
-            ..self.request
-        })?;
+        let found = elements(&self.request)?;
         if self.json {
             output::json(&found)?;
         } else {

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use clap::Args;
 use driftworld_env::MAX_EXPERIMENT_STEPS;
 use driftworld_spec::{Modality, TaskSpec, Variant};
+use serde::Deserialize;
 
 use crate::modality;
 use crate::numbers::{self, documented};
@@ -17,16 +18,20 @@ pub const DEFAULT_ELEMENTS_WORLDS: u64 = 32;
 /// Maximum number of pairs of worlds.
 pub const MAX_ELEMENTS_WORLDS: u64 = 1_000;
 
-/// What is tried: the arguments of `driftworld elements`. There are 1 to [`MAX_ELEMENTS_WORLDS`] pairs of worlds, and 1 to
-/// [`MAX_EXPERIMENT_STEPS`] steps.
-#[derive(Args, Clone, Debug, PartialEq)]
+/// What is tried: the arguments of `driftworld elements` and of Python's `elements`. There are 1 to
+/// [`MAX_ELEMENTS_WORLDS`] pairs of worlds, and 1 to [`MAX_EXPERIMENT_STEPS`] steps. If `a` and `b` are given, they are
+/// compared with each other, in place of all variants, or the one that `task` names, with the first.
+#[derive(Args, Clone, Debug, PartialEq, Deserialize)]
 #[group(skip)]
+#[serde(default, deny_unknown_fields)]
 pub struct ElementsRequest {
     /// A task: PATH, PATH#variant, or a built-in such as `find_objects`.
     pub task: String,
-    /// Two variants of the task that are compared with each other, in place of all, or the one that `task` names, with the first.
-    #[arg(skip)]
-    pub between: Option<[String; 2]>,
+    /// A variant of the task.
+    #[arg(requires = "b")]
+    pub a: Option<String>,
+    /// The variant that is compared with it.
+    pub b: Option<String>,
     /// Which images the learner has; those that the task's worlds ask for if not said.
     #[arg(long, value_parser = documented::<Modality>(&modality::NAMES), value_delimiter = ',', value_name = "KIND,…")]
     pub modalities: Option<Vec<Modality>>,
@@ -45,15 +50,16 @@ pub struct ElementsRequest {
     ///
     /// The last one given is searched first.
     #[arg(long = "assets", value_name = "LIBRARY")]
+    #[serde(rename = "assets")]
     pub libraries: Vec<PathBuf>,
 }
 
-impl ElementsRequest {
-    /// All variants of a task, compared with the first.
-    pub fn of(task: impl Into<String>) -> Self {
+impl Default for ElementsRequest {
+    fn default() -> Self {
         Self {
-            task: task.into(),
-            between: None,
+            task: String::new(),
+            a: None,
+            b: None,
             modalities: None,
             worlds: DEFAULT_ELEMENTS_WORLDS,
             seed: 0,
@@ -61,11 +67,22 @@ impl ElementsRequest {
             libraries: Vec::new(),
         }
     }
+}
+
+impl ElementsRequest {
+    /// All variants of a task, compared with the first.
+    pub fn of(task: impl Into<String>) -> Self {
+        Self {
+            task: task.into(),
+            ..Self::default()
+        }
+    }
 
     /// One variant of a task, compared with another.
     pub fn between(task: impl Into<String>, a: impl Into<String>, b: impl Into<String>) -> Self {
         Self {
-            between: Some([a.into(), b.into()]),
+            a: Some(a.into()),
+            b: Some(b.into()),
             ..Self::of(task)
         }
     }
@@ -74,7 +91,10 @@ impl ElementsRequest {
     pub(super) fn check(&self) -> Result<(), Failure> {
         within("worlds", self.worlds, 1..=MAX_ELEMENTS_WORLDS)?;
         within("steps", self.steps.into(), 1..=MAX_EXPERIMENT_STEPS.into())?;
-        if self.between.is_some() && tasks::split(&self.task).1.is_some() {
+        if self.a.is_some() != self.b.is_some() {
+            return Err(Failure::usage("found one variant, expected none or two"));
+        }
+        if self.a.is_some() && tasks::split(&self.task).1.is_some() {
             return Err(Failure::usage(format!(
                 "task: found {:?} beside two variants, expected the task alone",
                 self.task
@@ -87,8 +107,8 @@ impl ElementsRequest {
     pub(super) fn variants_of(&self, task: &Arc<TaskSpec>) -> Result<Vec<Variant>, Failure> {
         // A variant may be given as TASK#VARIANT.
         let own = |name: &str| tasks::split(name).1.unwrap_or(name).to_owned();
-        if let Some(names) = &self.between {
-            return names.iter().map(|name| Ok(task.variant(&own(name))?)).collect();
+        if let (Some(a), Some(b)) = (&self.a, &self.b) {
+            return [a, b].map(|name| Ok(task.variant(&own(name))?)).into_iter().collect();
         }
         let all = task.all_variants();
         match tasks::split(&self.task).1 {

@@ -75,7 +75,8 @@ fn false_claim_is_reported_with_the_first_case() {
 fn one_variant_is_compared_with_another() {
     let between = |a: &str, b: &str| {
         let asked = ElementsRequest {
-            between: Some([a.to_owned(), b.to_owned()]),
+            a: Some(a.to_owned()),
+            b: Some(b.to_owned()),
             ..request()
         };
         elements_of(&task(r#"["phi"]"#), &asked)

@@ -243,6 +243,10 @@ def read_log(
 ) -> tuple[str, dict[str, Any], dict[str, Any], dict[str, Any], list[str]]: ...
 def validate_log(folder: str | PathLike[str]) -> dict[str, Any]: ...
 
+# -- options.rs --------------------------------------------------------------------------------------------------------
+
+def requests() -> dict[str, list[tuple[str, str | None]]]: ...
+
 # -- recordings.rs -----------------------------------------------------------------------------------------------------
 
 @final

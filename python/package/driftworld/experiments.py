@@ -52,13 +52,6 @@ def elements(
     """
     if (a is None) != (b is None):
         raise TypeError("elements: found one variant, expected none or two: elements(task, a, b)")
-    spec = task if isinstance(task, TaskSpec) else TaskSpec.load(task)
-    options = {
-        "between": None if a is None else [a, b],
-        "modalities": None if modalities is None else list(modalities),
-        "worlds": worlds,
-        "seed": seed,
-        "steps": steps,
-        "assets": assets,
-    }
-    return _native.elements(spec, options)
+    options = dict(locals())
+    del options["task"]
+    return _native.elements(task if isinstance(task, TaskSpec) else TaskSpec.load(task), options)
