@@ -1,31 +1,156 @@
 //! [`OrderRequest`]: how variants are ordered, with the ends given by name.
 
+use std::str::FromStr;
+
+use clap::Args;
 use driftworld_similarity::{DistanceMatrix, Method, OrderOptions, Ordering, SimilarityError, order};
 use driftworld_spec::did_you_mean;
-use driftworld_text::first_of;
+use driftworld_text::{WordKind, first_of, removed};
+use serde::Deserialize;
 
-use crate::{Failure, argument, tasks};
+use crate::{Failure, argument, request, tasks};
 
 /// Maximum number of labels in a message.
 const MOST_LISTED: usize = 20;
 
 /// How an order is found.
-#[derive(Clone, Debug, Default)]
+#[derive(Args, Clone, Debug, Default, Deserialize)]
+#[group(skip)]
+#[serde(default, deny_unknown_fields)]
 pub struct OrderRequest {
-    /// The method; by default exact if possible, else two-opt.
+    /// Order of the variants [default: the shortest path; exact for up to 15 variants].
+    ///
+    /// What is to be like what: gradual (the shortest path, with the smallest largest step among equals), outward (by growing
+    /// distance from the first), abrupt (the longest path), path (the shortest path), farthest (each time what is farthest
+    /// from all before it), named (as given). Or a method: nearest, exact, two-opt, random, target-step, given.
+    #[arg(long, value_name = "ORDER")]
+    #[serde(deserialize_with = "request::word")]
+    pub order: Option<OrderWord>,
+    /// The method of the order, apart from `order`.
+    #[arg(skip)]
+    #[serde(deserialize_with = "request::word")]
     pub method: Option<Method>,
-    /// The first item; by default the best one.
+    /// First variant, such as blue [default: the one named first, or whichever is best of one whole task].
+    #[arg(long, value_name = "VARIANT")]
     pub start: Option<String>,
-    /// The last item; by default the best one.
+    /// Last variant [default: whichever is best].
+    #[arg(long, value_name = "VARIANT")]
     pub end: Option<String>,
-    /// The target length of steps for the method target-step.
+    /// Step between neighbours for the order target-step.
+    #[arg(long, value_name = "DISTANCE")]
     pub target_step: Option<f64>,
 }
 
+/// An order of variants by purpose.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DesignOrder {
+    /// Small steps: the shortest path from the first; of equally short ones, the one whose largest step is smallest.
+    Gradual,
+    /// By growing distance from the first: the most different ones come last.
+    Outward,
+    /// The longest path from the first: neighbours are as different as possible.
+    Abrupt,
+    /// The shortest path from the first: neighbours are as similar as possible.
+    Path,
+    /// Greedy: the next variant is always the farthest from all before it.
+    Farthest,
+    /// In the given order, whatever their distances.
+    Named,
+}
+
+impl DesignOrder {
+    /// The orders by word.
+    pub const WORDS: [(&'static str, Self); 6] = [
+        ("gradual", Self::Gradual),
+        ("outward", Self::Outward),
+        ("abrupt", Self::Abrupt),
+        ("path", Self::Path),
+        ("farthest", Self::Farthest),
+        ("named", Self::Named),
+    ];
+
+    /// The method for it; `None` for the shortest path, whose method depends on the number of items.
+    pub(crate) fn method(self) -> Option<Method> {
+        match self {
+            Self::Gradual => Some(Method::Gradual),
+            Self::Outward => Some(Method::Outward),
+            Self::Abrupt => Some(Method::Abrupt),
+            Self::Path => None,
+            Self::Farthest => Some(Method::Farthest),
+            Self::Named => Some(Method::Given),
+        }
+    }
+}
+
+/// Values of `--order`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OrderWord {
+    /// An order by purpose.
+    Design(DesignOrder),
+    /// A method.
+    Method(Method),
+}
+
+impl FromStr for OrderWord {
+    type Err = String;
+
+    fn from_str(word: &str) -> Result<Self, String> {
+        if let Some((_, design)) = DesignOrder::WORDS.iter().find(|(name, _)| *name == word) {
+            return Ok(Self::Design(*design));
+        }
+        word.parse().map(Self::Method).map_err(|_| {
+            if let Some(advice) = removed(WordKind::Order, word) {
+                return advice;
+            }
+            let designs = DesignOrder::WORDS.map(|(name, _)| name);
+            let methods = Method::ALL.iter().map(|method| method.name());
+            let methods: Vec<&str> = methods.filter(|name| !designs.contains(name)).collect();
+            let near = did_you_mean(word, designs.iter().chain(&methods).copied());
+            format!(
+                "expected one of {}, or a method: {}{near}",
+                designs.join(", "),
+                methods.join(", ")
+            )
+        })
+    }
+}
+
 impl OrderRequest {
+    /// The order by purpose, if one is named.
+    pub(crate) fn purpose(&self) -> Option<DesignOrder> {
+        match self.order {
+            Some(OrderWord::Design(order)) => Some(order),
+            _ => None,
+        }
+    }
+
+    /// The method, if one is named.
+    pub(crate) fn own_method(&self) -> Option<Method> {
+        match self.order {
+            Some(OrderWord::Method(method)) => Some(method),
+            _ => self.method,
+        }
+    }
+
+    /// The method named, that of the order by purpose, or the default one.
+    fn method(&self, items: usize) -> Method {
+        let of_purpose = || self.purpose().and_then(DesignOrder::method);
+        let method = self.own_method().or_else(of_purpose);
+        method.unwrap_or_else(|| Method::default_for(items))
+    }
+
+    /// The same, with ends as they are called in a matrix.
+    pub(crate) fn labelled(&self) -> Self {
+        Self {
+            start: self.start.as_deref().map(tasks::label_of),
+            end: self.end.as_deref().map(tasks::label_of),
+            ..self.clone()
+        }
+    }
+
     /// The order of a matrix's items, and the method that found it. `seed` is the random method's seed.
     pub(crate) fn order(&self, matrix: &DistanceMatrix, seed: u64) -> Result<(Method, Ordering), Failure> {
-        let method = self.method.unwrap_or_else(|| Method::default_for(matrix.len()));
+        let method = self.method(matrix.len());
         if self.target_step.is_some() && method != Method::TargetStep {
             return Err(Failure::usage(format!(
                 "{}: found with the order {}, expected the order {}, which alone keeps to it",
@@ -51,7 +176,7 @@ impl OrderRequest {
         seed: u64,
         firsts: &[usize],
     ) -> Result<(Method, Ordering), Failure> {
-        let method = self.method.unwrap_or_else(|| Method::default_for(matrix.len()));
+        let method = self.method(matrix.len());
         if self.start.is_some() || !method.seeks_from_a_first() || firsts.is_empty() || firsts.len() == matrix.len() {
             return self.order(matrix, seed);
         }
@@ -119,4 +244,20 @@ pub(crate) fn position_of<S: AsRef<str>>(labels: &[S], name: &str) -> Result<usi
 /// The name of a variant without its task.
 pub(crate) fn bare(label: &str) -> &str {
     label.rsplit_once('#').map_or(label, |(_, variant)| variant)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_word_names_an_order_by_purpose_or_method() {
+        assert_eq!("abrupt".parse(), Ok(OrderWord::Design(DesignOrder::Abrupt)));
+        assert_eq!("two-opt".parse(), Ok(OrderWord::Method(Method::TwoOpt)));
+        for method in Method::ALL {
+            assert!(method.name().parse::<OrderWord>().is_ok(), "{}", method.name());
+        }
+        let refused = "gradul".parse::<OrderWord>().expect_err("there is none");
+        assert!(refused.ends_with("did you mean \"gradual\"?"), "{refused}");
+    }
 }

@@ -1,7 +1,11 @@
 //! Requests: one struct per operation, whose fields are the command's arguments (clap) and Python's keywords (serde) at
 //! once.
 
+use std::fmt::Display;
+use std::str::FromStr;
+
 use clap::{Args, Command};
+use serde::Deserialize;
 use serde::de::value::Error;
 use serde::de::{DeserializeOwned, Deserializer, Error as _, Visitor};
 
@@ -22,6 +26,29 @@ pub fn defaults<R: Args + DeserializeOwned>() -> Vec<(&'static str, Option<Strin
         Some(default.to_string_lossy().into_owned())
     };
     names::<R>().iter().map(|name| (*name, default(name))).collect()
+}
+
+/// A request with the defaults that the command's help shows.
+pub(crate) fn usual<R: Args>() -> R {
+    let command = R::augment_args(Command::new("request")).mut_args(|argument| argument.required(false));
+    let matches = command.try_get_matches_from([] as [&str; 0]);
+    let request = matches.and_then(|matches| R::from_arg_matches(&matches));
+    request.expect("each argument has a default or is optional")
+}
+
+/// Reads a word by a function.
+pub(crate) fn read<'de, D: Deserializer<'de>, T, E: Display>(
+    deserializer: D,
+    of: impl FnOnce(&str) -> Result<T, E>,
+) -> Result<T, D::Error> {
+    of(&String::deserialize(deserializer)?).map_err(D::Error::custom)
+}
+
+/// Reads a word as its type does.
+pub(crate) fn word<'de, D: Deserializer<'de>, T: FromStr<Err: Display>>(
+    deserializer: D,
+) -> Result<Option<T>, D::Error> {
+    read(deserializer, T::from_str).map(Some)
 }
 
 /// Asks a struct for the names of its fields.

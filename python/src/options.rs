@@ -6,7 +6,9 @@ use std::fmt::{self, Display};
 use std::path::PathBuf;
 use std::str::FromStr;
 
+use driftworld::design::DesignRequest;
 use driftworld::elements::ElementsRequest;
+use driftworld::ordering::OrderRequest;
 use driftworld::request;
 use pyo3::exceptions::PyOverflowError;
 use pyo3::prelude::*;
@@ -140,26 +142,6 @@ impl<'py> Options<'py> {
     {
         self.read(name, str::parse)
     }
-
-    /// A word as it is serialised in documents.
-    pub(crate) fn named<T: DeserializeOwned>(&self, name: &str) -> Result<Option<T>> {
-        // Serde puts words in backticks.
-        let read =
-            |word: &str| serde_json::from_value::<T>(word.into()).map_err(|error| error.to_string().replace('`', ""));
-        self.read(name, read)
-    }
-
-    /// One of these words, with its value.
-    pub(crate) fn choice<T: Clone>(&self, name: &str, words: &[(&str, T)]) -> Result<Option<T>> {
-        let Some(word) = self.text(name)? else {
-            return Ok(None);
-        };
-        if let Some((_, value)) = words.iter().find(|(known, _)| *known == word) {
-            return Ok(Some(value.clone()));
-        }
-        let known: Vec<&str> = words.iter().map(|(known, _)| *known).collect();
-        Err(self.wrong(name, quoted(&word), format!("one of {}", known.join(", "))))
-    }
 }
 
 /// Quotes a string as Python does.
@@ -170,7 +152,14 @@ fn quoted(text: &str) -> String {
 /// The request of each operation: its fields, each with the default in the command's help, if it has one there.
 #[pyfunction]
 pub(crate) fn requests() -> BTreeMap<&'static str, Vec<(&'static str, Option<String>)>> {
-    BTreeMap::from([("elements", request::defaults::<ElementsRequest>())])
+    let design = [
+        request::defaults::<DesignRequest>(),
+        request::defaults::<OrderRequest>(),
+    ];
+    BTreeMap::from([
+        ("elements", request::defaults::<ElementsRequest>()),
+        ("design", design.concat()),
+    ])
 }
 
 /// A value as Python writes it.
@@ -204,7 +193,10 @@ impl serde::de::Error for Wrong {
         let said = error.to_string().replace('`', "");
         match said.split_once("expected ") {
             Some((_, expected)) => Self::expected(expected),
-            None => Self(format!(": {said}")),
+            None => match said.strip_prefix("found ").and_then(|said| said.split_once(", ")) {
+                Some((_, advice)) => Self(format!(", {advice}")),
+                None => Self(format!(": {said}")),
+            },
         }
     }
 }

@@ -14,9 +14,20 @@ from driftworld import _native
 #: For each request, its function, and the fields that the function does not offer, with the reason.
 OFFERED: dict[str, tuple[Callable[..., Any], dict[str, str]]] = {
     "elements": (driftworld.elements, {}),
+    "design": (
+        driftworld.Curriculum.design,
+        {
+            "lifetimes": "Curriculum.lifetimes has it",
+            "experts": "Curriculum.experts has it",
+            "lifetime": "Curriculum.experts has it",
+            "fixed_evaluation": "Curriculum.experts and Curriculum.lifetimes have it",
+            "complexity": "only the command offers it",
+            "difficulty": "only the command offers it",
+        },
+    ),
 }
 #: Arguments that are no fields: what the function itself does with the result.
-OWN: dict[str, set[str]] = {}
+OWN = {"design": {"plot"}}
 
 
 def differences(fields: list[tuple[str, str | None]], function: Callable[..., Any], apart: set[str]) -> list[str]:

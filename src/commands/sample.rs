@@ -4,6 +4,7 @@ use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use crate::design::Mix;
 use crate::generator::{Drift, GeneratorError, Sampler, Sequence, Switch};
 use crate::spec::{DriftSchedule, Variant, World};
 use crate::tasks;
@@ -288,13 +289,4 @@ fn each(
     }
     bar.finish_and_clear();
     Ok(())
-}
-
-/// How values or variants switch in a drift.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Mix {
-    /// Each parameter that cannot be interpolated by itself.
-    Parameter,
-    /// The whole variant: each world is of one of the two.
-    Task,
 }

@@ -4,9 +4,9 @@ use driftworld_curriculum::{Choice, Design, Picked, Steps, arrange, distances, p
 use driftworld_similarity::{DistanceMatrix, Method};
 use driftworld_spec::{By, DEFAULT_VARIANT, Element, Variant, did_you_mean};
 
-use super::{DesignOrder, DesignRequest};
+use super::DesignRequest;
 use crate::distances::{Sample, fitting, labelled_matrix};
-use crate::ordering::{bare, position_of};
+use crate::ordering::{DesignOrder, bare, position_of};
 use crate::{Failure, argument, libraries, tasks};
 
 /// Default tolerance of a step.
@@ -94,10 +94,10 @@ impl DesignRequest {
             };
             let matrix = distances(&picked, Some(element))?;
             // A requested method or end decides, else the requested order, by default outward.
-            let order = if self.ordering.method.is_some() || self.ordering.end.is_some() {
-                self.ordering.order(&matrix, self.design.seed)?.1.indices
+            let order = if self.ordering.own_method().is_some() || self.ordering.end.is_some() {
+                self.ordering.order(&matrix, self.seed)?.1.indices
             } else {
-                match self.order {
+                match self.ordering.purpose() {
                     Some(DesignOrder::Named) => (0..picked.len()).collect(),
                     order => arrange(&matrix, order.map_or(Some(Method::Outward), DesignOrder::method), 0)?,
                 }
@@ -112,22 +112,22 @@ impl DesignRequest {
             ..Sample::by(by)
         };
         let matrix = labelled_matrix(&named, &sample, Ok)?;
-        let order = match self.order {
+        let order = match self.ordering.purpose() {
             Some(DesignOrder::Named) => {
                 let all = 0..matrix.len();
-                let first = self.ordering.options(&matrix, self.design.seed)?.first;
+                let first = self.ordering.options(&matrix, self.seed)?.first;
                 first
                     .into_iter()
                     .chain(all.filter(|index| Some(*index) != first))
                     .collect()
             }
             Some(order) => {
-                let first = self.ordering.options(&matrix, self.design.seed)?.first.unwrap_or(0);
+                let first = self.ordering.options(&matrix, self.seed)?.first.unwrap_or(0);
                 arrange(&matrix, order.method(), first)?
             }
             None => {
                 self.ordering
-                    .order_from(&matrix, self.design.seed, &self.firsts(&named))?
+                    .order_from(&matrix, self.seed, &self.firsts(&named))?
                     .1
                     .indices
             }
@@ -170,8 +170,7 @@ impl DesignRequest {
         let choice = |(task, variant): &(String, Variant)| Choice::new(task, variant.name());
         Ok(Design {
             held_out: held_out.iter().map(choice).collect(),
-            form: self.form(),
-            ..self.design.clone()
+            ..self.design()
         })
     }
 
@@ -183,7 +182,7 @@ impl DesignRequest {
 
     /// The default candidates for the first variant: those of the first argument; none for a random order.
     fn firsts(&self, named: &[(String, Variant)]) -> Vec<usize> {
-        let (Some(first), true) = (self.tasks.first(), self.ordering.method != Some(Method::Random)) else {
+        let (Some(first), true) = (self.tasks.first(), self.ordering.own_method() != Some(Method::Random)) else {
             return Vec::new();
         };
         let many = tasks::variants(first).map_or(0, |variants| variants.len());

@@ -16,8 +16,8 @@ use std::path::Path;
 
 pub use choose::{Chosen, DEFAULT_STEPS, DEFAULT_TOLERANCE, Evidence};
 pub use optima::PairOptimum;
-pub use request::{DesignOrder, DesignRequest, MAX_LIFETIMES, MAX_TRIED};
-pub use words::{element, schedule};
+pub use request::{DesignRequest, MAX_LIFETIMES, MAX_TRIED};
+pub use words::{Mix, element, schedule};
 
 use crate::{Failure, output_file};
 use drawable::Drawable;

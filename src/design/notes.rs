@@ -1,6 +1,6 @@
 //! Notes on what may be unexpected in a design: named variants that are not learned, unbalanced orders, experts of mixtures.
 
-use driftworld_spec::{DriftSwitch, ScenarioForm};
+use driftworld_spec::ScenarioForm;
 
 use super::{Chosen, DesignRequest};
 use crate::{Failure, argument, tasks};
@@ -31,12 +31,7 @@ impl DesignRequest {
                  more often; {rows} lifetimes, or a multiple of it, are balanced"
             ));
         }
-        if self.experts
-            && self
-                .design
-                .drifting
-                .is_some_and(|drifting| drifting.switch != DriftSwitch::AtPoint)
-        {
+        if self.experts && self.mix.is_some() {
             notes.push(
                 "experts of a mixture learn a variant for as long as the drift is nearer to it, not in the worlds in \
                  which the mixture draws it: about as many, and not the same"

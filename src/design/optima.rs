@@ -45,7 +45,7 @@ impl DesignRequest {
                 found.push(PairOptimum {
                     a: a.choice.id(),
                     b: b.choice.id(),
-                    optimum: Optimum::tried(&a.variant, &b.variant, self.design.seed, WORLDS, &catalogue)?,
+                    optimum: Optimum::tried(&a.variant, &b.variant, self.seed, WORLDS, &catalogue)?,
                 });
             }
         }

@@ -1,6 +1,48 @@
 //! Parses words for elements and schedules, from the command line and from Python.
 
-use driftworld_spec::{DriftSchedule, Element, did_you_mean};
+use clap::ValueEnum;
+use driftworld_spec::{By, DriftSchedule, Element, did_you_mean};
+use serde::de::Error;
+use serde::{Deserialize, Deserializer};
+use serde_json::Value;
+
+use crate::numbers;
+use crate::request::read;
+
+/// How values or variants switch in a drift.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Mix {
+    /// Each parameter that cannot be interpolated by itself.
+    Parameter,
+    /// The whole variant: each world is of one of the two.
+    Task,
+}
+
+/// Python's `True`, `False` or `"task"`.
+pub(super) fn mix<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Mix>, D::Error> {
+    match Value::deserialize(deserializer)? {
+        Value::Null | Value::Bool(false) => Ok(None),
+        Value::Bool(true) => Ok(Some(Mix::Parameter)),
+        Value::String(word) if word == "task" => Ok(Some(Mix::Task)),
+        _ => Err(D::Error::custom("expected True, False or \"task\"")),
+    }
+}
+
+pub(super) fn by<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<By>, D::Error> {
+    read(deserializer, By::from_name).map(Some)
+}
+
+pub(super) fn probe<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Element>, D::Error> {
+    read(deserializer, element).map(Some)
+}
+
+pub(super) fn drift<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<DriftSchedule>, D::Error> {
+    read(deserializer, schedule).map(Some)
+}
+
+pub(super) fn name<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
+    read(deserializer, numbers::name)
+}
 
 /// An element by its letter or name.
 ///

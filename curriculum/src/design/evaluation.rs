@@ -15,6 +15,7 @@ pub enum Evaluate {
     /// Before the first and after the last.
     Ends,
     /// After these numbers of learning blocks; 0 is before the first.
+    #[serde(skip)]
     After(Vec<u32>),
 }
 

@@ -112,7 +112,7 @@ class Journal:
 # -- design.rs ---------------------------------------------------------------------------------------------------------
 
 def design_curriculum(
-    tasks: Sequence[str], options: dict[str, Any]
+    options: dict[str, Any], plot: str | PathLike[str] | None
 ) -> tuple[list[tuple[str, str]], list[tuple[str, str]]]: ...
 
 # -- elements.rs -------------------------------------------------------------------------------------------------------

@@ -229,7 +229,7 @@ class Curriculum(Sequence[Block]):
 
         Args:
             tasks: Variants, or tasks, which stand for all their variants.
-            name: The scenario's name.
+            name: The scenario's name; ``"curriculum"`` by default.
             learn: Experiences of each learning block; 2,500 by default.
             eval_episodes: Experiences of each variant in each evaluation block; 50 by default.
             evaluate: When the agent is evaluated, frozen, in all variants: ``"every"`` block (default) or at the
@@ -561,7 +561,7 @@ def _is_whole(value: Any) -> bool:
 
 def _designed(options: dict[str, Any]) -> list[str]:
     """The texts of the designed scenarios. Controls are written into their folder."""
-    tasks = options.pop("tasks")
+    tasks, plot = options["tasks"], options.pop("plot", None)
     if not tasks:
         raise ValueError('tasks: found none, expected at least one, such as "find_objects#red"')
     if not all(isinstance(task, str) for task in tasks):
@@ -579,7 +579,7 @@ def _designed(options: dict[str, Any]) -> list[str]:
         wrong = [place for place in options["evaluate_after"] if not _is_whole(place)]
         if wrong:
             raise TypeError(f"evaluate_after: found {wrong[0]!r} in it, expected whole numbers")
-    designed, controls = _native.design_curriculum(list(tasks), options)
+    designed, controls = _native.design_curriculum({**options, "controls": options.get("controls") is not None}, plot)
     for name, text in controls:
         write_whole(Path(options["controls"]) / f"{name}.json", text.encode())
     return [text for _, text in designed]

@@ -1,18 +1,17 @@
 //! `driftworld order`: orders variants by their distances.
 
-mod arguments;
 mod compare;
 
 use std::path::PathBuf;
 
 use crate::distances::{By, Sample, Scale, fitting, variant_matrix};
+use crate::ordering::OrderRequest;
 use crate::report::picture::path_map;
 use crate::similarity::{DistanceMatrix, Method, NUM_RANDOM_ORDERS, Ordering, share_of_shorter_orders};
 use crate::tasks;
 use clap::Args;
 use serde_json::{Value, json};
 
-pub(crate) use arguments::OrderArgs;
 use compare::Comparison;
 
 use super::assets::LibraryChoice;
@@ -42,7 +41,7 @@ pub(crate) struct Order {
     #[arg(long, value_name = "FILE", conflicts_with_all = ["tasks", "weight"])]
     from_matrix: Option<PathBuf>,
     #[command(flatten)]
-    ordering: OrderArgs,
+    ordering: OrderRequest,
     /// What to compare variants by: parameters, worlds, rewards, and so on, as for `driftworld distance`.
     ///
     /// By default what the task declares, which is parameters where it says nothing. Variants of several tasks need
@@ -98,7 +97,10 @@ impl Order {
         if self.compare {
             return self.compare(&matrix);
         }
-        let (method, ordering) = self.ordering.request().order_from(&matrix, self.seed, &self.firsts())?;
+        let (method, ordering) = self
+            .ordering
+            .labelled()
+            .order_from(&matrix, self.seed, &self.firsts())?;
         if let Some(path) = &self.plot {
             output::write_picture_and_tell(path, &path_map(&matrix, method, &ordering))?;
         }
@@ -160,7 +162,7 @@ impl Order {
     }
 
     fn compare(&self, matrix: &DistanceMatrix) -> Result<(), Failure> {
-        let comparison = Comparison::new(matrix, &self.ordering.request().options(matrix, self.seed)?);
+        let comparison = Comparison::new(matrix, &self.ordering.labelled().options(matrix, self.seed)?);
         if self.json {
             return output::json(&comparison.json(matrix, self.seed));
         }
