@@ -95,7 +95,7 @@ mod tests {
 
     impl Default for Fixture {
         fn default() -> Self {
-            Self { known: 3, added: 0.5 }
+            usual()
         }
     }
 

@@ -4,12 +4,13 @@ use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::fmt::{self, Display};
 use std::path::PathBuf;
-use std::str::FromStr;
 
 use driftworld::design::DesignRequest;
 use driftworld::elements::ElementsRequest;
+use driftworld::lifetime_report::{FigureChoice, ReportRequest};
 use driftworld::ordering::OrderRequest;
-use driftworld::request;
+use driftworld::request::{defaults, names};
+use driftworld::scoring::{Intervals, ScoringRequest, ScoringSettings};
 use pyo3::exceptions::PyOverflowError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
@@ -34,8 +35,9 @@ impl<'py> Options<'py> {
     /// A request with the keywords that are its fields; one that is not given has the request's default.
     pub(crate) fn request<R: DeserializeOwned>(&self) -> Result<R> {
         let mut given = Vec::new();
-        for &name in request::names::<R>() {
-            given.extend(self.value(name)?.map(|value| (name, value)));
+        for &name in names::<R>() {
+            let value = self.given.get_item(name)?.filter(|value| !value.is_none());
+            given.extend(value.map(|value| (name, value)));
         }
         // The one being read, for the error.
         let read = Cell::new(None);
@@ -49,15 +51,6 @@ impl<'py> Options<'py> {
         })
     }
 
-    fn value(&self, name: &str) -> Result<Option<Bound<'py, PyAny>>> {
-        Ok(self.given.get_item(name)?.filter(|value| !value.is_none()))
-    }
-
-    /// The exception for an option with an invalid value.
-    pub(crate) fn wrong(&self, name: &str, found: impl Display, expected: impl Display) -> Error {
-        self.refuse(format!("{name}: found {found}, expected {expected}"))
-    }
-
     pub(crate) fn refuse(&self, text: String) -> Error {
         Error::Refused {
             class: self.class,
@@ -65,100 +58,22 @@ impl<'py> Options<'py> {
             cause: None,
         }
     }
-
-    fn extracted<T: FromPyObjectOwned<'py>>(&self, name: &str, expected: &str) -> Result<Option<T>> {
-        let Some(value) = self.value(name)? else {
-            return Ok(None);
-        };
-        match value.extract::<T>() {
-            Ok(value) => Ok(Some(value)),
-            Err(error) => {
-                let is_large = error.into().is_instance_of::<PyOverflowError>(value.py()) && value.gt(0)?;
-                let expected = if is_large { "a smaller number" } else { expected };
-                Err(self.wrong(name, value.repr()?, expected))
-            }
-        }
-    }
-
-    pub(crate) fn flag(&self, name: &str) -> Result<bool> {
-        Ok(self.extracted(name, "True or False")?.unwrap_or(false))
-    }
-
-    pub(crate) fn text(&self, name: &str) -> Result<Option<String>> {
-        self.extracted(name, "a text")
-    }
-
-    pub(crate) fn number(&self, name: &str) -> Result<Option<f64>> {
-        self.extracted(name, "a number")
-    }
-
-    pub(crate) fn whole<T: FromPyObjectOwned<'py>>(&self, name: &str) -> Result<Option<T>> {
-        self.extracted(name, "a whole number from 0 on")
-    }
-
-    pub(crate) fn path(&self, name: &str) -> Result<Option<PathBuf>> {
-        self.extracted(name, "a path")
-    }
-
-    pub(crate) fn paths(&self, name: &str) -> Result<Vec<PathBuf>> {
-        Ok(self.extracted(name, "paths")?.unwrap_or_default())
-    }
-
-    pub(crate) fn list<T>(&self, name: &str, expected: &str) -> Result<Option<Vec<T>>>
-    where
-        Vec<T>: FromPyObjectOwned<'py>,
-    {
-        self.extracted(name, expected)
-    }
-
-    /// A value as JSON.
-    pub(crate) fn json(&self, name: &str) -> Result<Option<serde_json::Value>> {
-        Ok(self.value(name)?.as_ref().map(from_python).transpose()?)
-    }
-
-    /// A word parsed by a function; the error shows what the function expected.
-    pub(crate) fn read<T, E: Display>(
-        &self,
-        name: &str,
-        read: impl FnOnce(&str) -> std::result::Result<T, E>,
-    ) -> Result<Option<T>> {
-        let Some(word) = self.text(name)? else {
-            return Ok(None);
-        };
-        read(&word).map(Some).map_err(|error| {
-            let said = error.to_string();
-            // The option's name is added here.
-            let expected = said
-                .split_once("expected ")
-                .map_or(said.as_str(), |(_, expected)| expected);
-            self.wrong(name, quoted(&word), expected)
-        })
-    }
-
-    /// A word parsed by a type.
-    pub(crate) fn word<T: FromStr>(&self, name: &str) -> Result<Option<T>>
-    where
-        T::Err: Display,
-    {
-        self.read(name, str::parse)
-    }
-}
-
-/// Quotes a string as Python does.
-fn quoted(text: &str) -> String {
-    format!("'{text}'")
 }
 
 /// The request of each operation: its fields, each with the default in the command's help, if it has one there.
 #[pyfunction]
 pub(crate) fn requests() -> BTreeMap<&'static str, Vec<(&'static str, Option<String>)>> {
-    let design = [
-        request::defaults::<DesignRequest>(),
-        request::defaults::<OrderRequest>(),
-    ];
+    let logs = names::<ScoringRequest>().iter().map(|name| (*name, None));
+    let settings = [defaults::<ScoringSettings>(), defaults::<Intervals>()].concat();
+    let metrics: Vec<_> = logs.chain(settings).collect();
+    let report = [defaults::<ReportRequest>(), defaults::<FigureChoice>(), metrics.clone()].concat();
+    let design = [defaults::<DesignRequest>(), defaults::<OrderRequest>()].concat();
+    let elements = defaults::<ElementsRequest>();
     BTreeMap::from([
-        ("elements", request::defaults::<ElementsRequest>()),
-        ("design", design.concat()),
+        ("elements", elements),
+        ("design", design),
+        ("metrics", metrics),
+        ("report", report),
     ])
 }
 
@@ -172,6 +87,8 @@ fn shown(value: &Bound<'_, PyAny>) -> String {
 /// What follows in a message after the value that was found.
 #[derive(Debug)]
 struct Wrong(String);
+
+type Read<T> = std::result::Result<T, Wrong>;
 
 impl Wrong {
     fn expected(what: impl Display) -> Self {
@@ -205,7 +122,7 @@ impl serde::de::Error for Wrong {
 struct Given<'py>(Bound<'py, PyAny>);
 
 impl<'py> Given<'py> {
-    fn extract<T: FromPyObjectOwned<'py>>(&self, expected: &str) -> std::result::Result<T, Wrong> {
+    fn extract<T: FromPyObjectOwned<'py>>(&self, expected: &str) -> Read<T> {
         self.0.extract::<T>().map_err(|error| {
             let is_large = error.into().is_instance_of::<PyOverflowError>(self.0.py()) && self.0.gt(0).unwrap_or(false);
             Wrong::expected(if is_large { "a smaller number" } else { expected })
@@ -213,7 +130,7 @@ impl<'py> Given<'py> {
     }
 
     /// A text, or a path as text.
-    fn text(&self) -> std::result::Result<String, Wrong> {
+    fn text(&self) -> Read<String> {
         let path = self.extract::<PathBuf>("a text")?;
         path.into_os_string()
             .into_string()
@@ -232,7 +149,7 @@ impl IntoDeserializer<'_, Wrong> for Given<'_> {
 /// Methods that read whole numbers.
 macro_rules! whole {
     ($($method:ident)*) => {
-        $(fn $method<V: Visitor<'de>>(self, visitor: V) -> std::result::Result<V::Value, Wrong> {
+        $(fn $method<V: Visitor<'de>>(self, visitor: V) -> Read<V::Value> {
             let number = self.extract("a whole number from 0 on")?;
             visitor.visit_u64(number).map_err(|_: Wrong| Wrong::expected("a smaller number"))
         })*
@@ -245,29 +162,29 @@ impl<'de> Deserializer<'de> for Given<'_> {
 
     whole! { deserialize_u8 deserialize_u16 deserialize_u32 deserialize_u64 }
 
-    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> std::result::Result<V::Value, Wrong> {
+    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Read<V::Value> {
         let json = from_python(&self.0).map_err(serde::de::Error::custom)?;
         json.deserialize_any(visitor).map_err(serde::de::Error::custom)
     }
 
-    fn deserialize_bool<V: Visitor<'de>>(self, visitor: V) -> std::result::Result<V::Value, Wrong> {
+    fn deserialize_bool<V: Visitor<'de>>(self, visitor: V) -> Read<V::Value> {
         visitor.visit_bool(self.extract("True or False")?)
     }
 
-    fn deserialize_f64<V: Visitor<'de>>(self, visitor: V) -> std::result::Result<V::Value, Wrong> {
+    fn deserialize_f64<V: Visitor<'de>>(self, visitor: V) -> Read<V::Value> {
         visitor.visit_f64(self.extract("a number")?)
     }
 
-    fn deserialize_string<V: Visitor<'de>>(self, visitor: V) -> std::result::Result<V::Value, Wrong> {
+    fn deserialize_string<V: Visitor<'de>>(self, visitor: V) -> Read<V::Value> {
         visitor.visit_string(self.text()?)
     }
 
-    fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> std::result::Result<V::Value, Wrong> {
+    fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Read<V::Value> {
         visitor.visit_some(self)
     }
 
     /// Several values, or one.
-    fn deserialize_seq<V: Visitor<'de>>(self, visitor: V) -> std::result::Result<V::Value, Wrong> {
+    fn deserialize_seq<V: Visitor<'de>>(self, visitor: V) -> Read<V::Value> {
         let is_one = self.0.is_instance_of::<PyString>() || self.0.hasattr("__fspath__").unwrap_or(false);
         let items = self.0.try_iter().ok().filter(|_| !is_one);
         let items: Vec<Bound<'_, PyAny>> = match items {
@@ -282,7 +199,7 @@ impl<'de> Deserializer<'de> for Given<'_> {
         _: &'static str,
         words: &'static [&'static str],
         visitor: V,
-    ) -> std::result::Result<V::Value, Wrong> {
+    ) -> Read<V::Value> {
         let word = self.text()?;
         if !words.contains(&word.as_str()) {
             return Err(Wrong::expected(format!("one of {}", words.join(", "))));

@@ -11,6 +11,8 @@ import driftworld
 import pytest
 from driftworld import _native
 
+#: Options of scoring that a report takes from a file of settings.
+SETTINGS = set(inspect.signature(driftworld.metrics).parameters) - set(inspect.signature(driftworld.report).parameters)
 #: For each request, its function, and the fields that the function does not offer, with the reason.
 OFFERED: dict[str, tuple[Callable[..., Any], dict[str, str]]] = {
     "elements": (driftworld.elements, {}),
@@ -25,9 +27,18 @@ OFFERED: dict[str, tuple[Callable[..., Any], dict[str, str]]] = {
             "difficulty": "only the command offers it",
         },
     ),
+    "metrics": (driftworld.metrics, {}),
+    "report": (
+        driftworld.report,
+        {
+            "tasks": "only the command offers it",
+            "no_show_eval_lines": "only the command offers it",
+            **dict.fromkeys(SETTINGS, "load_settings has it"),
+        },
+    ),
 }
 #: Arguments that are no fields: what the function itself does with the result.
-OWN = {"design": {"plot"}}
+OWN = {"design": {"plot"}, "report": {"path"}}
 
 
 def differences(fields: list[tuple[str, str | None]], function: Callable[..., Any], apart: set[str]) -> list[str]:

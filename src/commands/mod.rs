@@ -14,7 +14,6 @@ mod demo;
 mod distance;
 mod doctor;
 mod elements;
-mod figures;
 mod film;
 mod film_choice;
 mod help;
@@ -34,7 +33,6 @@ mod run;
 mod sample;
 mod scales;
 mod schema;
-mod scoring;
 mod sheet;
 mod studio;
 mod tasks;
@@ -239,6 +237,7 @@ macro_rules! subcommands {
     ($($module:ident::$command:ident),+ $(,)?) => {
         // No doc comments here: they would replace the long ones of the commands.
         #[derive(Subcommand)]
+        #[expect(clippy::large_enum_variant, reason = "there is one, for one run")]
         enum Command {
             $($command($module::$command),)+
         }

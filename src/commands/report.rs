@@ -4,14 +4,12 @@ use std::path::PathBuf;
 use std::sync::PoisonError;
 
 use crate::Failure;
-use crate::lifetime_report::{ReportRequest, write_report};
-use crate::scoring::ScoringRequest;
+use crate::lifetime_report::{FigureChoice, ReportRequest, write_report};
+use crate::scoring::{Intervals, ScoringRequest, ScoringSettings};
 use clap::Args;
 use driftworld_text::counted;
 
-use super::figures::FigureChoice;
 use super::output;
-use super::scoring::{Intervals, Scoring};
 
 /// Write a report on lifetimes as one HTML page.
 ///
@@ -42,34 +40,12 @@ pub(crate) struct Report {
     /// Print what was written as JSON.
     #[arg(long)]
     json: bool,
-    /// Title of the report [default: the lifetime's name].
-    #[arg(long, value_name = "WORDS")]
-    title: Option<String>,
-    /// Date to print on the report.
-    ///
-    /// Without it, the same logs always give the same bytes.
-    #[arg(long, value_name = "WORDS")]
-    date: Option<String>,
-    /// A distance matrix from `driftworld order --matrix`: .csv or .json.
-    #[arg(long, value_name = "FILE")]
-    distances: Option<PathBuf>,
-    /// A task spec to measure distances with. Repeatable.
-    ///
-    /// Logs may name any file, so only built-in tasks and these specs are read.
-    #[arg(long = "task", value_name = "FILE")]
-    tasks: Vec<PathBuf>,
-    /// The address of a workbench, as `driftworld studio` prints it, to link to worlds in which the last evaluation failed.
-    #[arg(long, value_name = "URL")]
-    studio: Option<String>,
-    /// Also write the figures into this folder, as `NAME_raw.png`, `NAME_raw.svg` and so on.
-    ///
-    /// NAME is the name of the log.
-    #[arg(long, value_name = "DIR")]
-    plots: Option<PathBuf>,
+    #[command(flatten)]
+    request: ReportRequest,
     #[command(flatten)]
     figures: FigureChoice,
     #[command(flatten)]
-    scoring: Scoring,
+    settings: ScoringSettings,
     #[command(flatten)]
     intervals: Intervals,
 }
@@ -77,24 +53,17 @@ pub(crate) struct Report {
 impl Report {
     pub(crate) fn run(self) -> Result<(), Failure> {
         let request = ReportRequest {
-            figures: self.figures.shown()?,
-            figure_options: self.figures.options()?,
+            figures: self.figures,
             scoring: ScoringRequest {
-                power: None,
                 logs: self.logs,
                 recursive: true,
                 against: self.against,
-                settings: self.scoring.settings()?,
-                common_ranges: self.intervals.common_ranges,
-                intervals: self.intervals.options(),
+                power: None,
+                settings: self.settings,
+                intervals: self.intervals,
             },
-            title: self.title,
-            date: self.date,
-            distances: self.distances,
-            tasks: self.tasks,
-            plots: self.plots,
-            studio: self.studio,
             command: Some(command_line()),
+            ..self.request
         };
         let page = write_report(&request, &|text| output::warning(text))?;
         if output::is_stdout(&self.output) {

@@ -1,15 +1,20 @@
 //! [`write_report`]: lifetimes on one HTML page, with the distances between their blocks.
 
 mod failed;
+mod figures;
 mod neighbours;
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+use clap::Args;
 use driftworld_metrics::{LifetimeMetrics, Log, Options, SmoothingMethod, compare_agents, over_repeats};
 use driftworld_report::{
     Chapter, ChapterOptions, Comparison, Figure, FigureOptions, MAX_LIFETIMES, Report, ReportError,
 };
+use serde::Deserialize;
+
+pub use figures::FigureChoice;
 
 use crate::figure_files::{Files, drawn};
 use crate::log_names::called_in;
@@ -17,28 +22,46 @@ use crate::scoring::{ScoredLog, ScoringRequest, Setup, own_scale, score_logs};
 use crate::{Failure, Warn, log_folders};
 use neighbours::Neighbours;
 
-/// The lifetimes on a page, and how they are shown.
-#[derive(Clone, Debug, Default)]
+/// The lifetimes on a page, and how they are shown: arguments of `driftworld report` and of Python's `report`.
+#[derive(Args, Clone, Debug, Default, Deserialize)]
+#[group(skip)]
+#[serde(default, deny_unknown_fields)]
 pub struct ReportRequest {
     /// The logs, in the given folders or below them, with the scoring options; `recursive` is ignored.
+    #[arg(skip)]
+    #[serde(skip)]
     pub scoring: ScoringRequest,
-    /// The page's heading; by default the lifetime's name.
+    /// Which figures are shown, and how.
+    #[arg(skip)]
+    #[serde(skip)]
+    pub figures: FigureChoice,
+    /// Title of the report [default: the lifetime's name].
+    #[arg(long, value_name = "WORDS")]
     pub title: Option<String>,
-    /// The date shown on the report; without one, the same logs give the same bytes.
+    /// Date to print on the report.
+    ///
+    /// Without it, the same logs always give the same bytes.
+    #[arg(long, value_name = "WORDS")]
     pub date: Option<String>,
-    /// A distance matrix file for the distances between blocks; by default they are measured from the scenario in the log.
+    /// A distance matrix from `driftworld order --matrix`: .csv or .json.
+    #[arg(long, value_name = "FILE")]
     pub distances: Option<PathBuf>,
-    /// Task specs that the logs name. Logs may name any file, so only built-in tasks and these are read.
+    /// A task spec to measure distances with. Repeatable.
+    ///
+    /// Logs may name any file, so only built-in tasks and these specs are read.
+    #[arg(long = "task", value_name = "FILE")]
     pub tasks: Vec<PathBuf>,
-    /// Which figures are shown.
-    pub figures: Vec<Figure>,
-    /// How they are drawn.
-    pub figure_options: FigureOptions,
-    /// A folder that the figures are also written to.
-    pub plots: Option<PathBuf>,
-    /// The address of a workbench; the page links to the worlds in which the last evaluation failed.
+    /// The address of a workbench, as `driftworld studio` prints it, to link to worlds in which the last evaluation failed.
+    #[arg(long, value_name = "URL")]
     pub studio: Option<String>,
+    /// Also write the figures into this folder, as `NAME_raw.png`, `NAME_raw.svg` and so on.
+    ///
+    /// NAME is the name of the log.
+    #[arg(long, value_name = "DIR")]
+    pub plots: Option<PathBuf>,
     /// The command line to show on the page.
+    #[arg(skip)]
+    #[serde(skip)]
     pub command: Option<String>,
 }
 
@@ -47,7 +70,6 @@ impl ReportRequest {
     pub fn of<P: Into<PathBuf>>(logs: impl IntoIterator<Item = P>) -> Self {
         Self {
             scoring: ScoringRequest::of(logs),
-            figures: Figure::ALL.to_vec(),
             ..Self::default()
         }
     }
@@ -71,6 +93,10 @@ pub struct Page {
 /// [`Failure`] if a log cannot be read or scored (the failure names every such log), or a figure cannot be written.
 pub fn write_report(request: &ReportRequest, warn: Warn<'_>) -> Result<Page, Failure> {
     let asked = &request.scoring;
+    let (intervals, figures) = (
+        asked.intervals.options(),
+        (request.figures.shown()?, request.figures.options()?),
+    );
     let logs = log_folders::below(&asked.logs)?;
     if logs.len() > MAX_LIFETIMES {
         let (found, limit) = (logs.len(), MAX_LIFETIMES);
@@ -99,7 +125,7 @@ pub fn write_report(request: &ReportRequest, warn: Warn<'_>) -> Result<Page, Fai
                 continue;
             }
         };
-        let chapter = chapter_options(&log, &mut neighbours, request, options);
+        let chapter = chapter_options(&log, &mut neighbours, request, options, &figures);
         names.extend(chapter.figures.names.clone());
         chapters.push(Chapter::write(&log.lifetime, &log.metrics, &chapter)?);
         if let Some(files) = &mut files {
@@ -118,13 +144,13 @@ pub fn write_report(request: &ReportRequest, warn: Warn<'_>) -> Result<Page, Fai
         comparisons.push(Comparison {
             agent: called(&asked.logs),
             other: called(&asked.against),
-            metrics: compare_agents(&scores, &others, &asked.intervals)?,
+            metrics: compare_agents(&scores, &others, &intervals)?,
             others_lifetime: others.into_iter().next().filter(|_| num_others == 1),
             names,
         });
     }
     let overall = if scores.len() > 1 {
-        over_repeats(&scores, &asked.intervals)?
+        over_repeats(&scores, &intervals)?
     } else {
         Vec::new()
     };
@@ -132,7 +158,7 @@ pub fn write_report(request: &ReportRequest, warn: Warn<'_>) -> Result<Page, Fai
         title: request.title.clone().filter(|title| !title.trim().is_empty()),
         chapters,
         overall,
-        intervals: asked.intervals,
+        intervals,
         comparisons,
         // A single lifetime has only one scale.
         warnings: own_scale(options).filter(|_| logs.len() > 1).into_iter().collect(),
@@ -153,15 +179,16 @@ fn chapter_options(
     neighbours: &mut Neighbours,
     request: &ReportRequest,
     options: &Options,
+    (shown, drawn): &(Vec<Figure>, FigureOptions),
 ) -> ChapterOptions {
     let (distances, distance_note) = neighbours.of(&log.log, &log.lifetime);
     ChapterOptions {
         figures: FigureOptions {
             distances,
             names: called_in(&log.log),
-            ..request.figure_options.clone()
+            ..drawn.clone()
         },
-        shown: request.figures.clone(),
+        shown: shown.clone(),
         smoothed: options.smoothing_method != SmoothingMethod::Off,
         facts: facts(&log.log),
         worlds: neighbours.worlds_of(&log.log),

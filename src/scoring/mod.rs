@@ -11,9 +11,8 @@ mod setup;
 mod varied;
 
 pub use comparison::Comparison;
-pub use request::{ScoringChoice, ScoringRequest, ScoringSettings};
+pub use request::{Intervals, ScalesChoice, ScoringRequest, ScoringSettings};
 pub use scores::{Scores, score};
-pub use settings::data_ranges;
 pub use varied::Varied;
 
 pub(crate) use experts::Experts;

@@ -62,8 +62,14 @@ pub(crate) fn score_looking(
     let lifetimes_against = score_logs(&others, &experts, &options, warn)?;
     check_power(request.power, lifetimes.len())?;
     let is_alone = lifetimes.len() == 1 && !request.recursive && request.against.is_empty();
-    let comparison =
-        (!is_alone).then(|| Comparison::new(&lifetimes, &lifetimes_against, &request.intervals, request.power));
+    let comparison = (!is_alone).then(|| {
+        Comparison::new(
+            &lifetimes,
+            &lifetimes_against,
+            &request.intervals.options(),
+            request.power,
+        )
+    });
     Ok(Scores {
         comparison: comparison.transpose()?,
         varied: Varied::between(&makeups),

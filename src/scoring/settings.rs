@@ -107,7 +107,7 @@ fn noise_of_l2metrics(noise: &Value) -> Value {
 ///
 /// # Errors
 /// [`Failure`] if it cannot be read or has the wrong contents.
-pub fn data_ranges(path: &Path) -> Result<DataRanges, Failure> {
+pub(super) fn data_ranges(path: &Path) -> Result<DataRanges, Failure> {
     let expected = "an object of ranges, such as {\"find_red\": {\"min\": 0, \"max\": 10}}";
     let mut ranges = DataRanges::new();
     let text = documents::text(path)?;

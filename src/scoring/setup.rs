@@ -21,10 +21,10 @@ pub(crate) struct Setup {
 impl Setup {
     /// From a request; with one scale for all lifetimes if two agents are compared, or on request.
     pub(crate) fn new(logs: Vec<PathBuf>, request: &ScoringRequest) -> Result<Self, Failure> {
-        let (mut options, choice) = (request.settings.options()?, &request.settings.choice);
-        let experts = Experts::new(&choice.experts, choice.expert_store.as_deref())?;
+        let (settings, mut options) = (&request.settings, request.settings.options()?);
+        let experts = Experts::new(&settings.experts, settings.expert_store.as_deref())?;
         let others = log_folders::below(&request.against)?;
-        if request.common_ranges || !others.is_empty() {
+        if request.intervals.common_ranges || !others.is_empty() {
             options = with_common_ranges(&[logs.as_slice(), &others].concat(), &experts, options);
         }
         Ok(Self {

@@ -297,8 +297,8 @@ def metrics(
         common_ranges: Scale each task by its range over all lifetimes.
         power: Compute for each metric the number of lifetimes of two agents needed to show a difference of this size,
             in the metric's own unit; needs several lifetimes.
-        confidence: Share of the bootstrap distribution in an interval.
-        resamples: Number of bootstrap resamples.
+        confidence: Share of the bootstrap distribution in an interval; 0.95 by default.
+        resamples: Number of bootstrap resamples; 2,000 by default.
         resampling: ``"runs"``, whole lifetimes, by default; or ``"strata"``, within each task.
         bootstrap_seed: The seed of the resampling.
 
@@ -309,8 +309,6 @@ def metrics(
     folders = _paths(options.pop("logs"), "logs")
     for paths in ("ste", "against"):
         options[paths] = None if options[paths] is None else _paths(options[paths])
-    options["noise"] = None if noise is None else list(noise)
-    options["scales"] = os.fspath(scales) if isinstance(scales, (str, os.PathLike)) else scales
     scores, said = _native.Scores.of(folders, options)
     _warn(said)
     values = scores.values()
@@ -350,8 +348,8 @@ def report(
         plots: A folder to also write the figures to.
         studio: The address of a workbench, such as ``driftworld.studio().address``: the page links there to worlds in
             which the last evaluation failed.
-        plot_types: The figures: ``"all"``, or some of ``raw``, ``lb``, ``eb``, ``ste``, ``timeline``.
-        unit: The unit of the horizontal axis: ``"exp_num"`` or ``"steps"``.
+        plot_types: The figures: ``"all"`` (default), or some of ``raw``, ``lb``, ``eb``, ``ste``, ``timeline``.
+        unit: The unit of the horizontal axis: ``"exp_num"`` (default) or ``"steps"``.
         perf_measure: As for :func:`metrics`.
         variant_mode: As for :func:`metrics`.
         load_settings: As for :func:`metrics`; the settings file has all other scoring options.
@@ -367,7 +365,6 @@ def report(
     folders, file = _paths(options.pop("logs"), "logs"), options.pop("path")
     for paths in ("ste", "against"):
         options[paths] = None if options[paths] is None else _paths(options[paths])
-    options["plot_types"] = None if plot_types is None else list(plot_types)
     page, said = _native.report(folders, options)
     _warn(said)
     if file is not None:

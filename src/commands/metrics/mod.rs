@@ -9,15 +9,14 @@ use std::sync::{Mutex, PoisonError};
 
 use crate::Failure;
 use crate::figure_files::{Files, drawn};
+use crate::lifetime_report::FigureChoice;
 use crate::log_names::called_in;
 use crate::metrics::{SteStoreMode, store_ste};
 use crate::report::FigureOptions;
-use crate::scoring::{Scores, ScoringRequest, score, score_looking};
+use crate::scoring::{Intervals, Scores, ScoringRequest, ScoringSettings, score, score_looking};
 use clap::Args;
 
-use super::figures::FigureChoice;
 use super::output;
-use super::scoring::{Intervals, Scoring};
 use crate::variant_names::VariantNames;
 
 /// Score the logs of lifetimes.
@@ -64,7 +63,7 @@ pub(crate) struct Metrics {
     #[arg(long)]
     json: bool,
     #[command(flatten)]
-    scoring: Scoring,
+    settings: ScoringSettings,
     #[command(flatten)]
     intervals: Intervals,
     /// Save the results in this folder.
@@ -108,8 +107,8 @@ impl Metrics {
     pub(crate) fn run(self) -> Result<(), Failure> {
         // Invalid options are refused even if nothing is drawn.
         let _ = (self.figures.shown()?, self.figures.options()?);
-        let request = self.request()?;
-        if let (Some(mode), Some(data)) = (self.ste_store_mode, self.scoring.ste_data()) {
+        let request = self.request();
+        if let (Some(mode), Some(data)) = (self.ste_store_mode, &self.settings.expert_store) {
             return store(&request.folders()?, mode, data);
         }
         let scores = self.score(&request)?;
@@ -129,16 +128,15 @@ impl Metrics {
         Ok(())
     }
 
-    fn request(&self) -> Result<ScoringRequest, Failure> {
-        Ok(ScoringRequest {
+    fn request(&self) -> ScoringRequest {
+        ScoringRequest {
             logs: self.logs.iter().chain(&self.log_dir).cloned().collect(),
             recursive: self.recursive,
             against: self.against.clone(),
-            settings: self.scoring.settings()?,
-            common_ranges: self.intervals.common_ranges,
             power: self.power,
-            intervals: self.intervals.options(),
-        })
+            settings: self.settings.clone(),
+            intervals: self.intervals.clone(),
+        }
     }
 
     /// Scores the logs; if requested, also draws and writes figures.

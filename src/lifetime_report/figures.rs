@@ -1,31 +1,42 @@
-//! The options that choose the figures of lifetimes.
+//! [`FigureChoice`]: which figures of lifetimes are drawn, and how.
 
-use crate::Failure;
-use crate::report::{Figure, FigureOptions, ReportError, Unit};
 use clap::Args;
+use driftworld_report::{Figure, FigureOptions, ReportError, Unit};
+use serde::Deserialize;
 
-/// Which figures are drawn, and how.
-#[derive(Args)]
+use crate::{Failure, request};
+
+/// Which figures are drawn, and how: arguments of `driftworld metrics` and `driftworld report`.
+#[derive(Args, Clone, Debug, Deserialize)]
+#[group(skip)]
 #[command(next_help_heading = "Figures")]
-pub(crate) struct FigureChoice {
+#[serde(default, deny_unknown_fields)]
+pub struct FigureChoice {
     /// Figures to draw: all, or any of raw, lb, eb, ste, timeline.
     ///
     /// lb shows learning blocks, eb evaluation blocks, ste the comparison with single-task experts.
     #[arg(short = 'T', long, value_name = "TYPE", num_args = 1.., default_value = "all")]
-    plot_types: Vec<String>,
+    pub plot_types: Vec<String>,
     /// Unit of the horizontal axis: `exp_num`, or `steps` (column `episode_step_count`).
     #[arg(short, long, value_name = "UNIT", default_value = "exp_num")]
-    unit: String,
+    pub unit: String,
     /// Do not connect evaluation means across learning blocks.
     #[arg(long)]
-    no_show_eval_lines: bool,
+    pub no_show_eval_lines: bool,
     /// Connect them. This is the default.
     #[arg(short = 'e', long, hide = true, conflicts_with = "no_show_eval_lines")]
-    show_eval_lines: bool,
+    #[serde(skip)]
+    pub show_eval_lines: bool,
+}
+
+impl Default for FigureChoice {
+    fn default() -> Self {
+        request::usual()
+    }
 }
 
 impl FigureChoice {
-    /// The chosen figures, in the order of a report.
+    /// The chosen figures, in the order of a report; all if none is.
     pub(crate) fn shown(&self) -> Result<Vec<Figure>, Failure> {
         let asked = self.plot_types.iter().map(|word| Figure::asked_for(word));
         let asked = asked
@@ -34,7 +45,7 @@ impl FigureChoice {
             .concat();
         Ok(Figure::ALL
             .into_iter()
-            .filter(|figure| asked.contains(figure))
+            .filter(|figure| asked.is_empty() || asked.contains(figure))
             .collect())
     }
 
