@@ -15,7 +15,7 @@ use pyo3::exceptions::PyOverflowError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 use serde::de::value::{MapDeserializer, SeqDeserializer};
-use serde::de::{DeserializeOwned, Deserializer, IntoDeserializer, Visitor};
+use serde::de::{DeserializeOwned, Deserializer, Expected, IntoDeserializer, Visitor};
 
 use crate::document::from_python;
 use crate::errors::{Error, Result};
@@ -130,8 +130,8 @@ impl<'py> Given<'py> {
     }
 
     /// A text, or a path as text.
-    fn text(&self) -> Read<String> {
-        let path = self.extract::<PathBuf>("a text")?;
+    fn text(&self, expected: &str) -> Read<String> {
+        let path = self.extract::<PathBuf>(expected)?;
         path.into_os_string()
             .into_string()
             .map_err(|_| Wrong::expected("a text in UTF-8"))
@@ -176,7 +176,8 @@ impl<'de> Deserializer<'de> for Given<'_> {
     }
 
     fn deserialize_string<V: Visitor<'de>>(self, visitor: V) -> Read<V::Value> {
-        visitor.visit_string(self.text()?)
+        let is_path = (&visitor as &dyn Expected).to_string().contains("path");
+        visitor.visit_string(self.text(if is_path { "a path" } else { "a text" })?)
     }
 
     fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Read<V::Value> {
@@ -200,7 +201,7 @@ impl<'de> Deserializer<'de> for Given<'_> {
         words: &'static [&'static str],
         visitor: V,
     ) -> Read<V::Value> {
-        let word = self.text()?;
+        let word = self.text("a text")?;
         if !words.contains(&word.as_str()) {
             return Err(Wrong::expected(format!("one of {}", words.join(", "))));
         }
