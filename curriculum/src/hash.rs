@@ -2,7 +2,7 @@
 
 use sha2::{Digest, Sha256};
 
-/// The first 64 bits of the hash of these parts, concatenated.
+/// The first 64 bits of the hash of the concatenated parts.
 pub(crate) fn number_of<P: AsRef<[u8]>>(parts: impl IntoIterator<Item = P>) -> u64 {
     let mut hash = Sha256::new();
     for part in parts {

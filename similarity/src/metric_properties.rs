@@ -1,8 +1,8 @@
-//! [`MetricProperties`]: the laws that a measure satisfies, so that methods can refuse measures without the laws they need.
+//! [`MetricProperties`]: the metric properties of a measure, so that methods can refuse measures that lack those they need.
 
 use serde::{Deserialize, Serialize};
 
-/// The laws that a measure of distance satisfies.
+/// The metric properties of a measure of distance.
 ///
 /// # Example
 /// ```
@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 pub enum MetricProperties {
     /// Zero only between equals, symmetric, and with the triangle inequality.
     Metric,
-    /// As a metric, but different things may be 0 apart.
+    /// Like a metric, but different things may be at distance 0.
     Pseudometric,
     /// Zero between equals and symmetric; the triangle inequality may fail.
     #[default]

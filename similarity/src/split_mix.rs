@@ -24,7 +24,7 @@ impl SplitMix64 {
         ((u128::from(self.next()) * u128::from(bound)) >> 64) as u64
     }
 
-    /// A whole number below `bound`, without bias: numbers from the incomplete last stretch are redrawn.
+    /// A whole number below `bound`, without bias: numbers from the incomplete last interval are redrawn.
     pub(crate) fn unbiased_below(&mut self, bound: u64) -> u64 {
         let whole = u64::MAX - u64::MAX % bound;
         loop {

@@ -1,4 +1,4 @@
-//! What designs, probes and sequences of steps may be asked for.
+//! Limits of designs, probes and sequences of steps, and the request for a sequence of steps.
 
 use driftworld_spec::Element;
 

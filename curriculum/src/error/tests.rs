@@ -1,4 +1,4 @@
-//! Every error of curricula with its message and its code.
+//! Checks the message and the code of every error of this crate.
 
 use super::*;
 use driftworld_generator::WorldId;

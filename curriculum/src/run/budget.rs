@@ -1,11 +1,12 @@
-//! [`Budget`]: ends regimes after a number of decisions; how many experiences they have is known only once they are run.
+//! [`Budget`]: ends regimes after a number of decisions, so that their number of experiences is known only once they have run.
 
 use super::plan::Plan;
 
 /// Decides which experiences of a block are run, from the lengths of those before them.
 ///
 /// In a regime with a budget, an experience begins only while the regime's decisions so far are below it. With several
-/// environments (the plan's lanes), each begins the next experience as soon as it is free; those under way run to their end.
+/// environments (the plan's lanes), each begins the next experience as soon as it is free; experiences in progress run to their
+/// end.
 #[derive(Debug, Default)]
 pub(super) struct Budget {
     block: usize,
@@ -34,7 +35,7 @@ impl Budget {
         }
     }
 
-    /// The first experience from `number` on that the budgets allow.
+    /// The first experience, from `number` on, that the budgets allow.
     pub(super) fn next(&mut self, plan: &Plan, mut number: u64) -> u64 {
         while number < plan.num_experiences() {
             let regime = plan.regime_of(number);

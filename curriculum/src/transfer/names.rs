@@ -9,6 +9,8 @@ use crate::CurriculumError;
 pub(super) struct Names(BTreeMap<String, usize>);
 
 impl Names {
+    /// Indexes the labels by log name.
+    ///
     /// # Errors
     /// [`CurriculumError::SameLogName`] if two labels have the same log name.
     pub(super) fn of(labels: &[String]) -> Result<Self, CurriculumError> {

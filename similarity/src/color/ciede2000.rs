@@ -8,7 +8,7 @@ pub(crate) const CIEDE2000_DIAMETER: f64 = 119.484_76;
 /// 25 to the 7th.
 const POW_25_7: f64 = 6_103_515_625.0;
 
-/// If the product of two chromas is below this, the hue between them changes the result by at most 2e-15.
+/// If the product of two chromas is below this, their hue difference changes the result by at most 2e-15.
 const GREY: f64 = 1e-30;
 
 /// Cosine and sine of the formula's rotation angles: 30°, 6°, 63° and 275°.
@@ -17,11 +17,12 @@ const TURN_6: [f64; 2] = [0.994_521_895_368_273_3, 0.104_528_463_267_653_46];
 const TURN_63: [f64; 2] = [0.453_990_499_739_546_8, 0.891_006_524_188_367_9];
 const TURN_275: [f64; 2] = [0.087_155_742_747_658_18, -0.996_194_698_091_745_5];
 
-/// The perceived difference between two colours, by CIEDE2000 with all weights 1: about 1 is just noticeable, black to white is 100.
+/// The perceived difference between two colours, by CIEDE2000 with all weights 1: about 1 is just noticeable, black to white is
+/// 100.
 ///
-/// A distance, *not a metric*: about one triple of sRGB colours in 30 violates the triangle inequality, the worst seen by half.
-/// From 0 to 119.49 within sRGB, no unit. The formula is discontinuous where the hues of two colours are exactly opposite; a
-/// grey takes the hue of the other colour.
+/// A distance, *not a metric*: about one triple of sRGB colours in 30 violates the triangle inequality, in the worst known case
+/// by almost half. From 0 to 119.49 within sRGB, no unit. The formula is discontinuous where the hues of two colours are
+/// exactly opposite; a grey takes the hue of the other colour.
 ///
 /// Hues enter only through their cosines and sines, so no trigonometric function is needed.
 ///

@@ -13,8 +13,9 @@ use crate::SimilarityError;
 /// Source: Pearson 1895; the same numbers as `scipy.stats.pearsonr` within 1e-12.
 ///
 /// # Errors
-/// [`SimilarityError::CorrelationLengths`], [`SimilarityError::CorrelationTooFew`],
-/// [`SimilarityError::CorrelationNotFinite`], [`SimilarityError::CorrelationConstant`].
+/// [`SimilarityError::CorrelationLengths`] for lists of different lengths, [`SimilarityError::CorrelationTooFew`] for fewer
+/// than 3 numbers, [`SimilarityError::CorrelationNotFinite`] for a number that is not finite,
+/// [`SimilarityError::CorrelationConstant`] for a list of equal numbers.
 ///
 /// # Example
 /// ```

@@ -18,8 +18,8 @@ use super::overlap;
 /// ```
 /// use driftworld_similarity::distribution::jensen_shannon;
 /// use driftworld_spec::Distribution::Uniform;
-/// let apart = jensen_shannon(&Uniform { low: 0.0, high: 1.0 }, &Uniform { low: 5.0, high: 6.0 });
-/// assert_eq!(apart.unwrap().value, 1.0);
+/// let distance = jensen_shannon(&Uniform { low: 0.0, high: 1.0 }, &Uniform { low: 5.0, high: 6.0 });
+/// assert_eq!(distance.unwrap().value, 1.0);
 /// ```
 pub fn jensen_shannon(a: &Distribution, b: &Distribution) -> Option<Measured> {
     jensen_shannon_divergence(a, b).map(Measured::root)
@@ -28,7 +28,7 @@ pub fn jensen_shannon(a: &Distribution, b: &Distribution) -> Option<Measured> {
 /// ½ KL(P ‖ M) + ½ KL(Q ‖ M) in bits, with the even mixture M of the two: how much a draw reveals about its source.
 ///
 /// In `0..=1` bits; symmetric, but not a metric. Accepts what [`total_variation`](super::total_variation()) accepts.
-/// Exact for everything flat or stepped, otherwise by quadrature, mostly within 1e-9, at 13 to 700 points between
+/// Exact for everything piecewise constant or discrete, otherwise by quadrature, mostly within 1e-9, at 13 to 700 points between
 /// neighbouring knots.
 ///
 /// Source: Lin 1991, "Divergence measures based on the Shannon entropy".

@@ -10,9 +10,9 @@ use serde::{Deserialize, Serialize};
 /// ```
 /// use driftworld_similarity::distribution::{Method, wasserstein_1};
 /// use driftworld_spec::Distribution::Normal;
-/// let apart = wasserstein_1(&Normal { mean: 0.0, std: 1.0 }, &Normal { mean: 3.0, std: 1.0 }).unwrap();
-/// assert_eq!((apart.value, apart.method), (3.0, Method::Closed));
-/// assert_eq!(apart.method.to_string(), "by closed form");
+/// let distance = wasserstein_1(&Normal { mean: 0.0, std: 1.0 }, &Normal { mean: 3.0, std: 1.0 }).unwrap();
+/// assert_eq!((distance.value, distance.method), (3.0, Method::Closed));
+/// assert_eq!(distance.method.to_string(), "by closed form");
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
@@ -87,7 +87,7 @@ impl Measured {
         Self { value, ..self }
     }
 
-    /// The square root, with the error that follows from the square's.
+    /// The square root, with its error derived from the error of the square.
     pub(crate) fn root(self) -> Self {
         let value = self.value.max(0.0).sqrt();
         let method = match self.method {

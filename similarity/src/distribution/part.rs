@@ -18,7 +18,7 @@ pub(super) struct Part {
     /// Probability of drawing from it.
     pub(super) share: f64,
     family: Distribution,
-    /// Added to what the family draws.
+    /// Added to each number that the family draws.
     shift: f64,
     /// Logarithm of the density's divisor.
     log_scale: f64,

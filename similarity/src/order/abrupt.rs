@@ -3,7 +3,7 @@
 use super::items::Items;
 use super::two_opt::cheapest;
 
-/// Shakes per item.
+/// Random perturbations (shakes) of the path, per item.
 const SHAKES_PER_ITEM: usize = 1;
 
 pub(super) fn order(items: &Items) -> Vec<usize> {

@@ -1,4 +1,4 @@
-//! Distances between rewards, whatever the dynamics: EPIC on given transitions, and for whole worlds.
+//! Distances between rewards, independent of the dynamics: EPIC on given transitions, and for whole worlds.
 
 mod direction;
 mod epic;

@@ -1,6 +1,6 @@
 //! Whether two choices differ.
 
-/// 0 for equal choices, 1 for any others.
+/// 0 for equal choices, 1 for different ones.
 ///
 /// A metric (the discrete one), 0 or 1, no unit. The term for categories in Gower's coefficient.
 ///

@@ -13,7 +13,7 @@ pub(super) fn between(a: &World, b: &World, measure: ColorMeasure) -> Result<f64
     color_sets_distance(&a, &b, measure)
 }
 
-/// Sorted, so that the order of objects does not matter.
+/// The colours of a world's objects, sorted so that the order of objects does not matter.
 fn colors(world: &World) -> Vec<Color> {
     let mut colors: Vec<Color> = world.objects.iter().filter_map(|object| object.color).collect();
     colors.sort_by(|a, b| order(&[*a]).partial_cmp(order(&[*b])).expect("channels are numbers"));

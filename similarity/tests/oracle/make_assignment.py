@@ -1,4 +1,4 @@
-"""Writes assignment.json: cost matrices and the least sums that scipy finds. Run: python make_assignment.py"""
+"""Writes assignment.json: cost matrices and the minimum sums that scipy finds. Run: python make_assignment.py"""
 import json
 from pathlib import Path
 

@@ -3,7 +3,7 @@
 Run: python make_distributions.py
 
 Traps: scipy's energy_distance is the root, its jensenshannon is the root and in nats; ot.wasserstein_1d(p=2) is the square;
-ot.wasserstein_circle counts in turns. Densities are integrated by Gauss and Legendre's rule with 40 points between many
+ot.wasserstein_circle counts in turns. Densities are integrated by Gauss–Legendre quadrature with 40 nodes between many
 break points: a quantile for every power of ten of the probability, on either side.
 """
 import json
@@ -74,7 +74,7 @@ CHANCES = np.concatenate([TAILS[::-1], [0.25, 0.5, 0.75], 1 - TAILS])
 
 def pieces(f, points):
     low, high = np.asarray(points[:-1], dtype=float), np.asarray(points[1:], dtype=float)
-    # Where numbers are too coarse for the nodes to lie apart, next to nothing is left.
+    # Skips intervals too narrow to separate the nodes; their contribution is negligible.
     fine = high - low > 5e-13 * np.maximum(abs(low), abs(high))
     half, middle = (high - low)[fine] / 2, (high + low)[fine] / 2
     values = f((middle[:, None] + half[:, None] * NODES).ravel()).reshape(-1, len(NODES))
@@ -84,13 +84,13 @@ def pieces(f, points):
 def break_points(*laws):
     points = {float(x) for law in laws for x in law.ppf(CHANCES)}
     points |= {float(x) for law in laws for x in law.support() if np.isfinite(x)}
-    # Modes of triangles are whole numbers here.
+    # The modes of the triangular distributions are whole numbers.
     points |= {float(x) for x in range(-1, 7)}
     return sorted(points)
 
 
 def crossings(gap, points):
-    """The points with those between them where the gap changes its sign."""
+    """The points, and the zeros of the gap between them."""
     found = list(points)
     ends = np.asarray(points, dtype=float)
     grids = ends[:-1, None] + np.diff(ends)[:, None] * np.linspace(1e-6, 1 - 1e-6, 100)
@@ -125,7 +125,7 @@ def densities(a, b):
 
 def transport(a, b):
     points = break_points(a, b)
-    # Far out one minus a cumulative function is noise: the tails are compared there.
+    # In the upper tail, one minus a CDF is mostly rounding error, so survival functions are compared.
     gap = lambda x: np.where(a.cdf(x) > 0.5, b.sf(x) - a.sf(x), a.cdf(x) - b.cdf(x))
     if a.dist.name in COUNT_NAMES and b.dist.name in COUNT_NAMES:
         xs = np.arange(-5, 200)
@@ -145,7 +145,7 @@ COUNT_NAMES = {"bernoulli", "binom", "poisson", "geom", "randint"}
 def quantiles(a, b):
     points = np.array(break_points(a, b) + ([float(x) for x in range(-5, 200)] if {a.dist.name, b.dist.name} & COUNT_NAMES else []))
     halves = []
-    # The upper half by what remains, so that its tail keeps its digits.
+    # The upper half uses survival functions, so that its tail keeps its precision.
     for cumulative, inverse in (("cdf", "ppf"), ("sf", "isf")):
         chances = {0.5, *TAILS.tolist()} | {float(u) for law in (a, b) for u in getattr(law, cumulative)(points)}
         chances = sorted(u for u in chances if 1e-15 <= u <= 0.5)
@@ -174,7 +174,7 @@ def von_mises_cases():
             f, g = (lambda x: density(x, m, k)), (lambda x: density(x, n, l))
             grid = np.linspace(0, 360, 7201)
             split = sorted({*np.linspace(0, 360, 37), *crossings(lambda x: f(x) - g(x), np.linspace(0, 360, 37))})
-            # On a fine grid of midpoints the masses are good to 1e-8, and POT compares them as weighted points.
+            # On a fine grid of midpoints the masses are accurate to 1e-8, and POT compares them as weighted points.
             middles = (grid[1:] + grid[:-1]) / 2
             p, q = f(middles), g(middles)
             turns = ot.wasserstein_circle(middles / 360, middles / 360, p / p.sum(), q / q.sum())

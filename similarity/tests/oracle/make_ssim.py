@@ -1,7 +1,7 @@
 """Writes ssim.json: structural similarities of small pictures by scikit-image. Run: python make_ssim.py
 
-The pictures are made from whole numbers by a rule that the test repeats (see `picture` in tests/picture.rs), so that they need
-not be written down.
+The pictures are computed from integers by a rule that the test repeats (see `picture` in tests/picture.rs), so they need not
+be stored.
 """
 import json
 from pathlib import Path

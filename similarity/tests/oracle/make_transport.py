@@ -1,4 +1,4 @@
-"""Writes transport.json: what POT says of moving masses and points. Run: python make_transport.py"""
+"""Writes transport.json: costs of moving masses and points by POT. Run: python make_transport.py"""
 import json
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""The numbers that the tests in Rust draw, too: SplitMix64 (Steele, Lea and Flood 2014), modulo the bound, as `../draws/mod.rs` has it."""
+"""SplitMix64 (Steele, Lea and Flood 2014), modulo the bound: the same numbers as `../draws/mod.rs` in the Rust tests."""
 
 MASK = (1 << 64) - 1
 
