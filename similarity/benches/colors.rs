@@ -11,9 +11,9 @@ use driftworld_spec::Color;
 
 /// Pseudo-random numbers in 0..1, the same on every run: scrambled fractions of multiples of the golden ratio.
 fn number(index: usize) -> f64 {
-    let stirred = (index as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15);
-    let stirred = (stirred ^ (stirred >> 29)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    (stirred >> 11) as f64 / (1u64 << 53) as f64
+    let mixed = (index as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    let mixed = (mixed ^ (mixed >> 29)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    (mixed >> 11) as f64 / (1u64 << 53) as f64
 }
 
 fn colors(count: usize, from: usize) -> Vec<Color> {
@@ -36,7 +36,7 @@ fn pictures(c: &mut Criterion) {
     const SIDE: usize = 64;
     let bytes = |from: usize| -> Vec<u8> { (0..SIDE * SIDE * 3).map(|k| (number(from + k) * 256.0) as u8).collect() };
     let (a, b) = (bytes(0), bytes(1_000_000));
-    let view = |rgb| Picture::new(rgb, SIDE, SIDE).expect("the size is sound");
+    let view = |rgb| Picture::new(rgb, SIDE, SIDE).expect("the size is valid");
     c.bench_function("SSIM of pictures of 64 × 64", |bench| {
         bench.iter(|| structural_similarity(view(black_box(&a)), view(&b)));
     });
@@ -63,7 +63,7 @@ fn assignments(c: &mut Criterion) {
     let objects = |count, from| {
         points(count, from)
             .into_iter()
-            .map(|place| ((), place))
+            .map(|position| ((), position))
             .collect::<Vec<_>>()
     };
     let (a, b) = (objects(20, 0), objects(15, 5000));

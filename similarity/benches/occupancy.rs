@@ -1,5 +1,5 @@
-//! Pairs of grids and of point sets measured per second: `cargo bench -p driftworld-similarity --bench occupancy`. Inputs are
-//! drawn with a fixed seed; their number and sizes are those on which the Python tools were measured.
+//! Benchmarks of distances between grids and between point sets, in pairs per second. Inputs are drawn with a fixed seed; their
+//! number and sizes match the benchmarks of the Python tools. Run with `cargo bench -p driftworld-similarity --bench occupancy`.
 
 use std::hint::black_box;
 
@@ -9,9 +9,9 @@ use driftworld_similarity::{
 };
 
 /// Numbers in 0..1 that are the same on every run: Vigna's splitmix64.
-struct Chance(u64);
+struct Random(u64);
 
-impl Chance {
+impl Random {
     fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut bits = self.0;
@@ -22,7 +22,7 @@ impl Chance {
 }
 
 fn shape(side: usize) -> GridShape {
-    GridShape::new(side, side, 1, 1.0).expect("a small grid of cells of 1 m is sound")
+    GridShape::new(side, side, 1, 1.0).expect("a small grid of cells of 1 m is valid")
 }
 
 /// Measures every pair of items once per iteration.
@@ -41,18 +41,18 @@ fn pairs<T>(c: &mut Criterion, name: &str, items: &[T], measure: impl Fn(&T, &T)
     group.finish();
 }
 
-fn taken(c: &mut Criterion) {
-    let mut chance = Chance(0);
-    let mut cells = || (0..2500).map(|_| chance.next() < 0.1).collect::<Vec<bool>>();
+fn jaccard(c: &mut Criterion) {
+    let mut random = Random(0);
+    let mut cells = || (0..2500).map(|_| random.next() < 0.1).collect::<Vec<bool>>();
     let grids: Vec<BitGrid> = (0..200).map(|_| BitGrid::new(shape(50), cells())).collect();
     pairs(c, "Jaccard, grids of 50 × 50", &grids, |a, b| {
-        grid_jaccard_distance(a, b).expect("the grids are of one shape")
+        grid_jaccard_distance(a, b).expect("the grids have the same shape")
     });
 }
 
 fn points(c: &mut Criterion) {
-    let mut chance = Chance(1);
-    let mut set = || (0..20).map(|_| [chance.next(), chance.next()]).collect();
+    let mut random = Random(1);
+    let mut set = || (0..20).map(|_| [random.next(), random.next()]).collect();
     let sets: Vec<Vec<[f64; 2]>> = (0..40).map(|_| set()).collect();
     pairs(c, "exact earth mover's, 20 and 20 points", &sets, |a, b| {
         earth_movers_distance(a, b).expect("the points are finite")
@@ -60,8 +60,8 @@ fn points(c: &mut Criterion) {
 }
 
 fn masses(c: &mut Criterion) {
-    let mut chance = Chance(2);
-    let mut masses = || (0..625).map(|_| chance.next()).collect();
+    let mut random = Random(2);
+    let mut masses = || (0..625).map(|_| random.next()).collect();
     let grid = |masses| {
         Grid::new(shape(25), masses)
             .expect("numbers from 0 to 1 are masses")
@@ -73,5 +73,5 @@ fn masses(c: &mut Criterion) {
     });
 }
 
-criterion_group!(benches, taken, points, masses);
+criterion_group!(benches, jaccard, points, masses);
 criterion_main!(benches);

@@ -18,7 +18,7 @@ fn points(n: usize) -> DistanceMatrix {
     };
     let at: Vec<[f64; 2]> = (0..n).map(|_| [unit(), unit()]).collect();
     let gap = |a: usize, b: usize| Ok::<_, SimilarityError>((at[a][0] - at[b][0]).hypot(at[a][1] - at[b][1]));
-    DistanceMatrix::measure((0..n).map(|k| format!("{k:05}")).collect(), gap).expect("distances of points are sound")
+    DistanceMatrix::measure((0..n).map(|k| format!("{k:05}")).collect(), gap).expect("distances of points are valid")
 }
 
 fn orders(c: &mut Criterion) {
@@ -33,7 +33,7 @@ fn orders(c: &mut Criterion) {
         let mut group = c.benchmark_group("orders");
         group.sample_size(10);
         group.bench_function(name, |bench| {
-            bench.iter(|| black_box(order(matrix, method, &options).expect("the method takes these")));
+            bench.iter(|| black_box(order(matrix, method, &options).expect("the method accepts these items")));
         });
         group.finish();
     }

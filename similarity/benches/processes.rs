@@ -40,7 +40,7 @@ fn grid(side: usize, wall: Option<usize>, goal: usize) -> Mdp {
             rewards.push(f64::from(to == goal && cell != goal));
         }
     }
-    Mdp::new(side * side * HEADINGS, ACTIONS, next, rewards).expect("the grid is sound")
+    Mdp::new(side * side * HEADINGS, ACTIONS, next, rewards).expect("the grid is valid")
 }
 
 fn large(c: &mut Criterion) {
@@ -54,10 +54,10 @@ fn large(c: &mut Criterion) {
 }
 
 fn rewards(c: &mut Criterion) {
-    let places = |k: usize| (k * 7919 % 1000) as f64;
-    let transitions = (0..1000).map(|k| (places(k), (), places(k + 1))).collect();
+    let potential = |k: usize| (k * 7919 % 1000) as f64;
+    let transitions = (0..1000).map(|k| (potential(k), (), potential(k + 1))).collect();
     let samples =
-        RewardSamples::new(transitions, (0..1000).map(|k| ((), places(k))).collect()).expect("there are samples");
+        RewardSamples::new(transitions, (0..1000).map(|k| ((), potential(k))).collect()).expect("there are samples");
     let mut group = c.benchmark_group("rewards");
     group.sample_size(10);
     group.bench_function("measuring a reward on 1000 transitions, 1000 draws", |bench| {

@@ -1,8 +1,8 @@
 //! [`Assignment`]: the cheapest way to pair rows with columns.
 //!
-//! Own code, because no crate fits: `lapjv` takes square matrices only, compares costs with one absolute tolerance and is
-//! no longer developed; `pathfinding::kuhn_munkres` needs `Ord` costs, which `f64` is not, panics if there are more rows than columns,
-//! and allocates memory for every matrix.
+//! Own code, because no crate fits: `lapjv` takes square matrices only, compares costs with one absolute tolerance and is no
+//! longer developed; `pathfinding::kuhn_munkres` needs `Ord` costs, which `f64` is not, panics if there are more rows than
+//! columns, and allocates memory for every matrix.
 
 use crate::SimilarityError;
 use crate::transport::check_costs;
@@ -15,9 +15,9 @@ const NONE: usize = usize::MAX;
 
 /// Pairs rows with columns so that the sum of the costs is minimal, and reuses its memory for the next matrix.
 ///
-/// Each row and each column is in at most one pair, and there are as many pairs as the shorter side has members. Exact up to
+/// Each row and each column is in at most one pair, and the number of pairs is the length of the shorter side. Exact up to
 /// the rounding of `f64`. Deterministic, even if several pairings are equally cheap. Time `O(rows · columns · shorter side)` at
-/// worst and often far less; allocates nothing for sizes that it has met before.
+/// worst and often far less; allocates nothing for sizes that it has handled before.
 ///
 /// Source: Jonker and Volgenant 1987, "A shortest augmenting path algorithm for dense and sparse linear assignment problems"
 /// (without column reduction, which is valid for square matrices only); the same sums as
@@ -37,14 +37,14 @@ const NONE: usize = usize::MAX;
 pub struct Assignment {
     partners: Vec<Option<usize>>,
     /// The transposed costs, if there are more rows than columns.
-    exchanged: Vec<f64>,
+    transposed: Vec<f64>,
     column_of: Vec<usize>,
     row_of: Vec<usize>,
     /// The dual price of each column, at most 0; exactly 0 for unpaired columns.
     price: Vec<f64>,
     free: Vec<usize>,
     reach: Vec<f64>,
-    before: Vec<usize>,
+    predecessor: Vec<usize>,
     open: Vec<usize>,
     closed: Vec<usize>,
 }
@@ -72,11 +72,11 @@ impl Assignment {
                 *partner = Some(column);
             }
         } else {
-            let mut exchanged = std::mem::take(&mut self.exchanged);
-            exchanged.clear();
-            exchanged.extend((0..columns).flat_map(|column| costs[column..].iter().step_by(columns).copied()));
-            self.pair(&exchanged, columns, rows);
-            self.exchanged = exchanged;
+            let mut transposed = std::mem::take(&mut self.transposed);
+            transposed.clear();
+            transposed.extend((0..columns).flat_map(|column| costs[column..].iter().step_by(columns).copied()));
+            self.pair(&transposed, columns, rows);
+            self.transposed = transposed;
             for (column, &row) in self.column_of.iter().enumerate() {
                 self.partners[row] = Some(column);
             }
@@ -98,7 +98,7 @@ impl Assignment {
             buffer.clear();
             buffer.resize(length, NONE);
         }
-        self.before.resize(columns, NONE);
+        self.predecessor.resize(columns, NONE);
         self.reach.resize(columns, 0.0);
         self.price.clear();
         self.price.resize(columns, 0.0);
@@ -109,19 +109,19 @@ impl Assignment {
         }
         while let Some(row) = self.free.pop() {
             let end = self.shortest_path(costs, columns, row);
-            self.exchange_along_path(row, end);
+            self.augment_along_path(row, end);
         }
     }
 
     /// Augmenting row reduction: each row takes its cheapest column and lowers that column's price until the second cheapest is
-    /// as good; a displaced row bids again. Rows not settled soon are left to `shortest_path`, because with costs that are not
-    /// whole numbers bidding may take very long.
+    /// as good; a displaced row bids again. Rows that are not settled soon are left to `shortest_path`, because with costs that
+    /// are not whole numbers bidding may take very long.
     fn bid(&mut self, costs: &[f64], columns: usize) {
         let mut left_over = std::mem::take(&mut self.closed);
         left_over.clear();
         let mut bids = 3 * self.free.len();
         while let Some(row) = self.free.pop() {
-            let [(best, at), (second, at_second)] = two_least(&costs[row * columns..][..columns], &self.price);
+            let [(best, at), (second, at_second)] = two_smallest(&costs[row * columns..][..columns], &self.price);
             let lower = self.price[at] - (second - best);
             let column = if lower < self.price[at] {
                 self.price[at] = lower;
@@ -131,15 +131,15 @@ impl Assignment {
             } else {
                 at_second
             };
-            let driven_out = std::mem::replace(&mut self.row_of[column], row);
+            let displaced = std::mem::replace(&mut self.row_of[column], row);
             self.column_of[row] = column;
             bids = bids.saturating_sub(1);
-            if driven_out != NONE {
-                self.column_of[driven_out] = NONE;
+            if displaced != NONE {
+                self.column_of[displaced] = NONE;
                 if bids > 0 && column == at {
-                    self.free.push(driven_out);
+                    self.free.push(displaced);
                 } else {
-                    left_over.push(driven_out);
+                    left_over.push(displaced);
                 }
             }
         }
@@ -163,7 +163,7 @@ impl Assignment {
                 let reach = (line[column] - self.price[column] + so_far).max(least);
                 if reach < self.reach[column] {
                     self.reach[column] = reach;
-                    self.before[column] = row;
+                    self.predecessor[column] = row;
                 }
                 let reach = self.reach[column];
                 if reach < nearest || (reach == nearest && !nearest_is_free && self.row_of[column] == NONE) {
@@ -185,10 +185,10 @@ impl Assignment {
         }
     }
 
-    fn exchange_along_path(&mut self, start: usize, end: usize) {
+    fn augment_along_path(&mut self, start: usize, end: usize) {
         let mut column = end;
         loop {
-            let row = self.before[column];
+            let row = self.predecessor[column];
             self.row_of[column] = row;
             let next = std::mem::replace(&mut self.column_of[row], column);
             if row == start {
@@ -200,7 +200,7 @@ impl Assignment {
 }
 
 /// The two lowest costs less prices, and their columns; ties go to the first. There are at least two columns.
-fn two_least(line: &[f64], price: &[f64]) -> [(f64, usize); 2] {
+fn two_smallest(line: &[f64], price: &[f64]) -> [(f64, usize); 2] {
     let mut least = [(f64::INFINITY, 0), (f64::INFINITY, 0)];
     for (column, (cost, price)) in line.iter().zip(price).enumerate() {
         let reduced = cost - price;
@@ -265,7 +265,7 @@ mod tests {
     }
 
     /// The minimum sum, found by trying all pairings.
-    fn by_trying(costs: &[f64], rows: usize, columns: usize) -> f64 {
+    fn brute_force(costs: &[f64], rows: usize, columns: usize) -> f64 {
         fn from(costs: &[f64], columns: usize, row: usize, rows: usize, spare: usize, taken: u32) -> f64 {
             if row == rows {
                 return 0.0;
@@ -304,14 +304,14 @@ mod tests {
             let mut assignment = Assignment::new();
             for (costs, rows, columns) in [first, second] {
                 let total = assignment.solve(&costs, rows, columns).unwrap();
-                prop_assert!((total - by_trying(&costs, rows, columns)).abs() < 1e-9);
-                let mut taken: Vec<usize> = assignment.partners().iter().copied().flatten().collect();
-                prop_assert_eq!(taken.len(), rows.min(columns));
-                taken.sort_unstable();
-                taken.dedup();
-                prop_assert_eq!(taken.len(), rows.min(columns), "a column is taken twice");
-                let again = Assignment::new().solve(&costs, rows, columns).unwrap();
-                prop_assert_eq!(total.to_bits(), again.to_bits());
+                prop_assert!((total - brute_force(&costs, rows, columns)).abs() < 1e-9);
+                let mut columns_used: Vec<usize> = assignment.partners().iter().copied().flatten().collect();
+                prop_assert_eq!(columns_used.len(), rows.min(columns));
+                columns_used.sort_unstable();
+                columns_used.dedup();
+                prop_assert_eq!(columns_used.len(), rows.min(columns), "a column is used twice");
+                let fresh = Assignment::new().solve(&costs, rows, columns).unwrap();
+                prop_assert_eq!(total.to_bits(), fresh.to_bits());
             }
         }
     }

@@ -13,14 +13,14 @@ use crate::scalar::relative_difference;
 /// Cells of the raster along each side of the arena.
 const SIDE: usize = 96;
 
-/// Places along each side of the arena between which path lengths are measured.
-const PLACES: usize = 6;
+/// Number of points, along each side of the arena, between which path lengths are measured.
+const POINTS_PER_SIDE: usize = 6;
 
 /// Cells per side of the coarser raster for wall transport; each covers 3 × 3 fine cells.
 const COARSE: usize = 32;
 
 /// Path length if there is no path.
-const NO_WAY: u32 = (SIDE * SIDE) as u32;
+const NO_PATH: u32 = (SIDE * SIDE) as u32;
 
 /// A layout prepared for comparison: a raster of 96 × 96 cells with the heights of the walls that reach into them, the
 /// path lengths between the free cells nearest to 6 × 6 places, and marks: letters of cells and colours of
@@ -31,7 +31,7 @@ pub struct LayoutShape {
     /// Wall heights in metres; 0 without a wall.
     walls: Vec<f32>,
     /// Path lengths in steps, from each place to each later one.
-    ways: Vec<u32>,
+    paths: Vec<u32>,
     /// Letters and colours, each with its place.
     marks: BTreeSet<String>,
 }
@@ -77,7 +77,7 @@ impl LayoutShape {
                 }
             }
         }
-        let ways = ways(&walls);
+        let paths = path_lengths(&walls);
         // Ten-thousandths of the sides, rounded down. Corners of layouts lie at ratios of small numbers; the irrational
         // offset keeps these away from the steps of `floor`, where rounding errors would decide.
         let whole = |share: f64| (share * 1e4 + std::f64::consts::FRAC_1_SQRT_2).floor();
@@ -93,7 +93,7 @@ impl LayoutShape {
             ))
         });
         let marks = letters.chain(colors).collect();
-        Self { walls, ways, marks }
+        Self { walls, paths, marks }
     }
 
     /// The shape of an arena without walls.
@@ -102,8 +102,9 @@ impl LayoutShape {
         &OPEN
     }
 
-    /// Jaccard distance of the walls, weighted by their heights: what only one layout has, as a share of what either has, 0..1.
-    /// A metric (Soergel's). If all walls have the same height, it is the share of wall cells that only one layout has.
+    /// Jaccard distance of the walls, weighted by their heights: the wall mass that only one layout has, as a share of the mass
+    /// that either has, 0..1. A metric (Soergel's). If all walls have the same height, it is the share of wall cells that only
+    /// one layout has.
     pub fn walls_distance(&self, other: &Self) -> f64 {
         let pairs = || {
             self.walls
@@ -112,18 +113,18 @@ impl LayoutShape {
                 .map(|(a, b)| (f64::from(*a), f64::from(*b)))
         };
         let either: f64 = pairs().map(|(a, b)| a.max(b)).sum();
-        let alone: f64 = pairs().map(|(a, b)| (a - b).abs()).sum();
-        if either > 0.0 { alone / either } else { 0.0 }
+        let only_one: f64 = pairs().map(|(a, b)| (a - b).abs()).sum();
+        if either > 0.0 { only_one / either } else { 0.0 }
     }
 
     /// The difference in paths: the mean, over all pairs of places, of the difference of the two lengths divided by the larger,
     /// 0..1. A metric of path lengths: 0 if all are equal.
     pub fn ways_distance(&self, other: &Self) -> f64 {
-        let pairs = self.ways.iter().zip(&other.ways);
-        let apart: f64 = pairs
+        let pairs = self.paths.iter().zip(&other.paths);
+        let sum: f64 = pairs
             .map(|(a, b)| relative_difference(f64::from(*a), f64::from(*b)))
             .sum();
-        apart / self.ways.len().max(1) as f64
+        sum / self.paths.len().max(1) as f64
     }
 
     /// Jaccard distance of the marks: letters of cells and colours of walls that only one layout has in the same place, as a
@@ -147,7 +148,7 @@ impl LayoutShape {
     /// Exact, by network simplex.
     ///
     /// # Errors
-    /// None for shapes made by [`LayoutShape::of`]: [`SimilarityError::BadMass`] for heights that are not finite.
+    /// [`SimilarityError::BadMass`] for heights that are not finite, which shapes from [`LayoutShape::of`] never have.
     ///
     /// # Example
     /// ```
@@ -183,13 +184,13 @@ impl LayoutShape {
         Ok(Grid::new(shape, masses)?.normalised())
     }
 
-    /// Walls, ways and marks together, 0..3. A metric.
+    /// Walls, paths and marks together, 0..3. A metric.
     pub fn distance(&self, other: &Self) -> f64 {
         self.walls_distance(other) + self.ways_distance(other) + self.marks_distance(other)
     }
 }
 
-/// Margin by which a wall's squared distance from the middle of a cell must be below that of half a cell to touch the
+/// Margin by which a wall's squared distance from the middle of a cell must be below the square of half a cell to touch the
 /// cell: walls on raster lines touch only the cells on their own side, whatever the rounding.
 const ROUNDING: f64 = 1e-9;
 
@@ -213,11 +214,11 @@ fn touches(corners: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
     inside || least < 0.25 - ROUNDING
 }
 
-/// Steps from a cell to every other one through cells that `may_enter` allows; [`NO_WAY`] to unreachable ones.
+/// Steps from a cell to every other one through cells that `may_enter` allows; [`NO_PATH`] to unreachable ones.
 ///
 /// Avoids iterators for speed: each layout needs dozens of these searches, and tests run many of them unoptimised.
 fn steps(from: usize, may_enter: impl Fn(usize) -> bool) -> Vec<u32> {
-    let mut steps = vec![NO_WAY; SIDE * SIDE];
+    let mut steps = vec![NO_PATH; SIDE * SIDE];
     steps[from] = 0;
     // Every cell reached, nearest first; those before `done` have been expanded.
     let mut reached = Vec::with_capacity(SIDE * SIDE);
@@ -228,7 +229,7 @@ fn steps(from: usize, may_enter: impl Fn(usize) -> bool) -> Vec<u32> {
         done += 1;
         let (column, row, next_steps) = (cell % SIDE, cell / SIDE, steps[cell] + 1);
         let mut go_to = |next: usize| {
-            if steps[next] == NO_WAY && may_enter(next) {
+            if steps[next] == NO_PATH && may_enter(next) {
                 steps[next] = next_steps;
                 reached.push(next);
             }
@@ -250,11 +251,11 @@ fn steps(from: usize, may_enter: impl Fn(usize) -> bool) -> Vec<u32> {
 }
 
 /// Path lengths between the free cells nearest to the places, from each to each later one.
-fn ways(walls: &[f32]) -> Vec<u32> {
-    let places: Vec<usize> = (0..PLACES * PLACES)
+fn path_lengths(walls: &[f32]) -> Vec<u32> {
+    let places: Vec<usize> = (0..POINTS_PER_SIDE * POINTS_PER_SIDE)
         .map(|number| {
-            let at = |index: usize| (2 * index + 1) * SIDE / (2 * PLACES);
-            let middle = at(number / PLACES) * SIDE + at(number % PLACES);
+            let at = |index: usize| (2 * index + 1) * SIDE / (2 * POINTS_PER_SIDE);
+            let middle = at(number / POINTS_PER_SIDE) * SIDE + at(number % POINTS_PER_SIDE);
             if walls[middle] == 0.0 {
                 return middle;
             }
@@ -263,12 +264,12 @@ fn ways(walls: &[f32]) -> Vec<u32> {
             free.min_by_key(|cell| near[*cell]).unwrap_or(middle)
         })
         .collect();
-    let mut ways = Vec::with_capacity(places.len() * (places.len() - 1) / 2);
+    let mut paths = Vec::with_capacity(places.len() * (places.len() - 1) / 2);
     for (number, from) in places.iter().enumerate() {
         let steps = steps(*from, |cell| walls[cell] == 0.0);
-        ways.extend(places[number + 1..].iter().map(|to| steps[*to]));
+        paths.extend(places[number + 1..].iter().map(|to| steps[*to]));
     }
-    ways
+    paths
 }
 
 #[cfg(test)]
@@ -279,7 +280,7 @@ mod tests {
     use super::*;
 
     /// The neighbours of a cell within the raster.
-    fn beside(cell: usize) -> impl Iterator<Item = usize> {
+    fn neighbours(cell: usize) -> impl Iterator<Item = usize> {
         let (column, row) = (cell % SIDE, cell / SIDE);
         [
             (column + 1 < SIDE).then_some(cell + 1),
@@ -303,8 +304,8 @@ mod tests {
             let found = steps(from, |cell| !walls[cell]);
             prop_assert_eq!(found[from], 0);
             for cell in (0..SIDE * SIDE).filter(|cell| *cell != from) {
-                let least = beside(cell).map(|near| found[near]).min().unwrap_or(NO_WAY);
-                let expected = if walls[cell] || least == NO_WAY { NO_WAY } else { least + 1 };
+                let least = neighbours(cell).map(|near| found[near]).min().unwrap_or(NO_PATH);
+                let expected = if walls[cell] || least == NO_PATH { NO_PATH } else { least + 1 };
                 prop_assert_eq!(found[cell], expected, "cell {}", cell);
             }
         }
@@ -333,7 +334,11 @@ mod tests {
     }
 
     fn shape(layout: &Layout) -> LayoutShape {
-        LayoutShape::of(&layout.plan(0), layout.size().expect("mazes and rooms have one"), 4.0)
+        LayoutShape::of(
+            &layout.plan(0),
+            layout.size().expect("mazes and rooms have a size"),
+            4.0,
+        )
     }
 
     /// Puts a wall into a cell of the coarser raster, by column and row.
@@ -386,8 +391,8 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(6))]
 
-        /// On a line the earth mover's distance is the area between the cumulative sums; in the plane it is at least that of
-        /// each axis.
+        /// On a line the earth mover's distance is the area between the cumulative sums; in the plane it is at least the
+        /// distance along each axis.
         #[test]
         fn transport_on_a_line_is_the_area_between_cumulative_sums(
             rows in prop::array::uniform2(prop::collection::vec(0_u8..9, COARSE)), lines in any::<bool>(), other in layouts(),

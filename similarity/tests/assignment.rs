@@ -19,13 +19,13 @@ struct Case {
 
 #[test]
 fn sums_match_scipy() {
-    let oracle: Oracle = serde_json::from_str(include_str!("oracle/assignment.json")).expect("the oracle is sound");
+    let oracle: Oracle = serde_json::from_str(include_str!("oracle/assignment.json")).expect("the oracle is valid");
     assert!(oracle.cases.len() > 40);
     let mut assignment = Assignment::new();
     for case in oracle.cases {
         let total = assignment
             .solve(&case.costs, case.rows, case.columns)
-            .expect("the costs are sound");
+            .expect("the costs are valid");
         assert!(
             (total - case.total).abs() <= 1e-9 * case.total.abs().max(1.0),
             "{}: {total}, scipy {}",

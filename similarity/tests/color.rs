@@ -1,4 +1,4 @@
-//! Compares distances between colours with those of scikit-image and colour-science.
+//! Compares distances between colours with scikit-image and colour-science.
 
 use driftworld_similarity::{ColorMeasure, Lab, cie76, ciede2000, hyab};
 use driftworld_spec::Color;
@@ -24,7 +24,7 @@ struct Pair {
 }
 
 fn oracle() -> Oracle {
-    serde_json::from_str(include_str!("oracle/color.json")).expect("the oracle is sound")
+    serde_json::from_str(include_str!("oracle/color.json")).expect("the oracle is valid")
 }
 
 #[test]

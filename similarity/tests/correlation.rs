@@ -1,5 +1,5 @@
-//! Compares correlations and the Mantel test with scipy, scikit-bio and a full enumeration; `oracle/make_correlation.py` made
-//! the numbers.
+//! Compares correlations and the Mantel test with scipy, scikit-bio and a full enumeration; the expected
+//! numbers come from `oracle/make_correlation.py`.
 
 use driftworld_similarity::{
     Correlation, DistanceMatrix, MantelTest, PairValue, SimilarityError, mantel, pearson, spearman,
@@ -25,7 +25,7 @@ fn numbers(value: &Value) -> Vec<f64> {
 fn matrix(value: &Value) -> DistanceMatrix {
     let rows: Vec<Vec<f64>> = value.as_array().expect("rows").iter().map(numbers).collect();
     let labels = (0..rows.len()).map(|k| format!("item {k}")).collect();
-    DistanceMatrix::measure(labels, |a, b| Ok::<_, SimilarityError>(rows[a][b])).expect("these are distances")
+    DistanceMatrix::measure(labels, |a, b| Ok::<_, SimilarityError>(rows[a][b])).expect("the distances are valid")
 }
 
 fn method(case: &Value) -> Correlation {
@@ -40,12 +40,12 @@ fn correlations_match_scipy() {
             let expected = number(&case[name]);
             assert!((found - expected).abs() < 1e-12, "{name}: {found}, expected {expected}");
         };
-        near(spearman(&a, &b).expect("sound lists"), "spearman");
-        near(pearson(&a, &b).expect("sound lists"), "pearson");
+        near(spearman(&a, &b).expect("the lists are valid"), "spearman");
+        near(pearson(&a, &b).expect("the lists are valid"), "pearson");
     }
 }
 
-/// Exactly the counts of an enumeration, with gaps and one-way pairs.
+/// The shares equal those of a full enumeration exactly, also with missing and one-way pairs.
 #[test]
 fn exact_shares_match_an_enumeration() {
     for case in cases(&golden(), "enumerated") {
@@ -55,7 +55,7 @@ fn exact_shares_match_an_enumeration() {
             value: number(&pair[2]),
         });
         let pairs: Vec<PairValue> = pairs.collect();
-        let found = mantel(&matrix(&case["distances"]), &pairs, method(case), 720, 0).expect("sound pairs");
+        let found = mantel(&matrix(&case["distances"]), &pairs, method(case), 720, 0).expect("the pairs are valid");
         let name = format!("{} {}", case["description"], case["method"]);
         assert!(
             (found.correlation - number(&case["correlation"])).abs() < 1e-12,
@@ -73,7 +73,7 @@ fn exact_shares_match_an_enumeration() {
     }
 }
 
-/// Random shares vary: two shares of 19,999 draws are within 0.02 of each other in all but one of 10,000 cases.
+/// Random shares vary: two shares of 19,999 draws are within 0.02 of each other in all but one case of 10,000.
 #[test]
 fn drawn_shares_approximate_scikit_bio() {
     for case in cases(&golden(), "drawn") {
@@ -85,7 +85,8 @@ fn drawn_shares_approximate_scikit_bio() {
             value: other.get(from, to),
         });
         let pairs: Vec<PairValue> = pairs.collect();
-        let found: MantelTest = mantel(&matrix(&case["a"]), &pairs, method(case), 19_999, 5).expect("sound pairs");
+        let found: MantelTest =
+            mantel(&matrix(&case["a"]), &pairs, method(case), 19_999, 5).expect("the pairs are valid");
         assert!((found.correlation - number(&case["correlation"])).abs() < 1e-12);
         assert!(!found.exact);
         for (share, key) in [

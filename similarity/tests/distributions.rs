@@ -1,4 +1,4 @@
-//! Compares distances between distributions with scipy and POT, and checks the laws that they claim.
+//! Compares distances between distributions with scipy and POT, and checks the metric properties that they claim.
 
 use driftworld_similarity::distribution::{
     Measured, Method, bures_wasserstein, circular_wasserstein_1, energy, hellinger, jensen_shannon, kullback_leibler,
@@ -36,7 +36,7 @@ struct Samples {
 }
 
 fn oracle() -> Oracle {
-    serde_json::from_str(include_str!("oracle/distributions.json")).expect("the oracle is sound")
+    serde_json::from_str(include_str!("oracle/distributions.json")).expect("the oracle is valid")
 }
 
 fn measure(name: &str) -> Measure {
@@ -65,7 +65,7 @@ fn tolerance(found: Measured) -> f64 {
 fn distances_match_scipy_and_pot() {
     let pairs = oracle().pairs;
     assert!(pairs.len() > 130);
-    let mut wrong = Vec::new();
+    let mut mismatches = Vec::new();
     for Pair { a, b, expected } in pairs {
         for (name, expected) in expected {
             let expected = expected.as_f64().unwrap_or(f64::INFINITY);
@@ -74,13 +74,13 @@ fn distances_match_scipy_and_pot() {
             let slack = 1e-7 * expected.max(1.0) + tolerance(found);
             let near = found.value == expected || (found.value - expected).abs() <= slack;
             // The documented accuracy, in degrees for headings.
-            let most = if name == "circular_wasserstein_1" { 1e-3 } else { 1e-5 };
-            if !near || tolerance(found) > most {
-                wrong.push(format!("{name} of {a} and {b}: {found:?}, expected {expected}"));
+            let max_tolerance = if name == "circular_wasserstein_1" { 1e-3 } else { 1e-5 };
+            if !near || tolerance(found) > max_tolerance {
+                mismatches.push(format!("{name} of {a} and {b}: {found:?}, expected {expected}"));
             }
         }
     }
-    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert!(mismatches.is_empty(), "{}", mismatches.join("\n"));
 }
 
 #[test]
@@ -169,7 +169,7 @@ fn headings() -> impl Strategy<Value = Distribution> {
     ]
 }
 
-fn places() -> impl Strategy<Value = Distribution> {
+fn placements() -> impl Strategy<Value = Distribution> {
     prop_oneof![
         (-5.0..5.0, 0.5..4.0).prop_map(|(x, radius)| Distribution::Disc {
             center: [x, 1.0],
@@ -188,21 +188,21 @@ fn places() -> impl Strategy<Value = Distribution> {
     ]
 }
 
-/// Checks the laws of a metric, within the tolerances.
-fn is_a_metric(measure: Measure, [a, b, c]: [&Distribution; 3], most: f64) -> Result<(), TestCaseError> {
+/// Checks the axioms of a metric, within the tolerances.
+fn check_metric(measure: Measure, [a, b, c]: [&Distribution; 3], bound: f64) -> Result<(), TestCaseError> {
     let between = |a, b| measure(a, b).expect("there is a distance");
     let (ab, bc, ac, ba) = (between(a, b), between(b, c), between(a, c), between(b, a));
     prop_assert_eq!(between(a, a).value, 0.0);
-    prop_assert!(ab.value >= 0.0 && ab.value <= most, "{:?}", ab);
+    prop_assert!(ab.value >= 0.0 && ab.value <= bound, "{:?}", ab);
     let slack = 1e-7 * (1.0 + ab.value);
     prop_assert!(
         (ab.value - ba.value).abs() <= slack + tolerance(ab) + tolerance(ba),
         "{a} to {b}: {ab:?}, back {ba:?}"
     );
-    let off = tolerance(ab) + tolerance(bc) + tolerance(ac);
-    prop_assert!(off < 1e-2, "{a}, {b}, {c}: {off}");
+    let total_tolerance = tolerance(ab) + tolerance(bc) + tolerance(ac);
+    prop_assert!(total_tolerance < 1e-2, "{a}, {b}, {c}: {total_tolerance}");
     prop_assert!(
-        ac.value <= ab.value + bc.value + off + slack,
+        ac.value <= ab.value + bc.value + total_tolerance + slack,
         "{a} over {b} to {c}: {ab:?} and {bc:?}, straight {ac:?}"
     );
     Ok(())
@@ -214,20 +214,20 @@ proptest! {
     #[test]
     fn probability_distances_are_metrics(a in numbers(), b in numbers(), c in numbers()) {
         for measure in [total_variation, hellinger, jensen_shannon] {
-            is_a_metric(measure, [&a, &b, &c], 1.0)?;
+            check_metric(measure, [&a, &b, &c], 1.0)?;
         }
     }
 
     #[test]
     fn number_distances_are_metrics(a in numbers(), b in numbers(), c in numbers()) {
         for measure in [wasserstein_1, wasserstein_2, energy] {
-            is_a_metric(measure, [&a, &b, &c], f64::INFINITY)?;
+            check_metric(measure, [&a, &b, &c], f64::INFINITY)?;
         }
     }
 
     #[test]
     fn heading_distances_are_metrics(a in headings(), b in headings(), c in headings()) {
-        is_a_metric(circular_wasserstein_1, [&a, &b, &c], 180.0)?;
+        check_metric(circular_wasserstein_1, [&a, &b, &c], 180.0)?;
         // Numbers within one turn have the same distance on the line as on the circle.
         let within = |distribution: &Distribution| match distribution {
             Distribution::Uniform { low, high } => Distribution::Uniform {
@@ -238,7 +238,7 @@ proptest! {
         };
         let (a, b, c) = (within(&a), within(&b), within(&c));
         for measure in [total_variation, hellinger, jensen_shannon] {
-            is_a_metric(measure, [&a, &b, &c], 1.0)?;
+            check_metric(measure, [&a, &b, &c], 1.0)?;
         }
     }
 
@@ -268,7 +268,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(6))]
 
     #[test]
-    fn point_distances_keep_their_bounds(a in places(), b in places()) {
+    fn point_distances_keep_their_bounds(a in placements(), b in placements()) {
         let of = |measure: Measure| measure(&a, &b).expect("both draw points");
         let (first, second) = (of(planar_wasserstein_1), of(planar_wasserstein_2));
         let least = bures_wasserstein(&a, &b).expect("both draw points");

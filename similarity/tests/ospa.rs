@@ -1,4 +1,4 @@
-//! Compares OSPA with its formula on top of scipy's assignment.
+//! Compares OSPA with its formula applied to scipy's assignment.
 
 use driftworld_similarity::ospa;
 use serde::Deserialize;
@@ -19,12 +19,12 @@ struct Case {
 
 #[test]
 fn distances_match_the_formula() {
-    let oracle: Oracle = serde_json::from_str(include_str!("oracle/ospa.json")).expect("the oracle is sound");
+    let oracle: Oracle = serde_json::from_str(include_str!("oracle/ospa.json")).expect("the oracle is valid");
     assert!(oracle.cases.len() > 40);
     for case in oracle.cases {
         let objects = |of: &[(u32, f64, f64)]| -> Vec<_> { of.iter().map(|&(class, x, y)| (class, [x, y])).collect() };
         let (a, b) = (objects(&case.a), objects(&case.b));
-        let found = ospa(&a, &b, case.cut_off).expect("the objects are sound");
+        let found = ospa(&a, &b, case.cut_off).expect("the objects are valid");
         assert!(
             (found - case.ospa).abs() <= 1e-9 * case.ospa.max(1.0),
             "{} and {} objects, cut-off {}: {found}, expected {}",

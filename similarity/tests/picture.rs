@@ -41,15 +41,15 @@ fn picture((kind, seed): &(String, usize), height: usize, width: usize) -> Vec<u
 
 #[test]
 fn similarities_match_scikit_image() {
-    let oracle: Oracle = serde_json::from_str(include_str!("oracle/ssim.json")).expect("the oracle is sound");
+    let oracle: Oracle = serde_json::from_str(include_str!("oracle/ssim.json")).expect("the oracle is valid");
     assert!(oracle.cases.len() > 100);
     for case in oracle.cases {
         let (a, b) = (
             picture(&case.a, case.height, case.width),
             picture(&case.b, case.height, case.width),
         );
-        let view = |rgb| Picture::new(rgb, case.height, case.width).expect("the size is sound");
-        let found = structural_similarity(view(&a), view(&b)).expect("the sizes are sound");
+        let view = |rgb| Picture::new(rgb, case.height, case.width).expect("the size is valid");
+        let found = structural_similarity(view(&a), view(&b)).expect("the sizes are valid");
         assert!(
             (found - case.similarity).abs() < 1e-9,
             "{:?} and {:?}, {} × {}: {found}, scikit-image {}",

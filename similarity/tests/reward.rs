@@ -15,7 +15,7 @@ struct Oracle {
 }
 
 fn oracle() -> Oracle {
-    serde_json::from_str(include_str!("oracle/reward.json")).expect("the oracle is sound")
+    serde_json::from_str(include_str!("oracle/reward.json")).expect("the oracle is valid")
 }
 
 impl Rng {
@@ -42,12 +42,12 @@ fn grid_reward(name: &str) -> ([f64; 9], [f64; 9]) {
         "cliff_walk" => ([0.0, -1.0, -1.0, 0.0, 0.0, 0.0, -4.0, -4.0, 4.0], none),
         "sparse_penalty" => (GOAL.map(|reward| -reward), none),
         "zero" => (none, none),
-        _ => panic!("a reward that the test does not know: {name}"),
+        _ => panic!("unknown reward: {name}"),
     }
 }
 
-/// Transitions of a state, an action and a next state, each repeated by its weight; all draws, each repeated by the product of
-/// its action's and state's weights.
+/// Transitions of a state, an action and a next state, each repeated as often as its weight; all draws, each repeated as often as
+/// the product of the weights of its action and state.
 fn samples(
     transitions: impl Fn(usize, usize, usize) -> usize,
     of_states: &[usize],
@@ -66,8 +66,9 @@ fn samples(
 
 fn on_the_grid(samples: &RewardSamples<usize, usize>, name: &str, discount: f64) -> SampledReward {
     let (reward, potential) = grid_reward(name);
-    let paid = |&state: &usize, _: &usize, &next: &usize| reward[state] + discount * potential[next] - potential[state];
-    samples.measure(paid).expect("the rewards are sound")
+    let reward_of =
+        |&state: &usize, _: &usize, &next: &usize| reward[state] + discount * potential[next] - potential[state];
+    samples.measure(reward_of).expect("the rewards are valid")
 }
 
 /// 1 for each move on a 3 × 3 grid: left, right, up, down, stay; moves against the edge stay.
@@ -122,7 +123,7 @@ fn grid_rewards_match_the_reference() {
                 let middle = if a == b { 0.0 } else { 0.5 };
                 check(
                     &what,
-                    found.expect("they are of the same samples"),
+                    found.expect("both use the same samples"),
                     expected.unwrap_or(middle),
                 );
             }
@@ -146,16 +147,16 @@ fn equal_goals_are_exactly_0_apart() {
 
 /// Draws in the order of `drawn` in `oracle/make_reward.py`: 2 to 5 states, 1 to 3 actions, a discount in hundredths; whether
 /// the second reward is near the first (one in four); rewards in thousandths, from −1 to 1, and within 0.005 if near; weights
-/// of states and actions of 1 to 3; whether transitions weigh as states and actions do, or 1 to 5.
+/// of states and actions of 1 to 3; whether transitions have the product of these weights, or weights of 1 to 5.
 fn drawn(seed: u64) -> f64 {
     let mut rng = Rng(seed);
     let (states, actions) = (2 + rng.below(4) as usize, 1 + rng.below(3) as usize);
     let discount = rng.number(101) / 100.0;
-    let near = rng.below(4) == 0;
+    let is_near = rng.below(4) == 0;
     let size = states * actions * states;
     let a: Vec<f64> = (0..size).map(|_| rng.number(2001) - 1000.0).collect();
     let b = a.iter().map(|reward| {
-        if near {
+        if is_near {
             reward + rng.number(11) - 5.0
         } else {
             rng.number(2001) - 1000.0
@@ -163,14 +164,14 @@ fn drawn(seed: u64) -> f64 {
     });
     let b: Vec<f64> = b.collect();
     let mut weights =
-        |count: usize, most: u64| -> Vec<usize> { (0..count).map(|_| 1 + rng.below(most) as usize).collect() };
+        |count: usize, max: u64| -> Vec<usize> { (0..count).map(|_| 1 + rng.below(max) as usize).collect() };
     let (of_states, of_actions) = (weights(states, 3), weights(actions, 3));
-    let place = |state: usize, action: usize, next: usize| (state * actions + action) * states + next;
+    let index = |state: usize, action: usize, next: usize| (state * actions + action) * states + next;
     let as_drawn = |state: usize, action: usize, next: usize| of_states[state] * of_actions[action] * of_states[next];
     let samples = if weights(1, 2) == [2] {
         let coverage = weights(size, 5);
         samples(
-            |state, action, next| coverage[place(state, action, next)],
+            |state, action, next| coverage[index(state, action, next)],
             &of_states,
             &of_actions,
         )
@@ -178,11 +179,11 @@ fn drawn(seed: u64) -> f64 {
         samples(as_drawn, &of_states, &of_actions)
     };
     let measure = |rewards: &[f64]| {
-        let paid = |&state: &usize, &action: &usize, &next: &usize| rewards[place(state, action, next)] / 1000.0;
-        samples.measure(paid).expect("the rewards are sound")
+        let reward_of = |&state: &usize, &action: &usize, &next: &usize| rewards[index(state, action, next)] / 1000.0;
+        samples.measure(reward_of).expect("the rewards are valid")
     };
     let found = measure(&a).distance(&measure(&b), discount);
-    found.expect("they are of the same samples")
+    found.expect("both use the same samples")
 }
 
 #[test]

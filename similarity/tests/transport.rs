@@ -26,7 +26,7 @@ struct Points {
 }
 
 fn oracle() -> Oracle {
-    serde_json::from_str(include_str!("oracle/transport.json")).expect("the oracle is sound")
+    serde_json::from_str(include_str!("oracle/transport.json")).expect("the oracle is valid")
 }
 
 #[track_caller]
@@ -40,7 +40,7 @@ fn plan_costs_match_pot() {
     let plans = oracle().plans;
     assert!(plans.len() > 30);
     for case in plans {
-        let plan = optimal_transport(&case.from, &case.to, &case.costs).expect("the masses are sound");
+        let plan = optimal_transport(&case.from, &case.to, &case.costs).expect("the masses are valid");
         check(&case.description, plan.cost, case.cost, 1e-12);
     }
 }
@@ -48,7 +48,7 @@ fn plan_costs_match_pot() {
 #[test]
 fn point_distances_match_pot() {
     for case in oracle().points {
-        let found = earth_movers_distance(&case.a, &case.b).expect("the points are sound");
+        let found = earth_movers_distance(&case.a, &case.b).expect("the points are valid");
         check("earth mover's", found, case.earth_movers, 1e-12);
     }
 }

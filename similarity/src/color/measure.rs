@@ -44,7 +44,7 @@ impl ColorMeasure {
         self.between_prepared(self.prepare(a), self.prepare(b))
     }
 
-    /// The largest distance between two sRGB colours, with the last place rounded up.
+    /// The largest distance between two sRGB colours, rounded up in the last digit.
     pub fn diameter(self) -> f64 {
         match self {
             // Black to white.
@@ -57,7 +57,7 @@ impl ColorMeasure {
         }
     }
 
-    /// Which laws the measure satisfies.
+    /// The metric properties of the measure.
     pub fn properties(self) -> MetricProperties {
         match self {
             Self::Ciede2000 => MetricProperties::Distance,
@@ -97,7 +97,7 @@ mod tests {
 
     #[test]
     fn diameter_is_the_distance_between_the_farthest_colours() {
-        let named = |name| Color::from_name(name).expect("a name of CSS");
+        let named = |name| Color::from_name(name).expect("a CSS colour name");
         for (measure, a, b) in [
             (ColorMeasure::Srgb, named("black"), named("white")),
             (ColorMeasure::Oklab, named("black"), named("white")),

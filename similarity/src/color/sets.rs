@@ -79,9 +79,9 @@ mod tests {
         fn set_distance_is_a_metric(a in colors(), b in colors(), c in colors()) {
             for &measure in ColorMeasure::ALL {
                 let d = |a: &[Color], b: &[Color]| color_sets_distance(a, b, measure).unwrap();
-                let mut turned = a.clone();
-                turned.reverse();
-                prop_assert!(d(&a, &turned).abs() < 1e-12);
+                let mut reversed = a.clone();
+                reversed.reverse();
+                prop_assert!(d(&a, &reversed).abs() < 1e-12);
                 prop_assert!((d(&a, &b) - d(&b, &a)).abs() < 1e-9);
                 prop_assert!((0.0..=1.0).contains(&d(&a, &b)));
                 if measure.properties().is_metric() {

@@ -14,7 +14,7 @@ pub(super) struct Arena {
 }
 
 impl Arena {
-    /// The arena of a task. A parameter for its size or wall height counts with its default, a drawn value with its mean; so
+    /// The arena of a task. A parameter for its size or wall height is taken at its default, a drawn value at its mean, so
     /// the arena depends on the task alone, not on the values compared.
     pub(super) fn of(task: &Arc<TaskSpec>) -> Self {
         let world = task.world();
@@ -29,14 +29,14 @@ impl Arena {
             .variant(DEFAULT_VARIANT)
             .ok()
             .or_else(|| task.all_variants().into_iter().next());
-        let counts = |pointer: &str| {
+        let is_relevant = |pointer: &str| {
             ["map_size", "wall_height", "predefined_map"].iter().any(|key| {
                 pointer
                     .strip_prefix("/environment_params/")
                     .is_some_and(|rest| rest.starts_with(key))
             })
         };
-        for hole in world.holes.iter().filter(|hole| counts(&hole.pointer)) {
+        for hole in world.holes.iter().filter(|hole| is_relevant(&hole.pointer)) {
             let value = default.as_ref().and_then(|variant| typical(variant, &hole.source));
             if let Some(value) = value {
                 // Values that do not fit leave the template's example in place.
@@ -64,7 +64,8 @@ mod tests {
     use super::*;
     use crate::{LayoutShape, VariantMeasure, Weights};
 
-    /// A task with these environment parameters, and a parameter `map`: an empty layout, a text layout of 18 × 18 m, or two walls.
+    /// A task with these environment parameters, and a parameter `map`: an empty layout, a text layout of 18 × 18 m, or two
+    /// walls.
     fn task(around: &str) -> Arc<TaskSpec> {
         let text = format!(
             r#"{{ "name": "t", "parameters": {{

@@ -20,14 +20,14 @@ const ALL_PAIRS: usize = 24;
 #[derive(Clone, Debug)]
 pub(super) struct DrawnMeasure {
     measure: Option<MeasureName>,
-    headings: bool,
-    /// The largest distance between two distributions that the task's declared values allow. `None` if that is infinite: numbers are
-    /// then not normalised.
+    has_headings: bool,
+    /// The largest distance between two distributions that the task's declared values allow. `None` if that is infinite:
+    /// numbers are then not normalised.
     widest: Option<f64>,
     can_differ: bool,
     /// Whether points come from different families, or colours from both lists and densities; these can be compared by samples
     /// only.
-    mixed: bool,
+    is_mixed: bool,
     /// The measure of single colours, if distributions are compared by transporting colours.
     colors: Option<ColorMeasure>,
 }
@@ -36,26 +36,26 @@ pub(super) struct DrawnMeasure {
 pub(super) type Found = (&'static str, Option<Method>, f64, f64);
 
 impl DrawnMeasure {
-    /// The measure that the parameter asks for, or its type's default; `all` are the distributions at the ends of the declared
+    /// The measure that the parameter requests, or its type's default; `all` are the distributions at the ends of the declared
     /// ranges.
     pub(super) fn of(parameter: &Parameter, all: &[Distribution]) -> Self {
         let measure = parameter.compare.as_ref().and_then(|compare| compare.measure);
         let kinds = [false, true].map(|colors| all.iter().any(|own| own.draws_colors() == colors));
         let families = all.iter().filter_map(|own| own.planar_moments().map(|_| own.name()));
         let families: BTreeSet<&str> = families.collect();
-        let has_ways = kinds[1] || (parameter.kind == ParameterType::Color && asks_for_ways(measure));
-        let colors = has_ways && measure != Some(MeasureName::SameOrNot);
-        let mut made = Self {
+        let has_transport = kinds[1] || (parameter.kind == ParameterType::Color && requires_transport(measure));
+        let colors = has_transport && measure != Some(MeasureName::SameOrNot);
+        let mut this = Self {
             measure,
-            colors: colors.then(|| ways_of(measure)),
-            headings: parameter.kind == ParameterType::Heading || all.iter().any(draws_headings),
+            colors: colors.then(|| color_measure_of(measure)),
+            has_headings: parameter.kind == ParameterType::Heading || all.iter().any(draws_headings),
             widest: Some(1.0),
             can_differ: all.len() > 1,
-            mixed: families.len() > 1 || (colors && kinds == [true; 2]),
+            is_mixed: families.len() > 1 || (colors && kinds == [true; 2]),
         };
-        let widest = made.widest_of(all);
-        made.widest = (widest != f64::INFINITY).then_some(if usable(widest) { widest } else { 1.0 });
-        made
+        let widest = this.widest_of(all);
+        this.widest = (widest != f64::INFINITY).then_some(if is_usable(widest) { widest } else { 1.0 });
+        this
     }
 
     /// The largest distance among distributions: over all pairs, or, if there are many, from the one farthest from the first to
@@ -77,13 +77,13 @@ impl DrawnMeasure {
         }
     }
 
-    /// Which laws the measure satisfies. Between points of different families the triangle inequality may fail by the sampling
-    /// error.
+    /// The metric properties of the measure. Between points of different families the triangle inequality may fail by the
+    /// sampling error.
     pub(super) fn properties(&self) -> MetricProperties {
         match self.measure {
             Some(MeasureName::SameOrNot) => MetricProperties::Metric,
             Some(MeasureName::BuresWasserstein) => MetricProperties::Pseudometric,
-            _ if self.mixed => MetricProperties::Distance,
+            _ if self.is_mixed => MetricProperties::Distance,
             _ => self.colors.map_or(MetricProperties::Metric, ColorMeasure::properties),
         }
     }
@@ -119,7 +119,7 @@ impl DrawnMeasure {
             return between_colors(a, b, colors, self.measure).unwrap_or_else(same_or_not);
         }
         let found = |name, measured: Option<Measured>| measured.map(|found| (name, Some(found.method), found.value));
-        let asked = match self.measure {
+        let requested = match self.measure {
             Some(MeasureName::Wasserstein1) => found("planar wasserstein-1 / widest", placement_wasserstein_1(a, b)),
             Some(MeasureName::Wasserstein2) => found("planar wasserstein-2 / widest", placement_wasserstein_2(a, b))
                 .or_else(|| found("wasserstein-2 / widest", wasserstein_2(a, b))),
@@ -133,13 +133,13 @@ impl DrawnMeasure {
             ),
             _ => None,
         };
-        if let Some(asked) = asked {
-            return asked;
+        if let Some(requested) = requested {
+            return requested;
         }
-        if self.headings
-            && let Some(round) = found("circular wasserstein-1 / widest", circular_wasserstein_1(a, b))
+        if self.has_headings
+            && let Some(circular) = found("circular wasserstein-1 / widest", circular_wasserstein_1(a, b))
         {
-            return round;
+            return circular;
         }
         found("planar wasserstein-2 / widest", placement_wasserstein_2(a, b))
             .or_else(|| found("wasserstein-1 / widest", wasserstein_1(a, b)))
@@ -150,12 +150,12 @@ impl DrawnMeasure {
 }
 
 /// Whether numbers can be divided by this width.
-fn usable(width: f64) -> bool {
+fn is_usable(width: f64) -> bool {
     width > 0.0 && width.is_finite()
 }
 
 /// Whether a measure requires transport, so that lists of colours are compared by transport, too.
-fn asks_for_ways(measure: Option<MeasureName>) -> bool {
+fn requires_transport(measure: Option<MeasureName>) -> bool {
     use MeasureName::{Cie76, Ciede2000, Hyab, Oklab, Srgb, Wasserstein1, Wasserstein2};
     matches!(
         measure,
@@ -164,7 +164,7 @@ fn asks_for_ways(measure: Option<MeasureName>) -> bool {
 }
 
 /// The measure by which single colours are compared.
-fn ways_of(measure: Option<MeasureName>) -> ColorMeasure {
+fn color_measure_of(measure: Option<MeasureName>) -> ColorMeasure {
     match measure {
         Some(MeasureName::Srgb) => ColorMeasure::Srgb,
         Some(MeasureName::Cie76) => ColorMeasure::Cie76,
@@ -174,14 +174,14 @@ fn ways_of(measure: Option<MeasureName>) -> ColorMeasure {
     }
 }
 
-/// Wasserstein-1 of colours, or Wasserstein-2 if asked for.
+/// Wasserstein-1 of colours, or Wasserstein-2 if requested.
 fn between_colors(
     a: &Distribution,
     b: &Distribution,
     by: ColorMeasure,
-    asked: Option<MeasureName>,
+    requested: Option<MeasureName>,
 ) -> Option<(&'static str, Option<Method>, f64)> {
-    let (name, measured) = if asked == Some(MeasureName::Wasserstein2) {
+    let (name, measured) = if requested == Some(MeasureName::Wasserstein2) {
         ("wasserstein-2 of oklab / widest", color_wasserstein_2(a, b, by)?)
     } else {
         let name = match by {

@@ -33,7 +33,7 @@ impl KindDistance {
         if a.kind == b.kind {
             return Self { of, ..Self::default() };
         }
-        let apart = Self {
+        let parts = Self {
             of,
             cost: 0.0,
             motion: a.motion.distance(&b.motion),
@@ -44,10 +44,10 @@ impl KindDistance {
             color: a.color_distance(b),
             model: a.model.distance(&b.model),
         };
-        let pays = apart.reward / super::matching::UNIT_OF_REWARD + apart.odds;
+        let pays = parts.reward / super::matching::REWARD_UNIT + parts.odds;
         Self {
-            cost: apart.motion + apart.body + apart.paid_for + apart.color + apart.model + TIE_BREAK * pays.min(1.0),
-            ..apart
+            cost: parts.motion + parts.body + parts.paid_for + parts.color + parts.model + TIE_BREAK * pays.min(1.0),
+            ..parts
         }
     }
 }
@@ -60,20 +60,20 @@ thread_local! {
 }
 
 impl Kinds {
-    /// Calls `look` with this thread's cache.
-    pub(super) fn with<T>(look: impl FnOnce(&mut Self) -> T) -> T {
+    /// Calls `action` with this thread's cache.
+    pub(super) fn with<T>(action: impl FnOnce(&mut Self) -> T) -> T {
         KINDS.with_borrow_mut(|kinds| {
             if kinds.0.is_empty() {
                 kinds.0.resize(CACHE_SIZE, KindDistance::default());
             }
-            look(kinds)
+            action(kinds)
         })
     }
 
     #[inline]
-    pub(super) fn apart(&mut self, a: &ObjectFeatures, b: &ObjectFeatures) -> &KindDistance {
-        let place = a.kind.wrapping_mul(47).wrapping_add(b.kind) as usize % CACHE_SIZE;
-        let known = &mut self.0[place];
+    pub(super) fn distance(&mut self, a: &ObjectFeatures, b: &ObjectFeatures) -> &KindDistance {
+        let slot = a.kind.wrapping_mul(47).wrapping_add(b.kind) as usize % CACHE_SIZE;
+        let known = &mut self.0[slot];
         if known.of != [a.kind, b.kind] {
             *known = KindDistance::between(a, b);
         }

@@ -11,7 +11,7 @@ use crate::assignment::{Assignment, MAX_ASSIGNED};
 use crate::scalar::relative_difference;
 
 /// Distance between two points, in metres, that counts as 1, as for objects.
-const METRES: f64 = 10.0;
+const METRES_PER_UNIT: f64 = 10.0;
 
 /// Numbers and words by their paths, in the order of the paths' ids.
 #[derive(Debug, PartialEq)]
@@ -57,8 +57,8 @@ impl LeafReader {
             let json: Json = serde_json::from_slice(field).expect("fields of a world are JSON");
             // Records that a struct is present: an empty struct, such as a key, is `{}`.
             if json.is_object() {
-                let leaf = Leaf::Word(self.number("{}".to_owned()));
-                all.push((self.number(format!("{line}/")), leaf));
+                let leaf = Leaf::Word(self.id("{}".to_owned()));
+                all.push((self.id(format!("{line}/")), leaf));
             }
             self.walk(&json, &mut line.to_string(), &mut all);
         }
@@ -87,7 +87,7 @@ impl LeafReader {
                 return;
             }
             Json::Array(list) if !list.is_empty() && list.iter().all(Json::is_string) => {
-                let mut words: Vec<u32> = list.iter().map(|word| self.number(word.to_string())).collect();
+                let mut words: Vec<u32> = list.iter().map(|word| self.id(word.to_string())).collect();
                 words.sort_unstable();
                 words.dedup();
                 Leaf::WordSet(words)
@@ -101,7 +101,7 @@ impl LeafReader {
                     path.push('/');
                     path.push_str(&index.to_string());
                     match point(child) {
-                        Some(place) if are_points => all.push((self.number(path.clone()), Leaf::Point(place))),
+                        Some(point) if are_points => all.push((self.id(path.clone()), Leaf::Point(point))),
                         _ => self.walk(child, path, all),
                     }
                     path.truncate(length);
@@ -109,9 +109,9 @@ impl LeafReader {
                 return;
             }
             Json::Number(number) => Leaf::Number(number.as_f64().unwrap_or(f64::MAX)),
-            word => Leaf::Word(self.number(word.to_string())),
+            word => Leaf::Word(self.id(word.to_string())),
         };
-        let path = self.number(path.clone());
+        let path = self.id(path.clone());
         all.push((path, leaf));
     }
 
@@ -123,7 +123,7 @@ impl LeafReader {
         all
     }
 
-    fn number(&mut self, name: String) -> u32 {
+    fn id(&mut self, name: String) -> u32 {
         let next = u32::try_from(self.names.len()).unwrap_or(u32::MAX);
         *self.names.entry(name).or_insert(next)
     }
@@ -138,7 +138,7 @@ impl Leaves {
         if std::ptr::eq(self, other) {
             return 0.0;
         }
-        apart(&self.all, &other.all)
+        list_distance(&self.all, &other.all)
     }
 }
 
@@ -160,7 +160,7 @@ fn point(json: &Json) -> Option<[f64; 2]> {
 }
 
 /// The sum over all paths of two lists sorted by path.
-fn apart(a: &[(u32, Leaf)], b: &[(u32, Leaf)]) -> f64 {
+fn list_distance(a: &[(u32, Leaf)], b: &[(u32, Leaf)]) -> f64 {
     let (mut i, mut j, mut sum) = (0, 0, 0.0);
     loop {
         match (a.get(i), b.get(j)) {
@@ -169,10 +169,10 @@ fn apart(a: &[(u32, Leaf)], b: &[(u32, Leaf)]) -> f64 {
                 sum += a.distance(b);
                 (i, j) = (i + 1, j + 1);
             }
-            (Some((mine, alone)), theirs) if theirs.is_none_or(|(theirs, _)| mine < theirs) => {
-                (i, sum) = (i + 1, sum + alone.size());
+            (Some((mine, unmatched)), theirs) if theirs.is_none_or(|(theirs, _)| mine < theirs) => {
+                (i, sum) = (i + 1, sum + unmatched.size());
             }
-            (_, alone) => (j, sum) = (j + 1, sum + alone.map_or(0.0, |(_, alone)| alone.size())),
+            (_, unmatched) => (j, sum) = (j + 1, sum + unmatched.map_or(0.0, |(_, unmatched)| unmatched.size())),
         }
     }
 }
@@ -184,7 +184,7 @@ fn size(thing: &[(u32, Leaf)]) -> f64 {
 
 /// The cheapest matching of things: identical ones are matched with each other, the rest by an assignment. Bit-identical for
 /// any order of the things and of the arguments.
-fn between_things(a: &[Vec<(u32, Leaf)>], b: &[Vec<(u32, Leaf)>]) -> f64 {
+fn collection_distance(a: &[Vec<(u32, Leaf)>], b: &[Vec<(u32, Leaf)>]) -> f64 {
     let [mut mine, mut theirs] = [a, b].map(|things| things.iter().collect::<Vec<_>>());
     mine.retain(|thing| match theirs.iter().position(|other| other == thing) {
         Some(index) => {
@@ -202,14 +202,14 @@ fn between_things(a: &[Vec<(u32, Leaf)>], b: &[Vec<(u32, Leaf)>]) -> f64 {
         (theirs, mine)
     };
     // Unmatched things count in full, so it is cheapest to match all things of the smaller collection.
-    let over = |a: &[(u32, Leaf)], b: &[(u32, Leaf)]| apart(a, b) - size(b);
-    let all: f64 = more.iter().map(|thing| size(thing)).sum();
+    let saving = |a: &[(u32, Leaf)], b: &[(u32, Leaf)]| list_distance(a, b) - size(b);
+    let total: f64 = more.iter().map(|thing| size(thing)).sum();
     // Collections too large for an assignment are compared in order.
-    let in_order = || fewer.iter().zip(&more).map(|(one, other)| over(one, other)).sum();
+    let in_order = || fewer.iter().zip(&more).map(|(one, other)| saving(one, other)).sum();
     let matched = if more.len() <= MAX_ASSIGNED {
         let costs: Vec<f64> = fewer
             .iter()
-            .flat_map(|one| more.iter().map(|other| over(one, other)))
+            .flat_map(|one| more.iter().map(|other| saving(one, other)))
             .collect();
         Assignment::new()
             .solve(&costs, fewer.len(), more.len())
@@ -217,7 +217,7 @@ fn between_things(a: &[Vec<(u32, Leaf)>], b: &[Vec<(u32, Leaf)>]) -> f64 {
     } else {
         in_order()
     };
-    (all + matched).max(0.0)
+    (total + matched).max(0.0)
 }
 
 impl Leaf {
@@ -227,9 +227,9 @@ impl Leaf {
             // At most the sum of both points' distances from nothing.
             (Self::Point(a), Self::Point(b)) => {
                 let [x, y] = [0, 1].map(|axis| a[axis] - b[axis]);
-                ((x * x + y * y).sqrt() / METRES).min(self.size() + other.size())
+                ((x * x + y * y).sqrt() / METRES_PER_UNIT).min(self.size() + other.size())
             }
-            (Self::Things(a), Self::Things(b)) => between_things(a, b),
+            (Self::Things(a), Self::Things(b)) => collection_distance(a, b),
             _ if self == other => 0.0,
             _ => {
                 // A word replaces another as long as both sides have words left.

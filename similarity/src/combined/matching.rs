@@ -11,14 +11,14 @@ use crate::combined::parts::{length, turn};
 use crate::combined::sketch::ObjectFeatures;
 
 /// Distance between objects, in metres, that counts as 1.
-pub(super) const UNIT_OF_PLACE: f64 = 10.0;
+pub(super) const POSITION_UNIT: f64 = 10.0;
 
 /// Difference in reward that counts as 1.
-pub(super) const UNIT_OF_REWARD: f64 = 100.0;
+pub(super) const REWARD_UNIT: f64 = 100.0;
 
 impl ObjectFeatures {
     pub(super) fn metres(&self, other: &Self) -> f64 {
-        length(self.place, other.place)
+        length(self.position, other.position)
     }
 
     /// In Oklab; 1 between a coloured object and one with its asset's own colours.
@@ -31,14 +31,15 @@ impl ObjectFeatures {
         }
     }
 
-    /// The cost of matching two objects of one class: their distance in everything but pay, which only breaks ties. A metric.
+    /// The cost of matching two objects of one class: their distance in everything but the reward, which only breaks ties. A
+    /// metric.
     #[cfg(test)]
     fn cost(&self, other: &Self) -> f64 {
-        self.cost_of_place(other) + KindDistance::between(self, other).cost
+        self.position_cost(other) + KindDistance::between(self, other).cost
     }
 
-    fn cost_of_place(&self, other: &Self) -> f64 {
-        self.metres(other) * (1.0 / UNIT_OF_PLACE)
+    fn position_cost(&self, other: &Self) -> f64 {
+        self.metres(other) * (1.0 / POSITION_UNIT)
             + turn(self.heading, other.heading) * (1.0 / 180.0)
             // The relative difference of scales, which are above 0.
             + (self.scale - other.scale).abs() * self.per_scale.min(other.per_scale)
@@ -50,39 +51,39 @@ struct Buffers {
     costs: Vec<f64>,
     assignment: Assignment,
     /// Which objects of the larger set are matched.
-    is_met: Vec<bool>,
+    is_matched: Vec<bool>,
 }
 
 /// Visits each object of one class in two worlds once: all of the smaller set with a match, the rest alone. The matching has
 /// the minimum sum of costs; ties are broken by the objects alone, not by the order of the worlds.
 ///
-/// Pay decides only between otherwise equal matchings; if it counted, a world with all pay reversed would look like one
-/// whose objects changed places.
+/// Rewards decide only between otherwise equal matchings; if they counted, a world with all rewards reversed would look like one
+/// with swapped objects.
 pub(super) fn each_match<'a>(
     a: &'a [ObjectFeatures],
     b: &'a [ObjectFeatures],
-    mut take: impl FnMut(Option<&'a ObjectFeatures>, Option<&'a ObjectFeatures>),
+    mut visit: impl FnMut(Option<&'a ObjectFeatures>, Option<&'a ObjectFeatures>),
 ) {
     thread_local! {
         static BUFFERS: RefCell<Buffers> = RefCell::default();
     }
     if a.is_empty() || b.is_empty() {
-        for alone in a {
-            take(Some(alone), None);
+        for unmatched in a {
+            visit(Some(unmatched), None);
         }
-        for alone in b {
-            take(None, Some(alone));
+        for unmatched in b {
+            visit(None, Some(unmatched));
         }
         return;
     }
     let in_order = comes_first(a, b);
     let (fewer, more) = if in_order { (a, b) } else { (b, a) };
-    let mut hand_out = |one, other| if in_order { take(one, other) } else { take(other, one) };
+    let mut visit_in_order = |one, other| if in_order { visit(one, other) } else { visit(other, one) };
     BUFFERS.with_borrow_mut(
         |Buffers {
              costs,
              assignment,
-             is_met,
+             is_matched,
          }| {
             costs.clear();
             // Sets too large for an assignment are compared in order: the cost matrix would take gigabytes.
@@ -90,12 +91,12 @@ pub(super) fn each_match<'a>(
             if may_solve && is_of_one_kind(fewer) && is_of_one_kind(more) {
                 // Costs between kinds are the same for every matching.
                 for one in fewer {
-                    costs.extend(more.iter().map(|other| one.cost_of_place(other)));
+                    costs.extend(more.iter().map(|other| one.position_cost(other)));
                 }
             } else if may_solve {
                 Kinds::with(|kinds| {
                     for one in fewer {
-                        let cost = |other| one.cost_of_place(other) + kinds.apart(one, other).cost;
+                        let cost = |other| one.position_cost(other) + kinds.distance(one, other).cost;
                         costs.extend(more.iter().map(cost));
                     }
                 });
@@ -109,17 +110,17 @@ pub(super) fn each_match<'a>(
                     Some(index)
                 }
             };
-            is_met.clear();
-            is_met.resize(more.len(), false);
+            is_matched.clear();
+            is_matched.resize(more.len(), false);
             for (index, one) in fewer.iter().enumerate() {
                 let other = partner(index).map(|column| {
-                    is_met[column] = true;
+                    is_matched[column] = true;
                     &more[column]
                 });
-                hand_out(Some(one), other);
+                visit_in_order(Some(one), other);
             }
-            for (other, _) in more.iter().zip(&*is_met).filter(|(_, is_met)| !**is_met) {
-                hand_out(None, Some(other));
+            for (other, _) in more.iter().zip(&*is_matched).filter(|(_, is_matched)| !**is_matched) {
+                visit_in_order(None, Some(other));
             }
         },
     );
@@ -160,12 +161,12 @@ mod tests {
         let Some((first, rest)) = fewer.split_first() else {
             return 0.0;
         };
-        let ways = (0..more.len()).map(|at| {
+        let costs = (0..more.len()).map(|at| {
             let mut left = more.to_vec();
             let other = left.remove(at);
             first.cost(&other) + least(rest, &left)
         });
-        ways.fold(f64::INFINITY, f64::min)
+        costs.fold(f64::INFINITY, f64::min)
     }
 
     fn objects() -> impl Strategy<Value = Vec<(f64, f64, f64)>> {

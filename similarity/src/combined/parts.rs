@@ -5,7 +5,7 @@ use std::sync::Arc;
 use driftworld_spec::Comparison;
 
 use crate::combined::kinds::Kinds;
-use crate::combined::matching::{UNIT_OF_PLACE, UNIT_OF_REWARD, each_match};
+use crate::combined::matching::{POSITION_UNIT, REWARD_UNIT, each_match};
 use crate::combined::sketch::{ObjectFeatures, Sketch};
 use crate::combined::weighted_distance::Part;
 use crate::combined::weights::Weights;
@@ -41,6 +41,7 @@ impl Sink for Sum<'_> {
     }
 }
 
+/// Adds all parts of the distance to the sink, element by element.
 pub(super) fn compare(a: &Sketch, b: &Sketch, sink: &mut impl Sink) {
     let objects = Objects::of(a, b);
     state(a, b, &objects, sink);
@@ -54,8 +55,8 @@ pub(super) fn compare(a: &Sketch, b: &Sketch, sink: &mut impl Sink) {
 #[derive(Default)]
 struct Objects {
     /// Number of unmatched objects, and their pay.
-    alone: f64,
-    alone_pays: f64,
+    unmatched: f64,
+    unmatched_pay: f64,
     /// Sums over matched objects.
     metres: f64,
     turn: f64,
@@ -75,9 +76,9 @@ impl Objects {
         for (mine, theirs) in a.classes_of_both(b) {
             each_match(mine, theirs, |a, b| match (a, b) {
                 (Some(a), Some(b)) => all.add(a, b),
-                (Some(alone), None) | (None, Some(alone)) => {
-                    all.alone += 1.0;
-                    all.alone_pays += alone.reward.abs();
+                (Some(unmatched), None) | (None, Some(unmatched)) => {
+                    all.unmatched += 1.0;
+                    all.unmatched_pay += unmatched.reward.abs();
                 }
                 (None, None) => {}
             });
@@ -89,18 +90,18 @@ impl Objects {
         self.metres += a.metres(b);
         self.turn += turn(a.heading, b.heading);
         self.scale += relative_difference(a.scale, b.scale);
-        // Everything else is equal.
+        // Objects of one kind differ in nothing else.
         if a.kind == b.kind {
             return;
         }
-        let apart = Kinds::with(|kinds| *kinds.apart(a, b));
-        self.motion += apart.motion;
-        self.body += apart.body;
-        self.reward += apart.reward;
-        self.paid_for += apart.paid_for;
-        self.odds += apart.odds;
-        self.color += apart.color;
-        self.model += apart.model;
+        let distance = Kinds::with(|kinds| *kinds.distance(a, b));
+        self.motion += distance.motion;
+        self.body += distance.body;
+        self.reward += distance.reward;
+        self.paid_for += distance.paid_for;
+        self.odds += distance.odds;
+        self.color += distance.color;
+        self.model += distance.model;
     }
 }
 
@@ -111,23 +112,23 @@ pub(super) fn turn(a: f64, b: f64) -> f64 {
 }
 
 fn state(a: &Sketch, b: &Sketch, objects: &Objects, sink: &mut impl Sink) {
-    let places = objects.metres;
-    sink.add(Comparison::PlacesOfObjects, places, places / UNIT_OF_PLACE);
-    sink.add(Comparison::Unmatched, objects.alone, objects.alone);
+    let metres_moved = objects.metres;
+    sink.add(Comparison::PlacesOfObjects, metres_moved, metres_moved / POSITION_UNIT);
+    sink.add(Comparison::Unmatched, objects.unmatched, objects.unmatched);
     sink.add(Comparison::HeadingsOfObjects, objects.turn, objects.turn / 180.0);
     let metres = length(a.start, b.start);
-    sink.add(Comparison::Start, metres, metres / UNIT_OF_PLACE);
+    sink.add(Comparison::Start, metres, metres / POSITION_UNIT);
     let turn = turn(a.heading, b.heading);
     sink.add(Comparison::Heading, turn, turn / 180.0);
 }
 
 fn action(a: &Sketch, b: &Sketch, sink: &mut impl Sink) {
-    as_it_is(
+    add_unnormalised(
         Comparison::ModelOfActions,
         a.action_model.distance(&b.action_model),
         sink,
     );
-    as_it_is(
+    add_unnormalised(
         Comparison::SpaceOfActions,
         a.action_space.distance(&b.action_space),
         sink,
@@ -137,13 +138,13 @@ fn action(a: &Sketch, b: &Sketch, sink: &mut impl Sink) {
 }
 
 fn transition(a: &Sketch, b: &Sketch, objects: &Objects, sink: &mut impl Sink) {
-    as_it_is(Comparison::Motion, objects.motion, sink);
-    as_it_is(Comparison::Bodies, objects.body, sink);
+    add_unnormalised(Comparison::Motion, objects.motion, sink);
+    add_unnormalised(Comparison::Bodies, objects.body, sink);
     relative(Comparison::TimeStep, a.time_step, b.time_step, sink);
     relative(Comparison::Width, a.agent_width, b.agent_width, sink);
-    as_it_is(Comparison::EnergyOfAgent, a.energy.distance(&b.energy), sink);
+    add_unnormalised(Comparison::EnergyOfAgent, a.energy.distance(&b.energy), sink);
     let map = f64::from(u8::from(a.map != b.map));
-    as_it_is(Comparison::MapAndWalls, map + a.walls.distance(&b.walls), sink);
+    add_unnormalised(Comparison::MapAndWalls, map + a.walls.distance(&b.walls), sink);
     let layouts = match (&a.layout, &b.layout) {
         (None, None) => 0.0,
         (Some(a), Some(b)) if Arc::ptr_eq(a, b) => 0.0,
@@ -153,59 +154,59 @@ fn transition(a: &Sketch, b: &Sketch, objects: &Objects, sink: &mut impl Sink) {
         }
     };
     let layouts = layouts + f64::from(u8::from(a.doors != b.doors));
-    as_it_is(Comparison::Layouts, layouts, sink);
+    add_unnormalised(Comparison::Layouts, layouts, sink);
     let sides = a.arena.iter().zip(&b.arena);
     let (raw, normalised) = sides.fold((0.0, 0.0), |(raw, normalised), (a, b)| {
         (raw + (a - b).abs(), normalised + relative_difference(*a, *b))
     });
     sink.add(Comparison::ArenaSize, raw, normalised);
-    as_it_is(Comparison::Zones, a.zones[0].distance(&b.zones[0]), sink);
+    add_unnormalised(Comparison::Zones, a.zones[0].distance(&b.zones[0]), sink);
 }
 
 fn reward(a: &Sketch, b: &Sketch, objects: &Objects, sink: &mut impl Sink) {
-    let rewards = objects.reward + objects.alone_pays;
-    sink.add(Comparison::Rewards, rewards, rewards / UNIT_OF_REWARD);
-    as_it_is(Comparison::PaidFor, objects.paid_for, sink);
-    as_it_is(Comparison::RewardProbabilities, objects.odds, sink);
-    as_it_is(Comparison::StepReward, (a.step_reward - b.step_reward).abs(), sink);
-    as_it_is(Comparison::ShapingAndEndings, a.rules.distance(&b.rules), sink);
-    as_it_is(Comparison::ZonePay, a.zones[1].distance(&b.zones[1]), sink);
+    let rewards = objects.reward + objects.unmatched_pay;
+    sink.add(Comparison::Rewards, rewards, rewards / REWARD_UNIT);
+    add_unnormalised(Comparison::PaidFor, objects.paid_for, sink);
+    add_unnormalised(Comparison::RewardProbabilities, objects.odds, sink);
+    add_unnormalised(Comparison::StepReward, (a.step_reward - b.step_reward).abs(), sink);
+    add_unnormalised(Comparison::ShapingAndEndings, a.rules.distance(&b.rules), sink);
+    add_unnormalised(Comparison::ZonePay, a.zones[1].distance(&b.zones[1]), sink);
     let limits = match (a.limit, b.limit) {
         (Some(a), Some(b)) => relative_difference(a, b),
         (None, None) => 0.0,
         _ => 1.0,
     };
-    as_it_is(Comparison::Limit, limits, sink);
+    add_unnormalised(Comparison::Limit, limits, sink);
 }
 
 fn observation(a: &Sketch, b: &Sketch, objects: &Objects, sink: &mut impl Sink) {
-    as_it_is(Comparison::ColorsOfObjects, objects.color, sink);
-    as_it_is(Comparison::UnmatchedLooks, objects.alone, sink);
-    as_it_is(Comparison::ModelsOfObjects, objects.model, sink);
-    as_it_is(Comparison::SizesOfObjects, objects.scale, sink);
+    add_unnormalised(Comparison::ColorsOfObjects, objects.color, sink);
+    add_unnormalised(Comparison::UnmatchedLooks, objects.unmatched, sink);
+    add_unnormalised(Comparison::ModelsOfObjects, objects.model, sink);
+    add_unnormalised(Comparison::SizesOfObjects, objects.scale, sink);
     relative(Comparison::Light, a.light, b.light, sink);
-    let apart = a.surroundings.iter().zip(&b.surroundings).map(|(a, b)| a.distance(*b));
-    as_it_is(Comparison::ColorsOfSurroundings, apart.sum(), sink);
-    as_it_is(Comparison::ZoneLooks, a.zones[2].distance(&b.zones[2]), sink);
+    let distance = a.surroundings.iter().zip(&b.surroundings).map(|(a, b)| a.distance(*b));
+    add_unnormalised(Comparison::ColorsOfSurroundings, distance.sum(), sink);
+    add_unnormalised(Comparison::ZoneLooks, a.zones[2].distance(&b.zones[2]), sink);
     let picture: f64 = a
         .picture
         .iter()
         .zip(&b.picture)
         .map(|(a, b)| relative_difference(*a, *b))
         .sum();
-    as_it_is(
+    add_unnormalised(
         Comparison::CameraAndWeather,
         picture + a.camera.distance(&b.camera),
         sink,
     );
 }
 
-/// A number that needs no normalisation.
-fn as_it_is(comparison: Comparison, number: f64, sink: &mut impl Sink) {
+/// Adds a number that needs no normalisation.
+fn add_unnormalised(comparison: Comparison, number: f64, sink: &mut impl Sink) {
     sink.add(comparison, number, number);
 }
 
-/// Difference of two numbers of at least 0, as a share of the larger one: a metric.
+/// Adds the difference of two numbers of at least 0, as a share of the larger one: a metric.
 fn relative(comparison: Comparison, a: f64, b: f64, sink: &mut impl Sink) {
     let raw = (a - b).abs();
     sink.add(comparison, raw, relative_difference(a, b));

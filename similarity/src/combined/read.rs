@@ -25,18 +25,18 @@ pub(super) fn as_read(object: &Object, style: Style) -> Object {
         &read.reward_once_stimulus,
         &read.destroy_stimulus,
     ];
-    let has_range = stimuli.iter().any(|list| list.contains(&Stimulus::AgentInRange)) || is_moved_in_range(object);
+    let has_range = stimuli.iter().any(|list| list.contains(&Stimulus::AgentInRange)) || reacts_to_range(object);
     if !has_range {
         read.range_stimulus_distance = plain.range_stimulus_distance;
     }
     if read.destroy_stimulus.is_empty() {
         read.respawn = None;
     }
-    let stands = read.motion_model == MotionModel::Stationary;
-    if stands {
+    let is_stationary = read.motion_model == MotionModel::Stationary;
+    if is_stationary {
         (read.speed, read.turn_rate) = (plain.speed, None);
     }
-    if !read.solid || !stands {
+    if !read.solid || !is_stationary {
         read.pushable = None;
     }
     if !matches!(read.motion_model, MotionModel::Predator | MotionModel::Prey) {
@@ -49,7 +49,7 @@ pub(super) fn as_read(object: &Object, style: Style) -> Object {
 }
 
 /// Whether approaching the object changes it: opens or closes it, triggers it, picks it up.
-fn is_moved_in_range(object: &Object) -> bool {
+fn reacts_to_range(object: &Object) -> bool {
     let is_near = |list: &Vec<Stimulus>| list.contains(&Stimulus::AgentInRange);
     let door = object.door.as_ref();
     door.is_some_and(|door| is_near(&door.opens_on) || is_near(&door.closes_on))

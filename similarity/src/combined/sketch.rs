@@ -69,10 +69,10 @@ pub(super) struct Sketch {
 pub(super) struct ObjectFeatures {
     /// Its index in the document, which is not compared.
     pub(super) index: usize,
-    pub(super) place: [f64; 2],
+    pub(super) position: [f64; 2],
     pub(super) heading: f64,
     pub(super) scale: f64,
-    /// 1 over the scale, which saves a division per pair of objects.
+    /// The reciprocal of the scale, which saves a division per pair of objects.
     pub(super) per_scale: f64,
     pub(super) reward: f64,
     pub(super) odds: f64,
@@ -88,10 +88,10 @@ pub(super) struct ObjectFeatures {
 impl Sketcher {
     /// Makes the sketch of a world.
     pub(super) fn sketch(&mut self, world: &World) -> Sketch {
-        let (agent, around, rules) = (&world.agent_params, &world.environment_params, &world.rules);
+        let (agent, environment, rules) = (&world.agent_params, &world.environment_params, &world.rules);
         let mut by_class: BTreeMap<String, Vec<ObjectFeatures>> = BTreeMap::new();
         for (index, object) in world.objects.iter().enumerate() {
-            let features = self.features(index, &as_read(object, around.looks.style));
+            let features = self.features(index, &as_read(object, environment.looks.style));
             by_class.entry(object.class.to_lowercase()).or_default().push(features);
         }
         let mut objects = Vec::with_capacity(world.objects.len());
@@ -116,11 +116,11 @@ impl Sketcher {
             time_step: step_seconds,
             agent_width: agent.agent_width,
             energy: self.leaves(Comparison::EnergyOfAgent),
-            map: around.predefined_map,
+            map: environment.predefined_map,
             walls: self.leaves(Comparison::MapAndWalls),
             layout: self.shape(world),
-            doors: doors(around.layout.as_ref()),
-            arena: around.arena_size(),
+            doors: doors(environment.layout.as_ref()),
+            arena: environment.arena_size(),
             zones: [Comparison::Zones, Comparison::ZonePay, Comparison::ZoneLooks].map(|part| self.leaves(part)),
             step_reward: rules.step_reward / step_seconds + rules.reward_per_second,
             rules: self.leaves(Comparison::ShapingAndEndings),
@@ -130,13 +130,13 @@ impl Sketcher {
                 .filter(|seconds| *seconds > 0.0)
                 .reduce(f64::min)
                 .map(|seconds| (seconds * 1e6).round() / 1e6),
-            light: around.light_intensity,
+            light: environment.light_intensity,
             surroundings: [
-                around.bounding_wall_color,
-                around.sky_color,
-                around.ground_color,
-                around.light_color,
-                around.looks.ceiling_color_seen(around.layout.as_ref()),
+                environment.bounding_wall_color,
+                environment.sky_color,
+                environment.ground_color,
+                environment.light_color,
+                environment.looks.ceiling_color_seen(environment.layout.as_ref()),
             ]
             .map(Oklab::from),
             picture: agent.picture_size().map(f64::from),
@@ -146,8 +146,8 @@ impl Sketcher {
 
     /// The shape of the world's layout, cached because worlds with the same layout often come in a row.
     fn shape(&mut self, world: &World) -> Option<Arc<LayoutShape>> {
-        let around = &world.environment_params;
-        let (plan, arena, height) = (world.plan()?, around.arena_size(), around.wall_height);
+        let environment = &world.environment_params;
+        let (plan, arena, height) = (world.plan()?, environment.arena_size(), environment.wall_height);
         let size = [arena[0], arena[1], height];
         if let Some((known, known_size, shape)) = &self.layout
             && (known, *known_size) == (plan, size)
@@ -163,7 +163,7 @@ impl Sketcher {
         self.texts.read_object(object);
         let mut features = ObjectFeatures {
             index,
-            place: object.coordinates,
+            position: object.coordinates,
             heading: object.heading.rem_euclid(360.0),
             scale: object.scale,
             // Finite, so that two objects of size 0 are at distance 0 in size.
@@ -209,7 +209,7 @@ impl ObjectFeatures {
     pub(super) fn order(&self, other: &Self) -> Ordering {
         let color = |object: &Self| object.color.map_or([-1.0; 3], |color| color.0);
         let numbers = |object: &Self| {
-            let ([x, y], [l, a, b]) = (object.place, color(object));
+            let ([x, y], [l, a, b]) = (object.position, color(object));
             [x, y, object.heading, object.scale, object.reward, object.odds, l, a, b]
         };
         let (mine, theirs) = (numbers(self), numbers(other));
@@ -238,7 +238,7 @@ impl Sketch {
                 (None, Some(theirs)) => &theirs.0,
                 (Some(mine), Some(theirs)) => (&mine.0).min(&theirs.0),
             };
-            let take = |sketch: &'a Self, at: &mut usize| -> &'a [ObjectFeatures] {
+            let objects_of = |sketch: &'a Self, at: &mut usize| -> &'a [ObjectFeatures] {
                 let Some((_, end)) = sketch.classes.get(*at).filter(|entry| &entry.0 == class) else {
                     return &[];
                 };
@@ -246,7 +246,7 @@ impl Sketch {
                 *at += 1;
                 &sketch.objects[start..*end]
             };
-            Some((take(self, &mut i), take(other, &mut j)))
+            Some((objects_of(self, &mut i), objects_of(other, &mut j)))
         })
     }
 }
@@ -270,11 +270,11 @@ mod tests {
         let mut sketcher = Sketcher::default();
         let a = sketcher.sketch(&world(&[("tree", 3.0), ("Rock", 2.0), ("tree", 1.0)]));
         let b = sketcher.sketch(&world(&[("pot", 4.0), ("rock", 5.0)]));
-        let xs = |group: &[ObjectFeatures]| group.iter().map(|object| object.place[0]).collect::<Vec<_>>();
-        let mut met: Vec<(Vec<f64>, Vec<f64>)> = a.classes_of_both(&b).map(|(a, b)| (xs(a), xs(b))).collect();
-        met.sort_by(|a, b| a.partial_cmp(b).unwrap());
+        let xs = |group: &[ObjectFeatures]| group.iter().map(|object| object.position[0]).collect::<Vec<_>>();
+        let mut pairs: Vec<(Vec<f64>, Vec<f64>)> = a.classes_of_both(&b).map(|(a, b)| (xs(a), xs(b))).collect();
+        pairs.sort_by(|a, b| a.partial_cmp(b).unwrap());
         assert_eq!(
-            met,
+            pairs,
             [(vec![], vec![4.0]), (vec![1.0, 3.0], vec![]), (vec![2.0], vec![5.0])]
         );
     }

@@ -18,19 +18,19 @@ use crate::{ColorMeasure, MetricProperties};
 pub(super) enum ValueMeasure {
     /// Difference over the width of the range; Euclidean length for points and vectors.
     Difference { measure: &'static str, width: f64 },
-    /// |ln a − ln b| over that of the range.
+    /// |ln a − ln b| over the same for the ends of the range.
     LogRatio { width: f64 },
     /// Difference over the larger of the two, divided by the largest such ratio that the range or the choices allow.
     Relative { widest: f64 },
     /// Turn over the widest turn that the range or the choices allow, at most half a circle.
     Turn { widest: f64 },
-    /// A distance between colours over that of the widest pair of choices.
+    /// A distance between colours over the distance of the widest pair of choices.
     Color {
         measure: &'static str,
         of: ColorMeasure,
         widest: f64,
     },
-    /// The difference between two layouts over that of the widest pair of choices.
+    /// The difference between two layouts over the difference of the widest pair of choices.
     Layout {
         of: LayoutMeasure,
         arena: Arena,
@@ -43,7 +43,7 @@ pub(super) enum ValueMeasure {
 }
 
 impl ValueMeasure {
-    /// The measure that the parameter asks for, or its type's default. Layouts are placed in an arena.
+    /// The measure that the parameter requests, or its type's default. Layouts are placed in an arena.
     pub(super) fn of(parameter: &Parameter, arena: Arena) -> Self {
         let compare = parameter.compare.as_ref();
         if let (Some(costs), Some(choices)) = (compare.and_then(|compare| compare.costs.as_ref()), &parameter.choices) {
@@ -66,7 +66,7 @@ impl ValueMeasure {
             Some(MeasureName::Ciede2000) => color("ciede2000 / widest choice", ColorMeasure::Ciede2000),
             Some(MeasureName::Hyab) => color("hyab / widest choice", ColorMeasure::Hyab),
             Some(MeasureName::WallJaccard) => layout(parameter, LayoutMeasure::Walls, arena),
-            Some(MeasureName::WalkingDistance) => layout(parameter, LayoutMeasure::Ways, arena),
+            Some(MeasureName::WalkingDistance) => layout(parameter, LayoutMeasure::Paths, arena),
             Some(MeasureName::WallTransport) => layout(parameter, LayoutMeasure::Transport, arena),
             _ => Self::of_type(parameter, arena),
         }
@@ -114,7 +114,7 @@ impl ValueMeasure {
         }
     }
 
-    /// Which laws the measure satisfies.
+    /// The metric properties of the measure.
     pub(super) fn properties(&self) -> MetricProperties {
         match self {
             Self::Color { of, .. } => of.properties(),
@@ -159,7 +159,7 @@ pub(super) enum LayoutMeasure {
     /// Which cells have walls.
     Walls,
     /// Path lengths.
-    Ways,
+    Paths,
     /// Distance by which walls have to be moved.
     Transport,
 }
@@ -169,7 +169,7 @@ impl LayoutMeasure {
         match self {
             Self::Whole => "layout / widest choice",
             Self::Walls => "wall jaccard / widest choice",
-            Self::Ways => "walking distance / widest choice",
+            Self::Paths => "walking distance / widest choice",
             Self::Transport => "wall transport / widest choice",
         }
     }
@@ -177,7 +177,7 @@ impl LayoutMeasure {
     fn properties(self) -> MetricProperties {
         match self {
             Self::Whole => MetricProperties::Metric,
-            Self::Walls | Self::Ways | Self::Transport => MetricProperties::Pseudometric,
+            Self::Walls | Self::Paths | Self::Transport => MetricProperties::Pseudometric,
         }
     }
 
@@ -194,7 +194,7 @@ impl LayoutMeasure {
                 one.distance(&other) + doors + sides.map(|(a, b)| relative_difference(a, b)).sum::<f64>()
             }
             Self::Walls => one.walls_distance(&other),
-            Self::Ways => one.ways_distance(&other),
+            Self::Paths => one.ways_distance(&other),
             // Shapes of layouts have finite heights.
             Self::Transport => one.transport_distance(&other).unwrap_or(f64::NAN),
         }
@@ -210,22 +210,22 @@ fn layout(parameter: &Parameter, of: LayoutMeasure, arena: Arena) -> ValueMeasur
     }
 }
 
-/// The shape of a layout, with a small cache: the same few choices are compared again and again.
+/// The shape of a layout, with a small cache: the same few choices are compared repeatedly.
 fn shape(layout: &Layout, arena: Arena) -> Arc<LayoutShape> {
-    const MOST_KEPT: usize = 256;
-    static KEPT: Mutex<BTreeMap<String, Arc<LayoutShape>>> = Mutex::new(BTreeMap::new());
+    const MAX_CACHED: usize = 256;
+    static CACHE: Mutex<BTreeMap<String, Arc<LayoutShape>>> = Mutex::new(BTreeMap::new());
     let size = layout.size().unwrap_or(arena.size);
     let key = serde_json::to_string(&(layout, size, arena.wall_height)).unwrap_or_default();
-    let kept = || KEPT.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(shape) = kept().get(&key) {
+    let cache = || CACHE.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(shape) = cache().get(&key) {
         return Arc::clone(shape);
     }
     let shape = Arc::new(LayoutShape::of(&layout.plan(0), size, arena.wall_height));
-    let mut kept = kept();
-    if kept.len() >= MOST_KEPT {
-        kept.clear();
+    let mut cache = cache();
+    if cache.len() >= MAX_CACHED {
+        cache.clear();
     }
-    kept.insert(key, Arc::clone(&shape));
+    cache.insert(key, Arc::clone(&shape));
     shape
 }
 
@@ -262,21 +262,21 @@ fn range(parameter: &Parameter, scale: impl Fn(f64) -> f64) -> f64 {
 }
 
 /// From this number of choices on, pairs are compared on all cores.
-const FEW_CHOICES: usize = 500;
+const MIN_PARALLEL_CHOICES: usize = 500;
 
-/// The distance of the widest pair of choices, by `apart`. 1 if there are fewer than two.
+/// The distance of the widest pair of choices, by `distance`. 1 if there are fewer than two.
 fn widest_pair<T: Sync>(
     parameter: &Parameter,
     read: impl Fn(&Value) -> Option<T>,
-    apart: impl Fn(&T, &T) -> f64 + Sync,
+    distance: impl Fn(&T, &T) -> f64 + Sync,
 ) -> f64 {
     let Some(Domain::Choices(choices)) = parameter.domain() else {
         return 1.0;
     };
     let choices: Vec<T> = choices.iter().filter_map(read).collect();
-    let farthest = |(index, a): (usize, &T)| choices[..index].iter().map(|b| apart(a, b)).fold(0.0, f64::max);
+    let farthest = |(index, a): (usize, &T)| choices[..index].iter().map(|b| distance(a, b)).fold(0.0, f64::max);
     // The maximum does not depend on the order of comparison.
-    let widest = if choices.len() < FEW_CHOICES {
+    let widest = if choices.len() < MIN_PARALLEL_CHOICES {
         choices.iter().enumerate().map(farthest).fold(0.0, f64::max)
     } else {
         choices.par_iter().enumerate().map(farthest).reduce(|| 0.0, f64::max)

@@ -11,8 +11,8 @@ use crate::combined::weighted_distance::{Distance, Part};
 use crate::combined::weights::Weights;
 use crate::{MetricProperties, SimilarityError};
 
-/// The distance between two variants of one task: a sum over its parameters, where 1 is one parameter moved over its whole declared
-/// range.
+/// The distance between two variants of one task: a sum over its parameters, where 1 is one parameter moved over its whole
+/// declared range.
 ///
 /// Every parameter uses the measure and weight that the task gives it under `compare`, by default weight 1 and its
 /// type's measure: the difference of numbers, the turn between headings, the distance of colours in Oklab, the
@@ -66,17 +66,17 @@ struct Compared {
     weight: f64,
     /// Whether two variants of the task can differ in it.
     can_differ: bool,
-    by: By,
+    by: ParameterMeasure,
 }
 
 /// The coarse elements that a parameter counts for. A coarse element that is listed along with a finer element of it counts once.
 fn counts_for(affects: &[Element]) -> Vec<Element> {
-    let is_said = |element: &&Element| **element == element.coarse() || !affects.contains(&element.coarse());
-    affects.iter().filter(is_said).map(|element| element.coarse()).collect()
+    let counts = |element: &&Element| **element == element.coarse() || !affects.contains(&element.coarse());
+    affects.iter().filter(counts).map(|element| element.coarse()).collect()
 }
 
 #[derive(Clone, Debug)]
-enum By {
+enum ParameterMeasure {
     Value(ValueMeasure),
     Drawn(DrawnMeasure),
 }
@@ -89,10 +89,10 @@ impl VariantMeasure {
             let by = match parameter.role {
                 Role::Fixed => return None,
                 Role::Variant if parameter.kind != ParameterType::Distribution => {
-                    By::Value(ValueMeasure::of(parameter, arena))
+                    ParameterMeasure::Value(ValueMeasure::of(parameter, arena))
                 }
                 Role::Variant | Role::Randomized => {
-                    By::Drawn(DrawnMeasure::of(parameter, &task.distributions_at_ends(name)))
+                    ParameterMeasure::Drawn(DrawnMeasure::of(parameter, &task.distributions_at_ends(name)))
                 }
             };
             if parameter.role == Role::Variant && task.readers(name).are_draws_alone() {
@@ -103,8 +103,8 @@ impl VariantMeasure {
                 affects: counts_for(&parameter.affects),
                 weight: parameter.compare.as_ref().map_or(1.0, |compare| compare.weight),
                 can_differ: match &by {
-                    By::Value(_) => true,
-                    By::Drawn(measure) => measure.can_differ(),
+                    ParameterMeasure::Value(_) => true,
+                    ParameterMeasure::Drawn(measure) => measure.can_differ(),
                 },
                 by,
             })
@@ -133,11 +133,11 @@ impl VariantMeasure {
         for compared in &self.parameters {
             let name = &compared.name;
             let found = match &compared.by {
-                By::Value(measure) => a.value(name).zip(b.value(name)).map(|(a, b)| {
+                ParameterMeasure::Value(measure) => a.value(name).zip(b.value(name)).map(|(a, b)| {
                     let (raw, normalised) = measure.between(a, b);
                     (measure.name(), None, raw, normalised)
                 }),
-                By::Drawn(measure) => a
+                ParameterMeasure::Drawn(measure) => a
                     .distribution(name)
                     .zip(b.distribution(name))
                     .map(|(a, b)| measure.between(&a, &b)),
@@ -159,7 +159,7 @@ impl VariantMeasure {
         Ok(Distance::new(parts, &self.weights))
     }
 
-    /// Whether it is a variant of this very task document.
+    /// Whether it is a variant of exactly this task document.
     pub fn takes(&self, variant: &Variant) -> bool {
         self.task.is_same_as(variant.task())
     }
@@ -171,7 +171,7 @@ impl VariantMeasure {
             let weights = compared.affects.iter().map(|element| self.weights.of(*element));
             let weight = compared.weight * weights.fold(0.0, f64::max);
             match &compared.by {
-                By::Drawn(measure) if weight > 0.0 && !measure.is_bounded() => f64::INFINITY,
+                ParameterMeasure::Drawn(measure) if weight > 0.0 && !measure.is_bounded() => f64::INFINITY,
                 _ => weight,
             }
         };
@@ -182,28 +182,28 @@ impl VariantMeasure {
             .sum()
     }
 
-    /// Whether the diameter can be divided by: above 0, and finite.
+    /// Whether the diameter is above 0 and finite, so that distances can be divided by it.
     pub fn has_diameter(&self) -> bool {
         let diameter = self.diameter();
         diameter > 0.0 && diameter.is_finite()
     }
 
-    /// Which laws the whole satisfies: a metric if all measures that count are; a pseudometric if one of them is only that, or
-    /// if a parameter that can differ has weight 0.
+    /// The metric properties of the whole: a metric if all measures that count are metrics; a pseudometric if one of them is
+    /// only a pseudometric, or if a parameter that can differ has weight 0.
     pub fn properties(&self) -> MetricProperties {
         let counts = |compared: &&Compared| {
             let is_seen = compared.affects.iter().any(|element| self.weights.of(*element) > 0.0);
             compared.weight > 0.0 && is_seen
         };
         let own = |compared: &Compared| match &compared.by {
-            By::Value(measure) => measure.properties(),
-            By::Drawn(measure) => measure.properties(),
+            ParameterMeasure::Value(measure) => measure.properties(),
+            ParameterMeasure::Drawn(measure) => measure.properties(),
         };
         let each: Vec<MetricProperties> = self.parameters.iter().filter(counts).map(own).collect();
-        let mut that_differ = self.parameters.iter().filter(|compared| compared.can_differ);
+        let mut differing = self.parameters.iter().filter(|compared| compared.can_differ);
         if !each.iter().all(|own| own.keeps_triangles()) {
             MetricProperties::Distance
-        } else if each.iter().all(|own| own.is_metric()) && that_differ.all(|compared| counts(&compared)) {
+        } else if each.iter().all(|own| own.is_metric()) && differing.all(|compared| counts(&compared)) {
             MetricProperties::Metric
         } else {
             MetricProperties::Pseudometric

@@ -63,7 +63,7 @@ impl Part {
 }
 
 impl Distance {
-    /// A distance that belongs to no single element, such as one of where a learner can go or what it can do. It has no parts.
+    /// A distance that belongs to no single element, such as one between reachable areas or abilities. It has no parts.
     pub fn whole(total: f64) -> Self {
         Self {
             total,
@@ -83,9 +83,9 @@ impl Distance {
         for group in parts.chunk_by_mut(|a, b| a.name == b.name) {
             let largest = group.iter().map(|part| weights.of(part.element)).fold(0.0, f64::max);
             let counts = largest * group[0].normalised * group[0].weight;
-            let among = group.iter().filter(|part| weights.of(part.element) > 0.0).count();
+            let num_elements = group.iter().filter(|part| weights.of(part.element) > 0.0).count();
             for part in group.iter_mut().filter(|part| weights.of(part.element) > 0.0) {
-                part.share = counts / among as f64;
+                part.share = counts / num_elements as f64;
             }
             total += counts;
         }
@@ -95,7 +95,7 @@ impl Distance {
         Self { total, elements, parts }
     }
 
-    /// Divides every total and every part's weight by `whole`, above 0.
+    /// Divides every total and every part's weight by `whole`, which must be above 0.
     #[must_use]
     pub fn in_shares_of(mut self, whole: f64) -> Self {
         self.total /= whole;

@@ -14,7 +14,7 @@ use crate::distribution::Method;
 ///
 /// | element | parts, with the difference that counts as 1 |
 /// |---|---|
-/// | state | places of objects (10 m), unmatched objects (each), their headings (180°), the agent's start (10 m), its heading (180°) |
+/// | state | positions of objects (10 m), unmatched objects (each), their headings (180°), the agent's start (10 m), its heading (180°) |
 /// | action | action model, action space (a different word), top speeds (something against nothing) |
 /// | transition | motion and solidity of objects, time step, the agent's width, map and walls, sides of the arena |
 /// | reward | objects' pay (100 points), its triggers and odds (never against always), pay per second (1 point), rules, step limit |
@@ -28,8 +28,8 @@ use crate::distribution::Method;
 /// not matter, and adding the same object to both worlds changes nothing unless it is a better match. Fields that nothing
 /// reads, such as the reward of an object without a stimulus, do not count.
 ///
-/// Objects are matched by place, looks and behaviour; pay only breaks ties. So "the red ones pay, the blue ones cost" and its
-/// reverse differ in pay and not in places.
+/// Objects are matched by position, looks and behaviour; pay only breaks ties. So "the red ones pay, the blue ones cost" and its
+/// reverse differ in pay and not in positions.
 ///
 /// Symmetric, and 0 between worlds that differ only in fields that are not compared (names, tags, the mode of the game,
 /// progress so far). A metric among worlds whose objects match in the same way; among others the triangle inequality may fail.
@@ -37,7 +37,7 @@ use crate::distribution::Method;
 pub fn world_distance(a: &World, b: &World, weights: &Weights) -> Distance {
     let mut sketcher = Sketcher::default();
     let (a, b) = (sketcher.sketch(a), sketcher.sketch(b));
-    explained(&a, &b, weights)
+    explain(&a, &b, weights)
 }
 
 /// Pairs of indices of matched objects in two worlds; each object occurs once, in an order that depends on the objects alone.
@@ -54,7 +54,7 @@ pub(crate) fn match_objects(a: &World, b: &World) -> Vec<(Option<usize>, Option<
 }
 
 /// The distance between two sets of worlds: the mean over pairs, the first with the first and so on; worlds without a partner are
-/// left out. Each part's numbers are means, too.
+/// ignored. Each part's numbers are means, too.
 ///
 /// Draw both sets with the same seed and indices: then pairs share their random numbers, and only the difference between the
 /// variants remains.
@@ -137,11 +137,11 @@ impl Worlds {
     /// # Panics
     /// If an index is out of range.
     pub fn explain(&self, a: usize, b: usize) -> Distance {
-        explained(&self.sketches[a], &self.sketches[b], &self.weights)
+        explain(&self.sketches[a], &self.sketches[b], &self.weights)
     }
 }
 
-fn explained(a: &Sketch, b: &Sketch, weights: &Weights) -> Distance {
+fn explain(a: &Sketch, b: &Sketch, weights: &Weights) -> Distance {
     let mut parts = Parts(Vec::new());
     compare(a, b, &mut parts);
     Distance::new(parts.0, weights)
@@ -244,15 +244,15 @@ mod tests {
                     .prop_map(|(surface, scale)| Covering { surface, scale }),
             )
         };
-        let said = || prop::option::of(any::<bool>());
+        let flag = || prop::option::of(any::<bool>());
         let color = prop::sample::select(vec!["white", "black", "red"]);
         let parts = (
             covering(),
             covering(),
-            said(),
+            flag(),
             prop::option::of(color),
-            said(),
-            said(),
+            flag(),
+            flag(),
             any::<bool>(),
         );
         (any::<bool>(), parts).prop_map(
@@ -377,7 +377,7 @@ mod tests {
     }
 
     #[test]
-    fn places_colours_and_pay_are_matched_together() {
+    fn positions_colours_and_pay_are_matched_together() {
         let cube = |color: &str, reward: f64, y: f64| {
             let mut cube = Object::new("cube", [0.0, y]);
             (cube.color, cube.reward, cube.reward_stimulus) =
@@ -391,8 +391,8 @@ mod tests {
         let d = |other: &World| world_distance(&north, other, &Weights::default()).total;
         assert!(d(&swapped) > 1.0);
         assert_eq!(d(&shuffled), 0.0);
-        let paid_the_other_way = world(vec![cube("red", -10.0, 10.0), cube("blue", 10.0, -10.0)]);
-        let paid = world_distance(&north, &paid_the_other_way, &Weights::default());
+        let opposite_pay = world(vec![cube("red", -10.0, 10.0), cube("blue", 10.0, -10.0)]);
+        let paid = world_distance(&north, &opposite_pay, &Weights::default());
         assert_eq!((paid.differs_in(), paid.total), (vec![Element::R], 0.4));
     }
 
@@ -409,7 +409,7 @@ mod tests {
                 .edit(|world| world.environment_params.zones = zones)
                 .unwrap()
         };
-        let apart = |a: Vec<Zone>, b: Vec<Zone>| world_distance(&world(a), &world(b), &Weights::default());
+        let between = |a: Vec<Zone>, b: Vec<Zone>| world_distance(&world(a), &world(b), &Weights::default());
         let changes: [(Element, Change); 5] = [
             (Element::T, |zone| zone.speed_factor = 0.5),
             (Element::T, |zone| zone.teleport = Some([9.0, 9.0])),
@@ -419,20 +419,20 @@ mod tests {
                 (zone.visible, zone.color) = (true, Color::from_name("red"));
             }),
         ];
-        assert_eq!(apart(vec![plain()], vec![]).total, 0.0, "it does nothing");
+        assert_eq!(between(vec![plain()], vec![]).total, 0.0, "the zone has no effect");
         for (element, change) in changes {
             let mut zone = plain();
             change(&mut zone);
-            assert_eq!(apart(vec![zone.clone()], vec![plain()]).differs_in(), [element]);
+            assert_eq!(between(vec![zone.clone()], vec![plain()]).differs_in(), [element]);
             let mut moved = zone.clone();
             moved.disc = Some(Disc {
                 center: [4.0, 0.0],
                 radius: 2.0,
             });
-            let distance = apart(vec![zone.clone()], vec![moved.clone()]);
+            let distance = between(vec![zone.clone()], vec![moved.clone()]);
             assert_eq!(distance.differs_in(), [element]);
             assert!((distance.total - 0.1).abs() < 1e-9, "a metre");
-            assert_eq!(apart(vec![zone.clone(), moved.clone()], vec![moved, zone]).total, 0.0);
+            assert_eq!(between(vec![zone.clone(), moved.clone()], vec![moved, zone]).total, 0.0);
         }
     }
 

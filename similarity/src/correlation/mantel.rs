@@ -15,7 +15,7 @@ pub const MAX_RELABELLINGS: u64 = 1_000_000;
 pub const MAX_MANTEL_ITEMS: usize = 2_000;
 
 /// Correlations closer than this count as equal: the order of additions changes them by less.
-const AS_STRONG: f64 = 1e-9;
+const MAX_ROUNDING: f64 = 1e-9;
 
 /// A value measured for one ordered pair of a matrix's items.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -51,19 +51,19 @@ pub struct MantelTest {
     pub pairs: usize,
 }
 
-/// Correlates distances with another measure of the same pairs, and tests how often chance alone does as well.
+/// Correlates distances with another measure of the same pairs, and tests how often chance alone gives as strong a correlation.
 ///
-/// The correlation is taken over the pairs that have a value. Then the items of the matrix are relabelled, with all their
-/// distances, and the correlation is taken again: a share of `p` of the relabellings correlates at least as strongly. Items are
-/// relabelled and not pairs, because pairs that share an item are not independent. If there are at most `relabellings` of them,
-/// all are used, and `p = k / all`; otherwise that many are drawn with `seed`, and `p = (k + 1) / (drawn + 1)`, which counts the
-/// observed one among them. So `p` is never 0.
+/// The correlation is computed over the pairs that have a value. Then the items of the matrix are relabelled, with all their
+/// distances, and the correlation is computed again: a share of `p` of the relabellings correlates at least as strongly. Items
+/// are relabelled and not pairs, because pairs that share an item are not independent. If there are at most `relabellings` of
+/// them, all are used, and `p = k / all`; otherwise that many are drawn with `seed`, and `p = (k + 1) / (drawn + 1)`, which
+/// counts the observed one among them. So `p` is never 0.
 ///
 /// `pairs`: in any order, each at most once; the two directions are two pairs. **Pairs without a value are left out**: the gaps
 /// stay in place while labels change, and only items with at least one value take part. The test is then about the measured
 /// pairs; no test can tell whether the others are like them. Distances cannot be missing: a matrix has all of them, which keeps a
-/// test with gaps sound. A relabelling under which all distances are equal has no correlation; it counts as at least as strong,
-/// against the result.
+/// test with gaps valid. A relabelling under which all distances are equal has no correlation; it counts as at least as strong,
+/// which makes the test conservative.
 ///
 /// Time `O(relabellings · (pairs + items²))`, on all cores; the same result for the same seed on any number of cores.
 ///
@@ -86,7 +86,7 @@ pub struct MantelTest {
 /// let test = mantel(&matrix, &doubled, Correlation::Spearman, 999, 0)?;
 /// assert!((test.correlation - 1.0).abs() < 1e-12);
 /// assert!(test.exact, "four items have 24 relabellings");
-/// assert_eq!(test.p_greater, 1.0 / 24.0, "only the true labels go together so well");
+/// assert_eq!(test.p_greater, 1.0 / 24.0, "only the true labels correlate so well");
 /// # Ok::<(), SimilarityError>(())
 /// ```
 pub fn mantel(
@@ -98,22 +98,22 @@ pub fn mantel(
 ) -> Result<MantelTest, SimilarityError> {
     check(distances, pairs, relabellings)?;
     let values: Vec<f64> = pairs.iter().map(|pair| pair.value).collect();
-    let here: Vec<f64> = pairs.iter().map(|pair| distances.get(pair.from, pair.to)).collect();
-    let correlation = method.of(&here, &values)?;
+    let observed: Vec<f64> = pairs.iter().map(|pair| distances.get(pair.from, pair.to)).collect();
+    let correlation = method.of(&observed, &values)?;
     let table = Table::new(distances, pairs, method);
-    let ways = Relabellings::new(table.items, relabellings, seed);
-    let [far, low, high] = table.tally(ways, correlation);
+    let sample = Relabellings::new(table.items, relabellings, seed);
+    let [far, low, high] = table.tally(sample, correlation);
     // All relabellings include the observed one; drawn ones do not, so it is added.
-    let itself = u64::from(!ways.is_all());
-    let share = |as_strong: u64| (as_strong + itself) as f64 / (ways.count + itself) as f64;
+    let num_observed = u64::from(!sample.is_all());
+    let share = |as_strong: u64| (as_strong + num_observed) as f64 / (sample.count + num_observed) as f64;
     Ok(MantelTest {
         method,
         correlation,
         p_two_sided: share(far),
         p_less: share(low),
         p_greater: share(high),
-        relabellings: ways.count,
-        exact: ways.is_all(),
+        relabellings: sample.count,
+        exact: sample.is_all(),
         items: table.items,
         pairs: pairs.len(),
     })
@@ -126,7 +126,7 @@ fn check(distances: &DistanceMatrix, pairs: &[PairValue], relabellings: u64) -> 
     }
     let mut seen = std::collections::BTreeSet::new();
     for &PairValue { from, to, .. } in pairs {
-        let wrong = |found, expected| {
+        let bad_pair = |found, expected| {
             Err(SimilarityError::MantelPair {
                 from,
                 to,
@@ -135,13 +135,13 @@ fn check(distances: &DistanceMatrix, pairs: &[PairValue], relabellings: u64) -> 
             })
         };
         if from.max(to) >= distances.len() {
-            return wrong("that the matrix does not have", "indices of its items");
+            return bad_pair("that the matrix does not have", "indices of its items");
         }
         if from == to {
-            return wrong("of an item with itself", "two items");
+            return bad_pair("of an item with itself", "two items");
         }
         if !seen.insert((from, to)) {
-            return wrong("a second time", "each pair once");
+            return bad_pair("a second time", "each pair once");
         }
     }
     if pairs.len() < MIN_CORRELATED {
@@ -161,9 +161,9 @@ fn check(distances: &DistanceMatrix, pairs: &[PairValue], relabellings: u64) -> 
 fn as_strong(correlation: Option<f64>, found: f64) -> [u64; 3] {
     let here = correlation.unwrap_or_default();
     let as_strong = [
-        here.abs() >= found.abs() - AS_STRONG,
-        here <= found + AS_STRONG,
-        here >= found - AS_STRONG,
+        here.abs() >= found.abs() - MAX_ROUNDING,
+        here <= found + MAX_ROUNDING,
+        here >= found - MAX_ROUNDING,
     ];
     as_strong.map(|as_strong| u64::from(correlation.is_none() || as_strong))
 }
@@ -175,7 +175,7 @@ struct Table {
     /// `(items, items)`, row-major: the distance, or for Spearman's its rank index among the different distances.
     distances: Vec<f64>,
     /// Number of different distances, if `distances` holds rank indices.
-    places: usize,
+    num_distinct: usize,
     pairs: Vec<(usize, usize)>,
     /// The values, or for Spearman's their ranks.
     values: Vec<f64>,
@@ -187,35 +187,35 @@ impl Table {
         let mut items: Vec<usize> = pairs.iter().flat_map(|pair| [pair.from, pair.to]).collect();
         items.sort_unstable();
         items.dedup();
-        let place = |item: usize| items.partition_point(|other| *other < item);
+        let index = |item: usize| items.partition_point(|other| *other < item);
         let mut distances: Vec<f64> = items
             .iter()
             .flat_map(|a| items.iter().map(|b| matrix.get(*a, *b)))
             .collect();
         let mut values: Vec<f64> = pairs.iter().map(|pair| pair.value).collect();
-        let mut places = 0;
+        let mut num_distinct = 0;
         if method == Correlation::Spearman {
             values = ranks(&values);
-            places = place_among_equals(&mut distances);
+            num_distinct = dense_ranks(&mut distances);
         }
         Self {
             items: items.len(),
             method,
             distances,
-            places,
-            pairs: pairs.iter().map(|pair| (place(pair.from), place(pair.to))).collect(),
+            num_distinct,
+            pairs: pairs.iter().map(|pair| (index(pair.from), index(pair.to))).collect(),
             values,
         }
     }
 
     /// Number of relabellings at least as strong as observed, for each of the three tests.
-    fn tally(&self, ways: Relabellings, found: f64) -> [u64; 3] {
-        (0..ways.count)
+    fn tally(&self, sample: Relabellings, found: f64) -> [u64; 3] {
+        (0..sample.count)
             .into_par_iter()
             .map_init(
                 || vec![0; self.items],
                 |labels, number| {
-                    ways.write(number, labels);
+                    sample.write(number, labels);
                     as_strong(self.correlation(labels), found)
                 },
             )
@@ -227,7 +227,7 @@ impl Table {
         let relabelled = |(from, to): &(usize, usize)| self.distances[labels[*from] * self.items + labels[*to]];
         let mut here: Vec<f64> = self.pairs.iter().map(relabelled).collect();
         if self.method == Correlation::Spearman {
-            rank_places(&mut here, self.places);
+            ranks_from_dense(&mut here, self.num_distinct);
         }
         pearson::of_checked(&here, &self.values)
     }
@@ -235,7 +235,7 @@ impl Table {
 
 /// Replaces every number by the count of different numbers below it; returns the count of different numbers. Equality
 /// is that of [`ranks`].
-fn place_among_equals(numbers: &mut [f64]) -> usize {
+fn dense_ranks(numbers: &mut [f64]) -> usize {
     let merged = without_rounding(numbers);
     numbers.copy_from_slice(&merged);
     let mut different = numbers.to_vec();
@@ -248,13 +248,13 @@ fn place_among_equals(numbers: &mut [f64]) -> usize {
 }
 
 /// Replaces rank indices by ranks, like [`ranks`], but without sorting again for every relabelling.
-fn rank_places(numbers: &mut [f64], places: usize) {
-    let mut counts = vec![0_u32; places + 1];
-    // Rank indices are whole numbers below `places`.
+fn ranks_from_dense(numbers: &mut [f64], num_distinct: usize) {
+    let mut counts = vec![0_u32; num_distinct + 1];
+    // Rank indices are whole numbers below `num_distinct`.
     for place in numbers.iter() {
         counts[*place as usize + 1] += 1;
     }
-    for place in 0..places {
+    for place in 0..num_distinct {
         counts[place + 1] += counts[place];
     }
     for number in numbers.iter_mut() {
@@ -306,10 +306,10 @@ mod tests {
             }
             // Each relabelling is at least as low, or at least as high, and the true one is both.
             prop_assert!(test.p_less + test.p_greater >= 1.0);
-            let mut turned = pairs.clone();
-            turned.reverse();
-            let again = mantel(&matrix(&at), &turned, method, 120, 3).unwrap();
-            prop_assert_eq!((again.p_two_sided, again.p_less), (test.p_two_sided, test.p_less));
+            let mut reversed = pairs.clone();
+            reversed.reverse();
+            let repeated = mantel(&matrix(&at), &reversed, method, 120, 3).unwrap();
+            prop_assert_eq!((repeated.p_two_sided, repeated.p_less), (test.p_two_sided, test.p_less));
             let negated: Vec<_> = pairs.iter().map(|pair| PairValue { value: -pair.value, ..*pair }).collect();
             let other = mantel(&matrix(&at), &negated, method, 120, 3).unwrap();
             prop_assert_eq!((other.p_greater, other.p_two_sided), (test.p_less, test.p_two_sided));
@@ -350,10 +350,23 @@ mod tests {
         assert_eq!(test.unwrap_err().code(), "similarity/correlation-constant");
         let test = mantel(&matrix(&[0.0, 0.0, 0.0, 5.0]), &pairs, Correlation::Pearson, 24, 0).unwrap();
         assert!(test.exact && test.p_greater >= 0.25, "{test:?}");
-        let hanging = [(0, 1, 1.0), (1, 0, 2.0), (2, 3, 3.0)].map(pair);
-        let test = mantel(&matrix(&[0.0, 5.0, 0.0, 5.0]), &hanging, Correlation::Pearson, 24, 0);
+        let disconnected = [(0, 1, 1.0), (1, 0, 2.0), (2, 3, 3.0)].map(pair);
+        let test = mantel(
+            &matrix(&[0.0, 5.0, 0.0, 5.0]),
+            &disconnected,
+            Correlation::Pearson,
+            24,
+            0,
+        );
         assert!(test.is_err(), "all three distances are 5");
-        let spread = mantel(&matrix(&[0.0, 5.0, 9.0, 5.0]), &hanging, Correlation::Pearson, 24, 0).unwrap();
+        let spread = mantel(
+            &matrix(&[0.0, 5.0, 9.0, 5.0]),
+            &disconnected,
+            Correlation::Pearson,
+            24,
+            0,
+        )
+        .unwrap();
         assert!(spread.p_two_sided > 1.0 / 24.0);
     }
 
@@ -370,8 +383,8 @@ mod tests {
             );
             assert_eq!(found.unwrap_err().to_string(), expected);
         };
-        let sound = [(0, 1, 1.0), (0, 2, 2.0), (1, 2, 4.0)];
-        check(&sound, 0, "mantel test: found 0 relabellings, expected 1 to 1000000");
+        let valid = [(0, 1, 1.0), (0, 2, 2.0), (1, 2, 4.0)];
+        check(&valid, 0, "mantel test: found 0 relabellings, expected 1 to 1000000");
         check(
             &[(0, 3, 1.0)],
             9,
@@ -388,11 +401,11 @@ mod tests {
             "mantel test: found a value for the pair 0 to 1 a second time, expected each pair once",
         );
         check(
-            &sound[..2],
+            &valid[..2],
             9,
             "correlation: found 2 pairs, expected at least 3: two always lie on a straight line; measure more",
         );
-        let flat = sound.map(|(from, to, _)| (from, to, 7.0));
+        let flat = valid.map(|(from, to, _)| (from, to, 7.0));
         check(
             &flat,
             9,

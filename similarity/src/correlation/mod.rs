@@ -43,7 +43,7 @@ pub enum Correlation {
 }
 
 impl Correlation {
-    /// Both.
+    /// All correlations.
     pub const ALL: &[Self] = Self::VARIANTS;
 
     /// The correlation's name on the command line.
@@ -97,25 +97,25 @@ mod tests {
 
     #[test]
     fn impossible_correlations_are_refused_with_a_reason() {
-        let said = |a: &[f64], b: &[f64]| {
+        let message = |a: &[f64], b: &[f64]| {
             let of = |correlation: Correlation| correlation.of(a, b).unwrap_err().to_string();
             assert_eq!(of(Correlation::Spearman), of(Correlation::Pearson));
             of(Correlation::Spearman)
         };
         assert_eq!(
-            said(&[1.0, 2.0, 3.0], &[1.0, 2.0]),
+            message(&[1.0, 2.0, 3.0], &[1.0, 2.0]),
             "correlation: found lists of 3 and 2 numbers, expected as many in both"
         );
         assert_eq!(
-            said(&[1.0, 2.0], &[1.0, 2.0]),
+            message(&[1.0, 2.0], &[1.0, 2.0]),
             "correlation: found 2 pairs, expected at least 3: two always lie on a straight line; measure more"
         );
         assert_eq!(
-            said(&[1.0, 2.0, 3.0], &[1.0, f64::NAN, 3.0]),
+            message(&[1.0, 2.0, 3.0], &[1.0, f64::NAN, 3.0]),
             "correlation: found NaN at place 1 of the second list, expected a finite number"
         );
         assert_eq!(
-            said(&[2.0, 2.0, 2.0], &[1.0, 2.0, 3.0]),
+            message(&[2.0, 2.0, 2.0], &[1.0, 2.0, 3.0]),
             "correlation: found 2 everywhere in the first list, expected numbers that differ: what never changes goes \
              together with nothing"
         );

@@ -11,12 +11,12 @@ pub(super) struct Relabellings {
 }
 
 impl Relabellings {
-    /// All of them if there are at most `most`, otherwise `most` random ones.
-    pub(super) fn new(items: usize, most: u64, seed: u64) -> Self {
+    /// All of them if there are at most `max_count`, otherwise `max_count` random ones.
+    pub(super) fn new(items: usize, max_count: u64, seed: u64) -> Self {
         let all = (1..=items as u64).try_fold(1_u64, u64::checked_mul);
-        let few = all.filter(|all| *all <= most);
+        let few = all.filter(|all| *all <= max_count);
         Self {
-            count: few.unwrap_or(most),
+            count: few.unwrap_or(max_count),
             seed: few.is_none().then_some(seed),
         }
     }

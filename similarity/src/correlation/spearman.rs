@@ -14,8 +14,9 @@ use crate::SimilarityError;
 /// Source: Spearman 1904; the same numbers as `scipy.stats.spearmanr` within 1e-12.
 ///
 /// # Errors
-/// [`SimilarityError::CorrelationLengths`], [`SimilarityError::CorrelationTooFew`],
-/// [`SimilarityError::CorrelationNotFinite`], [`SimilarityError::CorrelationConstant`].
+/// [`SimilarityError::CorrelationLengths`] for lists of different lengths, [`SimilarityError::CorrelationTooFew`] for fewer
+/// than 3 numbers, [`SimilarityError::CorrelationNotFinite`] for a number that is not finite,
+/// [`SimilarityError::CorrelationConstant`] for a list of equal numbers.
 ///
 /// # Example
 /// ```
@@ -143,12 +144,12 @@ mod tests {
         assert_eq!(
             ranks(&[0.0, sum - number, 0.5]),
             [1.5, 1.5, 3.0],
-            "what is left of a difference"
+            "the rounding error of a difference"
         );
         assert_eq!(
             ranks(&[0.3, 0.3 + 1e-11, 0.5]),
             [1.0, 2.0, 3.0],
-            "eleven digits are no rounding"
+            "a difference in the eleventh digit is not rounding"
         );
     }
 

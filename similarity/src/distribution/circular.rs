@@ -3,7 +3,7 @@
 use driftworld_spec::Distribution;
 
 use super::gap::Power;
-use super::law::{self, Law, rising};
+use super::law::{self, Law, ascending};
 use super::measured::Measured;
 
 /// Widest stretch, in degrees, over which the first pass treats a curved cumulative function as linear; the second pass
@@ -33,9 +33,9 @@ pub fn circular_wasserstein_1(a: &Distribution, b: &Distribution) -> Option<Meas
         return Some(Measured::closed(0.0));
     }
     if p.is_flat() && q.is_flat() {
-        return Some(law::exact(&p, &q, around(&stretches(&p, &q, None))));
+        return Some(law::exact(&p, &q, area_around_median(&stretches(&p, &q, None))));
     }
-    let [coarse, fine] = [COARSE, COARSE / 2.0].map(|widest| around(&stretches(&p, &q, Some(widest))));
+    let [coarse, fine] = [COARSE, COARSE / 2.0].map(|widest| area_around_median(&stretches(&p, &q, Some(widest))));
     // Half the width leaves a quarter of the error, so a third of the difference remains.
     let left = (fine - coarse) / 3.0;
     Some(Measured::quadrature((fine + left).max(0.0), left.abs().max(1e-9)))
@@ -52,7 +52,7 @@ fn stretches(a: &Law, b: &Law, widest: Option<f64>) -> Vec<Stretch> {
     }
     knots.extend(a.atoms.iter().chain(&b.atoms).map(|atom| atom.0));
     knots.extend([0.0, 360.0]);
-    let knots = rising(knots);
+    let knots = ascending(knots);
     let steps = |law: &Law, x: f64| -> f64 {
         let up_to = law.atoms.partition_point(|atom| atom.0 <= x);
         law.atoms[..up_to].iter().map(|atom| atom.1).sum()
@@ -77,7 +77,7 @@ fn stretches(a: &Law, b: &Law, widest: Option<f64>) -> Vec<Stretch> {
 }
 
 /// The area between the stretches and their median.
-fn around(stretches: &[Stretch]) -> f64 {
+fn area_around_median(stretches: &[Stretch]) -> f64 {
     let all = || stretches.iter().flat_map(|(_, from, to)| [*from, *to]);
     let mut low = all().fold(f64::INFINITY, f64::min);
     let mut high = all().fold(f64::NEG_INFINITY, f64::max);

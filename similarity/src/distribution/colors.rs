@@ -3,17 +3,17 @@
 use driftworld_spec::{Color, Distribution, Moments};
 
 use super::measured::Measured;
-use super::scatter::chosen;
+use super::scatter::choose;
 use super::values;
 use super::wasserstein_2::wasserstein_2;
 use crate::{Assignment, ColorMeasure, optimal_transport};
 
 /// Number of sample colours per distribution with a density; also the maximum length of lists that are compared
 /// exactly.
-const STAND_INS: usize = 256;
+const NUM_SAMPLES: usize = 256;
 
-/// Wasserstein-1 between two distributions of colours, with `measure` between single colours: in the measure's own unit, at most its
-/// [`diameter`](ColorMeasure::diameter).
+/// Wasserstein-1 between two distributions of colours, with `measure` between single colours: in the measure's own unit, at
+/// most its [`diameter`](ColorMeasure::diameter).
 ///
 /// Exact between single colours and between lists of at most 256; otherwise from 256 evenly spread colours of each,
 /// matched at minimum cost, which is accurate to a few per cent of the spreads. A metric among distributions with a
@@ -27,11 +27,11 @@ const STAND_INS: usize = 256;
 /// use driftworld_spec::{Channels, ChannelSpread, Distribution::ColorNormal};
 /// let around = |color: [f64; 3], std| ColorNormal { mean: Channels(color), std: ChannelSpread::Same(std) };
 /// let (black, grey) = (around([0.0; 3], 0.0), around([0.5; 3], 0.0));
-/// let apart = color_wasserstein_1(&black, &grey, ColorMeasure::Srgb).unwrap();
-/// assert!((apart.value - 0.75_f64.sqrt()).abs() < 1e-12);
+/// let distance = color_wasserstein_1(&black, &grey, ColorMeasure::Srgb).unwrap();
+/// assert!((distance.value - 0.75_f64.sqrt()).abs() < 1e-12);
 /// ```
 pub fn color_wasserstein_1(a: &Distribution, b: &Distribution, measure: ColorMeasure) -> Option<Measured> {
-    paired(a, b, measure, |way| way)
+    transport(a, b, measure, |distance| distance)
 }
 
 /// Wasserstein-2: the root mean square of the distances by which colours have to move, in the unit of `measure`.
@@ -50,13 +50,13 @@ pub fn color_wasserstein_2(a: &Distribution, b: &Distribution, measure: ColorMea
         }
         return Some(Measured::within(square.sqrt(), tolerance));
     }
-    paired(a, b, measure, |way| way * way).map(Measured::root)
+    transport(a, b, measure, |distance| distance * distance).map(Measured::root)
 }
 
 /// The mean of a function of the distances in the cheapest matching.
-fn paired(a: &Distribution, b: &Distribution, measure: ColorMeasure, of: impl Fn(f64) -> f64) -> Option<Measured> {
+fn transport(a: &Distribution, b: &Distribution, measure: ColorMeasure, of: impl Fn(f64) -> f64) -> Option<Measured> {
     if a == b {
-        return strewn(a).map(|_| Measured::closed(0.0));
+        return sample_colors(a).map(|_| Measured::closed(0.0));
     }
     let costs = |a: &[Color], b: &[Color]| -> Vec<f64> {
         let prepare =
@@ -65,23 +65,23 @@ fn paired(a: &Distribution, b: &Distribution, measure: ColorMeasure, of: impl Fn
         let row = |x: &[f64; 3]| -> Vec<f64> { b.iter().map(|y| of(measure.between_prepared(*x, *y))).collect() };
         a.iter().flat_map(row).collect()
     };
-    if let (Some((x, p)), Some((y, q))) = (listed(a), listed(b)) {
+    if let (Some((x, p)), Some((y, q))) = (weighted_colors(a), weighted_colors(b)) {
         let plan = optimal_transport(&p, &q, &costs(&x, &y)).ok()?;
         return Some(Measured::atoms(plan.cost.max(0.0)));
     }
-    let (x, y) = (strewn(a)?, strewn(b)?);
+    let (x, y) = (sample_colors(a)?, sample_colors(b)?);
     let total = Assignment::new().solve(&costs(&x, &y), x.len(), y.len()).ok()?;
     Some(Measured::samples(total.max(0.0) / x.len() as f64, x.len()))
 }
 
 /// The colours of a distribution without a density, each with its probability; `None` for others, and for long lists.
-fn listed(distribution: &Distribution) -> Option<(Vec<Color>, Vec<f64>)> {
+fn weighted_colors(distribution: &Distribution) -> Option<(Vec<Color>, Vec<f64>)> {
     let single = |law: &Distribution| law.has_independent_channels() && law.color_moments().is_some_and(is_a_point);
     if single(distribution) {
         return Some((vec![distribution.color_at([0.5; 3])?], vec![1.0]));
     }
     let found = values::probabilities(distribution)?;
-    if found.len() > STAND_INS {
+    if found.len() > NUM_SAMPLES {
         return None;
     }
     let each = found.into_iter().map(|(value, mass)| Some((value.as_color()?, mass)));
@@ -95,18 +95,18 @@ fn is_a_point(moments: Moments<3>) -> bool {
 /// Deterministic sample colours of equal weight; `None` if it draws anything but colours.
 ///
 /// All distributions use the same random numbers, so equal ones get equal colours.
-fn strewn(distribution: &Distribution) -> Option<Vec<Color>> {
+fn sample_colors(distribution: &Distribution) -> Option<Vec<Color>> {
     // Hammersley's points: even along one axis, digit-reversed along the others.
-    let units = (0..STAND_INS as u32).map(|k| {
-        let even = (f64::from(k) + 0.5) / STAND_INS as f64;
-        [even, reversed(k, 2), reversed(k, 3)]
+    let units = (0..NUM_SAMPLES as u32).map(|k| {
+        let even = (f64::from(k) + 0.5) / NUM_SAMPLES as f64;
+        [even, radical_inverse(k, 2), radical_inverse(k, 3)]
     });
     units.map(|unit| color(distribution, unit)).collect()
 }
 
 /// The digits of a number in a base, mirrored at the radix point and moved off 0.
-fn reversed(mut number: u32, base: u32) -> f64 {
-    let (mut sum, mut share) = (0.5 / STAND_INS as f64, 1.0);
+fn radical_inverse(mut number: u32, base: u32) -> f64 {
+    let (mut sum, mut share) = (0.5 / NUM_SAMPLES as f64, 1.0);
     while number > 0 {
         share /= f64::from(base);
         sum += share * f64::from(number % base);
@@ -118,9 +118,9 @@ fn reversed(mut number: u32, base: u32) -> f64 {
 /// The colour for three random numbers.
 fn color(distribution: &Distribution, [u, v, w]: [f64; 3]) -> Option<Color> {
     match distribution {
-        Distribution::Choice { values, weights } => values[chosen(values.len(), weights.as_deref(), u).0].as_color(),
+        Distribution::Choice { values, weights } => values[choose(values.len(), weights.as_deref(), u).0].as_color(),
         Distribution::Mixture { parts, weights } => {
-            let (index, within) = chosen(parts.len(), weights.as_deref(), u);
+            let (index, within) = choose(parts.len(), weights.as_deref(), u);
             color(&parts[index], [within, v, w])
         }
         other => other.color_at([u, v, w]),
@@ -178,10 +178,10 @@ mod tests {
             r#"{"mixture": {"parts": [{"constant": {"value": "red"}}, {"color_normal": {"mean": "gray", "std": 0.1}}], "weights": [1, 3]}}"#,
         ] {
             let law = law(text);
-            let (colors, moments) = (strewn(&law).unwrap(), law.color_moments().unwrap());
+            let (colors, moments) = (sample_colors(&law).unwrap(), law.color_moments().unwrap());
             for k in 0..3 {
-                let mean = colors.iter().map(|color| color.0[k]).sum::<f64>() / STAND_INS as f64;
-                let square = colors.iter().map(|color| (color.0[k] - mean).powi(2)).sum::<f64>() / STAND_INS as f64;
+                let mean = colors.iter().map(|color| color.0[k]).sum::<f64>() / NUM_SAMPLES as f64;
+                let square = colors.iter().map(|color| (color.0[k] - mean).powi(2)).sum::<f64>() / NUM_SAMPLES as f64;
                 assert!((mean - moments.mean[k]).abs() < 0.01, "{text}: {k} {mean} {moments:?}");
                 assert!(
                     (square - moments.covariance[k][k]).abs() < 0.004,
@@ -237,24 +237,24 @@ mod tests {
 
         #[test]
         fn colour_transport_is_a_metric_for_metric_measures(a in any_law(), b in any_law(), c in any_law()) {
-            let far = |a, b| color_wasserstein_1(a, b, ColorMeasure::Oklab).unwrap().value;
-            prop_assert_eq!(far(&a, &a), 0.0);
-            prop_assert!((far(&a, &b) - far(&b, &a)).abs() < 1e-9);
-            prop_assert!(far(&a, &c) <= far(&a, &b) + far(&b, &c) + 1e-9);
-            prop_assert!((0.0..=1.0).contains(&far(&a, &b)));
+            let d = |a, b| color_wasserstein_1(a, b, ColorMeasure::Oklab).unwrap().value;
+            prop_assert_eq!(d(&a, &a), 0.0);
+            prop_assert!((d(&a, &b) - d(&b, &a)).abs() < 1e-9);
+            prop_assert!(d(&a, &c) <= d(&a, &b) + d(&b, &c) + 1e-9);
+            prop_assert!((0.0..=1.0).contains(&d(&a, &b)));
         }
 
-        /// Computes the same number in two ways: channel by channel, and by pairs of colours. Whatever the pairs, the distance
-        /// is at least that of the means.
+        /// Computes the same number in two ways: channel by channel, and by pairs of colours. For any pairing, the distance
+        /// is at least the distance of the means.
         #[test]
         fn samples_approximate_the_closed_form(a in any_law(), b in any_law()) {
-            let by_samples = paired(&a, &b, ColorMeasure::Srgb, |way| way * way).unwrap().root().value;
+            let by_samples = transport(&a, &b, ColorMeasure::Srgb, |distance| distance * distance).unwrap().root().value;
             let found = color_wasserstein_2(&a, &b, ColorMeasure::Srgb).unwrap();
             prop_assert!((found.value - by_samples).abs() < 0.05, "{} to {}: {:?}, by samples {}", a, b, found, by_samples);
             let (p, q) = (a.color_moments().unwrap().mean, b.color_moments().unwrap().mean);
-            let apart = ColorMeasure::Srgb.between_prepared(p, q);
+            let distance = ColorMeasure::Srgb.between_prepared(p, q);
             let first = color_wasserstein_1(&a, &b, ColorMeasure::Srgb).unwrap().value;
-            prop_assert!(first >= apart - 0.02 && first <= by_samples + 1e-9, "{first}, means {apart} apart");
+            prop_assert!(first >= distance - 0.02 && first <= by_samples + 1e-9, "{first}, means {distance} apart");
         }
     }
 }

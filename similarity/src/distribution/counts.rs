@@ -5,8 +5,8 @@ use driftworld_spec::Distribution;
 /// Counts whose probability is below this fraction of the likeliest count's are left out.
 const NEGLIGIBLE: f64 = 1e-17;
 
-/// All non-negligible counts with their probabilities; `None` for any other distribution and for more than `most` counts.
-pub(super) fn probabilities(distribution: &Distribution, most: usize) -> Option<Vec<(f64, f64)>> {
+/// All non-negligible counts with their probabilities; `None` for any other distribution and for more than `max_counts` counts.
+pub(super) fn probabilities(distribution: &Distribution, max_counts: usize) -> Option<Vec<(f64, f64)>> {
     // The ratio of the probability of k + 1 to that of k, and the likeliest count.
     let (ratio, mode, end): (Box<dyn Fn(f64) -> f64>, f64, f64) = match *distribution {
         Distribution::Binomial { n, p: 0.0 } => return Some(vec![(0.0 * n, 1.0)]),
@@ -31,7 +31,7 @@ pub(super) fn probabilities(distribution: &Distribution, most: usize) -> Option<
             break;
         }
         below.push((k, mass));
-        if below.len() > most {
+        if below.len() > max_counts {
             return None;
         }
     }
@@ -39,7 +39,7 @@ pub(super) fn probabilities(distribution: &Distribution, most: usize) -> Option<
     let (mut k, mut mass) = (mode, 1.0);
     while k <= end && mass >= NEGLIGIBLE {
         counts.push((k, mass));
-        if counts.len() > most {
+        if counts.len() > max_counts {
             return None;
         }
         mass *= ratio(k);

@@ -7,13 +7,13 @@ use driftworld_spec::Distribution;
 use super::gap::{self, Power};
 use super::law::{Law, draws_headings};
 use super::measured::Measured;
-use super::wasserstein_1::folded;
+use super::wasserstein_1::folded_mean;
 
 /// √(2 E|X − Y| − E|X − X′| − E|Y − Y′|), which on the line is √(2 ∫ (F − G)²): in the square root of the numbers' unit.
 ///
 /// A metric in `0..` (its square is not). A Bernoulli counts as 0 and 1. `None` if either draws no numbers, or headings. In
-/// closed form for two normals and for everything flat or stepped; otherwise by quadrature, mostly within 1e-6, at 13 to 700
-/// points between neighbouring knots. Ranges of more than 4,096 whole numbers are treated as continuous.
+/// closed form for two normals and for everything piecewise constant or discrete; otherwise by quadrature, mostly within 1e-6,
+/// at 13 to 700 points between neighbouring knots. Ranges of more than 4,096 whole numbers are treated as continuous.
 ///
 /// Source: Székely & Rizzo 2013, "Energy statistics"; the same numbers as `scipy.stats.energy_distance`, which returns the
 /// root, too.
@@ -22,15 +22,15 @@ use super::wasserstein_1::folded;
 /// ```
 /// use driftworld_similarity::distribution::energy;
 /// use driftworld_spec::Distribution::Bernoulli;
-/// let apart = energy(&Bernoulli { p: 0.0 }, &Bernoulli { p: 1.0 }).unwrap();
-/// assert!((apart.value - 2.0_f64.sqrt()).abs() < 1e-12);
+/// let distance = energy(&Bernoulli { p: 0.0 }, &Bernoulli { p: 1.0 }).unwrap();
+/// assert!((distance.value - 2.0_f64.sqrt()).abs() < 1e-12);
 /// ```
 pub fn energy(a: &Distribution, b: &Distribution) -> Option<Measured> {
     if draws_headings(a) || draws_headings(b) {
         return None;
     }
     if let (Distribution::Normal { mean: m, std: s }, Distribution::Normal { mean: n, std: t }) = (a, b) {
-        let square = 2.0 * folded((m - n).abs(), libm::hypot(*s, *t)) - 2.0 * (s + t) / PI.sqrt();
+        let square = 2.0 * folded_mean((m - n).abs(), libm::hypot(*s, *t)) - 2.0 * (s + t) / PI.sqrt();
         // Similar normals would lose precision: the quadrature keeps it.
         if square > 1e-4 * (s + t) {
             return Some(Measured::closed(square).root());

@@ -1,6 +1,6 @@
 //! Integrals of the difference between two cumulative functions.
 
-use super::law::{self, Law, rising};
+use super::law::{self, Law, ascending};
 use super::measured::Measured;
 use super::quadrature::{Node, integrate, split_at_signs};
 
@@ -35,7 +35,7 @@ impl Power {
 /// The integral of |F − G| or (F − G)² over the line: exact if both are piecewise linear with steps, else by
 /// quadrature.
 pub(super) fn integral(a: &Law, b: &Law, power: Power) -> Measured {
-    let knots = rising(a.knots_and_atoms().chain(b.knots_and_atoms()).collect());
+    let knots = ascending(a.knots_and_atoms().chain(b.knots_and_atoms()).collect());
     let (mut steps_a, mut steps_b) = (Steps::new(a), Steps::new(b));
     let flat = a.is_flat() && b.is_flat();
     let (mut sum, mut tolerance) = (0.0, 0.0);

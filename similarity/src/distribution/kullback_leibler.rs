@@ -1,4 +1,4 @@
-//! Kullback–Leibler divergence: the cost of taking one distribution for the other.
+//! Kullback–Leibler divergence: the information lost when one distribution replaces another.
 
 use driftworld_spec::Distribution;
 
@@ -9,12 +9,12 @@ use super::part::log_beta;
 
 /// Σ p ln(p / q), for densities ∫ f ln(f / g), in nats: `a` is the true distribution, `b` the assumed one.
 ///
-/// A divergence in `0..=∞`: not symmetric, no triangle inequality, and infinite as soon as `a` draws what `b` cannot.
+/// A divergence in `0..=∞`: not symmetric, no triangle inequality, and infinite if `a` can draw values that `b` cannot.
 /// Provided only for parity with methods that use it (self-paced curricula). Accepts what
-/// [`total_variation`](super::total_variation()) accepts, and two `gaussian`s in the plane or two `dirichlet`s of
-/// equal length. In closed form for normal, log-normal, exponential, beta (with the same ends), Poisson, geometric, gaussian
-/// and Dirichlet pairs and for everything flat or stepped; otherwise by quadrature, mostly within a relative error of 1e-9,
-/// at 13 to 700 points between neighbouring knots.
+/// [`total_variation`](super::total_variation()) accepts, and two `gaussian`s in the plane or two `dirichlet`s of equal length.
+/// In closed form for normal, log-normal, exponential, beta (with the same ends), Poisson, geometric, gaussian and Dirichlet
+/// pairs and for everything piecewise constant or discrete; otherwise by quadrature, mostly within a relative error of 1e-9, at
+/// 13 to 700 points between neighbouring knots.
 ///
 /// Source: Kullback & Leibler 1951, "On information and sufficiency".
 ///
@@ -32,7 +32,7 @@ pub fn kullback_leibler(a: &Distribution, b: &Distribution) -> Option<Measured> 
     }
     if let Some((p, q)) = law::both(a, b) {
         let around = draws_headings(a) || draws_headings(b);
-        if !around && !is_within(&p, &q) {
+        if !around && !support_is_within(&p, &q) {
             return Some(Measured::closed(f64::INFINITY));
         }
     }
@@ -55,8 +55,8 @@ pub fn kullback_leibler(a: &Distribution, b: &Distribution) -> Option<Measured> 
     })
 }
 
-/// Whether the support of one density lies within that of the other, tails included.
-fn is_within(a: &Law, b: &Law) -> bool {
+/// Whether the support of one density lies within the support of the other, tails included.
+fn support_is_within(a: &Law, b: &Law) -> bool {
     let mut covered: Vec<[f64; 2]> = b.parts.iter().map(super::part::Part::ends).collect();
     covered.sort_by(|a, b| a[0].total_cmp(&b[0]));
     a.parts.iter().all(|part| {
@@ -123,8 +123,8 @@ fn closed(a: &Distribution, b: &Distribution) -> Option<f64> {
             }
             let trace = (t[1][1] * s[0][0] - t[0][1] * s[1][0] - t[1][0] * s[0][1] + t[0][0] * s[1][1]) / of_t;
             let [x, y] = [m[0] - n[0], m[1] - n[1]];
-            let apart = (x * x * t[1][1] - 2.0 * x * y * t[0][1] + y * y * t[0][0]) / of_t;
-            0.5 * (trace - 2.0 + apart + libm::log(of_t / of_s))
+            let distance = (x * x * t[1][1] - 2.0 * x * y * t[0][1] + y * y * t[0][0]) / of_t;
+            0.5 * (trace - 2.0 + distance + libm::log(of_t / of_s))
         }
         _ => return None,
     })

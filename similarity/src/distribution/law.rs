@@ -8,13 +8,13 @@ use super::quadrature::Node;
 use super::values::share;
 
 /// Maximum number of single numbers of a distribution of counts; with more, it is not split.
-const MOST_ATOMS: usize = 65_536;
+const MAX_ATOMS: usize = 65_536;
 
 /// Maximum length of a run of whole numbers that is split into single numbers.
-const LONGEST_RUN: f64 = 4096.0;
+const MAX_RUN_LENGTH: f64 = 4096.0;
 
 /// Maximum number of turns over which a distribution of headings may spread.
-const MOST_TURNS: f64 = 200.0;
+const MAX_TURNS: f64 = 200.0;
 
 /// Equally likely whole numbers: those from `low` to `high`, each with the same probability.
 #[derive(Clone, Copy, Debug)]
@@ -79,7 +79,7 @@ impl Law {
         open.add(1.0, distribution)?;
         let mut law = Self::default();
         for run in open.runs {
-            if run.high - run.low > 360.0 * MOST_TURNS {
+            if run.high - run.low > 360.0 * MAX_TURNS {
                 return None;
             }
             let count = (run.high - run.low) as u32;
@@ -105,7 +105,7 @@ impl Law {
         let low = knots.iter().copied().fold(f64::INFINITY, f64::min);
         let high = knots.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let (first, last) = ((low / 360.0).floor(), (high / 360.0).ceil());
-        if last - first > MOST_TURNS {
+        if last - first > MAX_TURNS {
             return None;
         }
         self.parts
@@ -135,7 +135,7 @@ impl Law {
             Distribution::IntegerUniform { low, high } => {
                 let count = high - low + 1.0;
                 let each = scale / count;
-                if count > LONGEST_RUN {
+                if count > MAX_RUN_LENGTH {
                     let (low, high) = (*low, *high);
                     self.runs.push(Run { low, high, each });
                 } else {
@@ -143,7 +143,7 @@ impl Law {
                 }
             }
             Distribution::Binomial { .. } | Distribution::Poisson { .. } | Distribution::Geometric { .. } => {
-                let counts = super::counts::probabilities(distribution, MOST_ATOMS)?;
+                let counts = super::counts::probabilities(distribution, MAX_ATOMS)?;
                 self.atoms.extend(counts.into_iter().map(|(x, mass)| (x, scale * mass)));
             }
             Distribution::Mixture { parts, weights } => {
@@ -279,7 +279,7 @@ fn turned(degrees: f64) -> f64 {
 }
 
 /// Sorts numbers, and removes duplicates and numbers that are not finite.
-pub(super) fn rising(mut numbers: Vec<f64>) -> Vec<f64> {
+pub(super) fn ascending(mut numbers: Vec<f64>) -> Vec<f64> {
     numbers.retain(|x| x.is_finite());
     numbers.sort_by(f64::total_cmp);
     numbers.dedup();

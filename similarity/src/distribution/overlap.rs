@@ -2,15 +2,15 @@
 
 use driftworld_spec::Distribution;
 
-use super::law::{self, Law, Run, draws_headings, rising};
+use super::law::{self, Law, Run, ascending, draws_headings};
 use super::measured::Measured;
 use super::quadrature::{Node, integrate, split_at_signs};
 use super::values;
 
 /// Σ term(ln p, ln q) over single values and ∫ term(ln f, ln g) dx over densities, on the circle if either draws headings.
 ///
-/// The term must be homogeneous (term of c p and c q is c times that of p and q), and 0 where the two are equal. `None` if the
-/// two cannot be compared, such as words and numbers, or points with a density.
+/// The term must be homogeneous (multiplying both probabilities by c multiplies it by c), and 0 where the two are equal. `None`
+/// if the two cannot be compared, such as words and numbers, or points with a density.
 pub(super) fn sum(a: &Distribution, b: &Distribution, term: impl Fn(f64, f64) -> f64) -> Option<Measured> {
     let equal = (a == b).then(|| Measured::closed(0.0));
     if let Some((p, q)) = law::both(a, b) {
@@ -21,7 +21,7 @@ pub(super) fn sum(a: &Distribution, b: &Distribution, term: impl Fn(f64, f64) ->
     if equal.is_some() {
         return equal;
     }
-    let pairs = values::side_by_side(&p, &q);
+    let pairs = values::aligned(&p, &q);
     Some(Measured::atoms(
         pairs.into_iter().map(|[p, q]| term(libm::log(p), libm::log(q))).sum(),
     ))
@@ -36,7 +36,7 @@ fn over_numbers(a: &Law, b: &Law, circle: bool, term: impl Fn(f64, f64) -> f64) 
         knots.extend([0.0, 360.0]);
     }
     let mut tolerance = 0.0;
-    for ends in rising(knots).windows(2) {
+    for ends in ascending(knots).windows(2) {
         let (value, error) = over_stretch(a, b, [ends[0], ends[1]], &term);
         sum += value;
         tolerance += error;
@@ -60,7 +60,7 @@ fn over_stretch(a: &Law, b: &Law, [low, high]: [f64; 2], term: &impl Fn(f64, f64
         let above = law.remaining_of_parts(low) - law.remaining_of_parts(high);
         below.min(above).max(0.0)
     };
-    let certain = |p: f64, q: f64| {
+    let term_of_masses = |p: f64, q: f64| {
         if p <= 0.0 && q <= 0.0 {
             0.0
         } else {
@@ -69,9 +69,9 @@ fn over_stretch(a: &Law, b: &Law, [low, high]: [f64; 2], term: &impl Fn(f64, f64
     };
     match (a.reaches(low, high), b.reaches(low, high)) {
         (false, false) => (0.0, 0.0),
-        (true, false) => (certain(mass(a), 0.0), 0.0),
-        (false, true) => (certain(0.0, mass(b)), 0.0),
-        (true, true) if a.is_flat() && b.is_flat() => (certain(mass(a), mass(b)), 0.0),
+        (true, false) => (term_of_masses(mass(a), 0.0), 0.0),
+        (false, true) => (term_of_masses(0.0, mass(b)), 0.0),
+        (true, true) if a.is_flat() && b.is_flat() => (term_of_masses(mass(a), mass(b)), 0.0),
         (true, true) => {
             let (mut sum, mut error) = (0.0, 0.0);
             let (mut of_a, mut of_b) = (mass(a), mass(b));
@@ -103,7 +103,7 @@ fn over_stretch(a: &Law, b: &Law, [low, high]: [f64; 2], term: &impl Fn(f64, f64
             }
             // Near a steep end only the total mass is known, because positions cannot be resolved.
             let left = [of_a, of_b].map(|left| if left > 1e-12 { left } else { 0.0 });
-            (sum + certain(left[0], left[1]), error + of_a.abs() + of_b.abs())
+            (sum + term_of_masses(left[0], left[1]), error + of_a.abs() + of_b.abs())
         }
     }
 }
@@ -123,7 +123,7 @@ fn over_atoms(a: &Law, b: &Law, term: &impl Fn(f64, f64) -> f64) -> f64 {
             (Some(only), None) | (None, Some(only)) => only.0,
             (None, None) => break,
         };
-        let take = |law: &Law, next: &mut usize| {
+        let next_mass = |law: &Law, next: &mut usize| {
             let mut mass = in_runs(&law.runs, x);
             if let Some(atom) = law.atoms.get(*next).filter(|atom| atom.0 == x) {
                 mass += atom.1;
@@ -131,7 +131,7 @@ fn over_atoms(a: &Law, b: &Law, term: &impl Fn(f64, f64) -> f64) -> f64 {
             }
             mass
         };
-        let (p, q) = (take(a, &mut i), take(b, &mut j));
+        let (p, q) = (next_mass(a, &mut i), next_mass(b, &mut j));
         sum += term(libm::log(p), libm::log(q));
     }
     sum
@@ -142,13 +142,13 @@ fn over_runs(a: &Law, b: &Law, term: &impl Fn(f64, f64) -> f64) -> f64 {
     let ends = a.runs.iter().chain(&b.runs).flat_map(|run| [run.low, run.high + 1.0]);
     let mut singles: Vec<f64> = a.atoms.iter().chain(&b.atoms).map(|atom| atom.0).collect();
     singles.retain(|x| x.fract() == 0.0);
-    let singles = rising(singles);
+    let singles = ascending(singles);
     let mut sum = 0.0;
-    for ends in rising(ends.collect()).windows(2) {
+    for ends in ascending(ends.collect()).windows(2) {
         let (p, q) = (in_runs(&a.runs, ends[0]), in_runs(&b.runs, ends[0]));
         if p + q > 0.0 {
-            let taken = singles.partition_point(|x| *x < ends[1]) - singles.partition_point(|x| *x < ends[0]);
-            sum += (ends[1] - ends[0] - taken as f64) * term(libm::log(p), libm::log(q));
+            let num_singles = singles.partition_point(|x| *x < ends[1]) - singles.partition_point(|x| *x < ends[0]);
+            sum += (ends[1] - ends[0] - num_singles as f64) * term(libm::log(p), libm::log(q));
         }
     }
     sum

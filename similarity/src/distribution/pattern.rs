@@ -8,11 +8,11 @@ use super::planar_transport::{planar_wasserstein_1, planar_wasserstein_2};
 use super::values::grid_centres;
 
 /// Maximum number of objects compared one by one if places are taken in turn.
-const MOST_IN_TURN: usize = 10_000;
+const MAX_IN_TURN: usize = 10_000;
 
 /// Wasserstein-1 between the places of objects; otherwise as [`placement_wasserstein_2`].
 pub fn placement_wasserstein_1(a: &Distribution, b: &Distribution) -> Option<Measured> {
-    placed(a, b, planar_wasserstein_1)
+    placement_distance(a, b, planar_wasserstein_1)
 }
 
 /// The distance between two placements of a group, in metres: how far each object's place has to move (root mean
@@ -31,17 +31,17 @@ pub fn placement_wasserstein_1(a: &Distribution, b: &Distribution) -> Option<Mea
 /// assert_eq!(placement_wasserstein_2(&kept(1.0), &kept(10.0)).unwrap().value, 9.0);
 /// ```
 pub fn placement_wasserstein_2(a: &Distribution, b: &Distribution) -> Option<Measured> {
-    placed(a, b, planar_wasserstein_2)
+    placement_distance(a, b, planar_wasserstein_2)
 }
 
-fn placed(
+fn placement_distance(
     a: &Distribution,
     b: &Distribution,
-    alone: impl Fn(&Distribution, &Distribution) -> Option<Measured>,
+    independent: impl Fn(&Distribution, &Distribution) -> Option<Measured>,
 ) -> Option<Measured> {
     let in_turn = [a, b].map(places_in_turn);
     let places = match (&in_turn[0], &in_turn[1]) {
-        (None, None) => alone(a, b)?,
+        (None, None) => independent(a, b)?,
         (Some(x), Some(y)) => {
             let objects = common_round(x.len(), y.len());
             let pairs = (0..objects).map(|k| (x[k % x.len()], y[k % y.len()]));
@@ -51,7 +51,7 @@ fn placed(
         (None, Some(y)) => one_in_turn(y, a)?,
     };
     Some(Measured {
-        value: places.value + (kept_distance(a) - kept_distance(b)).abs(),
+        value: places.value + (min_distance(a) - min_distance(b)).abs(),
         ..places
     })
 }
@@ -73,13 +73,13 @@ fn squared(a: [f64; 2], b: [f64; 2]) -> f64 {
     x * x + y * y
 }
 
-/// The number of objects after which both lists start again together, at most [`MOST_IN_TURN`].
+/// The number of objects after which both lists start again together, at most [`MAX_IN_TURN`].
 fn common_round(a: usize, b: usize) -> usize {
     let (mut divisor, mut rest) = (a, b);
     while rest > 0 {
         (divisor, rest) = (rest, divisor % rest);
     }
-    (a / divisor).saturating_mul(b).min(MOST_IN_TURN)
+    (a / divisor).saturating_mul(b).min(MAX_IN_TURN)
 }
 
 /// The places that objects take in turn, cells by their centres; `None` if each object draws its own.
@@ -102,7 +102,7 @@ fn places_in_turn(distribution: &Distribution) -> Option<Vec<[f64; 2]>> {
 }
 
 /// The minimum distance, in metres, that the distribution keeps between objects; for a mixture, the mean.
-fn kept_distance(distribution: &Distribution) -> f64 {
+fn min_distance(distribution: &Distribution) -> f64 {
     match distribution {
         Distribution::PoissonDisc { distance, .. } => *distance,
         Distribution::Mixture { parts, weights } => {
@@ -111,7 +111,7 @@ fn kept_distance(distribution: &Distribution) -> f64 {
             let kept = parts
                 .iter()
                 .enumerate()
-                .map(|(part, own)| weight(part) * kept_distance(own));
+                .map(|(part, own)| weight(part) * min_distance(own));
             kept.sum::<f64>() / all
         }
         _ => 0.0,

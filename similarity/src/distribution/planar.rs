@@ -11,7 +11,7 @@ pub fn bures_wasserstein(a: &Distribution, b: &Distribution) -> Option<f64> {
     if a == b {
         return Some(0.0);
     }
-    let apart: f64 = (0..2).map(|axis| (a.mean[axis] - b.mean[axis]).powi(2)).sum();
+    let distance: f64 = (0..2).map(|axis| (a.mean[axis] - b.mean[axis]).powi(2)).sum();
     let trace = |m: [[f64; 2]; 2]| m[0][0] + m[1][1];
     let determinant = |m: [[f64; 2]; 2]| (m[0][0] * m[1][1] - m[0][1] * m[1][0]).max(0.0);
     let (a, b) = (a.covariance, b.covariance);
@@ -20,7 +20,7 @@ pub fn bures_wasserstein(a: &Distribution, b: &Distribution) -> Option<f64> {
     let both = (product + 2.0 * (determinant(a) * determinant(b)).sqrt())
         .max(0.0)
         .sqrt();
-    Some((apart + trace(a) + trace(b) - 2.0 * both).max(0.0).sqrt())
+    Some((distance + trace(a) + trace(b) - 2.0 * both).max(0.0).sqrt())
 }
 
 #[cfg(test)]

@@ -10,7 +10,7 @@ use super::wasserstein_2::wasserstein_2;
 use crate::Assignment;
 
 /// Sample points per distribution, if no exact method applies.
-const STAND_INS: usize = 256;
+const NUM_SAMPLES: usize = 256;
 
 /// Wasserstein-1 between two distributions of points, in metres.
 ///
@@ -33,12 +33,12 @@ pub fn planar_wasserstein_1(a: &Distribution, b: &Distribution) -> Option<Measur
     if a == b {
         return Some(Measured::closed(0.0));
     }
-    let apart = libm::hypot(of_a.mean[0] - of_b.mean[0], of_a.mean[1] - of_b.mean[1]);
+    let distance = libm::hypot(of_a.mean[0] - of_b.mean[0], of_a.mean[1] - of_b.mean[1]);
     if let (Some(x), Some(y)) = (Form::of(a), Form::of(b)) {
         if x == y && of_a.covariance == of_b.covariance {
-            return Some(Measured::closed(apart));
+            return Some(Measured::closed(distance));
         }
-        if let (Some(x), Some(y), true) = (Radii::of(a), Radii::of(b), apart == 0.0) {
+        if let (Some(x), Some(y), true) = (Radii::of(a), Radii::of(b), distance == 0.0) {
             if let (Radii::Ring(0.0, outer), Radii::Ring(0.0, other)) = (x, y) {
                 return Some(Measured::closed((outer - other).abs() * 2.0 / 3.0));
             }
@@ -46,7 +46,7 @@ pub fn planar_wasserstein_1(a: &Distribution, b: &Distribution) -> Option<Measur
             return Some(x.compare(y, f64::abs));
         }
     }
-    paired(a, b, |x, y| libm::hypot(x[0] - y[0], x[1] - y[1]))
+    matched_mean(a, b, |x, y| libm::hypot(x[0] - y[0], x[1] - y[1]))
 }
 
 /// Wasserstein-2 between two distributions of points: the root mean square of the distances that points have to move, in metres.
@@ -76,18 +76,18 @@ pub fn planar_wasserstein_2(a: &Distribution, b: &Distribution) -> Option<Measur
         return Some(Measured::within(value, x.tolerance() + y.tolerance()));
     }
     if let (Some(x), Some(y)) = (Radii::of(a), Radii::of(b)) {
-        let apart = [0, 1].map(|axis| (of_a.mean[axis] - of_b.mean[axis]).powi(2));
+        let distance = [0, 1].map(|axis| (of_a.mean[axis] - of_b.mean[axis]).powi(2));
         let around = x.compare(y, |gap| gap * gap);
         return Some(
             Measured {
-                value: around.value + apart[0] + apart[1],
+                value: around.value + distance[0] + distance[1],
                 ..around
             }
             .root(),
         );
     }
     let square = |x: [f64; 2], y: [f64; 2]| (x[0] - y[0]).powi(2) + (x[1] - y[1]).powi(2);
-    paired(a, b, square).map(Measured::root)
+    matched_mean(a, b, square).map(Measured::root)
 }
 
 /// A family up to shifts, and stretching along its axes.
@@ -206,16 +206,16 @@ fn axes(distribution: &Distribution) -> Option<[Distribution; 2]> {
 }
 
 /// The mean cost of the cheapest matching of sample points.
-fn paired(a: &Distribution, b: &Distribution, cost: impl Fn([f64; 2], [f64; 2]) -> f64) -> Option<Measured> {
+fn matched_mean(a: &Distribution, b: &Distribution, cost: impl Fn([f64; 2], [f64; 2]) -> f64) -> Option<Measured> {
     let listed = |distribution: &Distribution| match distribution {
-        Distribution::Points { values, .. } if values.len() <= STAND_INS => Some(values.clone()),
+        Distribution::Points { values, .. } if values.len() <= NUM_SAMPLES => Some(values.clone()),
         _ => None,
     };
     let lists = listed(a).zip(listed(b)).filter(|(a, b)| a.len() == b.len());
     let exact = lists.is_some();
     let (a, b) = match lists {
         Some(lists) => lists,
-        None => (scatter(a, STAND_INS)?, scatter(b, STAND_INS)?),
+        None => (scatter(a, NUM_SAMPLES)?, scatter(b, NUM_SAMPLES)?),
     };
     let costs: Vec<f64> = a.iter().flat_map(|x| b.iter().map(|y| cost(*x, *y))).collect();
     let total = Assignment::new().solve(&costs, a.len(), b.len()).ok()?;
@@ -309,7 +309,7 @@ mod tests {
         assert_eq!(found.method, Method::Samples { count: 256 });
         assert!(found.value < 0.06, "{found:?}");
         let cost = |x: [f64; 2], y: [f64; 2]| (x[0] - y[0]).powi(2) + (x[1] - y[1]).powi(2);
-        let by_pairs = paired(&square, &disc(5.0, 2.0), cost).unwrap().root().value;
+        let by_pairs = matched_mean(&square, &disc(5.0, 2.0), cost).unwrap().root().value;
         let found = planar_wasserstein_2(&square, &disc(5.0, 2.0)).unwrap().value;
         assert_eq!(by_pairs, found);
         let least = bures_wasserstein(&square, &disc(5.0, 2.0)).unwrap();

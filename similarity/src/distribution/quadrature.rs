@@ -61,10 +61,10 @@ fn nodes() -> &'static [(f64, f64)] {
 /// Computes several integrals from `low` to `high` at once, each with an estimate of its error.
 ///
 /// The double exponential rule of Takahasi and Mori 1974: tolerates steep ends, but not kinks inside. Halves its step until the
-/// first integral changes by at most `enough`, or by a share of 1e-10, at most five times: 13 to 700 calls.
+/// first integral changes by at most `tolerance`, or by a share of 1e-10, at most five times: 13 to 700 calls.
 pub(crate) fn integrate<const N: usize>(
     [low, high]: [f64; 2],
-    enough: f64,
+    tolerance: f64,
     mut f: impl FnMut(Node) -> [f64; N],
 ) -> ([f64; N], [f64; N]) {
     let width = high - low;
@@ -101,7 +101,7 @@ pub(crate) fn integrate<const N: usize>(
             value[k] = sums[k] * scale;
             error[k] = (value[k] - before[k]).abs();
         }
-        if error[0] <= enough.max(1e-10 * value[0].abs()) {
+        if error[0] <= tolerance.max(1e-10 * value[0].abs()) {
             break;
         }
         before = value;
@@ -111,7 +111,7 @@ pub(crate) fn integrate<const N: usize>(
 }
 
 /// Positions in a stretch, as shares of its length, sampled to find sign changes: denser near the ends.
-const LOOKS: [f64; 13] = [
+const SAMPLE_POSITIONS: [f64; 13] = [
     1e-7,
     1e-3,
     0.02,
@@ -133,7 +133,7 @@ pub(crate) fn split_at_signs(knots: &[f64], f: impl Fn(f64) -> f64) -> Vec<f64> 
     found.extend(knots.first());
     for ends in knots.windows(2) {
         let mut before = (ends[0], 0.0);
-        for share in LOOKS {
+        for share in SAMPLE_POSITIONS {
             let x = ends[0] + (ends[1] - ends[0]) * share;
             let here = (x, f(x));
             if before.1 * here.1 < 0.0 {

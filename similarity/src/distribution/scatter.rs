@@ -48,7 +48,7 @@ fn point(distribution: &Distribution, [u, v]: [f64; 2]) -> Option<[f64; 2]> {
             value: Value::Point(point),
         } => *point,
         Distribution::Choice { values, weights } => {
-            let (index, _) = chosen(values.len(), weights.as_deref(), u);
+            let (index, _) = choose(values.len(), weights.as_deref(), u);
             if let Value::Point(point) = values[index] {
                 point
             } else {
@@ -56,7 +56,7 @@ fn point(distribution: &Distribution, [u, v]: [f64; 2]) -> Option<[f64; 2]> {
             }
         }
         Distribution::Mixture { parts, weights } => {
-            let (index, within) = chosen(parts.len(), weights.as_deref(), u);
+            let (index, within) = choose(parts.len(), weights.as_deref(), u);
             return point(&parts[index], [within, v]);
         }
         other => return other.point_at([u, v]),
@@ -64,7 +64,7 @@ fn point(distribution: &Distribution, [u, v]: [f64; 2]) -> Option<[f64; 2]> {
 }
 
 /// The entry that a random number chooses among `count`, and the remainder of that number, rescaled to 0..1.
-pub(super) fn chosen(count: usize, weights: Option<&[f64]>, u: f64) -> (usize, f64) {
+pub(super) fn choose(count: usize, weights: Option<&[f64]>, u: f64) -> (usize, f64) {
     let weight = |k: usize| weights.map_or(1.0, |weights| weights[k]);
     let mut left = u * (0..count).map(weight).sum::<f64>();
     for k in 0..count {

@@ -39,7 +39,7 @@ impl Shape {
         })
     }
 
-    /// The least and greatest number of the standard form.
+    /// The smallest and the largest number of the standard form.
     fn ends(self) -> [f64; 2] {
         match self {
             Self::Point => [0.0, 0.0],
@@ -51,9 +51,9 @@ impl Shape {
     }
 }
 
-/// Whether one quantile function is never below the other, as far as can be seen from the families; then every optimal
+/// Whether the families show that one quantile function is never below the other; then every optimal
 /// transport moves in one direction, and the distance is the difference of the means.
-pub(super) fn one_is_never_less(a: &Distribution, b: &Distribution) -> bool {
+pub(super) fn are_ordered(a: &Distribution, b: &Distribution) -> bool {
     use Distribution::{Bernoulli, Beta, Binomial, Geometric, IntegerUniform, Poisson, TruncatedNormal};
     let agree = |x: f64, y: f64| !(x < 0.0 && y > 0.0 || x > 0.0 && y < 0.0);
     match (a, b) {
@@ -102,17 +102,14 @@ mod tests {
     #[test]
     fn nested_distributions_are_not_ordered() {
         let uniform = |low: f64, high: f64| Uniform { low, high };
-        assert!(one_is_never_less(&uniform(0.0, 1.0), &uniform(0.0, 3.0)));
-        assert!(!one_is_never_less(&uniform(0.0, 1.0), &uniform(-1.0, 3.0)));
-        assert!(one_is_never_less(
-            &Exponential { rate: 1.0 },
-            &Exponential { rate: 3.0 }
-        ));
-        assert!(one_is_never_less(
+        assert!(are_ordered(&uniform(0.0, 1.0), &uniform(0.0, 3.0)));
+        assert!(!are_ordered(&uniform(0.0, 1.0), &uniform(-1.0, 3.0)));
+        assert!(are_ordered(&Exponential { rate: 1.0 }, &Exponential { rate: 3.0 }));
+        assert!(are_ordered(
             &Normal { mean: 1.0, std: 2.0 },
             &Normal { mean: 5.0, std: 2.0 }
         ));
-        assert!(!one_is_never_less(
+        assert!(!are_ordered(
             &Normal { mean: 1.0, std: 2.0 },
             &Normal { mean: 5.0, std: 1.0 }
         ));
@@ -121,6 +118,6 @@ mod tests {
             mode: high / 2.0,
             high,
         };
-        assert!(one_is_never_less(&tent(1.0), &tent(4.0)));
+        assert!(are_ordered(&tent(1.0), &tent(4.0)));
     }
 }

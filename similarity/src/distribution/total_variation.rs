@@ -1,4 +1,4 @@
-//! Total variation: the probability that would have to move.
+//! Total variation: the probability mass that must move.
 
 use std::f64::consts::SQRT_2;
 
@@ -9,11 +9,11 @@ use super::overlap;
 
 /// Largest difference between the probabilities that two distributions give to any event: ½ Σ |p − q|, ½ ∫ |f − g|.
 ///
-/// A metric in `0..=1`; 1 exactly if they share no outcome. Takes distributions of numbers, of headings (both on the circle as
-/// soon as either draws headings; a metric only if all numbers stay within one turn), and of single values of any type; `None`
-/// for numbers against words, for points with a density and for shares. In closed form for normal, log-normal and exponential
-/// pairs and for everything flat or stepped; otherwise by quadrature, mostly within 1e-9, at 13 to 700 points between
-/// neighbouring knots.
+/// A metric in `0..=1`; 1 if and only if they share no outcome. Takes distributions of numbers, of headings, and of single
+/// values of any type. Both are taken on the circle whenever either is a distribution of headings, which is a metric only if
+/// all numbers stay within one turn. `None` when comparing numbers with text, for distributions of points that have a density,
+/// and for distributions over shares. In closed form for normal, log-normal and exponential pairs and for everything piecewise
+/// constant or discrete; otherwise by quadrature, mostly within 1e-9, at 13 to 700 points between neighbouring knots.
 ///
 /// Source: Levin, Peres & Wilmer 2017, "Markov Chains and Mixing Times", section 4.1.
 ///
@@ -57,13 +57,13 @@ fn closed(a: &Distribution, b: &Distribution) -> Option<f64> {
 }
 
 fn normals(m: f64, s: f64, n: f64, t: f64) -> f64 {
-    let apart = (m - n).abs();
+    let distance = (m - n).abs();
     if s == t {
-        return libm::erf(apart / (2.0 * SQRT_2 * s));
+        return libm::erf(distance / (2.0 * SQRT_2 * s));
     }
-    // In standard deviations of the narrower one, from its mean.
+    // Work in units of the narrower distribution's standard deviation, measured from its mean.
     let (narrow, wide) = (s.min(t), s.max(t));
-    let (ratio, shift) = (wide / narrow, apart / narrow);
+    let (ratio, shift) = (wide / narrow, distance / narrow);
     let a = ratio * ratio - 1.0;
     let c = shift * shift + 2.0 * ratio * ratio * libm::log(ratio);
     // The densities cross where (z − shift)² = ratio² z² − 2 ratio² ln ratio, which is a z² + 2 shift z − c = 0.
@@ -164,7 +164,7 @@ mod tests {
 
     #[test]
     fn overflowing_densities_are_compared_by_mass() {
-        // scipy: half the sum of differences of cumulative functions over 700,000 stretches of equal width in ln x.
+        // scipy: half the sum of the absolute differences of CDF increments over 700,000 intervals of equal width in ln x.
         for (alpha, sigma, expected) in [(0.03, 30.0, 0.514_766_196_057), (0.001, 10.0, 0.971_931_609_412)] {
             let beta = Distribution::Beta {
                 alpha,

@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 use driftworld_spec::{Distribution, Value};
 
 /// Maximum number of values to enumerate.
-const MOST_VALUES: f64 = 100_000.0;
+const MAX_VALUES: f64 = 100_000.0;
 
 /// Probability of entry `k` of `count`, by weight if there are weights.
 pub(super) fn share(k: usize, count: usize, weights: Option<&[f64]>) -> f64 {
@@ -14,7 +14,7 @@ pub(super) fn share(k: usize, count: usize, weights: Option<&[f64]>) -> f64 {
 
 /// Every possible value with its probability, each once, in a fixed order; `None` for distributions with a density.
 ///
-/// For places taken in turn, those of one round.
+/// For points taken in turn: the points of one round.
 pub(super) fn probabilities(distribution: &Distribution) -> Option<Vec<(Value, f64)>> {
     let mut found = Vec::new();
     add(&mut found, 1.0, distribution)?;
@@ -61,7 +61,7 @@ fn add(found: &mut Vec<(Value, f64)>, scale: f64, distribution: &Distribution) -
             rows,
             jitter,
             ..
-        } if jitter.unwrap_or(0.0) == 0.0 && columns * rows <= MOST_VALUES => {
+        } if jitter.unwrap_or(0.0) == 0.0 && columns * rows <= MAX_VALUES => {
             let each = scale / (columns * rows);
             let centres = grid_centres(*low, *high, [*columns, *rows]);
             found.extend(centres.map(|point| (Value::Point(point), each)));
@@ -85,7 +85,7 @@ pub(super) fn grid_centres(low: [f64; 2], high: [f64; 2], cells: [f64; 2]) -> im
 }
 
 /// Pairs the probabilities of equal values, with 0 for values that are in one list only; both lists are sorted.
-pub(super) fn side_by_side(a: &[(Value, f64)], b: &[(Value, f64)]) -> Vec<[f64; 2]> {
+pub(super) fn aligned(a: &[(Value, f64)], b: &[(Value, f64)]) -> Vec<[f64; 2]> {
     let (mut i, mut j) = (0, 0);
     let mut pairs = Vec::with_capacity(a.len().max(b.len()));
     while i < a.len() || j < b.len() {
@@ -144,7 +144,7 @@ mod tests {
         };
         let a = probabilities(&words(&["b", "a"], &[1.0, 3.0])).unwrap();
         let b = probabilities(&words(&["c", "b", "b"], &[2.0, 1.0, 1.0])).unwrap();
-        assert_eq!(side_by_side(&a, &b), [[0.75, 0.0], [0.25, 0.5], [0.0, 0.5]]);
+        assert_eq!(aligned(&a, &b), [[0.75, 0.0], [0.25, 0.5], [0.0, 0.5]]);
     }
 
     #[test]

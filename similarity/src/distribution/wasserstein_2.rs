@@ -3,7 +3,7 @@
 use driftworld_spec::Distribution;
 
 use super::gap::Power;
-use super::law::{self, Law, draws_headings, rising};
+use super::law::{self, Law, ascending, draws_headings};
 use super::measured::Measured;
 use super::quadrature::integrate;
 use super::shape::Shape;
@@ -11,12 +11,12 @@ use super::shape::Shape;
 /// Wasserstein-2 between two distributions of numbers, the root mean square of the distances that numbers have to move:
 /// √∫ (F⁻¹(u) − G⁻¹(u))² du, in the unit of the numbers.
 ///
-/// A metric in `0..`, never below Wasserstein-1. A Bernoulli counts as 0 and 1. `None` if either draws no numbers,
-/// draws headings, or has more than 65,536 different counts. In closed form if both differ only in shift and scale
-/// (normal, uniform, exponential, triangular, beta and truncated normal of the same shape): the hypotenuse of the differences
-/// in mean and standard deviation; for two log-normals, for anything against a constant, and for everything flat or stepped.
-/// Otherwise by quadrature over the quantiles, mostly within 1e-7, at 13 to 700 points between neighbouring knots.
-/// Uniform integers with more than 4,096 possible values are treated as continuous.
+/// A metric in `0..`, never below Wasserstein-1. A Bernoulli counts as 0 and 1. `None` if either draws no numbers, draws
+/// headings, or has more than 65,536 different counts. In closed form if both differ only in shift and scale (normal, uniform,
+/// exponential, triangular, beta and truncated normal of the same shape): the hypotenuse of the differences in mean and
+/// standard deviation; for two log-normals, for anything against a constant, and for everything piecewise constant or discrete.
+/// Otherwise by quadrature over the quantiles, mostly within 1e-7, at 13 to 700 points between neighbouring knots. Uniform
+/// integers with more than 4,096 possible values are treated as continuous.
 ///
 /// Source: Peyré & Cuturi 2019, "Computational Optimal Transport", remarks 2.30 and 2.31. `ot.wasserstein_1d(p=2)` is the
 /// square.
@@ -25,8 +25,8 @@ use super::shape::Shape;
 /// ```
 /// use driftworld_similarity::distribution::wasserstein_2;
 /// use driftworld_spec::Distribution::Normal;
-/// let apart = wasserstein_2(&Normal { mean: 0.0, std: 1.0 }, &Normal { mean: 3.0, std: 5.0 }).unwrap();
-/// assert_eq!(apart.value, 5.0);
+/// let distance = wasserstein_2(&Normal { mean: 0.0, std: 1.0 }, &Normal { mean: 3.0, std: 5.0 }).unwrap();
+/// assert_eq!(distance.value, 5.0);
 /// ```
 pub fn wasserstein_2(a: &Distribution, b: &Distribution) -> Option<Measured> {
     if draws_headings(a) || draws_headings(b) {
@@ -76,7 +76,7 @@ type Piece = (f64, f64, f64);
 
 /// The quantile function of a law of flat parts and single numbers.
 fn pieces(law: &Law) -> Vec<Piece> {
-    let knots = rising(law.knots_and_atoms().collect());
+    let knots = ascending(law.knots_and_atoms().collect());
     let mut pieces = Vec::with_capacity(2 * knots.len());
     let mut atoms = law.atoms.iter().peekable();
     let mut before: Option<(f64, f64)> = None;
@@ -122,7 +122,7 @@ fn over_quantiles(a: &Distribution, p: &Law, b: &Distribution, q: &Law) -> Optio
     let mut chances = vec![0.0, 1.0];
     for law in [p, q] {
         let (mut atoms, mut steps) = (law.atoms.iter().peekable(), 0.0);
-        for x in rising(law.knots_and_atoms().collect()) {
+        for x in ascending(law.knots_and_atoms().collect()) {
             let below = law.cumulative_of_parts(x);
             chances.push(below + steps);
             while let Some(atom) = atoms.next_if(|atom| atom.0 <= x) {
@@ -134,7 +134,7 @@ fn over_quantiles(a: &Distribution, p: &Law, b: &Distribution, q: &Law) -> Optio
     chances.retain(|u| (0.0..=1.0).contains(u));
     let (of_a, of_b) = (a.mean()?, b.mean()?);
     let (mut sum, mut tolerance, mut squares) = (0.0, 0.0, [0.0; 2]);
-    for ends in rising(chances).windows(2) {
+    for ends in ascending(chances).windows(2) {
         let enough = 1e-12 * (a.variance()? + b.variance()?);
         let ([value, x, y], [error, ..]) = integrate([ends[0], ends[1]], enough, |node| {
             let u = node.x().clamp(1e-300, 1.0 - f64::EPSILON / 2.0);

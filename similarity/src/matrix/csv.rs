@@ -35,7 +35,8 @@ impl DistanceMatrix {
         text
     }
 
-    /// Reads the output of [`DistanceMatrix::to_csv`]. CSV does not record the measure's laws, so the default applies.
+    /// Reads the output of [`DistanceMatrix::to_csv`]. CSV does not record the measure's metric properties, so the default
+    /// applies.
     ///
     /// # Errors
     /// [`SimilarityError::BadMatrix`] if the text is not such a table; otherwise as [`DistanceMatrix::from_values`].
@@ -112,7 +113,7 @@ struct Row {
 /// Iterates over the lines of a table; a cell in quotes may hold commas and line breaks, and a doubled quote stands for one.
 /// Empty lines, which some editors append, are skipped.
 struct Rows<'t> {
-    letters: Peekable<Chars<'t>>,
+    chars: Peekable<Chars<'t>>,
     line: usize,
 }
 
@@ -120,37 +121,37 @@ impl<'t> Rows<'t> {
     fn of(text: &'t str) -> Self {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         Self {
-            letters: text.chars().peekable(),
+            chars: text.chars().peekable(),
             line: 1,
         }
     }
 
-    /// The next line, including empty ones.
+    /// The next line, which may be empty.
     fn line(&mut self) -> Option<Result<Row, SimilarityError>> {
-        self.letters.peek()?;
+        self.chars.peek()?;
         let (mut cells, mut cell) = (Vec::new(), String::new());
-        let (mut quoted, begun) = (false, self.line);
-        while let Some(letter) = self.letters.next() {
-            self.line += usize::from(letter == '\n');
-            match letter {
-                '"' if quoted && self.letters.next_if_eq(&'"').is_some() => cell.push('"'),
+        let (mut quoted, line) = (false, self.line);
+        while let Some(c) = self.chars.next() {
+            self.line += usize::from(c == '\n');
+            match c {
+                '"' if quoted && self.chars.next_if_eq(&'"').is_some() => cell.push('"'),
                 '"' if quoted || cell.is_empty() => quoted = !quoted,
-                ',' if !quoted => keep(&mut cells, &mut cell),
-                '\r' if !quoted && self.letters.peek() == Some(&'\n') => {}
+                ',' if !quoted => push_cell(&mut cells, &mut cell),
+                '\r' if !quoted && self.chars.peek() == Some(&'\n') => {}
                 '\n' if !quoted => break,
                 other => cell.push(other),
             }
         }
         if quoted {
-            return Some(Err(bad(begun, "an unclosed quote", "a closing quote")));
+            return Some(Err(bad(line, "an unclosed quote", "a closing quote")));
         }
-        keep(&mut cells, &mut cell);
-        Some(Ok(Row { line: begun, cells }))
+        push_cell(&mut cells, &mut cell);
+        Some(Ok(Row { line, cells }))
     }
 }
 
 /// Adds a cell to its line, but at most one more than any matrix can have.
-fn keep(cells: &mut Vec<String>, cell: &mut String) {
+fn push_cell(cells: &mut Vec<String>, cell: &mut String) {
     let cell = std::mem::take(cell);
     if cells.len() < MAX_ITEMS + 2 {
         cells.push(cell);

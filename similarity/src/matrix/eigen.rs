@@ -19,14 +19,14 @@ const PRECISION: f64 = 1e-12;
 pub(crate) fn largest(
     n: usize,
     multiply: &impl Fn(&[f64], &mut [f64]),
-    against: &[Vec<f64>],
+    excluded: &[Vec<f64>],
 ) -> Option<(f64, Vec<f64>)> {
     // Each eigenvector gets a new start: the old one has no component left in an eigenspace that it already led into.
-    let mut rng = SplitMix64(against.len() as u64);
+    let mut rng = SplitMix64(excluded.len() as u64);
     let mut start: Vec<f64> = (0..n).map(|_| rng.unit() - 0.5).collect();
     let mut best = None;
     for _ in 0..MAX_RESTARTS {
-        let Some(found) = climb(n, multiply, against, start.clone()) else {
+        let Some(found) = run(n, multiply, excluded, start.clone()) else {
             break;
         };
         let done = found.error <= PRECISION * found.scale;
@@ -40,7 +40,7 @@ pub(crate) fn largest(
     Some((value, with_fixed_sign(vector)))
 }
 
-struct Climb {
+struct Run {
     value: f64,
     vector: Vec<f64>,
     error: f64,
@@ -48,43 +48,43 @@ struct Climb {
 }
 
 /// One series of steps from a start.
-fn climb(n: usize, multiply: &impl Fn(&[f64], &mut [f64]), against: &[Vec<f64>], mut start: Vec<f64>) -> Option<Climb> {
-    let most = MAX_STEPS.min(n.saturating_sub(against.len()));
-    remove(&mut start, against);
-    remove(&mut start, against);
+fn run(n: usize, multiply: &impl Fn(&[f64], &mut [f64]), excluded: &[Vec<f64>], mut start: Vec<f64>) -> Option<Run> {
+    let max_steps = MAX_STEPS.min(n.saturating_sub(excluded.len()));
+    remove(&mut start, excluded);
+    remove(&mut start, excluded);
     let length = dot(&start, &start).sqrt();
-    if most == 0 || length < 1e-9 {
+    if max_steps == 0 || length < 1e-9 {
         return None;
     }
     let mut basis = vec![scaled(&start, 1.0 / length)];
-    let (mut diagonal, mut beside) = (Vec::new(), Vec::new());
+    let (mut diagonal, mut off_diagonal) = (Vec::new(), Vec::new());
     let mut next = vec![0.0; n];
     loop {
         let here = &basis[basis.len() - 1];
         multiply(here, &mut next);
         diagonal.push(dot(here, &next));
         for _ in 0..2 {
-            remove(&mut next, against);
+            remove(&mut next, excluded);
             remove(&mut next, &basis);
         }
         let rest = dot(&next, &next).sqrt();
         let steps = basis.len();
         let scale = diagonal
             .iter()
-            .chain(&beside)
+            .chain(&off_diagonal)
             .fold(0.0_f64, |a, b: &f64| a.max(b.abs()));
-        let ended = steps == most || rest <= 1e-14 * scale;
+        let ended = steps == max_steps || rest <= 1e-14 * scale;
         if ended || steps % 8 == 0 {
             // The error needs only the last entry of each eigenvector of the small matrix.
             let mut last = vec![vec![0.0; steps]];
             last[0][steps - 1] = 1.0;
-            let values = tridiagonal(&diagonal, &beside, &mut last);
-            let top = top_of(&values);
+            let values = tridiagonal(&diagonal, &off_diagonal, &mut last);
+            let top = index_of_largest(&values);
             let error = (rest * last[0][top]).abs();
             if ended || error <= PRECISION * scale {
                 let mut rows: Vec<Vec<f64>> = (0..steps).map(|row| unit(steps, row)).collect();
-                let values = tridiagonal(&diagonal, &beside, &mut rows);
-                let top = top_of(&values);
+                let values = tridiagonal(&diagonal, &off_diagonal, &mut rows);
+                let top = index_of_largest(&values);
                 let mut vector = vec![0.0; n];
                 for (direction, row) in basis.iter().zip(&rows) {
                     vector
@@ -93,7 +93,7 @@ fn climb(n: usize, multiply: &impl Fn(&[f64], &mut [f64]), against: &[Vec<f64>],
                         .for_each(|(to, from)| *to += row[top] * from);
                 }
                 let length = dot(&vector, &vector).sqrt();
-                return Some(Climb {
+                return Some(Run {
                     value: values[top],
                     vector: scaled(&vector, 1.0 / length),
                     error: if rest <= 1e-14 * scale { 0.0 } else { error },
@@ -102,7 +102,7 @@ fn climb(n: usize, multiply: &impl Fn(&[f64], &mut [f64]), against: &[Vec<f64>],
             }
         }
         basis.push(scaled(&next, 1.0 / rest));
-        beside.push(rest);
+        off_diagonal.push(rest);
     }
 }
 
@@ -110,10 +110,10 @@ fn climb(n: usize, multiply: &impl Fn(&[f64], &mut [f64]), against: &[Vec<f64>],
 /// matrix of eigenvectors, which are its columns.
 ///
 /// Source: Bowdler, Martin, Reinsch and Wilkinson 1968 (`tql2` of EISPACK).
-fn tridiagonal(diagonal: &[f64], beside: &[f64], rows: &mut [Vec<f64>]) -> Vec<f64> {
+fn tridiagonal(diagonal: &[f64], off_diagonal: &[f64], rows: &mut [Vec<f64>]) -> Vec<f64> {
     let n = diagonal.len();
     let mut d = diagonal.to_vec();
-    let mut e = beside.to_vec();
+    let mut e = off_diagonal.to_vec();
     e.resize(n, 0.0);
     for low in 0..n {
         // About three iterations suffice for each; the bound ends the loop for matrices of NaN.
@@ -161,7 +161,7 @@ fn sweep(d: &mut [f64], e: &mut [f64], rows: &mut [Vec<f64>], low: usize, high: 
     e[high] = 0.0;
 }
 
-fn top_of(values: &[f64]) -> usize {
+fn index_of_largest(values: &[f64]) -> usize {
     let mut top = 0;
     for (index, value) in values.iter().enumerate() {
         if *value > values[top] {

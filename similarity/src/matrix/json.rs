@@ -38,7 +38,7 @@ impl DistanceMatrix {
     pub fn from_json(text: &str) -> Result<Self, SimilarityError> {
         let document: Document = serde_json::from_str(text).map_err(|error| SimilarityError::BadMatrix {
             place: format!("line {} column {}", error.line(), error.column()),
-            found: without_place(&error),
+            found: without_position(&error),
             expected: "an object with labels, nature and values".to_owned(),
         })?;
         let n = Self::bounded(document.labels.len())?;
@@ -59,10 +59,10 @@ impl DistanceMatrix {
 }
 
 /// The JSON reader's message without the position, which the error states separately.
-fn without_place(error: &serde_json::Error) -> String {
-    let said = error.to_string();
-    let end = said.rfind(" at line ").unwrap_or(said.len());
-    in_plain_words(&said[..end])
+fn without_position(error: &serde_json::Error) -> String {
+    let message = error.to_string();
+    let end = message.rfind(" at line ").unwrap_or(message.len());
+    in_plain_words(&message[..end])
 }
 
 #[cfg(test)]

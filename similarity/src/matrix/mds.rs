@@ -11,7 +11,7 @@ pub struct PlanarMap {
     /// Each item's position, in the distances' own unit; the mean is 0, and the first axis is the longer one.
     pub points: Vec<[f64; 2]>,
     /// The share of the matrix that the plane explains, in 0..=1: the squares of the two eigenvalues used, as a share of all
-    /// squares (Mardia 1978). 1 if all distances are those of points in a plane, or all are 0.
+    /// squares (Mardia 1978). 1 if the points reproduce all distances exactly, or all distances are 0.
     pub explained: f64,
 }
 
@@ -47,7 +47,7 @@ pub fn classical_map(matrix: &DistanceMatrix) -> PlanarMap {
     };
     let mut axes: Vec<Vec<f64>> = Vec::new();
     let mut points = vec![[0.0; 2]; n];
-    let mut shown = 0.0;
+    let mut kept = 0.0;
     for axis in 0..2 {
         let Some((value, vector)) = eigen::largest(n, &multiply, &axes) else {
             break;
@@ -57,7 +57,7 @@ pub fn classical_map(matrix: &DistanceMatrix) -> PlanarMap {
             .iter_mut()
             .zip(&vector)
             .for_each(|(point, part)| point[axis] = part * length);
-        shown += value.max(0.0).powi(2);
+        kept += value.max(0.0).powi(2);
         axes.push(vector);
     }
     let rows: Vec<f64> = (0..n)
@@ -65,7 +65,7 @@ pub fn classical_map(matrix: &DistanceMatrix) -> PlanarMap {
         .map(|a| (0..n).map(|b| product(a, b).powi(2)).sum())
         .collect();
     let all: f64 = rows.iter().sum();
-    let explained = if all > 0.0 { (shown / all).min(1.0) } else { 1.0 };
+    let explained = if all > 0.0 { (kept / all).min(1.0) } else { 1.0 };
     PlanarMap { points, explained }
 }
 
@@ -107,12 +107,12 @@ mod tests {
                 }
             }
             for axis in 0..2 {
-                let out = map
+                let farthest = map
                     .points
                     .iter()
                     .map(|point| point[axis])
                     .fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a });
-                assert!(out > 0.0, "{case}: the farthest is on the positive side");
+                assert!(farthest > 0.0, "{case}: the farthest is on the positive side");
             }
         }
     }

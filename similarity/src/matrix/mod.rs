@@ -36,7 +36,7 @@ fn rows<S: serde::Serializer>(values: &Array2<f64>, serializer: S) -> Result<S::
 impl DistanceMatrix {
     /// Measures every pair once, in parallel; `measure` takes two indices, the first below the second.
     ///
-    /// Declared as a mere [`MetricProperties::Distance`] unless [`DistanceMatrix::with_properties`] says more.
+    /// Declared as a mere [`MetricProperties::Distance`] unless [`DistanceMatrix::with_properties`] declares more.
     ///
     /// # Errors
     /// The error of `measure` for the first failing pair in row order; [`SimilarityError::NotADistance`] for an invalid number;
@@ -61,7 +61,7 @@ impl DistanceMatrix {
         let row = |(a, mut row): (usize, ndarray::ArrayViewMut1<f64>)| -> Result<(), E> {
             for b in a + 1..n {
                 let found = measure(a, b)?;
-                row[b] = Self::sound(&labels, a, b, found)?;
+                row[b] = Self::check_distance(&labels, a, b, found)?;
             }
             Ok(())
         };
@@ -96,8 +96,8 @@ impl DistanceMatrix {
                 return Err(bad(place, values[[a, a]].to_string(), "0".to_owned()));
             }
             for b in a + 1..n {
-                let there = Self::sound(&labels, a, b, values[[a, b]])?;
-                let back = Self::sound(&labels, b, a, values[[b, a]])?;
+                let there = Self::check_distance(&labels, a, b, values[[a, b]])?;
+                let back = Self::check_distance(&labels, b, a, values[[b, a]])?;
                 if (there - back).abs() > 1e-9 * there.max(back) {
                     let place = format!("distance of {:?} to {:?}", labels[a], labels[b]);
                     let found = format!("{there} there and {back} back");
@@ -134,7 +134,7 @@ impl DistanceMatrix {
         })
     }
 
-    fn sound(labels: &[String], a: usize, b: usize, found: f64) -> Result<f64, SimilarityError> {
+    fn check_distance(labels: &[String], a: usize, b: usize, found: f64) -> Result<f64, SimilarityError> {
         if (0.0..=MAX_DISTANCE).contains(&found) {
             return Ok(found);
         }
@@ -157,13 +157,13 @@ impl DistanceMatrix {
         }
     }
 
-    /// The same matrix, declared to satisfy these laws. Nothing is checked.
+    /// The same matrix, declared to have these metric properties, which are not checked.
     #[must_use]
     pub fn with_properties(self, properties: MetricProperties) -> Self {
         Self { properties, ..self }
     }
 
-    /// The laws that its measure is declared to satisfy.
+    /// The metric properties that its measure is declared to have.
     pub fn properties(&self) -> MetricProperties {
         self.properties
     }
@@ -232,22 +232,22 @@ mod tests {
 
     #[test]
     fn values_that_are_not_a_distance_matrix_are_refused() {
-        let said = |numbers: [f64; 4]| {
+        let result = |numbers: [f64; 4]| {
             let values = Array2::from_shape_vec((2, 2), numbers.to_vec()).unwrap();
             DistanceMatrix::from_values(labels(2), values).map_err(|error| error.to_string())
         };
-        assert_eq!(said([0.0, 3.0, 3.0, 0.0]).unwrap().get(1, 0), 3.0);
-        assert_eq!(said([0.0, 3.0, 3.0 + 1e-12, 0.0]).unwrap().get(1, 0), 3.0);
+        assert_eq!(result([0.0, 3.0, 3.0, 0.0]).unwrap().get(1, 0), 3.0);
+        assert_eq!(result([0.0, 3.0, 3.0 + 1e-12, 0.0]).unwrap().get(1, 0), 3.0);
         assert_eq!(
-            said([0.0, 3.0, 2.0, 0.0]).unwrap_err(),
+            result([0.0, 3.0, 2.0, 0.0]).unwrap_err(),
             "matrix, distance of \"item 0\" to \"item 1\": found 3 there and 2 back, expected one number for both"
         );
         assert_eq!(
-            said([0.0, 3.0, 3.0, 1.0]).unwrap_err(),
+            result([0.0, 3.0, 3.0, 1.0]).unwrap_err(),
             "matrix, distance of \"item 1\" to itself: found 1, expected 0"
         );
         assert_eq!(
-            said([0.0, f64::INFINITY, 3.0, 0.0]).unwrap_err(),
+            result([0.0, f64::INFINITY, 3.0, 0.0]).unwrap_err(),
             "distance of \"item 0\" to \"item 1\": found inf, expected a number from 0 to 1e100"
         );
         let twice = DistanceMatrix::from_values(vec!["a".to_owned(); 2], Array2::zeros((2, 2)));

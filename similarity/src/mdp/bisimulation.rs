@@ -25,10 +25,10 @@ pub struct Bisimulation {
 /// The bisimulation metric between a state of one deterministic decision process and a state of another with the same actions.
 ///
 /// With one successor each, `d(s, t) = maxₐ (1 − c) |R(s, a) − R(t, a)| + c d(s', t')`, where action `a` leads from `s` to `s'`
-/// and from `t` to `t'`: the Wasserstein-1 distance between two certain successors is their distance. So `d(s, t)` depends only on
-/// the pairs that equal action sequences reach from `(s, t)`. In `0..=` the largest difference of rewards, in the unit of the
-/// rewards: 0 between states from which every sequence of actions pays the same. Between worlds with the same transitions, each
-/// state is paired with itself, so there are as many pairs as states.
+/// and from `t` to `t'`: the Wasserstein-1 distance between two certain successors is their distance. So `d(s, t)` depends only
+/// on the pairs that equal action sequences reach from `(s, t)`. In `0..=` the largest difference of rewards, in the unit of
+/// the rewards: 0 between states from which every sequence of actions pays the same. Between worlds with the same transitions,
+/// each state is paired with itself, so there are as many pairs as states.
 ///
 /// `starts`: a state of the first and one of the second process. `discount`: `c`, 0 to 0.9999. `max_pairs`: how many
 /// pairs to visit, 1 to [`MAX_PAIRS`]; nearest first. Pairs that are not visited count as 0 in the lower bound and as
@@ -54,7 +54,7 @@ pub struct Bisimulation {
 /// let goal = Mdp::new(4, 2, moves.clone(), vec![0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0])?;
 /// let none = Mdp::new(4, 2, moves, vec![0.0; 8])?;
 /// let found = bisimulation(&goal, &none, (0, 0), 0.9, 100)?;
-/// // Two steps until the difference is met, and then for ever.
+/// // Two steps until the difference is reached, then it is paid for ever.
 /// assert!((found.lower - 0.81).abs() < 1e-12);
 /// assert_eq!(found.pairs, 4);
 /// # Ok::<(), driftworld_similarity::SimilarityError>(())
@@ -80,8 +80,8 @@ pub fn bisimulation(
     let upper = if reached.is_complete() {
         lower + error
     } else {
-        let most = (1.0 - discount) * largest_difference(a, b);
-        let costs = reached.with_beyond(most, a.actions());
+        let max_cost = (1.0 - discount) * largest_difference(a, b);
+        let costs = reached.with_unvisited_cost(max_cost, a.actions());
         let (values, error) = CertainSums { costs: &costs, ..sums }.solve();
         values[0] + error
     };
@@ -139,35 +139,35 @@ struct Reached {
 }
 
 impl Reached {
-    fn from(a: &Mdp, b: &Mdp, (of_a, of_b): (usize, usize), present: f64, max_pairs: usize) -> Self {
-        const BEYOND: u32 = u32::MAX;
+    fn from(a: &Mdp, b: &Mdp, (of_a, of_b): (usize, usize), reward_share: f64, max_pairs: usize) -> Self {
+        const UNVISITED: u32 = u32::MAX;
         let start = (of_a as u32, of_b as u32);
-        let mut places: HashMap<(u32, u32), u32> = HashMap::from([(start, 0)]);
+        let mut indices: HashMap<(u32, u32), u32> = HashMap::from([(start, 0)]);
         let mut pairs = vec![start];
         let (mut next, mut costs) = (Vec::new(), Vec::new());
-        let mut looked_at = 0;
-        while let Some(&(of_a, of_b)) = pairs.get(looked_at) {
+        let mut num_expanded = 0;
+        while let Some(&(of_a, of_b)) = pairs.get(num_expanded) {
             let (of_a, of_b) = (of_a as usize, of_b as usize);
             for action in 0..a.actions() {
                 let pair = (a.successor(of_a, action), b.successor(of_b, action));
-                let place = match places.get(&pair) {
-                    Some(place) => *place,
-                    None if pairs.len() == max_pairs => BEYOND,
+                let index = match indices.get(&pair) {
+                    Some(index) => *index,
+                    None if pairs.len() == max_pairs => UNVISITED,
                     None => {
-                        let place = pairs.len() as u32;
-                        places.insert(pair, place);
+                        let index = pairs.len() as u32;
+                        indices.insert(pair, index);
                         pairs.push(pair);
-                        place
+                        index
                     }
                 };
-                next.push(place);
-                costs.push(present * (a.reward(of_a, action) - b.reward(of_b, action)).abs());
+                next.push(index);
+                costs.push(reward_share * (a.reward(of_a, action) - b.reward(of_b, action)).abs());
             }
-            looked_at += 1;
+            num_expanded += 1;
         }
         let beyond = pairs.len() as u32;
-        for place in next.iter_mut().filter(|place| **place == BEYOND) {
-            *place = beyond;
+        for index in next.iter_mut().filter(|index| **index == UNVISITED) {
+            *index = beyond;
         }
         next.extend(std::iter::repeat_n(beyond, a.actions()));
         costs.extend(std::iter::repeat_n(0.0, a.actions()));
@@ -185,7 +185,7 @@ impl Reached {
     }
 
     /// The costs, with this cost for each step from the entry of the pairs that were not visited.
-    fn with_beyond(&self, cost: f64, actions: usize) -> Vec<f64> {
+    fn with_unvisited_cost(&self, cost: f64, actions: usize) -> Vec<f64> {
         let mut costs = self.costs.clone();
         let last = costs.len() - actions;
         costs[last..].fill(cost);
@@ -204,13 +204,17 @@ mod tests {
         let width = b.states();
         let mut d = vec![0.0; a.states() * width];
         for _ in 0..2000 {
-            let apart = |pair: usize, action: usize| {
+            let step_distance = |pair: usize, action: usize| {
                 let (s, t) = (pair / width, pair % width);
                 let (next_s, next_t) = (a.successor(s, action) as usize, b.successor(t, action) as usize);
                 let paid = (a.reward(s, action) - b.reward(t, action)).abs();
                 (1.0 - discount) * paid + discount * d[next_s * width + next_t]
             };
-            let largest = |pair: usize| (0..a.actions()).map(|action| apart(pair, action)).fold(0.0, f64::max);
+            let largest = |pair: usize| {
+                (0..a.actions())
+                    .map(|action| step_distance(pair, action))
+                    .fold(0.0, f64::max)
+            };
             let next: Vec<f64> = (0..d.len()).map(largest).collect();
             let change = next.iter().zip(&d).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             d = next;
@@ -225,7 +229,9 @@ mod tests {
     fn invalid_arguments_are_refused() {
         let one = Mdp::new(1, 1, vec![0], vec![0.0]).unwrap();
         let two = Mdp::new(1, 2, vec![0; 2], vec![0.0; 2]).unwrap();
-        let code = |b: &Mdp, starts, discount, most| bisimulation(&one, b, starts, discount, most).unwrap_err().code();
+        let code = |b: &Mdp, starts, discount, max_pairs| {
+            bisimulation(&one, b, starts, discount, max_pairs).unwrap_err().code()
+        };
         assert_eq!(code(&two, (0, 0), 0.5, 9), "similarity/sizes-differ");
         assert_eq!(code(&one, (0, 1), 0.5, 9), "similarity/no-such-state");
         assert_eq!(code(&one, (0, 0), 0.5, usize::MAX), "similarity/too-many");
@@ -302,14 +308,14 @@ mod tests {
         fn bounds_hold_for_few_pairs_and_tighten_with_more(a in process(9, 2), b in process(9, 2)) {
             let expected = by_definition(&a, &b, 0.7)[0];
             let mut before = f64::INFINITY;
-            for most in [1, 3, 9, 27, 81] {
-                let found = bisimulation(&a, &b, (0, 0), 0.7, most).unwrap();
+            for max_pairs in [1, 3, 9, 27, 81] {
+                let found = bisimulation(&a, &b, (0, 0), 0.7, max_pairs).unwrap();
                 prop_assert!(found.lower <= expected + 1e-10 && expected <= found.upper + 1e-10);
                 prop_assert!(found.upper - found.lower <= before + 1e-10);
-                prop_assert!(found.pairs <= most);
+                prop_assert!(found.pairs <= max_pairs);
                 before = found.upper - found.lower;
             }
-            prop_assert!(before < 1e-10, "81 pairs are all that there are");
+            prop_assert!(before < 1e-10, "all 81 pairs are visited");
         }
     }
 }

@@ -1,55 +1,55 @@
 //! [`CertainSums`]: the largest discounted sums of costs over deterministic steps.
 
-/// Places with deterministic steps between them, each at a cost.
+/// Nodes with deterministic steps between them, each at a cost.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CertainSums<'a> {
-    /// Steps per place, at least 1.
+    /// Steps per node, at least 1.
     pub(super) steps: usize,
-    /// `(places · steps,)`: the place that each step leads to.
+    /// `(nodes · steps,)`: the node that each step leads to.
     pub(super) next: &'a [u32],
-    /// `(places · steps,)`: the cost of each step.
+    /// `(nodes · steps,)`: the cost of each step.
     pub(super) costs: &'a [f64],
-    /// Discount of the next place's value, 0 to below 1.
+    /// Discount of the next node's value, 0 to below 1.
     pub(super) discount: f64,
 }
 
 impl CertainSums<'_> {
-    /// The largest sum from each place, `v(i) = max (cost + discount · v(next))`, and a bound on its error.
+    /// The largest sum from each node, `v(i) = max (cost + discount · v(next))`, and a bound on its error.
     ///
-    /// Policy iteration (Howard 1960): choose one step per place, add up its path exactly (it ends in a cycle), choose better
+    /// Policy iteration (Howard 1960): choose one step per node, add up its path exactly (it ends in a cycle), choose better
     /// steps, until there are none. Costs scaled by `1 − discount` make `v` a mean; sums are exact within rounding over
     /// `1 − discount`.
     pub(super) fn solve(self) -> (Vec<f64>, f64) {
-        let places = self.next.len() / self.steps;
+        let nodes = self.next.len() / self.steps;
         let largest = self
             .costs
             .iter()
             .fold(0.0, |largest: f64, cost| largest.max(cost.abs()));
         // Better by more than rounding, so that the iteration cannot cycle.
-        let better = 16.0 * f64::EPSILON * largest / ((1.0 - self.discount) * (1.0 - self.discount));
-        let mut chosen: Vec<u32> = (0..places).map(|place| self.best(place, |_| 0.0).0).collect();
+        let min_gain = 16.0 * f64::EPSILON * largest / ((1.0 - self.discount) * (1.0 - self.discount));
+        let mut chosen: Vec<u32> = (0..nodes).map(|node| self.best(node, |_| 0.0).0).collect();
         loop {
-            let values = self.along(&chosen);
-            let (mut improved, mut off) = (false, 0.0_f64);
-            for (place, step) in chosen.iter_mut().enumerate() {
-                let (best, value) = self.best(place, |next| values[next]);
-                off = off.max((value - values[place]).abs());
-                if value > values[place] + better {
+            let values = self.sums_along(&chosen);
+            let (mut improved, mut residual) = (false, 0.0_f64);
+            for (node, step) in chosen.iter_mut().enumerate() {
+                let (best, value) = self.best(node, |next| values[next]);
+                residual = residual.max((value - values[node]).abs());
+                if value > values[node] + min_gain {
                     *step = best;
                     improved = true;
                 }
             }
             if !improved {
-                return (values, off / (1.0 - self.discount));
+                return (values, residual / (1.0 - self.discount));
             }
         }
     }
 
-    /// The first best step from a place, by the values of the next places.
-    fn best(&self, place: usize, value: impl Fn(usize) -> f64) -> (u32, f64) {
+    /// The first best step from a node, by the values of the next nodes.
+    fn best(&self, node: usize, value: impl Fn(usize) -> f64) -> (u32, f64) {
         let mut best = (0, f64::NEG_INFINITY);
         for step in 0..self.steps {
-            let at = place * self.steps + step;
+            let at = node * self.steps + step;
             let found = self.costs[at] + self.discount * value(self.next[at] as usize);
             if found > best.1 {
                 best = (step as u32, found);
@@ -59,35 +59,35 @@ impl CertainSums<'_> {
     }
 
     /// The sums along the chosen steps, followed for ever.
-    fn along(&self, chosen: &[u32]) -> Vec<f64> {
-        let at = |place: usize| place * self.steps + chosen[place] as usize;
+    fn sums_along(&self, chosen: &[u32]) -> Vec<f64> {
+        let at = |node: usize| node * self.steps + chosen[node] as usize;
         let mut values = vec![f64::NAN; chosen.len()];
-        // The path that first reached a place; 0 for none.
+        // The path that first reached a node; 0 for none.
         let mut reached = vec![0_u32; chosen.len()];
-        let mut way = Vec::new();
+        let mut path = Vec::new();
         for start in 0..chosen.len() {
-            let mut place = start;
-            while reached[place] == 0 {
-                reached[place] = start as u32 + 1;
-                way.push(place);
-                place = self.next[at(place)] as usize;
+            let mut node = start;
+            while reached[node] == 0 {
+                reached[node] = start as u32 + 1;
+                path.push(node);
+                node = self.next[at(node)] as usize;
             }
-            if values[place].is_nan() {
+            if values[node].is_nan() {
                 // The path closed a cycle: sum it once and extrapolate.
-                let (mut sum, mut weight, mut on) = (0.0, 1.0, place);
+                let (mut sum, mut weight, mut current) = (0.0, 1.0, node);
                 loop {
-                    sum += weight * self.costs[at(on)];
+                    sum += weight * self.costs[at(current)];
                     weight *= self.discount;
-                    on = self.next[at(on)] as usize;
-                    if on == place {
+                    current = self.next[at(current)] as usize;
+                    if current == node {
                         break;
                     }
                 }
-                values[place] = sum / (1.0 - weight);
+                values[node] = sum / (1.0 - weight);
             }
-            while let Some(place) = way.pop() {
-                if values[place].is_nan() {
-                    values[place] = self.costs[at(place)] + self.discount * values[self.next[at(place)] as usize];
+            while let Some(node) = path.pop() {
+                if values[node].is_nan() {
+                    values[node] = self.costs[at(node)] + self.discount * values[self.next[at(node)] as usize];
                 }
             }
         }
@@ -124,7 +124,7 @@ mod tests {
 
     #[test]
     fn small_reward_is_given_up_for_a_larger_later_one() {
-        // Stay for 1, or take two unpaid steps to a place that pays 3 for ever.
+        // Stay for 1, or take two unpaid steps to a node that pays 3 for ever.
         let found = solve(2, &[0, 1, 2, 2, 2, 2], &[1.0, 0.0, 0.0, 0.0, 3.0, 0.0], 0.9);
         assert!((found[0] - 24.3).abs() < 1e-12);
         assert_eq!(solve(1, &[0], &[2.0], 0.0), [2.0]);
@@ -143,9 +143,9 @@ mod tests {
             let sums = CertainSums { steps: 3, next: &next, costs: &costs, discount };
             let (values, error) = sums.solve();
             prop_assert!(error < 1e-7, "{error}");
-            for place in 0..20 {
-                let best = sums.best(place, |next| values[next]).1;
-                prop_assert!((best - values[place]).abs() < 1e-10 / (1.0 - discount));
+            for node in 0..20 {
+                let best = sums.best(node, |next| values[next]).1;
+                prop_assert!((best - values[node]).abs() < 1e-10 / (1.0 - discount));
             }
         }
     }

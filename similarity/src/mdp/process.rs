@@ -6,7 +6,7 @@ use crate::SimilarityError;
 pub const MAX_MDP_STATES: usize = 1 << 24;
 
 /// Largest absolute reward.
-const LARGEST_REWARD: f64 = 1e100;
+const MAX_REWARD: f64 = 1e100;
 
 /// A finite deterministic Markov decision process: the successor and the reward of each action in each state.
 ///
@@ -16,7 +16,7 @@ const LARGEST_REWARD: f64 = 1e100;
 /// # Example
 /// ```
 /// use driftworld_similarity::Mdp;
-/// // From 0, action 0 stays and action 1 gets to 1, which pays 1 and keeps.
+/// // From 0, action 0 stays and action 1 leads to 1, where every action stays and pays 1.
 /// let process = Mdp::new(2, 2, vec![0, 1, 1, 1], vec![0.0, 0.0, 1.0, 1.0])?;
 /// assert_eq!((process.successor(0, 1), process.reward(1, 0)), (1, 1.0));
 /// # Ok::<(), driftworld_similarity::SimilarityError>(())
@@ -33,7 +33,7 @@ impl Mdp {
     /// `successors` and `rewards`: `(states · actions,)`, state by state, then action by action; rewards within ±1e100.
     ///
     /// # Errors
-    /// [`SimilarityError::NoSuchState`] for an invalid successor, [`SimilarityError::BadReward`],
+    /// [`SimilarityError::NoSuchState`] for an invalid successor, [`SimilarityError::BadReward`] for a reward out of range,
     /// [`SimilarityError::Shape`] for more or fewer successors or rewards, or none, [`SimilarityError::TooMany`] above
     /// [`MAX_MDP_STATES`].
     pub fn new(
@@ -49,7 +49,7 @@ impl Mdp {
         if let Some(found) = successors.iter().find(|successor| **successor as usize >= states) {
             return Err(no_such_state(*found as usize, states));
         }
-        let bad = |reward: &f64| reward.is_nan() || reward.abs() > LARGEST_REWARD;
+        let bad = |reward: &f64| reward.is_nan() || reward.abs() > MAX_REWARD;
         if let Some(index) = rewards.iter().position(bad) {
             return Err(SimilarityError::BadReward {
                 place: format!("state {}, action {}", index / actions, index % actions),
@@ -84,7 +84,7 @@ impl Mdp {
         self.successors[self.index(state, action)]
     }
 
-    /// The least and the largest reward.
+    /// The smallest and the largest reward.
     pub(super) fn reward_range(&self) -> (f64, f64) {
         let ends = (f64::INFINITY, f64::NEG_INFINITY);
         let widen = |(low, high): (f64, f64), reward: &f64| (low.min(*reward), high.max(*reward));
@@ -92,7 +92,7 @@ impl Mdp {
     }
 
     fn index(&self, state: usize, action: usize) -> usize {
-        assert!(action < self.actions, "an action that the process does not have");
+        assert!(action < self.actions, "the process does not have this action");
         state * self.actions + action
     }
 }
@@ -110,20 +110,20 @@ mod tests {
 
     #[test]
     fn invalid_processes_are_refused() {
-        let said = |states, actions, successors: &[u32], rewards: &[f64]| {
-            let made = Mdp::new(states, actions, successors.to_vec(), rewards.to_vec());
-            made.unwrap_err().to_string()
+        let message = |states, actions, successors: &[u32], rewards: &[f64]| {
+            let result = Mdp::new(states, actions, successors.to_vec(), rewards.to_vec());
+            result.unwrap_err().to_string()
         };
         assert_eq!(
-            said(2, 1, &[2, 1], &[0.0; 2]),
+            message(2, 1, &[2, 1], &[0.0; 2]),
             "state of a decision process: found 2, expected one of 0 to 1"
         );
         assert_eq!(
-            said(2, 1, &[0, 1], &[0.0, f64::NAN]),
+            message(2, 1, &[0, 1], &[0.0, f64::NAN]),
             "reward of state 1, action 0: found NaN, expected a number from -1e100 to 1e100"
         );
         assert_eq!(
-            said(2, 1, &[0, 1], &[0.0]),
+            message(2, 1, &[0, 1], &[0.0]),
             "rewards of states × actions: found 1 numbers, expected 2"
         );
         assert!(Mdp::new(0, 1, vec![], vec![]).is_err());

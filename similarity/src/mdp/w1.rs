@@ -12,8 +12,8 @@ const ROUNDING: f64 = 1e-12;
 /// `u` the rewards of the same action in the same state of both. The mean is over all actions of the counted states; outcomes
 /// are compared state by state, so swapping the effects of two actions is noticed.
 ///
-/// `rewards`: for each process, `(states · actions,)`, state by state, then action by action. `unit`: the reward that counts as 1.
-/// `counted`: `(states,)`, at least one of them true. `ground(row)`: the distance between the successors of a state and an
+/// `rewards`: for each process, `(states · actions,)`, state by state, then action by action. `unit`: the reward that counts as
+/// 1. `counted`: `(states,)`, at least one of them true. `ground(row)`: the distance between the successors of a state and an
 /// action, by their index in `rewards`. With a metric between successors it is a metric on the processes' counted states; a
 /// shift of both rewards does not change it.
 ///
@@ -47,17 +47,17 @@ pub fn w1_mdp(
         let expected = (actions * counted.len()).max(1);
         SimilarityError::check_length("rewards of states × actions", found, expected)?;
     }
-    let (mut paid, mut led, mut rows) = (0.0, 0.0, 0_usize);
+    let (mut reward_part, mut successor_part, mut rows) = (0.0, 0.0, 0_usize);
     for (state, _) in counted.iter().enumerate().filter(|(_, counts)| **counts) {
         for row in state * actions..(state + 1) * actions {
             let gap = (a[row] - b[row]).abs() / unit;
-            paid += if gap < ROUNDING { 0.0 } else { gap };
-            led += ground(row);
+            reward_part += if gap < ROUNDING { 0.0 } else { gap };
+            successor_part += ground(row);
         }
         rows += actions;
     }
     let rows = rows as f64;
-    Ok((paid / rows, led / rows))
+    Ok((reward_part / rows, successor_part / rows))
 }
 
 #[cfg(test)]
@@ -69,14 +69,14 @@ mod tests {
 
     const COUNTED: [bool; 4] = [true, true, false, true];
 
-    fn apart_by(a: &Mdp, b: &Mdp, times: f64) -> f64 {
+    fn scaled_distance(a: &Mdp, b: &Mdp, times: f64) -> f64 {
         let rewards = |of: &Mdp| -> Vec<f64> { rows().map(|(s, k)| times * of.reward(s, k) + 3.0).collect() };
         let ground = |row: usize| {
             let (s, k) = (row / 2, row % 2);
             times * f64::from(a.successor(s, k).abs_diff(b.successor(s, k)))
         };
-        let (paid, led) = w1_mdp([&rewards(a), &rewards(b)], 0.5, &COUNTED, ground).unwrap();
-        paid + led
+        let (reward_part, successor_part) = w1_mdp([&rewards(a), &rewards(b)], 0.5, &COUNTED, ground).unwrap();
+        reward_part + successor_part
     }
 
     fn rows() -> impl Iterator<Item = (usize, usize)> {
@@ -96,11 +96,11 @@ mod tests {
 
         #[test]
         fn w1_mdp_is_a_pseudometric_that_scales(a in process(4, 2), b in process(4, 2), c in process(4, 2)) {
-            let apart = |a: &Mdp, b: &Mdp| apart_by(a, b, 1.0);
-            prop_assert_eq!(apart(&a, &a), 0.0);
-            prop_assert_eq!(apart(&a, &b), apart(&b, &a));
-            prop_assert!(apart(&a, &c) <= apart(&a, &b) + apart(&b, &c) + 1e-12);
-            prop_assert!((apart_by(&a, &b, 4.0) - 4.0 * apart(&a, &b)).abs() < 1e-12);
+            let d = |a: &Mdp, b: &Mdp| scaled_distance(a, b, 1.0);
+            prop_assert_eq!(d(&a, &a), 0.0);
+            prop_assert_eq!(d(&a, &b), d(&b, &a));
+            prop_assert!(d(&a, &c) <= d(&a, &b) + d(&b, &c) + 1e-12);
+            prop_assert!((scaled_distance(&a, &b, 4.0) - 4.0 * d(&a, &b)).abs() < 1e-12);
         }
 
         #[test]
@@ -113,15 +113,15 @@ mod tests {
                 let (s, k) = (row / 2, row % 2);
                 d(&b, &b, a.successor(s, k) as usize, b.successor(s, k) as usize)
             };
-            let most = (0..4).map(|state| {
+            let bound = (0..4).map(|state| {
                 let only: Vec<bool> = (0..4).map(|other| other == state).collect();
-                let (paid, led) = w1_mdp([&rewards(&a), &rewards(&b)], 1.0, &only, ground).unwrap();
+                let (reward_part, successor_part) = w1_mdp([&rewards(&a), &rewards(&b)], 1.0, &only, ground).unwrap();
                 // Mean over two actions: the larger one is at most twice that.
-                2.0 * (paid + led)
+                2.0 * (reward_part + successor_part)
             });
-            let most = most.fold(0.0, f64::max);
+            let bound = bound.fold(0.0, f64::max);
             for state in 0..4 {
-                prop_assert!(d(&a, &b, state, state) <= most / 0.4 + 1e-8);
+                prop_assert!(d(&a, &b, state, state) <= bound / 0.4 + 1e-8);
             }
         }
     }

@@ -20,36 +20,36 @@ use crate::SimilarityError;
 /// let shape = GridShape::new(5, 1, 1, 2.0)?;
 /// let a = BitGrid::new(shape, [true, false, false, false, false]);
 /// let b = BitGrid::new(shape, [true, false, false, true, false]);
-/// // From a no way, from b 0 and 6 m.
+/// // From a: 0 m; from b: 0 m and 6 m.
 /// assert_eq!(grid_chamfer_distance(&a, &b)?, 1.5);
 /// # Ok::<(), driftworld_similarity::SimilarityError>(())
 /// ```
 /// Source: Barrow et al. 1977, symmetric as in Fan, Su and Guibas 2017 but not squared. Checked with scipy's `cdist`, see
 /// `tests/oracle/occupancy.json`.
 pub fn grid_chamfer_distance(a: &BitGrid, b: &BitGrid) -> Result<f64, SimilarityError> {
-    Ok(f64::midpoint(mean(&ways(a, b)?), mean(&ways(b, a)?)))
+    Ok(f64::midpoint(mean(&nearest(a, b)?), mean(&nearest(b, a)?)))
 }
 
 /// The distance in metres from each taken cell of `a` to the nearest of `b`. If only the plane of `b` is empty, each
-/// cell counts as the diameter; if only that of `a` is empty, the plane adds the diameter once.
-pub(super) fn ways(a: &BitGrid, b: &BitGrid) -> Result<Vec<f64>, SimilarityError> {
+/// cell counts as the diameter; if only the plane of `a` is empty, the plane adds the diameter once.
+pub(super) fn nearest(a: &BitGrid, b: &BitGrid) -> Result<Vec<f64>, SimilarityError> {
     let shape = a.shape();
     shape.check(b.shape())?;
     let size = shape.columns() * shape.rows();
-    let mut ways = Vec::with_capacity(a.count());
+    let mut distances = Vec::with_capacity(a.count());
     for plane in 0..shape.planes() {
-        let held = (plane * size..(plane + 1) * size)
+        let num_taken = (plane * size..(plane + 1) * size)
             .filter(|&cell| a.is_taken(cell))
             .count();
         match nearest_squared(a, b, plane) {
-            Some(_) if held == 0 => ways.push(shape.diameter()),
-            Some(squared) => ways.extend(squared.iter().map(|&squared| (squared as f64).sqrt() * shape.cell())),
-            None => ways.extend(std::iter::repeat_n(shape.diameter(), held)),
+            Some(_) if num_taken == 0 => distances.push(shape.diameter()),
+            Some(squared) => distances.extend(squared.iter().map(|&squared| (squared as f64).sqrt() * shape.cell())),
+            None => distances.extend(std::iter::repeat_n(shape.diameter(), num_taken)),
         }
     }
-    Ok(ways)
+    Ok(distances)
 }
 
-fn mean(ways: &[f64]) -> f64 {
-    ways.iter().sum::<f64>() / ways.len().max(1) as f64
+fn mean(distances: &[f64]) -> f64 {
+    distances.iter().sum::<f64>() / distances.len().max(1) as f64
 }

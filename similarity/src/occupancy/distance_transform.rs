@@ -15,18 +15,18 @@ pub(super) fn nearest_squared(a: &BitGrid, b: &BitGrid, plane: usize) -> Option<
     let mut along = vec![far; columns * rows];
     let mut any = false;
     for column in 0..columns {
-        let mut since = far;
+        let mut distance = far;
         for row in 0..rows {
             let cell = row * columns + column;
             let taken = b.is_taken(first + cell);
             any |= taken;
-            since = if taken { 0 } else { (since + 1).min(far) };
-            along[cell] = since;
+            distance = if taken { 0 } else { (distance + 1).min(far) };
+            along[cell] = distance;
         }
         for row in (0..rows).rev() {
             let cell = row * columns + column;
-            since = (since + 1).min(along[cell]);
-            along[cell] = since;
+            distance = (distance + 1).min(along[cell]);
+            along[cell] = distance;
         }
     }
     if !any {
@@ -35,7 +35,7 @@ pub(super) fn nearest_squared(a: &BitGrid, b: &BitGrid, plane: usize) -> Option<
     let mut found = Vec::with_capacity(a.count());
     let mut parabolas = Vec::with_capacity(columns);
     for (row, heights) in along.chunks_exact(columns).enumerate() {
-        lowest(heights, &mut parabolas);
+        lower_envelope(heights, &mut parabolas);
         let mut next = 0;
         for column in 0..columns {
             while next + 1 < parabolas.len() && parabolas[next + 1].1 <= column {
@@ -52,7 +52,7 @@ pub(super) fn nearest_squared(a: &BitGrid, b: &BitGrid, plane: usize) -> Option<
 
 /// The parabolas (x − centre)² + height² on the lower envelope, from west to east, each with the first column where it is
 /// lowest.
-fn lowest(heights: &[usize], parabolas: &mut Vec<(usize, usize)>) {
+fn lower_envelope(heights: &[usize], parabolas: &mut Vec<(usize, usize)>) {
     let at = |centre: usize, x: usize| x.abs_diff(centre).pow(2) + heights[centre].pow(2);
     parabolas.clear();
     for centre in 0..heights.len() {
@@ -98,13 +98,13 @@ mod tests {
             let (a, b): (Vec<bool>, Vec<bool>) = cells.into_iter().unzip();
             let (a, b) = (BitGrid::new(shape, a), BitGrid::new(shape, b));
             for plane in 0..2 {
-                let places = |grid: &BitGrid| -> Vec<(usize, usize)> {
+                let positions = |grid: &BitGrid| -> Vec<(usize, usize)> {
                     let cells = 0..columns * rows;
                     cells.filter(|cell| grid.is_taken(plane * columns * rows + cell)).map(|cell| (cell % columns, cell / columns)).collect()
                 };
-                let apart = |p: (usize, usize), q: &(usize, usize)| (p.0.abs_diff(q.0).pow(2) + p.1.abs_diff(q.1).pow(2)) as u64;
-                let targets = places(&b);
-                let expected: Option<Vec<u64>> = places(&a).into_iter().map(|p| targets.iter().map(|q| apart(p, q)).min()).collect();
+                let squared = |p: (usize, usize), q: &(usize, usize)| (p.0.abs_diff(q.0).pow(2) + p.1.abs_diff(q.1).pow(2)) as u64;
+                let targets = positions(&b);
+                let expected: Option<Vec<u64>> = positions(&a).into_iter().map(|p| targets.iter().map(|q| squared(p, q)).min()).collect();
                 let expected = if targets.is_empty() { None } else { expected };
                 prop_assert_eq!(nearest_squared(&a, &b, plane), expected);
             }

@@ -16,8 +16,8 @@ use crate::transport::{Units, cheapest_moves};
 ///
 /// # Errors
 /// [`SimilarityError::GridsDiffer`] if the shapes differ, [`SimilarityError::UnequalMasses`] if a plane's masses differ by more
-/// than 1e-9 of them, [`SimilarityError::TooMany`] if more than [`MAX_TRANSPORTED`](crate::MAX_TRANSPORTED) cells have to give,
-/// or take.
+/// than 1e-9 of them, [`SimilarityError::TooMany`] if more than [`MAX_TRANSPORTED`](crate::MAX_TRANSPORTED) cells must
+/// send or receive mass.
 ///
 /// # Example
 /// ```
@@ -43,12 +43,12 @@ fn least_work(shape: GridShape, mut units: Units) -> Result<f64, SimilarityError
         *b -= stays;
     }
     let columns = shape.columns();
-    let apart = |a: usize, b: usize| {
+    let distance = |a: usize, b: usize| {
         let (x, y) = ((a % columns).abs_diff(b % columns), (a / columns).abs_diff(b / columns));
         ((x * x + y * y) as f64).sqrt() * shape.cell()
     };
-    let moves = cheapest_moves(&units.from, &units.to, apart)?.into_iter();
-    let work = moves.map(|(from, to, flow)| flow as f64 * apart(from, to));
+    let moves = cheapest_moves(&units.from, &units.to, distance)?.into_iter();
+    let work = moves.map(|(from, to, flow)| flow as f64 * distance(from, to));
     // Gives 0, not −0, if nothing moves.
     Ok(work.fold(0.0, |sum, work| sum + work) * units.unit)
 }

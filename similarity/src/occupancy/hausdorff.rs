@@ -1,7 +1,7 @@
 //! Hausdorff distance between two grids: the largest distance from a taken cell to the nearest one of the other grid.
 
 use super::bit_grid::BitGrid;
-use super::chamfer::ways;
+use super::chamfer::nearest;
 use crate::SimilarityError;
 
 /// The largest distance in metres from a taken cell of one grid to the nearest taken cell of the other:
@@ -26,6 +26,6 @@ use crate::SimilarityError;
 /// Source: Hausdorff 1914. Agrees with scikit-image's `hausdorff_distance`, except that scikit-image returns infinity if one grid
 /// is empty; see `tests/oracle/occupancy.json`.
 pub fn grid_hausdorff_distance(a: &BitGrid, b: &BitGrid) -> Result<f64, SimilarityError> {
-    let there = ways(a, b)?;
-    Ok(there.into_iter().chain(ways(b, a)?).fold(0.0, f64::max))
+    let distances = nearest(a, b)?;
+    Ok(distances.into_iter().chain(nearest(b, a)?).fold(0.0, f64::max))
 }

@@ -25,14 +25,14 @@ impl Raster {
     /// A raster for these worlds, with cells of 1 m, or of 2, 4, 8 … m for arenas that are too large for that.
     ///
     /// # Errors
-    /// Those of [`Raster::of_worlds`].
+    /// As [`Raster::of_worlds`].
     pub(crate) fn fitting(worlds: &[&World]) -> Result<Self, SimilarityError> {
         let mut cell = DEFAULT_CELL;
         loop {
             match Self::of_worlds(worlds, cell) {
                 // Large enough cells always fit: there are fewer classes than the limit of cells.
                 Err(SimilarityError::TooFine { .. }) if cell < 1e6 => cell *= 2.0,
-                made => return made,
+                result => return result,
             }
         }
     }
@@ -96,11 +96,11 @@ mod tests {
 
     fn world(places: &[(&str, f64, f64)]) -> World {
         let objects = places.iter().map(|&(class, x, y)| Object::new(class, [x, y]));
-        let made = World::default().edit(|world| {
+        let world = World::default().edit(|world| {
             world.environment_params.map_size = [4.0; 2];
             world.objects.extend(objects);
         });
-        made.unwrap()
+        world.unwrap()
     }
 
     #[track_caller]

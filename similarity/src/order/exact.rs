@@ -18,12 +18,12 @@ pub(super) fn order(items: &Items) -> Result<Vec<usize>, SimilarityError> {
     Ok(best_path(items.len(), &|a, b| items.gap(a, b), items.ends))
 }
 
-/// The path with the minimum total cost; ties (within rounding) go to the lowest numbers first. Steps of infinite cost are taken only if
-/// every path has one. Time `O(2ⁿ n²)`, memory `2ⁿ n` numbers; `n` is at most [`MAX_EXACT`].
+/// The path with the minimum total cost; ties (within rounding) go to the lowest numbers first. Steps of infinite cost are
+/// taken only if every path has one. Time `O(2ⁿ n²)`, memory `2ⁿ n` numbers; `n` is at most [`MAX_EXACT`].
 pub(super) fn best_path(n: usize, cost: &impl Fn(usize, usize) -> f64, ends: Ends) -> Vec<usize> {
-    debug_assert!(n <= MAX_EXACT, "larger sets are refused before");
+    debug_assert!(n <= MAX_EXACT, "larger sets are refused earlier");
     let costs: Vec<f64> = (0..n * n).map(|k| cost(k / n, k % n)).collect();
-    let rest = rests(n, &costs, ends.last);
+    let rest = remaining_costs(n, &costs, ends.last);
     let largest = costs
         .iter()
         .filter(|cost| cost.is_finite())
@@ -51,14 +51,14 @@ pub(super) fn best_path(n: usize, cost: &impl Fn(usize, usize) -> f64, ends: End
             .filter(|item| set >> item & 1 == 1)
             .map(|item| (item, costs[here * n + item] + rest[set * n + item]))
             .collect();
-        path.push(lowest(&choices).expect("some item is left"));
+        path.push(lowest(&choices).expect("an item remains"));
     }
     path
 }
 
-/// For each set and each item of it: the minimum total cost of a path that begins there, visits the set, and ends at the fixed last
-/// item, if any.
-fn rests(n: usize, costs: &[f64], last: Option<usize>) -> Vec<f64> {
+/// For each set and each item of it: the minimum total cost of a path that begins there, visits the set, and ends at the fixed
+/// last item, if any.
+fn remaining_costs(n: usize, costs: &[f64], last: Option<usize>) -> Vec<f64> {
     let mut rest = vec![f64::INFINITY; (1 << n) * n];
     for end in (0..n).filter(|end| last.is_none_or(|last| last == *end)) {
         rest[(1 << end) * n + end] = 0.0;

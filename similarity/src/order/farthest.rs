@@ -14,9 +14,9 @@ pub(super) fn order(items: &Items) -> Vec<usize> {
     let mut path = vec![start];
     while !left.is_empty() {
         let mut best = 0;
-        for place in 1..left.len() {
-            if reach[left[place]] > reach[left[best]] {
-                best = place;
+        for index in 1..left.len() {
+            if reach[left[index]] > reach[left[best]] {
+                best = index;
             }
         }
         let here = left.remove(best);

@@ -1,4 +1,4 @@
-//! [`Items`]: the items of a matrix numbered by name, as the methods see them.
+//! [`Items`]: the items of a matrix, numbered by name for the ordering methods.
 
 use super::options::OrderOptions;
 use crate::{DistanceMatrix, SimilarityError};
@@ -83,7 +83,7 @@ impl<'a> Items<'a> {
     }
 
     /// The same order, with the fixed first and last items moved to the ends.
-    pub(super) fn with_ends_outside(&self, mut ranks: Vec<usize>) -> Vec<usize> {
+    pub(super) fn with_fixed_ends(&self, mut ranks: Vec<usize>) -> Vec<usize> {
         let Ends { first, last } = self.ends;
         ranks.retain(|rank| Some(*rank) != first && Some(*rank) != last);
         first.into_iter().chain(ranks).chain(last).collect()
@@ -92,7 +92,7 @@ impl<'a> Items<'a> {
 
 /// Ranks in order of increasing value. Values are compared in steps of 1e-9 of their span, so that rounding errors break no ties;
 /// the names decide between equal values.
-pub(super) fn by_rising(values: &[f64]) -> Vec<usize> {
+pub(super) fn ascending_ranks(values: &[f64]) -> Vec<usize> {
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
     let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let span = if high > low { high - low } else { 1.0 };

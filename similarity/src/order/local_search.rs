@@ -14,7 +14,7 @@ use crate::split_mix::SplitMix64;
 /// Number of nearest items towards which a move is tried.
 const NEIGHBOURS: usize = 10;
 /// Maximum length of a stretch that a shake moves.
-const SHAKEN: usize = 50;
+const MAX_SHAKEN_LENGTH: usize = 50;
 
 /// A path no costlier than `path`, with the same fixed ends. Costs must not be negative.
 ///
@@ -30,7 +30,7 @@ pub(super) fn improve(
     }
     let mut search = Search::new(path, cost, ends);
     search.settle();
-    search.tour.keep();
+    search.tour.commit();
     search.shake(shakes);
     search.path(ends)
 }
@@ -38,7 +38,7 @@ pub(super) fn improve(
 struct Search<'a, C> {
     tour: Tour,
     cost: &'a C,
-    /// The cost of ending the path at an item: the round is closed by a gap, which is item number `n`.
+    /// The cost of ending the path at an item: the tour is closed by a gap, which is item number `n`.
     gap: Vec<f64>,
     neighbours: Vec<Vec<u32>>,
     waiting: Vec<usize>,
@@ -108,7 +108,7 @@ impl<'a, C: Fn(usize, usize) -> f64 + Sync> Search<'a, C> {
             return None;
         }
         for forwards in [true, false] {
-            let b = self.beside(a, forwards);
+            let b = self.neighbour(a, forwards);
             let now = self.cost(a, b);
             for k in 0..self.neighbours[a].len() {
                 let c = self.neighbours[a][k] as usize;
@@ -125,7 +125,7 @@ impl<'a, C: Fn(usize, usize) -> f64 + Sync> Search<'a, C> {
         None
     }
 
-    fn beside(&self, item: usize, forwards: bool) -> usize {
+    fn neighbour(&self, item: usize, forwards: bool) -> usize {
         if forwards {
             self.tour.next(item)
         } else {
@@ -135,15 +135,15 @@ impl<'a, C: Fn(usize, usize) -> f64 + Sync> Search<'a, C> {
 
     /// 2-opt: `a b … c d` becomes `a c … b d`.
     fn turn(&mut self, a: usize, b: usize, c: usize, forwards: bool) -> Option<f64> {
-        let d = self.beside(c, forwards);
+        let d = self.neighbour(c, forwards);
         let gain = self.cost(a, b) + self.cost(c, d) - self.cost(a, c) - self.cost(b, d);
         if gain <= self.least_gain {
             return None;
         }
         if forwards {
-            self.tour.turn_between(b, c);
+            self.tour.reverse_between(b, c);
         } else {
-            self.tour.turn_between(a, d);
+            self.tour.reverse_between(a, d);
         }
         self.wake(&[a, b, c, d]);
         Some(gain)
@@ -153,13 +153,13 @@ impl<'a, C: Fn(usize, usize) -> f64 + Sync> Search<'a, C> {
     fn move_to(&mut self, a: usize, b: usize, c: usize, forwards: bool) -> Option<f64> {
         let mut s = a;
         for length in 1..=3 {
-            let p = self.beside(s, !forwards);
+            let p = self.neighbour(s, !forwards);
             if p == b || s == c {
                 return None;
             }
             let freed = self.cost(a, b) + self.cost(s, p) - self.cost(p, b) - self.cost(a, c);
             for after in [true, false] {
-                let e = self.beside(c, after);
+                let e = self.neighbour(c, after);
                 let inside = |item: usize| self.distance_back(a, item, forwards) < length;
                 if inside(c) || inside(e) {
                     continue;
@@ -194,11 +194,11 @@ impl<'a, C: Fn(usize, usize) -> f64 + Sync> Search<'a, C> {
         if round < 8 {
             return;
         }
-        let most = SHAKEN.min((round - 2) / 2) as u64;
+        let max_length = MAX_SHAKEN_LENGTH.min((round - 2) / 2) as u64;
         let mut rng = SplitMix64(0);
         for _ in 0..shakes {
             let start = rng.below(round as u64) as usize;
-            let (first, second) = (1 + rng.below(most) as usize, 1 + rng.below(most) as usize);
+            let (first, second) = (1 + rng.below(max_length) as usize, 1 + rng.below(max_length) as usize);
             let [a, b, c, d, e, f] =
                 [0, 1, first, first + 1, first + second, first + second + 1].map(|step| self.tour.at(start + step));
             let lost = self.cost(a, d) + self.cost(e, b) + self.cost(c, f)
@@ -208,17 +208,17 @@ impl<'a, C: Fn(usize, usize) -> f64 + Sync> Search<'a, C> {
             self.tour.swap_stretches(start + 1, first, second);
             self.wake(&[a, b, c, d, e, f]);
             if self.settle() - lost > self.least_gain {
-                self.tour.keep();
+                self.tour.commit();
             } else {
-                self.tour.take_back();
+                self.tour.undo();
             }
         }
     }
 
-    /// The round from its gap on, in the direction required by the fixed ends.
+    /// The items of the closed tour after its gap, in the direction required by the fixed ends.
     fn path(&self, ends: Ends) -> Vec<usize> {
         let n = self.gap.len() - 1;
-        let begin = self.tour.place(n) + 1;
+        let begin = self.tour.position(n) + 1;
         let mut path: Vec<usize> = (0..n).map(|step| self.tour.at(begin + step)).collect();
         if ends.first.is_some_and(|first| path[0] != first) || ends.last.is_some_and(|last| path[n - 1] != last) {
             path.reverse();

@@ -58,7 +58,7 @@ pub fn order(matrix: &DistanceMatrix, method: Method, options: &OrderOptions) ->
         Method::TargetStep => target_step::order(&items, options.target_step)?,
         Method::Gradual => gradual::order(&items),
         Method::Outward => outward::order(&items),
-        Method::Given => items.with_ends_outside(items.as_given()),
+        Method::Given => items.with_fixed_ends(items.as_given()),
     };
     Ok(Ordering::given(matrix, items.indices(&ranks)))
 }

@@ -36,10 +36,10 @@ fn walk_from(n: usize, cost: &impl Fn(usize, usize) -> f64, start: usize, last: 
     let (mut path, mut total, mut here) = (vec![start], 0.0, start);
     while !left.is_empty() {
         let mut best = (0, f64::INFINITY);
-        for (place, item) in left.iter().enumerate() {
+        for (index, item) in left.iter().enumerate() {
             let found = cost(here, *item);
             if found < best.1 {
-                best = (place, found);
+                best = (index, found);
             }
         }
         here = left.remove(best.0);

@@ -50,8 +50,8 @@ impl Ordering {
 fn anchor_correlation(matrix: &DistanceMatrix, indices: &[usize]) -> Option<f64> {
     let (first, others) = indices.split_first()?;
     let distances: Vec<f64> = others.iter().map(|item| matrix.get(*first, *item)).collect();
-    let places: Vec<f64> = (0..others.len()).map(|place| place as f64).collect();
-    pearson(&places, &ranks(&distances))
+    let positions: Vec<f64> = (0..others.len()).map(|position| position as f64).collect();
+    pearson(&positions, &ranks(&distances))
 }
 
 /// Correlation of two lists of equal length; `None` if a list is constant.

@@ -1,14 +1,14 @@
 //! Orders by distance from the first item.
 
-use super::items::{Items, by_rising};
+use super::items::{Items, ascending_ranks};
 
 /// By growing distance from the first item: the requested one, by default the first by name. Time `O(n log n)`.
 pub(super) fn order(items: &Items) -> Vec<usize> {
     let first = items.ends.first.unwrap_or(0);
     let distances: Vec<f64> = (0..items.len()).map(|item| items.gap(first, item)).collect();
-    let mut ranks = by_rising(&distances);
+    let mut ranks = ascending_ranks(&distances);
     // Other items may be 0 away, too.
     ranks.retain(|rank| *rank != first);
     ranks.insert(0, first);
-    items.with_ends_outside(ranks)
+    items.with_fixed_ends(ranks)
 }

@@ -29,8 +29,8 @@ pub fn share_of_shorter_orders(matrix: &DistanceMatrix, ordering: &Ordering, see
     let mut shorter = 0_u32;
     for _ in 0..NUM_RANDOM_ORDERS {
         // Fisher and Yates: every order is equally likely.
-        for place in (1..items.len()).rev() {
-            items.swap(place, rng.below(place as u64 + 1) as usize);
+        for index in (1..items.len()).rev() {
+            items.swap(index, rng.below(index as u64 + 1) as usize);
         }
         let length: f64 = items.windows(2).map(|pair| matrix.get(pair[0], pair[1])).sum();
         shorter += u32::from(length < below);

@@ -2,12 +2,12 @@
 
 use super::items::Items;
 use super::local_search;
-use super::two_opt::from_the_lower_end;
+use super::two_opt::starting_at_lower_end;
 
 /// Shakes per item in each round of the search.
 const SHAKES_PER_ITEM: usize = 2;
 /// Minimum number of shakes: a short path has few possible swaps, and they are tried at random.
-const LEAST_SHAKES: usize = 200;
+const MIN_SHAKES: usize = 200;
 /// Number of bounds tried.
 const ROUNDS: usize = 12;
 
@@ -19,7 +19,7 @@ pub(super) fn search(short: &[usize], items: &Items) -> Vec<usize> {
     // Every path has a step at least as large as the largest in the minimum spanning tree.
     let mut impossible = largest_branch(items);
     let largest = items.largest_gap();
-    let shakes = LEAST_SHAKES.max(SHAKES_PER_ITEM * items.len());
+    let shakes = MIN_SHAKES.max(SHAKES_PER_ITEM * items.len());
     for _ in 0..ROUNDS {
         if reached <= impossible * (1.0 + 1e-12) {
             break;
@@ -46,7 +46,7 @@ pub(super) fn search(short: &[usize], items: &Items) -> Vec<usize> {
             }
         }
     }
-    from_the_lower_end(best, items)
+    starting_at_lower_end(best, items)
 }
 
 /// The largest distance in the minimum spanning tree, by Prim's algorithm; 0 for a single item.

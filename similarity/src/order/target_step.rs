@@ -4,13 +4,13 @@ use super::items::Items;
 use super::two_opt::cheapest;
 use crate::SimilarityError;
 
-/// Shakes per item.
+/// Random perturbations (shakes) of the path, per item.
 const SHAKES_PER_ITEM: usize = 4;
 
 /// Minimises the sum of `|step - wanted|`.
 pub(super) fn order(items: &Items, wanted: Option<f64>) -> Result<Vec<usize>, SimilarityError> {
-    let sound = wanted.filter(|step| step.is_finite() && *step >= 0.0);
-    let Some(step) = sound else {
+    let valid = wanted.filter(|step| step.is_finite() && *step >= 0.0);
+    let Some(step) = valid else {
         let found = wanted.map_or_else(|| "none".to_owned(), |step| step.to_string());
         return Err(SimilarityError::BadTargetStep { found });
     };

@@ -1,4 +1,4 @@
-//! Laws of all methods, and results checked by brute force.
+//! Properties of all methods, and comparisons with brute force.
 
 use super::*;
 use crate::split_mix::SplitMix64;
@@ -10,8 +10,8 @@ fn matrix(points: &[[f64; 2]]) -> DistanceMatrix {
     DistanceMatrix::measure(labels, |a, b| Ok::<_, SimilarityError>(distance(a, b))).unwrap()
 }
 
-fn points(most: usize) -> impl Strategy<Value = Vec<[f64; 2]>> {
-    prop::collection::vec(prop::array::uniform2(0.0..10.0), 1..most)
+fn points(max_count: usize) -> impl Strategy<Value = Vec<[f64; 2]>> {
+    prop::collection::vec(prop::array::uniform2(0.0..10.0), 1..max_count)
 }
 
 fn options(points: &[[f64; 2]], fixed: [bool; 2]) -> OrderOptions {
@@ -198,29 +198,29 @@ fn ties_go_to_the_first_names() {
 
 #[test]
 fn impossible_orders_are_refused_with_a_reason() {
-    let said = |matrix: &DistanceMatrix, method, options: &OrderOptions| {
+    let message = |matrix: &DistanceMatrix, method, options: &OrderOptions| {
         order(matrix, method, options).unwrap_err().to_string()
     };
     let many = matrix(&[[0.0, 0.0]; 16]);
     let free = OrderOptions::default();
     assert_eq!(
-        said(&many, Method::Exact, &free),
+        message(&many, Method::Exact, &free),
         "method exact: found 16 items, expected at most 15; use the method two-opt"
     );
     assert_eq!(
-        said(&many, Method::Nearest, &free.with_first(16)),
+        message(&many, Method::Nearest, &free.with_first(16)),
         "order: found 16 as the first item, expected one of 0 to 15"
     );
     assert_eq!(
-        said(&many, Method::Nearest, &with_last(free.with_first(2), 2)),
+        message(&many, Method::Nearest, &with_last(free.with_first(2), 2)),
         "order: found \"002\" as the first item and as the last, expected two different ones"
     );
     assert_eq!(
-        said(&matrix(&[]), Method::Nearest, &free),
+        message(&matrix(&[]), Method::Nearest, &free),
         "order: found no items, expected at least 1"
     );
     assert_eq!(
-        said(&many, Method::TargetStep, &free),
+        message(&many, Method::TargetStep, &free),
         "method target-step: found none as the wanted step, expected a finite number of at least 0"
     );
 }

@@ -51,7 +51,7 @@ impl<'a> Picture<'a> {
     }
 
     /// Checks that another picture has the same height and width.
-    fn lies_on(self, other: Self) -> Result<(), SimilarityError> {
+    fn check_size(self, other: Self) -> Result<(), SimilarityError> {
         if (self.height, self.width) == (other.height, other.width) {
             return Ok(());
         }

@@ -13,8 +13,8 @@ static LIGHT: LazyLock<[f64; 256]> =
 
 /// Mean over all pixels of the distance in Oklab between two pictures.
 ///
-/// A metric between pictures of the same size, in `0..=1` (black to white), no unit. A shift by a single pixel counts as much as an
-/// absence. Costs about six cube roots per pixel; pixels of equal bytes are free.
+/// A metric between pictures of the same size, in `0..=1` (black to white), no unit. A shift by a single pixel counts as much
+/// as an absence. Costs about six cube roots per pixel; pixels of equal bytes are free.
 ///
 /// # Errors
 /// [`SimilarityError::PictureSizes`] if they differ in height or width.
@@ -28,14 +28,14 @@ static LIGHT: LazyLock<[f64; 256]> =
 /// # Ok::<(), driftworld_similarity::SimilarityError>(())
 /// ```
 pub fn picture_oklab(a: Picture, b: Picture) -> Result<f64, SimilarityError> {
-    a.lies_on(b)?;
+    a.check_size(b)?;
     let (from, to) = (a.rgb.as_chunks::<3>().0, b.rgb.as_chunks::<3>().0);
     // Neighbouring pixels are often equal: the last conversion of each picture is cached.
-    let (mut before, mut after) = (Last::default(), Last::default());
+    let (mut cache_a, mut cache_b) = (Last::default(), Last::default());
     let mut sum = 0.0;
     for (from, to) in from.iter().zip(to) {
         if from != to {
-            sum += before.oklab(*from).distance(after.oklab(*to));
+            sum += cache_a.oklab(*from).distance(cache_b.oklab(*to));
         }
     }
     Ok(sum / from.len() as f64)
@@ -59,16 +59,16 @@ pub fn picture_oklab(a: Picture, b: Picture) -> Result<f64, SimilarityError> {
 /// # Ok::<(), driftworld_similarity::SimilarityError>(())
 /// ```
 pub fn picture_oklab_sums(a: Picture, b: Picture, marked: &[bool]) -> Result<[(f64, usize); 2], SimilarityError> {
-    a.lies_on(b)?;
+    a.check_size(b)?;
     let (from, to) = (a.rgb.as_chunks::<3>().0, b.rgb.as_chunks::<3>().0);
     SimilarityError::check_length("marks of pixels", marked.len(), from.len())?;
-    let (mut before, mut after) = (Last::default(), Last::default());
+    let (mut cache_a, mut cache_b) = (Last::default(), Last::default());
     let mut sums = [(0.0, 0); 2];
     for ((from, to), is_marked) in from.iter().zip(to).zip(marked) {
         let (sum, count) = &mut sums[usize::from(!is_marked)];
         *count += 1;
         if from != to {
-            *sum += before.oklab(*from).distance(after.oklab(*to));
+            *sum += cache_a.oklab(*from).distance(cache_b.oklab(*to));
         }
     }
     Ok(sums)

@@ -16,15 +16,15 @@ const STEADY_SPREAD: f64 = 58.5225;
 /// Mean structural similarity (SSIM) of two pictures: mean, contrast and structure of the brightness around each pixel, channel
 /// by channel.
 ///
-/// Mean over the channels red, green and blue and over all positions of a Gaussian window (11 × 11 pixels, standard deviation 1.5) of
-/// (2 μν + C₁)(2 κ + C₂) / ((μ² + ν² + C₁)(σ² + τ² + C₂)), with the means μ and ν, the variances σ² and τ², the covariance κ and
-/// C₁ = 6.5025, C₂ = 58.5225. 1 for equal pictures, about 0 for unrelated ones, at least −1. Symmetric. A similarity;
-/// `(1 − SSIM) / 2` is a distance but not a metric. Time proportional to the number of pixels: about 130 multiplications per
-/// pixel and channel.
+/// Mean over the channels red, green and blue and over all positions of a Gaussian window (11 × 11 pixels, standard deviation
+/// 1.5) of (2 μν + C₁)(2 κ + C₂) / ((μ² + ν² + C₁)(σ² + τ² + C₂)), with the means μ and ν, the variances σ² and τ², the
+/// covariance κ and C₁ = 6.5025, C₂ = 58.5225. 1 for equal pictures, about 0 for unrelated ones, at least −1. Symmetric. A
+/// similarity; `(1 − SSIM) / 2` is a distance but not a metric. Time proportional to the number of pixels: about 130
+/// multiplications per pixel and channel.
 ///
-/// Source: Wang, Bovik, Sheikh and Simoncelli 2004, "Image quality assessment: from error visibility to structural similarity"; the same numbers as
-/// `skimage.metrics.structural_similarity(a, b, channel_axis=2, gaussian_weights=True, sigma=1.5, use_sample_covariance=False,
-/// data_range=255)` within 1e-9, see `tests/oracle/ssim.json`.
+/// Source: Wang, Bovik, Sheikh and Simoncelli 2004, "Image quality assessment: from error visibility to structural similarity";
+/// the same numbers as `skimage.metrics.structural_similarity(a, b, channel_axis=2, gaussian_weights=True, sigma=1.5,
+/// use_sample_covariance=False, data_range=255)` within 1e-9, see `tests/oracle/ssim.json`.
 ///
 /// # Errors
 /// [`SimilarityError::PictureSizes`] if they differ in height or width, [`SimilarityError::PictureSide`] below
@@ -40,7 +40,7 @@ const STEADY_SPREAD: f64 = 58.5225;
 /// # Ok::<(), driftworld_similarity::SimilarityError>(())
 /// ```
 pub fn structural_similarity(a: Picture, b: Picture) -> Result<f64, SimilarityError> {
-    a.lies_on(b)?;
+    a.check_size(b)?;
     let (height, width) = (a.height, a.width);
     for found in [height, width] {
         if found < LEAST_SIDE {

@@ -22,7 +22,7 @@ impl PictureMeasure {
         }
     }
 
-    /// Which laws the measure satisfies.
+    /// The metric properties of the measure.
     pub fn properties(self) -> MetricProperties {
         match self {
             Self::Oklab => MetricProperties::Metric,
@@ -45,8 +45,8 @@ impl PictureMeasure {
 
 /// Mean distance of pictures in pairs: the first of each, the second of each, and so on, from the same poses.
 ///
-/// In `0..=1`, with the laws of the measure. Both sets must have the same number of pictures, with equal sizes in each pair.
-/// Takes the time of all the pairs together.
+/// In `0..=1`, with the metric properties of the measure. Both sets must have the same number of pictures, with equal sizes in
+/// each pair. Takes the time of all the pairs together.
 ///
 /// # Errors
 /// [`SimilarityError::NoPictures`] if both are empty, [`SimilarityError::Shape`] if one set has more; otherwise as
@@ -91,7 +91,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 32)))]
 
         #[test]
-        fn measures_satisfy_their_laws(bytes in prop::collection::vec(any::<u8>(), 6 * 11 * 11 * 3)) {
+        fn measures_satisfy_their_metric_properties(bytes in prop::collection::vec(any::<u8>(), 6 * 11 * 11 * 3)) {
             let pictures: Vec<Picture> = bytes.chunks(11 * 11 * 3).map(|rgb| Picture::new(rgb, 11, 11).unwrap()).collect();
             let (a, b, c) = (&pictures[..2], &pictures[2..4], &pictures[4..]);
             for measure in [PictureMeasure::Oklab, PictureMeasure::Structure] {

@@ -71,7 +71,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn apart(a: &[f64], b: &[f64]) -> f64 {
+    fn distance(a: &[f64], b: &[f64]) -> f64 {
         let direction = |values: &[f64]| {
             let largest = values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
             Direction::of(values, 4.0 * f64::EPSILON * largest)
@@ -81,7 +81,7 @@ mod tests {
 
     #[track_caller]
     fn check(a: &[f64], b: &[f64], expected: f64) {
-        let found = apart(a, b);
+        let found = distance(a, b);
         assert!((found - expected).abs() < 1e-15, "{found}, expected {expected}");
     }
 
@@ -109,7 +109,7 @@ mod tests {
     #[test]
     fn nearly_equal_lists_keep_their_digits() {
         // To first order half the sine of the angle between them; 1 − r would keep only one digit of it.
-        let found = apart(&[1.0, 0.0, -1.0], &[1.0, 3e-8, -1.0]);
+        let found = distance(&[1.0, 0.0, -1.0], &[1.0, 3e-8, -1.0]);
         let expected = 3e-8 * (2.0_f64 / 3.0).sqrt() / 2.0_f64.sqrt() / 2.0;
         assert!((found / expected - 1.0).abs() < 1e-7, "{found}, expected {expected}");
     }
@@ -123,16 +123,16 @@ mod tests {
 
         #[test]
         fn direction_distance_is_a_pseudometric(a in list(), b in list(), c in list()) {
-            prop_assert_eq!(apart(&a, &a), 0.0);
-            prop_assert_eq!(apart(&a, &b), apart(&b, &a));
-            prop_assert!((0.0..=1.0).contains(&apart(&a, &b)));
-            prop_assert!(apart(&a, &c) <= apart(&a, &b) + apart(&b, &c) + 1e-14);
+            prop_assert_eq!(distance(&a, &a), 0.0);
+            prop_assert_eq!(distance(&a, &b), distance(&b, &a));
+            prop_assert!((0.0..=1.0).contains(&distance(&a, &b)));
+            prop_assert!(distance(&a, &c) <= distance(&a, &b) + distance(&b, &c) + 1e-14);
         }
 
         #[test]
         fn shift_and_scale_give_distance_0(a in list(), by in -1e3..1e3, times in 1e-3..1e3) {
             let moved: Vec<f64> = a.iter().map(|value| value * times + by).collect();
-            prop_assert_eq!(apart(&a, &moved), 0.0);
+            prop_assert_eq!(distance(&a, &moved), 0.0);
         }
     }
 }

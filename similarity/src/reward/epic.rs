@@ -7,7 +7,7 @@ use crate::SimilarityError;
 use crate::sum::sum;
 
 /// Largest absolute reward: squares of shaped rewards stay finite.
-const LARGEST: f64 = 1e100;
+const MAX_REWARD: f64 = 1e100;
 
 /// Maximum error of a shaped reward, as a multiple of 2⁻⁵² of the largest reward: half for the rewards themselves, about 2 for
 /// each of three means, half the size of every partial sum; all doubled.
@@ -25,8 +25,8 @@ pub struct RewardSamples<S, A> {
 
 impl<S, A> RewardSamples<S, A> {
     /// `transitions`: state, action, next state, from the coverage distribution of the comparison; only possible ones, if
-    /// impossible ones never pay. `draws`: actions and next states for estimating the canonical shape, drawn independently of each
-    /// other; their states also serve as the random start states. Duplicates count twice.
+    /// impossible ones never pay. `draws`: actions and next states for estimating the canonical shape, drawn independently of
+    /// each other; their states also serve as the random start states. Duplicates count twice.
     ///
     /// # Errors
     /// [`SimilarityError::NoSamples`] if one of them is empty.
@@ -43,11 +43,11 @@ impl<S, A> RewardSamples<S, A> {
     /// [`SimilarityError::BadReward`] for one that is not within ±1e100.
     pub fn measure(&self, reward: impl Fn(&S, &A, &S) -> f64) -> Result<SampledReward, SimilarityError> {
         // Means of large rewards that cancel keep the rounding error of the large ones.
-        let most = Cell::new(0.0_f64);
+        let max_seen = Cell::new(0.0_f64);
         let reward = |state: &S, action: &A, next: &S| {
-            let paid = reward(state, action, next);
-            most.set(most.get().max(paid.abs()));
-            paid
+            let value = reward(state, action, next);
+            max_seen.set(max_seen.get().max(value.abs()));
+            value
         };
         let draws = self.draws.len() as f64;
         let mean_from = |state: &S| sum(self.draws.iter().map(|(action, next)| reward(state, action, next))) / draws;
@@ -64,7 +64,7 @@ impl<S, A> RewardSamples<S, A> {
             found.after.push(mean_from(next));
         }
         let means = found.before.iter().chain(&found.after);
-        found.largest = means.fold(most.get(), |most, mean| most.max(mean.abs()));
+        found.largest = means.fold(max_seen.get(), |max_seen, mean| max_seen.max(mean.abs()));
         found.check()?;
         Ok(found)
     }
@@ -75,10 +75,10 @@ impl<S, A> RewardSamples<S, A> {
 /// # Example
 /// ```
 /// use driftworld_similarity::RewardSamples;
-/// // States are places on a line, and there is nothing to choose.
-/// let places = [0.0, 1.0, 2.0, 3.0];
-/// let transitions = places.iter().flat_map(|&from| places.map(|to| (from, (), to))).collect();
-/// let samples = RewardSamples::new(transitions, places.map(|place| ((), place)).to_vec())?;
+/// // States are positions on a line; there is only one action.
+/// let positions = [0.0, 1.0, 2.0, 3.0];
+/// let transitions = positions.iter().flat_map(|&from| positions.map(|to| (from, (), to))).collect();
+/// let samples = RewardSamples::new(transitions, positions.map(|position| ((), position)).to_vec())?;
 /// let goal = samples.measure(|_, (), to| f64::from(*to == 3.0))?;
 /// let soft = samples.measure(|from, (), to| 2.0 * f64::from(*to == 3.0) + 0.9 * to - from)?;
 /// assert_eq!(goal.distance(&soft, 0.9)?, 0.0);
@@ -101,7 +101,7 @@ pub struct SampledReward {
 impl SampledReward {
     fn check(&self) -> Result<(), SimilarityError> {
         for list in [&self.rewards, &self.before, &self.after, &vec![self.overall]] {
-            if let Some(index) = list.iter().position(|value| value.is_nan() || value.abs() > LARGEST) {
+            if let Some(index) = list.iter().position(|value| value.is_nan() || value.abs() > MAX_REWARD) {
                 return Err(SimilarityError::BadReward {
                     place: format!("transition {index}"),
                     found: list[index],
@@ -121,8 +121,8 @@ impl SampledReward {
             .collect()
     }
 
-    /// EPIC: the distance between two rewards up to equivalence of their optimal policies, under any dynamics. Both must be measured
-    /// on the same samples.
+    /// EPIC: the distance between two rewards up to equivalence of their optimal policies, under any dynamics. Both must be
+    /// measured on the same samples.
     ///
     /// Both are brought into their canonical shape; the distance is `√((1 − r) / 2)` with Pearson's correlation `r`
     /// over the transitions. 0 to 1: 0 between rewards that differ by potential shaping with this discount, by a factor
@@ -138,8 +138,8 @@ impl SampledReward {
     /// tabular code (`tabular.py`), see `tests/oracle/reward.json`.
     ///
     /// # Errors
-    /// [`SimilarityError::SizesDiffer`] for different numbers of transitions, [`SimilarityError::BadNumber`] for a discount outside
-    /// 0 to 1.
+    /// [`SimilarityError::SizesDiffer`] for different numbers of transitions, [`SimilarityError::BadNumber`] for a discount
+    /// outside 0 to 1.
     pub fn distance(&self, other: &Self, discount: f64) -> Result<f64, SimilarityError> {
         if !(0.0..=1.0).contains(&discount) {
             return Err(SimilarityError::BadNumber {
@@ -185,12 +185,12 @@ mod tests {
             .collect()
     }
 
-    fn paid(table: &Table, s: usize, k: usize, t: usize) -> f64 {
+    fn reward_of(table: &Table, s: usize, k: usize, t: usize) -> f64 {
         table[(s * ACTIONS + k) * STATES + t]
     }
 
     fn shaped(table: &Table, potential: &[f64], discount: f64) -> Table {
-        of_table(|s, k, t| paid(table, s, k, t) + discount * potential[t] - potential[s])
+        of_table(|s, k, t| reward_of(table, s, k, t) + discount * potential[t] - potential[s])
     }
 
     fn samples(rng: &mut SplitMix64, count: usize) -> RewardSamples<usize, usize> {
@@ -208,8 +208,8 @@ mod tests {
         RewardSamples::new((0..STATES).flat_map(from).collect(), draws.clone()).unwrap()
     }
 
-    fn apart(samples: &RewardSamples<usize, usize>, a: &Table, b: &Table, discount: f64) -> f64 {
-        let measure = |table: &Table| samples.measure(|&s, &k, &t| paid(table, s, k, t)).unwrap();
+    fn distance_on(samples: &RewardSamples<usize, usize>, a: &Table, b: &Table, discount: f64) -> f64 {
+        let measure = |table: &Table| samples.measure(|&s, &k, &t| reward_of(table, s, k, t)).unwrap();
         measure(a).distance(&measure(b), discount).unwrap()
     }
 
@@ -218,15 +218,15 @@ mod tests {
         let nothing = of_table(|_, _, _| 0.3);
         let soft = shaped(&nothing, &[1.0, -7.3, 0.2, 4.0, 0.0], 0.9);
         let goal = of_table(|_, _, next| f64::from(next == 1));
-        assert_eq!(apart(&every(), &nothing, &soft, 0.9), 0.0);
-        assert_eq!(apart(&every(), &goal, &soft, 0.9), 0.5);
+        assert_eq!(distance_on(&every(), &nothing, &soft, 0.9), 0.0);
+        assert_eq!(distance_on(&every(), &goal, &soft, 0.9), 0.5);
     }
 
     #[test]
     fn shaping_with_a_different_discount_is_noticed() {
         let goal = of_table(|_, _, next| f64::from(next == 1));
         let soft = shaped(&goal, &[5.0, 1.0, 0.0, 2.0, 3.0], 0.9);
-        assert!(apart(&every(), &goal, &soft, 0.5) > 0.1);
+        assert!(distance_on(&every(), &goal, &soft, 0.5) > 0.1);
     }
 
     #[test]
@@ -237,7 +237,7 @@ mod tests {
         let mut error_of = |count: usize| {
             let errors = tables.iter().map(|(a, b)| {
                 let drawn = samples(&mut rng, count);
-                (apart(&drawn, a, b, 0.9) - apart(&every, a, b, 0.9)).abs()
+                (distance_on(&drawn, a, b, 0.9) - distance_on(&every, a, b, 0.9)).abs()
             });
             errors.sum::<f64>() / tables.len() as f64
         };
@@ -270,7 +270,7 @@ mod tests {
             let mut rng = SplitMix64(seed);
             let (a, b, c) = (table(&mut rng), table(&mut rng), table(&mut rng));
             for samples in [every(), samples(&mut rng, 12)] {
-                let d = |a: &Table, b: &Table| apart(&samples, a, b, discount);
+                let d = |a: &Table, b: &Table| distance_on(&samples, a, b, discount);
                 prop_assert_eq!(d(&a, &a), 0.0);
                 prop_assert_eq!(d(&a, &b), d(&b, &a));
                 prop_assert!((0.0..=1.0).contains(&d(&a, &b)));
@@ -292,7 +292,7 @@ mod tests {
             let like: Table = soft.iter().map(|reward| reward * times + by).collect();
             let reversed: Table = like.iter().map(|reward| -reward).collect();
             for samples in [every(), samples(&mut rng, 12)] {
-                let d = |a: &Table, b: &Table| apart(&samples, a, b, discount);
+                let d = |a: &Table, b: &Table| distance_on(&samples, a, b, discount);
                 prop_assert_eq!(d(&a, &like), 0.0);
                 let far = d(&a, &reversed);
                 prop_assert!(far == 0.0 || (far - 1.0).abs() < 1e-9, "{far}");

@@ -18,12 +18,12 @@ const DRAWS: usize = 96;
 ///
 /// A state is the agent's position and the set of used-up objects; an action triggers one object, or none. For it, a world
 /// pays the object's reward (times its odds), or `order_penalty` if out of turn, plus its shaping. Both worlds' rewards
-/// are evaluated on the same 256 transitions, each of which may lead anywhere; objects are matched as in distances of
+/// are evaluated on the same 256 transitions, each of which may lead anywhere; objects are indices as in distances of
 /// worlds, and an object that only one world has pays nothing in the other. So 0 means the same reward up to a
 /// constant, a factor above 0 and potential shaping, about 0.7 (√½) unrelated rewards, and 1 the reverse.
 ///
-/// It ignores the reward per second, which is a constant, and how hard a reward is to reach. The discount is that of the
-/// worlds' shaping, the larger of two, by default 0.99. A pseudometric among worlds whose objects match in the same way.
+/// It ignores the reward per second, which is a constant, and how hard a reward is to reach. The discount is the larger
+/// of the discounts of the worlds' shaping, by default 0.99. A pseudometric among worlds whose objects match in the same way.
 /// Deterministic. Takes a few milliseconds.
 ///
 /// Source: Gleave, Dennis, Legg, Russell and Leike 2021, "Quantifying differences in reward functions".
@@ -65,8 +65,8 @@ pub fn world_rewards_distance(a: &World, b: &World) -> Result<f64, SimilarityErr
 /// The agent's position, and which objects are used up.
 #[derive(Clone, Debug)]
 struct State {
-    place: [f64; 2],
-    gone: Vec<bool>,
+    position: [f64; 2],
+    used: Vec<bool>,
 }
 
 /// The object that is triggered.
@@ -76,8 +76,8 @@ type Choice = Option<usize>;
 fn draw(objects: usize, reach: [f64; 2]) -> Result<RewardSamples<State, Choice>, SimilarityError> {
     let mut rng = SplitMix64::keyed(0, objects as u64);
     let state = |rng: &mut SplitMix64| State {
-        place: reach.map(|reach| (2.0 * rng.unit() - 1.0) * reach),
-        gone: (0..objects).map(|_| rng.below(2) == 1).collect(),
+        position: reach.map(|reach| (2.0 * rng.unit() - 1.0) * reach),
+        used: (0..objects).map(|_| rng.below(2) == 1).collect(),
     };
     // Each object is as likely as no object at all.
     let choice = |rng: &mut SplitMix64| {
@@ -87,9 +87,9 @@ fn draw(objects: usize, reach: [f64; 2]) -> Result<RewardSamples<State, Choice>,
     let transitions = (0..TRANSITIONS).map(|_| {
         let (from, action) = (state(&mut rng), choice(&mut rng));
         let mut to = state(&mut rng);
-        to.gone.clone_from(&from.gone);
+        to.used.clone_from(&from.used);
         if let Some(object) = action {
-            to.gone[object] = true;
+            to.used[object] = true;
         }
         (from, action, to)
     });
@@ -105,8 +105,8 @@ struct Rewards<'a> {
 }
 
 impl<'a> Rewards<'a> {
-    fn new(world: &'a World, places: &[Option<usize>]) -> Self {
-        let objects = places.iter().map(|place| place.map(|index| &world.objects[index]));
+    fn new(world: &'a World, indices: &[Option<usize>]) -> Self {
+        let objects = indices.iter().map(|index| index.map(|index| &world.objects[index]));
         Self {
             world,
             objects: objects.collect(),
@@ -119,19 +119,19 @@ impl<'a> Rewards<'a> {
 
     /// The reward, in points, of a step between two states that triggers an object.
     fn pays(&self, from: &State, action: Choice, to: &State) -> f64 {
-        let set_off = action.and_then(|index| Some((index, self.objects[index]?)));
+        let triggered = action.and_then(|index| Some((index, self.objects[index]?)));
         let shaped = self.world.rules.shaping.as_ref().map_or(0.0, |shaping| {
             shaping.discount * self.potential(to) - self.potential(from)
         });
-        shaped + set_off.map_or(0.0, |(index, object)| self.worth(from, index, object))
+        shaped + triggered.map_or(0.0, |(index, object)| self.worth(from, index, object))
     }
 
     /// The value of triggering an object in a state.
     fn worth(&self, state: &State, index: usize, object: &Object) -> f64 {
-        let again = !object.reward_stimulus.is_empty();
-        let pays = again || !object.reward_once_stimulus.is_empty();
-        let stays = again && object.destroy_stimulus.is_empty();
-        if !pays || (state.gone[index] && !stays) {
+        let repeats = !object.reward_stimulus.is_empty();
+        let pays = repeats || !object.reward_once_stimulus.is_empty();
+        let stays = repeats && object.destroy_stimulus.is_empty();
+        if !pays || (state.used[index] && !stays) {
             0.0
         } else if self.is_due(state, object) {
             object.reward * object.reward_probability
@@ -143,7 +143,7 @@ impl<'a> Rewards<'a> {
     /// Whether all earlier objects of the sequence are used up.
     fn is_due(&self, state: &State, object: &Object) -> bool {
         let before = |other: &&Object| other.order.zip(object.order).is_some_and(|(other, own)| other < own);
-        let open = self.objects.iter().zip(&state.gone).filter(|(_, gone)| !**gone);
+        let open = self.objects.iter().zip(&state.used).filter(|(_, used)| !**used);
         !open.filter_map(|(other, _)| other.as_ref()).any(before)
     }
 
@@ -152,16 +152,16 @@ impl<'a> Rewards<'a> {
         let Some(shaping) = &self.world.rules.shaping else {
             return 0.0;
         };
-        let draws = |object: &Object| match &shaping.toward {
+        let attracts = |object: &Object| match &shaping.toward {
             Some(tag) => object.tag.as_ref() == Some(tag),
             None => object.is_target() && object.reward > 0.0 && self.is_due(state, object),
         };
-        let open = self.objects.iter().zip(&state.gone).filter(|(_, gone)| !**gone);
+        let open = self.objects.iter().zip(&state.used).filter(|(_, used)| !**used);
         let near = open
             .filter_map(|(object, _)| *object)
-            .filter(|object| draws(object))
+            .filter(|object| attracts(object))
             .map(|object| {
-                let [x, y] = [0, 1].map(|axis| object.coordinates[axis] - state.place[axis]);
+                let [x, y] = [0, 1].map(|axis| object.coordinates[axis] - state.position[axis]);
                 (x * x + y * y).sqrt()
             });
         -shaping.scale * near.reduce(f64::min).unwrap_or(0.0)

@@ -70,7 +70,7 @@ impl CostTable {
         self.costs.iter().copied().fold(0.0, f64::max)
     }
 
-    /// Which laws the table satisfies.
+    /// The metric properties of the table.
     pub fn properties(&self) -> MetricProperties {
         self.properties
     }
@@ -112,14 +112,14 @@ fn check(names: &[String], costs: &[f64]) -> Result<(), SimilarityError> {
 
 fn properties(count: usize, costs: &[f64]) -> MetricProperties {
     let cost = |a: usize, b: usize| costs[a * count + b];
-    let kept = (0..count).all(|a| {
+    let is_metric = (0..count).all(|a| {
         (0..count).filter(|&b| b != a).all(|b| {
             // Sums of decimal fractions carry rounding errors.
             let straight = cost(a, b) * (1.0 - 1e-12);
             straight > 0.0 && (0..count).all(|via| straight <= cost(a, via) + cost(via, b))
         })
     });
-    if kept {
+    if is_metric {
         MetricProperties::Metric
     } else {
         MetricProperties::Distance
@@ -189,8 +189,8 @@ mod tests {
             let [ab, ac, bc] = costs;
             let table = table(&[0.0, ab, ac, ab, 0.0, bc, ac, bc, 0.0]).unwrap();
             let triangles = ab <= ac + bc && ac <= ab + bc && bc <= ab + ac;
-            let apart = costs.iter().all(|&cost| cost > 0.0);
-            prop_assert_eq!(table.properties().is_metric(), triangles && apart);
+            let are_distinct = costs.iter().all(|&cost| cost > 0.0);
+            prop_assert_eq!(table.properties().is_metric(), triangles && are_distinct);
             for (a, b, expected) in [("a", "b", ab), ("c", "a", ac), ("b", "c", bc), ("b", "b", 0.0)] {
                 prop_assert_eq!(table.between(a, b).unwrap(), expected);
                 prop_assert_eq!(table.between(b, a).unwrap(), expected);

@@ -20,12 +20,12 @@ pub fn counts_distance<K: Ord>(a: &BTreeMap<K, usize>, b: &BTreeMap<K, usize>) -
     let of = |counts: &BTreeMap<K, usize>, kind: &K| counts.get(kind).copied().unwrap_or(0);
     let only_b = b.iter().filter(|(kind, _)| !a.contains_key(kind));
     let pairs = a.iter().map(|(kind, &count)| (count, of(b, kind)));
-    let (mut apart, mut all) = (0.0, 0.0);
+    let (mut difference, mut total) = (0.0, 0.0);
     for (mine, theirs) in pairs.chain(only_b.map(|(_, &count)| (0, count))) {
-        apart += mine.abs_diff(theirs) as f64;
-        all += mine.max(theirs) as f64;
+        difference += mine.abs_diff(theirs) as f64;
+        total += mine.max(theirs) as f64;
     }
-    if all == 0.0 { 0.0 } else { apart / all }
+    if total == 0.0 { 0.0 } else { difference / total }
 }
 
 #[cfg(test)]

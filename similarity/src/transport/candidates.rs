@@ -1,4 +1,4 @@
-//! Candidate arcs that are likely to carry flow: for each source those to its nearest sinks.
+//! Candidate arcs that are likely to carry flow: for each source, the arcs to its nearest sinks.
 
 /// An arc between a source and a sink, inside or outside the tree.
 #[derive(Clone, Copy, Debug)]
@@ -13,25 +13,25 @@ const NEAREST: usize = 24;
 
 /// The cheapest arcs of each source, all sorted by cost, ties by source and sink.
 pub(super) fn nearest(costs: &[f64], sinks: usize) -> Vec<Arc> {
-    let kept = NEAREST.min(sinks);
-    let mut arcs = Vec::with_capacity(costs.len() / sinks * kept);
+    let num_kept = NEAREST.min(sinks);
+    let mut arcs = Vec::with_capacity(costs.len() / sinks * num_kept);
     let mut order: Vec<u32> = Vec::with_capacity(sinks);
     for (source, row) in costs.chunks_exact(sinks).enumerate() {
         order.clear();
         order.extend(0..sinks as u32);
         let by_cost = |a: &u32, b: &u32| row[*a as usize].total_cmp(&row[*b as usize]).then(a.cmp(b));
-        if kept < sinks {
-            order.select_nth_unstable_by(kept - 1, by_cost);
+        if num_kept < sinks {
+            order.select_nth_unstable_by(num_kept - 1, by_cost);
         }
-        arcs.extend(order[..kept].iter().map(|&sink| Arc {
+        arcs.extend(order[..num_kept].iter().map(|&sink| Arc {
             cost: row[sink as usize],
             source: source as u32,
             sink,
         }));
     }
     arcs.sort_unstable_by(|a, b| {
-        let place = |arc: &Arc| (arc.source, arc.sink);
-        a.cost.total_cmp(&b.cost).then(place(a).cmp(&place(b)))
+        let ends = |arc: &Arc| (arc.source, arc.sink);
+        a.cost.total_cmp(&b.cost).then(ends(a).cmp(&ends(b)))
     });
     arcs
 }

@@ -3,8 +3,8 @@
 use super::exact::{MAX_TRANSPORTED, cheapest_moves};
 use crate::{Assignment, SimilarityError};
 
-/// Mean distance in metres from the points of one set to those of the other under the cheapest pairing (Wasserstein-1 with the
-/// Euclidean distance).
+/// Mean distance in metres from the points of one set to the points of the other under the cheapest pairing (Wasserstein-1 with
+/// the Euclidean distance).
 ///
 /// `a`, `b`: points `(x, y)` in metres; all points of a set have equal weight and each set has weight 1, so points are split if
 /// the sets differ in size. In `0..=` the largest distance between two points. A metric between sets up to duplication: a set
@@ -30,16 +30,16 @@ pub fn earth_movers_distance(a: &[[f64; 2]], b: &[[f64; 2]]) -> Result<f64, Simi
     if a.is_empty() {
         return Ok(0.0);
     }
-    let apart = |p: &[f64; 2], q: &[f64; 2]| ((p[0] - q[0]).powi(2) + (p[1] - q[1]).powi(2)).sqrt();
+    let distance = |p: &[f64; 2], q: &[f64; 2]| ((p[0] - q[0]).powi(2) + (p[1] - q[1]).powi(2)).sqrt();
     if a.len() == b.len() {
         SimilarityError::check_count(a.len(), MAX_TRANSPORTED)?;
-        let costs: Vec<f64> = a.iter().flat_map(|p| b.iter().map(|q| apart(p, q))).collect();
+        let costs: Vec<f64> = a.iter().flat_map(|p| b.iter().map(|q| distance(p, q))).collect();
         return Ok(Assignment::new().solve(&costs, a.len(), b.len())? / a.len() as f64);
     }
     // Each point of one set holds as many units as the other has points: whole numbers with equal sums.
     let (from, to) = (vec![b.len() as i64; a.len()], vec![a.len() as i64; b.len()]);
-    let moves = cheapest_moves(&from, &to, |p, q| apart(&a[p], &b[q]))?.into_iter();
-    let total: f64 = moves.map(|(p, q, units)| units as f64 * apart(&a[p], &b[q])).sum();
+    let moves = cheapest_moves(&from, &to, |p, q| distance(&a[p], &b[q]))?.into_iter();
+    let total: f64 = moves.map(|(p, q, units)| units as f64 * distance(&a[p], &b[q])).sum();
     Ok(total / (a.len() * b.len()) as f64)
 }
 

@@ -14,7 +14,7 @@ pub const MAX_TRANSPORTED: usize = 4096;
 /// larger (the difference is taken off the largest mass of the heavier side). `costs`: `(origins, destinations)`, row after row,
 /// in any unit, possibly negative. Without any mass the cost is 0.
 ///
-/// The optimum is exact: masses are moved in whole units (2⁻⁶⁰ of the sum) and the dual prices prove it; the cost is that of
+/// The optimum is exact: masses are moved in whole units (2⁻⁶⁰ of the sum) and the dual prices prove it; the cost equals
 /// the true optimum within rounding, about 1e-14 of the largest cost times the mass. A metric between masses of sum 1 if the
 /// costs are the distances of a metric (Wasserstein-1). Network simplex, see `network_simplex.rs`: time grows like
 /// `(origins + destinations)^2` to `^3`.
@@ -59,11 +59,11 @@ pub(crate) fn cheapest_moves(
     to: &[i64],
     cost: impl Fn(usize, usize) -> f64,
 ) -> Result<Vec<(usize, usize, i64)>, SimilarityError> {
-    let (origins, destinations) = (taken(from)?, taken(to)?);
+    let (origins, destinations) = (indices_with_mass(from)?, indices_with_mass(to)?);
     if origins.is_empty() {
         return Ok(Vec::new());
     }
-    let pick = |units: &[i64], places: &[usize]| places.iter().map(|&place| units[place]).collect::<Vec<i64>>();
+    let pick = |units: &[i64], indices: &[usize]| indices.iter().map(|&index| units[index]).collect::<Vec<i64>>();
     let row = |&origin: &usize| destinations.iter().map(move |&destination| (origin, destination));
     let costs: Vec<f64> = origins.iter().flat_map(row).map(|(from, to)| cost(from, to)).collect();
     let found = solve(&pick(from, &origins), &pick(to, &destinations), &costs).into_iter();
@@ -86,10 +86,10 @@ pub(crate) fn check_costs(rows: usize, columns: usize, costs: &[f64]) -> Result<
 }
 
 /// The indices with mass, if there are not too many.
-fn taken(units: &[i64]) -> Result<Vec<usize>, SimilarityError> {
-    let places: Vec<usize> = (0..units.len()).filter(|&place| units[place] > 0).collect();
-    SimilarityError::check_count(places.len(), MAX_TRANSPORTED)?;
-    Ok(places)
+fn indices_with_mass(units: &[i64]) -> Result<Vec<usize>, SimilarityError> {
+    let indices: Vec<usize> = (0..units.len()).filter(|&index| units[index] > 0).collect();
+    SimilarityError::check_count(indices.len(), MAX_TRANSPORTED)?;
+    Ok(indices)
 }
 
 #[cfg(test)]
@@ -98,7 +98,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn places_without_mass_take_no_part() {
+    fn origins_and_destinations_without_mass_are_ignored() {
         let costs = [3.0, 1.0, 2.0, 9.0, 4.0, 0.5];
         let plan = optimal_transport(&[0.0, 2.0], &[1.0, 0.0, 1.0], &costs).unwrap();
         assert_eq!(plan.cost, 9.5);

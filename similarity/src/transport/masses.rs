@@ -3,7 +3,7 @@
 use crate::SimilarityError;
 
 /// Maximum difference between the sums of both sides, as a share of the larger.
-const SUMS_WITHIN: f64 = 1e-9;
+const MAX_SUM_DIFFERENCE: f64 = 1e-9;
 
 /// The larger sum is about 2 to this power in units: a mass of at least a 128th of the whole loses no bit.
 const BITS: i32 = 60;
@@ -23,7 +23,7 @@ impl Units {
     /// Checks the masses and rounds them to units. A difference in the sums due to rounding is taken off the largest mass.
     pub(crate) fn of(from: &[f64], to: &[f64]) -> Result<Self, SimilarityError> {
         let (a, b) = (sum("from", from)?, sum("to", to)?);
-        if (a - b).abs() > SUMS_WITHIN * a.max(b) {
+        if (a - b).abs() > MAX_SUM_DIFFERENCE * a.max(b) {
             return Err(SimilarityError::UnequalMasses { from: a, to: b });
         }
         let scale = power_of_two(a.max(b));
@@ -88,9 +88,9 @@ mod tests {
 
     #[test]
     fn invalid_masses_are_refused() {
-        for wrong in [-1.0, f64::NAN, f64::INFINITY] {
-            let found = Units::of(&[1.0, wrong], &[1.0]).unwrap_err();
-            assert_eq!(found.code(), "similarity/bad-mass", "{wrong}");
+        for invalid in [-1.0, f64::NAN, f64::INFINITY] {
+            let found = Units::of(&[1.0, invalid], &[1.0]).unwrap_err();
+            assert_eq!(found.code(), "similarity/bad-mass", "{invalid}");
         }
         let found = Units::of(&[1.0], &[1.5]).unwrap_err();
         assert_eq!(found.code(), "similarity/unequal-masses");

@@ -136,15 +136,15 @@ mod tests {
     fn check(sources: &[i64], sinks: &[i64], costs: &[f64]) -> f64 {
         let tree = cheapest_tree(sources, sinks, costs);
         let sink_prices: Vec<f64> = (0..sinks.len()).map(|sink| tree.price(sources.len() + sink)).collect();
-        let (mut given, mut taken) = (vec![0; sources.len()], vec![0; sinks.len()]);
+        let (mut sent, mut received) = (vec![0; sources.len()], vec![0; sinks.len()]);
         let scale = costs.iter().fold(1e-300, |largest: f64, cost| largest.max(cost.abs()));
         let rows = costs.chunks(sinks.len());
         let source_prices: Vec<f64> = rows.map(|row| cheapest(row, &sink_prices)).collect();
         let mut total = 0.0;
         for (source, sink, units) in solve(sources, sinks, costs) {
             assert!(units > 0);
-            given[source] += units;
-            taken[sink] += units;
+            sent[source] += units;
+            received[sink] += units;
             let cost = costs[source * sinks.len() + sink];
             total += units as f64 * cost;
             let slack = cost - source_prices[source] - sink_prices[sink];
@@ -153,7 +153,7 @@ mod tests {
                 "an arc that carries flow has slack {slack}"
             );
         }
-        assert_eq!((given.as_slice(), taken.as_slice()), (sources, sinks));
+        assert_eq!((sent.as_slice(), received.as_slice()), (sources, sinks));
         total
     }
 

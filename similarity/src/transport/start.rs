@@ -27,12 +27,12 @@ pub(super) fn greedy(sources: &[i64], sinks: &[i64], costs: &[f64], candidates: 
             send(source, sink, &mut supply, &mut demand);
         }
     }
-    joined(sources.len(), sinks.len(), costs, &flows)
+    join_trees(sources.len(), sinks.len(), costs, &flows)
 }
 
 /// Joins the arcs that carry flow, which form trees because each exhausts one of its ends, into one tree. An empty arc leads
 /// from the source at the top of a tree to the nearest sink of earlier trees, as strong feasibility requires.
-fn joined(sources: usize, sinks: usize, costs: &[f64], flows: &[(usize, usize, i64)]) -> SpanningTree {
+fn join_trees(sources: usize, sinks: usize, costs: &[f64], flows: &[(usize, usize, i64)]) -> SpanningTree {
     let mut neighbours: Vec<Vec<(usize, i64)>> = vec![Vec::new(); sources + sinks];
     for &(source, sink, flow) in flows {
         neighbours[source].push((sources + sink, flow));

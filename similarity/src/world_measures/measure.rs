@@ -3,8 +3,8 @@
 use driftworld_spec::{Element, World};
 
 use super::colors;
-use super::objects::{counts_of, places_apart};
-use super::occupancy::{earth_movers, of_taken};
+use super::objects::{counts_of, ospa_between};
+use super::occupancy::{between_taken_cells, earth_movers};
 use crate::scalar::counts_distance;
 use crate::{
     ColorMeasure, MetricProperties, Raster, SimilarityError, grid_chamfer_distance, grid_hausdorff_distance,
@@ -15,8 +15,8 @@ use crate::{
 /// differences.
 ///
 /// The number depends on the two worlds alone, not on the order of their objects, and is finite, at least 0, 0 between a world
-/// and itself, and symmetric to the last bit. Two worlds without objects are 0 apart; each measure documents its value if only one
-/// has objects.
+/// and itself, and symmetric to the last bit. Two worlds without objects are 0 apart; each measure documents its value if only
+/// one has objects.
 ///
 /// Measures of *occupancy* compare the positions of objects, each class separately. Both worlds become grids of square cells that
 /// cover both arenas, so the pair alone decides; objects outside both arenas are ignored. A cell is 1 m wide, or 2, 4, 8 m and
@@ -34,7 +34,7 @@ use crate::{
 /// };
 /// let (a, b) = (world(0.2, "black")?, world(4.9, "white")?);
 /// let between = |measure: WorldMeasure| measure.between(&a, &b);
-/// // From the centre of a cell of 1 m to that of another.
+/// // From the centre of one cell of 1 m to the centre of another.
 /// assert_eq!(between(WorldMeasure::EarthMovers)?, 4.0);
 /// assert_eq!(between(WorldMeasure::Ospa)?, 4.7);
 /// assert!((between(WorldMeasure::Colors(ColorMeasure::Oklab))? - 1.0).abs() < 1e-6);
@@ -79,9 +79,9 @@ impl WorldMeasure {
 
     /// The measure with this kind and name, or the kind's default without a name, if there is one.
     pub fn from_name(kind: &str, name: Option<&str>) -> Option<Self> {
-        let usual = [Self::EarthMovers, Self::Ospa, Self::Colors(ColorMeasure::Oklab)];
-        let is_meant = |own: &Self| name.map_or(usual.contains(own), |name| own.name() == name);
-        Self::all().find(|own| own.kind() == kind && is_meant(own))
+        let defaults = [Self::EarthMovers, Self::Ospa, Self::Colors(ColorMeasure::Oklab)];
+        let matches = |own: &Self| name.map_or(defaults.contains(own), |name| own.name() == name);
+        Self::all().find(|own| own.kind() == kind && matches(own))
     }
 
     /// The kind of things compared: "occupancy", "objects" or "colors".
@@ -106,7 +106,7 @@ impl WorldMeasure {
         }
     }
 
-    /// Which laws the measure satisfies; for occupancy, only among worlds of the same arena, see
+    /// The metric properties of the measure; for occupancy, only among worlds of the same arena, see
     /// [`WorldMeasure::properties_among`]. None is a metric, because each considers only part of a world.
     pub fn properties(self) -> MetricProperties {
         match self {
@@ -116,9 +116,9 @@ impl WorldMeasure {
         }
     }
 
-    /// Which laws the measure satisfies among these worlds. If arenas differ, or there are so many classes that some pairs need
-    /// larger cells than others, occupancy has different cells and diameters for each pair, and the triangle inequality may
-    /// fail.
+    /// The metric properties of the measure among these worlds. If arenas differ, or there are so many classes that some pairs
+    /// need larger cells than others, occupancy has different cells and diameters for each pair, and the triangle inequality
+    /// may fail.
     pub fn properties_among<'a>(self, worlds: impl IntoIterator<Item = &'a World>) -> MetricProperties {
         let worlds: Vec<&World> = worlds.into_iter().collect();
         let Some(first) = worlds.first().filter(|_| self.kind() == "occupancy") else {
@@ -138,15 +138,15 @@ impl WorldMeasure {
     ///
     /// # Errors
     /// [`SimilarityError::TooMany`] for more than [`MAX_ASSIGNED`](crate::MAX_ASSIGNED) objects (`ospa`, colours), or
-    /// for more than [`MAX_TRANSPORTED`](crate::MAX_TRANSPORTED) cells of a class that have to give or take (the earth
+    /// for more than [`MAX_TRANSPORTED`](crate::MAX_TRANSPORTED) cells of a class that must send or receive mass (the earth
     /// mover's distance).
     pub fn between(self, a: &World, b: &World) -> Result<f64, SimilarityError> {
         match self {
             Self::EarthMovers => earth_movers(a, b),
-            Self::Jaccard => of_taken(a, b, grid_jaccard_distance),
-            Self::Hausdorff => of_taken(a, b, grid_hausdorff_distance),
-            Self::Chamfer => of_taken(a, b, grid_chamfer_distance),
-            Self::Ospa => places_apart(a, b),
+            Self::Jaccard => between_taken_cells(a, b, grid_jaccard_distance),
+            Self::Hausdorff => between_taken_cells(a, b, grid_hausdorff_distance),
+            Self::Chamfer => between_taken_cells(a, b, grid_chamfer_distance),
+            Self::Ospa => ospa_between(a, b),
             Self::Counts => Ok(counts_distance(&counts_of(a), &counts_of(b))),
             Self::Colors(own) => colors::between(a, b, own),
         }

@@ -10,21 +10,21 @@ use crate::{SimilarityError, ospa};
 const CUT_OFF: f64 = 10.0;
 
 /// [`ospa`] of the objects of two worlds.
-pub(super) fn places_apart(a: &World, b: &World) -> Result<f64, SimilarityError> {
-    let (a, b) = (places(a), places(b));
+pub(super) fn ospa_between(a: &World, b: &World) -> Result<f64, SimilarityError> {
+    let (a, b) = (positions(a), positions(b));
     // In a canonical order of the two, so that the result is symmetric to the last bit.
     let (a, b) = if a > b { (b, a) } else { (a, b) };
     ospa(&a, &b, CUT_OFF)
 }
 
 /// Class and position of each object, sorted.
-fn places(world: &World) -> Vec<(String, [f64; 2])> {
+fn positions(world: &World) -> Vec<(String, [f64; 2])> {
     let objects = world.objects.iter();
-    let mut places: Vec<_> = objects
+    let mut positions: Vec<_> = objects
         .map(|object| (object.class.to_lowercase(), object.coordinates))
         .collect();
-    places.sort_by(|a, b| a.partial_cmp(b).expect("places are numbers"));
-    places
+    positions.sort_by(|a, b| a.partial_cmp(b).expect("positions are numbers"));
+    positions
 }
 
 /// Number of objects of each class.

@@ -5,7 +5,7 @@ use driftworld_spec::World;
 use crate::{BitGrid, Grid, GridShape, Raster, SimilarityError, grid_earth_movers_distance};
 
 /// A distance between the cells that are taken in two worlds.
-pub(super) fn of_taken(
+pub(super) fn between_taken_cells(
     a: &World,
     b: &World,
     distance: impl Fn(&BitGrid, &BitGrid) -> Result<f64, SimilarityError>,

@@ -9,10 +9,10 @@ use crate::distribution::Method;
 use crate::{SimilarityError, earth_movers_distance};
 
 /// Distance in metres that counts as 1, as in distances between worlds.
-const METRES: f64 = 10.0;
+const METRES_PER_UNIT: f64 = 10.0;
 
-/// Where the objects of each class stand in many worlds of one variant: the actual distribution of positions, after walls and
-/// rejected placements have changed the declared one.
+/// The positions of the objects of each class in many worlds of one variant: the actual distribution of positions, after walls
+/// and rejected placements have changed the declared one.
 #[derive(Clone, Debug, Default)]
 pub struct Placements {
     by_class: BTreeMap<String, Vec<[f64; 2]>>,
@@ -27,8 +27,8 @@ impl Placements {
             let class = object.class.to_lowercase();
             by_class.entry(class).or_default().push(object.coordinates);
         }
-        for places in by_class.values_mut() {
-            places.sort_by(|a, b| a.partial_cmp(b).expect("places are numbers"));
+        for positions in by_class.values_mut() {
+            positions.sort_by(|a, b| a.partial_cmp(b).expect("positions are numbers"));
         }
         let worlds = worlds.len();
         Self { by_class, worlds }
@@ -66,10 +66,10 @@ impl Placements {
                 (Some(a), Some(b)) => {
                     // In a canonical order of the two, so that the result is symmetric to the last bit.
                     let (a, b) = if a > b { (b, a) } else { (a, b) };
-                    let way = earth_movers_distance(a, b)?;
-                    (way, way / METRES)
+                    let distance = earth_movers_distance(a, b)?;
+                    (distance, distance / METRES_PER_UNIT)
                 }
-                _ => (METRES, 1.0),
+                _ => (METRES_PER_UNIT, 1.0),
             };
             let count = self.worlds.min(other.worlds);
             parts.push(Part {
@@ -115,7 +115,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 64)))]
 
         #[test]
-        fn placements_distance_satisfies_the_metric_laws_in_any_order(a in drawn(), b in drawn(), c in drawn()) {
+        fn placements_distance_satisfies_the_metric_axioms_in_any_order(a in drawn(), b in drawn(), c in drawn()) {
             let [of_a, of_b, of_c] = [&a, &b, &c].map(|places| Placements::of(&worlds(places)));
             let d = |a: &Placements, b: &Placements| a.distance(b, &Weights::default()).unwrap().total;
             prop_assert_eq!(d(&of_a, &of_a), 0.0);
@@ -142,7 +142,7 @@ mod tests {
             let (before, after) = (Placements::of(&worlds(&a)), Placements::of(&worlds(&moved)));
             let classes = before.by_class.len() as f64;
             let found = before.distance(&after, &Weights::default()).unwrap().total;
-            prop_assert!((found - classes * east.abs() / METRES).abs() < 1e-9);
+            prop_assert!((found - classes * east.abs() / METRES_PER_UNIT).abs() < 1e-9);
         }
     }
 

@@ -1,4 +1,4 @@
-//! Laws of the measures between worlds.
+//! Properties of the measures between worlds.
 
 mod by_hand;
 
@@ -27,11 +27,11 @@ fn world(things: &[Thing]) -> World {
         color: *color,
         ..Object::new(*class, *place)
     };
-    let made = World::default().edit(|world| {
+    let world = World::default().edit(|world| {
         world.environment_params.map_size = [12.0, 8.0];
         world.objects = things.iter().map(object).collect();
     });
-    made.unwrap()
+    world.unwrap()
 }
 
 fn between(measure: WorldMeasure, a: &[Thing], b: &[Thing]) -> f64 {
@@ -50,10 +50,10 @@ fn names_round_trip_and_unknown_names_are_refused() {
     let names: Vec<_> = WorldMeasure::all().map(WorldMeasure::name).collect();
     let expected = "earth_movers jaccard hausdorff chamfer ospa counts srgb cie76 ciede2000 oklab hyab";
     assert_eq!(names.join(" "), expected);
-    let usual = ["occupancy", "objects", "colors", "rewards"].map(|kind| WorldMeasure::from_name(kind, None));
+    let defaults = ["occupancy", "objects", "colors", "rewards"].map(|kind| WorldMeasure::from_name(kind, None));
     let oklab = WorldMeasure::Colors(ColorMeasure::Oklab);
     assert_eq!(
-        usual,
+        defaults,
         [
             Some(WorldMeasure::EarthMovers),
             Some(WorldMeasure::Ospa),
@@ -114,11 +114,11 @@ fn sets_of_worlds_are_compared_pairwise_in_one_element() {
 fn cells_grow_until_all_classes_fit() {
     let with = |classes: usize, side: f64| {
         let objects = (0..classes).map(|index| Object::new(format!("kind {index}"), [0.5, 0.5]));
-        let made = World::default().edit(|world| {
+        let world = World::default().edit(|world| {
             world.environment_params.map_size = [side; 2];
             world.objects = objects.collect();
         });
-        made.unwrap()
+        world.unwrap()
     };
     let cell = |classes, side| Raster::fitting(&[&with(classes, side)]).unwrap().shape().cell();
     assert_eq!((cell(11, 300.0), cell(12, 300.0), cell(100, 300.0)), (1.0, 2.0, 4.0));
@@ -142,11 +142,11 @@ fn cells_grow_until_all_classes_fit() {
 #[test]
 fn larger_arena_can_violate_the_triangle_inequality() {
     let arena = |side: f64, trees: usize| {
-        let made = World::default().edit(|world| {
+        let world = World::default().edit(|world| {
             world.environment_params.map_size = [side; 2];
             world.objects = vec![Object::new("tree", [0.5, 0.5]); trees];
         });
-        made.unwrap()
+        world.unwrap()
     };
     let d = |a, b| WorldMeasure::EarthMovers.between(a, b).unwrap();
     let (tree, none, wide) = (arena(10.0, 1), arena(10.0, 0), arena(100.0, 0));
@@ -158,13 +158,13 @@ proptest! {
 
     #[test]
     fn measures_are_symmetric_and_0_between_equals(a in things(), b in things(), turn in 0_usize..5) {
-        let mut turned = a.clone();
-        turned.rotate_left(turn.min(a.len()));
+        let mut rotated = a.clone();
+        rotated.rotate_left(turn.min(a.len()));
         for measure in WorldMeasure::all() {
             let d = |a: &[Thing], b: &[Thing]| between(measure, a, b);
-            prop_assert_eq!(d(&a, &turned), 0.0, "{}", measure.name());
+            prop_assert_eq!(d(&a, &rotated), 0.0, "{}", measure.name());
             prop_assert_eq!(d(&a, &b), d(&b, &a), "{}", measure.name());
-            prop_assert_eq!(d(&a, &b), d(&turned, &b), "{}", measure.name());
+            prop_assert_eq!(d(&a, &b), d(&rotated, &b), "{}", measure.name());
             prop_assert!(d(&a, &b).is_finite() && d(&a, &b) >= 0.0);
             if !measure.label().ends_with("in metres") {
                 prop_assert!(d(&a, &b) <= 1.0, "{}", measure.name());
@@ -181,12 +181,12 @@ proptest! {
     }
 
     #[test]
-    fn distance_never_falls_as_a_lone_object_moves_away(from in -6.0..6.0_f64, ways in prop::array::uniform2(0.0..6.0_f64)) {
-        let (near, far) = (ways[0].min(ways[1]), ways[0].max(ways[1]));
+    fn distance_never_falls_as_a_lone_object_moves_away(from in -6.0..6.0_f64, distances in prop::array::uniform2(0.0..6.0_f64)) {
+        let (near, far) = (distances[0].min(distances[1]), distances[0].max(distances[1]));
         for measure in WorldMeasure::all() {
-            let moved = |way: f64| {
+            let moved = |distance: f64| {
                 let at = |x: f64| [("tree", [x.min(6.0), 1.0], None)];
-                between(measure, &at(from), &at(from + way))
+                between(measure, &at(from), &at(from + distance))
             };
             prop_assert!(moved(near) <= moved(far) + 1e-12, "{}", measure.name());
         }
@@ -196,13 +196,13 @@ proptest! {
     fn transport_never_falls_as_one_of_several_objects_moves_away(
         others in things(),
         from in -6.0..6.0_f64,
-        ways in prop::array::uniform2(0.0..6.0_f64),
+        distances in prop::array::uniform2(0.0..6.0_f64),
     ) {
-        let (near, far) = (ways[0].min(ways[1]), ways[0].max(ways[1]));
+        let (near, far) = (distances[0].min(distances[1]), distances[0].max(distances[1]));
         let work = WorldMeasure::EarthMovers;
         for measure in [work, WorldMeasure::Ospa] {
             let with = |x: f64| [others.clone(), vec![("tree", [x.min(6.0), 1.0], None)]].concat();
-            let moved = |way: f64| between(measure, &with(from), &with(from + way));
+            let moved = |distance: f64| between(measure, &with(from), &with(from + distance));
             prop_assert!(moved(near) <= moved(far) + 1e-9, "{}", measure.name());
         }
     }

@@ -1,6 +1,6 @@
 """Golden values for correlations and the Mantel test, by scipy and scikit-bio. Run: python make_correlation.py > correlation.json
 
-Needs numpy, scipy, scikit-bio. Exact shares come from going through every relabelling here, with scipy's correlations.
+Needs numpy, scipy, scikit-bio. Exact shares come from an enumeration of all relabellings with scipy's correlations.
 """
 
 import itertools
@@ -18,7 +18,7 @@ CORRELATIONS = {"spearman": spearmanr, "pearson": pearsonr}
 
 
 def lists():
-    """Lists with and without ties, and two that need care."""
+    """Lists with and without ties, and two that are numerically difficult."""
     for size, grid in [(3, None), (5, None), (12, 4), (30, 6), (50, None), (50, 2)]:
         a, noise = random.normal(size=size), random.normal(size=size)
         b = 0.5 * a + noise
@@ -37,31 +37,31 @@ def matrix(size):
 
 
 def gaps(distances, share):
-    """Ordered pairs, some left out, with values that fall with distance and a good deal of noise."""
+    """Ordered pairs, some left out, with noisy values that fall with distance."""
     size = len(distances)
     kept = [(a, b) for a in range(size) for b in range(size) if a != b and random.uniform() < share]
     return [(a, b, round(float(-distances[a, b] + random.normal()), 2)) for a, b in kept]
 
 
 def enumerated(distances, pairs, correlate):
-    """The correlation, and how many relabellings go together at least as well: far from 0, low, high, and of how many."""
+    """The correlation; the numbers of relabellings at least as far from 0, as low and as high; the number of relabellings."""
     items = sorted({item for a, b, _ in pairs for item in (a, b)})
     values = [value for _, _, value in pairs]
 
-    def under(labels):
+    def correlation(labels):
         to = dict(zip(items, labels))
         found = [distances[to[a], to[b]] for a, b, _ in pairs]
         return correlate(found, values)[0] if len(set(found)) > 1 else None
 
-    here = under(items)
+    observed = correlation(items)
     far = low = high = count = 0
     for labels in itertools.permutations(items):
-        there = under(labels)
+        found = correlation(labels)
         count += 1
-        far += there is None or abs(there) >= abs(here) - 1e-9
-        low += there is None or there <= here + 1e-9
-        high += there is None or there >= here - 1e-9
-    return {"correlation": float(here), "far": int(far), "low": int(low), "high": int(high), "count": count}
+        far += found is None or abs(found) >= abs(observed) - 1e-9
+        low += found is None or found <= observed + 1e-9
+        high += found is None or found >= observed - 1e-9
+    return {"correlation": float(observed), "far": int(far), "low": int(low), "high": int(high), "count": count}
 
 
 def exact_cases():

@@ -1,4 +1,4 @@
-"""Maps some points by classical scaling.
+"""Writes mds.json: maps of points by classical scaling.
 
 Run in this folder: python make_matrix.py
 """
@@ -20,7 +20,7 @@ def classical(distances, axes):
     return {
         "distances": distances.tolist(),
         "eigenvalues": values[:axes].tolist(),
-        # Signs are free: sizes of coordinates, and distances on the map, are not.
+        # Signs are arbitrary, so only the magnitudes of the coordinates are stored.
         "sizes": np.abs(vectors[:, :axes] * np.sqrt(np.maximum(values[:axes], 0))).tolist(),
         "explained": explained,
     }
@@ -29,14 +29,14 @@ def classical(distances, axes):
 random = np.random.default_rng(5)
 points = random.normal(size=(14, 4)) * [3, 2, 1, 0.3]
 euclidean = np.sqrt(((points[:, None] - points[None, :]) ** 2).sum(-1))
-bent = np.abs(random.normal(size=(9, 9)))
-bent = bent + bent.T
-np.fill_diagonal(bent, 0)
+not_euclidean = np.abs(random.normal(size=(9, 9)))
+not_euclidean = not_euclidean + not_euclidean.T
+np.fill_diagonal(not_euclidean, 0)
 json.dump(
     {
         "tools": {"python": sys.version.split()[0], "numpy": np.__version__, "scipy": scipy.__version__},
         "euclidean": classical(euclidean, 2),
-        "not_euclidean": classical(bent, 2),
+        "not_euclidean": classical(not_euclidean, 2),
     },
     open("mds.json", "w"),
 )

@@ -1,5 +1,5 @@
-"""Writes mdp.json: distances of 1,000 drawn pairs of deterministic decision processes, by linear programs that SciPy solves. Only numbers that sum
-them up are stored; `../mdp.rs` draws the same processes. Takes some minutes. Run: python make_mdp.py"""
+"""Writes mdp.json: distances of 1,000 random pairs of deterministic decision processes, by linear programs
+that SciPy solves. Only summary numbers are stored; `../mdp.rs` draws the same processes. Takes some minutes. Run: python make_mdp.py"""
 import json
 import sys
 from multiprocessing import Pool
@@ -16,10 +16,10 @@ EXACT = {"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e
 
 
 class Transports:
-    """Many transport problems as one program; the marginals stay, the costs change."""
+    """Many transport problems as one linear program with fixed marginals and variable costs."""
 
     def __init__(self, pairs):
-        """`pairs`: (from, to) masses of each problem. Places without mass take no part."""
+        """`pairs`: (from, to) masses of each problem. Positions without mass are ignored."""
         self.pairs = [(np.flatnonzero(a), np.flatnonzero(b)) for a, b in pairs]
         sizes = [len(a) * len(b) for a, b in self.pairs]
         self.starts = np.concatenate([[0], np.cumsum(sizes)])
@@ -38,7 +38,7 @@ class Transports:
         self.sums = sums.tocsr()
 
     def costs(self, table):
-        """What each problem costs at least, where `table` is what it costs from each place to each."""
+        """The minimum cost of each problem; `table` holds the cost from each position to each."""
         cost = np.concatenate([table[np.ix_(a, b)].ravel() for a, b in self.pairs])
         found = linprog(cost, A_eq=self.sums, b_eq=self.masses, method="highs-ds", options=EXACT)
         assert found.status == 0, found.message
@@ -61,30 +61,30 @@ def process(rng, states, actions):
 def bisimulation(a, b, share):
     (of_a, pays_a), (of_b, pays_b) = a, b
     actions = of_a.shape[1]
-    places = [(s, t, k) for s in range(len(of_a)) for t in range(len(of_b)) for k in range(actions)]
-    transports = Transports([(of_a[s, k], of_b[t, k]) for s, t, k in places])
-    gaps = (1 - share) * np.array([abs(pays_a[s, k] - pays_b[t, k]) for s, t, k in places])
+    triples = [(s, t, k) for s in range(len(of_a)) for t in range(len(of_b)) for k in range(actions)]
+    transports = Transports([(of_a[s, k], of_b[t, k]) for s, t, k in triples])
+    gaps = (1 - share) * np.array([abs(pays_a[s, k] - pays_b[t, k]) for s, t, k in triples])
     d = np.zeros((len(of_a), len(of_b)))
     while True:
-        following = (gaps + share * transports.costs(d)).reshape(len(of_a), len(of_b), actions).max(axis=2)
-        left = share / (1 - share) * np.abs(following - d).max()
-        d = following
-        if left < 2e-11:
+        next_d = (gaps + share * transports.costs(d)).reshape(len(of_a), len(of_b), actions).max(axis=2)
+        error = share / (1 - share) * np.abs(next_d - d).max()
+        d = next_d
+        if error < 2e-11:
             return d
 
 
 def w1(a, b, unit, counted, ground):
-    """The mean, over states that count and actions, of the least way between what an action pays and where it leads."""
+    """The mean, over counted states and actions, of the difference in reward plus the transport distance of successors."""
     (of_a, pays_a), (of_b, pays_b) = a, b
-    ways = [
+    distances = [
         abs(pays_a[s, k] - pays_b[s, k]) / unit + transport(of_a[s, k], of_b[s, k], ground)
         for s in np.flatnonzero(counted) for k in range(of_a.shape[1])
     ]
-    return np.mean(ways)
+    return np.mean(distances)
 
 
 def drawn(seed):
-    """What is drawn, and in which order, stands in `../mdp.rs`."""
+    """`../mdp.rs` documents the draws and their order."""
     rng = SplitMix64(seed)
     of_a = 1 + rng.below(6)
     of_b = of_a if rng.below(2) == 0 else 1 + rng.below(6)

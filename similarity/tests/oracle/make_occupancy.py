@@ -1,4 +1,4 @@
-"""Writes occupancy.json: what SciPy, scikit-image and POT say of grids. Run: python make_occupancy.py"""
+"""Writes occupancy.json: distances between grids by SciPy, scikit-image and POT. Run: python make_occupancy.py"""
 import json
 from pathlib import Path
 
@@ -31,9 +31,9 @@ for shape in [(1, 1), (1, 9), (3, 4), (8, 8), (9, 15), (50, 50)]:
             "jaccard": float(jaccard(a.ravel(), b.ravel())),
         }
         if a.any() and b.any():
-            apart = cdist(np.argwhere(a), np.argwhere(b)) * cell
-            there, back = apart.min(1), apart.min(0)
-            case["chamfer"] = float((there.mean() + back.mean()) / 2)
+            distances = cdist(np.argwhere(a), np.argwhere(b)) * cell
+            from_a, from_b = distances.min(1), distances.min(0)
+            case["chamfer"] = float((from_a.mean() + from_b.mean()) / 2)
             case["hausdorff"] = float(hausdorff_distance(a, b) * cell)
         taken.append(case)
 
@@ -43,8 +43,8 @@ for shape, holes in [((1, 5), 0.0), ((4, 3), 0.3), ((6, 6), 0.0), ((8, 5), 0.7),
     a, b = (np.where(rng.random(shape) < holes, 0.0, rng.random(shape)).ravel().round(6) for _ in range(2))
     a[0] += 1e-3
     b[-1] += 1e-3
-    places = centres(shape) * cell
-    cost = ot.dist(places, metric="euclidean")
+    positions = centres(shape) * cell
+    cost = ot.dist(positions, metric="euclidean")
     p, q = a / a.sum(), b / b.sum()
     masses.append({
         "rows": shape[0],

@@ -1,8 +1,8 @@
-"""What OR-Tools' routing finds on 1,000 points.
+"""Writes orders.json: the path that OR-Tools' routing finds through 1,000 points.
 
 Run in this folder: python make_orders.py [seconds for OR-Tools, 30 by default]
-Points come from SplitMix64, so that the tests can make them, too. OR-Tools' tours are round trips: the open path that it is
-asked for is a round trip through one more point that is at distance 0 from all.
+Points come from SplitMix64, so that the tests can generate them, too. OR-Tools finds round trips only: the open path is
+a round trip through one more point at distance 0 from all others.
 """
 
 import json
@@ -46,9 +46,9 @@ def routing(matrix, seconds):
     search.first_solution_strategy = routing_enums_pb2.FirstSolutionStrategy.PATH_CHEAPEST_ARC
     search.local_search_metaheuristic = routing_enums_pb2.LocalSearchMetaheuristic.GUIDED_LOCAL_SEARCH
     search.time_limit.FromSeconds(seconds)
-    begun = time.process_time()
+    start = time.process_time()
     found = model.SolveWithParameters(search)
-    spent = time.process_time() - begun
+    spent = time.process_time() - start
     path, index = [], found.Value(model.NextVar(model.Start(0)))
     while not model.IsEnd(index):
         path.append(manager.IndexToNode(index))

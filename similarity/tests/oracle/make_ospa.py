@@ -1,4 +1,4 @@
-"""Writes ospa.json: OSPA of order 1 of small sets of objects, by its formula around scipy's assignment. Run: python make_ospa.py"""
+"""Writes ospa.json: OSPA of order 1 of small sets of objects, by its formula with scipy's assignment. Run: python make_ospa.py"""
 import json
 from pathlib import Path
 
@@ -15,14 +15,14 @@ def objects(count, classes):
 
 
 def least_sum(a, b, cut_off):
-    """Least sum over one table of all objects: those of different classes are a cut-off apart."""
+    """Minimum sum over all pairings; objects of different classes are a cut-off apart."""
     if not a or not b:
         return 0.0
     x, y = np.array(a), np.array(b)
-    far = np.minimum(np.linalg.norm(x[:, None, 1:] - y[None, :, 1:], axis=2), cut_off)
-    far[x[:, None, 0] != y[None, :, 0]] = cut_off
-    rows, columns = linear_sum_assignment(far)
-    return far[rows, columns].sum()
+    costs = np.minimum(np.linalg.norm(x[:, None, 1:] - y[None, :, 1:], axis=2), cut_off)
+    costs[x[:, None, 0] != y[None, :, 0]] = cut_off
+    rows, columns = linear_sum_assignment(costs)
+    return costs[rows, columns].sum()
 
 
 for m, n in [(0, 0), (0, 3), (1, 1), (4, 4), (3, 7), (7, 3), (20, 20), (12, 30)]:

@@ -1,6 +1,6 @@
-"""Writes reward.json: EPIC of rewards on a 3 x 3 grid and of 1,000 drawn ones, by NumPy from the definitions of Gleave et al.
-(2021) and of `tabular.py` in HumanCompatibleAI/evaluating-rewards. In long doubles: 1 - r of nearly equal rewards would leave half
-the digits otherwise. Only distances are stored; `../reward.rs` draws the same rewards. Run: python make_reward.py"""
+"""Writes reward.json: EPIC of rewards on a 3 x 3 grid and of 1,000 random rewards, by NumPy from the definitions of Gleave et al.
+(2021) and of `tabular.py` in HumanCompatibleAI/evaluating-rewards. Uses long doubles, because 1 - r of nearly equal rewards would lose half
+the digits of a double. Only distances are stored; `../reward.rs` draws the same rewards. Run: python make_reward.py"""
 import json
 from pathlib import Path
 
@@ -59,7 +59,7 @@ DISCOUNT = REAL(99) / 100
 
 
 def walks():
-    """1 for each move that a 3 x 3 grid allows: to stay, or to a neighbour, or against the edge."""
+    """1 for each move on a 3 x 3 grid: left, right, up, down, stay; moves against the edge stay."""
     weights = np.zeros((9, 5, 9), dtype=REAL)
     for state in range(9):
         row, column = divmod(state, 3)
@@ -75,20 +75,20 @@ def on_the_grid(weights):
         shaped(np.tile(reward[:, None, None], (1, 5, 9)), potential, DISCOUNT)
         for reward, potential in GRID_REWARDS.values()
     ]
-    even = [canonical(table, DISCOUNT, np.ones(9, dtype=REAL), np.ones(5, dtype=REAL)) for table in tables]
-    found = [[pearson_distance(a, b, weights) for b in even] for a in even]
+    canonical_tables = [canonical(table, DISCOUNT, np.ones(9, dtype=REAL), np.ones(5, dtype=REAL)) for table in tables]
+    found = [[pearson_distance(a, b, weights) for b in canonical_tables] for a in canonical_tables]
     return [[None if np.isnan(value) else value for value in row] for row in found]
 
 
 def drawn(seed):
-    """A distance of two tables. What is drawn, and in which order, stands in `../reward.rs`."""
+    """The distance between two random tables; `../reward.rs` documents the draws and their order."""
     rng = SplitMix64(seed)
     states, actions, discount = 2 + rng.below(4), 1 + rng.below(3), REAL(rng.below(101)) / 100
-    near = rng.below(4) == 0
+    is_near = rng.below(4) == 0
     shape = (states, actions, states)
     size = states * actions * states
     a = [rng.below(2001) - 1000 for _ in range(size)]
-    b = [a[k] + rng.below(11) - 5 if near else rng.below(2001) - 1000 for k in range(size)]
+    b = [a[k] + rng.below(11) - 5 if is_near else rng.below(2001) - 1000 for k in range(size)]
     a, b = (np.array(values, dtype=REAL).reshape(shape) / 1000 for values in (a, b))
     of_states = np.array([1 + rng.below(3) for _ in range(states)], dtype=REAL)
     of_actions = np.array([1 + rng.below(3) for _ in range(actions)], dtype=REAL)

@@ -1,6 +1,6 @@
 //! Tests of distances between variants of one task: by parameter types, by declared measures, by elements.
 
-mod asked_measures;
+mod requested_measures;
 
 use super::*;
 use driftworld_spec::{Element, TaskSpec};
@@ -38,7 +38,7 @@ fn fine_element_counts_once_for_its_coarse_one() {
     use Element::{O, P, Phi, R, S};
     assert_eq!(counts_for(&[P, Phi]), [S, O]);
     assert_eq!(counts_for(&[P, S, R]), [S, R]);
-    let apart = |affects: &str| {
+    let distance_for = |affects: &str| {
         let text = format!(
             r#"{{ "name": "t", "parameters": {{
                 "a": {{ "role": "variant", "type": "number", "affects": {affects}, "range": [0, 4], "default": 2 }},
@@ -49,9 +49,9 @@ fn fine_element_counts_once_for_its_coarse_one() {
         let [a, b] = ["a", "b"].map(|name| task.variant(name).unwrap());
         variant_distance(&a, &b, &Weights::default()).unwrap()
     };
-    assert_eq!(apart(r#"["p"]"#), apart(r#"["S"]"#));
-    assert_eq!(apart(r#"["S", "p"]"#), apart(r#"["S"]"#));
-    assert_eq!(apart(r#"["p"]"#).element(P), Some(0.25));
+    assert_eq!(distance_for(r#"["p"]"#), distance_for(r#"["S"]"#));
+    assert_eq!(distance_for(r#"["S", "p"]"#), distance_for(r#"["S"]"#));
+    assert_eq!(distance_for(r#"["p"]"#).element(P), Some(0.25));
 }
 
 #[test]
@@ -73,7 +73,7 @@ fn wider_distribution_is_measured_by_wasserstein() {
     assert_eq!(heading.normalised, 1.0);
     assert!(
         !wide.parts.iter().any(|part| part.name == "wide"),
-        "it counts by what is drawn"
+        "it counts through the distribution"
     );
     assert_eq!(wide.total, 1.0);
 }
@@ -178,15 +178,25 @@ fn drawn_colours_are_compared_by_transport() {
         let (black, white) = (around("black"), around("white"));
         format!(r#""role": "variant", "type": "distribution", "choices": [{black}, {white}], "default": {black}{more}"#)
     };
-    let asked = |name: &str| drawn(&format!(r#", "compare": {{ "measure": "{name}" }}"#));
+    let requested = |name: &str| drawn(&format!(r#", "compare": {{ "measure": "{name}" }}"#));
     let white = around("white");
     check(&drawn(""), &white, "wasserstein-1 of oklab / widest", 1.0);
-    check(&asked("oklab"), &white, "wasserstein-1 of oklab / widest", 1.0);
-    check(&asked("wasserstein_1"), &white, "wasserstein-1 of oklab / widest", 1.0);
-    check(&asked("wasserstein_2"), &white, "wasserstein-2 of oklab / widest", 1.0);
-    check(&asked("srgb"), &white, "wasserstein-1 of srgb / widest", 1.0);
-    check(&asked("cie76"), &white, "wasserstein-1 of cie76 / widest", 1.0);
-    check(&asked("same_or_not"), &white, "same or not", 1.0);
+    check(&requested("oklab"), &white, "wasserstein-1 of oklab / widest", 1.0);
+    check(
+        &requested("wasserstein_1"),
+        &white,
+        "wasserstein-1 of oklab / widest",
+        1.0,
+    );
+    check(
+        &requested("wasserstein_2"),
+        &white,
+        "wasserstein-2 of oklab / widest",
+        1.0,
+    );
+    check(&requested("srgb"), &white, "wasserstein-1 of srgb / widest", 1.0);
+    check(&requested("cie76"), &white, "wasserstein-1 of cie76 / widest", 1.0);
+    check(&requested("same_or_not"), &white, "same or not", 1.0);
 }
 
 #[test]

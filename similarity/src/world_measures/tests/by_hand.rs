@@ -57,12 +57,12 @@ fn equally_many(a: &[Cell], b: &[Cell]) -> (Vec<Cell>, Vec<Cell>) {
 }
 
 /// The sum over classes; the diameter for a class in one world only.
-fn over_classes(a: &[Thing], b: &[Thing], apart: impl Fn(&[Cell], &[Cell]) -> f64) -> f64 {
+fn over_classes(a: &[Thing], b: &[Thing], distance: impl Fn(&[Cell], &[Cell]) -> f64) -> f64 {
     let of_class = |class: &&str| {
         let (a, b) = (cells(a, class), cells(b, class));
         match (a.is_empty(), b.is_empty()) {
             (true, true) => 0.0,
-            (false, false) => apart(&a, &b),
+            (false, false) => distance(&a, &b),
             _ => diameter(),
         }
     };
@@ -74,7 +74,7 @@ fn earth_movers(a: &[Cell], b: &[Cell]) -> f64 {
     least_sum(&a, &b, &metres) / a.len() as f64
 }
 
-fn taken(things: &[Thing]) -> BTreeSet<(&'static str, Cell)> {
+fn occupied(things: &[Thing]) -> BTreeSet<(&'static str, Cell)> {
     let of_class = |class: &&'static str| {
         cells(things, class)
             .into_iter()
@@ -84,19 +84,19 @@ fn taken(things: &[Thing]) -> BTreeSet<(&'static str, Cell)> {
     CLASSES.iter().flat_map(of_class).collect()
 }
 
-/// The distance from each taken cell to the nearest of its class; the diameter, once, for a class without cells to start from.
-fn ways(a: &[Thing], b: &[Thing]) -> Vec<f64> {
-    let mut ways = Vec::new();
+/// The distance from each occupied cell to the nearest of its class; the diameter, once, for a class without cells to start from.
+fn nearest_distances(a: &[Thing], b: &[Thing]) -> Vec<f64> {
+    let mut nearest_distances = Vec::new();
     for class in CLASSES {
         let unique = |things: &[Thing]| cells(things, class).into_iter().collect::<BTreeSet<_>>();
         let (from, to) = (unique(a), unique(b));
         let nearest = |cell: &Cell| to.iter().map(|other| metres(cell, other)).fold(diameter(), f64::min);
-        ways.extend(from.iter().map(nearest));
+        nearest_distances.extend(from.iter().map(nearest));
         if from.is_empty() && !to.is_empty() {
-            ways.push(diameter());
+            nearest_distances.push(diameter());
         }
     }
-    ways
+    nearest_distances
 }
 
 #[track_caller]
@@ -121,7 +121,7 @@ proptest! {
 
     #[test]
     fn jaccard_matches_the_sets_of_cells(a in things(), b in things()) {
-        let (left, right) = (taken(&a), taken(&b));
+        let (left, right) = (occupied(&a), occupied(&b));
         let (common, all) = (left.intersection(&right).count() as f64, left.union(&right).count() as f64);
         let share = if all == 0.0 { 0.0 } else { (all - common) / all };
         assert_near("jaccard", between(WorldMeasure::Jaccard, &a, &b), share);
@@ -130,10 +130,10 @@ proptest! {
     #[test]
     fn nearest_distances_match_brute_force(a in things(), b in things()) {
         use WorldMeasure::{Chamfer, Hausdorff};
-        let (there, back) = (ways(&a, &b), ways(&b, &a));
-        let most = there.iter().chain(&back).copied().fold(0.0, f64::max);
-        assert_near("hausdorff", between(Hausdorff, &a, &b), most);
-        let mean = |ways: &[f64]| ways.iter().sum::<f64>() / ways.len().max(1) as f64;
+        let (there, back) = (nearest_distances(&a, &b), nearest_distances(&b, &a));
+        let largest = there.iter().chain(&back).copied().fold(0.0, f64::max);
+        assert_near("hausdorff", between(Hausdorff, &a, &b), largest);
+        let mean = |nearest_distances: &[f64]| nearest_distances.iter().sum::<f64>() / nearest_distances.len().max(1) as f64;
         assert_near("chamfer", between(Chamfer, &a, &b), f64::midpoint(mean(&there), mean(&back)));
     }
 
@@ -141,16 +141,16 @@ proptest! {
     fn object_and_colour_measures_match_the_best_pairing(a in things(), b in things()) {
         let larger = a.len().max(b.len()).max(1) as f64;
         let cost = |a: &Thing, b: &Thing| {
-            let way = libm::hypot(a.1[0] - b.1[0], a.1[1] - b.1[1]);
-            if a.0.to_lowercase() == b.0.to_lowercase() { way.min(10.0) } else { 10.0 }
+            let distance = libm::hypot(a.1[0] - b.1[0], a.1[1] - b.1[1]);
+            if a.0.to_lowercase() == b.0.to_lowercase() { distance.min(10.0) } else { 10.0 }
         };
         let ospa = (least_sum(&a, &b, &cost) + 10.0 * a.len().abs_diff(b.len()) as f64) / larger;
         assert_near("ospa", between(WorldMeasure::Ospa, &a, &b), ospa);
         let count = |things: &[Thing], class: &str| things.iter().filter(|thing| thing.0.to_lowercase() == class).count();
         let pairs = CLASSES.map(|class| (count(&a, class), count(&b, class)));
-        let apart: usize = pairs.iter().map(|(a, b)| a.abs_diff(*b)).sum();
-        let most: usize = pairs.iter().map(|(a, b)| a.max(b)).sum();
-        let counts = apart as f64 / most.max(1) as f64;
+        let difference: usize = pairs.iter().map(|(a, b)| a.abs_diff(*b)).sum();
+        let largest: usize = pairs.iter().map(|(a, b)| a.max(b)).sum();
+        let counts = difference as f64 / largest.max(1) as f64;
         assert_near("counts", between(WorldMeasure::Counts, &a, &b), counts);
         let colors = |things: &[Thing]| things.iter().filter_map(|thing| thing.2).collect::<Vec<_>>();
         let (left, right) = (colors(&a), colors(&b));

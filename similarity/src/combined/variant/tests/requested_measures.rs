@@ -1,4 +1,4 @@
-//! Measures that a parameter asks for by name: values computed by hand, normalisation, and laws.
+//! Measures that a parameter requests by name: values computed by hand, normalisation, and metric properties.
 
 use super::*;
 use crate::Lab;
@@ -92,7 +92,7 @@ fn layouts_are_compared_by_the_requested_aspect_alone() {
     let with_door = ["#######", "#..#..#", "#..D..#", "#..#..#", "#######"];
     let shut = ["#######", "#..#..#", "#..#..#", "#..#..#", "#######"];
     let (_, ways, share) = ask("walking_distance", [rooms(doorway), rooms(with_door), rooms(shut)]);
-    assert_eq!((ways, share), (0.0, 0.0), "a door is a way");
+    assert_eq!((ways, share), (0.0, 0.0), "a door counts as a passage");
     let (_, ways, share) = ask("walking_distance", [rooms(doorway), rooms(shut), rooms(with_door)]);
     assert!(ways > 0.0 && share == 1.0, "{ways} {share}: the widest pair");
 }
@@ -141,12 +141,12 @@ fn distribution_measures_match_values_computed_by_hand() {
 }
 
 #[test]
-fn measures_declare_their_laws() {
+fn measures_declare_their_metric_properties() {
     let properties = |kind: &str, measure: &str, choices: [&str; 2]| {
         let task = task(kind, measure, &choices.map(str::to_owned));
         VariantMeasure::new(&task, Weights::default()).properties()
     };
-    let laws = [
+    let normals = [
         r#"{ "normal": { "mean": 0, "std": 1 } }"#,
         r#"{ "normal": { "mean": 1, "std": 1 } }"#,
     ];
@@ -167,7 +167,7 @@ fn measures_declare_their_laws() {
         properties("number", "relative_difference", ["1", "2"]),
         MetricProperties::Metric
     );
-    assert_eq!(properties("distribution", "energy", laws), MetricProperties::Metric);
+    assert_eq!(properties("distribution", "energy", normals), MetricProperties::Metric);
     assert_eq!(
         properties("distribution", "bures_wasserstein", places),
         MetricProperties::Pseudometric
@@ -188,7 +188,7 @@ fn three(of: impl Strategy<Value = String>) -> impl Strategy<Value = Vec<String>
 }
 
 /// A type, a measure and three random choices.
-fn asked() -> impl Strategy<Value = (&'static str, &'static str, Vec<String>)> {
+fn requested() -> impl Strategy<Value = (&'static str, &'static str, Vec<String>)> {
     let normal = (-9.0..9.0_f64, 0.5..4.0_f64)
         .prop_map(|(mean, std)| format!(r#"{{ "normal": {{ "mean": {mean}, "std": {std} }} }}"#));
     let flat = (-9.0..0.0_f64, 1.0..4.0_f64)
@@ -212,21 +212,21 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
 
     #[test]
-    fn requested_measures_satisfy_their_laws((kind, measure, choices) in asked()) {
+    fn requested_measures_satisfy_their_metric_properties((kind, measure, choices) in requested()) {
         let task = task(kind, measure, &choices);
         let d = |a: &str, b: &str| between(&task, a, b).unwrap().total;
         prop_assert_eq!(d("v0", "v0"), 0.0);
         prop_assert!((d("v0", "v1") - d("v1", "v0")).abs() < 1e-9);
         let all = [d("v0", "v1"), d("v1", "v2"), d("v0", "v2")];
-        let most = all.into_iter().fold(0.0, f64::max);
-        prop_assert!((most - 1.0).abs() < 1e-9, "the widest counts 1: {all:?}");
+        let widest = all.into_iter().fold(0.0, f64::max);
+        prop_assert!((widest - 1.0).abs() < 1e-9, "the widest counts 1: {all:?}");
         if VariantMeasure::new(&task, Weights::default()).properties().keeps_triangles() {
             prop_assert!(all[2] <= all[0] + all[1] + 1e-6, "{all:?}");
         }
     }
 
     #[test]
-    fn equal_parameter_changes_nothing((kind, measure, choices) in asked(), other in asked()) {
+    fn equal_parameter_changes_nothing((kind, measure, choices) in requested(), other in requested()) {
         let alone = task(kind, measure, &choices);
         let beside = format!(
             r#""p": {{ "role": "variant", "type": "{kind}", "affects": ["O"], "choices": [{list}], "default": {first},
