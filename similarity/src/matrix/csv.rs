@@ -54,8 +54,8 @@ impl DistanceMatrix {
             return Err(bad(1, "no lines", "a line of labels after an empty cell"));
         };
         if heading.cells.len() < 2 || !heading.cells[0].is_empty() {
-            let found = format!("{:?} in the first cell of {}", heading.cells[0], heading.cells.len());
-            return Err(bad(heading.line, found, "a line of labels after an empty cell"));
+            let found = format!("{:?} in the first of {} cells", heading.cells[0], heading.cells.len());
+            return Err(bad(heading.line, found, "an empty cell followed by labels"));
         }
         let labels: Vec<String> = heading.cells[1..]
             .iter()
