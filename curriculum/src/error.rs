@@ -40,7 +40,7 @@ pub enum CurriculumError {
     /// A number of experiences out of range.
     #[error("design: found {found} {kind} experiences per regime, expected 1 to {MAX_EXPERIENCES}")]
     BadCount {
-        /// Learning or evaluation.
+        /// Learning, evaluation or pre-deployment.
         kind: &'static str,
         /// The number.
         found: u32,
@@ -71,7 +71,7 @@ pub enum CurriculumError {
         /// Number of learning blocks.
         last: u32,
     },
-    /// A variant that is held out is learned as well.
+    /// A held-out variant is among those to learn.
     #[error("design: found {0} among the variants to learn and among those held out, expected one of the two")]
     HeldOut(String),
     /// A drift without a second variant.
@@ -91,9 +91,9 @@ pub enum CurriculumError {
     /// Variants of several tasks, but distances by element are needed.
     #[error("design: found {a} and {b}, expected variants of one task; probe and step within a task")]
     SeveralTasks {
-        /// The first task.
+        /// The first variant.
         a: String,
-        /// The second task.
+        /// The second variant.
         b: String,
     },
     /// Two experts would have the same name.
@@ -169,13 +169,13 @@ pub enum CurriculumError {
         found: usize,
         /// The requested steps.
         wanted: Steps,
-        /// The largest distance from the first variant among those tried.
+        /// The largest distance of any variant from the first, as far as known.
         farthest: f64,
     },
     /// A distance or an order cannot be computed.
     #[error(transparent)]
     Similarity(#[from] SimilarityError),
-    /// A variant cannot be made.
+    /// A variant cannot be generated.
     #[error(transparent)]
     Generator(#[from] GeneratorError),
     /// Two variants would have the same name in the log.
@@ -279,7 +279,7 @@ pub enum CurriculumError {
     },
     /// A world of the scenario cannot be drawn.
     #[error("block {block}, regime {regime}, experience {experience}, {variant}{}: \
-         {source}", on_its_way(*progress), variant = one_line(variant))]
+         {source}", at_progress(*progress), variant = one_line(variant))]
     World {
         /// The block, from 0.
         block: usize,
@@ -387,7 +387,7 @@ fn and_blocks(blocks: Option<u32>) -> String {
     blocks.map_or_else(String::new, |blocks| format!(" and {blocks} learning blocks"))
 }
 
-fn on_its_way(progress: f64) -> String {
+fn at_progress(progress: f64) -> String {
     when(progress != 0.0, || format!(" at {progress} of its way"))
 }
 

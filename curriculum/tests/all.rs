@@ -4,7 +4,7 @@ mod audit;
 #[path = "../../tests/files_below.rs"]
 mod files_below;
 mod lifetime;
-mod living;
 mod log_words;
+mod run_settings;
 mod stopped;
 mod undrawable;

@@ -1,4 +1,4 @@
-//! Audits of sound protocols, and of one that memory of layouts can fool.
+//! Audits of valid protocols, and of one that an agent can exploit by remembering layouts.
 
 use std::sync::Arc;
 
@@ -17,9 +17,9 @@ fn task() -> Arc<TaskSpec> {
     TaskSpec::from_json("yard.json", text).unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn audited(options: &Design) -> Vec<AuditRow> {
+fn audit_rows(options: &Design) -> Vec<AuditRow> {
     let variants = ["one", "two", "three"].map(|variant| Choice::new("yard", variant));
-    let scenario = design(&variants, options).expect("the design is sound");
+    let scenario = design(&variants, options).expect("the design is valid");
     let task = task();
     let mut plan = |scenario: &Scenario| -> Result<Plan, CurriculumError> {
         let mut sources = Sources {
@@ -28,14 +28,14 @@ fn audited(options: &Design) -> Vec<AuditRow> {
         };
         Plan::new(scenario, &mut sources)
     };
-    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
+    let folder = tempfile::tempdir().expect("a temporary folder can be created");
     let short = AuditOptions {
         lifetimes: 10,
         repeats: 8,
     };
     let rows = audit(&scenario, &mut plan, folder.path(), short).unwrap_or_else(|error| panic!("{error}"));
-    let left = std::fs::read_dir(folder.path()).expect("the folder is there").count();
-    assert_eq!(left, 0, "the logs are removed");
+    let num_left = std::fs::read_dir(folder.path()).expect("the folder is there").count();
+    assert_eq!(num_left, 0, "the logs are removed");
     rows
 }
 
@@ -49,25 +49,25 @@ fn sized(options: Design) -> Design {
 
 #[track_caller]
 fn check(options: Design, expected: [Option<bool>; 5]) {
-    let rows = audited(&sized(options));
+    let rows = audit_rows(&sized(options));
     let found: Vec<Option<bool>> = rows.iter().map(|row| row.passed).collect();
     assert_eq!(found, expected, "{rows:#?}");
 }
 
 #[test]
 fn designs_pass_the_audit() {
-    let sound = [Some(true); 5];
-    check(Design::default(), sound);
+    let all_passed = [Some(true); 5];
+    check(Design::default(), all_passed);
     if std::env::var_os("DRIFTWORLD_FULL").is_none() {
         return;
     }
-    let again = Design {
+    let dispersed = Design {
         form: Some(ScenarioForm::Dispersed),
         blocks: Some(7),
         pre_deployment: 30,
         ..Design::default()
     };
-    check(again, sound);
+    check(dispersed, all_passed);
 }
 
 #[test]
@@ -81,11 +81,11 @@ fn only_an_agent_with_memory_exploits_shared_layouts() {
 
 #[test]
 fn scenario_without_evaluations_is_audited_only_in_part() {
-    let blind = Design {
+    let without_evaluation = Design {
         evaluation: driftworld_curriculum::Evaluate::After(Vec::new()),
         ..Design::default()
     };
-    check(blind, [None, None, Some(true), Some(true), None]);
+    check(without_evaluation, [None, None, Some(true), Some(true), None]);
 }
 
 #[test]
@@ -94,7 +94,7 @@ fn drift_audit_shows_forgetting() {
         drifting: Some(Drifting::default()),
         ..Design::default()
     };
-    let rows = audited(&sized(drifting));
+    let rows = audit_rows(&sized(drifting));
     assert_eq!(rows[4].passed, Some(true), "{rows:#?}");
     // No expert learns the drift alone.
     for row in &rows[2..4] {

@@ -7,7 +7,7 @@ use driftworld_env::ScriptedAgent;
 use driftworld_metrics::{Complexity, Difficulty, read_log, validate_log};
 use driftworld_spec::{Block, BlockKind, Regime, Scenario, ScenarioComplexity, ScenarioDifficulty, World};
 
-use crate::living::{Living, plan_of_worlds};
+use crate::run_settings::{RunSettings, plan_of_worlds};
 
 /// Three worlds, each with a target ahead: it ends the episode as a success, as a failure, or not at all.
 fn world(path: &str) -> World {
@@ -36,16 +36,16 @@ fn scenario() -> Scenario {
     }
 }
 
-fn live(log: &Path, most: u64, resume: bool) -> Result<(), CurriculumError> {
+fn run_scenario(log: &Path, max_experiences: u64, resume: bool) -> Result<(), CurriculumError> {
     // The built-in planner would avoid the failing target.
-    let mut agent = ScriptedAgent::parse("touch", "touch goal 60\nrepeat\n").expect("it is a script");
-    let living = Living {
-        most,
+    let mut agent = ScriptedAgent::parse("touch", "touch goal 60\nrepeat\n").expect("the script is valid");
+    let settings = RunSettings {
+        max_experiences,
         resume,
         repeated: REPEATED_EVALUATIONS,
-        ..Living::default()
+        ..RunSettings::default()
     };
-    living.live(&plan_of_worlds(&scenario(), world), &mut agent, log)?;
+    settings.run(&plan_of_worlds(&scenario(), world), &mut agent, log)?;
     Ok(())
 }
 
@@ -53,50 +53,53 @@ fn live(log: &Path, most: u64, resume: bool) -> Result<(), CurriculumError> {
 fn words(log: &Path, column: &str) -> Option<Vec<String>> {
     let text = std::fs::read_to_string(log.join("worker-default/0-test/data-log.tsv")).expect("the log has this file");
     let mut rows = text.lines().map(|line| line.split('\t').collect::<Vec<_>>());
-    let place = rows.next()?.iter().position(|name| *name == column)?;
-    Some(rows.map(|row| row[place].to_owned()).collect())
+    let index = rows.next()?.iter().position(|name| *name == column)?;
+    Some(rows.map(|row| row[index].to_owned()).collect())
 }
 
 #[test]
 fn log_records_how_each_experience_ended() {
-    let folder = tempfile::tempdir().expect("a temporary folder can be made");
+    let folder = tempfile::tempdir().expect("a temporary folder can be created");
     let log = folder.path().join("log");
-    live(&log, u64::MAX, false).unwrap_or_else(|error| panic!("{error}"));
-    let found = words(&log, ENDING).expect("there is such a column");
+    run_scenario(&log, u64::MAX, false).unwrap_or_else(|error| panic!("{error}"));
+    let found = words(&log, ENDING).expect("the column exists");
     assert_eq!(
         found,
         ["success", "success", "failure", "failure", "step_limit", "step_limit"]
     );
     let read = read_log(&log).unwrap_or_else(|error| panic!("{error}"));
     assert!(read.warnings.is_empty(), "{:?}", read.warnings);
-    assert!(read.rows.metric(ENDING).is_none(), "it is no metric");
-    let found = words(&log, ENDED_BY).expect("there is such a column");
+    assert!(read.rows.metric(ENDING).is_none(), "it is not a metric");
+    let found = words(&log, ENDED_BY).expect("the column exists");
     let of = |ending: &str| if ending == "step_limit" { "steps" } else { "touch" };
-    let endings = words(&log, ENDING).expect("there is such a column");
+    let endings = words(&log, ENDING).expect("the column exists");
     assert_eq!(found, endings.iter().map(|ending| of(ending)).collect::<Vec<_>>());
 }
 
 #[test]
 fn log_records_the_scenarios_own_description() {
-    let folder = tempfile::tempdir().expect("a temporary folder can be made");
+    let folder = tempfile::tempdir().expect("a temporary folder can be created");
     let log = folder.path().join("log");
-    live(&log, u64::MAX, false).unwrap_or_else(|error| panic!("{error}"));
+    run_scenario(&log, u64::MAX, false).unwrap_or_else(|error| panic!("{error}"));
     let info = read_log(&log).unwrap_or_else(|error| panic!("{error}")).scenario_info;
     assert_eq!(
         (info.complexity, info.difficulty),
         (Some(Complexity::Low), Some(Difficulty::Medium))
     );
     let validation = validate_log(&log);
-    let told: Vec<String> = validation.warnings.iter().map(ToString::to_string).collect();
-    assert!(!told.iter().any(|warning| warning.contains("complexity")), "{told:?}");
+    let warnings: Vec<String> = validation.warnings.iter().map(ToString::to_string).collect();
+    assert!(
+        !warnings.iter().any(|warning| warning.contains("complexity")),
+        "{warnings:?}"
+    );
 }
 
 #[test]
 fn log_without_an_ending_column_is_resumed_without_it() {
-    let folder = tempfile::tempdir().expect("a temporary folder can be made");
+    let folder = tempfile::tempdir().expect("a temporary folder can be created");
     let (old, whole) = (folder.path().join("old"), folder.path().join("whole"));
-    live(&old, 3, false).unwrap_or_else(|error| panic!("{error}"));
-    live(&whole, u64::MAX, false).unwrap_or_else(|error| panic!("{error}"));
+    run_scenario(&old, 3, false).unwrap_or_else(|error| panic!("{error}"));
+    run_scenario(&whole, u64::MAX, false).unwrap_or_else(|error| panic!("{error}"));
     for log in [&old, &whole] {
         let file = log.join("worker-default/0-test/data-log.tsv");
         let text = std::fs::read_to_string(&file).expect("the log has this file");
@@ -108,14 +111,15 @@ fn log_without_an_ending_column_is_resumed_without_it() {
         };
         std::fs::write(&file, text.lines().map(without).collect::<String>()).expect("the folder is writable");
     }
-    live(&old, u64::MAX, true).unwrap_or_else(|error| panic!("{error}"));
+    run_scenario(&old, u64::MAX, true).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!((words(&old, ENDING), words(&old, ENDED_BY)), (None, None));
-    let text =
-        |log: &Path| std::fs::read_to_string(log.join("worker-default/0-test/data-log.tsv")).expect("it is there");
+    let text = |log: &Path| {
+        std::fs::read_to_string(log.join("worker-default/0-test/data-log.tsv")).expect("the log has this file")
+    };
     assert_eq!(
         text(&old),
         text(&whole),
-        "as an undisturbed run of then would have written it"
+        "the same as an uninterrupted run without these columns"
     );
 }
 

@@ -9,7 +9,7 @@ use driftworld_env::{Action, Agent, Environment, RandomAgent};
 use driftworld_spec::{Block, BlockKind, Regime, Scenario, World};
 
 use crate::files_below::files_below;
-use crate::living::{Living, plan_of_worlds};
+use crate::run_settings::{RunSettings, plan_of_worlds};
 
 /// 12 experiences of 30 steps each.
 const STEPS: u64 = 12 * 30;
@@ -24,14 +24,14 @@ fn plan() -> Plan {
         "stopped",
         vec![block(BlockKind::Evaluation, 5), block(BlockKind::Learning, 7)],
     );
-    let world = World::from_json("yard.json", r#"{ "max_steps": 30 }"#).expect("it is a world");
+    let world = World::from_json("yard.json", r#"{ "max_steps": 30 }"#).expect("the world is valid");
     plan_of_worlds(&scenario, |_| world.clone())
 }
 
 /// Acts at random, and sets a flag before a given step; steps are counted over all its copies.
 #[derive(Clone)]
 struct Stopper {
-    acts: RandomAgent,
+    random: RandomAgent,
     steps: Arc<AtomicU64>,
     before: u64,
     stop: Arc<AtomicBool>,
@@ -41,16 +41,16 @@ impl Agent for Stopper {
     fn act(&mut self, environment: &Environment) -> Action {
         assert!(
             self.steps.load(Ordering::SeqCst) <= self.before + 64,
-            "somebody steps on and on"
+            "an agent keeps acting after the stop"
         );
         if self.steps.fetch_add(1, Ordering::SeqCst) == self.before {
             self.stop.store(true, Ordering::SeqCst);
         }
-        self.acts.act(environment)
+        self.random.act(environment)
     }
 
     fn begin(&mut self, seed: u64) {
-        self.acts.begin(seed);
+        self.random.begin(seed);
     }
 
     fn learns(&self) -> bool {
@@ -63,51 +63,51 @@ impl Agent for Stopper {
 }
 
 /// Continues a log, and stops before a given step of the agent; never with `u64::MAX`.
-fn live(log: &Path, jobs: usize, before: u64) -> (Summary, u64) {
+fn run_scenario(log: &Path, jobs: usize, before: u64) -> (Summary, u64) {
     let (plan, stop) = (plan(), Arc::new(AtomicBool::new(false)));
     let mut agent = Stopper {
-        acts: RandomAgent::new(0),
+        random: RandomAgent::new(0),
         steps: Arc::default(),
         before: before.min(u64::MAX - 64),
         stop: Arc::clone(&stop),
     };
-    let living = Living {
+    let settings = RunSettings {
         jobs,
         resume: true,
         repeated: REPEATED_EVALUATIONS,
         stop,
-        ..Living::default()
+        ..RunSettings::default()
     };
-    let summary = living.live(&plan, &mut agent, log).expect("it is lived");
+    let summary = settings.run(&plan, &mut agent, log).expect("the run succeeds");
     let steps = agent.steps.load(Ordering::SeqCst);
     (summary, steps)
 }
 
 #[test]
 fn a_run_stops_at_any_step_and_goes_on_to_the_same_log() {
-    let folder = tempfile::tempdir().expect("the machine has a folder for temporary files");
+    let folder = tempfile::tempdir().expect("a temporary folder can be created");
     let whole = folder.path().join("whole");
-    let (summary, steps) = live(&whole, 1, u64::MAX);
+    let (summary, steps) = run_scenario(&whole, 1, u64::MAX);
     assert!(summary.finished && summary.experiences == 12);
     assert_eq!(steps, STEPS);
     let expected = files_below(&whole);
     for (jobs, before) in (0..STEPS).step_by(23).map(|before| (1 + before as usize % 3, before)) {
         let log = folder.path().join(format!("{before}"));
-        let (summary, taken) = live(&log, jobs, before);
+        let (summary, num_steps) = run_scenario(&log, jobs, before);
         // Each thread may be in the middle of a step.
         assert!(
-            taken <= before + jobs as u64,
-            "{jobs} jobs, stopped before step {before}: {taken} steps"
+            num_steps <= before + jobs as u64,
+            "{jobs} jobs, stopped before step {before}: {num_steps} steps"
         );
         assert!(!summary.finished, "{jobs} jobs, stopped before step {before}");
         if jobs == 1 {
             assert_eq!(
                 summary.experiences,
                 before / 30,
-                "what was cut off before step {before} is not counted"
+                "stopped before step {before}: the experience in progress is not counted"
             );
         }
-        let (summary, _) = live(&log, jobs, u64::MAX);
+        let (summary, _) = run_scenario(&log, jobs, u64::MAX);
         assert!(summary.finished);
         assert_eq!(files_below(&log), expected, "{jobs} jobs, stopped before step {before}");
     }

@@ -14,7 +14,7 @@ use driftworld_metrics::{Options, read_log, score, validate_log};
 use driftworld_spec::{DriftSchedule, DriftSwitch, Scenario, TaskSpec};
 
 use crate::files_below::files_below;
-use crate::living::Living;
+use crate::run_settings::RunSettings;
 
 /// Rocks that find no place in some worlds, and a number whose middle range is forbidden.
 fn task() -> Arc<TaskSpec> {
@@ -38,7 +38,7 @@ fn scenario(drifting: bool) -> Scenario {
         }),
         ..Design::default()
     };
-    design(&[Choice::new("quarry", "low"), Choice::new("quarry", "high")], &options).expect("the design is sound")
+    design(&[Choice::new("quarry", "low"), Choice::new("quarry", "high")], &options).expect("the design is valid")
 }
 
 fn plan(scenario: &Scenario, undrawable: Undrawable) -> Result<Plan, CurriculumError> {
@@ -51,16 +51,16 @@ fn plan(scenario: &Scenario, undrawable: Undrawable) -> Result<Plan, CurriculumE
 }
 
 /// Runs at most `more` further experiences.
-fn live(plan: &Plan, log: &Path, jobs: usize, more: u64) -> Result<Summary, CurriculumError> {
+fn run_scenario(plan: &Plan, log: &Path, jobs: usize, more: u64) -> Result<Summary, CurriculumError> {
     let done = Journal::resume(log, plan, "test")?.num_experiences();
-    let living = Living {
-        most: done.saturating_add(more),
+    let settings = RunSettings {
+        max_experiences: done.saturating_add(more),
         jobs,
         resume: true,
         repeated: REPEATED_EVALUATIONS,
-        ..Living::default()
+        ..RunSettings::default()
     };
-    living.live(plan, &mut RandomAgent::new(0), log)
+    settings.run(plan, &mut RandomAgent::new(0), log)
 }
 
 /// The numbers of the experiences that cannot be run, found by drawing each world separately.
@@ -71,7 +71,7 @@ fn undrawable(plan: &Plan) -> Vec<u64> {
 }
 
 #[test]
-fn run_skips_undrawable_worlds_and_its_log_is_sound() {
+fn run_skips_undrawable_worlds_and_its_log_is_valid() {
     for drifting in [false, true] {
         let scenario = scenario(drifting);
         let plan = plan(&scenario, Undrawable::Skipped).expect("nothing is refused");
@@ -81,9 +81,9 @@ fn run_skips_undrawable_worlds_and_its_log_is_sound() {
             !missing.is_empty() && (missing.len() as u64) < total,
             "{missing:?} of {total}"
         );
-        let folder = tempfile::tempdir().expect("there is room");
+        let folder = tempfile::tempdir().expect("a temporary folder can be created");
         let log = folder.path().join("log");
-        let summary = live(&plan, &log, 1, u64::MAX).expect("it is lived");
+        let summary = run_scenario(&plan, &log, 1, u64::MAX).expect("the run succeeds");
         assert!(summary.finished);
         assert_eq!(
             (summary.skipped, summary.experiences),
@@ -91,8 +91,8 @@ fn run_skips_undrawable_worlds_and_its_log_is_sound() {
         );
         let left_out: Vec<u64> = summary.left_out.iter().map(|one| one.experience).collect();
         assert_eq!(left_out, missing);
-        let told: u32 = summary.regimes.iter().map(|regime| regime.skipped).sum();
-        assert_eq!(u64::from(told), summary.skipped);
+        let num_skipped: u32 = summary.regimes.iter().map(|regime| regime.skipped).sum();
+        assert_eq!(u64::from(num_skipped), summary.skipped);
 
         let rows = read_log(&log).expect("the log can be read").rows;
         assert_eq!(rows.len() as u64, total, "a row for every experience");
@@ -104,35 +104,41 @@ fn run_skips_undrawable_worlds_and_its_log_is_sound() {
         }
         let report = validate_log(&log);
         assert!(report.problems.is_empty(), "{:?}", report.problems);
-        score(&read_log(&log).expect("it can be read"), &[], &Options::default()).expect("what was lived is scored");
+        score(&read_log(&log).expect("it can be read"), &[], &Options::default()).expect("the log can be scored");
         // Resuming the finished log changes nothing.
-        assert_eq!(live(&plan, &log, 1, u64::MAX).expect("all is in it"), summary);
+        assert_eq!(
+            run_scenario(&plan, &log, 1, u64::MAX).expect("the log is complete"),
+            summary
+        );
     }
 }
 
 #[test]
-fn log_is_the_same_however_it_is_run() {
+fn log_does_not_depend_on_how_it_is_run() {
     let scenario = scenario(true);
-    let folder = tempfile::tempdir().expect("there is room");
+    let folder = tempfile::tempdir().expect("a temporary folder can be created");
     let skipping = plan(&scenario, Undrawable::Skipped).expect("nothing is refused");
     let [whole, jobs, pieces, stopped] = ["whole", "jobs", "pieces", "stopped"].map(|name| folder.path().join(name));
-    live(&skipping, &whole, 1, u64::MAX).expect("it is lived");
-    live(&skipping, &jobs, 3, u64::MAX).expect("it is lived");
-    while !live(&skipping, &pieces, 1, 4).expect("it is lived").finished {}
+    run_scenario(&skipping, &whole, 1, u64::MAX).expect("the run succeeds");
+    run_scenario(&skipping, &jobs, 3, u64::MAX).expect("the run succeeds");
+    while !run_scenario(&skipping, &pieces, 1, 4)
+        .expect("the run succeeds")
+        .finished
+    {}
     assert!(files_below(&whole) == files_below(&jobs), "run by three workers");
-    assert!(files_below(&whole) == files_below(&pieces), "lived in pieces");
+    assert!(files_below(&whole) == files_below(&pieces), "run in pieces");
     // A run that refuses such worlds stops there, reports where, and continues once it may skip them.
     if let Ok(refusing) = plan(&scenario, Undrawable::Refused) {
-        let error = live(&refusing, &stopped, 1, u64::MAX).expect_err("some worlds cannot be drawn");
+        let error = run_scenario(&refusing, &stopped, 1, u64::MAX).expect_err("some worlds cannot be drawn");
         let CurriculumError::World { experience, .. } = &error else {
             panic!("{error}")
         };
         assert_eq!(Some(experience), undrawable(&skipping).first(), "{error}");
-        let again = live(&refusing, &stopped, 1, u64::MAX).expect_err("it stops there again");
+        let again = run_scenario(&refusing, &stopped, 1, u64::MAX).expect_err("it stops there again");
         assert_eq!(again.to_string(), error.to_string());
     }
-    live(&skipping, &stopped, 1, u64::MAX).expect("it is lived");
-    assert!(files_below(&whole) == files_below(&stopped), "stopped and gone on with");
+    run_scenario(&skipping, &stopped, 1, u64::MAX).expect("the run succeeds");
+    assert!(files_below(&whole) == files_below(&stopped), "stopped and resumed");
 }
 
 #[test]
@@ -154,16 +160,19 @@ fn worlds_are_tried_before_the_run() {
     let drift = trials
         .iter()
         .find(|trial| trial.variant == "quarry#low..high")
-        .expect("it drifts");
+        .expect("the scenario has a drift");
     assert_eq!(drift.requirement, 3, "{drift:?}");
-    let way: Vec<f64> = drift
+    let progresses: Vec<f64> = drift
         .failed
         .iter()
         .filter(|one| one.code == "generator/between")
         .map(|one| one.progress)
         .collect();
-    assert!(way.iter().all(|progress| *progress > 0.4 && *progress < 0.6), "{way:?}");
-    assert!(plan.try_worlds(2, &mut tried).is_empty(), "all has been tried");
+    assert!(
+        progresses.iter().all(|progress| *progress > 0.4 && *progress < 0.6),
+        "{progresses:?}"
+    );
+    assert!(plan.try_worlds(2, &mut tried).is_empty(), "all worlds have been tried");
     // All worlds: each that cannot be run is found; the second evaluation has the same worlds as the first.
     let all = plan.try_worlds(u32::MAX, &mut Tried::default());
     let found: Vec<u64> = all

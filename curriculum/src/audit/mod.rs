@@ -49,7 +49,7 @@ impl Default for AuditOptions {
     }
 }
 
-/// Of an agent that never learns, the share of lifetimes that a metric may call "good".
+/// Largest share of lifetimes that a metric may call "good" if the agent never learns.
 const FALSE_POSITIVES: f64 = 0.05;
 
 /// A count less probable than this fails the audit; it is small because each audit counts several metrics.
@@ -62,13 +62,13 @@ const CONFIDENCE: f64 = 0.9973;
 /// Allowed error of a ratio whose true value is 1, beyond its standard error.
 const RATIO_SLACK: f64 = 0.02;
 
-/// Runs a scenario with five simulated agents whose true scores are known, and checks what its protocol makes of them.
+/// Runs a scenario with five simulated agents whose true scores are known, and checks the scores that its protocol gives them.
 ///
 /// - *never learns*: its expected reward never changes. No metric may call more than 5 % of its lifetimes good.
 /// - *learns while frozen*: improves by being evaluated. The check of [`run`](crate::run) must refuse it.
 /// - *remembers by number*: repeats what paid best in the experience with the same number in an earlier block. It must not be
 ///   better than its experts.
-/// - *its own expert*: learns every variant as if it were alone. Relative performance and sample efficiency must be 1.
+/// - *its own expert*: learns every variant as if there were no other. Relative performance and sample efficiency must be 1.
 /// - *forgets*: new learning replaces the old. Maintenance must be bad, and forward transfer not good.
 ///
 /// Every reward is 100 times a skill in 0..=1, plus luck of the layout (standard deviation 10) and of the episode (20). `plan`
@@ -85,7 +85,7 @@ pub fn audit(
     let lifetime = plan(scenario)?;
     let experts = experts_of(scenario)?;
     let experts = experts.iter().map(plan).collect::<Result<Vec<_>, _>>()?;
-    let room = Room {
+    let case = Case {
         lifetime: &lifetime,
         experts: &experts,
         folder,
@@ -94,11 +94,11 @@ pub fn audit(
     let never = "each metric good in at most 5 % of lifetimes";
     let own = "ste_rel_perf and sample_efficiency 1";
     let rows = [
-        ("never learns", never, room.never_learns(options.lifetimes.max(1))?),
-        ("learns while frozen", "refused", room.learns_while_frozen()?),
-        ("remembers by number", "ste_rel_perf not above 1", room.by_number()?),
-        ("its own expert", own, room.own_expert()?),
-        ("forgets", "maintenance bad, forward transfer not good", room.forgets()?),
+        ("never learns", never, case.never_learns(options.lifetimes.max(1))?),
+        ("learns while frozen", "refused", case.learns_while_frozen()?),
+        ("remembers by number", "ste_rel_perf not above 1", case.by_number()?),
+        ("its own expert", own, case.own_expert()?),
+        ("forgets", "maintenance bad, forward transfer not good", case.forgets()?),
     ];
     let row = |(agent, expected, (found, passed))| AuditRow {
         agent,
@@ -112,15 +112,15 @@ pub fn audit(
 /// The result for an agent, and whether it is as expected.
 type Found = (String, Option<bool>);
 
-/// Shared context of the audit.
-struct Room<'a> {
+/// The plans of an audit, the folder of its logs, and the number of repeats.
+struct Case<'a> {
     lifetime: &'a Plan,
     experts: &'a [Plan],
     folder: &'a Path,
     repeats: u32,
 }
 
-impl Room<'_> {
+impl Case<'_> {
     fn never_learns(&self, lifetimes: u32) -> Result<Found, CurriculumError> {
         let mut good: Vec<(String, u32)> = Vec::new();
         for run in 0..lifetimes {
@@ -133,14 +133,14 @@ impl Room<'_> {
                 }
             }
         }
-        let most = (0..lifetimes).find(|count| tail(*count + 1, lifetimes, FALSE_POSITIVES) < SURPRISE);
-        let most = most.unwrap_or(lifetimes);
+        let max_good = (0..lifetimes).find(|count| tail(*count + 1, lifetimes, FALSE_POSITIVES) < SURPRISE);
+        let max_good = max_good.unwrap_or(lifetimes);
         let worst = good.iter().max_by_key(|(_, count)| *count);
         let found = worst.map_or_else(
             || "no metric to calibrate: no variant is evaluated both before and after it is learned".to_owned(),
-            |(name, count)| format!("at most {count} of {lifetimes} ({name}); up to {most} is sampling"),
+            |(name, count)| format!("at most {count} of {lifetimes} ({name}); up to {max_good} is sampling"),
         );
-        Ok((found, worst.map(|(_, count)| *count <= most)))
+        Ok((found, worst.map(|(_, count)| *count <= max_good)))
     }
 
     fn learns_while_frozen(&self) -> Result<Found, CurriculumError> {
@@ -158,7 +158,7 @@ impl Room<'_> {
     }
 
     fn by_number(&self) -> Result<Found, CurriculumError> {
-        let ratios = self.beside_experts("ste_rel_perf", |run, number| Box::new(by_number(run, number)))?;
+        let ratios = self.compare_with_experts("ste_rel_perf", |run, number| Box::new(by_number(run, number)))?;
         Ok(match Ratio::of(&ratios) {
             Some(ratio) => {
                 let text = format!("{ratio} (standard error, {} lifetimes)", ratios.len());
@@ -173,7 +173,7 @@ impl Room<'_> {
         let mut found = Vec::new();
         let mut passed = None;
         for metric in ["ste_rel_perf", "sample_efficiency"] {
-            let ratios = self.beside_experts(metric, |run, number| Box::new(own_expert(run, number, pace)))?;
+            let ratios = self.compare_with_experts(metric, |run, number| Box::new(own_expert(run, number, pace)))?;
             let Some(ratio) = Ratio::of(&ratios) else {
                 continue;
             };
@@ -228,7 +228,7 @@ impl Room<'_> {
 
     /// The values of a metric that compares with experts, one for each repeat in which the lifetime has the metric. `agent`
     /// gets the numbers of the repeat and of the log: 0 for the lifetime, then the experts.
-    fn beside_experts(
+    fn compare_with_experts(
         &self,
         metric: &str,
         agent: impl Fn(u32, u32) -> Box<Simulated<'static>>,
@@ -281,7 +281,8 @@ fn readings(scores: &LifetimeMetrics) -> Vec<(String, Reading)> {
 struct Ratio {
     mean: f64,
     error: f64,
-    freedom: f64,
+    /// Degrees of freedom of the error.
+    dof: f64,
 }
 
 impl Ratio {
@@ -290,16 +291,16 @@ impl Ratio {
             return None;
         }
         let count = values.len() as f64;
-        let freedom = count - 1.0;
+        let dof = count - 1.0;
         let mean = values.iter().sum::<f64>() / count;
         let squares = values.iter().map(|value| (value - mean) * (value - mean)).sum::<f64>();
-        let error = (squares / freedom / count).sqrt();
-        Some(Self { mean, error, freedom })
+        let error = (squares / dof / count).sqrt();
+        Some(Self { mean, error, dof })
     }
 
     /// Allowed distance of the mean from the true value.
     fn slack(&self) -> f64 {
-        student_reach(CONFIDENCE, self.freedom) * self.error + RATIO_SLACK
+        student_reach(CONFIDENCE, self.dof) * self.error + RATIO_SLACK
     }
 }
 
@@ -311,7 +312,7 @@ impl std::fmt::Display for Ratio {
 
 /// The probability of at least `least` hits in `tries` tries that each hit with `probability`.
 fn tail(least: u32, tries: u32, probability: f64) -> f64 {
-    // Starts with no hit; each further count follows from the one before.
+    // Starts with no hit; each further term follows from the one before.
     let mut mass = (1.0 - probability).powi(tries.cast_signed());
     let mut below = 0.0;
     for hits in 0..least.min(tries + 1) {
@@ -321,7 +322,7 @@ fn tail(least: u32, tries: u32, probability: f64) -> f64 {
     1.0 - below
 }
 
-/// Removes a log that was read. A failure is harmless: the whole folder is removed later.
+/// Removes a log that has been read. A failure is harmless: the whole folder is removed later.
 fn remove(folder: &Path) {
     std::fs::remove_dir_all(folder).ok();
 }
@@ -336,12 +337,12 @@ mod tests {
         const TRIES: u64 = 10_000;
         for lifetimes in [2, 3, 5, 20] {
             // Lifetimes vary so much that the slack for small differences hardly matters.
-            let drawn = |id| (0..lifetimes).map(move |place| 1.0 + 10.0 * normal("ratio", &[lifetimes, id, place]));
+            let drawn = |id| (0..lifetimes).map(move |index| 1.0 + 10.0 * normal("ratio", &[lifetimes, id, index]));
             // The allowed distance is the same in all tries, and computed once.
             let unit = Ratio {
                 mean: 1.0,
                 error: 1.0,
-                freedom: (lifetimes - 1) as f64,
+                dof: (lifetimes - 1) as f64,
             };
             let reach = unit.slack() - RATIO_SLACK;
             let is_off = |id: &u64| {
@@ -349,13 +350,13 @@ mod tests {
                 (ratio.mean - 1.0).abs() > reach * ratio.error + RATIO_SLACK
             };
             let off = (0..TRIES).filter(is_off).count();
-            // Four standard errors of a share of 0.0027 on either side, so bounds that are too wide are detected, too.
+            // Four standard errors of a share of 0.0027 on either side: bounds that are too wide are detected, too.
             assert!((7..48).contains(&off), "{lifetimes} lifetimes: {off}");
         }
         // With 20 lifetimes, an error of twice their standard deviation is found.
-        let off: Vec<f64> = (0..20).map(|place| 3.0 + normal("off", &[place])).collect();
+        let off: Vec<f64> = (0..20).map(|index| 3.0 + normal("off", &[index])).collect();
         let ratio = Ratio::of(&off).unwrap();
-        assert!((ratio.freedom - 19.0).abs() < 1e-9, "{}", ratio.freedom);
+        assert!((ratio.dof - 19.0).abs() < 1e-9, "{}", ratio.dof);
         assert!(ratio.mean - 1.0 > ratio.slack(), "{ratio}");
     }
 

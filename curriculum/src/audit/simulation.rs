@@ -6,20 +6,20 @@ use std::path::Path;
 use driftworld_metrics::{Log, Timestamp, read_log};
 use driftworld_spec::World;
 
-use crate::run::{FinishedExperience, Meeting};
+use crate::run::{ExperienceData, FinishedExperience};
 use crate::{
     CurriculumError, Experience, Journal, Plan, Progress, REPEATED_EVALUATIONS, Repeats, Rollout, run_rollout,
 };
 
 /// A simulated agent: returns the reward of its next experience.
-pub(super) type Simulated<'a> = dyn FnMut(&Meeting) -> f64 + 'a;
+pub(super) type Simulated<'a> = dyn FnMut(&ExperienceData) -> f64 + 'a;
 
 /// Runs an agent and reads its log; the files stay in the folder.
 pub(super) fn simulate(plan: &Plan, agent: &mut Simulated<'_>, folder: &Path) -> Result<Log, CurriculumError> {
     let mut journal = Journal::simulated(folder, plan)?;
     for number in 0..plan.num_experiences() {
         let finished = FinishedExperience {
-            experience: of_one_step(agent(&plan.meeting(number))),
+            experience: of_one_step(agent(&plan.experience_data(number))),
             ..FinishedExperience::default()
         };
         journal.append(
@@ -64,9 +64,9 @@ impl Rollout for Simulation<'_> {
     }
 
     fn experience(&mut self, number: u64, _world: World) -> Result<Option<Experience>, CurriculumError> {
-        let meeting = self.plan.meeting(number);
-        self.num_evaluated += u64::from(!meeting.learning);
-        Ok(Some(of_one_step((self.agent)(&meeting))))
+        let data = self.plan.experience_data(number);
+        self.num_evaluated += u64::from(!data.learning);
+        Ok(Some(of_one_step((self.agent)(&data))))
     }
 
     fn logged(&mut self, _: &Progress, _: Option<f64>) -> Result<ControlFlow<()>, CurriculumError> {

@@ -23,11 +23,11 @@ pub(super) fn balanced_order(count: usize, seed: u64, lifetime: u64) -> Result<V
 
 /// A row of the square: 0, n − 1, 1, n − 2, … shifted by the number of the row; for odd n, the same rows reversed follow.
 fn square_row(count: usize, row: usize) -> Vec<usize> {
-    let zigzag = (0..count).map(|place| {
-        if place.is_multiple_of(2) {
-            place / 2
+    let zigzag = (0..count).map(|index| {
+        if index.is_multiple_of(2) {
+            index / 2
         } else {
-            count - place.div_ceil(2)
+            count - index.div_ceil(2)
         }
     });
     let mut shifted: Vec<usize> = zigzag.map(|symbol| (symbol + row) % count).collect();
@@ -41,14 +41,14 @@ fn square_row(count: usize, row: usize) -> Vec<usize> {
 fn permutation(count: usize, seed: u64, number: u64) -> Result<Vec<usize>, CurriculumError> {
     // The names have equal length, so they sort like the numbers.
     let names = (0..count).map(|index| format!("{index:08}")).collect();
-    let alike = DistanceMatrix::measure(names, |_, _| Ok::<_, CurriculumError>(0.0))?;
-    // An odd factor keeps the numbers of one seed away from those of neighbouring seeds.
+    let equal = DistanceMatrix::measure(names, |_, _| Ok::<_, CurriculumError>(0.0))?;
+    // An odd factor keeps the numbers derived from neighbouring seeds apart.
     let seed = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(number);
     let options = OrderOptions {
         seed,
         ..OrderOptions::default()
     };
-    Ok(order(&alike, Method::Random, &options)?.indices)
+    Ok(order(&equal, Method::Random, &options)?.indices)
 }
 
 #[cfg(test)]
@@ -56,13 +56,13 @@ mod tests {
     use super::*;
     use std::collections::BTreeMap;
 
-    /// The counts of the least and the most frequent of `all` possible items.
-    fn counts<T: Ord>(items: impl Iterator<Item = T>, all: usize) -> (usize, usize) {
+    /// The counts of the least and the most frequent of `num_possible` items.
+    fn counts<T: Ord>(items: impl Iterator<Item = T>, num_possible: usize) -> (usize, usize) {
         let mut seen: BTreeMap<T, usize> = BTreeMap::new();
         for item in items {
             *seen.entry(item).or_default() += 1;
         }
-        let least = if seen.len() < all {
+        let least = if seen.len() < num_possible {
             0
         } else {
             *seen.values().min().unwrap()
@@ -71,16 +71,20 @@ mod tests {
     }
 
     #[test]
-    fn variants_take_each_place_and_follow_each_other_equally_often() {
+    fn variants_take_each_position_and_follow_each_other_equally_often() {
         for (count, seed) in (1..9).flat_map(|count| [0, 1, 77].map(|seed| (count, seed))) {
             let rows = if count % 2 == 0 { count } else { 2 * count };
             for round in 0..3 {
                 let orders: Vec<Vec<usize>> = (0..rows)
                     .map(|row| balanced_order(count, seed, (round * rows + row) as u64).unwrap())
                     .collect();
-                let places = orders.iter().flat_map(|order| order.iter().copied().enumerate());
-                let (least, most) = counts(places, count * count);
-                assert_eq!((least, most), (rows / count, rows / count), "{count} variants, places");
+                let positions = orders.iter().flat_map(|order| order.iter().copied().enumerate());
+                let (least, most) = counts(positions, count * count);
+                assert_eq!(
+                    (least, most),
+                    (rows / count, rows / count),
+                    "{count} variants, positions"
+                );
                 if count > 1 {
                     let pairs = orders
                         .iter()

@@ -27,11 +27,11 @@ impl Choice {
         }
     }
 
-    /// A variant that no task declares, by its differences from the declared variant `from`.
-    pub fn made(task: impl Into<String>, from: &Variant, made: &Variant) -> Self {
+    /// A generated variant, described by its differences from the declared variant `from`.
+    pub fn made(task: impl Into<String>, from: &Variant, generated: &Variant) -> Self {
         Self {
-            values: changes(from, made),
-            name: Some(made.name().to_owned()),
+            values: changes(from, generated),
+            name: Some(generated.name().to_owned()),
             ..Self::new(task, from.name())
         }
     }

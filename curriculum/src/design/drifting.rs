@@ -17,7 +17,7 @@ pub struct Drifting {
 
 /// The regimes of each learning block: the drifts along `path` one after the other, divided evenly among `num_blocks`.
 ///
-/// A drift that is cut by a boundary continues in the next block from the same progress.
+/// A drift cut by a block boundary continues in the next block from the same progress.
 pub(super) fn lessons(
     variants: &[Choice],
     path: &[usize],
@@ -25,21 +25,21 @@ pub(super) fn lessons(
     (learn, streams): (u32, &Streams),
     drifting: Drifting,
 ) -> Result<Vec<Vec<Regime>>, CurriculumError> {
-    let ways = path.len().saturating_sub(1) as u64;
+    let num_drifts = path.len().saturating_sub(1) as u64;
     // Counted over all drifts together, so that no layout is repeated even if variants share their worlds.
-    let mut taken = 0;
+    let mut num_learned = 0;
     let mut lessons = Vec::new();
-    // Lengths are counted in units: each drift has as many as there are blocks, and each block as many as there are drifts.
+    // Lengths are counted in units: a drift has as many units as there are blocks, a block as many as there are drifts.
     for block in 0..num_blocks {
-        let (start, end) = (block * ways, (block + 1) * ways);
-        let learned = |part: u64| ((part - start) * u64::from(learn) + ways / 2) / ways;
+        let (start, end) = (block * num_drifts, (block + 1) * num_drifts);
+        let learned = |part: u64| ((part - start) * u64::from(learn) + num_drifts / 2) / num_drifts;
         let mut regimes = Vec::new();
-        let mut here = start;
-        while here < end {
-            let way = here / num_blocks;
-            let stop = end.min((way + 1) * num_blocks);
-            let count = (learned(stop) - learned(here)) as u32;
-            let (from, to) = (path[way as usize], path[way as usize + 1]);
+        let mut position = start;
+        while position < end {
+            let drift_index = position / num_blocks;
+            let end_of_part = end.min((drift_index + 1) * num_blocks);
+            let count = (learned(end_of_part) - learned(position)) as u32;
+            let (from, to) = (path[drift_index as usize], path[drift_index as usize + 1]);
             let is_between_tasks = variants[from].task != variants[to].task;
             if is_between_tasks && drifting.switch != DriftSwitch::Task {
                 return Err(CurriculumError::DriftBetweenTasks {
@@ -48,24 +48,24 @@ pub(super) fn lessons(
                 });
             }
             if count > 0 {
-                let progress = |part: u64| (part - way * num_blocks) as f64 / num_blocks as f64;
+                let progress = |part: u64| (part - drift_index * num_blocks) as f64 / num_blocks as f64;
                 let drift = RegimeDrift {
                     task: is_between_tasks.then(|| variants[to].task.clone()),
                     values: variants[to].values.clone(),
                     name: variants[to].name.clone(),
                     schedule: drifting.schedule,
                     switch: drifting.switch,
-                    from: progress(here),
-                    until: progress(stop),
+                    from: progress(position),
+                    until: progress(end_of_part),
                     ..RegimeDrift::to(&variants[to].variant)
                 };
                 regimes.push(Regime {
                     drift: Some(drift),
-                    ..streams.learning(&variants[from], count, taken)
+                    ..streams.learning(&variants[from], count, num_learned)
                 });
-                taken += u64::from(count);
+                num_learned += u64::from(count);
             }
-            here = stop;
+            position = end_of_part;
         }
         lessons.push(regimes);
     }
@@ -133,7 +133,7 @@ mod tests {
         let variants = [Choice::new("t", "a"), Choice::new("u", "b"), Choice::new("u", "c")];
         let options = Design::default();
         let streams = (options.learn, &Streams::new(&variants, &options));
-        let ways = |switch| {
+        let lessons_with = |switch| {
             let drifting = Drifting {
                 switch,
                 ..Drifting::default()
@@ -141,9 +141,12 @@ mod tests {
             lessons(&variants, &[0, 1, 2], 2, streams, drifting)
         };
         for switch in [DriftSwitch::AtPoint, DriftSwitch::Mixture] {
-            assert!(matches!(ways(switch), Err(CurriculumError::DriftBetweenTasks { .. })));
+            assert!(matches!(
+                lessons_with(switch),
+                Err(CurriculumError::DriftBetweenTasks { .. })
+            ));
         }
-        let lessons = ways(DriftSwitch::Task).unwrap();
+        let lessons = lessons_with(DriftSwitch::Task).unwrap();
         let ends: Vec<_> = lessons
             .iter()
             .flatten()

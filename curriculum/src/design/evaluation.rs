@@ -21,16 +21,16 @@ pub enum Evaluate {
 
 impl Evaluate {
     /// The numbers of learning blocks after which the agent is evaluated.
-    pub(super) fn places(&self, num_blocks: u32) -> Result<BTreeSet<u32>, CurriculumError> {
+    pub(super) fn positions(&self, num_blocks: u32) -> Result<BTreeSet<u32>, CurriculumError> {
         match self {
             Self::Every => Ok((0..=num_blocks).collect()),
             Self::Ends => Ok(BTreeSet::from([0, num_blocks])),
-            Self::After(places) => match places.iter().find(|place| **place > num_blocks) {
+            Self::After(positions) => match positions.iter().find(|position| **position > num_blocks) {
                 Some(found) => Err(CurriculumError::NoSuchPlace {
                     found: *found,
                     last: num_blocks,
                 }),
-                None => Ok(places.iter().copied().collect()),
+                None => Ok(positions.iter().copied().collect()),
             },
         }
     }

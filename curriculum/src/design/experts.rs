@@ -26,27 +26,27 @@ pub fn experts(variants: &[Choice], options: &Design) -> Result<Vec<Scenario>, C
     check(variants, options)?;
     let streams = Streams::new(variants, options);
     let path = form::sequence(options.form, 1, options.blocks, (options.seed, options.lifetime))?;
-    let places = options.evaluation.places(path.len() as u32)?;
-    let alone = |choice: &Choice| {
-        let taken = (0..path.len() as u64).map(|block| block * u64::from(options.learn));
-        let lessons = taken.map(|taken| vec![streams.learning(choice, options.learn, taken)]);
+    let positions = options.evaluation.positions(path.len() as u32)?;
+    let expert = |choice: &Choice| {
+        let num_learned = (0..path.len() as u64).map(|block| block * u64::from(options.learn));
+        let lessons = num_learned.map(|num_learned| vec![streams.learning(choice, options.learn, num_learned)]);
         let before = before_deployment(&variants[0], options, &streams);
         let evaluation = vec![streams.evaluation(choice)];
         (
             choice.clone(),
-            scenario(options, before, lessons.collect(), &places, evaluation),
+            scenario(options, before, lessons.collect(), &positions, evaluation),
         )
     };
-    named(variants.iter().map(alone).collect(), &options.name)
+    with_names(variants.iter().map(expert).collect(), &options.name)
 }
 
 /// A scenario for each variant that a scenario learns, in which only this variant is learned.
 ///
 /// Each expert learns its variant for as long as the lifetime does, in the same worlds and in blocks of the same lengths, after
-/// the same blocks before deployment, and is evaluated on its variant whenever the lifetime is, in the same worlds. So a learner
+/// the same pre-deployment blocks, and is evaluated on its variant whenever the lifetime is, in the same worlds. So a learner
 /// without interference earns in the lifetime what it earns as its own expert. Drifts are replaced: the experiences that are
-/// nearer to a variant than to the drift's other end become experiences of that variant, in worlds with the same numbers. Names
-/// are those of [`experts`].
+/// nearer to one end of the drift than to the other become experiences of that end's variant, in worlds with the same numbers.
+/// Names are those of [`experts`].
 ///
 /// # Errors
 /// [`CurriculumError::SameName`] if two would have the same name.
@@ -78,14 +78,14 @@ pub fn experts_of(lifetime: &Scenario) -> Result<Vec<Scenario>, CurriculumError>
         }
     }
     let experts = variants.into_iter().map(|choice| {
-        let expert = alone(lifetime, &choice);
+        let expert = expert_of(lifetime, &choice);
         (choice, expert)
     });
-    named(experts.collect(), &lifetime.name)
+    with_names(experts.collect(), &lifetime.name)
 }
 
 /// The part of a lifetime that concerns one variant.
-fn alone(lifetime: &Scenario, wanted: &Choice) -> Scenario {
+fn expert_of(lifetime: &Scenario, wanted: &Choice) -> Scenario {
     let mut blocks: Vec<Block> = Vec::new();
     for block in &lifetime.blocks {
         if block.phase == Phase::PreDeployment {
@@ -98,7 +98,7 @@ fn alone(lifetime: &Scenario, wanted: &Choice) -> Scenario {
             regimes: regimes.filter(|regime| choice(regime) == *wanted).collect(),
             ..block.clone()
         };
-        // Between two of the expert's blocks the lifetime may be evaluated several times, its expert only once.
+        // Between two of the expert's blocks, the lifetime may be evaluated several times; its expert is evaluated only once.
         let is_repeat = own.kind == BlockKind::Evaluation && blocks.last() == Some(&own);
         if !own.regimes.is_empty() && !is_repeat {
             blocks.push(own);
@@ -118,10 +118,10 @@ fn parts(regime: &Regime) -> Vec<Regime> {
     };
     // By its progress, as in logs and metrics, whatever the schedule.
     let is_near = |experience: u32| drift.progress(experience, regime.count) < 0.5;
-    let near = (0..regime.count).filter(|experience| is_near(*experience)).count() as u32;
+    let num_near = (0..regime.count).filter(|experience| is_near(*experience)).count() as u32;
     let from = Regime {
         drift: None,
-        count: near,
+        count: num_near,
         ..regime.clone()
     };
     let to = Regime {
@@ -129,14 +129,14 @@ fn parts(regime: &Regime) -> Vec<Regime> {
         variant: drift.to.clone(),
         values: drift.values.clone(),
         name: drift.name.clone(),
-        count: regime.count - near,
-        first_index: regime.first_index + u64::from(near),
+        count: regime.count - num_near,
+        first_index: regime.first_index + u64::from(num_near),
         ..from.clone()
     };
     [from, to].into_iter().filter(|part| part.count > 0).collect()
 }
 
-/// The variant of a regime that does not drift; for a world file, the world.
+/// The variant of a regime without a drift; for a world file, the world's name.
 fn choice(regime: &Regime) -> Choice {
     Choice {
         values: regime.values.clone(),
@@ -145,13 +145,13 @@ fn choice(regime: &Regime) -> Choice {
     }
 }
 
-fn named(experts: Vec<(Choice, Scenario)>, lifetime: &str) -> Result<Vec<Scenario>, CurriculumError> {
+fn with_names(experts: Vec<(Choice, Scenario)>, lifetime: &str) -> Result<Vec<Scenario>, CurriculumError> {
     let several_tasks = experts.iter().any(|(choice, _)| choice.task != experts[0].0.task);
-    let mut named: BTreeMap<String, String> = BTreeMap::new();
+    let mut names: BTreeMap<String, String> = BTreeMap::new();
     let mut scenarios = Vec::new();
     for (choice, scenario) in experts {
         let name = name(&choice, lifetime, several_tasks);
-        if let Some(other) = named.insert(name.clone(), choice.id()) {
+        if let Some(other) = names.insert(name.clone(), choice.id()) {
             return Err(CurriculumError::SameName {
                 a: other,
                 b: choice.id(),
@@ -164,17 +164,17 @@ fn named(experts: Vec<(Choice, Scenario)>, lifetime: &str) -> Result<Vec<Scenari
 }
 
 fn name(choice: &Choice, scenario: &str, several_tasks: bool) -> String {
-    let variant = plain(choice.name());
+    let variant = name_part(choice.name());
     // A task may be given as a path.
     let task = Path::new(&choice.task).file_stem().and_then(|stem| stem.to_str());
     match task.filter(|_| several_tasks) {
-        Some(task) => format!("{scenario}-{}-{variant}", plain(task)),
+        Some(task) => format!("{scenario}-{}-{variant}", name_part(task)),
         None => format!("{scenario}-{variant}"),
     }
 }
 
 /// The text for a scenario's name: characters other than ASCII letters, digits, `_`, `.` and `-` become `-`.
-fn plain(text: &str) -> String {
+fn name_part(text: &str) -> String {
     let allowed = |c: char| c.is_ascii_alphanumeric() || "_.-".contains(c);
     text.chars().map(|c| if allowed(c) { c } else { '-' }).collect()
 }

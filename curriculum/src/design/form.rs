@@ -1,4 +1,4 @@
-//! The forms of lifelong learning: decides which variant is learned in each learning block.
+//! The forms of lifelong learning: determines which variant each learning block learns.
 
 use driftworld_spec::ScenarioForm;
 
@@ -16,40 +16,40 @@ pub(super) fn sequence(
     blocks: Option<u32>,
     (seed, lifetime): (u64, u64),
 ) -> Result<Vec<usize>, CurriculumError> {
-    let all = u32::try_from(count).unwrap_or(u32::MAX);
-    let wrong = |form, expected: String| CurriculumError::bad_form(form, count, blocks, expected);
-    let once = |form| {
-        if blocks.is_none_or(|blocks| blocks == all) {
-            Ok(all)
+    let num_variants = u32::try_from(count).unwrap_or(u32::MAX);
+    let bad_form = |form, expected: String| CurriculumError::bad_form(form, count, blocks, expected);
+    let one_block_each = |form| {
+        if blocks.is_none_or(|blocks| blocks == num_variants) {
+            Ok(num_variants)
         } else {
-            Err(wrong(
+            Err(bad_form(
                 form,
-                format!("one learning block for each variant, {all} in all"),
+                format!("one learning block for each variant, {num_variants} in all"),
             ))
         }
     };
     let num_blocks = match form {
-        None | Some(ScenarioForm::Custom) => blocks.unwrap_or(all),
-        Some(ScenarioForm::Condensed) => once("condensed")?,
-        Some(ScenarioForm::Permuted) => once("permuted")?,
+        None | Some(ScenarioForm::Custom) => blocks.unwrap_or(num_variants),
+        Some(ScenarioForm::Condensed) => one_block_each("condensed")?,
+        Some(ScenarioForm::Permuted) => one_block_each("permuted")?,
         Some(ScenarioForm::Dispersed) => {
-            let blocks = blocks.unwrap_or(all.saturating_mul(ROUNDS));
-            if blocks < all.saturating_mul(2) {
+            let blocks = blocks.unwrap_or(num_variants.saturating_mul(ROUNDS));
+            if blocks < num_variants.saturating_mul(2) {
                 let expected = format!(
                     "at least 2 learning blocks for each variant, {} in all",
-                    all.saturating_mul(2)
+                    num_variants.saturating_mul(2)
                 );
-                return Err(wrong("dispersed", expected));
+                return Err(bad_form("dispersed", expected));
             }
             blocks
         }
         Some(ScenarioForm::Alternating) => {
             if count != 2 {
-                return Err(wrong("alternating", "2 variants".to_owned()));
+                return Err(bad_form("alternating", "2 variants".to_owned()));
             }
             let blocks = blocks.unwrap_or(2 * ROUNDS);
             if blocks < 3 {
-                return Err(wrong("alternating", "at least 3 learning blocks".to_owned()));
+                return Err(bad_form("alternating", "at least 3 learning blocks".to_owned()));
             }
             blocks
         }
@@ -58,11 +58,11 @@ pub(super) fn sequence(
                 let expected = "no number of blocks: one block has all variants".to_owned();
                 return Err(CurriculumError::bad_form("joint", count, Some(blocks), expected));
             }
-            all
+            num_variants
         }
         Some(ScenarioForm::Expert) => {
             if count != 1 {
-                return Err(wrong(
+                return Err(bad_form(
                     "expert",
                     "1 variant; experts() makes a scenario for each".to_owned(),
                 ));
@@ -73,12 +73,12 @@ pub(super) fn sequence(
     if !(1..=MAX_BLOCKS).contains(&num_blocks) {
         return Err(CurriculumError::BadBlocks(num_blocks));
     }
-    let places = if form == Some(ScenarioForm::Permuted) {
+    let order = if form == Some(ScenarioForm::Permuted) {
         balanced_order(count, seed, lifetime)?
     } else {
         (0..count).collect()
     };
-    Ok(places.iter().copied().cycle().take(num_blocks as usize).collect())
+    Ok(order.iter().copied().cycle().take(num_blocks as usize).collect())
 }
 
 /// The learning blocks of a control: each variant as often as in `path`, in rounds of `order`.
@@ -88,15 +88,15 @@ pub(super) fn reordered(
     order: &[usize],
     count: usize,
 ) -> Result<Vec<usize>, CurriculumError> {
-    let wrong = |form, expected: &str| CurriculumError::bad_form(form, count, None, expected);
+    let bad_form = |form, expected: &str| CurriculumError::bad_form(form, count, None, expected);
     if form == Some(ScenarioForm::Permuted) {
         let expected = "a form with a fixed order; the lifetimes of this one are controls for each other";
-        return Err(wrong("permuted", expected));
+        return Err(bad_form("permuted", expected));
     }
     let mut sorted = order.to_vec();
     sorted.sort_unstable();
     if !sorted.into_iter().eq(0..count) {
-        return Err(wrong("of a control", "an order with each variant once"));
+        return Err(bad_form("of a control", "an order with each variant once"));
     }
     // All forms without a random order cycle through the variants.
     let (rounds, rest) = (path.len() / count, &path[path.len() / count * count..]);
@@ -106,8 +106,8 @@ pub(super) fn reordered(
     let last: Vec<usize> = round.chain(rest).collect();
     let twice_in_a_row = |path: &[usize]| path.windows(2).any(|pair| pair[0] == pair[1]);
     // With the rest first, a rotated order may equal the design itself.
-    let other = |found: &Vec<usize>| !twice_in_a_row(found) && *found != path;
-    Ok(if other(&first) || (twice_in_a_row(&last) && !twice_in_a_row(&first)) {
+    let valid = |found: &Vec<usize>| !twice_in_a_row(found) && *found != path;
+    Ok(if valid(&first) || (twice_in_a_row(&last) && !twice_in_a_row(&first)) {
         first
     } else {
         last
@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn a_control_has_every_variant_as_often_as_the_design() {
+    fn control_has_every_variant_as_often_as_the_design() {
         let check = |path: &[usize], order: &[usize], expected: &[usize]| {
             assert_eq!(reordered(None, path, order, order.len()).unwrap(), expected);
         };
@@ -160,27 +160,27 @@ mod tests {
         check(&[0, 1, 0], &[1, 0], &[0, 1, 0]);
         check(&[0, 1], &[2, 1, 0], &[1, 0]);
         for order in [[0, 1], [0, 0], [1, 2]] {
-            let said = reordered(None, &[0, 1, 2], &order, 3).unwrap_err().to_string();
-            assert!(said.ends_with("an order with each variant once"), "{said}");
+            let message = reordered(None, &[0, 1, 2], &order, 3).unwrap_err().to_string();
+            assert!(message.ends_with("an order with each variant once"), "{message}");
         }
-        let said = reordered(Some(ScenarioForm::Permuted), &[1, 0], &[0, 1], 2)
+        let message = reordered(Some(ScenarioForm::Permuted), &[1, 0], &[0, 1], 2)
             .unwrap_err()
             .to_string();
-        assert!(said.contains("the form permuted"), "{said}");
+        assert!(message.contains("the form permuted"), "{message}");
     }
 
     #[test]
     fn impossible_forms_are_refused() {
-        let said = |form, count, blocks| sequence(Some(form), count, blocks, (0, 0)).unwrap_err().to_string();
+        let message = |form, count, blocks| sequence(Some(form), count, blocks, (0, 0)).unwrap_err().to_string();
         assert_eq!(
-            said(ScenarioForm::Alternating, 3, None),
+            message(ScenarioForm::Alternating, 3, None),
             "the form alternating: found 3 variants, expected 2 variants"
         );
         assert_eq!(
-            said(ScenarioForm::Dispersed, 3, Some(5)),
+            message(ScenarioForm::Dispersed, 3, Some(5)),
             "the form dispersed: found 3 variants and 5 learning blocks, expected at least 2 learning blocks for each variant, 6 in all"
         );
-        assert!(said(ScenarioForm::Condensed, 3, Some(5)).ends_with("3 in all"));
-        assert!(said(ScenarioForm::Custom, 3, Some(10_001)).contains("10000"));
+        assert!(message(ScenarioForm::Condensed, 3, Some(5)).ends_with("3 in all"));
+        assert!(message(ScenarioForm::Custom, 3, Some(10_001)).contains("10000"));
     }
 }

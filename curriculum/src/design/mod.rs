@@ -66,7 +66,7 @@ pub struct Design {
     pub paired_learning: bool,
     /// Variants that are evaluated but never learned; default none.
     pub held_out: Vec<Choice>,
-    /// Learning blocks drift from each variant to the next; by default each block keeps to its variant.
+    /// Learning blocks drift from each variant to the next; by default each block stays with its variant.
     pub drifting: Option<Drifting>,
     /// Experiences of the first variant before deployment; default 0, which adds no such block.
     pub pre_deployment: u32,
@@ -106,13 +106,14 @@ impl Default for Design {
 
 /// Learning blocks of the variants in the given order, with evaluation blocks of all variants, learned or not, between them.
 ///
-/// Learning, validation and test use different seeds, so no world is in two of them; so do different lifetimes. Every
-/// evaluation of a variant uses the same worlds, so differences between evaluations are due to the agent alone. Each variant is
-/// learned in its own worlds, each used once, so two designs of the same variants and counts have the same worlds in any order.
+/// Learning, validation and test use different seeds, so they have no world in common; the same holds for different lifetimes.
+/// Every evaluation of a variant uses the same worlds, so differences between evaluations are due to the agent alone. Each
+/// variant is learned in its own worlds, each used once, so two designs of the same variants and counts have the same worlds in
+/// any order.
 ///
 /// # Errors
 /// [`CurriculumError`] without variants, for counts outside 1..=10,000,000, for a seed above [`MAX_SEED`], for a form that does
-/// not fit the variants or blocks, for an evaluation after a block that does not exist, for a drift between tasks.
+/// not fit the variants or blocks, for an evaluation after a block that does not exist, and for a drift between tasks.
 ///
 /// # Example
 /// ```
@@ -123,11 +124,11 @@ impl Default for Design {
 /// # Ok::<(), driftworld_curriculum::CurriculumError>(())
 /// ```
 pub fn design(variants: &[Choice], options: &Design) -> Result<Scenario, CurriculumError> {
-    arranged(variants, options, None)
+    build(variants, options, None)
 }
 
 /// A control for the design of the same variants and options: the same learning blocks in a different order, after the same
-/// block before deployment, between the same evaluations.
+/// pre-deployment block, between the same evaluations.
 ///
 /// `order` is the control's order of the variants, by their indices in `variants`. Every variant is learned as often as in the
 /// design itself: if the blocks do not make a whole number of rounds, variants learned an extra time in the design are
@@ -139,20 +140,20 @@ pub fn design(variants: &[Choice], options: &Design) -> Result<Scenario, Curricu
 /// As [`design`]; [`CurriculumError::BadForm`] for the permuted form, which draws its own order, and for an `order`
 /// that is not a permutation of the variants.
 pub fn design_control(variants: &[Choice], order: &[usize], options: &Design) -> Result<Scenario, CurriculumError> {
-    arranged(variants, options, Some(order))
+    build(variants, options, Some(order))
 }
 
 /// Maximum number of regimes in a design. A document cannot hold more: each has at least five values.
 const MAX_REGIMES: usize = 400_000;
 
-fn arranged(variants: &[Choice], options: &Design, control: Option<&[usize]>) -> Result<Scenario, CurriculumError> {
+fn build(variants: &[Choice], options: &Design, control: Option<&[usize]>) -> Result<Scenario, CurriculumError> {
     check(variants, options)?;
     let streams = Streams::new(variants, options);
     let (path, lessons) = lessons(variants, options, control, &streams)?;
-    let places = options.evaluation.places(lessons.len() as u32)?;
+    let positions = options.evaluation.positions(lessons.len() as u32)?;
     let evaluated = variants.iter().chain(&options.held_out);
     let evaluation: Vec<Regime> = evaluated.map(|choice| streams.evaluation(choice)).collect();
-    let regimes = lessons.iter().map(Vec::len).sum::<usize>() + places.len() * evaluation.len();
+    let regimes = lessons.iter().map(Vec::len).sum::<usize>() + positions.len() * evaluation.len();
     if regimes > MAX_REGIMES {
         return Err(CurriculumError::bad_form(
             "chosen",
@@ -162,7 +163,7 @@ fn arranged(variants: &[Choice], options: &Design, control: Option<&[usize]>) ->
         ));
     }
     let before = before_deployment(&variants[path[0]], options, &streams);
-    Ok(scenario(options, before, lessons, &places, evaluation))
+    Ok(scenario(options, before, lessons, &positions, evaluation))
 }
 
 /// The block before deployment, if there is one.
@@ -178,13 +179,13 @@ fn scenario(
     options: &Design,
     before: Option<Block>,
     lessons: Vec<Vec<Regime>>,
-    places: &BTreeSet<u32>,
+    positions: &BTreeSet<u32>,
     evaluation: Vec<Regime>,
 ) -> Scenario {
     let mut blocks: Vec<Block> = before.into_iter().collect();
     let last = lessons.len() as u32;
-    for (place, regimes) in (0..).zip(lessons) {
-        if places.contains(&place) {
+    for (position, regimes) in (0..).zip(lessons) {
+        if positions.contains(&position) {
             blocks.push(Block::new(BlockKind::Evaluation, evaluation.clone()));
         }
         blocks.push(Block {
@@ -196,7 +197,7 @@ fn scenario(
             ..Block::new(BlockKind::Learning, regimes)
         });
     }
-    if places.contains(&last) {
+    if positions.contains(&last) {
         blocks.push(Block::new(BlockKind::Evaluation, evaluation));
     }
     Scenario {
@@ -248,27 +249,27 @@ fn lessons(
     control: Option<&[usize]>,
     streams: &Streams,
 ) -> Result<(Vec<usize>, Vec<Vec<Regime>>), CurriculumError> {
-    let drawn = (options.seed, options.lifetime);
-    let own = |path: &[usize]| match control {
+    let seeds = (options.seed, options.lifetime);
+    let reorder = |path: &[usize]| match control {
         Some(order) => form::reordered(options.form, path, order, variants.len()),
         None => Ok(path.to_vec()),
     };
     let Some(drifting) = options.drifting else {
-        let path = form::sequence(options.form, variants.len(), options.blocks, drawn)?;
-        let mut taken = vec![0; variants.len()];
+        let path = form::sequence(options.form, variants.len(), options.blocks, seeds)?;
+        let mut num_learned = vec![0; variants.len()];
         let lesson = |variant: &usize| {
-            let regime = streams.learning(&variants[*variant], options.learn, taken[*variant]);
-            taken[*variant] += u64::from(options.learn);
+            let regime = streams.learning(&variants[*variant], options.learn, num_learned[*variant]);
+            num_learned[*variant] += u64::from(options.learn);
             vec![regime]
         };
-        let mut lessons: Vec<Vec<Regime>> = own(&path)?.iter().map(lesson).collect();
+        let mut lessons: Vec<Vec<Regime>> = reorder(&path)?.iter().map(lesson).collect();
         if options.form == Some(ScenarioForm::Joint) {
             lessons = vec![lessons.into_iter().flatten().collect()];
         }
         return Ok((path, lessons));
     };
-    // The form determines the variants along the drift; `blocks` is the number of blocks that it is divided into.
-    let path = form::sequence(options.form, variants.len(), None, drawn)?;
+    // The form determines the variants along the drift; `blocks` is the number of blocks into which the drift is divided.
+    let path = form::sequence(options.form, variants.len(), None, seeds)?;
     if path.len() < 2 {
         return Err(CurriculumError::NoWay);
     }
@@ -278,7 +279,7 @@ fn lessons(
     }
     let lessons = drifting::lessons(
         variants,
-        &own(&path)?,
+        &reorder(&path)?,
         u64::from(num_blocks),
         (options.learn, streams),
         drifting,

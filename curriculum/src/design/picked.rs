@@ -1,4 +1,4 @@
-//! [`Picked`]: a variant that was chosen or made, with its distances.
+//! [`Picked`]: a chosen or generated variant; distances between such variants.
 
 use driftworld_generator::{GeneratorError, Subject, at_distance};
 use driftworld_similarity::{Distance, DistanceMatrix, VariantMeasure, Weights};
@@ -7,7 +7,7 @@ use driftworld_spec::{Element, Variant};
 use super::Choice;
 use crate::CurriculumError;
 
-/// Greater than any distance between variants, and small enough to keep differences of 1e-9.
+/// Greater than any distance between variants, and small enough to resolve differences of 1e-9.
 const BEYOND: f64 = 1e6;
 
 /// A variant for a curriculum.
@@ -29,7 +29,7 @@ impl Picked {
     }
 
     /// A variant derived from a declared one.
-    pub(super) fn made(task: &str, from: &Variant, variant: Variant) -> Self {
+    pub(super) fn generated(task: &str, from: &Variant, variant: Variant) -> Self {
         Self {
             choice: Choice::made(task, from, &variant),
             variant,
@@ -59,18 +59,18 @@ pub fn distances(picked: &[Picked], element: Option<Element>) -> Result<Distance
     // Without variants, the matrix reports the error before anything is measured.
     let measure = picked.first().map(|first| measure_of(&first.variant));
     DistanceMatrix::measure(labels, |a, b| match &measure {
-        Some(measure) => apart(measure, &picked[a].variant, &picked[b].variant, element),
+        Some(measure) => distance_between(measure, &picked[a].variant, &picked[b].variant, element),
         None => Ok(0.0),
     })
 }
 
-/// The measure for variants of this one's task, with the task's weights, for many comparisons.
+/// The measure for variants of the same task, with the task's weights; it can be used for many comparisons.
 pub(super) fn measure_of(variant: &Variant) -> VariantMeasure {
     VariantMeasure::new(variant.task(), Weights::of_task(variant.task()))
 }
 
 /// The distance between two variants: in one element, or in total.
-pub(super) fn apart(
+pub(super) fn distance_between(
     measure: &VariantMeasure,
     a: &Variant,
     b: &Variant,
@@ -86,8 +86,8 @@ pub(super) fn farthest(
     subject: &Subject,
     element: Option<Element>,
 ) -> Result<f64, GeneratorError> {
-    let distance = |other: &Variant| apart(measure, anchor, other, element).unwrap_or(0.0);
-    // No variant is this far away, so this finds the farthest variant, or the farthest of those searched.
+    let distance = |other: &Variant| distance_between(measure, anchor, other, element).unwrap_or(0.0);
+    // No variant is this far away, so the generator returns the farthest that it finds.
     match at_distance(anchor, subject, BEYOND, 0.0, distance) {
         Err(GeneratorError::TooFar { farthest, .. }) => Ok(farthest),
         Err(GeneratorError::NoneBetween { nearest, .. }) => Ok(nearest),
@@ -96,10 +96,10 @@ pub(super) fn farthest(
     }
 }
 
-/// Whether a distance is exactly 0 in every other element.
-pub(super) fn is_alone(distance: &Distance, element: Element) -> bool {
+/// Whether a distance is exactly 0 in every element except this one.
+pub(super) fn is_only_in(distance: &Distance, element: Element) -> bool {
     let others = Element::ALL.into_iter().filter(|other| *other != element);
     others
         .into_iter()
-        .all(|other| distance.element(other).is_none_or(|apart| apart == 0.0))
+        .all(|other| distance.element(other).is_none_or(|own| own == 0.0))
 }

@@ -8,7 +8,7 @@ use super::wanted::MAX_BLOCKS;
 use super::{Choice, Design};
 use crate::hash::number_of;
 
-/// The purpose of the worlds in evaluation blocks. The two splits share no world.
+/// The purpose of the worlds in evaluation blocks. The two splits have no world in common.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Split {
@@ -19,7 +19,7 @@ pub enum Split {
     Test,
 }
 
-/// Distance between the first world indices of two variants: no lifetime learns a variant in more worlds.
+/// Number of world indices reserved for each variant: no lifetime learns a variant in more worlds.
 const SPAN: u64 = MAX_EXPERIENCES as u64 * MAX_BLOCKS as u64;
 
 /// Size of seeds in bits, small enough for every JSON reader to keep them exact.
@@ -40,15 +40,15 @@ impl<'a> Streams<'a> {
         Self { options, ids }
     }
 
-    /// `count` learning experiences, after the first `taken` of the variant.
-    pub(super) fn learning(&self, choice: &Choice, count: u32, taken: u64) -> Regime {
-        let seed = spread(self.options.seed, self.options.lifetime, "learn");
-        choice.regime(count, seed, self.start(choice) + taken)
+    /// `count` learning experiences, after the first `num_learned` of this variant.
+    pub(super) fn learning(&self, choice: &Choice, count: u32, num_learned: u64) -> Regime {
+        let seed = seed_for(self.options.seed, self.options.lifetime, "learn");
+        choice.regime(count, seed, self.start(choice) + num_learned)
     }
 
     /// Experiences before deployment.
     pub(super) fn before_deployment(&self, choice: &Choice) -> Regime {
-        let seed = spread(self.options.seed, self.options.lifetime, "before deployment");
+        let seed = seed_for(self.options.seed, self.options.lifetime, "before deployment");
         choice.regime(self.options.pre_deployment, seed, 0)
     }
 
@@ -63,7 +63,7 @@ impl<'a> Streams<'a> {
             Split::Validation => "validation",
             Split::Test => "test",
         };
-        choice.regime(self.options.evaluate, spread(self.options.seed, lifetime, purpose), 0)
+        choice.regime(self.options.evaluate, seed_for(self.options.seed, lifetime, purpose), 0)
     }
 
     /// Index of the first world in which a variant is learned. Independent of the order of the variants.
@@ -76,8 +76,8 @@ impl<'a> Streams<'a> {
     }
 }
 
-/// A seed for one use in one lifetime, at most 2⁵³ − 1. Similar seeds give unrelated ones.
-fn spread(seed: u64, lifetime: u64, purpose: &str) -> u64 {
+/// A seed for one use in one lifetime, at most 2⁵³ − 1. Similar seeds give unrelated results.
+fn seed_for(seed: u64, lifetime: u64, purpose: &str) -> u64 {
     let number = number_of([&seed.to_le_bytes()[..], &lifetime.to_le_bytes(), purpose.as_bytes()]);
     number >> (u64::BITS - SEED_BITS)
 }

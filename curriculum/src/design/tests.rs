@@ -124,17 +124,17 @@ proptest! {
         let learned_worlds = worlds(learned(&scenario));
         prop_assert_eq!(layouts(&learned_worlds).len(), learned_worlds.len());
         let tested = layouts(&worlds(evaluated(&scenario)));
-        prop_assert_eq!(tested.len(), options.evaluate as usize, "evaluation is in pairs");
+        prop_assert_eq!(tested.len(), options.evaluate as usize, "all variants share the evaluation worlds");
         prop_assert!(layouts(&learned_worlds).is_disjoint(&tested));
         let later = of(&Design { lifetime: other, ..options.clone() });
         prop_assert!(layouts(&learned_worlds).is_disjoint(&layouts(&worlds(learned(&later)))));
         prop_assert!(tested.is_disjoint(&layouts(&worlds(evaluated(&later)))));
         let neighbour = of(&Design { seed: options.seed + 1, ..options.clone() });
         prop_assert!(layouts(&learned_worlds).is_disjoint(&layouts(&worlds(learned(&neighbour)))));
-        let turned = if options.split == Split::Test { Split::Validation } else { Split::Test };
-        let tuned = of(&Design { split: turned, ..options.clone() });
-        prop_assert_eq!(&learned_worlds, &worlds(learned(&tuned)));
-        prop_assert!(tested.is_disjoint(&layouts(&worlds(evaluated(&tuned)))));
+        let other_split = if options.split == Split::Test { Split::Validation } else { Split::Test };
+        let with_other_split = of(&Design { split: other_split, ..options.clone() });
+        prop_assert_eq!(&learned_worlds, &worlds(learned(&with_other_split)));
+        prop_assert!(tested.is_disjoint(&layouts(&worlds(evaluated(&with_other_split)))));
         let fixed = |lifetime| of(&Design { fixed_evaluation: true, lifetime, ..options.clone() });
         prop_assert_eq!(worlds(evaluated(&fixed(other))), worlds(evaluated(&fixed(other + 1))));
     }
@@ -224,7 +224,7 @@ fn held_out_variant_is_evaluated_and_never_learned() {
 }
 
 #[test]
-fn an_expert_learns_one_variant_and_is_named_after_it() {
+fn expert_learns_one_variant_and_is_named_after_it() {
     let options = Design {
         form: Some(ScenarioForm::Expert),
         blocks: Some(2),
@@ -256,7 +256,7 @@ fn experts_of_several_tasks_have_different_names() {
 }
 
 #[test]
-fn a_control_learns_the_same_worlds_after_the_same_pre_deployment() {
+fn control_learns_the_same_worlds_after_the_same_pre_deployment() {
     let options = Design {
         blocks: Some(5),
         pre_deployment: 4,
@@ -296,9 +296,9 @@ fn design_round_trips_through_json() {
 
 #[test]
 fn invalid_designs_are_refused_with_a_reason() {
-    let said = |count: usize, options: Design| design(&choices(count), &options).unwrap_err().to_string();
+    let message = |count: usize, options: Design| design(&choices(count), &options).unwrap_err().to_string();
     assert_eq!(
-        said(0, Design::default()),
+        message(0, Design::default()),
         "design: found no variants, expected at least 1"
     );
     let none = Design {
@@ -306,18 +306,18 @@ fn invalid_designs_are_refused_with_a_reason() {
         ..Design::default()
     };
     assert_eq!(
-        said(1, none),
+        message(1, none),
         "design: found 0 learning experiences per regime, expected 1 to 10000000"
     );
     let large = Design {
         seed: u64::MAX,
         ..Design::default()
     };
-    assert!(said(1, large).starts_with("design: found seed"));
+    assert!(message(1, large).starts_with("design: found seed"));
     let still = Design {
         drifting: Some(Drifting::default()),
         ..Design::default()
     };
-    assert!(said(1, still).contains("expected at least 2"));
-    assert!(said(700, Design::default()).contains("at most 400000 regimes, not 491400"));
+    assert!(message(1, still).contains("expected at least 2"));
+    assert!(message(700, Design::default()).contains("at most 400000 regimes, not 491400"));
 }

@@ -7,15 +7,15 @@ use driftworld_similarity::VariantMeasure;
 use driftworld_spec::{Domain, Parameter, ParameterType, Role, Value, Variant};
 
 use super::choice::changes;
-use super::picked::{Picked, apart, farthest, is_alone, measure_of};
+use super::picked::{Picked, distance_between, farthest, is_only_in, measure_of};
 use super::wanted::Steps;
 use crate::CurriculumError;
 
 /// Maximum number of variants from which the search tries to extend the path.
-const MOST_TRIES: u32 = 4000;
+const MAX_TRIES: u32 = 4000;
 
 /// Maximum number of comparisons of two variants per search.
-pub(super) const MOST_COMPARISONS: u64 = 4_000_000;
+pub(super) const MAX_COMPARISONS: u64 = 4_000_000;
 
 /// Bisection steps on the line to one target.
 const HALVINGS: u32 = 60;
@@ -57,7 +57,7 @@ impl<'a> Walk<'a> {
             return Ok(true);
         }
         self.tries += 1;
-        if self.tries > MOST_TRIES || self.budget_exhausted() {
+        if self.tries > MAX_TRIES || self.budget_exhausted() {
             return Ok(false);
         }
         for next in self.candidates()? {
@@ -66,7 +66,7 @@ impl<'a> Walk<'a> {
                 return Ok(true);
             }
             self.path.pop();
-            if self.tries > MOST_TRIES || self.budget_exhausted() {
+            if self.tries > MAX_TRIES || self.budget_exhausted() {
                 break;
             }
         }
@@ -74,16 +74,16 @@ impl<'a> Walk<'a> {
     }
 
     pub(super) fn budget_exhausted(&self) -> bool {
-        self.comparisons.get() >= MOST_COMPARISONS
+        self.comparisons.get() >= MAX_COMPARISONS
     }
 
-    fn apart(&self, a: &Variant, b: &Variant) -> Result<f64, CurriculumError> {
+    fn distance(&self, a: &Variant, b: &Variant) -> Result<f64, CurriculumError> {
         self.comparisons.set(self.comparisons.get() + 1);
-        apart(&self.measure, a, b, self.wanted.element)
+        distance_between(&self.measure, a, b, self.wanted.element)
     }
 
     /// The parameters that may change, and the matching [`Subject`].
-    fn free(&self) -> (Vec<(&String, &Parameter)>, Subject) {
+    fn free_params(&self) -> (Vec<(&String, &Parameter)>, Subject) {
         let belongs = |parameter: &Parameter| {
             parameter.role == Role::Variant
                 && self
@@ -92,35 +92,36 @@ impl<'a> Walk<'a> {
                     .is_none_or(|element| parameter.affects_only(element))
         };
         let parameters = self.anchor.task().parameters().iter();
-        let free: Vec<(&String, &Parameter)> = parameters.filter(|(_, parameter)| belongs(parameter)).collect();
+        let free_params: Vec<(&String, &Parameter)> = parameters.filter(|(_, parameter)| belongs(parameter)).collect();
         let subject = match self.wanted.element {
             Some(element) => Subject::Element(element),
-            None => Subject::Parameters(free.iter().map(|(name, _)| (*name).clone()).collect()),
+            None => Subject::Parameters(free_params.iter().map(|(name, _)| (*name).clone()).collect()),
         };
-        (free, subject)
+        (free_params, subject)
     }
 
     /// The largest distance of any variant from the anchor, whether the search reached it or not.
     pub(super) fn farthest(&self) -> Result<f64, CurriculumError> {
         // Without parameters to change, the pool may still hold variants.
-        let mut all = farthest(&self.measure, self.anchor, &self.free().1, self.wanted.element).unwrap_or(0.0);
+        let mut largest =
+            farthest(&self.measure, self.anchor, &self.free_params().1, self.wanted.element).unwrap_or(0.0);
         for variant in self.pool {
-            let (apart, alone) = self.measure(self.anchor, variant)?;
-            if alone {
-                all = all.max(apart);
+            let (distance, valid) = self.measure(self.anchor, variant)?;
+            if valid {
+                largest = largest.max(distance);
             }
         }
-        Ok(all)
+        Ok(largest)
     }
 
-    /// Candidates for the next step: declared variants, then made ones.
+    /// Candidates for the next step: declared variants, then generated ones.
     fn candidates(&mut self) -> Result<Vec<Picked>, CurriculumError> {
         let here = self.path[self.path.len() - 1].variant.clone();
         let mut declared = Vec::new();
         for variant in self.pool {
-            let (apart, alone) = self.measure(&here, variant)?;
-            let miss = (apart - self.wanted.distance).abs();
-            if alone && miss <= self.wanted.tolerance && self.distance_to_path(variant)? > self.wanted.distance / 2.0 {
+            let (distance, valid) = self.measure(&here, variant)?;
+            let miss = (distance - self.wanted.distance).abs();
+            if valid && miss <= self.wanted.tolerance && self.distance_to_path(variant)? > self.wanted.distance / 2.0 {
                 declared.push((miss, Picked::declared(self.task, variant.clone())));
             }
         }
@@ -128,37 +129,40 @@ impl<'a> Walk<'a> {
             a.0.total_cmp(&b.0)
                 .then_with(|| a.1.choice.name().cmp(b.1.choice.name()))
         });
-        let mut made: Vec<(f64, Picked)> = Vec::new();
+        let mut generated: Vec<(f64, Picked)> = Vec::new();
         for target in self.targets(&here)? {
             if self.budget_exhausted() {
                 break;
             }
-            let Some(variant) = self.on_the_way(&here, &target)? else {
+            let Some(variant) = self.towards(&here, &target)? else {
                 continue;
             };
-            let met = self.distance_to_path(&variant)?;
-            if met > self.wanted.distance / 2.0 {
-                made.push((met, Picked::made(self.task, self.anchor, variant)));
+            let clearance = self.distance_to_path(&variant)?;
+            if clearance > self.wanted.distance / 2.0 {
+                generated.push((clearance, Picked::generated(self.task, self.anchor, variant)));
             }
         }
         // The sort is stable: ties keep the order of the parameters.
-        made.sort_by(|a, b| b.0.total_cmp(&a.0));
-        Ok(declared.into_iter().chain(made).map(|(_, picked)| picked).collect())
+        generated.sort_by(|a, b| b.0.total_cmp(&a.0));
+        Ok(declared.into_iter().chain(generated).map(|(_, one)| one).collect())
     }
 
     /// The distance between two variants, and whether they differ only in elements that may change.
     fn measure(&self, a: &Variant, b: &Variant) -> Result<(f64, bool), CurriculumError> {
         self.comparisons.set(self.comparisons.get() + 1);
-        let apart = self.measure.between(a, b)?;
-        let alone = self.wanted.element.is_none_or(|element| is_alone(&apart, element));
-        Ok((apart.within(self.wanted.element), alone))
+        let breakdown = self.measure.between(a, b)?;
+        let valid = self
+            .wanted
+            .element
+            .is_none_or(|element| is_only_in(&breakdown, element));
+        Ok((breakdown.within(self.wanted.element), valid))
     }
 
-    /// The distance to the nearest variant of the path.
+    /// The distance to the nearest variant on the path.
     fn distance_to_path(&self, variant: &Variant) -> Result<f64, CurriculumError> {
         let mut nearest = f64::INFINITY;
-        for met in &self.path {
-            nearest = nearest.min(self.apart(&met.variant, variant)?);
+        for visited in &self.path {
+            nearest = nearest.min(self.distance(&visited.variant, variant)?);
         }
         Ok(nearest)
     }
@@ -166,10 +170,10 @@ impl<'a> Walk<'a> {
     /// Variants to step towards: the ends and choices of each parameter, all ranges at their low or high end, the pool's
     /// variants, and the one that the generator finds.
     fn targets(&self, here: &Variant) -> Result<Vec<Variant>, CurriculumError> {
-        let (free, subject) = self.free();
+        let (free_params, subject) = self.free_params();
         let mut changes: Vec<Vec<(String, Value)>> = Vec::new();
         let mut corners = [Vec::new(), Vec::new()];
-        for (name, parameter) in &free {
+        for (name, parameter) in &free_params {
             let Some(value) = here.value(name) else { continue };
             let values = ends(parameter, value);
             for (corner, end) in corners.iter_mut().zip(&values) {
@@ -187,16 +191,16 @@ impl<'a> Walk<'a> {
                 targets.push(variant.clone());
             }
         }
-        let measure = |other: &Variant| self.apart(here, other).unwrap_or(0.0);
+        let measure = |other: &Variant| self.distance(here, other).unwrap_or(0.0);
         let found = at_distance(here, &subject, self.wanted.distance, self.wanted.tolerance, measure);
         targets.extend(found.ok().map(|found| found.variant));
         Ok(targets)
     }
 
-    /// The variant at the wanted distance on the way to a target; `None` if there is none.
-    fn on_the_way(&self, here: &Variant, target: &Variant) -> Result<Option<Variant>, CurriculumError> {
+    /// The variant at the wanted distance from `here` towards a target; `None` if there is none.
+    fn towards(&self, here: &Variant, target: &Variant) -> Result<Option<Variant>, CurriculumError> {
         let (wanted, tolerance) = (self.wanted.distance, self.wanted.tolerance);
-        let whole = self.apart(here, target)?;
+        let whole = self.distance(here, target)?;
         if whole < wanted - tolerance {
             return Ok(None);
         }
@@ -211,15 +215,15 @@ impl<'a> Walk<'a> {
                 let Ok(variant) = drift.at(middle, 0) else {
                     return Ok(None);
                 };
-                let apart = self.apart(here, &variant)?;
-                let miss = (apart - wanted).abs();
+                let distance = self.distance(here, &variant)?;
+                let miss = (distance - wanted).abs();
                 if miss < best.0 {
                     best = (miss, variant);
                 }
                 if miss <= tolerance.min(1e-9) {
                     break;
                 }
-                if apart < wanted {
+                if distance < wanted {
                     low = middle;
                 } else {
                     high = middle;
@@ -236,7 +240,7 @@ impl<'a> Walk<'a> {
         Ok(self.anchor.with(&self.name(), changed).ok())
     }
 
-    /// Name of the next made variant: `blue-step-3`.
+    /// Name of the next generated variant: `blue-step-3`.
     fn name(&self) -> String {
         let declared = self.anchor.task().variant_names();
         let mut name = format!("{}-step-{}", self.anchor.name(), self.path.len());
@@ -247,7 +251,7 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// Values to move a parameter to: both ends of a range, for a heading also its opposite, or the other choices.
+/// Values to move a parameter to: both ends of a range (for a heading, also the opposite direction), or the other choices.
 fn ends(parameter: &Parameter, value: &Value) -> Vec<Value> {
     match parameter.domain() {
         Some(Domain::Choices(choices)) => choices.into_iter().filter(|choice| choice != value).collect(),

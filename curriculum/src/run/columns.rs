@@ -25,7 +25,7 @@ use super::planned::Planned;
 ///
 /// Variants of one task are compared by what they declare, others by their first 16 worlds under seed 0.
 ///
-/// An experience that was skipped because its world cannot be drawn has a row, too, so that numbers have no gap: all its
+/// An experience that was skipped because its world cannot be drawn has a row, too, so that the numbers have no gap: all its
 /// columns except `world_index` and `progress` are `nan`, and its parameters give the reason under `"skipped"`. Programs that
 /// score a log ignore rows without a value.
 pub const COLUMNS: [&str; 13] = [
@@ -56,7 +56,7 @@ pub const ENDED_BY: &str = "ended_by";
 
 /// The row of experience `number`.
 pub(super) fn record(planned: &Planned, number: u64, experience: &Experience, gap: &Gap, now: Timestamp) -> Record {
-    let lived = [
+    let values = [
         experience.reward,
         f64::from(u8::from(experience.success)),
         f64::from(experience.steps),
@@ -65,7 +65,7 @@ pub(super) fn record(planned: &Planned, number: u64, experience: &Experience, ga
         planned.world_index(number),
         planned.progress(number),
     ];
-    row(planned, number, lived.iter().chain(gap), planned.params(), now)
+    row(planned, number, values.iter().chain(gap), planned.params(), now)
 }
 
 /// The parameter of a row with the reason why its experience was skipped.

@@ -8,7 +8,7 @@ use driftworld_env::{Action, Agent, EndedBy, EnvError, Environment, Label, Recor
 /// Step limit of an experience in a world without one of its own.
 pub const MOST_STEPS: u32 = 100_000;
 
-/// What an experience needs besides agent and environment.
+/// Context of an experience, besides agent and environment.
 pub(super) struct EpisodeContext<'a> {
     /// Seed of the agent's own randomness.
     pub(super) seed: u64,
@@ -54,15 +54,15 @@ fn fingerprint(action: Action, environment: &Environment) -> u64 {
         Action::Continuous(numbers) => numbers.map(f64::to_bits).hash(&mut hash),
         Action::Discrete(row) => row.hash(&mut hash),
     }
-    let (agent, paid) = (environment.agent(), environment.episode_return());
+    let (agent, reward) = (environment.agent(), environment.episode_return());
     let [x, y] = agent.position;
-    ([x, y, agent.heading_deg].map(f32::to_bits), paid.to_bits()).hash(&mut hash);
+    ([x, y, agent.heading_deg].map(f32::to_bits), reward.to_bits()).hash(&mut hash);
     hash.finish()
 }
 
 /// Runs one experience in a freshly reset environment; `trace`, if given, gets a hash of each step.
 ///
-/// Only the environment ends it, by an event or a limit. So the last experience of a block ends like any other, never
+/// Only the environment ends it, by an event or a limit. The last experience of a block ends like any other, never
 /// because the block does. Returns `None` if it was stopped.
 pub(super) fn run_episode(
     agent: &mut dyn Agent,
@@ -105,7 +105,7 @@ pub(super) fn run_episode(
     let world = environment.world();
     let step_seconds = world.agent_params.time_step * f64::from(world.agent_params.frame_skip.max(1));
     // A limit of seconds cuts the last step short.
-    let most = if world.max_seconds > 0.0 {
+    let time_limit = if world.max_seconds > 0.0 {
         world.max_seconds
     } else {
         f64::INFINITY
@@ -114,7 +114,7 @@ pub(super) fn run_episode(
         reward: environment.episode_return(),
         success: last.success,
         steps,
-        seconds: (f64::from(steps) * step_seconds).min(most),
+        seconds: (f64::from(steps) * step_seconds).min(time_limit),
         truncated: last.truncated,
         ended_by: last.ended_by,
     }))

@@ -5,13 +5,13 @@ use driftworld_generator::Sampler;
 use driftworld_spec::{Variant, World, ZoneEnd};
 use serde::Serialize;
 
-/// Steps after which the planner gives up in a world without a step limit.
+/// Steps after which the planner gives up in a world without a step or time limit.
 const PATIENCE: u32 = 10_000;
 
 /// Maximum number of failed worlds that are listed.
-const MOST_TOLD: usize = 100;
+const MAX_LISTED: usize = 100;
 
-/// In how many worlds the built-in planner reached success.
+/// The number of worlds in which the built-in planner reached success.
 ///
 /// The planner is good but not perfect: if it fails, success may still be possible.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
@@ -43,7 +43,7 @@ impl Finished {
         self.worlds += 1;
         if expertise.at_home(world).is_ok_and(|run| run.success) {
             self.succeeded += 1;
-        } else if self.failed.len() < MOST_TOLD {
+        } else if self.failed.len() < MAX_LISTED {
             self.failed.push(index);
         }
     }

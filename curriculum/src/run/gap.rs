@@ -1,4 +1,4 @@
-//! The distance columns of a log: how far a regime's variant is from the one learned last.
+//! Computes the distance columns of a log: how far a regime's variant is from the one learned last.
 
 use std::collections::BTreeMap;
 
@@ -9,9 +9,9 @@ use driftworld_spec::{Element, Variant, World};
 /// Number of worlds per variant when comparing variants of different tasks.
 const WORLDS: u64 = 16;
 
-/// Cache sizes, for gaps and for the worlds of subjects: a drift has a new variant for each experience.
-const REMEMBERED: usize = 4096;
-const REMEMBERED_WORLDS: usize = 256;
+/// Cache sizes, for gaps and for subjects with their worlds: a drift has a new variant for each experience.
+const MAX_CACHED_GAPS: usize = 4096;
+const MAX_CACHED_SUBJECTS: usize = 256;
 
 /// A distance in total, and in each element: state, action, transition, reward, observation.
 pub(super) type Gap = [f64; 6];
@@ -21,7 +21,7 @@ pub(super) const UNKNOWN: Gap = [f64::NAN; 6];
 
 /// Converts a distance to a gap; an element in which nothing could differ counts as equal.
 fn gap_of(distance: &Distance) -> Gap {
-    std::array::from_fn(|place| distance.within(place.checked_sub(1).map(|element| Element::ALL[element])))
+    std::array::from_fn(|index| distance.within(index.checked_sub(1).map(|element| Element::ALL[element])))
 }
 
 /// One side of a gap: a variant, or a single world.
@@ -53,7 +53,7 @@ impl Gaps {
             return *gap;
         }
         let gap = self.measure(a, b);
-        if self.known.len() == REMEMBERED {
+        if self.known.len() == MAX_CACHED_GAPS {
             self.known.clear();
         }
         self.known.insert(key, gap);
@@ -67,7 +67,7 @@ impl Gaps {
         {
             return gap_of(&distance);
         }
-        if self.drawn.len() + 2 > REMEMBERED_WORLDS {
+        if self.drawn.len() + 2 > MAX_CACHED_SUBJECTS {
             self.drawn.clear();
         }
         self.draw(a);
@@ -75,15 +75,15 @@ impl Gaps {
         let (a, b) = (&self.drawn[a.0], &self.drawn[b.0]);
         let (weights, pairs) = (Weights::default(), a.len().max(b.len()));
         // A single world is paired with every world of the other.
-        let pair = |place: usize| (&a[place % a.len()], &b[place % b.len()]);
+        let pair = |index: usize| (&a[index % a.len()], &b[index % b.len()]);
         let gaps: Vec<Gap> = (0..pairs)
-            .filter_map(|place| {
-                let (a, b) = pair(place);
+            .filter_map(|index| {
+                let (a, b) = pair(index);
                 Some(gap_of(&world_distance(a.as_ref()?, b.as_ref()?, &weights)))
             })
             .collect();
         // Their mean; NaN if there are none.
-        std::array::from_fn(|place| gaps.iter().map(|gap| gap[place]).sum::<f64>() / gaps.len() as f64)
+        std::array::from_fn(|index| gaps.iter().map(|gap| gap[index]).sum::<f64>() / gaps.len() as f64)
     }
 
     fn draw(&mut self, (name, subject): (&str, Subject)) {
@@ -134,8 +134,8 @@ mod tests {
     #[test]
     fn variants_of_two_tasks_and_single_worlds_are_compared_by_worlds() {
         let (here, there) = (variant("t", "plain"), variant("u", "poor"));
-        let apart = gap(Subject::Variant(&here), Subject::Variant(&there));
-        assert!(apart[0] > 0.0 && apart[4] > 0.0, "{apart:?}");
+        let distance = gap(Subject::Variant(&here), Subject::Variant(&there));
+        assert!(distance[0] > 0.0 && distance[4] > 0.0, "{distance:?}");
         let world = Sampler::new(&here, 0).world(0).unwrap();
         assert_eq!(gap(Subject::World(&world), Subject::World(&world))[0], 0.0);
         let mixed = gap(Subject::World(&world), Subject::Variant(&here));

@@ -1,4 +1,4 @@
-//! Processes numbered items on several threads, and delivers the results in the order of the numbers.
+//! Processes numbered items on several threads and delivers the results in the order of the numbers.
 
 use std::collections::BTreeMap;
 use std::ops::{ControlFlow, Range};
@@ -10,7 +10,8 @@ use std::thread;
 /// Maximum number of undelivered items per thread: bounds the number of waiting results.
 const AHEAD: usize = 16;
 
-/// Processes every item of a range, one worker per thread, and delivers the results in order; ends early if `take` says so.
+/// Processes every item of a range, one worker per thread, and delivers the results in order; ends early if `deliver` returns
+/// `Break`.
 ///
 /// Items are started in order, each by a free worker. After an early end, items in progress are finished and dropped. A panic
 /// of `work` resumes here, when its result would be delivered; one after an early end is dropped, too. If the system cannot
@@ -19,24 +20,24 @@ pub(super) fn in_order<W: Send, T: Send, E>(
     items: Range<u64>,
     workers: Vec<W>,
     work: impl Fn(&mut W, u64) -> T + Sync,
-    mut take: impl FnMut(u64, T) -> Result<ControlFlow<()>, E>,
+    mut deliver: impl FnMut(u64, T) -> Result<ControlFlow<()>, E>,
 ) -> Result<ControlFlow<()>, E> {
     let (num_workers, ahead) = (workers.len(), AHEAD * workers.len());
     // Handed out one by one: if a thread cannot be started, its worker remains available.
     let workers = Mutex::new(workers);
-    let hire = || workers.lock().unwrap_or_else(PoisonError::into_inner).pop();
-    let (give, given) = mpsc::channel();
-    let given = Mutex::new(given);
-    let next = || given.lock().unwrap_or_else(PoisonError::into_inner).recv();
+    let next_worker = || workers.lock().unwrap_or_else(PoisonError::into_inner).pop();
+    let (sender, receiver) = mpsc::channel();
+    let receiver = Mutex::new(receiver);
+    let next_item = || receiver.lock().unwrap_or_else(PoisonError::into_inner).recv();
     thread::scope(|scope| {
         // Dropped on every exit, so that no thread keeps waiting for an item.
-        let give = give;
+        let sender = sender;
         let (results, arrived) = mpsc::channel();
-        let starts_a_thread = |_: &usize| {
-            let (results, work, hire, next) = (results.clone(), &work, &hire, &next);
+        let start_thread = |_: &usize| {
+            let (results, work, next_worker, next_item) = (results.clone(), &work, &next_worker, &next_item);
             let thread = thread::Builder::new().spawn_scoped(scope, move || {
-                let Some(mut worker) = hire() else { return };
-                while let Ok(item) = next() {
+                let Some(mut worker) = next_worker() else { return };
+                while let Ok(item) = next_item() {
                     // The results of a worker that panicked are never used: the panic is delivered before them.
                     let result = catch_unwind(AssertUnwindSafe(|| work(&mut worker, item)));
                     if results.send((item, result)).is_err() {
@@ -46,45 +47,45 @@ pub(super) fn in_order<W: Send, T: Send, E>(
             });
             thread.is_ok()
         };
-        if (0..num_workers).take_while(starts_a_thread).count() == 0 {
-            return alone(items, hire(), &work, &mut take);
+        if (0..num_workers).take_while(start_thread).count() == 0 {
+            return process_in_this_thread(items, next_worker(), &work, &mut deliver);
         }
         let mut later = items.clone();
-        let mut begin = |most: usize| {
-            let begun = later.by_ref().take(most).try_for_each(|item| give.send(item));
-            begun.expect("the other end outlives the threads");
+        let mut send_items = |count: usize| {
+            let sent = later.by_ref().take(count).try_for_each(|item| sender.send(item));
+            sent.expect("the receiver outlives the threads");
         };
-        begin(ahead);
-        let mut early = BTreeMap::new();
+        send_items(ahead);
+        let mut waiting = BTreeMap::new();
         for wanted in items {
             let result = loop {
-                if let Some(result) = early.remove(&wanted) {
+                if let Some(result) = waiting.remove(&wanted) {
                     break result;
                 }
-                let (item, result) = arrived.recv().expect("a thread sends every item that was given");
-                early.insert(item, result);
+                let (item, result) = arrived.recv().expect("a thread returns a result for every item");
+                waiting.insert(item, result);
             };
-            if take(wanted, result.unwrap_or_else(|panic| resume_unwind(panic)))?.is_break() {
+            if deliver(wanted, result.unwrap_or_else(|panic| resume_unwind(panic)))?.is_break() {
                 return Ok(ControlFlow::Break(()));
             }
-            begin(1);
+            send_items(1);
         }
         Ok(ControlFlow::Continue(()))
     })
 }
 
 /// Processes every item in this thread.
-fn alone<W, T, E>(
+fn process_in_this_thread<W, T, E>(
     items: Range<u64>,
     worker: Option<W>,
     work: &impl Fn(&mut W, u64) -> T,
-    take: &mut impl FnMut(u64, T) -> Result<ControlFlow<()>, E>,
+    deliver: &mut impl FnMut(u64, T) -> Result<ControlFlow<()>, E>,
 ) -> Result<ControlFlow<()>, E> {
     let Some(mut worker) = worker else {
         return Ok(ControlFlow::Continue(()));
     };
     for item in items {
-        if take(item, work(&mut worker, item))?.is_break() {
+        if deliver(item, work(&mut worker, item))?.is_break() {
             return Ok(ControlFlow::Break(()));
         }
     }
@@ -152,17 +153,13 @@ mod tests {
                     })
                 };
                 let panic = catch_unwind(AssertUnwindSafe(all)).expect_err("item 3 panics");
-                let said = panic
+                let is_expected = panic
                     .downcast_ref::<String>()
                     .is_some_and(|text| text.contains("too hard"));
-                done.send((taken, said))
+                done.send((taken, is_expected))
             });
             let ended = ended.recv_timeout(std::time::Duration::from_mins(1));
-            assert_eq!(
-                ended,
-                Ok((vec![0, 1, 2], true)),
-                "{jobs} threads: it ends, by the panic"
-            );
+            assert_eq!(ended, Ok((vec![0, 1, 2], true)), "{jobs} threads: the panic ends it");
         }
     }
 
@@ -170,7 +167,7 @@ mod tests {
     fn single_thread_gives_the_same_results() {
         let mut taken = Vec::new();
         let work = |(): &mut (), item: u64| item * item;
-        let end: End = alone(10..15, Some(()), &work, &mut |item, square| {
+        let end: End = process_in_this_thread(10..15, Some(()), &work, &mut |item, square| {
             taken.push((item, square));
             Ok(if item == 13 {
                 ControlFlow::Break(())

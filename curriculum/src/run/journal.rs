@@ -22,7 +22,7 @@ use super::recordings::Recordings;
 use super::summary::{Progress, Summary};
 use crate::CurriculumError;
 
-/// An open log, and what is in it already.
+/// An open log, with a summary of its rows so far.
 #[derive(Debug)]
 pub struct Journal {
     writer: LogWriter,
@@ -78,9 +78,9 @@ impl Journal {
     /// Starts a new log if there is none.
     ///
     /// # Errors
-    /// [`CurriculumError::OtherRun`] if the log belongs to another scenario or agent, or its variants or worlds have changed since;
-    /// [`CurriculumError::OtherRow`] if its rows do not match the plan; [`CurriculumError::Log`] if it cannot be read or is being
-    /// written. The log is left unchanged in each case.
+    /// [`CurriculumError::OtherRun`] if the log belongs to another scenario or agent, or its variants or worlds have changed
+    /// since; [`CurriculumError::OtherRow`] if its rows do not match the plan; [`CurriculumError::Log`] if it cannot be read or
+    /// is being written. The log is left unchanged in each case.
     pub fn resume(folder: &Path, plan: &Plan, agent: &str) -> Result<Self, CurriculumError> {
         let Some((columns, found)) = begun_log(folder)? else {
             return Self::create(folder, plan, agent);
@@ -112,15 +112,15 @@ impl Journal {
         let mut journal = Self::new(writer);
         for row in rows.iter() {
             let number = journal.next;
-            let wrong = |found: String, expected: String| CurriculumError::OtherRow {
+            let other_row = |found: String, expected: String| CurriculumError::OtherRow {
                 path: folder.to_owned(),
                 row: number,
                 found,
                 expected,
             };
             let steps = count_row(plan, &mut journal.summary, number, row)
-                .map_err(|(found, expected)| wrong(found, expected))?;
-            journal.pass(plan, number, steps);
+                .map_err(|(found, expected)| other_row(found, expected))?;
+            journal.advance(plan, number, steps);
         }
         if Recordings::exist(folder)? {
             journal.record();
@@ -166,11 +166,11 @@ impl Journal {
         let record = self.with_words(record, columns::SKIPPED, columns::SKIPPED);
         self.writer.write(&record)?;
         self.summary.leave_out(planned, number, reason);
-        self.pass(plan, number, None);
+        self.advance(plan, number, None);
         Ok(self.progress(plan, number, f64::NAN))
     }
 
-    /// Adds how, and by what, the experience ended; a log started before these columns existed continues without them.
+    /// Adds how the experience ended and what ended it; a log started before these columns existed continues without them.
     fn with_words(&self, record: Record, ending: &str, ended_by: &str) -> Record {
         let words = [(ENDING, ending), (ENDED_BY, ended_by)];
         words.into_iter().fold(record, |record, (name, word)| {
@@ -184,7 +184,7 @@ impl Journal {
     }
 
     /// Moves past experience `number`; `steps` is `None` if it was left out.
-    fn pass(&mut self, plan: &Plan, number: u64, steps: Option<u64>) {
+    fn advance(&mut self, plan: &Plan, number: u64, steps: Option<u64>) {
         if let Some(steps) = steps {
             self.budget.count(plan, number, steps);
         }
@@ -210,13 +210,13 @@ impl Journal {
         &mut self,
         plan: &Plan,
         number: u64,
-        lived: FinishedExperience,
+        finished: FinishedExperience,
         now: Timestamp,
     ) -> Result<Progress, CurriculumError> {
         let planned = &plan.regimes[plan.regime_of(number)];
-        let experience = &lived.experience;
-        let gap = self.gap(plan, number, lived.between.as_ref());
-        if let (Some(recordings), Some(recording)) = (&mut self.recordings, lived.recording) {
+        let experience = &finished.experience;
+        let gap = self.gap(plan, number, finished.between.as_ref());
+        if let (Some(recordings), Some(recording)) = (&mut self.recordings, finished.recording) {
             // Before the row: whenever the run is stopped, each row has its recording.
             let recording = Recording {
                 origin: origin(plan, number)?,
@@ -232,11 +232,11 @@ impl Journal {
         let success = f64::from(u8::from(experience.success));
         let steps = u64::from(experience.steps);
         self.summary.count(planned, experience.reward, success, steps, ended_by);
-        self.pass(plan, number, Some(steps));
+        self.advance(plan, number, Some(steps));
         Ok(self.progress(plan, number, experience.reward))
     }
 
-    /// How far an experience is from what was learned last before its regime began.
+    /// The gap between an experience's variant and the one learned last before its regime began.
     fn gap(&mut self, plan: &Plan, number: u64, between: Option<&Variant>) -> Gap {
         let planned = &plan.regimes[plan.regime_of(number)];
         let (Some(index), Some(gaps)) = (planned.learned, &mut self.gaps) else {
@@ -244,7 +244,7 @@ impl Journal {
         };
         let learned = &plan.regimes[index];
         if self.learned.as_ref().is_none_or(|(known, _)| *known != index) {
-            self.learned = Some((index, learned.last()));
+            self.learned = Some((index, learned.last_variant()));
         }
         let end = self.learned.as_ref().and_then(|(_, end)| end.as_ref());
         let before = learned.subject(learned.number(u64::from(learned.count) - 1), end);
@@ -311,15 +311,14 @@ fn count_row(plan: &Plan, summary: &mut Summary, number: u64, row: Row<'_>) -> R
     }
     let planned = &plan.regimes[plan.regime_of(number)];
     let value = |name: &str| row.metric(name).unwrap_or(f64::NAN);
-    let why = row.task_params().get(columns::SKIPPED).and_then(Value::as_str);
-    let params = why.map_or_else(|| planned.params(), |why| columns::skipped_params(planned, why));
-    let described =
-        |block: u64, experience: u64, kind, name: &str, params: &TaskParams, [index, progress]: [f64; 2]| {
-            let params = Value::Object(Map::clone(params));
-            let drift = when(progress != 0.0, || format!(", {progress} of its way"));
-            format!("experience {experience} in block {block}-{kind}, {name} {params}, world {index}{drift}")
-        };
-    let expected = described(
+    let reason = row.task_params().get(columns::SKIPPED).and_then(Value::as_str);
+    let params = reason.map_or_else(|| planned.params(), |reason| columns::skipped_params(planned, reason));
+    let describe = |block: u64, experience: u64, kind, name: &str, params: &TaskParams, [index, progress]: [f64; 2]| {
+        let params = Value::Object(Map::clone(params));
+        let drift = when(progress != 0.0, || format!(", {progress} of its way"));
+        format!("experience {experience} in block {block}-{kind}, {name} {params}, world {index}{drift}")
+    };
+    let expected = describe(
         planned.block as u64,
         number,
         block_type(planned.kind),
@@ -327,7 +326,7 @@ fn count_row(plan: &Plan, summary: &mut Summary, number: u64, row: Row<'_>) -> R
         &params,
         [planned.world_index(number), planned.progress(number)],
     );
-    let found = described(
+    let found = describe(
         row.block_num(),
         row.exp_num(),
         row.block_type(),
@@ -338,8 +337,8 @@ fn count_row(plan: &Plan, summary: &mut Summary, number: u64, row: Row<'_>) -> R
     if found != expected {
         return Err((found, expected));
     }
-    if let Some(why) = why {
-        summary.leave_out(planned, number, why);
+    if let Some(reason) = reason {
+        summary.leave_out(planned, number, reason);
         return Ok(None);
     }
     let steps = value("episode_step_count") as u64;
@@ -412,7 +411,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn words_of_scenarios_become_words_of_logs() {
+    fn scenario_words_convert_to_log_words() {
         use ScenarioComplexity::{High, Intermediate, Low};
         use ScenarioDifficulty::{Easy, Hard, Medium};
         use ScenarioForm::{Alternating, Condensed, Custom, Dispersed, Permuted};

@@ -1,4 +1,4 @@
-//! The names of variants in a log, and variants whose names there would be the same.
+//! The names of variants in a log, and a check that no two variants have the same name there.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -8,10 +8,11 @@ use driftworld_spec::{Regime, Scenario, TaskSpec};
 
 use crate::CurriculumError;
 
-/// The name of a variant in a log: letters and digits of the task's name, an underscore, and those of the variant's.
+/// The name of a variant in a log: the letters and digits of the task's name, an underscore, and the letters and digits of the
+/// variant's name.
 ///
 /// The format requires `task_variant` with letters and digits only: `find_objects` and `red` become `findobjects_red`. A name
-/// without any becomes `x`.
+/// without letters and digits becomes `x`.
 pub fn log_name(task: &str, variant: &str) -> String {
     format!("{}_{}", logged_word(task), logged_word(variant))
 }
@@ -23,11 +24,11 @@ pub(super) struct LogNames(BTreeMap<String, String>);
 impl LogNames {
     /// Claims a log name for a regime's variant; an error if another variant has it already.
     pub(super) fn claim(&mut self, regime: &Regime, name: &str) -> Result<(), CurriculumError> {
-        let called = called(regime);
-        match self.0.insert(name.to_owned(), called.clone()) {
-            Some(other) if other != called => Err(CurriculumError::SameLogName {
+        let scenario_name = scenario_name(regime);
+        match self.0.insert(name.to_owned(), scenario_name.clone()) {
+            Some(other) if other != scenario_name => Err(CurriculumError::SameLogName {
                 a: other,
-                b: called,
+                b: scenario_name,
                 name: name.to_owned(),
             }),
             _ => Ok(()),
@@ -85,7 +86,7 @@ pub fn same_log_name(
 }
 
 /// The scenario's name for a regime's variant.
-fn called(regime: &Regime) -> String {
+fn scenario_name(regime: &Regime) -> String {
     let to = match &regime.drift {
         None => String::new(),
         Some(drift) if regime.end_task() == regime.task => format!("..{}", drift.variant_name()),

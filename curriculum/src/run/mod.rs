@@ -1,4 +1,4 @@
-//! Runs a scenario experience by experience, and logs each.
+//! Runs a scenario experience by experience and logs each one.
 //!
 //! A [`Plan`] is a scenario with everything that it names, a [`Journal`] writes its log, [`run`] runs it.
 
@@ -39,7 +39,7 @@ pub use plan::{ExperienceSpec, FoundWorld, Plan, Sources};
 pub use planned::Repeats;
 pub use recordings::{MAX_RECORDINGS_BYTES, RECORDINGS_FILE, Recordings, RecordingsFile};
 pub use rollout::{Rollout, run_rollout};
-pub(crate) use simulated::Meeting;
+pub(crate) use simulated::ExperienceData;
 pub use summary::{LeftOut, Progress, RegimeSummary, Summary};
 pub use undrawable::{Failed, Trial, Tried, Undrawable, try_worlds};
 
@@ -82,8 +82,8 @@ pub const REPEATED_EVALUATIONS: usize = 4;
 /// evaluations of each block are repeated at its end, and must have the same actions, states and rewards.
 ///
 /// # Errors
-/// [`CurriculumError`] with block, regime and experience; everything before is in the log. [`CurriculumError::NotFrozen`] for
-/// an agent that evaluations change.
+/// [`CurriculumError`] with block, regime and experience; all earlier experiences are in the log.
+/// [`CurriculumError::NotFrozen`] for an agent that evaluations change.
 pub fn run(
     plan: &Plan,
     agent: &mut dyn Agent,
@@ -111,9 +111,9 @@ pub fn run(
             total
         };
         // Which experiences a budget allows depends on those before them.
-        let still = planned.kind == BlockKind::Evaluation || !(learns || has_budgets);
+        let is_independent = planned.kind == BlockKind::Evaluation || !(learns || has_budgets);
         let repeats = if learns { repeats } else { Repeats::default() };
-        let copies: Option<Vec<_>> = still
+        let copies: Option<Vec<_>> = is_independent
             .then(|| {
                 let copy = |_| Some((agent.frozen()?, worker()));
                 (0..jobs).map(copy).collect()
@@ -128,8 +128,8 @@ pub fn run(
                 watch: context.watch,
                 repeats,
             };
-            let place = (&mut worlds, &mut block);
-            rollout::run_range(plan, next..end, place, &mut one_by_one, journal, context.now)?
+            let state = (&mut worlds, &mut block);
+            rollout::run_range(plan, next..end, state, &mut one_by_one, journal, context.now)?
         };
         if flow.is_break() {
             break;
@@ -164,7 +164,7 @@ pub fn relearn(
     rollout::relearn_range(plan, 0..done, (&mut Worlds::new(plan), &mut None), &mut one_by_one)
 }
 
-/// The experiences, each with whether it is a repeat: some experiences of each evaluation block are repeated at its end.
+/// The experiences with a flag for repeats: some experiences of each evaluation block are repeated at its end.
 fn with_repeats(plan: &Plan, numbers: Range<u64>, repeats: Repeats) -> Vec<(u64, bool)> {
     let mut items = Vec::new();
     let (mut block, mut repeated) = (None, Vec::new());
@@ -190,7 +190,7 @@ fn run_in_parallel(
 ) -> Result<ControlFlow<()>, CurriculumError> {
     let repeated: BTreeSet<u64> = items
         .iter()
-        .filter_map(|(number, again)| again.then_some(*number))
+        .filter_map(|(number, is_repeat)| is_repeat.then_some(*number))
         .collect();
     let work = |(agent, worker): &mut (Box<dyn Agent + Send>, Worker), item| {
         let outcome = worker.draw_and_run(agent.as_mut(), items[item as usize].0);
@@ -204,17 +204,17 @@ fn run_in_parallel(
         let (number, is_repeat) = items[item as usize];
         let progress = match outcome? {
             Outcome::CutOff => return Ok(ControlFlow::Break(())),
-            Outcome::Over(lived) if is_repeat => {
-                if let (Some((reward, first)), Some(again)) = (evaluated.remove(&number), trace) {
-                    let again = (lived.experience.reward, &again[..]);
-                    rollout::expect_frozen(plan, number, (reward, &first), again, journal)?;
+            Outcome::Over(finished) if is_repeat => {
+                if let (Some((reward, first)), Some(trace)) = (evaluated.remove(&number), trace) {
+                    let repeat = (finished.experience.reward, &trace[..]);
+                    rollout::expect_frozen(plan, number, (reward, &first), repeat, journal)?;
                 }
                 return Ok(ControlFlow::Continue(()));
             }
             Outcome::LeftOut(_) if is_repeat => return Ok(ControlFlow::Continue(())),
-            Outcome::Over(lived) => {
-                evaluated.extend(trace.map(|trace| (number, (lived.experience.reward, trace))));
-                journal.append(plan, number, *lived, (context.now)())?
+            Outcome::Over(finished) => {
+                evaluated.extend(trace.map(|trace| (number, (finished.experience.reward, trace))));
+                journal.append(plan, number, *finished, (context.now)())?
             }
             Outcome::LeftOut(reason) => journal.leave_out(plan, number, &reason, (context.now)())?,
         };
@@ -316,7 +316,7 @@ impl<'a> Worker<'a> {
     }
 }
 
-/// The rollout of an agent in this process.
+/// The rollout of an agent in this process, one experience after the other.
 struct OneByOne<'a, 'b> {
     agent: &'a mut dyn Agent,
     worker: &'a mut Worker<'b>,

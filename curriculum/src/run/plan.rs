@@ -1,4 +1,4 @@
-//! A scenario prepared to run: every variant and world is found, every experience is known by its number.
+//! A scenario prepared to run: all variants and worlds are resolved, and experiences are identified by number.
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -24,7 +24,7 @@ pub struct Sources<'a> {
     pub world: &'a mut dyn FnMut(&str) -> Result<FoundWorld, String>,
 }
 
-/// A world file that was found.
+/// The result of looking up a world file.
 #[derive(Clone, Debug)]
 pub struct FoundWorld {
     /// The world.
@@ -81,8 +81,9 @@ impl Plan {
     /// Resolves everything that a scenario names, so that missing things are reported before anything is run.
     ///
     /// # Errors
-    /// [`CurriculumError::Unknown`], [`CurriculumError::WorldFile`], [`CurriculumError::World`] if the first world of a variant
-    /// cannot be drawn, [`CurriculumError::SameLogName`].
+    /// [`CurriculumError::Unknown`] or [`CurriculumError::WorldFile`] for a task, variant or world file that cannot be found;
+    /// [`CurriculumError::World`] if the first world of a variant cannot be drawn; [`CurriculumError::SameLogName`] if two
+    /// variants would have the same name in the log.
     pub fn new(scenario: &Scenario, sources: &mut Sources) -> Result<Self, CurriculumError> {
         Self::with_undrawable(scenario, sources, Undrawable::Refused)
     }
@@ -137,7 +138,7 @@ impl Plan {
                 finder.plan.regimes.push(planned);
             }
         }
-        finder.plan.put_labels();
+        finder.plan.assign_labels();
         Ok(finder.plan)
     }
 
@@ -189,11 +190,11 @@ impl Plan {
     /// The world of an experience, by its number over the whole lifetime.
     ///
     /// # Errors
-    /// [`CurriculumError::World`] if it cannot be drawn; [`CurriculumError::NoSuchExperience`].
+    /// [`CurriculumError::World`] if it cannot be drawn; [`CurriculumError::NoSuchExperience`] beyond the last experience.
     pub fn world(&self, number: u64) -> Result<World, CurriculumError> {
         let planned = self.planned_at(number)?;
         let drawn = planned.draw(number, None);
-        Ok(drawn.map_err(|source| planned.wrong(number, source))?.0)
+        Ok(drawn.map_err(|source| planned.world_error(number, source))?.0)
     }
 
     /// The regime of an experience, if the experience exists.
@@ -208,7 +209,7 @@ impl Plan {
     /// The description of an experience, by its number over the whole lifetime; its world is [`Plan::world`].
     ///
     /// # Errors
-    /// [`CurriculumError::NoSuchExperience`].
+    /// [`CurriculumError::NoSuchExperience`] beyond the last experience.
     pub fn experience_spec(&self, number: u64) -> Result<ExperienceSpec<'_>, CurriculumError> {
         let planned = self.planned_at(number)?;
         let is_drawn = planned.is_drawn();
@@ -247,7 +248,7 @@ impl Plan {
         let index = at(number);
         // All regimes of a block have the same shuffle, so any of them locates the experience.
         match &self.regimes[index].shuffle {
-            Some(shuffle) => at(shuffle.place(number)),
+            Some(shuffle) => at(shuffle.position(number)),
             None => index,
         }
     }
@@ -264,7 +265,7 @@ impl Plan {
         let end = after.map_or(self.num_experiences(), |other| other.first);
         let key = block_key(planned.seed ^ planned.run_seed.rotate_left(32), !planned.block);
         let order = Shuffle::new(from, end - from, key);
-        let place = |number: &u64| if repeats.first { *number } else { order.place(*number) };
+        let place = |n: &u64| if repeats.first { *n } else { order.position(*n) };
         (from..end)
             .filter(|number| place(number) - from < repeats.count as u64)
             .collect()
@@ -313,18 +314,18 @@ impl Plan {
         other.map_or(self.num_experiences(), |planned| planned.first)
     }
 
-    /// Records what a regime's worlds are made from.
+    /// Records fingerprints of the sources of a regime's worlds.
     fn fingerprint(&mut self, planned: &Planned) -> Result<(), CurriculumError> {
         let undrawable = self.undrawable;
         let mut take = |variant: &Variant, is_first_drawn: bool| {
             let Entry::Vacant(place) = self.fingerprints.entry(variant.id()) else {
                 return Ok(());
             };
-            // The variant fingerprints the input of all worlds, the first world the way they are made.
+            // The variant's hash covers the input of all worlds, the first world's hash the code that generates them.
             let world = match Sampler::new(variant, planned.seed).world(planned.first_index) {
                 Ok(world) => Some(world.hash()),
                 Err(source) if is_first_drawn && undrawable == Undrawable::Refused => {
-                    return Err(planned.wrong(planned.number(0), source));
+                    return Err(planned.world_error(planned.number(0), source));
                 }
                 Err(_) => None,
             };
@@ -346,7 +347,7 @@ impl Plan {
     }
 
     /// Numbers the variants' labels in their order of appearance, if the scenario has labels.
-    fn put_labels(&mut self) {
+    fn assign_labels(&mut self) {
         let wanted = self.scenario.task_label;
         if wanted == TaskLabel::None {
             return;
@@ -354,7 +355,7 @@ impl Plan {
         let names: IndexSet<String> = self.regimes.iter().flat_map(Planned::ends).collect();
         for planned in &mut self.regimes {
             planned.labels = Some(planned.ends().map(|name| Label {
-                number: names.get_index_of(&name).expect("the names are those of all ends"),
+                number: names.get_index_of(&name).expect("the set contains every name"),
                 of: names.len(),
                 observed: wanted == TaskLabel::Observation,
                 name,
@@ -374,7 +375,7 @@ fn block_key(seed: u64, block: usize) -> u64 {
     seed.wrapping_add((block as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15))
 }
 
-/// Finds what a plan names, each task and world once.
+/// Looks up the tasks and worlds that a scenario names, each only once.
 struct Finder<'a, 'b> {
     /// The plan so far.
     plan: Plan,
@@ -468,13 +469,13 @@ impl Finder<'_, '_> {
         let to = regime
             .resolve_end(end_task)
             .map_err(|error| unknown(&drift.to, error.to_string()))?
-            .expect("a regime with a drift has its end");
-        let way = Drift::declared(drift, from.clone(), to.clone(), regime.seed);
-        let way = way.map_err(|error| unknown(&drift.to, error.to_string()))?;
+            .expect("a regime with a drift has an end");
+        let path = Drift::declared(drift, from.clone(), to.clone(), regime.seed);
+        let path = path.map_err(|error| unknown(&drift.to, error.to_string()))?;
         Ok(Source::Drift {
             from,
             to,
-            way: Box::new(way),
+            path: Box::new(path),
             drift: Box::new(drift.clone()),
         })
     }

@@ -23,7 +23,7 @@ pub(super) struct Planned {
     /// Its name in tables: `task#variant`.
     pub(super) id: String,
     pub(super) log_name: String,
-    /// The number of its first experience over the whole lifetime; its first place, if its block is shuffled.
+    /// The number of its first experience over the whole lifetime; its first position, if its block is shuffled.
     pub(super) first: u64,
     /// The order of its block's experiences, if the block is shuffled.
     pub(super) shuffle: Option<Arc<Shuffle>>,
@@ -40,7 +40,7 @@ pub(super) struct Planned {
     pub(super) run_seed: u64,
     /// The last regime in which the agent learned before this one.
     pub(super) learned: Option<usize>,
-    /// The labels of its variant, and of the one that its drift leads to.
+    /// The labels of its variant and of the variant that its drift ends at.
     pub(super) labels: Option<[Label; 2]>,
 }
 
@@ -50,7 +50,7 @@ pub(super) enum Source {
     Drift {
         from: Variant,
         to: Variant,
-        way: Box<Drift>,
+        path: Box<Drift>,
         drift: Box<RegimeDrift>,
     },
     World {
@@ -68,20 +68,20 @@ impl Planned {
         }
     }
 
-    /// The label of experience `number`: in a drift, that of the nearer end according to the schedule, or of the second
-    /// end if exactly halfway; if whole variants switch, that of the experience's own variant.
+    /// The label of experience `number`: in a drift, the label of the nearer end according to the schedule, or of the second
+    /// end if exactly halfway; if whole variants switch, the label of the experience's own variant.
     pub(super) fn label(&self, number: u64) -> Option<&Label> {
         let [from, to] = self.labels.as_ref()?;
-        Some(if self.is_near_its_beginning(number) { from } else { to })
+        Some(if self.is_nearer_to_start(number) { from } else { to })
     }
 
-    /// The name of experience `number`'s variant: in a drift, that of the nearer end, as for its label.
+    /// The name of experience `number`'s variant: in a drift, the name of the end that also gives its label.
     pub(super) fn nearest(&self, number: u64) -> String {
         let [from, to] = self.ends();
-        if self.is_near_its_beginning(number) { from } else { to }
+        if self.is_nearer_to_start(number) { from } else { to }
     }
 
-    fn is_near_its_beginning(&self, number: u64) -> bool {
+    fn is_nearer_to_start(&self, number: u64) -> bool {
         let Source::Drift { to, drift, .. } = &self.source else {
             return true;
         };
@@ -94,7 +94,7 @@ impl Planned {
         drift.schedule.at(self.progress(number)) < 0.5
     }
 
-    pub(super) fn wrong(&self, number: u64, source: GeneratorError) -> CurriculumError {
+    pub(super) fn world_error(&self, number: u64, source: GeneratorError) -> CurriculumError {
         CurriculumError::World {
             block: self.block,
             regime: self.regime,
@@ -111,23 +111,23 @@ impl Planned {
     }
 
     /// Distinguishes its drift from others between the same variants; empty without a drift.
-    pub(super) fn way(&self) -> String {
+    pub(super) fn drift_key(&self) -> String {
         match &self.source {
             Source::Drift { drift, .. } => format!(" {drift:?}"),
             _ => String::new(),
         }
     }
 
-    /// The place of an experience in the regime, from 0.
+    /// The position of an experience in the regime, from 0.
     fn offset(&self, number: u64) -> u64 {
-        let place = self.shuffle.as_ref().map_or(number, |shuffle| shuffle.place(number));
-        place - self.first
+        let position = self.shuffle.as_ref().map_or(number, |shuffle| shuffle.position(number));
+        position - self.first
     }
 
-    /// The number, over the whole lifetime, of the experience at a place in the regime.
+    /// The number, over the whole lifetime, of the experience at a position in the regime.
     pub(super) fn number(&self, offset: u64) -> u64 {
-        let place = self.first + offset;
-        self.shuffle.as_ref().map_or(place, |shuffle| shuffle.number(place))
+        let position = self.first + offset;
+        self.shuffle.as_ref().map_or(position, |order| order.number(position))
     }
 
     /// The index of an experience's world under its seed.
@@ -163,7 +163,7 @@ impl Planned {
         let world = match self.max_steps {
             Some(max_steps) => world
                 .edit(|world| world.limit_steps(max_steps))
-                .expect("a scenario limits steps to what a world may have"),
+                .expect("a scenario's step limit is valid in a world"),
             None => world,
         };
         Ok((world, between))
@@ -190,11 +190,11 @@ impl Planned {
 
     /// The variant of an experience, if its regime drifts.
     pub(super) fn variant_of(&self, number: u64) -> Result<Option<Variant>, GeneratorError> {
-        let Source::Drift { way, drift, .. } = &self.source else {
+        let Source::Drift { path, drift, .. } = &self.source else {
             return Ok(None);
         };
         let experience = self.offset(number) as u32;
-        way.at(drift.progress(experience, self.count), self.index_of(number))
+        path.at(drift.progress(experience, self.count), self.index_of(number))
             .map(Some)
     }
 
@@ -215,7 +215,7 @@ impl Planned {
     }
 
     /// The variant of its last experience that has one, if it drifts: the task may forbid some variants along a drift.
-    pub(super) fn last(&self) -> Option<Variant> {
+    pub(super) fn last_variant(&self) -> Option<Variant> {
         let mut offsets = (0..u64::from(self.count)).rev();
         offsets.find_map(|offset| self.variant_of(self.number(offset)).transpose()?.ok())
     }
@@ -241,29 +241,29 @@ impl Planned {
     /// experiences with different parameters as different regimes.
     pub(super) fn params(&self) -> TaskParams {
         let mut params = Map::new();
-        let mut say = |key: &str, value: Value| drop(params.insert(key.to_owned(), value));
+        let mut set = |key: &str, value: Value| drop(params.insert(key.to_owned(), value));
         let (task, variant) = match &self.source {
             Source::Variant(variant) | Source::Drift { from: variant, .. } => (variant.task().name(), variant.name()),
             Source::World { .. } => self.id.split_once('#').unwrap_or((&self.id, "")),
         };
-        say("task", json!(task));
-        say("variant", json!(variant));
+        set("task", json!(task));
+        set("variant", json!(variant));
         match &self.source {
             Source::Variant(_) => {}
-            Source::Drift { to, .. } => say("to", json!(end_name(task, to))),
-            Source::World { path, .. } => say("world", json!(path)),
+            Source::Drift { to, .. } => set("to", json!(end_name(task, to))),
+            Source::World { path, .. } => set("world", json!(path)),
         }
         if self.is_drawn() {
-            say("seed", json!(self.seed));
+            set("seed", json!(self.seed));
         }
         if self.shuffle.is_some() {
-            say("mix", json!("shuffled"));
+            set("mix", json!("shuffled"));
         }
         if let Some(max_steps) = self.max_steps {
-            say("max_steps", json!(max_steps));
+            set("max_steps", json!(max_steps));
         }
         if self.phase == Phase::PreDeployment {
-            say("phase", json!("pre_deployment"));
+            set("phase", json!("pre_deployment"));
         }
         TaskParams::from(params)
     }

@@ -32,8 +32,8 @@ pub struct Recordings {
 
 #[derive(Debug)]
 struct OpenFile {
-    /// The folder of its block, inside the log's.
-    inside: PathBuf,
+    /// The folder of its block, relative to the log's folder.
+    subdir: PathBuf,
     path: PathBuf,
     file: File,
     length: u64,
@@ -72,11 +72,11 @@ impl Recordings {
 
     /// Writes the recording of an experience whose row comes next. `worker` and the block are those of the row.
     ///
-    /// Removes what an earlier run left after the previous row.
+    /// Removes recordings that an earlier run left after the previous row.
     ///
     /// # Errors
     /// [`CurriculumError::Recordings`] if the disk fails; [`CurriculumError::Recording`] if the existing file does not hold
-    /// recordings.
+    /// recordings; [`CurriculumError::RecordingsLost`] if the file was removed or changed since the last recording.
     pub fn append(
         &mut self,
         worker: &str,
@@ -84,20 +84,20 @@ impl Recordings {
         recording: &Recording,
     ) -> Result<(), CurriculumError> {
         let name = format!("{}-{}", block.0, block.1);
-        let inside = Path::new(worker).join(&name);
+        let subdir = Path::new(worker).join(&name);
         let experience = recording.origin.experience;
-        if self.open.first().is_some_and(|open| !open.inside.ends_with(&name)) || self.open.len() == MAX_OPEN {
+        if self.open.first().is_some_and(|open| !open.subdir.ends_with(&name)) || self.open.len() == MAX_OPEN {
             self.sync()?;
         }
         // If a row was refused, its recording is in the file already and its number occurs again: reopening removes it.
         self.open
-            .retain(|open| open.inside != inside || open.next <= experience);
-        let known = self.open.iter().position(|open| open.inside == inside);
-        let place = known.unwrap_or(self.open.len());
+            .retain(|open| open.subdir != subdir || open.next <= experience);
+        let known = self.open.iter().position(|open| open.subdir == subdir);
+        let index = known.unwrap_or(self.open.len());
         if known.is_none() {
-            self.open.push(self.turn_to(inside, experience)?);
+            self.open.push(self.open_file(subdir, experience)?);
         }
-        let open = &mut self.open[place];
+        let open = &mut self.open[index];
         let found = fs::metadata(&open.path).ok().map(|found| found.len());
         if found != Some(open.length) {
             return Err(CurriculumError::RecordingsLost {
@@ -117,10 +117,10 @@ impl Recordings {
         Ok(())
     }
 
-    /// Syncs to disk what was written.
+    /// Syncs the open files to disk, and closes them.
     ///
     /// # Errors
-    /// [`CurriculumError::Recordings`].
+    /// [`CurriculumError::Recordings`] if the disk fails.
     pub fn sync(&mut self) -> Result<(), CurriculumError> {
         for open in self.open.drain(..) {
             open.file.sync_all().map_err(failed(&open.path, "write this file"))?;
@@ -129,9 +129,9 @@ impl Recordings {
     }
 
     /// Opens the file of a block, in which this experience comes next.
-    fn turn_to(&self, inside: PathBuf, experience: u64) -> Result<OpenFile, CurriculumError> {
+    fn open_file(&self, subdir: PathBuf, experience: u64) -> Result<OpenFile, CurriculumError> {
         let mut folder = self.folder.clone();
-        for part in &inside {
+        for part in &subdir {
             folder.push(part);
             match fs::create_dir(&folder) {
                 Err(error) if error.kind() != ErrorKind::AlreadyExists => {
@@ -141,7 +141,7 @@ impl Recordings {
             }
         }
         let path = folder.join(RECORDINGS_FILE);
-        let (kept, lines) = kept(&path, experience)?;
+        let (kept, lines) = valid_prefix(&path, experience)?;
         let open = OpenOptions::new().append(true).create(true).open(&path);
         let mut file = open.map_err(failed(&path, "open this file"))?;
         file.set_len(kept).map_err(failed(&path, "cut this file"))?;
@@ -153,7 +153,7 @@ impl Recordings {
             length = header.len() as u64;
         }
         Ok(OpenFile {
-            inside,
+            subdir,
             path,
             file,
             length,
@@ -164,7 +164,7 @@ impl Recordings {
 }
 
 /// The number of bytes with recordings of experiences before this one, and the state to append after them.
-fn kept(path: &Path, experience: u64) -> Result<(u64, RecordingLines), CurriculumError> {
+fn valid_prefix(path: &Path, experience: u64) -> Result<(u64, RecordingLines), CurriculumError> {
     // A file to continue, not by driftworld-files: it is our own, of any length.
     let file = match File::open(path) {
         Ok(file) => file,
@@ -172,14 +172,14 @@ fn kept(path: &Path, experience: u64) -> Result<(u64, RecordingLines), Curriculu
         Err(error) => return Err(failed(path, "read this file")(error)),
     };
     let length = file.metadata().map_err(failed(path, "measure this file"))?.len();
-    let wrong = |source| wrong(path, source);
+    let recording_error = |source| recording_error(path, source);
     let reader = match RecordingReader::new(BufReader::new(file)) {
         Ok(reader) => reader,
         // The run was stopped while it wrote the first line.
         Err(_) if length < RecordingLines::header().len() as u64 => return Ok((0, RecordingLines::default())),
-        Err(error) => return Err(wrong(error)),
+        Err(error) => return Err(recording_error(error)),
     };
-    let (length, lines, _) = reader.into_lines_before(experience).map_err(wrong)?;
+    let (length, lines, _) = reader.into_lines_before(experience).map_err(recording_error)?;
     Ok((length, lines))
 }
 
@@ -190,12 +190,12 @@ pub struct RecordingsFile<R = BufReader<File>> {
     reader: RecordingReader<R>,
     episodes: Vec<EpisodeOrigin>,
     /// The start of each episode.
-    places: BTreeMap<u64, RecordingMark>,
+    positions: BTreeMap<u64, RecordingMark>,
     damage: Option<EnvError>,
 }
 
 impl RecordingsFile {
-    /// Opens a file, and indexes its episodes without decoding them; `None` without a file.
+    /// Opens a file and indexes its episodes without decoding them; `None` without a file.
     ///
     /// # Errors
     /// [`CurriculumError::Recording`] for any other kind of file; [`CurriculumError::UnreadableRecordings`] if it cannot be read.
@@ -220,16 +220,16 @@ impl RecordingsFile {
 impl<R: BufRead + Seek> RecordingsFile<R> {
     fn new(path: &Path, reader: R) -> Result<Self, CurriculumError> {
         let mut this = Self {
-            reader: RecordingReader::new(reader).map_err(|source| wrong(path, source))?,
+            reader: RecordingReader::new(reader).map_err(|source| recording_error(path, source))?,
             path: path.to_owned(),
             episodes: Vec::new(),
-            places: BTreeMap::new(),
+            positions: BTreeMap::new(),
             damage: None,
         };
         loop {
             match this.reader.next_episode() {
                 Ok(Some(episode)) => {
-                    this.places.entry(episode.origin.experience).or_insert(episode.place);
+                    this.positions.entry(episode.origin.experience).or_insert(episode.place);
                     this.episodes.push(episode.origin);
                 }
                 Ok(None) => return Ok(this),
@@ -245,26 +245,27 @@ impl<R: BufRead + Seek> RecordingsFile<R> {
 
     /// The first damaged line.
     pub fn damage(&self) -> Option<CurriculumError> {
-        self.damage.clone().map(|source| wrong(&self.path, source))
+        self.damage.clone().map(|source| recording_error(&self.path, source))
     }
 
     /// The recording of an episode, by its number; `None` without one.
     ///
     /// # Errors
-    /// [`CurriculumError::Recording`] if its line, or that of its world, is damaged; damaged lines of other episodes are skipped.
+    /// [`CurriculumError::Recording`] if its line, or the line of its world, is damaged; damaged lines of other episodes are
+    /// skipped.
     pub fn recording(&mut self, experience: u64) -> Result<Option<Recording>, CurriculumError> {
-        let Some(place) = self.places.get(&experience) else {
+        let Some(place) = self.positions.get(&experience) else {
             return self.damage().map_or(Ok(None), Err);
         };
-        let wrong = |source| wrong(&self.path, source);
-        self.reader.turn_to(*place).map_err(wrong)?;
-        let episode = self.reader.next_episode().map_err(wrong)?;
+        let recording_error = |source| recording_error(&self.path, source);
+        self.reader.turn_to(*place).map_err(recording_error)?;
+        let episode = self.reader.next_episode().map_err(recording_error)?;
         let read = episode.map(|episode| self.reader.recording(&episode));
-        read.transpose().map_err(wrong)
+        read.transpose().map_err(recording_error)
     }
 }
 
-fn wrong(path: &Path, source: EnvError) -> CurriculumError {
+fn recording_error(path: &Path, source: EnvError) -> CurriculumError {
     CurriculumError::Recording {
         path: path.to_owned(),
         source,
@@ -308,7 +309,7 @@ mod tests {
         let (mut environment, mut recorder) = (Environment::new(world.clone()), Recorder::default());
         recorder.begin(world);
         let action = Action::Continuous([1.0, 0.0, 0.0]);
-        environment.step(action).expect("it is valid");
+        environment.step(action).expect("the action is valid");
         recorder.step(action);
         let mut recording = recorder.recording(&environment, None);
         for episodes in [100, 400] {
@@ -319,10 +320,13 @@ mod tests {
             }
             let (length, read) = (file.len(), std::cell::Cell::new(0));
             let reader = BufReader::new(Counting(Cursor::new(file.into_bytes()), &read));
-            let mut file = RecordingsFile::new(Path::new("actions.jsonl"), reader).expect("it is sound");
+            let mut file = RecordingsFile::new(Path::new("actions.jsonl"), reader).expect("the file is valid");
             for number in 0..episodes {
                 recording.origin.experience = number;
-                assert_eq!(file.recording(number).expect("it is sound").as_ref(), Some(&recording));
+                assert_eq!(
+                    file.recording(number).expect("the file is valid").as_ref(),
+                    Some(&recording)
+                );
             }
             assert!(read.get() <= 2 * length + 8192, "{} of {length} bytes", read.get());
         }

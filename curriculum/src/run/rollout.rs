@@ -21,7 +21,7 @@ pub trait Rollout {
     /// that are run again at its end, in ascending order.
     ///
     /// # Errors
-    /// Ends the run.
+    /// An error ends the run.
     fn begin_block(&mut self, learning: bool, repeated: &[u64]) -> Result<(), Self::Error> {
         let _ = (learning, repeated);
         Ok(())
@@ -41,13 +41,13 @@ pub trait Rollout {
     /// Runs an experience in its world, from the first step to the last. `None` ends the run without a row.
     ///
     /// # Errors
-    /// Ends the run.
+    /// An error ends the run.
     fn experience(&mut self, number: u64, world: World) -> Result<Option<Experience>, Self::Error>;
 
     /// The recording of the last experience, for a log that keeps recordings; `None` by default.
     ///
     /// # Errors
-    /// Ends the run.
+    /// An error ends the run.
     fn recording(&mut self, number: u64, experience: &Experience) -> Result<Option<Recording>, Self::Error> {
         let _ = (number, experience);
         Ok(None)
@@ -56,16 +56,16 @@ pub trait Rollout {
     /// Called after the last experience of a learning block, when `done` experiences are in the log.
     ///
     /// # Errors
-    /// Ends the run.
+    /// An error ends the run.
     fn end_learning(&mut self, done: u64) -> Result<(), Self::Error> {
         let _ = done;
         Ok(())
     }
 
-    /// Called after each experience is logged; may end the run. `reward` is `None` for one that was left out.
+    /// Called after each experience is logged; may end the run. `reward` is `None` for a skipped one.
     ///
     /// # Errors
-    /// Ends the run.
+    /// An error ends the run.
     fn logged(&mut self, progress: &Progress, reward: Option<f64>) -> Result<ControlFlow<()>, Self::Error>;
 }
 
@@ -75,7 +75,7 @@ pub trait Rollout {
 /// worlds, without being logged again.
 ///
 /// # Errors
-/// [`CurriculumError`] as [`run`](super::run), and those of the rollout; what was run before is in the log.
+/// [`CurriculumError`] as [`run`](super::run), and the errors of the rollout; all earlier experiences are in the log.
 /// [`CurriculumError::NotFrozen`] if the agent behaves differently when an evaluation is repeated.
 pub fn run_rollout<R: Rollout>(
     plan: &Plan,
@@ -89,7 +89,7 @@ pub fn run_rollout<R: Rollout>(
     if relearn_range(plan, learned..done, (&mut worlds, &mut block), rollout)?.is_break() {
         return Ok(journal.summary().clone());
     }
-    // Whether the rollout ended it early shows in the summary.
+    // The summary shows whether the rollout ended the run early.
     let _ = run_range(plan, done..total, (&mut worlds, &mut block), rollout, journal, now)?;
     Ok(journal.summary().clone())
 }
@@ -123,7 +123,7 @@ pub(super) fn relearn_range<R: Rollout>(
     Ok(ControlFlow::Continue(()))
 }
 
-/// Runs a range of experiences, and logs each as soon as it is over. `block` is the last block that the rollout began.
+/// Runs a range of experiences, and logs each as soon as it has ended. `block` is the last block that the rollout began.
 pub(super) fn run_range<R: Rollout>(
     plan: &Plan,
     numbers: Range<u64>,
@@ -180,31 +180,31 @@ pub(super) fn run_range<R: Rollout>(
                 let Ok((world, _)) = worlds.draw(number)? else {
                     continue;
                 };
-                let Some(again) = rollout.experience(number, world)? else {
+                let Some(repeat) = rollout.experience(number, world)? else {
                     return Ok(ControlFlow::Break(()));
                 };
-                let (first, again) = ((reward, &trace[..]), (again.reward, &rollout.trace()[..]));
-                expect_frozen(plan, number, first, again, journal)?;
+                let (first, repeat) = ((reward, &trace[..]), (repeat.reward, &rollout.trace()[..]));
+                expect_frozen(plan, number, first, repeat, journal)?;
             }
         }
     }
     Ok(ControlFlow::Continue(()))
 }
 
-/// Fails if a repeated evaluation gave a different reward or trace, and then removes its block from the log.
+/// Fails if a repeated evaluation gave a different reward or trace, after removing its block from the log.
 pub(super) fn expect_frozen(
     plan: &Plan,
     number: u64,
     first: (f64, &[u64]),
-    again: (f64, &[u64]),
+    repeat: (f64, &[u64]),
     journal: &mut Journal,
 ) -> Result<(), CurriculumError> {
-    let found = if first.1 != again.1 {
-        let pairs = first.1.iter().zip(again.1);
+    let found = if first.1 != repeat.1 {
+        let pairs = first.1.iter().zip(repeat.1);
         let same = pairs.take_while(|(one, other)| one == other).count();
         format!("another action in step {}", same + 1)
-    } else if first.0.to_bits() != again.0.to_bits() {
-        format!("reward {} instead of {}, at the end", again.0, first.0)
+    } else if first.0.to_bits() != repeat.0.to_bits() {
+        format!("reward {} instead of {}, at the end", repeat.0, first.0)
     } else {
         return Ok(());
     };

@@ -27,16 +27,16 @@ impl Shuffle {
         }
     }
 
-    /// The place, in the list of regimes, of the experience that is run at this number.
-    pub(super) fn place(&self, number: u64) -> u64 {
+    /// The position, in the list of regimes, of the experience that is run at this number.
+    pub(super) fn position(&self, number: u64) -> u64 {
         self.walk(number, |shuffle, x| {
             (0..ROUNDS).fold(x, |x, round| shuffle.mix(x, round))
         })
     }
 
-    /// The number at which the experience at this place in the list of regimes is run.
-    pub(super) fn number(&self, place: u64) -> u64 {
-        self.walk(place, |shuffle, x| {
+    /// The number at which the experience at this position in the list of regimes is run.
+    pub(super) fn number(&self, position: u64) -> u64 {
+        self.walk(position, |shuffle, x| {
             (0..ROUNDS).rev().fold(x, |x, round| shuffle.unmix(x, round))
         })
     }
@@ -80,12 +80,12 @@ mod tests {
         #[test]
         fn every_experience_occurs_once(first in 0..1_000_000_u64, count in 1..300_u64, key in any::<u64>()) {
             let shuffle = Shuffle::new(first, count, key);
-            let mut places: Vec<u64> = (first..first + count).map(|number| shuffle.place(number)).collect();
-            for (number, place) in (first..).zip(&places) {
-                prop_assert_eq!(shuffle.number(*place), number);
+            let mut positions: Vec<u64> = (first..first + count).map(|number| shuffle.position(number)).collect();
+            for (number, position) in (first..).zip(&positions) {
+                prop_assert_eq!(shuffle.number(*position), number);
             }
-            places.sort_unstable();
-            prop_assert!(places.into_iter().eq(first..first + count));
+            positions.sort_unstable();
+            prop_assert!(positions.into_iter().eq(first..first + count));
         }
     }
 
@@ -93,7 +93,7 @@ mod tests {
     fn every_order_of_three_is_about_equally_frequent() {
         let mut counts = std::collections::BTreeMap::new();
         for key in 0..6000 {
-            let order: Vec<u64> = (0..3).map(|number| Shuffle::new(0, 3, key).place(number)).collect();
+            let order: Vec<u64> = (0..3).map(|number| Shuffle::new(0, 3, key).position(number)).collect();
             *counts.entry(order).or_insert(0) += 1;
         }
         // Four standard deviations of a count of 6,000 · 1/6.

@@ -4,13 +4,13 @@ use driftworld_spec::BlockKind;
 
 use super::plan::Plan;
 
-/// An experience of a simulated agent.
+/// The data of an experience from which a simulated agent computes its reward.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Meeting {
+pub(crate) struct ExperienceData {
     /// Its number over the whole lifetime.
     pub(crate) number: u64,
     /// Its number in its block.
-    pub(crate) place: u64,
+    pub(crate) number_in_block: u64,
     /// Whether the agent may learn.
     pub(crate) learning: bool,
     /// Its variant; in a drift, the nearer end.
@@ -21,14 +21,14 @@ pub(crate) struct Meeting {
 
 impl Plan {
     /// The data of an experience for a simulated agent.
-    pub(crate) fn meeting(&self, number: u64) -> Meeting {
+    pub(crate) fn experience_data(&self, number: u64) -> ExperienceData {
         let index = self.regime_of(number);
         let planned = &self.regimes[index];
         let before = self.regimes[..index].iter().rev();
         let block = before.take_while(|other| other.block == planned.block).last();
-        Meeting {
+        ExperienceData {
             number,
-            place: number - block.unwrap_or(planned).first,
+            number_in_block: number - block.unwrap_or(planned).first,
             learning: planned.kind == BlockKind::Learning,
             variant: planned.nearest(number),
             layout: if planned.is_drawn() {

@@ -35,8 +35,8 @@ pub struct Summary {
     pub left_out: Vec<LeftOut>,
     /// Total steps that were run.
     pub steps: u64,
-    /// What ended the experiences that were run, counted by the words of the log's column [`ENDED_BY`](super::ENDED_BY):
-    /// `unknown` if the log does not say.
+    /// How often each cause ended an experience, by the words of the log's column [`ENDED_BY`](super::ENDED_BY); `unknown` if the
+    /// log does not name the cause.
     pub ended_by: BTreeMap<String, u64>,
     /// Whether the whole scenario was run.
     pub finished: bool,
@@ -82,7 +82,7 @@ pub struct RegimeSummary {
 }
 
 /// Maximum number of skipped experiences that a summary lists.
-const MOST_NAMED: usize = 100;
+const MAX_LISTED: usize = 100;
 
 impl Summary {
     /// Counts the next experience; `ended_by` is the word for what ended it.
@@ -105,7 +105,7 @@ impl Summary {
     pub(super) fn leave_out(&mut self, planned: &Planned, number: u64, reason: &str) {
         self.skipped += 1;
         self.row(planned).skipped += 1;
-        if self.left_out.len() < MOST_NAMED {
+        if self.left_out.len() < MAX_LISTED {
             self.left_out.push(LeftOut {
                 experience: number,
                 block: planned.block,
@@ -121,7 +121,7 @@ impl Summary {
         let first = self.regimes.partition_point(|row| row.block < planned.block);
         let mut of_block = self.regimes[first..].iter();
         let known = of_block.rposition(|row| row.regime == planned.regime);
-        let index = known.map_or(self.regimes.len(), |place| first + place);
+        let index = known.map_or(self.regimes.len(), |index| first + index);
         if known.is_none() {
             self.regimes.push(RegimeSummary {
                 block: planned.block,

@@ -11,8 +11,8 @@ use super::plan::Plan;
 use super::planned::Planned;
 
 /// Maximum number of experiences of a drift whose variants are checked, and of failures that are listed.
-const MOST_ON_THE_WAY: u32 = 100_000;
-const MOST_TOLD: usize = 100;
+const MAX_CHECKED_VARIANTS: u32 = 100_000;
+const MAX_LISTED: usize = 100;
 
 /// How an experience whose world cannot be drawn is treated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -52,7 +52,7 @@ pub struct Trial {
     pub seed: u64,
     /// Number of worlds tried, including failures.
     pub worlds: u64,
-    /// Failures because an object or the agent found no place.
+    /// Failures because an object or the agent could not be placed.
     pub placement: u64,
     /// Failures because a requirement of the task did not hold.
     pub requirement: u64,
@@ -89,7 +89,7 @@ impl Trial {
             _ => &mut self.other,
         };
         *kind += 1;
-        if self.failed.len() < MOST_TOLD {
+        if self.failed.len() < MAX_LISTED {
             self.failed.push(Failed {
                 experience,
                 index,
@@ -114,23 +114,23 @@ pub fn try_worlds(variant: &Variant, seed: u64, worlds: u64) -> Trial {
     trial
 }
 
-/// Worlds already tried: scenarios evaluate the same worlds again and again.
+/// Worlds already tried: scenarios evaluate the same worlds repeatedly.
 #[derive(Debug, Default)]
 pub struct Tried(BTreeSet<(String, u64, u64, u32)>);
 
 impl Plan {
-    /// Draws `worlds` worlds of each regime, evenly spaced from its first experience to its last, and checks that every experience
-    /// of a drift, or 100,000 evenly spaced ones, has a variant at all. Regimes with the same worlds are tried once; those with
-    /// world files have nothing to draw.
+    /// Draws `worlds` worlds of each regime, evenly spaced from its first experience to its last, and checks that every
+    /// experience of a drift, or 100,000 evenly spaced ones, has a variant at all. Regimes with the same worlds are tried once;
+    /// those with world files have nothing to draw.
     ///
-    /// A plan that refuses undrawable worlds has already refused the first world of each regime: make one with
+    /// A plan that refuses undrawable worlds cannot be made if the first world of a variant is undrawable: use one made with
     /// [`Undrawable::Skipped`].
     pub fn try_worlds(&self, worlds: u32, tried: &mut Tried) -> Vec<Trial> {
         let mut trials = Vec::new();
         for planned in self.regimes.iter().filter(|planned| planned.is_drawn()) {
-            let way = planned.way();
+            let drift = planned.drift_key();
             let key = (
-                format!("{}{way}", planned.id),
+                format!("{}{drift}", planned.id),
                 planned.seed,
                 planned.first_index,
                 planned.count,
@@ -148,11 +148,11 @@ impl Planned {
         let mut trial = Trial::new(Some(self.block), self.id.clone(), self.seed);
         let sampler = self.sampler();
         let drawn: BTreeSet<u32> = evenly(self.count, worlds).collect();
-        let looked: BTreeSet<u32> = match &sampler {
+        let checked: BTreeSet<u32> = match &sampler {
             Some(_) => BTreeSet::new(),
-            None => evenly(self.count, MOST_ON_THE_WAY).collect(),
+            None => evenly(self.count, MAX_CHECKED_VARIANTS).collect(),
         };
-        for step in drawn.union(&looked) {
+        for step in drawn.union(&checked) {
             let number = self.number(u64::from(*step));
             let result = if drawn.contains(step) {
                 self.draw(number, sampler.as_ref()).map(drop)

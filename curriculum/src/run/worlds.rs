@@ -13,8 +13,8 @@ pub(super) struct Worlds<'a> {
     sampler: Option<(usize, Option<Sampler>)>,
 }
 
-/// A world, and its interpolated variant if the regime drifts; or why it cannot be drawn, if the plan leaves such experiences
-/// out.
+/// A world, and its interpolated variant if the regime drifts; or the reason why it cannot be drawn, if the plan skips such
+/// experiences.
 pub(super) type Drawn = Result<(World, Option<Variant>), String>;
 
 impl<'a> Worlds<'a> {
@@ -33,7 +33,7 @@ impl<'a> Worlds<'a> {
         match planned.draw(number, sampler.as_ref()) {
             Ok(drawn) => Ok(Ok(drawn)),
             Err(source) if self.plan.undrawable == Undrawable::Skipped => Ok(Err(source.to_string())),
-            Err(source) => Err(planned.wrong(number, source)),
+            Err(source) => Err(planned.world_error(number, source)),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! [`transfer_report`]: whether similar variants transfer more, from the metrics of lifetimes and a distance matrix.
+//! [`transfer_report`]: tests whether similar variants transfer more, using the metrics of lifetimes and a distance matrix.
 
 mod names;
 mod pooling;
@@ -13,9 +13,9 @@ use serde::Serialize;
 use crate::CurriculumError;
 use names::Names;
 pub use names::log_name_of_label;
-use pooling::pooled;
+use pooling::pool;
 
-/// How transfer is compared with distance.
+/// Options for comparing transfer with distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TransferOptions {
     /// The measure of transfer; the lifetimes must have been scored with it. `Both` counts as `Contrast`.
@@ -37,7 +37,7 @@ impl Default for TransferOptions {
     }
 }
 
-/// Whether similar variants transfer more.
+/// The result of comparing transfer with distance.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TransferReport {
     /// Number of lifetimes pooled.
@@ -50,13 +50,13 @@ pub struct TransferReport {
     pub not_in_logs: Vec<String>,
     /// Names in the logs that the matrix does not have.
     pub not_in_matrix: Vec<String>,
-    /// To variants that were not yet learned.
+    /// Transfer to variants that had not been learned yet.
     pub forward: DirectionReport,
-    /// To variants that were learned before.
+    /// Transfer to variants that had been learned before.
     pub backward: DirectionReport,
 }
 
-/// Whether similar variants transfer more, forward or backward.
+/// The result for forward or for backward transfer.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DirectionReport {
     /// Every pair with a transfer, in the matrix's order: by the learned variant, then by the evaluated one.
@@ -98,8 +98,8 @@ pub struct PairTransfer {
 ///
 /// # Errors
 /// [`CurriculumError::NoEvaluations`] if no lifetime evaluates, [`CurriculumError::NoCommonNames`] if logs and matrix have too
-/// few common variants, [`CurriculumError::TooFewTransfers`] if neither direction has 3 pairs,
-/// [`CurriculumError::SameLogName`], [`CurriculumError::Relabelling`] for an invalid number of relabellings.
+/// few common variants, [`CurriculumError::TooFewTransfers`] if neither direction has 3 pairs, [`CurriculumError::SameLogName`]
+/// if two labels have the same log name, [`CurriculumError::Relabelling`] for an invalid number of relabellings.
 pub fn transfer_report(
     lifetimes: &[LifetimeMetrics],
     distances: &DistanceMatrix,
@@ -122,12 +122,12 @@ pub fn transfer_report(
         });
     }
     let direction = |direction| {
-        let pairs = pooled(lifetimes, &names, direction, options.measure);
-        tested(pairs, distances, options)
+        let pairs = pool(lifetimes, &names, direction, options.measure);
+        test_direction(pairs, distances, options)
     };
     let (forward, backward) = (direction("forward")?, direction("backward")?);
-    let most = forward.pairs.len().max(backward.pairs.len());
-    if most < driftworld_similarity::MIN_CORRELATED {
+    let max_pairs = forward.pairs.len().max(backward.pairs.len());
+    if max_pairs < driftworld_similarity::MIN_CORRELATED {
         return Err(CurriculumError::TooFewTransfers {
             forward: forward.pairs.len(),
             backward: backward.pairs.len(),
@@ -152,7 +152,7 @@ pub fn transfer_report(
     })
 }
 
-fn tested(
+fn test_direction(
     values: Vec<(PairValue, usize)>,
     distances: &DistanceMatrix,
     options: &TransferOptions,
@@ -170,7 +170,7 @@ fn tested(
     let test = |method| mantel(distances, &values, method, options.relabellings, options.seed);
     let (spearman, pearson, untested) = match (test(Correlation::Spearman), test(Correlation::Pearson)) {
         (Ok(spearman), Ok(pearson)) => (Some(spearman), Some(pearson), None),
-        // The number is invalid whatever was measured.
+        // The number of relabellings is invalid for any measurement.
         (Err(source), _) if source.code() == "similarity/mantel-count" => {
             return Err(CurriculumError::Relabelling(source));
         }
@@ -198,11 +198,11 @@ fn learning_orders(lifetimes: &[LifetimeMetrics], names: &Names) -> usize {
 
 /// A few names for a message.
 fn shown(names: &[&str]) -> String {
-    const MOST: usize = 4;
+    const MAX_SHOWN: usize = 4;
     if names.is_empty() {
         "none".to_owned()
     } else {
-        first_of(names, MOST)
+        first_of(names, MAX_SHOWN)
     }
 }
 
@@ -227,7 +227,7 @@ mod tests {
             "min": 1.0, "max": 101.0, "num_lx": 10, "num_ex": evaluations, "runtime": 0.0,
             "normalization_data_range": null, "task_metrics": tasks,
         }))
-        .expect("these are a lifetime's fields")
+        .expect("the fields of a lifetime are complete")
     }
 
     fn matrix(labels: &[&str]) -> DistanceMatrix {
@@ -235,10 +235,10 @@ mod tests {
         DistanceMatrix::measure(labels, |a, b| {
             Ok::<_, driftworld_similarity::SimilarityError>((b - a) as f64)
         })
-        .expect("these are distances")
+        .expect("the distances are valid")
     }
 
-    fn said(lifetimes: &[LifetimeMetrics], labels: &[&str]) -> String {
+    fn message(lifetimes: &[LifetimeMetrics], labels: &[&str]) -> String {
         let found = transfer_report(lifetimes, &matrix(labels), &TransferOptions::default());
         found.expect_err("there is nothing to correlate").to_string()
     }
@@ -275,12 +275,12 @@ mod tests {
     #[test]
     fn impossible_correlations_are_refused_with_a_reason() {
         let none = lifetime(&["t_a"], &[], 0);
-        assert!(said(&[none], &["t#a", "t#b"]).contains("no evaluation"));
+        assert!(message(&[none], &["t#a", "t#b"]).contains("no evaluation"));
         let strangers = lifetime(&["t_x", "t_y"], &[], 3);
-        let error = said(&[strangers], &["t#a", "t#b"]);
+        let error = message(&[strangers], &["t#a", "t#b"]);
         assert!(error.contains("t_x, t_y") && error.contains("t#a, t#b"), "{error}");
         let few = lifetime(&["t_a", "t_b"], &[("t_a", "t_b", 0.5)], 3);
-        assert!(said(&[few], &["t#a", "t#b"]).contains("1 forward and 0 backward"));
+        assert!(message(&[few], &["t#a", "t#b"]).contains("1 forward and 0 backward"));
         let one = lifetime(&["t_a", "t_b", "t_c"], &[("t_a", "t_b", 0.4)], 9);
         let options = TransferOptions {
             relabellings: 0,

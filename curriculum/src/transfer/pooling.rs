@@ -8,8 +8,8 @@ use driftworld_similarity::PairValue;
 use super::names::Names;
 
 /// The mean over lifetimes of each pair's first transfer, and the number of lifetimes that had one, in the order of the matrix.
-/// `direction` is `forward` or `backward`: whether the variant that gains or loses is still to be learned.
-pub(super) fn pooled(
+/// `direction` is `forward` if the evaluated variant had not been learned yet, else `backward`.
+pub(super) fn pool(
     lifetimes: &[LifetimeMetrics],
     names: &Names,
     direction: &str,

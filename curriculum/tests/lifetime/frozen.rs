@@ -67,16 +67,19 @@ fn agent_changed_by_evaluations_is_refused_with_one_or_several_jobs() {
             is_copied,
             ..Restless::default()
         };
-        let living = Living {
+        let settings = RunSettings {
             jobs,
             repeated: REPEATED_EVALUATIONS,
-            ..Living::default()
+            ..RunSettings::default()
         };
-        let refused =
-            live_by(&shaped("hill.json"), &mut agent, &folder.path().join(name), &living).expect_err("it changes");
+        let refused = run_with(&shaped("hill.json"), &mut agent, &folder.path().join(name), &settings)
+            .expect_err("evaluations change the agent");
         assert_eq!(refused.code(), "curriculum/not-frozen", "{name}: {refused}");
-        let said = refused.to_string();
-        assert!(said.contains("block 0") && said.contains("Task 2#hill"), "{said}");
+        let message = refused.to_string();
+        assert!(
+            message.contains("block 0") && message.contains("Task 2#hill"),
+            "{message}"
+        );
     }
 }
 
@@ -104,26 +107,26 @@ fn changed_actions_are_detected_without_rewards() {
         ..Regime::new("Task 1", "yard", 5)
     };
     let scenario = Scenario::new("idle", vec![Block::new(BlockKind::Evaluation, vec![regime])]);
-    let living = Living {
+    let settings = RunSettings {
         repeated: REPEATED_EVALUATIONS,
-        ..Living::default()
+        ..RunSettings::default()
     };
     for step in [0, 17, 39] {
         let mut agent = Fidgety { episodes: 0, step };
         let log = folder.path().join(step.to_string());
-        let refused = live_by(&scenario, &mut agent, &log, &living).expect_err("it acts differently");
+        let refused = run_with(&scenario, &mut agent, &log, &settings).expect_err("it acts differently");
         let expected = format!("found another action in step {} of experience", step + 1);
         assert!(refused.to_string().contains(&expected), "{refused}");
     }
 }
 
-/// Notes which evaluations of each block are repeated, and runs nothing.
-struct Noting {
+/// Records which evaluations of each block are repeated, and runs nothing.
+struct RepeatRecorder {
     repeats: Repeats,
     blocks: Vec<Vec<u64>>,
 }
 
-impl Rollout for Noting {
+impl Rollout for RepeatRecorder {
     type Error = CurriculumError;
     fn begin_block(&mut self, _: bool, repeated: &[u64]) -> Result<(), CurriculumError> {
         self.blocks.push(repeated.to_vec());
@@ -152,33 +155,33 @@ fn repeated_evaluations_are_drawn_for_each_block() {
         let folder = scratch();
         let mut journal = Journal::create(&folder.path().join("log"), &plan, "test").unwrap_or_else(|e| panic!("{e}"));
         let repeats = Repeats { count: 4, first };
-        let mut noting = Noting {
+        let mut recorder = RepeatRecorder {
             repeats,
             blocks: Vec::new(),
         };
         let now = Timestamp::from_unix_micros(0).expect("1970");
-        run_rollout(&plan, &mut noting, &mut journal, 0, &mut || now).unwrap_or_else(|error| panic!("{error}"));
+        run_rollout(&plan, &mut recorder, &mut journal, 0, &mut || now).unwrap_or_else(|error| panic!("{error}"));
         let in_block = |(block, numbers): (u64, Vec<u64>)| -> Vec<u64> {
             numbers.into_iter().map(|number| number - 40 * block).collect()
         };
-        (0..).zip(noting.blocks).map(in_block).collect::<Vec<_>>()
+        (0..).zip(recorder.blocks).map(in_block).collect::<Vec<_>>()
     };
     let (one, other) = (drawn(1, false), drawn(2, false));
     for block in &one {
         assert!(
-            block.len() == 4 && block.is_sorted() && block.iter().all(|place| *place < 40),
+            block.len() == 4 && block.is_sorted() && block.iter().all(|index| *index < 40),
             "{block:?}"
         );
     }
-    let places: std::collections::BTreeSet<u64> = one.iter().flatten().copied().collect();
-    assert!(places.len() > 25, "every place may be checked: {places:?}");
+    let indices: std::collections::BTreeSet<u64> = one.iter().flatten().copied().collect();
+    assert!(indices.len() > 25, "any evaluation may be repeated: {indices:?}");
     assert_ne!(one, other);
     assert_eq!(one, drawn(1, false));
     assert!(drawn(1, true).iter().all(|block| *block == [0, 1, 2, 3]));
 }
 
 #[test]
-fn checking_a_sound_learner_does_not_change_its_log() {
+fn check_of_a_frozen_learner_does_not_change_its_log() {
     let folder = scratch();
     let mut logs = Vec::new();
     for (name, is_copied, jobs, repeated) in [
@@ -192,18 +195,18 @@ fn checking_a_sound_learner_does_not_change_its_log() {
             is_honest: true,
             ..Restless::default()
         };
-        let (log, living) = (
+        let (log, settings) = (
             folder.path().join(name),
-            Living {
+            RunSettings {
                 jobs,
                 repeated,
-                ..Living::default()
+                ..RunSettings::default()
             },
         );
-        let summary =
-            live_by(&shaped("hill.json"), &mut agent, &log, &living).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let summary = run_with(&shaped("hill.json"), &mut agent, &log, &settings)
+            .unwrap_or_else(|error| panic!("{name}: {error}"));
         assert!(summary.finished && summary.experiences == 15, "{name}: {summary:?}");
-        logs.push(everything(&log));
+        logs.push(log_text(&log));
     }
     assert!(logs.windows(2).all(|pair| pair[0] == pair[1]));
 }

@@ -5,7 +5,7 @@ use super::*;
 /// Records its inputs; learns, and can be copied.
 #[derive(Clone, Default)]
 struct Pupil {
-    told: Arc<Mutex<Told>>,
+    inputs: Arc<Mutex<Inputs>>,
     label: Option<Label>,
     learned: u64,
 }
@@ -17,7 +17,10 @@ impl Agent for Pupil {
     }
     fn begin(&mut self, seed: u64) {
         let label = self.label.take();
-        self.told.lock().expect("no test panics with it").push((seed, label));
+        self.inputs
+            .lock()
+            .expect("no test panics while holding it")
+            .push((seed, label));
     }
     fn set_task_label(&mut self, label: &Label) {
         self.label = Some(label.clone());
@@ -33,22 +36,22 @@ impl Agent for Pupil {
 #[test]
 fn learner_learns_in_order_and_is_evaluated_by_several_copies() {
     let folder = scratch();
-    let lived = |jobs: usize| {
+    let run_pupil = |jobs: usize| {
         let (log, mut pupil) = (folder.path().join(format!("{jobs}")), Pupil::default());
-        live_by(
+        run_with(
             &varied(),
             &mut pupil,
             &log,
-            &Living {
+            &RunSettings {
                 jobs,
-                ..Living::default()
+                ..RunSettings::default()
             },
         )
         .unwrap_or_else(|error| panic!("{error}"));
-        (everything(&log), pupil.learned)
+        (log_text(&log), pupil.learned)
     };
-    let (log, learned) = lived(1);
-    assert_eq!((log, learned), lived(4));
+    let (log, learned) = run_pupil(1);
+    assert_eq!((log, learned), run_pupil(4));
     assert_eq!(
         learned,
         7 * 60,
@@ -57,28 +60,29 @@ fn learner_learns_in_order_and_is_evaluated_by_several_copies() {
 }
 
 #[test]
-fn label_is_passed_only_if_the_scenario_says_so() {
+fn label_is_passed_only_if_the_scenario_has_labels() {
     let folder = scratch();
-    let told = |label: TaskLabel| {
+    let inputs = |label: TaskLabel| {
         let (mut pupil, mut scenario) = (Pupil::default(), varied());
         scenario.task_label = label;
         let log = folder.path().join(format!("{label:?}"));
-        live(&scenario, &mut pupil, &log, u64::MAX).unwrap_or_else(|error| panic!("{error}"));
-        let told = pupil.told.lock().expect("no test panics with it").clone();
-        assert_eq!(told.len(), 15);
-        told
+        run_scenario(&scenario, &mut pupil, &log, u64::MAX).unwrap_or_else(|error| panic!("{error}"));
+        let inputs = pupil.inputs.lock().expect("no test panics while holding it").clone();
+        assert_eq!(inputs.len(), 15);
+        inputs
     };
-    assert!(told(TaskLabel::None).iter().all(|(_, label)| label.is_none()));
+    assert!(inputs(TaskLabel::None).iter().all(|(_, label)| label.is_none()));
     for wanted in [TaskLabel::Info, TaskLabel::Observation] {
-        let told: Vec<Label> = told(wanted).into_iter().filter_map(|(_, label)| label).collect();
+        let inputs: Vec<Label> = inputs(wanted).into_iter().filter_map(|(_, label)| label).collect();
         assert_eq!(
-            (told.len(), told[8].name.as_str(), told[8].number),
+            (inputs.len(), inputs[8].name.as_str(), inputs[8].number),
             (15, "find_objects#red", 2),
             "a drift has the label of its nearer end"
         );
-        assert_eq!((told[10].name.as_str(), told[10].number), ("find_objects#dusk", 3));
+        assert_eq!((inputs[10].name.as_str(), inputs[10].number), ("find_objects#dusk", 3));
         assert!(
-            told.iter()
+            inputs
+                .iter()
                 .all(|label| label.of == 4 && label.observed == (wanted == TaskLabel::Observation))
         );
     }
@@ -89,11 +93,11 @@ fn evaluations_repeat_their_random_numbers_and_learning_does_not() {
     let (folder, scenario) = (scratch(), scenario(&["blue", "red"]));
     for jobs in [1, 3] {
         let log = folder.path().join(format!("{jobs}"));
-        let living = Living {
+        let settings = RunSettings {
             jobs,
-            ..Living::default()
+            ..RunSettings::default()
         };
-        live_by(&scenario, &mut RandomAgent::new(0), &log, &living).unwrap_or_else(|error| panic!("{error}"));
+        run_with(&scenario, &mut RandomAgent::new(0), &log, &settings).unwrap_or_else(|error| panic!("{error}"));
         let rows = rows(&log);
         for name in ["findobjects_blue", "findobjects_red"] {
             let tests = rows
@@ -105,18 +109,19 @@ fn evaluations_repeat_their_random_numbers_and_learning_does_not() {
         }
     }
     let mut pupil = Pupil::default();
-    live(&varied(), &mut pupil, &folder.path().join("seeds"), u64::MAX).unwrap_or_else(|error| panic!("{error}"));
-    let told = pupil.told.lock().expect("no test panics with it");
-    let mut seeds: Vec<u64> = told.iter().map(|(seed, _)| *seed).collect();
+    run_scenario(&varied(), &mut pupil, &folder.path().join("seeds"), u64::MAX)
+        .unwrap_or_else(|error| panic!("{error}"));
+    let inputs = pupil.inputs.lock().expect("no test panics while holding it");
+    let mut seeds: Vec<u64> = inputs.iter().map(|(seed, _)| *seed).collect();
     assert_eq!(
         seeds[..2],
         seeds[6..8],
-        "two variants share the numbers of worlds under one seed"
+        "two variants share agent seeds under one scenario seed"
     );
     assert_eq!(
         seeds[2..6],
         seeds[11..],
-        "evaluations come with the same numbers each time"
+        "evaluations use the same random numbers each time"
     );
     seeds.sort_unstable();
     seeds.dedup();
@@ -125,39 +130,35 @@ fn evaluations_repeat_their_random_numbers_and_learning_does_not() {
 }
 
 #[test]
-fn relearning_the_log_continues_as_if_never_stopped() {
+fn relearning_the_log_continues_an_uninterrupted_run() {
     let folder = scratch();
     // Moving straight ahead loses reward there, so any learning shows.
     let scenario = super::frozen::shaped("behind.json");
     let whole = folder.path().join("whole");
-    live(&scenario, &mut SarsaAgent::new(), &whole, u64::MAX).unwrap_or_else(|error| panic!("{error}"));
+    run_scenario(&scenario, &mut SarsaAgent::new(), &whole, u64::MAX).unwrap_or_else(|error| panic!("{error}"));
     // Stopped in the learning block, then in the evaluation after it; each time resumed by a new process that has learned
     // nothing.
-    let gone_on = |relearns: bool| {
+    let resumed_log = |relearns: bool| {
         let log = folder.path().join(format!("{relearns}"));
-        for (most, resume) in [(8, false), (12, true), (u64::MAX, true)] {
-            let (mut agent, living) = (
+        for (max_experiences, resume) in [(8, false), (12, true), (u64::MAX, true)] {
+            let (mut agent, settings) = (
                 SarsaAgent::new(),
-                Living {
-                    most,
+                RunSettings {
+                    max_experiences,
                     resume,
-                    ..Living::default()
+                    ..RunSettings::default()
                 },
             );
             if resume && relearns {
                 let plan = plan(&scenario).unwrap_or_else(|error| panic!("{error}"));
                 let done = Journal::resume(&log, &plan, "test").unwrap_or_else(|error| panic!("{error}"));
-                let flow = living.context(&mut |context| relearn(&plan, &mut agent, done.num_experiences(), context));
+                let flow = settings.context(&mut |context| relearn(&plan, &mut agent, done.num_experiences(), context));
                 assert!(flow.unwrap_or_else(|error| panic!("{error}")).is_continue());
             }
-            live_by(&scenario, &mut agent, &log, &living).unwrap_or_else(|error| panic!("{error}"));
+            run_with(&scenario, &mut agent, &log, &settings).unwrap_or_else(|error| panic!("{error}"));
         }
-        everything(&log)
+        log_text(&log)
     };
-    assert_eq!(gone_on(true), everything(&whole));
-    assert_ne!(
-        gone_on(false),
-        everything(&whole),
-        "what was learned makes a difference"
-    );
+    assert_eq!(resumed_log(true), log_text(&whole));
+    assert_ne!(resumed_log(false), log_text(&whole), "learning changes the log");
 }

@@ -1,4 +1,4 @@
-//! Runs a small scenario from the first experience to the last: logged, repeatable, scorable, interruptible.
+//! Runs small scenarios: their logs are complete, repeatable, scorable, and can be resumed.
 
 mod frozen;
 mod learners;
@@ -20,7 +20,7 @@ use driftworld_spec::{
 };
 
 use crate::files_below::files_below;
-use crate::living::Living;
+use crate::run_settings::RunSettings;
 
 fn task() -> Arc<TaskSpec> {
     let path = format!("{}/../examples/tasks/find_objects.json", env!("CARGO_MANIFEST_DIR"));
@@ -37,7 +37,7 @@ fn scenario(variants: &[&str]) -> Scenario {
         seed: 5,
         ..Design::default()
     };
-    design(&choices, &options).expect("the design is sound")
+    design(&choices, &options).expect("the design is valid")
 }
 
 fn plan(scenario: &Scenario) -> Result<Plan, CurriculumError> {
@@ -69,33 +69,38 @@ fn yard() -> World {
 }
 
 /// Runs a scenario.
-fn live_by(
+fn run_with(
     scenario: &Scenario,
     agent: &mut dyn Agent,
     folder: &Path,
-    living: &Living,
+    settings: &RunSettings,
 ) -> Result<Summary, CurriculumError> {
-    living.live(&plan(scenario)?, agent, folder)
+    settings.run(&plan(scenario)?, agent, folder)
 }
 
-fn live(scenario: &Scenario, agent: &mut dyn Agent, folder: &Path, most: u64) -> Result<Summary, CurriculumError> {
-    live_by(
+fn run_scenario(
+    scenario: &Scenario,
+    agent: &mut dyn Agent,
+    folder: &Path,
+    max_experiences: u64,
+) -> Result<Summary, CurriculumError> {
+    run_with(
         scenario,
         agent,
         folder,
-        &Living {
-            most,
-            ..Living::default()
+        &RunSettings {
+            max_experiences,
+            ..RunSettings::default()
         },
     )
 }
 
 fn scratch() -> tempfile::TempDir {
-    tempfile::tempdir().expect("the machine has a folder for temporary files")
+    tempfile::tempdir().expect("a temporary folder can be created")
 }
 
 /// All files of a log, as one string.
-fn everything(folder: &Path) -> String {
+fn log_text(folder: &Path) -> String {
     assert!(folder.is_dir(), "{}: there is no log", folder.display());
     let files = files_below(folder).into_values();
     let texts = files.map(|bytes| String::from_utf8(bytes).expect("logs are text"));
@@ -106,7 +111,8 @@ fn everything(folder: &Path) -> String {
 fn lifetime_is_logged_and_can_be_scored() {
     let (folder, scenario) = (scratch(), scenario(&["blue", "red"]));
     let log = folder.path().join("log");
-    let summary = live(&scenario, &mut OnRailsAgent::new(), &log, u64::MAX).unwrap_or_else(|error| panic!("{error}"));
+    let summary =
+        run_scenario(&scenario, &mut OnRailsAgent::new(), &log, u64::MAX).unwrap_or_else(|error| panic!("{error}"));
     assert!(summary.finished);
     assert_eq!((summary.experiences, scenario.num_experiences()), (18, 18));
     assert!(
@@ -135,18 +141,18 @@ fn lifetime_is_logged_and_can_be_scored() {
 #[test]
 fn lifetime_is_repeatable_byte_for_byte_and_agents_differ() {
     let folder = scratch();
-    let lived = |name: &str, agent: &mut dyn Agent| {
+    let run_log = |name: &str, agent: &mut dyn Agent| {
         let log = folder.path().join(name);
-        live(&scenario(&["red", "dusk"]), agent, &log, u64::MAX).unwrap_or_else(|error| panic!("{error}"));
-        everything(&log)
+        run_scenario(&scenario(&["red", "dusk"]), agent, &log, u64::MAX).unwrap_or_else(|error| panic!("{error}"));
+        log_text(&log)
     };
-    let first = lived("first", &mut RandomAgent::new(0));
+    let first = run_log("first", &mut RandomAgent::new(0));
     assert_eq!(
         first,
-        lived("second", &mut RandomAgent::new(99)),
-        "the agent's numbers come from the scenario"
+        run_log("second", &mut RandomAgent::new(99)),
+        "the agent's random numbers come from the scenario"
     );
-    assert_ne!(first, lived("third", &mut OnRailsAgent::new()));
+    assert_ne!(first, run_log("third", &mut OnRailsAgent::new()));
 }
 
 #[test]
@@ -184,7 +190,7 @@ fn joint_block_interleaves_every_world_once_as_one_regime_per_task() {
         seed: 5,
         ..Design::default()
     };
-    let scenario = design(&choices, &options).expect("the design is sound");
+    let scenario = design(&choices, &options).expect("the design is valid");
     let shuffled = plan(&scenario).unwrap_or_else(|error| panic!("{error}"));
     let mut in_order = scenario.clone();
     for block in &mut in_order.blocks {
@@ -208,14 +214,15 @@ fn joint_block_interleaves_every_world_once_as_one_regime_per_task() {
 
     let (whole, cut) = (scratch(), scratch());
     let (whole, cut) = (whole.path().join("log"), cut.path().join("log"));
-    live(&scenario, &mut RandomAgent::new(0), &whole, u64::MAX).unwrap_or_else(|error| panic!("{error}"));
-    live(&scenario, &mut RandomAgent::new(0), &cut, 11).unwrap_or_else(|error| panic!("{error}"));
-    let again = Living {
+    run_scenario(&scenario, &mut RandomAgent::new(0), &whole, u64::MAX).unwrap_or_else(|error| panic!("{error}"));
+    run_scenario(&scenario, &mut RandomAgent::new(0), &cut, 11).unwrap_or_else(|error| panic!("{error}"));
+    let settings = RunSettings {
         resume: true,
-        ..Living::default()
+        ..RunSettings::default()
     };
-    let summary = live_by(&scenario, &mut RandomAgent::new(0), &cut, &again).unwrap_or_else(|error| panic!("{error}"));
-    assert_eq!(everything(&whole), everything(&cut));
+    let summary =
+        run_with(&scenario, &mut RandomAgent::new(0), &cut, &settings).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(log_text(&whole), log_text(&cut));
     assert_eq!(summary.regimes.len(), 6);
     assert!(summary.regimes[2..4].iter().all(|regime| regime.experiences == 8));
     let log = read_log(&whole).unwrap_or_else(|error| panic!("{error}"));
@@ -228,8 +235,9 @@ fn joint_block_interleaves_every_world_once_as_one_regime_per_task() {
 fn golden_log_is_unchanged() {
     let folder = scratch();
     let log = folder.path().join("log");
-    live(&scenario(&["huddle"]), &mut OnRailsAgent::new(), &log, u64::MAX).unwrap_or_else(|error| panic!("{error}"));
-    let found = everything(&log);
+    run_scenario(&scenario(&["huddle"]), &mut OnRailsAgent::new(), &log, u64::MAX)
+        .unwrap_or_else(|error| panic!("{error}"));
+    let found = log_text(&log);
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden/log.txt");
     if std::env::var_os("DRIFTWORLD_UPDATE_GOLDEN").is_some() {
         std::fs::write(path, &found).expect("the golden file can be written");
@@ -243,9 +251,15 @@ fn golden_log_is_unchanged() {
 #[test]
 fn unplayable_scenarios_are_refused_with_block_and_regime() {
     let folder = scratch();
-    let mut odd = scenario(&["blue"]);
-    odd.blocks[1].regimes[0].variant = "bleu".to_owned();
-    let error = live(&odd, &mut RandomAgent::new(0), &folder.path().join("a"), u64::MAX).expect_err("no such variant");
+    let mut misspelled = scenario(&["blue"]);
+    misspelled.blocks[1].regimes[0].variant = "bleu".to_owned();
+    let error = run_scenario(
+        &misspelled,
+        &mut RandomAgent::new(0),
+        &folder.path().join("a"),
+        u64::MAX,
+    )
+    .expect_err("no such variant");
     assert_eq!(
         error.to_string(),
         "block 1, regime 0: find_objects#bleu: find_objects: found variant \"bleu\", expected one of blue, red, green, \
@@ -253,9 +267,10 @@ fn unplayable_scenarios_are_refused_with_block_and_regime() {
          stiff and 17 more; did you mean \"blue\"?"
     );
     let log = folder.path().join("b");
-    live(&scenario(&["blue"]), &mut RandomAgent::new(0), &log, 1).unwrap_or_else(|error| panic!("{error}"));
-    let again = live(&scenario(&["blue"]), &mut RandomAgent::new(0), &log, 1).expect_err("a log is never written over");
-    assert_eq!(again.code(), "curriculum/log");
+    run_scenario(&scenario(&["blue"]), &mut RandomAgent::new(0), &log, 1).unwrap_or_else(|error| panic!("{error}"));
+    let error =
+        run_scenario(&scenario(&["blue"]), &mut RandomAgent::new(0), &log, 1).expect_err("a log is never overwritten");
+    assert_eq!(error.code(), "curriculum/log");
 }
 
 /// A lifetime with every kind of regime: before deployment, drawn, drifting, from a world file, cut short, with a budget.
@@ -301,23 +316,23 @@ fn rows(folder: &Path) -> Vec<Record> {
 #[test]
 fn log_is_the_same_for_any_number_of_jobs() {
     let folder = scratch();
-    let lived = |jobs: usize, agent: &mut dyn Agent| {
+    let run_log = |jobs: usize, agent: &mut dyn Agent| {
         let log = folder.path().join(format!("{jobs}"));
-        let summary = live_by(
+        let summary = run_with(
             &varied(),
             agent,
             &log,
-            &Living {
+            &RunSettings {
                 jobs,
-                ..Living::default()
+                ..RunSettings::default()
             },
         );
-        (everything(&log), summary.unwrap_or_else(|error| panic!("{error}")))
+        (log_text(&log), summary.unwrap_or_else(|error| panic!("{error}")))
     };
-    let one = lived(1, &mut RandomAgent::new(0));
+    let one = run_log(1, &mut RandomAgent::new(0));
     assert!(one.1.finished && one.1.experiences == 15, "{:?}", one.1);
     for jobs in [2, 5, 32] {
-        assert_eq!(one, lived(jobs, &mut RandomAgent::new(1)), "{jobs} at a time");
+        assert_eq!(one, run_log(jobs, &mut RandomAgent::new(1)), "{jobs} at a time");
     }
 }
 
@@ -325,13 +340,13 @@ fn log_is_the_same_for_any_number_of_jobs() {
 fn every_row_has_the_distance_to_the_last_learned_variant() {
     let folder = scratch();
     let log = folder.path().join("log");
-    live(&varied(), &mut RandomAgent::new(0), &log, u64::MAX).unwrap_or_else(|error| panic!("{error}"));
+    run_scenario(&varied(), &mut RandomAgent::new(0), &log, u64::MAX).unwrap_or_else(|error| panic!("{error}"));
     let rows = rows(&log);
     let distance = |row: usize, element: &str| rows[row].metrics[&format!("distance{element}")];
     // Experiences: 0-1 blue before deployment, 2-3 blue, 4-5 yard, 6-7 red, 8-10 red to dusk, 11-12 blue, 13-14 yard.
     assert!(
         (0..2).all(|row| distance(row, "").is_nan()),
-        "nothing was learned before"
+        "nothing has been learned yet"
     );
     assert!((2..4).all(|row| distance(row, "") == 0.0), "the same variant");
     assert!(
@@ -342,7 +357,7 @@ fn every_row_has_the_distance_to_the_last_learned_variant() {
         assert!(distance(row, "_observation") > 0.0, "red is not blue");
         assert_eq!([distance(row, "_reward"), distance(row, "_action")], [0.0, 0.0]);
     }
-    assert_eq!(distance(8, ""), 0.0, "the drift begins at what was learned last");
+    assert_eq!(distance(8, ""), 0.0, "the drift begins at the variant learned last");
     assert!(distance(8, "") < distance(9, "") && distance(9, "") < distance(10, ""));
     assert!(
         distance(11, "_observation") > 0.0,
@@ -365,12 +380,12 @@ fn every_row_has_the_distance_to_the_last_learned_variant() {
     assert_eq!(
         (scores.num_lx, scores.num_ex),
         (5, 8),
-        "what is before deployment is not scored"
+        "pre-deployment experiences are not scored"
     );
 }
 
 #[test]
-fn drift_to_a_made_variant_logs_the_distances_of_its_end() {
+fn drift_to_a_generated_variant_logs_the_distances_of_its_end() {
     let bright = Choice {
         values: [("light".to_owned(), Value::Number(4.0))].into_iter().collect(),
         name: Some("bright".to_owned()),
@@ -383,27 +398,30 @@ fn drift_to_a_made_variant_logs_the_distances_of_its_end() {
         task_label: TaskLabel::Info,
         ..Design::default()
     };
-    let scenario = design(&[Choice::new("find_objects", "blue"), bright], &options).expect("the design is sound");
-    Scenario::from_json("designed", &scenario.to_json_pretty()).expect("what is designed is a valid document");
+    let scenario = design(&[Choice::new("find_objects", "blue"), bright], &options).expect("the design is valid");
+    Scenario::from_json("designed", &scenario.to_json_pretty()).expect("a design is a valid document");
     let folder = scratch();
     let log = folder.path().join("log");
-    live(&scenario, &mut RandomAgent::new(0), &log, u64::MAX).unwrap_or_else(|error| panic!("{error}"));
+    run_scenario(&scenario, &mut RandomAgent::new(0), &log, u64::MAX).unwrap_or_else(|error| panic!("{error}"));
     let read = read_log(&log).unwrap_or_else(|error| panic!("{error}"));
     let task = task();
-    let blue = task.variant("blue").expect("the task has it");
+    let blue = task.variant("blue").expect("the task declares it");
     let end = blue
         .with("bright", [("light".to_owned(), Value::Number(4.0))])
         .expect("the light goes to 4");
-    let apart = variant_distance(&blue, &end, &Weights::of_task(&task)).expect("both are of one task");
-    assert!(apart.total > 0.0);
+    let distance_to_end = variant_distance(&blue, &end, &Weights::of_task(&task)).expect("both belong to one task");
+    assert!(distance_to_end.total > 0.0);
     // 0-1 blue and bright, 2-4 blue to bright, 5-6 blue and bright: from bright, the end of the drift.
     let logged = |row: usize| {
-        let metric = |name: &str| read.rows.metric(name).expect("the column is there")[row];
+        let metric = |name: &str| read.rows.metric(name).expect("the column exists")[row];
         (metric("distance"), metric("distance_observation"))
     };
-    let expected = (apart.total, apart.element(Element::O).expect("it has a light"));
-    assert_eq!(logged(5), expected, "blue is what the drift left");
-    assert_eq!(logged(6), (0.0, 0.0), "bright is where it ended");
+    let expected = (
+        distance_to_end.total,
+        distance_to_end.element(Element::O).expect("it has a light"),
+    );
+    assert_eq!(logged(5), expected, "blue is the start of the drift");
+    assert_eq!(logged(6), (0.0, 0.0), "bright is the end of the drift");
     let made_from = &read.scenario_info.extra["made_from"];
     assert!(
         ["blue", "bright"]
@@ -411,7 +429,10 @@ fn drift_to_a_made_variant_logs_the_distances_of_its_end() {
             .all(|name| made_from[format!("find_objects#{name}")]["variant"].is_string())
     );
     assert_ne!(made_from["find_objects#blue"], made_from["find_objects#bright"]);
-    assert_eq!(read.rows.get(2).expect("there are seven").task_params()["to"], "bright");
+    assert_eq!(
+        read.rows.get(2).expect("the log has seven rows").task_params()["to"],
+        "bright"
+    );
 }
 
 #[test]
@@ -437,7 +458,7 @@ fn step_limit_truncates_and_end_of_block_does_not() {
     let learning = Block::new(BlockKind::Learning, vec![regime(7), regime(9)]);
     let mut witness = Witness(Vec::new());
     let scenario = Scenario::new("cut", vec![learning.clone(), learning]);
-    live(&scenario, &mut witness, &log, u64::MAX).unwrap_or_else(|error| panic!("{error}"));
+    run_scenario(&scenario, &mut witness, &log, u64::MAX).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(witness.0.len(), 4);
     assert!(witness.0.iter().all(|step| step.truncated && !step.terminated));
     let rows = rows(&log);
@@ -445,7 +466,7 @@ fn step_limit_truncates_and_end_of_block_does_not() {
     assert_eq!(steps, [7.0, 9.0, 7.0, 9.0]);
     assert!(rows.iter().all(|row| row.metrics["truncated"] == 1.0));
     let log = folder.path().join("ended");
-    live(&self::scenario(&["blue"]), &mut OnRailsAgent::new(), &log, u64::MAX)
+    run_scenario(&self::scenario(&["blue"]), &mut OnRailsAgent::new(), &log, u64::MAX)
         .unwrap_or_else(|error| panic!("{error}"));
     assert!(
         self::rows(&log)
@@ -455,17 +476,17 @@ fn step_limit_truncates_and_end_of_block_does_not() {
 }
 
 /// The seed and the label of each experience, in order.
-type Told = Vec<(u64, Option<Label>)>;
+type Inputs = Vec<(u64, Option<Label>)>;
 
 #[test]
 fn missing_world_file_is_reported_before_anything_is_run() {
     let mut scenario = varied();
     scenario.blocks[1].regimes[1].world = Some("gone.json".to_owned());
-    let error = plan(&scenario).err().expect("there is no such file");
+    let error = plan(&scenario).err().expect("the world file does not exist");
     assert_eq!(error.to_string(), "block 1, regime 1: gone.json: not there");
     let folder = scratch();
     let log = folder.path().join("log");
-    live(&varied(), &mut RandomAgent::new(0), &log, 1).unwrap_or_else(|error| panic!("{error}"));
+    run_scenario(&varied(), &mut RandomAgent::new(0), &log, 1).unwrap_or_else(|error| panic!("{error}"));
     let info = read_log(&log)
         .unwrap_or_else(|error| panic!("{error}"))
         .scenario_info

@@ -1,4 +1,4 @@
-//! Logs of stopped runs: their contents, and which runs may continue them.
+//! Logs of stopped runs: what they contain, and which runs may continue them.
 
 use super::*;
 
@@ -7,7 +7,7 @@ fn stopped_run_leaves_a_readable_log() {
     let folder = scratch();
     let log = folder.path().join("log");
     let summary =
-        live(&scenario(&["blue"]), &mut RandomAgent::new(0), &log, 4).unwrap_or_else(|error| panic!("{error}"));
+        run_scenario(&scenario(&["blue"]), &mut RandomAgent::new(0), &log, 4).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!((summary.experiences, summary.finished), (4, false));
     assert_eq!(read_log(&log).unwrap_or_else(|error| panic!("{error}")).rows.len(), 4);
 }
@@ -17,7 +17,8 @@ fn log_cut_at_any_byte_is_completed_identically() {
     let folder = scratch();
     let whole = folder.path().join("whole");
     let scenario = varied();
-    let summary = live(&scenario, &mut RandomAgent::new(0), &whole, u64::MAX).unwrap_or_else(|error| panic!("{error}"));
+    let summary =
+        run_scenario(&scenario, &mut RandomAgent::new(0), &whole, u64::MAX).unwrap_or_else(|error| panic!("{error}"));
     // Files in the order of writing.
     let mut files: Vec<String> = vec!["scenario_info.json".into(), "logger_info.json".into()];
     for (block, kind) in ["train", "test", "train", "test"].iter().enumerate() {
@@ -52,14 +53,14 @@ fn log_cut_at_any_byte_is_completed_identically() {
             std::fs::write(path, part).expect("the folder is writable");
             left -= part.len();
         }
-        let again = Living {
+        let settings = RunSettings {
             resume: true,
             jobs: 2,
-            ..Living::default()
+            ..RunSettings::default()
         };
-        let resumed = live_by(&scenario, &mut RandomAgent::new(0), &log, &again);
+        let resumed = run_with(&scenario, &mut RandomAgent::new(0), &log, &settings);
         assert_eq!(resumed.unwrap_or_else(|error| panic!("cut at {cut}: {error}")), summary);
-        assert_eq!(everything(&log), everything(&whole), "cut at {cut}");
+        assert_eq!(log_text(&log), log_text(&whole), "cut at {cut}");
     }
 }
 
@@ -68,13 +69,13 @@ fn log_is_resumed_only_by_the_same_run() {
     let folder = scratch();
     let log = folder.path().join("log");
     let scenario = varied();
-    live(&scenario, &mut RandomAgent::new(0), &log, 13).unwrap_or_else(|error| panic!("{error}"));
-    let before = everything(&log);
+    run_scenario(&scenario, &mut RandomAgent::new(0), &log, 13).unwrap_or_else(|error| panic!("{error}"));
+    let before = log_text(&log);
     let check = |scenario: &Scenario, agent: &str, expected: &str| {
         let error = Journal::resume(&log, &plan(scenario).unwrap_or_else(|error| panic!("{error}")), agent);
         let error = error.expect_err("another run").to_string();
         assert!(error.contains(expected), "{error}");
-        assert_eq!(everything(&log), before);
+        assert_eq!(log_text(&log), before);
     };
     check(
         &scenario,
@@ -94,7 +95,7 @@ fn log_is_resumed_only_by_the_same_run() {
     let lines: Vec<&str> = text.lines().take(2).collect();
     std::fs::write(&path, lines.join("\n") + "\n").expect("the folder is writable");
     let error = Journal::resume(&log, &plan(&scenario).unwrap_or_else(|error| panic!("{error}")), "test");
-    let error = error.expect_err("a row is gone");
+    let error = error.expect_err("a row is missing");
     assert_eq!(error.code(), "curriculum/other-row");
     assert!(
         error.to_string().contains("row 1: found experience 9 in block 1-test"),

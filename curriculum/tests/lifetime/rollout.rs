@@ -1,4 +1,4 @@
-//! Experiences that are run elsewhere: logged like those run here, and learned again if not saved.
+//! Rollouts that run experiences outside this crate: logged identically, and relearned if the agent was not saved.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -8,15 +8,15 @@ use driftworld_env::RandomAgent;
 use driftworld_metrics::Record;
 use driftworld_spec::{BlockKind, World};
 
-use crate::living::now;
+use crate::run_settings::now;
 
-use super::{everything, live, plan, rows, scratch, varied};
+use super::{log_text, plan, rows, run_scenario, scratch, varied};
 
 /// Returns the experiences of another log.
 struct Replay {
     records: std::vec::IntoIter<Record>,
     /// The run ends after this number of experiences.
-    most: u64,
+    max_experiences: u64,
     blocks: Vec<bool>,
 }
 
@@ -42,7 +42,7 @@ impl Rollout for Replay {
 
     fn logged(&mut self, progress: &Progress, reward: Option<f64>) -> Result<ControlFlow<()>, CurriculumError> {
         assert!(reward.is_some());
-        Ok(if progress.done < self.most {
+        Ok(if progress.done < self.max_experiences {
             ControlFlow::Continue(())
         } else {
             ControlFlow::Break(())
@@ -54,10 +54,11 @@ impl Rollout for Replay {
 fn experiences_run_elsewhere_are_logged_identically() {
     let (folder, scenario) = (scratch(), varied());
     let (here, there) = (folder.path().join("here"), folder.path().join("there"));
-    let lived = live(&scenario, &mut RandomAgent::new(0), &here, u64::MAX).unwrap_or_else(|error| panic!("{error}"));
+    let expected =
+        run_scenario(&scenario, &mut RandomAgent::new(0), &here, u64::MAX).unwrap_or_else(|error| panic!("{error}"));
     let plan = plan(&scenario).unwrap_or_else(|error| panic!("{error}"));
     // Interrupted once, and resumed.
-    for (most, begin) in [
+    for (max_experiences, begin) in [
         (8, Journal::create as fn(&Path, &Plan, &str) -> _),
         (99, Journal::resume),
     ] {
@@ -65,19 +66,19 @@ fn experiences_run_elsewhere_are_logged_identically() {
         let records = rows(&here).into_iter();
         let mut replay = Replay {
             records,
-            most,
+            max_experiences,
             blocks: Vec::new(),
         };
         let learned = journal.num_experiences();
         let summary = run_rollout(&plan, &mut replay, &mut journal, learned, &mut now);
         let summary = summary.unwrap_or_else(|error| panic!("{error}"));
-        assert_eq!(summary.finished, most == 99);
-        if most == 99 {
-            assert_eq!(summary, lived);
+        assert_eq!(summary.finished, max_experiences == 99);
+        if max_experiences == 99 {
+            assert_eq!(summary, expected);
         }
         journal.finish().unwrap_or_else(|error| panic!("{error}"));
     }
-    assert_eq!(everything(&there), everything(&here));
+    assert_eq!(log_text(&there), log_text(&here));
 }
 
 /// Records the numbers of the requested experiences, and ends the run at number 9.
@@ -95,11 +96,11 @@ impl Rollout for Counting {
 }
 
 #[test]
-fn agent_learns_again_what_it_had_not_saved() {
+fn unsaved_learning_is_repeated() {
     let (folder, scenario) = (scratch(), varied());
     let log = folder.path().join("log");
-    live(&scenario, &mut RandomAgent::new(0), &log, 9).unwrap_or_else(|error| panic!("{error}"));
-    let before = everything(&log);
+    run_scenario(&scenario, &mut RandomAgent::new(0), &log, 9).unwrap_or_else(|error| panic!("{error}"));
+    let before = log_text(&log);
     let plan = plan(&scenario).unwrap_or_else(|error| panic!("{error}"));
     for learned in [0, 4, 9] {
         let mut journal = Journal::resume(&log, &plan, "test").unwrap_or_else(|error| panic!("{error}"));
@@ -114,5 +115,5 @@ fn agent_learns_again_what_it_had_not_saved() {
         assert_eq!(journal.num_experiences(), 9);
         journal.finish().unwrap_or_else(|error| panic!("{error}"));
     }
-    assert_eq!(everything(&log), before);
+    assert_eq!(log_text(&log), before);
 }

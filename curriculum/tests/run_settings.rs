@@ -11,12 +11,12 @@ use driftworld_env::{Agent, Catalogue};
 use driftworld_metrics::Timestamp;
 use driftworld_spec::{Scenario, World};
 
-/// How a scenario is run.
-pub(crate) struct Living {
+/// Settings for running a scenario in a test.
+pub(crate) struct RunSettings {
     /// Stops after this many experiences.
-    pub(crate) most: u64,
+    pub(crate) max_experiences: u64,
     pub(crate) jobs: usize,
-    /// Whether it continues the log.
+    /// Whether the run continues an existing log.
     pub(crate) resume: bool,
     /// Number of evaluations of each block that run twice.
     pub(crate) repeated: usize,
@@ -24,10 +24,10 @@ pub(crate) struct Living {
     pub(crate) stop: Arc<AtomicBool>,
 }
 
-impl Default for Living {
+impl Default for RunSettings {
     fn default() -> Self {
         Self {
-            most: u64::MAX,
+            max_experiences: u64::MAX,
             jobs: 1,
             resume: false,
             repeated: 0,
@@ -36,13 +36,13 @@ impl Default for Living {
     }
 }
 
-impl Living {
+impl RunSettings {
     /// Calls `act` with the context of a run.
     pub(crate) fn context<T>(&self, act: &mut dyn FnMut(&mut RunContext) -> T) -> T {
         act(&mut RunContext {
             now: &mut now,
             watch: &mut |progress: &Progress| {
-                if progress.done < self.most {
+                if progress.done < self.max_experiences {
                     ControlFlow::Continue(())
                 } else {
                     ControlFlow::Break(())
@@ -56,7 +56,7 @@ impl Living {
     }
 
     /// Runs a plan with an agent and writes the log.
-    pub(crate) fn live(&self, plan: &Plan, agent: &mut dyn Agent, log: &Path) -> Result<Summary, CurriculumError> {
+    pub(crate) fn run(&self, plan: &Plan, agent: &mut dyn Agent, log: &Path) -> Result<Summary, CurriculumError> {
         let mut journal = if self.resume {
             Journal::resume(log, plan, "test")?
         } else {
@@ -84,5 +84,5 @@ pub(crate) fn plan_of_worlds(scenario: &Scenario, world: impl Fn(&str) -> World)
             })
         },
     };
-    Plan::new(scenario, &mut sources).expect("the plan is sound")
+    Plan::new(scenario, &mut sources).expect("the plan is valid")
 }
