@@ -16,7 +16,7 @@ use driftworld_spec::{DriftSchedule, DriftSwitch, Scenario, TaskSpec};
 use crate::files_below::files_below;
 use crate::run_settings::RunSettings;
 
-/// Rocks that find no place in some worlds, and a number whose middle range is forbidden.
+/// Rocks that cannot be placed in some worlds, and a number with a forbidden middle range.
 fn task() -> Arc<TaskSpec> {
     let text = r#"{ "version": 2, "name": "quarry", "require": ["x <= 4 or x >= 6"],
         "parameters": { "x": { "role": "variant", "type": "number", "affects": ["T"], "range": [0, 10], "default": 0 } },

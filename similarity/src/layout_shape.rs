@@ -23,7 +23,7 @@ const COARSE: usize = 32;
 const NO_PATH: u32 = (SIDE * SIDE) as u32;
 
 /// A layout prepared for comparison: a raster of 96 × 96 cells with the heights of the walls that reach into them, the
-/// path lengths between the free cells nearest to 6 × 6 places, and marks: letters of cells and colours of
+/// path lengths between the free cells nearest to 6 × 6 points, and marks: letters of cells and colours of
 /// walls. Places are relative to the arena's sides, so its size does not matter. Details smaller than a cell of the
 /// raster are ignored.
 #[derive(Clone, Debug, PartialEq)]
@@ -117,7 +117,7 @@ impl LayoutShape {
         if either > 0.0 { only_one / either } else { 0.0 }
     }
 
-    /// The difference in paths: the mean, over all pairs of places, of the difference of the two lengths divided by the larger,
+    /// The difference in paths: the mean, over all pairs of points, of the difference of the two lengths divided by the larger,
     /// 0..1. A metric of path lengths: 0 if all are equal.
     pub fn ways_distance(&self, other: &Self) -> f64 {
         let pairs = self.paths.iter().zip(&other.paths);
@@ -191,7 +191,7 @@ impl LayoutShape {
 }
 
 /// Margin by which a wall's squared distance from the middle of a cell must be below the square of half a cell to touch the
-/// cell: walls on raster lines touch only the cells on their own side, whatever the rounding.
+/// cell: walls on raster lines touch only the cells on their own side, regardless of rounding.
 const ROUNDING: f64 = 1e-9;
 
 /// Whether a polygon contains a point, or comes nearer to it than half a cell.
@@ -250,7 +250,7 @@ fn steps(from: usize, may_enter: impl Fn(usize) -> bool) -> Vec<u32> {
     steps
 }
 
-/// Path lengths between the free cells nearest to the places, from each to each later one.
+/// Path lengths between the free cells nearest to the points, from each to each later one.
 fn path_lengths(walls: &[f32]) -> Vec<u32> {
     let places: Vec<usize> = (0..POINTS_PER_SIDE * POINTS_PER_SIDE)
         .map(|number| {

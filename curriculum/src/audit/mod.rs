@@ -72,7 +72,8 @@ const RATIO_SLACK: f64 = 0.02;
 /// - *forgets*: new learning replaces the old. Maintenance must be bad, and forward transfer not good.
 ///
 /// Every reward is 100 times a skill in 0..=1, plus luck of the layout (standard deviation 10) and of the episode (20). `plan`
-/// resolves what a scenario names; logs are written into `folder`, which must be empty, and can be removed afterwards.
+/// resolves the tasks and worlds that a scenario names; logs are written into `folder`, which must be empty, and can be removed
+/// afterwards.
 ///
 /// # Errors
 /// [`CurriculumError`] if the scenario or its experts cannot be planned, or a log cannot be written or scored.

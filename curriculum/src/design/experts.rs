@@ -12,7 +12,7 @@ use crate::CurriculumError;
 /// A scenario for each variant that the lifetime learns, in which only this variant is learned: single-task experts to compare
 /// a lifelong learner with.
 ///
-/// `options` are those of the lifetime; [`experts_of`] describes its experts. The expert form has no lifetime: each variant is
+/// `options` are the lifetime's own; [`experts_of`] describes its experts. The expert form has no lifetime: each variant is
 /// learned for `blocks` blocks, by default 1.
 ///
 /// Their names are `NAME-VARIANT`, or `NAME-TASK-VARIANT` if there are several tasks.
@@ -116,7 +116,7 @@ fn parts(regime: &Regime) -> Vec<Regime> {
     let Some(drift) = &regime.drift else {
         return vec![regime.clone()];
     };
-    // By its progress, as in logs and metrics, whatever the schedule.
+    // By its progress, as in logs and metrics, independent of the schedule.
     let is_near = |experience: u32| drift.progress(experience, regime.count) < 0.5;
     let num_near = (0..regime.count).filter(|experience| is_near(*experience)).count() as u32;
     let from = Regime {

@@ -242,7 +242,7 @@ fn check(variants: &[Choice], options: &Design) -> Result<(), CurriculumError> {
 
 /// The variants of the learning blocks in order, and the regimes of each block.
 ///
-/// For a control, the variants are those of the design itself, whose first is learned before deployment.
+/// For a control, the variants are in the order of the design itself: its first is learned before deployment.
 fn lessons(
     variants: &[Choice],
     options: &Design,

@@ -59,7 +59,7 @@ impl Journal {
         Ok(Self::new(writer))
     }
 
-    /// Like [`Journal::create`], for a simulated agent whose log is thrown away: it is never synced to disk, and no distances are
+    /// Like [`Journal::create`], for a simulated agent with a temporary log: it is never synced to disk, and no distances are
     /// measured.
     ///
     /// # Errors
@@ -347,7 +347,7 @@ fn count_row(plan: &Plan, summary: &mut Summary, number: u64, row: Row<'_>) -> R
     Ok(Some(steps))
 }
 
-/// A lifetime's metadata for the log: the scenario, the agent, and what its variants and worlds were made from.
+/// A lifetime's metadata for the log: the scenario, the agent, and fingerprints of its variants and worlds.
 pub(super) fn scenario_info(plan: &Plan, agent: &str) -> ScenarioInfo {
     let mut extra = Map::new();
     extra.insert("agent".to_owned(), json!(agent));

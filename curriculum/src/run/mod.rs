@@ -75,11 +75,11 @@ pub const REPEATED_EVALUATIONS: usize = 4;
 /// ended there can be resumed with a plan that skips it.
 ///
 /// The order of experiences, their worlds and the agent's initial random numbers depend on the scenario alone: a run that was
-/// interrupted and resumed writes what an uninterrupted one does. [`Agent::learn`] is called in learning blocks only. A learning
-/// agent runs learning blocks one experience after the other; to resume a log with such an agent, the caller passes one that
-/// has learned what is in the log ([`relearn`]). Evaluation blocks, and all blocks of an agent that does not learn, are run by
-/// its [`Agent::frozen`] copies, several in parallel; by the agent itself if it has no copies. For a learning agent, some
-/// evaluations of each block are repeated at its end, and must have the same actions, states and rewards.
+/// interrupted and resumed writes the same log as an uninterrupted one. [`Agent::learn`] is called in learning blocks only. A
+/// learning agent runs learning blocks one experience after the other; to resume a log with such an agent, the caller passes
+/// one that has learned what is in the log ([`relearn`]). Evaluation blocks, and all blocks of an agent that does not learn,
+/// are run by its [`Agent::frozen`] copies, several in parallel; by the agent itself if it has no copies. For a learning agent,
+/// some evaluations of each block are repeated at its end, and must have the same actions, states and rewards.
 ///
 /// # Errors
 /// [`CurriculumError`] with block, regime and experience; all earlier experiences are in the log.

@@ -278,7 +278,7 @@ pub(super) fn end_name(task: &str, to: &Variant) -> String {
     }
 }
 
-/// Which evaluations of each block are run once more at its end.
+/// Which evaluations of each block are repeated at its end.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Repeats {
     /// How many.

@@ -70,7 +70,7 @@ impl Recordings {
         Ok(false)
     }
 
-    /// Writes the recording of an experience whose row comes next. `worker` and the block are those of the row.
+    /// Writes the recording of the experience that is logged next. `worker` and `block` identify its row's file.
     ///
     /// Removes recordings that an earlier run left after the previous row.
     ///

@@ -130,7 +130,7 @@ fn is_of_one_kind(objects: &[ObjectFeatures]) -> bool {
     objects.windows(2).all(|pair| pair[0].kind == pair[1].kind)
 }
 
-/// Whether `a` has fewer objects than `b`, or as many and does not come after it in order.
+/// Whether `a` has fewer objects than `b`, or the same number and does not come after it in order.
 fn comes_first(a: &[ObjectFeatures], b: &[ObjectFeatures]) -> bool {
     let by_number = a.len().cmp(&b.len());
     let by_object = || a.iter().zip(b).map(|(a, b)| a.order(b)).find(|order| order.is_ne());

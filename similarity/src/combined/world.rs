@@ -223,7 +223,7 @@ mod tests {
         }
     }
 
-    /// Looks whose parts are each given or left out.
+    /// Looks in which each part may be given or left out.
     fn looks() -> impl Strategy<Value = Looks> {
         let surfaces = [
             Surface::Plain,

@@ -233,8 +233,8 @@ impl Table {
     }
 }
 
-/// Replaces every number by the count of different numbers below it; returns the count of different numbers. Equality
-/// is that of [`ranks`].
+/// Replaces every number by the count of different numbers below it; returns the count of different numbers. Numbers
+/// are equal if [`ranks`] counts them as equal.
 fn dense_ranks(numbers: &mut [f64]) -> usize {
     let merged = without_rounding(numbers);
     numbers.copy_from_slice(&merged);

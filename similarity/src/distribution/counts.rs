@@ -2,12 +2,12 @@
 
 use driftworld_spec::Distribution;
 
-/// Counts whose probability is below this fraction of the likeliest count's are left out.
+/// Counts less probable than this fraction of the likeliest count's probability are left out.
 const NEGLIGIBLE: f64 = 1e-17;
 
 /// All non-negligible counts with their probabilities; `None` for any other distribution and for more than `max_counts` counts.
 pub(super) fn probabilities(distribution: &Distribution, max_counts: usize) -> Option<Vec<(f64, f64)>> {
-    // The ratio of the probability of k + 1 to that of k, and the likeliest count.
+    // The ratio of the probabilities of k + 1 and k, and the likeliest count.
     let (ratio, mode, end): (Box<dyn Fn(f64) -> f64>, f64, f64) = match *distribution {
         Distribution::Binomial { n, p: 0.0 } => return Some(vec![(0.0 * n, 1.0)]),
         Distribution::Binomial { n, p: 1.0 } => return Some(vec![(n, 1.0)]),

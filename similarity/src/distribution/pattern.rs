@@ -1,5 +1,5 @@
-//! Distances between placements: where each object may stand, the minimum distance between objects, and whether a list
-//! of places is taken in turn.
+//! Distances between placements: where each object may be placed, the minimum distance between objects, and whether a list
+//! of points is used in turn.
 
 use driftworld_spec::{Distribution, Order};
 
@@ -7,21 +7,21 @@ use super::measured::Measured;
 use super::planar_transport::{planar_wasserstein_1, planar_wasserstein_2};
 use super::values::grid_centres;
 
-/// Maximum number of objects compared one by one if places are taken in turn.
+/// Maximum number of objects compared one by one if points are used in turn.
 const MAX_IN_TURN: usize = 10_000;
 
-/// Wasserstein-1 between the places of objects; otherwise as [`placement_wasserstein_2`].
+/// Wasserstein-1 between the positions of objects; otherwise as [`placement_wasserstein_2`].
 pub fn placement_wasserstein_1(a: &Distribution, b: &Distribution) -> Option<Measured> {
     placement_distance(a, b, planar_wasserstein_1)
 }
 
-/// The distance between two placements of a group, in metres: how far each object's place has to move (root mean
+/// The distance between two placements of a group, in metres: how far each object has to move (root mean
 /// square), plus the difference between the minimum distances that objects keep.
 ///
-/// If both draw each object's place independently, this is [`planar_wasserstein_2`] plus the difference of the distances that
-/// `poisson_disc` keeps. If one takes its places in turn, the first object is compared with the first, the second with the
-/// second and so on, by the mean and the spread of where each may stand; so a list of points taken in turn differs from the same
-/// list taken at random. A pseudometric in `0..`, whose first part is a metric. `None` if either draws no points.
+/// If both draw each object's position independently, this is [`planar_wasserstein_2`] plus the difference of the distances
+/// that `poisson_disc` keeps. If one uses its points in turn, the first object is compared with the first, the second with the
+/// second and so on, by the mean and the spread of where each may be placed; so a list of points used in turn differs from the
+/// same list used at random. A pseudometric in `0..`, whose first part is a metric. `None` if either draws no points.
 ///
 /// # Example
 /// ```
@@ -56,7 +56,7 @@ fn placement_distance(
     })
 }
 
-/// The distance between a list of places and one distribution: exact, because each place is compared alone.
+/// The distance between a list of points and one distribution: exact, because each point is compared alone.
 fn one_in_turn(places: &[[f64; 2]], drawn: &Distribution) -> Option<Measured> {
     let moments = drawn.planar_moments()?;
     let spread = moments.covariance[0][0] + moments.covariance[1][1];
@@ -82,7 +82,7 @@ fn common_round(a: usize, b: usize) -> usize {
     (a / divisor).saturating_mul(b).min(MAX_IN_TURN)
 }
 
-/// The places that objects take in turn, cells by their centres; `None` if each object draws its own.
+/// The points that objects use in turn, cells by their centres; `None` if each object draws its own.
 fn places_in_turn(distribution: &Distribution) -> Option<Vec<[f64; 2]>> {
     match distribution {
         Distribution::Points {

@@ -73,7 +73,7 @@ pub(crate) fn integrate<const N: usize>(
     let mut stride = COARSE;
     while stride >= 1 {
         let first = stride == COARSE;
-        // Later levels add the nodes between those of earlier levels.
+        // Later levels add nodes between the nodes of earlier levels.
         let (from, step) = if first { (0, stride) } else { (stride, 2 * stride) };
         for (k, (share, weight)) in nodes().iter().enumerate().skip(from).step_by(step) {
             let offset = width * share;

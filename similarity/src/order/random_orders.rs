@@ -1,4 +1,4 @@
-//! Compares an order's length with those of random orders.
+//! Compares an order's length with the lengths of random orders.
 
 use super::ordering::Ordering;
 use crate::DistanceMatrix;

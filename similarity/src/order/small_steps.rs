@@ -25,7 +25,7 @@ pub(super) fn search(short: &[usize], items: &Items) -> Vec<usize> {
             break;
         }
         let bound = f64::midpoint(impossible, reached);
-        // A step beyond the bound costs more than everything it could save, and more the farther it goes.
+        // A step beyond the bound costs more than it could ever save, and its cost grows with its length.
         let cost = |a: usize, b: usize| {
             let gap = items.gap(a, b);
             if gap <= bound {

@@ -43,8 +43,9 @@ use crate::{
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WorldMeasure {
     /// Occupancy: [`grid_earth_movers_distance`](crate::grid_earth_movers_distance), the mean distance in metres by which a
-    /// class must be moved, whatever its number of objects; exact. Classes are added up. A class that only one world has counts
-    /// as the diameter, so a world without objects is one diameter per class from any other. In `0..=` diameter · classes.
+    /// class must be moved, independent of its number of objects; exact. Classes are added up. A class that only one world has
+    /// counts as the diameter, so a world without objects is one diameter per class from any other. In `0..=` diameter ·
+    /// classes.
     EarthMovers,
     /// Occupancy: [`grid_jaccard_distance`], the share of taken cells that are not taken in both, in `0..=1`. 1 if only
     /// one world has objects.
@@ -58,10 +59,10 @@ pub enum WorldMeasure {
     /// counterpart of the same class. An object without one counts as 10 m, as does one that is farther away. 10 if only one
     /// world has objects.
     Ospa,
-    /// Objects: [`counts_distance`], the share of objects without a counterpart of their class, whatever their positions, in
+    /// Objects: [`counts_distance`], the share of objects without a counterpart of their class, ignoring positions, in
     /// `0..=1`. 1 if only one world has objects.
     Counts,
-    /// The colours of objects that have one, whatever their positions: the mean distance of the best pairing, as a share of the
+    /// The colours of objects that have one, ignoring positions: the mean distance of the best pairing, as a share of the
     /// distance between the two farthest colours, in `0..=1`. A colour without a counterpart counts as 1, so worlds without and
     /// with colours are 1 apart. Objects that look like their model are left out.
     Colors(ColorMeasure),

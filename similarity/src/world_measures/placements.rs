@@ -126,7 +126,7 @@ mod tests {
                 world.reverse();
             }
             prop_assert_eq!(d(&of_a, &of_b), d(&Placements::of(&worlds(&shuffled)), &of_b));
-            // A class that only one has counts as 1, whatever the distances: it is a metric only if all have the same classes.
+            // A class that only one has counts as 1 at any distance, so it is a metric only if all have the same classes.
             let classes = |of: &Placements| of.by_class.keys().cloned().collect::<Vec<_>>();
             if classes(&of_a) == classes(&of_b) && classes(&of_b) == classes(&of_c) {
                 prop_assert!(d(&of_a, &of_c) <= d(&of_a, &of_b) + d(&of_b, &of_c) + 1e-9);

@@ -5,7 +5,7 @@ use crate::Lab;
 use driftworld_spec::Color;
 use proptest::prelude::*;
 
-/// A task whose parameter `p` may take these values, with this measure; its variants `v0`, `v1` … are the choices in turn.
+/// A task with a parameter `p` of this type, compared by this measure; variants `v0`, `v1` … set it to each choice in turn.
 fn task(kind: &str, measure: &str, choices: &[String]) -> Arc<TaskSpec> {
     let variants: Vec<String> = (choices.iter().enumerate())
         .map(|(index, choice)| format!(r#""v{index}": {{ "p": {choice} }}"#))
