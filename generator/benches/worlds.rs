@@ -1,4 +1,4 @@
-//! Benchmarks of drawing worlds. Reading worlds is measured in spec/benches/documents.rs.
+//! Benchmarks of sampling worlds. Reading worlds is measured in spec/benches/documents.rs.
 
 use std::hint::black_box;
 use std::sync::Arc;
@@ -10,7 +10,7 @@ use driftworld_spec::{TaskSpec, Variant};
 fn task(name: &str) -> Arc<TaskSpec> {
     let path = format!("{}/../examples/tasks/{name}.json", env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(&path).expect("the example tasks ship with the project");
-    TaskSpec::from_json(&path, &text).expect("the example tasks are sound")
+    TaskSpec::from_json(&path, &text).expect("the example tasks are valid")
 }
 
 fn variant(task: &str, name: &str) -> Variant {
@@ -24,7 +24,7 @@ const CROWD: &str = r#"{ "version": 2, "name": "crowd", "world": { "environment_
                  "placement": { "box": { "low": [-149, -149], "high": [149, 149] } } }] }"#;
 
 fn worlds(c: &mut Criterion) {
-    let crowd = TaskSpec::from_json("crowd.json", CROWD).expect("it is sound");
+    let crowd = TaskSpec::from_json("crowd.json", CROWD).expect("the task is valid");
     let cases = [
         (
             "find_objects, 15 to 19 objects",
@@ -36,7 +36,7 @@ fn worlds(c: &mut Criterion) {
         ),
         (
             "crowd, 10,000 objects",
-            Sampler::new(&crowd.variant("default").expect("it is always there"), 7),
+            Sampler::new(&crowd.variant("default").expect("the default variant always exists"), 7),
         ),
     ];
     for (name, sampler) in cases {
@@ -58,7 +58,7 @@ fn values(c: &mut Criterion) {
         c.bench_function(&format!("randomized parameters, {name}"), |bench| {
             bench.iter(|| {
                 index += 1;
-                black_box(sampler.values(index).expect("nothing is required"))
+                black_box(sampler.values(index).expect("the task has no requirements"))
             });
         });
     }
@@ -71,7 +71,7 @@ fn preparing(c: &mut Criterion) {
     });
     let blue = variant("find_objects", "blue");
     c.bench_function("a variant of a drift", |bench| {
-        bench.iter(|| black_box(drift(&blue, &red, 0.3).expect("one task")));
+        bench.iter(|| black_box(drift(&blue, &red, 0.3).expect("both variants belong to one task")));
     });
 }
 

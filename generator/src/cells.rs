@@ -9,7 +9,7 @@ use crate::stream::Rng;
 /// Number of cells to try at random before going through them one by one.
 const RANDOM_TRIES: usize = 32;
 
-/// Number of places to try in a cell with jitter; the last is the middle.
+/// Number of positions to try in a cell with jitter; the last is the centre.
 const TRIES_IN_CELL: usize = 8;
 
 /// A cell or a doorway of a plan, by index.
@@ -19,11 +19,11 @@ pub(crate) enum Spot {
     Doorway(usize),
 }
 
-/// A place where something can stand.
+/// A position where something can be placed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct FreePlace {
     pub(crate) place: [f64; 2],
-    /// The cell or doorway that it takes, if one was requested.
+    /// The cell or doorway that it occupies, if one was requested.
     pub(crate) spot: Option<Spot>,
     /// Heading in degrees; only in a doorway.
     pub(crate) heading: Option<f64>,
@@ -40,8 +40,8 @@ pub(crate) struct Cells<'a> {
 }
 
 impl<'a> Cells<'a> {
-    /// The cells of a layout that fit a distribution of cells, for a group of this name and an agent that starts at this place;
-    /// else the reason why none fits.
+    /// The cells of a layout that fit a distribution of cells, for a group of this name and an agent that starts at this
+    /// position; otherwise the reason why none fits.
     pub(crate) fn find(
         plan: Option<&'a Plan>,
         layout: Option<&Layout>,
@@ -61,7 +61,7 @@ impl<'a> Cells<'a> {
             jitter,
         } = distribution
         else {
-            unreachable!("callers hand over distributions of cells")
+            unreachable!("callers pass distributions of cells")
         };
         let start = plan.cell_at(agent);
         if start.is_none() && (room.is_some() || walk.is_some()) {
@@ -74,8 +74,8 @@ impl<'a> Cells<'a> {
             .map(|start| plan.walking_distances(start));
         let own_room = start.map(|start| plan.cells[start].room);
         let is_own = |letter: char| matches!(layout.meaning(letter), Some(Legend::Group(name)) if name == group);
-        let fits = |number: &usize, rooms: [u32; 2]| {
-            let cell = &plan.cells[*number];
+        let fits = |index: &usize, rooms: [u32; 2]| {
+            let cell = &plan.cells[*index];
             let by_letter = letter
                 .as_ref()
                 .is_none_or(|letters| cell.letter.is_some_and(|own| letters.contains(own)));
@@ -86,29 +86,29 @@ impl<'a> Cells<'a> {
             });
             let by_walk = metres.as_ref().zip(*walk).is_none_or(|(metres, [least, most])| {
                 // Tolerates rounding: a path of 4 cells of 2.5 m counts as 10 m.
-                (least - 1e-6..=most + 1e-6).contains(&metres[*number])
+                (least - 1e-6..=most + 1e-6).contains(&metres[*index])
             });
             by_letter && by_group && by_room && by_walk
         };
-        let is_kind = |number: &usize| kind.has(plan.cells[*number].open_sides());
+        let is_kind = |index: &usize| kind.has(plan.cells[*index].open_sides());
         let fitting: Vec<FreePlace> = if *kind == CellKind::Doorway {
             let doorways = plan.doorways.iter().enumerate();
             let fits = |(_, doorway): &(usize, &Doorway)| {
                 let cell = plan.cell_at(doorway.center);
                 cell.is_some_and(|cell| fits(&cell, doorway.rooms))
             };
-            let found = |(number, doorway): (usize, &Doorway)| FreePlace {
+            let found = |(index, doorway): (usize, &Doorway)| FreePlace {
                 place: doorway.center,
-                spot: Some(Spot::Doorway(number)),
+                spot: Some(Spot::Doorway(index)),
                 heading: Some(doorway.heading),
             };
             doorways.filter(fits).map(found).collect()
         } else {
             let cells = (0..plan.cells.len()).filter(is_kind);
-            let cells = cells.filter(|number| fits(number, [plan.cells[*number].room; 2]));
-            let found = |number: usize| FreePlace {
-                place: plan.cells[number].center,
-                spot: Some(Spot::Cell(number)),
+            let cells = cells.filter(|index| fits(index, [plan.cells[*index].room; 2]));
+            let found = |index: usize| FreePlace {
+                place: plan.cells[index].center,
+                spot: Some(Spot::Cell(index)),
                 heading: None,
             };
             cells.map(found).collect()
@@ -127,8 +127,8 @@ impl<'a> Cells<'a> {
             format!("of {} doorways, {count} are {asked}", plan.doorways.len())
         } else {
             let of_kind = (0..all).filter(is_kind).count();
-            let kind_too = *kind != CellKind::Any && !conditions.is_empty() && of_kind > 0;
-            let of_them = if kind_too {
+            let names_kind = *kind != CellKind::Any && !conditions.is_empty() && of_kind > 0;
+            let of_them = if names_kind {
                 format!(", {of_kind} of them {}", kind.describe())
             } else {
                 String::new()
@@ -147,15 +147,15 @@ impl<'a> Cells<'a> {
         })
     }
 
-    /// Excludes the cells that others have taken.
-    pub(crate) fn leave(&mut self, taken: &BTreeSet<Spot>) {
+    /// Excludes the cells that are already taken.
+    pub(crate) fn exclude(&mut self, taken: &BTreeSet<Spot>) {
         let fitting = self.fitting.iter().enumerate();
-        let gone = fitting.filter(|(_, found)| found.spot.is_some_and(|spot| taken.contains(&spot)));
-        self.taken.extend(gone.map(|(number, _)| number));
+        let excluded = fitting.filter(|(_, found)| found.spot.is_some_and(|spot| taken.contains(&spot)));
+        self.taken.extend(excluded.map(|(index, _)| index));
     }
 
-    /// Excludes the cells that a text layout marks with letters, unless there are no others.
-    pub(crate) fn leave_letters(&mut self) {
+    /// Excludes cells marked with letters in a text layout, unless there are no others.
+    pub(crate) fn exclude_letters(&mut self) {
         let has_letter =
             |found: &FreePlace| matches!(found.spot, Some(Spot::Cell(cell)) if self.plan.cells[cell].letter.is_some());
         let plain: Vec<FreePlace> = self
@@ -169,15 +169,15 @@ impl<'a> Cells<'a> {
         }
     }
 
-    /// Whether the middle of every free fitting cell satisfies a condition.
-    pub(crate) fn all(&self, is: impl Fn([f64; 2]) -> bool) -> bool {
+    /// Whether the centre of every free fitting cell satisfies a condition.
+    pub(crate) fn all_centers(&self, is: impl Fn([f64; 2]) -> bool) -> bool {
         let fitting = self.fitting.iter().enumerate();
-        let mut free = fitting.filter(|(number, _)| !self.taken.contains(number));
+        let mut free = fitting.filter(|(index, _)| !self.taken.contains(index));
         free.all(|(_, found)| is(found.place))
     }
 
-    /// Takes a free cell and returns a place in it that `is_free` accepts: tries cells at random, then all in turn. `is_free`
-    /// gets a place and the middle of its cell. On failure returns the number of tries and the request.
+    /// Takes a free cell and returns a position in it that `is_free` accepts: tries cells at random, then all in turn.
+    /// `is_free` gets a position and the centre of its cell. On failure, returns the number of tries and the request.
     pub(crate) fn take(
         &mut self,
         rng: &mut Rng,
@@ -190,15 +190,15 @@ impl<'a> Cells<'a> {
             if turn < RANDOM_TRIES {
                 first = ((rng.unit() * count as f64) as usize).min(count - 1);
             }
-            let number = (first + turn.saturating_sub(RANDOM_TRIES - 1)) % count;
-            if self.taken.contains(&number) {
+            let index = (first + turn.saturating_sub(RANDOM_TRIES - 1)) % count;
+            if self.taken.contains(&index) {
                 continue;
             }
-            let found = self.fitting[number];
+            let found = self.fitting[index];
             let middle = found.place;
             let places = if self.jitter > 0.0 { TRIES_IN_CELL } else { 1 };
             for left in (0..places).rev() {
-                let stray = |axis: usize, rng: &mut Rng| {
+                let jittered = |axis: usize, rng: &mut Rng| {
                     let share = if left > 0 {
                         self.jitter * (rng.unit() - 0.5)
                     } else {
@@ -206,10 +206,10 @@ impl<'a> Cells<'a> {
                     };
                     middle[axis] + share * self.plan.cell[axis]
                 };
-                let place = [stray(0, rng), stray(1, rng)];
+                let place = [jittered(0, rng), jittered(1, rng)];
                 tries += 1;
                 if is_free(place, middle) {
-                    self.taken.insert(number);
+                    self.taken.insert(index);
                     return Ok(FreePlace { place, ..found });
                 }
             }

@@ -1,4 +1,4 @@
-//! [`FreeSpace`]: the clearance of a place, which is its distance to walls and regions.
+//! [`FreeSpace`]: the clearance of a point, that is, its distance to walls and regions.
 
 use std::sync::Arc;
 
@@ -23,7 +23,7 @@ struct Region {
 impl FreeSpace {
     pub(crate) fn new(world: &WorldDraft) -> Self {
         let environment = &world.environment_params;
-        // An invalid layout has no plan; the check of the world refuses it.
+        // An invalid layout has no plan; the check of the world rejects it.
         let plan = world.layout_problems().is_empty().then(|| world.plan()).flatten();
         let map = environment.regions().into_iter().map(<[[f64; 2]]>::to_vec);
         let walls = environment.walls.iter().map(|wall| wall.polygon.clone());
@@ -44,7 +44,7 @@ impl FreeSpace {
         let outer = (self.half[0] - x.abs()).min(self.half[1] - y.abs());
         self.regions
             .iter()
-            .fold(outer, |least, region| least.min(region.clearance([x, y], enough)))
+            .fold(outer, |nearest, region| nearest.min(region.clearance([x, y], enough)))
     }
 }
 
@@ -59,7 +59,7 @@ impl Region {
         Self { corners, low, high }
     }
 
-    /// Distance to the polygon, negative inside; any value above `enough` if it is farther than that.
+    /// Distance to the polygon, negative inside; may be any value above `enough` if the polygon is farther away than that.
     fn clearance(&self, [x, y]: [f64; 2], enough: f64) -> f64 {
         let beyond = (self.low[0] - x)
             .max(x - self.high[0])
@@ -69,17 +69,17 @@ impl Region {
             return beyond;
         }
         let mut inside = false;
-        let mut least = f64::INFINITY;
+        let mut nearest = f64::INFINITY;
         let mut from = self.corners[self.corners.len() - 1];
         for &to in &self.corners {
-            least = least.min(distance_to_segment([x, y], from, to));
+            nearest = nearest.min(distance_to_segment([x, y], from, to));
             // Even–odd rule, which is also correct for polygons that touch themselves.
             if (from[1] > y) != (to[1] > y) && x < (to[0] - from[0]) * (y - from[1]) / (to[1] - from[1]) + from[0] {
                 inside = !inside;
             }
             from = to;
         }
-        if inside { -least } else { least }
+        if inside { -nearest } else { nearest }
     }
 }
 

@@ -1,4 +1,4 @@
-//! A task compiled for one variant and seed: fixed values are filled in, and each drawn value has a random stream.
+//! A task compiled for one variant and seed: fixed values are filled in, and each random value has its own stream.
 
 use std::borrow::Cow;
 
@@ -12,25 +12,25 @@ use crate::placement::Margins;
 use crate::sequence::Sequence;
 use crate::stream::{Rng, Stream};
 
-/// A task compiled for one variant and seed, from which worlds are drawn.
+/// A task compiled for one variant and seed, from which worlds are sampled.
 #[derive(Debug)]
 pub(crate) struct Compiled {
     pub(crate) parameters: Vec<Randomized>,
-    /// Indices of the parameters, each after those that its look-ups read.
+    /// Indices of the parameters; each parameter comes after those that its look-ups read.
     pub(crate) order: Vec<usize>,
     pub(crate) world: Filled<WorldDraft>,
     /// The layout cells in which the agent starts, if it starts in cells.
     pub(crate) start: Option<Start>,
     pub(crate) fixtures: Vec<Filled<Object>>,
     pub(crate) groups: Vec<Group>,
-    /// Number of objects to reserve memory for.
-    pub(crate) room: usize,
+    /// Number of objects for which to reserve memory.
+    pub(crate) capacity: usize,
 }
 
 /// A distribution with fixed numbers, and the stream it draws from.
 #[derive(Debug)]
 pub(crate) struct Drawn {
-    /// The distribution; if look-ups read drawn values, the distribution over all their outcomes.
+    /// The distribution; if look-ups read randomized parameters, the distribution over all their outcomes.
     pub(crate) distribution: Distribution,
     pub(crate) stream: Stream,
     look_up: Option<Box<LookUp>>,
@@ -46,7 +46,7 @@ impl Drawn {
     }
 }
 
-/// A source whose look-ups read drawn values.
+/// A source with look-ups that read randomized parameters.
 #[derive(Debug)]
 struct LookUp {
     variant: Variant,
@@ -83,7 +83,7 @@ pub(crate) struct Randomized {
     pub(crate) name: String,
     kind: ParameterType,
     drawn: Drawn,
-    /// Which dimensions of a sequence it takes: the first, and how many.
+    /// The dimensions of a sequence that it uses: the first, and their number.
     dimensions: Option<(usize, usize)>,
 }
 
@@ -98,27 +98,27 @@ impl Randomized {
         (index, attempt): (u64, u32),
         known: &[Value],
     ) -> Value {
-        let covered = if attempt == 0 {
-            self.covered(sequence, stream, index)
+        let from_sequence = if attempt == 0 {
+            self.from_sequence(sequence, stream, index)
         } else {
             None
         };
-        let value = covered
+        let value = from_sequence
             .unwrap_or_else(|| draw(&self.drawn.law(known), &mut self.drawn.stream.at(index, 0, attempt)).into_owned());
         value
             .cast(self.kind)
             .expect("loading the task checked what the distribution yields")
     }
 
-    fn covered(&self, sequence: Sequence, stream: &Stream, index: u64) -> Option<Value> {
+    fn from_sequence(&self, sequence: Sequence, stream: &Stream, index: u64) -> Option<Value> {
         let (first, count) = self.dimensions?;
         let u = sequence.unit(stream, first, index)?;
-        let further = |dimension: usize| sequence.unit(stream, first + dimension, index);
+        let next_unit = |dimension: usize| sequence.unit(stream, first + dimension, index);
         let law = &self.drawn.distribution;
         match count {
             1 => law.value_at(u),
-            2 => law.point_at([u, further(1)?]).map(Value::Point),
-            _ => law.color_at([u, further(1)?, further(2)?]).map(Value::Color),
+            2 => law.point_at([u, next_unit(1)?]).map(Value::Point),
+            _ => law.color_at([u, next_unit(1)?, next_unit(2)?]).map(Value::Color),
         }
     }
 }
@@ -132,23 +132,23 @@ pub(crate) struct Filled<T> {
     pub(crate) holes: Vec<(Hole<T>, Fill)>,
 }
 
-/// Where a hole gets its value in each world.
+/// The source of a hole's value in each world.
 #[derive(Debug)]
 pub(crate) enum Fill {
     /// The randomized parameter with this index, or one of its components.
     Parameter(usize, Option<usize>),
-    /// A draw of its own.
+    /// A separate draw.
     Own(Box<Drawn>),
 }
 
-/// Where in its stream a value is drawn.
+/// The position in its stream at which a value is drawn.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Address {
     /// The world's number.
     pub(crate) index: u64,
     /// The object's number in its group.
     pub(crate) object: u64,
-    /// Number of times that the world was redrawn.
+    /// Number of times that the world was sampled again.
     pub(crate) attempt: u32,
 }
 
@@ -187,7 +187,7 @@ pub(crate) struct Group {
     pub(crate) margins: Margins,
     pub(crate) around: Option<usize>,
     pub(crate) turned: bool,
-    pub(crate) facing: Option<Look>,
+    pub(crate) facing: Option<FacingRule>,
     /// The stream of its objects' seeds, if their behaviour is random in any variant.
     pub(crate) seeds: Option<Stream>,
     /// Expected number of objects, for reserving memory.
@@ -195,28 +195,28 @@ pub(crate) struct Group {
 }
 
 /// Whether a template's objects behave randomly in any variant of the task. The answer is the same for every variant, so that
-/// worlds of two variants do not also differ in which objects have seeds.
+/// the same objects have seeds in the worlds of all variants.
 fn may_be_random(template: &Template<Object>) -> bool {
     let random = ["/motion_model", "/reward_probability", "/respawn"];
-    let opens = |hole: &Hole<Object>| random.contains(&hole.pointer.as_str());
-    template.base.takes_chances() || template.holes.iter().any(opens)
+    let varies = |hole: &Hole<Object>| random.contains(&hole.pointer.as_str());
+    template.base.takes_chances() || template.holes.iter().any(varies)
 }
 
-/// The seeds of a group's or fixture's objects: they depend on its name alone, so they are the same in every world.
+/// The seeds of a group's or fixture's objects, which depend on its name alone and are therefore the same in every world.
 fn seeds_of(place: &str) -> Stream {
     Stream::new("", 0, &format!("{place}/seed"))
 }
 
-/// How many objects a group has.
+/// The number of objects of a group.
 #[derive(Debug)]
 pub(crate) enum GroupCount {
     Fixed(u32),
     Drawn(Fill),
 }
 
-/// Where the objects of a group face.
+/// The direction that the objects of a group face.
 #[derive(Debug)]
-pub(crate) enum Look {
+pub(crate) enum FacingRule {
     Random(Stream),
     Agent,
     Middle,
@@ -227,9 +227,9 @@ pub(crate) enum Look {
 /// Where the agent starts in a layout.
 #[derive(Debug)]
 pub(crate) enum Start {
-    /// In one of these cells, as the task says.
+    /// In one of these cells, as set by the task.
     Cells(Drawn),
-    /// Not given by the task: the start marked in a text layout, else any cell, if the layout has cells.
+    /// Not set by the task: the start marked in a text layout, otherwise any cell, if the layout has cells.
     Default(Stream),
 }
 
@@ -279,7 +279,7 @@ impl Compiled {
             .filter_map(|(name, parameter)| {
                 let distribution = variant.distribution(name)?;
                 let look_up = compiler.look_up(parameter.distribution.as_ref()?);
-                let takes = match &distribution {
+                let num_dimensions = match &distribution {
                     Distribution::Choice { .. } | Distribution::Constant { .. } => 0,
                     Distribution::Box { .. }
                     | Distribution::Disc { .. }
@@ -291,9 +291,9 @@ impl Compiled {
                     | Distribution::ColorHsv { .. } => 3,
                     other => usize::from(other.is_scalar()),
                 };
-                let takes = if look_up.is_some() { 0 } else { takes };
-                let dimensions = (takes > 0).then_some((dimension, takes));
-                dimension += takes;
+                let num_dimensions = if look_up.is_some() { 0 } else { num_dimensions };
+                let dimensions = (num_dimensions > 0).then_some((dimension, num_dimensions));
+                dimension += num_dimensions;
                 let mut drawn = compiler.drawn(distribution, &format!("parameter/{name}"));
                 drawn.look_up = look_up;
                 Some(Randomized {
@@ -328,8 +328,8 @@ impl Compiled {
             _ => None,
         };
         Self {
-            // A quarter more than the mean is enough for most worlds; few need to reallocate.
-            room: (expected * 1.25).min(4096.0) as usize + task.fixtures().len(),
+            // A quarter more than the mean is enough for most worlds; few have to reallocate.
+            capacity: (expected * 1.25).min(4096.0) as usize + task.fixtures().len(),
             order: order(&parameters),
             parameters,
             world,
@@ -362,7 +362,7 @@ impl Compiler<'_> {
         }
     }
 
-    /// The look-ups of a source, if they read drawn values.
+    /// The look-ups of a source, if they read randomized parameters.
     fn look_up(&self, source: &Source) -> Option<Box<LookUp>> {
         if self.variant.resolve_with(source, &[]).is_some() {
             return None;
@@ -376,7 +376,7 @@ impl Compiler<'_> {
         }))
     }
 
-    /// Fills holes that a fixed or variant parameter settles; leaves the rest for each draw.
+    /// Fills holes that fixed or variant parameters determine; leaves the others to be filled in each world.
     fn template<T: Clone>(&self, template: &Template<T>, place: &str) -> Filled<T> {
         let mut base = template.base.clone();
         let mut holes = Vec::new();
@@ -386,7 +386,7 @@ impl Compiler<'_> {
                 Err(value) => {
                     let turned = value.cast(hole.kind).filter(|_| hole.kind == ParameterType::Heading);
                     hole.fill(&mut base, turned.as_ref().unwrap_or(&value))
-                        .expect("loading the task tried every value that this hole can be given");
+                        .expect("loading the task tried every value that this hole can receive");
                 }
             }
         }
@@ -397,7 +397,7 @@ impl Compiler<'_> {
         }
     }
 
-    /// How a hole is filled in each world, or its value if it is the same in all.
+    /// How to fill a hole in each world; `Err` with its value if it is the same in every world.
     fn fill(&self, source: &Source, name: &str) -> Result<Fill, Value> {
         match self.variant.resolve(source) {
             Resolved::Value(value) => Err(value),
@@ -437,14 +437,14 @@ impl Compiler<'_> {
             unreachable!("loading the task checked that placements are distributions")
         };
         let facing = spec.facing.as_ref().map(|facing| match facing {
-            Facing::Random => Look::Random(self.stream(&format!("group/{name}/facing"))),
-            Facing::Agent => Look::Agent,
-            Facing::Middle => Look::Middle,
-            Facing::Point([x, y]) => Look::Point([self.variant.number(x), self.variant.number(y)]),
-            Facing::Group(_) => Look::Group(
+            Facing::Random => FacingRule::Random(self.stream(&format!("group/{name}/facing"))),
+            Facing::Agent => FacingRule::Agent,
+            Facing::Middle => FacingRule::Middle,
+            Facing::Point([x, y]) => FacingRule::Point([self.variant.number(x), self.variant.number(y)]),
+            Facing::Group(_) => FacingRule::Group(
                 group
                     .facing_group
-                    .expect("loading the task checked that the group is there"),
+                    .expect("loading the task checked that the group exists"),
             ),
         });
         Group {

@@ -1,9 +1,9 @@
-//! Draws values and places from the declared distributions.
+//! Draws values and positions from the declared distributions.
 //!
-//! Numbers are drawn by inversion: the quantile function maps one random number to the value. Two variants under one
-//! seed share random numbers: where one draws high, so does the other. Points of discs and rings come from
-//! `rand_distr`, whose rejection sampling needs no transcendental function; everything else uses `libm`, so that the
-//! bits are the same on every platform.
+//! Numbers are drawn by inversion: the quantile function maps one random number to the value. Two variants under one seed share
+//! random numbers, so that a high draw in one is a high draw in the other. Points of discs and rings come from `rand_distr`,
+//! whose rejection sampling needs no transcendental functions; everything else uses `libm`, so that results are identical on
+//! every platform.
 
 use std::borrow::Cow;
 
@@ -23,22 +23,23 @@ pub(crate) fn draw<'a>(distribution: &'a Distribution, rng: &mut Rng) -> Cow<'a,
             Cow::Owned(Value::Vector(shares(alpha, &units)))
         }
         colors if colors.draws_colors() => {
-            // Always draws three numbers: a variant whose channels vary together then shares the first with others.
+            // Always draws three numbers, so that a variant with channels that vary together shares the first number with
+            // others.
             let units = [rng.unit(), rng.unit(), rng.unit()];
             Cow::Owned(Value::Color(
-                colors.color_at(units).expect("three random numbers decide a colour"),
+                colors.color_at(units).expect("three random numbers determine a colour"),
             ))
         }
         planar if planar.is_planar() => Cow::Owned(Value::Point(place(planar, 0, rng).at)),
         other => Cow::Owned(
             other
                 .value_at(rng.unit())
-                .expect("one random number decides what every other distribution draws"),
+                .expect("one random number determines a draw from every other distribution"),
         ),
     }
 }
 
-/// Shares that sum to 1: each takes its part of what the earlier ones left (stick-breaking).
+/// Shares that sum to 1: each takes a part of what the earlier ones left (stick-breaking).
 fn shares(alpha: &[f64], units: &[f64]) -> Vec<f64> {
     let mut rest: f64 = alpha.iter().sum();
     let mut left = 1.0;
@@ -59,7 +60,7 @@ fn shares(alpha: &[f64], units: &[f64]) -> Vec<f64> {
     shares
 }
 
-/// A place on the ground, with the spacing that its distribution requires.
+/// A position on the ground, with the spacing that its distribution requires.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Place {
     pub(crate) at: [f64; 2],
@@ -67,7 +68,8 @@ pub(crate) struct Place {
     pub(crate) own_distance: f64,
 }
 
-/// Draws a place from a planar distribution. `number` is the object's index, which selects from lists that are taken in turn.
+/// Draws a position from a planar distribution. `number` is the object's index, which selects from lists that are taken in
+/// turn.
 pub(crate) fn place(distribution: &Distribution, number: u64, rng: &mut Rng) -> Place {
     let mut own_distance = 0.0;
     let at = match distribution {
@@ -97,8 +99,8 @@ pub(crate) fn place(distribution: &Distribution, number: u64, rng: &mut Rng) -> 
             let cell = turn(*order, columns * rows, number, rng) as u64;
             let jitter = jitter.unwrap_or(0.0);
             let mut axis = |k: usize, cell: u64, count: u64| {
-                let stray = if jitter > 0.0 { jitter * (rng.unit() - 0.5) } else { 0.0 };
-                low[k] + (high[k] - low[k]) * (cell as f64 + 0.5 + stray) / count as f64
+                let offset = if jitter > 0.0 { jitter * (rng.unit() - 0.5) } else { 0.0 };
+                low[k] + (high[k] - low[k]) * (cell as f64 + 0.5 + offset) / count as f64
             };
             [axis(0, cell % columns, columns), axis(1, cell / columns, rows)]
         }

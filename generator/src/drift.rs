@@ -1,4 +1,4 @@
-//! [`Drift`]: the variants on the way from one variant to another.
+//! [`Drift`]: the variants between one variant and another.
 
 use driftworld_spec::{Domain, DriftSchedule, DriftSwitch, RegimeDrift, Value, Variant};
 
@@ -12,14 +12,14 @@ pub enum Switch {
     /// At the fraction that the parameter declares as `switch_at`, or halfway if it declares none.
     #[default]
     AtPoint,
-    /// By chance: at fraction t of the drift a world has the new value with probability t, drawn with this seed.
+    /// At random: at fraction t of the drift, a world has the new value with probability t, drawn with this seed.
     Mixture {
         /// The seed.
         seed: u64,
     },
-    /// One coin toss for the whole variant: at fraction t of the drift a world belongs to the second variant with probability t,
-    /// drawn with this seed, else to the first. Nothing is interpolated, not even numbers; the variants may belong to different
-    /// tasks.
+    /// One coin toss for the whole variant: at fraction t of the drift, a world belongs to the second variant with probability
+    /// t, drawn with this seed, otherwise to the first. Nothing is interpolated, not even numbers; the variants may belong to
+    /// different tasks.
     Task {
         /// The seed.
         seed: u64,
@@ -28,10 +28,10 @@ pub enum Switch {
 
 /// A path from one variant to another of the same task, or of any other task if whole variants [switch](Switch::Task).
 ///
-/// Numbers, points, vectors and the numbers of distributions of one family are interpolated linearly; headings take the shorter
-/// way round, or the way through their range; colours, including those of distributions, are interpolated in Oklab, so that they
-/// change evenly to the eye; distributions of different families are mixed where possible; layouts change as
-/// [`Layout::toward`](driftworld_spec::Layout::toward) says; everything else switches. At 0 and 1 the variants are the given ones.
+/// Numbers, points, vectors and the numbers of distributions of one family are interpolated linearly; headings turn the shorter
+/// way round, or through their range; colours, including those of distributions, are interpolated in Oklab, so that they change
+/// evenly to the eye; distributions of different families are mixed where possible; layouts change as described at
+/// [`Layout::toward`](driftworld_spec::Layout::toward); everything else switches. At 0 and 1, the result is the given variant.
 ///
 /// # Example
 /// ```
@@ -52,7 +52,7 @@ pub struct Drift {
     switch: Switch,
 }
 
-/// The variant at fraction `t`, 0..=1, between two variants of one task: a linear [`Drift`] whose switches are at points.
+/// The variant at fraction `t`, 0..=1, between two variants of one task: a linear [`Drift`] with switches at points.
 ///
 /// # Errors
 /// As [`Drift::new`] and [`Drift::at`].
@@ -81,8 +81,8 @@ impl Drift {
         }
     }
 
-    /// A drift between two variants, of any tasks, whose worlds each belong to one of the two: to the second with a probability
-    /// equal to the drift's progress, drawn with a seed.
+    /// A drift between two variants of any tasks, in which each world belongs to one of the two: to the second with a
+    /// probability equal to the drift's progress, drawn with a seed.
     ///
     /// # Example
     /// ```
@@ -104,7 +104,7 @@ impl Drift {
         }
     }
 
-    /// The drift that a scenario's regime declares, from its variant to the drift's; mixing switches draw with the
+    /// The drift declared by a scenario's regime, from the regime's variant to the drift's end variant; random switches use the
     /// regime's seed.
     ///
     /// # Errors
@@ -132,10 +132,10 @@ impl Drift {
         self
     }
 
-    /// The variant at `progress`, 0..=1, for world number `index`, which only mixing switches use.
+    /// The variant at `progress`, 0..=1, for world number `index`, which only random switches use.
     ///
     /// # Errors
-    /// [`GeneratorError::Between`] if a variant on the way breaks a requirement or cannot be drawn from;
+    /// [`GeneratorError::Between`] if a variant in between violates a requirement or is invalid;
     /// [`GeneratorError::DifferentTasks`] for two tasks without whole-variant switches.
     pub fn at(&self, progress: f64, index: u64) -> Result<Variant, GeneratorError> {
         let t = self.schedule.at(progress);

@@ -9,7 +9,7 @@ use driftworld_spec::SpecError;
 #[strum(prefix = "generator/", serialize_all = "kebab-case")]
 #[non_exhaustive]
 pub enum GeneratorError {
-    /// A draw fell outside the range allowed at its place in the world.
+    /// A draw fell outside the range allowed for its key in the world.
     #[error(
         "{world} ({place}): drew {found}, expected a number in {low}..{high}; use a bounded distribution, such as \
          truncated_normal"
@@ -17,7 +17,7 @@ pub enum GeneratorError {
     OutOfRange {
         /// The world.
         world: WorldId,
-        /// Where the value belongs: a pointer into the spec.
+        /// The key of the value, as a pointer into the spec.
         place: String,
         /// The drawn number.
         found: f64,
@@ -26,7 +26,7 @@ pub enum GeneratorError {
         /// Largest number allowed there.
         high: f64,
     },
-    /// No free place was found for an object within the allowed number of tries.
+    /// No free position was found for an object within the allowed number of tries.
     #[error(
         "{world}: group {group:?}, object {object} of {count}: found no free place in {}; {reason}",
         tried(*tries)
@@ -40,9 +40,9 @@ pub enum GeneratorError {
         object: u32,
         /// Number of objects that the group should have.
         count: u32,
-        /// Number of places tried.
+        /// Number of positions tried.
         tries: u32,
-        /// The condition that most places failed, the closest miss, and which field to loosen.
+        /// The condition that most positions failed, the closest miss, and which field to relax.
         reason: String,
     },
     /// The agent starts outside the arena or in a region that cannot be entered.
@@ -136,7 +136,7 @@ pub enum GeneratorError {
         variant: String,
         /// The requested distance.
         target: f64,
-        /// The greatest distance reached.
+        /// The largest distance reached.
         farthest: f64,
         /// The values that reached it.
         values: String,
@@ -275,11 +275,11 @@ mod tests {
                 values: "color = red".into(),
             },
         ];
-        let said: Vec<String> = errors
+        let messages: Vec<String> = errors
             .iter()
             .map(|error| format!("{}: {error}", error.code()))
             .collect();
-        insta::assert_snapshot!(said.join("\n"));
+        insta::assert_snapshot!(messages.join("\n"));
         let covered: BTreeSet<&str> = errors.iter().map(GeneratorError::code).collect();
         let all: BTreeSet<&str> = GeneratorError::VARIANTS.iter().copied().collect();
         assert_eq!(covered, all, "every code has a case here");

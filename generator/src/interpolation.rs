@@ -4,7 +4,7 @@ use driftworld_spec::{
     ChannelSpread, Channels, Color, Distribution, Number, Parameter, ParameterType, Spread, Value, Variant,
 };
 
-/// Interpolates between two values; `None` if that is impossible. `listed`: the domain is a list of choices.
+/// Interpolates between two values; `None` if that is impossible. `listed` says whether the domain is a list of choices.
 pub(crate) fn interpolate(
     parameter: &Parameter,
     listed: bool,
@@ -13,14 +13,12 @@ pub(crate) fn interpolate(
     t: f64,
     (a, b): (&Variant, &Variant),
 ) -> Option<Value> {
-    let straight = |from: f64, to: f64| from + (to - from) * t;
+    let lerp = |from: f64, to: f64| from + (to - from) * t;
     match (from, to) {
         (Value::Color(from), Value::Color(to)) => Some(Value::Color(from.mix(*to, t))),
-        (Value::Point(from), Value::Point(to)) => {
-            Some(Value::Point([straight(from[0], to[0]), straight(from[1], to[1])]))
-        }
+        (Value::Point(from), Value::Point(to)) => Some(Value::Point([lerp(from[0], to[0]), lerp(from[1], to[1])])),
         (Value::Vector(from), Value::Vector(to)) => Some(Value::Vector(
-            from.iter().zip(to).map(|(from, to)| straight(*from, *to)).collect(),
+            from.iter().zip(to).map(|(from, to)| lerp(*from, *to)).collect(),
         )),
         (Value::Distribution(from), Value::Distribution(to)) => {
             between_distributions(&a.settle(from), &b.settle(to), t)
@@ -30,24 +28,22 @@ pub(crate) fn interpolate(
         _ if listed => None,
         (Value::Number(from), Value::Number(to)) if parameter.kind == ParameterType::Heading => {
             if let Some([low, high]) = parameter.range.filter(|[low, high]| high - low < 360.0) {
-                // Stay within the arc that the parameter declares, even if it is the longer way round.
+                // Stays within the arc that the parameter declares, even if it is the longer way round.
                 let along = |degrees: f64| (degrees - low).rem_euclid(360.0).min(high - low);
-                return Some(Value::Number(
-                    (low + straight(along(*from), along(*to))).rem_euclid(360.0),
-                ));
+                return Some(Value::Number((low + lerp(along(*from), along(*to))).rem_euclid(360.0)));
             }
             let turn = (to - from + 180.0).rem_euclid(360.0) - 180.0;
             Some(Value::Number((from + turn * t).rem_euclid(360.0)))
         }
-        (Value::Number(from), Value::Number(to)) => Some(Value::Number(straight(*from, *to))),
+        (Value::Number(from), Value::Number(to)) => Some(Value::Number(lerp(*from, *to))),
         (Value::Integer(from), Value::Integer(to)) => {
-            Some(Value::Integer(straight(*from as f64, *to as f64).round() as i64))
+            Some(Value::Integer(lerp(*from as f64, *to as f64).round() as i64))
         }
         _ => None,
     }
 }
 
-/// Distributions of one family interpolate number by number; others become a mixture if both draw numbers, points or colours.
+/// Interpolates distributions of one family number by number; others become a mixture if both draw numbers, points or colours.
 fn between_distributions(from: &Distribution, to: &Distribution, t: f64) -> Option<Distribution> {
     let (from, to) = (comparable(from, to), comparable(to, from));
     if skeleton(&from) == skeleton(&to) {
@@ -58,12 +54,12 @@ fn between_distributions(from: &Distribution, to: &Distribution, t: f64) -> Opti
         });
         let mut ends = ends.into_iter();
         let between = map(&from, |number| {
-            let end = ends.next().expect("equal skeletons have equally many numbers");
+            let end = ends.next().expect("equal skeletons have the same number of numbers");
             number + (end - number) * t
         });
-        return Some(colored(whole(between), &from, &to, t));
+        return Some(with_colors_interpolated(with_rounded_counts(between), &from, &to, t));
     }
-    let alike = if from.draws_cells() || to.draws_cells() {
+    let can_mix = if from.draws_cells() || to.draws_cells() {
         // Distributions of cells cannot be part of a mixture.
         false
     } else if from.draws_colors() || to.draws_colors() {
@@ -71,14 +67,14 @@ fn between_distributions(from: &Distribution, to: &Distribution, t: f64) -> Opti
     } else {
         from.is_planar() == to.is_planar() && (from.is_planar() || from.mean().is_some() == to.mean().is_some())
     };
-    alike.then(|| Distribution::Mixture {
+    can_mix.then(|| Distribution::Mixture {
         parts: vec![from, to],
         weights: Some(vec![1.0 - t, t]),
     })
 }
 
-/// Rewrites a distribution in the form of the other if its family has several: a Gaussian by its covariance, one spread per
-/// channel, default ends written out.
+/// Rewrites a distribution in a form shared with the other if the family has several forms: Gaussians by their covariance, one
+/// spread per channel, default ends written out.
 fn comparable(distribution: &Distribution, other: &Distribution) -> Distribution {
     let each = |spread: &ChannelSpread| ChannelSpread::Each(spread.to_array());
     match (distribution, other) {
@@ -121,8 +117,8 @@ fn comparable(distribution: &Distribution, other: &Distribution) -> Distribution
     }
 }
 
-/// Corrects an interpolated distribution of colours: interpolates colours in Oklab, and hues the shorter way round.
-fn colored(between: Distribution, from: &Distribution, to: &Distribution, t: f64) -> Distribution {
+/// Corrects an interpolated distribution of colours: colours are interpolated in Oklab, hues the shorter way round.
+fn with_colors_interpolated(between: Distribution, from: &Distribution, to: &Distribution, t: f64) -> Distribution {
     use Distribution::{ColorHsv, ColorNormal, ColorPerturb, ColorUniform, Mixture};
     let color = |a: &Channels, b: &Channels| {
         if a == b {
@@ -167,7 +163,7 @@ fn colored(between: Distribution, from: &Distribution, to: &Distribution, t: f64
             let (middle, other) = (f64::midpoint(*a, *b), f64::midpoint(*c, *d));
             let turn = (other - middle + 180.0).rem_euclid(360.0) - 180.0;
             let (middle, half) = (middle + turn * t, 0.5 * ((b - a) + ((d - c) - (b - a)) * t));
-            // Into the range that documents allow, which is within a turn of 0..360.
+            // Wraps into the range that documents allow, which is within one turn of 0..360.
             let middle = middle.rem_euclid(360.0);
             ColorHsv {
                 hue: Some([middle - half, middle + half]),
@@ -179,7 +175,7 @@ fn colored(between: Distribution, from: &Distribution, to: &Distribution, t: f64
             parts: parts
                 .into_iter()
                 .zip(a.iter().zip(b))
-                .map(|(part, (a, b))| colored(part, a, b, t))
+                .map(|(part, (a, b))| with_colors_interpolated(part, a, b, t))
                 .collect(),
             weights,
         },
@@ -195,13 +191,13 @@ fn map<T>(distribution: &Distribution, mut f: impl FnMut(f64) -> T) -> Distribut
     }
 }
 
-/// The distribution with all numbers blanked, for comparing forms.
+/// The distribution with all numbers set to 0, for comparing forms.
 fn skeleton(distribution: &Distribution) -> Distribution {
     map(distribution, |_| 0.0)
 }
 
-/// Rounds the numbers that a family needs as integers.
-fn whole(distribution: Distribution) -> Distribution {
+/// Rounds the numbers that must be integers.
+fn with_rounded_counts(distribution: Distribution) -> Distribution {
     match distribution {
         Distribution::IntegerUniform { low, high } => Distribution::IntegerUniform {
             low: low.round(),
@@ -224,7 +220,7 @@ fn whole(distribution: Distribution) -> Distribution {
             order,
         },
         Distribution::Mixture { parts, weights } => Distribution::Mixture {
-            parts: parts.into_iter().map(whole).collect(),
+            parts: parts.into_iter().map(with_rounded_counts).collect(),
             weights,
         },
         other => other,

@@ -1,4 +1,4 @@
-//! Turns a variant, a seed and an index into a concrete world; interpolates variants, and finds them at a distance.
+//! Turns a variant, a seed and an index into a concrete world; interpolates variants, and finds variants at a given distance.
 
 mod at_distance;
 mod cells;
@@ -25,7 +25,7 @@ pub use error::{GeneratorError, WorldId};
 pub use sampler::Sampler;
 pub use sequence::Sequence;
 
-/// World number `index` of a variant under a seed. To draw many worlds, prepare a [`Sampler`] once.
+/// World number `index` of a variant under a seed. To sample many worlds, prepare a [`Sampler`] once.
 ///
 /// # Errors
 /// As [`Sampler::world`].

@@ -1,4 +1,5 @@
-//! Finds a free place for each object. Candidates are drawn in `draw.rs`; the distance to walls is in `clearance.rs`.
+//! Finds a free position for each object. Candidates are drawn in `draw.rs`; the distance to walls is computed in
+//! `clearance.rs`.
 
 use std::collections::BTreeSet;
 
@@ -11,16 +12,16 @@ use crate::draw::{self, Place};
 use crate::spatial_hash::SpatialHash;
 use crate::stream::Rng;
 
-/// Maximum number of places to try for one object. If places are taken in turn and jittered in their cells: this many
-/// in the object's own cell, and as many again in all other cells together.
-pub(crate) const TRIES: u32 = 1000;
+/// Maximum number of positions to try for one object. If points are taken in turn and jittered in their cells, this many in the
+/// object's own cell, and the same number again in all other cells together.
+pub(crate) const MAX_TRIES: u32 = 1000;
 
-/// Everything that placing an object depends on: free space, the agent's start, and the objects placed before.
+/// The context for placing an object: free space, the agent's start, and the objects placed earlier.
 pub(crate) struct PlacementContext<'a> {
     free_space: &'a FreeSpace,
     agent: [f64; 2],
     everything: SpatialHash,
-    /// For each group, the places of its objects.
+    /// For each group, the positions of its objects.
     groups: Vec<SpatialHash>,
     /// Cells and doorways already assigned to objects.
     taken: BTreeSet<Spot>,
@@ -28,17 +29,17 @@ pub(crate) struct PlacementContext<'a> {
     doorways: SpatialHash,
 }
 
-/// Distances that a place must keep, in metres.
+/// Minimum clearances of a position, in metres.
 #[derive(Clone, Debug)]
 pub(crate) struct Margins {
     pub(crate) separation: f64,
     pub(crate) walls: f64,
     pub(crate) agent: f64,
-    /// Groups by index, with the distance to keep from each.
+    /// Groups by index, with the minimum distance to each.
     pub(crate) groups: Vec<(usize, f64)>,
 }
 
-/// The origin that a placement is relative to.
+/// The origin of a placement.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Anchor {
     pub(crate) at: [f64; 2],
@@ -52,7 +53,7 @@ impl Anchor {
         heading: 0.0,
     };
 
-    /// Converts a place relative to the anchor into world coordinates.
+    /// Converts a position relative to the anchor into world coordinates.
     fn world(self, [x, y]: [f64; 2]) -> [f64; 2] {
         if self.heading == 0.0 {
             return [self.at[0] + x, self.at[1] + y];
@@ -71,13 +72,14 @@ pub(crate) struct Request<'a> {
     pub(crate) anchor: Anchor,
     /// The group's index.
     pub(crate) group: usize,
-    /// Distance in metres from a doorway's centre within which the object would block it; 0 for objects that block nothing.
-    pub(crate) mouth: f64,
-    /// The object's index around its anchor: lists of places are taken in turn, see [`Turns`].
+    /// Distance in metres from a doorway's centre within which the object would block the doorway; 0 for objects that block
+    /// nothing.
+    pub(crate) doorway_clearance: f64,
+    /// The object's index around its anchor, for lists of points that are taken in turn; see [`Turns`].
     pub(crate) number: u64,
 }
 
-/// A condition that a place can fail.
+/// A condition that a position can fail.
 #[derive(Clone, Copy, Debug, PartialEq, strum::VariantArray)]
 enum Condition {
     Wall,
@@ -89,7 +91,7 @@ enum Condition {
 }
 
 impl Condition {
-    fn broken(self) -> &'static str {
+    fn describe_failure(self) -> &'static str {
         match self {
             Self::Wall => "too near to a wall or outside the arena",
             Self::Agent => "too near to the agent's start",
@@ -123,12 +125,12 @@ impl Condition {
     }
 }
 
-/// A condition that a place failed, with the found and required distance in metres.
+/// A condition that a position failed, with the actual and required distance in metres.
 #[derive(Clone, Copy)]
 struct Miss {
     condition: Condition,
-    has: f64,
-    wants: f64,
+    actual: f64,
+    required: f64,
 }
 
 impl<'a> PlacementContext<'a> {
@@ -146,7 +148,7 @@ impl<'a> PlacementContext<'a> {
         }
     }
 
-    /// Marks a place as taken, so that later objects keep their separation from it.
+    /// Marks a position as taken, so that later objects keep their separation from it.
     pub(crate) fn occupy(&mut self, place: [f64; 2]) {
         self.everything.push(place);
     }
@@ -156,7 +158,7 @@ impl<'a> PlacementContext<'a> {
         self.free_space.plan.as_deref()
     }
 
-    /// Whether a place keeps these distances in metres: `walls` from walls, `others` from the objects placed so far and the
+    /// Whether a position has these clearances in metres: `walls` from walls, `others` from the objects placed so far and the
     /// agent's start.
     pub(crate) fn is_clear(&self, place: [f64; 2], walls: f64, others: f64) -> bool {
         self.free_space.clearance(place, walls) >= walls
@@ -164,15 +166,15 @@ impl<'a> PlacementContext<'a> {
             && self.everything.within(place, others).is_none()
     }
 
-    /// The places of a group.
+    /// The positions of a group.
     pub(crate) fn group(&self, number: usize) -> &SpatialHash {
         &self.groups[number]
     }
 
-    /// Finds and takes a free place for an object; else returns the number of tries, and why no place was free.
+    /// Finds and takes a free position for an object; otherwise returns the number of tries, and why no position was free.
     ///
-    /// If the places of a `points` or `grid` are taken in turn, `turns` tracks those that earlier objects around the same anchor
-    /// left free.
+    /// If the points of a `points` or `grid` are taken in turn, `turns` tracks the points taken by earlier objects around the
+    /// same anchor.
     pub(crate) fn find(
         &mut self,
         request: &Request,
@@ -182,24 +184,28 @@ impl<'a> PlacementContext<'a> {
         if let Some(turns) = turns {
             return self.find_in_turn(request, turns, rng);
         }
-        let mut tried = Tried::default();
+        let mut tried = TryStatistics::default();
         let tries = if matches!(request.placement, Distribution::Constant { .. }) {
             1
         } else {
-            TRIES
+            MAX_TRIES
         };
-        let mixed = request.placement.needs_group();
+        let is_mixture = request.placement.needs_group();
         for turn in 0..tries {
-            // In a mixture, a list moves on from the object's own place once half of the tries have failed.
-            let on = if mixed { turn.saturating_sub(TRIES / 2) } else { 0 };
-            if let Some(at) = self.try_at(request, request.number + u64::from(on), rng, &mut tried) {
+            // In a mixture, a list moves on from the object's own point once half of the tries have failed.
+            let offset = if is_mixture {
+                turn.saturating_sub(MAX_TRIES / 2)
+            } else {
+                0
+            };
+            if let Some(at) = self.try_at(request, request.number + u64::from(offset), rng, &mut tried) {
                 return Ok(at);
             }
         }
         Err(tried.failure())
     }
 
-    /// The cells that fit a distribution of cells, for a group of this name; else the reason why none fits.
+    /// The cells that fit a distribution of cells, for a group of this name; otherwise the reason why none fits.
     pub(crate) fn cells(
         &self,
         layout: Option<&Layout>,
@@ -207,34 +213,38 @@ impl<'a> PlacementContext<'a> {
         group: &str,
     ) -> Result<Cells<'a>, String> {
         let mut cells = Cells::find(self.free_space.plan.as_deref(), layout, asked, group, self.agent)?;
-        cells.leave(&self.taken);
+        cells.exclude(&self.taken);
         Ok(cells)
     }
 
-    /// Whether a placement explicitly allows objects to block doorways: by its kind of cells, by letters, or because
-    /// only cells in doorways are left. Placements that are not in cells give coordinates in metres, which counts as
-    /// explicit.
-    pub(crate) fn asks_for_doorways(&self, placement: &Distribution, cells: Option<&Cells>, mouth: f64) -> bool {
+    /// Whether a placement allows objects to block doorways: by its kind of cells, by letters, or because only cells in
+    /// doorways are left. Placements outside cells are given by coordinates in metres, which allows it too.
+    pub(crate) fn allows_doorways(
+        &self,
+        placement: &Distribution,
+        cells: Option<&Cells>,
+        doorway_clearance: f64,
+    ) -> bool {
         match placement {
             Distribution::Cells {
                 kind, letter, of_group, ..
             } => {
                 let is_asked = *kind == CellKind::Doorway || letter.is_some() || *of_group;
-                let bars = |middle| self.doorways.within(middle, mouth).is_some();
-                is_asked || cells.is_none_or(|cells| cells.all(bars))
+                let is_in_doorway = |middle| self.doorways.within(middle, doorway_clearance).is_some();
+                is_asked || cells.is_none_or(|cells| cells.all_centers(is_in_doorway))
             }
             _ => true,
         }
     }
 
-    /// Like [`PlacementContext::find`], in a cell of a layout. The middle of a cell never counts as too near to a wall.
+    /// Like [`PlacementContext::find`], in a cell of a layout. The centre of a cell never counts as too near to a wall.
     pub(crate) fn find_in_cells(
         &mut self,
         request: &Request,
         cells: &mut Cells,
         rng: &mut Rng,
     ) -> Result<FreePlace, (u32, String)> {
-        let mut tried = Tried::default();
+        let mut tried = TryStatistics::default();
         let mut margins = request.margins.clone();
         let found = cells.take(rng, |place, middle| {
             let room = self.free_space.clearance(middle, request.margins.walls).max(0.0);
@@ -263,16 +273,16 @@ impl<'a> PlacementContext<'a> {
         }
     }
 
-    /// Like [`PlacementContext::find`], if places are taken in turn: tries the object's own place, then the following ones.
+    /// Like [`PlacementContext::find`], if points are taken in turn: tries the object's own point, then the following ones.
     fn find_in_turn(&mut self, request: &Request, turns: &mut Turns, rng: &mut Rng) -> Result<[f64; 2], (u32, String)> {
-        let strays = matches!(request.placement, Distribution::Grid { jitter, .. } if jitter.unwrap_or(0.0) > 0.0);
-        let others = request.placement.num_turns().unwrap_or(1).clamp(2, TRIES as usize) as u32 - 1;
-        let mut tried = Tried::default();
+        let is_jittered = matches!(request.placement, Distribution::Grid { jitter, .. } if jitter.unwrap_or(0.0) > 0.0);
+        let others = request.placement.num_turns().unwrap_or(1).clamp(2, MAX_TRIES as usize) as u32 - 1;
+        let mut tried = TryStatistics::default();
         let found = turns.candidates(request.number).enumerate().find_map(|(rank, place)| {
-            let tries = match (strays, rank) {
+            let tries = match (is_jittered, rank) {
                 (false, _) => 1,
-                (true, 0) => TRIES,
-                (true, _) => TRIES / others,
+                (true, 0) => MAX_TRIES,
+                (true, _) => MAX_TRIES / others,
             };
             let at = (0..tries).find_map(|_| self.try_at(request, place as u64, rng, &mut tried))?;
             Some((place, at))
@@ -284,8 +294,8 @@ impl<'a> PlacementContext<'a> {
         Ok(at)
     }
 
-    /// Draws a place and takes it if it is free; `number` is the index of the place, if places are taken in turn.
-    fn try_at(&mut self, request: &Request, number: u64, rng: &mut Rng, tried: &mut Tried) -> Option<[f64; 2]> {
+    /// Draws a position and takes it if it is free; `number` is the index of the point, if points are taken in turn.
+    fn try_at(&mut self, request: &Request, number: u64, rng: &mut Rng, tried: &mut TryStatistics) -> Option<[f64; 2]> {
         let Place { at, own_distance } = draw::place(request.placement, number, rng);
         let at = request.anchor.world(at);
         let Some(miss) = self.miss(at, own_distance, request) else {
@@ -296,24 +306,30 @@ impl<'a> PlacementContext<'a> {
         tried.failed[miss.condition as usize] += 1;
         if tried
             .closest
-            .is_none_or(|closest| miss.wants - miss.has < closest.wants - closest.has)
+            .is_none_or(|closest| miss.required - miss.actual < closest.required - closest.actual)
         {
             tried.closest = Some(miss);
         }
         None
     }
 
-    /// The first condition that a place fails.
+    /// The first condition that a position fails.
     fn miss(&self, place: [f64; 2], own_distance: f64, request: &Request) -> Option<Miss> {
         let margins = request.margins;
-        let miss = |condition, wants: f64, has: Option<f64>| has.map(|has| Miss { condition, has, wants });
+        let miss = |condition, required: f64, actual: Option<f64>| {
+            actual.map(|actual| Miss {
+                condition,
+                actual,
+                required,
+            })
+        };
         let wall = self.free_space.clearance(place, margins.walls);
         let is_at_wall = wall.is_nan() || wall < margins.walls;
         let agent = || Some(distance(place, self.agent)).filter(|agent| *agent < margins.agent);
         let everything = || self.everything.within(place, margins.separation);
         let own = || self.groups[request.group].within(place, own_distance);
         let of_group =
-            |group: usize, wants: f64| miss(Condition::Group, wants, self.groups[group].within(place, wants));
+            |group: usize, required: f64| miss(Condition::Group, required, self.groups[group].within(place, required));
         miss(Condition::Wall, margins.walls, is_at_wall.then_some(wall))
             .or_else(|| miss(Condition::Agent, margins.agent, agent()))
             .or_else(|| miss(Condition::Neighbour, margins.separation, everything()))
@@ -322,31 +338,31 @@ impl<'a> PlacementContext<'a> {
                 margins
                     .groups
                     .iter()
-                    .find_map(|(group, wants)| of_group(*group, *wants))
+                    .find_map(|(group, required)| of_group(*group, *required))
             })
             .or_else(|| {
                 miss(
                     Condition::Doorway,
-                    request.mouth,
-                    self.doorways.within(place, request.mouth),
+                    request.doorway_clearance,
+                    self.doorways.within(place, request.doorway_clearance),
                 )
             })
     }
 }
 
-/// Statistics of the places tried.
+/// Statistics of the positions tried.
 #[derive(Default)]
-struct Tried {
+struct TryStatistics {
     failed: [u32; Condition::VARIANTS.len()],
     closest: Option<Miss>,
 }
 
-impl Tried {
-    /// The number of tries, and why no place was free.
+impl TryStatistics {
+    /// The number of tries, and why no position was free.
     fn failure(self) -> (u32, String) {
         let tries = self.failed.iter().sum();
         if tries == 0 {
-            // This happens only if places are taken in turn and all were already taken.
+            // This happens only if points are taken in turn and all are already taken.
             let reason = "every place in the list is taken; add places, or lower the count".to_owned();
             return (tries, reason);
         }
@@ -371,14 +387,21 @@ fn reason(failed: [u32; Condition::VARIANTS.len()], closest: Option<Miss>) -> St
         .filter(|condition| count(*condition) > 0)
         .map(|condition| {
             let were = if count(condition) == 1 { "was" } else { "were" };
-            format!("{} {were} {}", count(condition), condition.broken())
+            format!("{} {were} {}", count(condition), condition.describe_failure())
         })
         .collect();
-    let miss = closest.map_or_else(String::new, |Miss { condition, has, wants }| {
-        format!(
-            "; the best was {has:.2} m from {}, expected {wants} m",
-            condition.nearest()
-        )
-    });
+    let miss = closest.map_or_else(
+        String::new,
+        |Miss {
+             condition,
+             actual,
+             required,
+         }| {
+            format!(
+                "; the best was {actual:.2} m from {}, expected {required} m",
+                condition.nearest()
+            )
+        },
+    );
     format!("{}{miss}; {}", counts.join(", "), worst.advice())
 }

@@ -1,4 +1,4 @@
-//! [`Sequence`]: how the random numbers behind randomized parameters are spread over many worlds.
+//! [`Sequence`]: how the random numbers of randomized parameters are spread over many worlds.
 
 use std::sync::OnceLock;
 
@@ -9,10 +9,10 @@ pub(crate) const MAX_DIMENSIONS: usize = 100;
 
 /// How the worlds of a variant cover the ranges of randomized parameters.
 ///
-/// Applies to randomized parameters that take at most three random numbers; colours take one per channel. They take
-/// dimensions in the task's order of declaration, so that a new parameter shifts the dimensions of those declared after
-/// it. Choices, mixtures, Dirichlet shares and draws inside groups stay independent, as do parameters beyond 100
-/// dimensions and worlds that are drawn again because of a requirement.
+/// Applies to randomized parameters that take at most three random numbers; colours take one per channel. Parameters use
+/// dimensions in the task's order of declaration, so a new parameter shifts the dimensions of those declared after it. Choices,
+/// mixtures, Dirichlet shares and draws inside groups stay independent, as do parameters beyond 100 dimensions and worlds that
+/// are sampled again because of a requirement.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Sequence {
     /// Each world draws independently.
@@ -32,7 +32,7 @@ pub enum Sequence {
 }
 
 impl Sequence {
-    /// A world's number in 0..1 along a dimension; `None` if it is to be drawn independently.
+    /// A world's number in 0..1 along a dimension; `None` if it must be drawn independently.
     pub(crate) fn unit(self, stream: &Stream, dimension: usize, index: u64) -> Option<f64> {
         match self {
             Self::Independent => None,
@@ -145,7 +145,7 @@ mod tests {
             let mut shares: Vec<u64> = (50..50 + count)
                 .map(|index| (cube.unit(&stream, 3, index).unwrap() * count as f64) as u64)
                 .collect();
-            assert!(count < 10 || !shares.is_sorted(), "the order is mixed");
+            assert!(count < 10 || !shares.is_sorted(), "the order is shuffled");
             shares.sort_unstable();
             assert_eq!(shares, (0..count).collect::<Vec<_>>());
             assert_eq!(cube.unit(&stream, 3, 49), None);

@@ -8,8 +8,8 @@ use sha2::{Digest, Sha256};
 
 /// One named stream of a task under a seed.
 ///
-/// The numbers come from Philox, keyed by the SHA-256 of task, seed and name; world, object and attempt form the counter. Access
-/// is random: any number can be computed without the others.
+/// The numbers come from Philox, keyed by the SHA-256 of task, seed and name; world, object and attempt form the counter.
+/// Numbers can be accessed in any order: each is computed without the others.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stream {
     key: [u64; 2],
@@ -30,7 +30,7 @@ impl Stream {
         }
     }
 
-    /// The random numbers of one object in one world; `attempt` counts how often the world was drawn again.
+    /// The random numbers of one object in one world; `attempt` is the number of times that the world was sampled again.
     pub(crate) fn at(&self, index: u64, object: u64, attempt: u32) -> Rng {
         Rng {
             key: self.key,
@@ -45,7 +45,7 @@ impl Stream {
         philox(self.key, [number, 0, 0, 0])[0] & MAX_SEED
     }
 
-    /// Like [`Stream::seed`], for a world that was drawn again `attempt` times.
+    /// Like [`Stream::seed`], for a world that was sampled again `attempt` times.
     pub(crate) fn seed_at(&self, number: u64, attempt: u32) -> u64 {
         philox(self.key, [number, 0, 0, u64::from(attempt)])[0] & MAX_SEED
     }
@@ -91,7 +91,7 @@ pub(crate) fn unit(bits: u64) -> f64 {
     ((bits >> 12) as f64 + 0.5) * (1.0 / (1_u64 << 52) as f64)
 }
 
-/// Lets the distributions of `rand_distr` draw from it.
+/// Lets the distributions of `rand_distr` draw from this generator.
 impl TryRng for Rng {
     type Error = Infallible;
 

@@ -1,5 +1,5 @@
-//! Laws of variants at a given distance if requirements cut off parts of the ranges: every distance that a grid search of the
-//! allowed region finds is found.
+//! Tests of the search for variants at a given distance if requirements cut off parts of the ranges: it finds every distance
+//! that a grid search of the allowed region finds.
 
 use std::sync::Arc;
 
@@ -15,7 +15,7 @@ const TOLERANCE: f64 = 1e-3;
 struct Case {
     defaults: Vec<f64>,
     require: Vec<String>,
-    /// Whether the distance is the mean of the differences, else their maximum.
+    /// Whether the distance is the mean of the differences; otherwise it is their maximum.
     is_mean: bool,
 }
 
@@ -34,7 +34,7 @@ impl Case {
             r#"{{ "name": "t", "parameters": {{ {} }}, "require": {require}, "variants": {{ "here": {{}} }} }}"#,
             parameters.join(", ")
         );
-        // If the defaults break a requirement, there is no variant to start from.
+        // If the defaults violate a requirement, there is no variant to start from.
         TaskSpec::from_json("t", &text).ok()
     }
 
@@ -43,17 +43,17 @@ impl Case {
             variant
                 .value(name)
                 .and_then(driftworld_spec::Value::as_number)
-                .expect("it is a number")
+                .expect("the parameter is a number")
         };
         NAMES[..axes].iter().map(value).collect()
     }
 
     fn distance(&self, to: &[f64]) -> f64 {
-        let apart = self.defaults.iter().zip(to).map(|(a, b)| (a - b).abs());
+        let difference = self.defaults.iter().zip(to).map(|(a, b)| (a - b).abs());
         if self.is_mean {
-            apart.sum::<f64>() / self.defaults.len() as f64
+            difference.sum::<f64>() / self.defaults.len() as f64
         } else {
-            apart.fold(0.0, f64::max)
+            difference.fold(0.0, f64::max)
         }
     }
 
@@ -110,7 +110,7 @@ proptest! {
     #[test]
     fn every_distance_of_a_grid_of_allowed_points_is_found(case in case(), which in any::<prop::sample::Index>()) {
         let Some(task) = case.task() else { return Ok(()) };
-        let from = task.variant("here").expect("it is declared");
+        let from = task.variant("here").expect("the task declares it");
         let axes = case.defaults.len();
         let grid = case.on_a_grid(&from, [40, 12, 8][axes - 1]);
         if grid.is_empty() {
@@ -130,7 +130,7 @@ proptest! {
 }
 
 #[test]
-fn way_cut_by_a_requirement_is_followed_to_its_border() {
+fn line_cut_off_by_a_requirement_is_followed_to_its_border() {
     let text = r#"{ "name": "chase", "require": ["wolf_speed < agent_speed"], "variants": { "calm": {} }, "parameters": {
         "wolf_speed": { "role": "variant", "type": "number", "affects": ["T"], "range": [0, 10], "default": 1 },
         "agent_speed": { "role": "variant", "type": "number", "affects": ["T"], "range": [0, 10], "default": 5 } } }"#;
@@ -139,11 +139,11 @@ fn way_cut_by_a_requirement_is_followed_to_its_border() {
     let number =
         |variant: &Variant, name: &str| variant.value(name).and_then(driftworld_spec::Value::as_number).unwrap();
     let distance = |other: &Variant| {
-        let apart = |name: &str| (number(&from, name) - number(other, name)).abs() / 10.0;
-        f64::midpoint(apart("wolf_speed"), apart("agent_speed"))
+        let difference = |name: &str| (number(&from, name) - number(other, name)).abs() / 10.0;
+        f64::midpoint(difference("wolf_speed"), difference("agent_speed"))
     };
     let subject = Subject::Element(driftworld_spec::Element::T);
-    // Agent at 10 and wolf just below: (0.9 + 0.5) / 2 is never reached, but everything below is.
+    // With the agent at 10 and the wolf just below, (0.9 + 0.5) / 2 is never reached, but every smaller distance is.
     for target in [0.05, 0.25, 0.3, 0.45, 0.6, 0.699] {
         let found =
             at_distance(&from, &subject, target, 1e-4, distance).unwrap_or_else(|error| panic!("{target}: {error}"));
@@ -170,7 +170,7 @@ fn forbidden_variant_is_never_found() {
     };
     let subject = Subject::Element(driftworld_spec::Element::O);
     let found = at_distance(&from, &subject, 0.5, 0.01, changed).unwrap().variant;
-    // Green and green, crimson and red are too similar; the remaining answer makes the bad ones blue.
+    // Green and green, and crimson and red, are too similar; the remaining answer makes the bad ones blue.
     assert_eq!(found.value("bad").unwrap().to_string(), "blue");
     assert_eq!(found.value("good").unwrap().to_string(), "green");
 }

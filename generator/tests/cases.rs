@@ -1,5 +1,4 @@
-//! Laws of look-ups, tested on random tasks: worlds whose values depend on other values. Error messages about look-ups are tested
-//! in the spec crate.
+//! Properties of look-ups, tested on random tasks. Error messages about look-ups are tested in the spec crate.
 
 use std::sync::Arc;
 
@@ -30,7 +29,7 @@ fn case(of: &str, red: &Json, blue: &Json) -> Json {
     json!({ "case": { "param": of }, "of": { "red": red, "blue": blue } })
 }
 
-/// The content of each place that allows a look-up, for `red` and for `blue`.
+/// The values, for `red` and for `blue`, of all keys in the test task that allow a look-up.
 type Fillings = [[Json; 2]; 8];
 
 /// A task with these fillings in a world, a group, a parameter and a distribution, and this declaration of `cue`.
@@ -133,7 +132,7 @@ proptest! {
         }
     }
 
-    /// With a look-up over a drawn parameter, each world equals the one with the case of its cue written out.
+    /// With a look-up over a randomized parameter, each world equals the one with the case of its cue written out.
     #[test]
     fn look_up_over_drawn_parameter_equals_its_case_in_each_world(fillings in fillings(), seed in 0..9u64) {
         let drawn = task(&filled(&drawn_cue(), &looked_up(&fillings, "cue")));
@@ -149,7 +148,7 @@ proptest! {
         }
     }
 
-    /// Worlds can be drawn in any order, also by a fresh sampler.
+    /// Worlds can be sampled in any order, also by a new sampler.
     #[test]
     fn worlds_with_look_ups_can_be_drawn_in_any_order(fillings in fillings(), seed in 0..9u64, index in 0..12u64) {
         let drawn = task(&filled(&drawn_cue(), &looked_up(&fillings, "cue")));
@@ -157,27 +156,27 @@ proptest! {
         let alone = world(&Sampler::new(&variant, seed), index);
         prop_assert_eq!(&alone, &worlds(&drawn, "default", seed)[index as usize]);
         // The task round-trips through its own JSON.
-        let again = TaskSpec::from_json("again.json", &drawn.to_json()).expect("it was written by us");
-        prop_assert_eq!(worlds(&again, "default", seed), worlds(&drawn, "default", seed));
+        let reread = TaskSpec::from_json("again.json", &drawn.to_json()).expect("it was written by us");
+        prop_assert_eq!(worlds(&reread, "default", seed), worlds(&drawn, "default", seed));
     }
 
-    /// Adding a look-up at one place changes only that place.
+    /// Adding a look-up for one key changes only the values of that key.
     #[test]
-    fn added_look_up_disturbs_no_other_draw(fillings in fillings(), seed in 0..9u64) {
+    fn added_look_up_changes_no_other_draw(fillings in fillings(), seed in 0..9u64) {
         let mut plain = fillings.each_ref().map(|[red, _]| red.clone());
         if plain[5].is_number() {
             plain[5] = json!({ "constant": { "value": plain[5] } });
         }
         let before = worlds(&task(&filled(&drawn_cue(), &plain)), "default", seed);
-        for (place, keys) in [
+        for (index, keys) in [
             (0, &["/environment_params/light_intensity"][..]),
             (1, &["/objects/2/color", "/objects/3/color", "/objects/4/color", "/objects/5/color"]),
             (2, &["/objects/0/heading", "/objects/1/heading"]),
             (5, &["/objects/2/reward", "/objects/3/reward", "/objects/4/reward", "/objects/5/reward"]),
         ] {
-            let mut one = plain.clone();
-            one[place] = case("cue", &fillings[place][0], &fillings[place][1]);
-            let mut after = worlds(&task(&filled(&drawn_cue(), &one)), "default", seed);
+            let mut looked_up_once = plain.clone();
+            looked_up_once[index] = case("cue", &fillings[index][0], &fillings[index][1]);
+            let mut after = worlds(&task(&filled(&drawn_cue(), &looked_up_once)), "default", seed);
             for (before, after) in before.iter().zip(&mut after) {
                 for key in keys {
                     if let (Some(old), Some(new)) = (before.pointer(key), after.pointer_mut(key)) {
@@ -206,8 +205,8 @@ proptest! {
         let red = f64::from(weight) / f64::from(weight + 3);
         let expected = [(1, red * chance), (2, (1.0 - red) * 0.5), (3, red * (1.0 - chance) + (1.0 - red) * 0.5)];
         for (value, share) in expected {
-            let place = values.iter().position(|known| *known == Value::Integer(value)).expect("it can be drawn");
-            prop_assert!((weights[place] - share).abs() < 1e-12);
+            let index = values.iter().position(|known| *known == Value::Integer(value)).expect("it can be drawn");
+            prop_assert!((weights[index] - share).abs() < 1e-12);
         }
         let sampler = Sampler::new(&variant, seed);
         let count = 2000;

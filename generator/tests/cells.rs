@@ -1,4 +1,4 @@
-//! Groups and the agent in cells of a layout: by kind, letter, room and walking distance.
+//! Placement of groups and the agent in cells of a layout: by kind, letter, room and walking distance.
 
 use std::sync::Arc;
 
@@ -40,7 +40,7 @@ fn cells(world: &World) -> (&Plan, usize, Vec<usize>) {
     (plan, cell_of(world.agent_params.coordinates), objects.collect())
 }
 
-fn said(task: &Arc<TaskSpec>) -> String {
+fn error_for(task: &Arc<TaskSpec>) -> String {
     let sampler = Sampler::new(&task.variant("default").expect("it is always there"), 5);
     sampler
         .world(0)
@@ -89,7 +89,7 @@ fn room_selects_the_agents_or_other_rooms() {
 }
 
 #[test]
-fn groups_stand_at_their_letters_and_the_agent_at_its_own() {
+fn groups_and_the_agent_are_placed_at_their_letters() {
     let text =
         r#"{ "text": ["*********", "*A c * c*", "*  * cA *", "*********"], "legend": { "c": { "group": "coin" } } }"#;
     let task = task(text, "", 3, "");
@@ -116,7 +116,7 @@ fn explicit_start_is_kept() {
 
 #[test]
 fn unsatisfiable_request_reports_number_of_cells() {
-    let none = |layout: &str, start: &str, placement: &str| said(&task(layout, start, 2, placement));
+    let none = |layout: &str, start: &str, placement: &str| error_for(&task(layout, start, 2, placement));
     let braided = r#"{ "maze": { "cells": [4, 4], "braid": 1, "seed": 3 } }"#;
     let found = none(braided, ANY_START, r#"{ "cells": { "kind": "dead_end" } }"#);
     assert!(found.contains("of 16 cells, 0 are dead ends"), "{found}");
@@ -156,8 +156,8 @@ fn unsatisfiable_request_reports_number_of_cells() {
 }
 
 #[test]
-fn placements_in_cells_are_refused_where_they_have_no_meaning() {
-    let said = |world: &str, group: &str| {
+fn placements_in_cells_are_rejected_where_they_have_no_meaning() {
+    let error_for = |world: &str, group: &str| {
         let text = format!(
             r#"{{ "name": "t", "world": {world}, "groups": [
                 {{ "name": "a", "count": 1, "object": {{ "class": "tree" }}, "placement": {{ "disc": {{ "center": [0, 0], "radius": 9 }} }} }},
@@ -167,24 +167,24 @@ fn placements_in_cells_are_refused_where_they_have_no_meaning() {
     };
     let maze = r#"{ "environment_params": { "layout": { "maze": {} } } }"#;
     let cells = r#", "placement": { "cells": {} }"#;
-    assert!(said("{}", "").contains("(/groups/1): found nothing, expected the key \"placement\""));
-    assert!(said("{}", cells).contains("(/groups/1/placement): found cells in a world without a layout"));
-    assert_eq!(said(maze, cells), "");
-    assert!(said(maze, &format!(r#"{cells}, "around": "a""#)).contains("cells beside \"around\""));
+    assert!(error_for("{}", "").contains("(/groups/1): found nothing, expected the key \"placement\""));
+    assert!(error_for("{}", cells).contains("(/groups/1/placement): found cells in a world without a layout"));
+    assert_eq!(error_for(maze, cells), "");
+    assert!(error_for(maze, &format!(r#"{cells}, "around": "a""#)).contains("cells beside \"around\""));
     let mixed = r#", "placement": { "mixture": { "parts": [{ "cells": {} }, { "disc": { "center": [0, 0], "radius": 1 } }] } }"#;
     assert!(
-        said(maze, mixed).contains("found cells in a mixture"),
+        error_for(maze, mixed).contains("found cells in a mixture"),
         "{}",
-        said(maze, mixed)
+        error_for(maze, mixed)
     );
     let walk = r#", "placement": { "cells": { "walk": [9, 3] } }"#;
-    assert!(said(maze, walk).contains("the first not above the second"));
+    assert!(error_for(maze, walk).contains("the first not above the second"));
     let start = r#"{ "environment_params": { "layout": { "maze": {} } },
         "agent_params": { "coordinates": { "cells": { "walk": [1, 2] } } } }"#;
     assert!(
-        said(start, cells).contains("(/world/agent_params/coordinates): found cells"),
+        error_for(start, cells).contains("(/world/agent_params/coordinates): found cells"),
         "{}",
-        said(start, cells)
+        error_for(start, cells)
     );
 }
 
@@ -198,13 +198,13 @@ fn walking_distance_is_a_parameter_and_drifts() {
     let task = TaskSpec::from_json("t", text).unwrap_or_else(|error| panic!("{error}"));
     let [near, far] = ["near", "far"].map(|name| task.variant(name).unwrap());
     let between = drift(&near, &far, 0.5).unwrap();
-    for (variant, [least, most]) in [(&near, [0.0, 4.0]), (&far, [12.0, 20.0]), (&between, [6.0, 12.0])] {
+    for (variant, [min, max]) in [(&near, [0.0, 4.0]), (&far, [12.0, 20.0]), (&between, [6.0, 12.0])] {
         let sampler = Sampler::new(variant, 2);
         for index in 0..20 {
             let world = sampler.world(index).unwrap_or_else(|error| panic!("{error}"));
             let (plan, agent, goal) = cells(&world);
             let metres = plan.walking_distances(agent)[goal[0]];
-            assert!((least - 1e-6..=most + 1e-6).contains(&metres), "{metres} m");
+            assert!((min - 1e-6..=max + 1e-6).contains(&metres), "{metres} m");
         }
     }
     // Both variants share all other draws: mazes and starts.
@@ -218,9 +218,9 @@ fn walking_distance_is_a_parameter_and_drifts() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// World i does not depend on what was drawn before; jittered places stay in their cells and off the walls.
+    /// A world does not depend on earlier draws; jittered positions stay in their cells and away from walls.
     #[test]
-    fn worlds_are_drawn_by_random_access_and_stay_in_their_cells(index in 0_u64..1000, jitter in 0.0..1.0_f64) {
+    fn worlds_do_not_depend_on_earlier_draws_and_objects_stay_in_their_cells(index in 0_u64..1000, jitter in 0.0..1.0_f64) {
         let task = task(MAZE, ANY_START, 4, &format!(r#"{{ "cells": {{ "jitter": {jitter} }} }}"#));
         let variant = task.variant("default").unwrap();
         let sampler = Sampler::new(&variant, 5);
@@ -243,8 +243,8 @@ proptest! {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 300)))]
 
-    /// Without a start, the agent starts in a cell without a letter; no cell is assigned twice, and no solid object blocks the
-    /// way through a doorway.
+    /// Without a start, the agent starts in a cell without a letter; no cell is assigned twice, and no solid object blocks a
+    /// doorway.
     #[test]
     fn cells_are_assigned_once_and_doorways_stay_free(
         layout in prop_oneof![
@@ -261,7 +261,7 @@ proptest! {
         let task = TaskSpec::from_json("t", &text).unwrap();
         let world = Sampler::new(&task.variant("default").unwrap(), 5).world(index);
         let world = match world {
-            // Small rooms with jitter may have no place off the doorways.
+            // Small rooms with jitter may have no position clear of the doorways.
             Err(error) if error.to_string().contains("in the way of a doorway") => return Ok(()),
             world => world.unwrap(),
         };
@@ -271,16 +271,16 @@ proptest! {
         prop_assert_ne!(objects[0], objects[1]);
         for object in world.objects.iter().filter(|object| object.solid) {
             let [x, y] = object.coordinates;
-            let bars = |doorway: &driftworld_spec::Doorway| {
+            let is_blocked = |doorway: &driftworld_spec::Doorway| {
                 (x - doorway.center[0]).powi(2) + (y - doorway.center[1]).powi(2) < 4.0 - 1e-9
             };
-            prop_assert!(!plan.doorways.iter().any(bars));
+            prop_assert!(!plan.doorways.iter().any(is_blocked));
         }
     }
 }
 
 #[test]
-fn doorways_hold_one_object_each_turned_along_the_wall() {
+fn each_doorway_takes_one_object_turned_along_the_wall() {
     let task = |layout: &str, count: u32| {
         let text = format!(
             r#"{{ "name": "t", "world": {{ "environment_params": {{ "layout": {layout} }},
@@ -292,16 +292,16 @@ fn doorways_hold_one_object_each_turned_along_the_wall() {
     };
     let rooms = r#"{ "rooms": { "grid": [3, 2] } }"#;
     let text = r#"{ "text": ["*********", "*A.D.*..*", "*..*.D..*", "*********"] }"#;
-    for (layout, most) in [(rooms, 7), (text, 2)] {
+    for (layout, max) in [(rooms, 7), (text, 2)] {
         for index in 0..10 {
-            let sampler = Sampler::new(&task(layout, most).variant("default").unwrap(), 3);
+            let sampler = Sampler::new(&task(layout, max).variant("default").unwrap(), 3);
             let world = sampler.world(index).unwrap_or_else(|error| panic!("{error}"));
-            let sorted = |mut places: Vec<([f64; 2], f64)>| {
-                places.sort_by(|a, b| a.partial_cmp(b).unwrap());
-                places
+            let sorted = |mut poses: Vec<([f64; 2], f64)>| {
+                poses.sort_by(|a, b| a.partial_cmp(b).unwrap());
+                poses
             };
             let doorways = &world.plan().unwrap().doorways;
-            assert_eq!(doorways.len(), most as usize);
+            assert_eq!(doorways.len(), max as usize);
             assert_eq!(
                 sorted(
                     world
@@ -318,11 +318,10 @@ fn doorways_hold_one_object_each_turned_along_the_wall() {
                 )
             );
         }
-        let error = Sampler::new(&task(layout, most + 1).variant("default").unwrap(), 3)
+        let error = Sampler::new(&task(layout, max + 1).variant("default").unwrap(), 3)
             .world(0)
             .unwrap_err();
-        let expected =
-            format!("of {most} doorways, {most} are doorways, and {most} of them are taken; lower the count");
+        let expected = format!("of {max} doorways, {max} are doorways, and {max} of them are taken; lower the count");
         assert!(error.to_string().contains(&expected), "{error}");
     }
     let maze = task(r#"{ "maze": {} }"#, 1).variant("default").unwrap();

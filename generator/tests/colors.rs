@@ -1,15 +1,15 @@
-//! Colours from continuous distributions are drawn as declared: per channel, under every sequence, along drifts, and in groups.
-//! The laws themselves are tested in the spec crate.
+//! Tests that colours are drawn from continuous distributions as declared: per channel, under every sequence, along drifts, and
+//! in groups. The distributions themselves are tested in the spec crate.
 
 use std::sync::Arc;
 
 use driftworld_generator::{Sampler, Sequence, drift};
 use driftworld_spec::{ChannelSpread, Channels, Color, Distribution, TaskSpec, Value, Variant};
 
-/// Draws per law.
+/// Number of draws per distribution.
 const DRAWS: u64 = 20_000;
 
-/// Kolmogorov's statistic exceeds this in one of a thousand samples of the right law.
+/// Critical value: the Kolmogorov statistic exceeds it in one of a thousand samples of the right distribution.
 const KOLMOGOROV: f64 = 1.95;
 
 fn task(parameters: &str, variants: &str) -> Arc<TaskSpec> {
@@ -20,12 +20,12 @@ fn task(parameters: &str, variants: &str) -> Arc<TaskSpec> {
     TaskSpec::from_json("draws.json", &text).unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn drawn_by(distribution: &str) -> String {
+fn color_parameter(distribution: &str) -> String {
     format!(r#""x": {{ "role": "randomized", "type": "color", "affects": ["O"], "distribution": {distribution} }}"#)
 }
 
 fn default(task: &Arc<TaskSpec>) -> Variant {
-    task.variant("default").expect("it is always there")
+    task.variant("default").expect("the default variant always exists")
 }
 
 fn law(variant: &Variant) -> Distribution {
@@ -33,7 +33,7 @@ fn law(variant: &Variant) -> Distribution {
 }
 
 fn colors(sampler: &Sampler, count: u64) -> Vec<[f64; 3]> {
-    let value = |index| sampler.values(index).expect("nothing is required").pop();
+    let value = |index| sampler.values(index).expect("the task has no requirements").pop();
     let color = |index| match value(index) {
         Some((_, Value::Color(color))) => color.0,
         other => panic!("{other:?} is no colour"),
@@ -59,26 +59,26 @@ fn check_moments(name: &str, law: &Distribution, drawn: &[[f64; 3]]) {
     let n = drawn.len() as f64;
     let mean = |of: &dyn Fn(&[f64; 3]) -> f64| drawn.iter().map(of).sum::<f64>() / n;
     for i in 0..3 {
-        let miss = (mean(&|c| c[i]) - moments.mean[i]).abs();
+        let deviation = (mean(&|c| c[i]) - moments.mean[i]).abs();
         assert!(
-            miss <= 5.0 * (moments.covariance[i][i] / n).sqrt() + 1e-9,
-            "{name}: mean {i} off by {miss}"
+            deviation <= 5.0 * (moments.covariance[i][i] / n).sqrt() + 1e-9,
+            "{name}: mean {i} off by {deviation}"
         );
         for j in 0..3 {
             let product = |c: &[f64; 3]| (c[i] - moments.mean[i]) * (c[j] - moments.mean[j]);
             let found = mean(&product);
             let spread = mean(&|c| (product(c) - found).powi(2));
-            let miss = (found - moments.covariance[i][j]).abs();
+            let deviation = (found - moments.covariance[i][j]).abs();
             assert!(
-                miss <= 5.0 * (spread / n).sqrt() + 1e-9,
-                "{name}: covariance {i} {j} off by {miss}"
+                deviation <= 5.0 * (spread / n).sqrt() + 1e-9,
+                "{name}: covariance {i} {j} off by {deviation}"
             );
         }
     }
 }
 
 #[test]
-fn every_channel_follows_its_law() {
+fn channels_follow_their_distributions() {
     for distribution in [
         r#"{ "color_uniform": { "from": "darkgreen", "to": [0.9, 0.1, 1] } }"#,
         r#"{ "color_uniform": { "from": "darkgreen", "to": [0.9, 0.1, 1], "channels": "together" } }"#,
@@ -89,7 +89,7 @@ fn every_channel_follows_its_law() {
         r#"{ "mixture": { "parts": [{ "color_uniform": { "from": "black", "to": "gray" } },
                                     { "color_normal": { "mean": "gold", "std": 0.1 } }], "weights": [3, 1] } }"#,
     ] {
-        let variant = default(&task(&drawn_by(distribution), ""));
+        let variant = default(&task(&color_parameter(distribution), ""));
         let drawn = colors(&Sampler::new(&variant, 11), DRAWS);
         let law = law(&variant);
         for (k, channel) in law.color_channels().expect("channels with laws").iter().enumerate() {
@@ -104,7 +104,7 @@ fn every_channel_follows_its_law() {
 #[test]
 fn clipped_channels_reach_the_limits_with_the_right_frequency() {
     let distribution = r#"{ "color_perturb": { "value": [0.1, 0.5, 1], "noise": 0.4, "high": [1, 0.7, 1] } }"#;
-    let variant = default(&task(&drawn_by(distribution), ""));
+    let variant = default(&task(&color_parameter(distribution), ""));
     let drawn = colors(&Sampler::new(&variant, 5), DRAWS);
     check_moments(distribution, &law(&variant), &drawn);
     for (k, limit, share) in [(0, 0.0, 0.375), (1, 0.7, 0.25), (2, 1.0, 0.5)] {
@@ -118,22 +118,22 @@ fn clipped_channels_reach_the_limits_with_the_right_frequency() {
 
 /// Hue in degrees, saturation and value, as computed by Python's `colorsys.rgb_to_hsv`.
 fn hsv([red, green, blue]: [f64; 3]) -> [f64; 3] {
-    let (most, least) = (red.max(green).max(blue), red.min(green).min(blue));
-    let width = most - least;
-    let sixth = if red == most {
+    let (max, min) = (red.max(green).max(blue), red.min(green).min(blue));
+    let width = max - min;
+    let sixth = if red == max {
         (green - blue) / width
-    } else if green == most {
+    } else if green == max {
         2.0 + (blue - red) / width
     } else {
         4.0 + (red - green) / width
     };
-    [(60.0 * sixth).rem_euclid(360.0), width / most, most]
+    [(60.0 * sixth).rem_euclid(360.0), width / max, max]
 }
 
 #[test]
 fn hue_saturation_and_value_are_uniform_between_their_ends() {
     let distribution = r#"{ "color_hsv": { "hue": [-40, 110], "saturation": [0.2, 0.9], "value": [0.5, 1] } }"#;
-    let variant = default(&task(&drawn_by(distribution), ""));
+    let variant = default(&task(&color_parameter(distribution), ""));
     let drawn = colors(&Sampler::new(&variant, 3), DRAWS);
     check_moments(distribution, &law(&variant), &drawn);
     for (k, low, high) in [(0, -40.0, 110.0), (1, 0.2, 0.9), (2, 0.5, 1.0)] {
@@ -146,11 +146,11 @@ fn hue_saturation_and_value_are_uniform_between_their_ends() {
 
 #[test]
 fn colour_does_not_depend_on_earlier_draws_or_other_parameters() {
-    let own = drawn_by(r#"{ "color_normal": { "mean": "teal", "std": 0.2 } }"#);
-    let beside =
+    let own = color_parameter(r#"{ "color_normal": { "mean": "teal", "std": 0.2 } }"#);
+    let other =
         r#""first": { "role": "randomized", "type": "color", "affects": ["O"], "distribution": { "color_hsv": {} } },"#;
     let alone = Sampler::new(&default(&task(&own, "")), 7);
-    let together = Sampler::new(&default(&task(&format!("{beside}{own}"), "")), 7);
+    let together = Sampler::new(&default(&task(&format!("{other}{own}"), "")), 7);
     let sky = |sampler: &Sampler, index| {
         sampler
             .world(index)
@@ -175,19 +175,19 @@ fn variants_share_random_numbers_channel_by_channel() {
         parameters,
         r#""other": { "middle": [0.25, 0.5, 0.75], "spread": 0.3 }, "sure": { "spread": 0 }"#,
     );
-    let of = |name: &str| task.variant(name).expect("it is declared");
+    let of = |name: &str| task.variant(name).expect("the task declares it");
     let Distribution::ColorNormal { mean, std } = law(&of("other")) else {
         panic!("the family stays")
     };
     assert_eq!((mean, std), (Channels([0.25, 0.5, 0.75]), ChannelSpread::Same(0.3)));
-    let chances = |name: &str| {
+    let units_of = |name: &str| {
         let variant = of(name);
         let channels = law(&variant).color_channels().expect("channels with laws");
         let drawn = colors(&Sampler::new(&variant, 1), 50);
         let units = move |color: [f64; 3]| [0, 1, 2].map(|k| channels[k].cdf(color[k]).expect("a number"));
         drawn.into_iter().map(units).collect::<Vec<_>>()
     };
-    for (a, b) in chances("default").into_iter().zip(chances("other")) {
+    for (a, b) in units_of("default").into_iter().zip(units_of("other")) {
         assert!((0..3).all(|k| (a[k] - b[k]).abs() < 1e-9), "{a:?} and {b:?}");
     }
     assert!(
@@ -199,9 +199,9 @@ fn variants_share_random_numbers_channel_by_channel() {
 
 #[test]
 fn sequences_give_each_channel_one_world_per_stratum() {
-    let own = drawn_by(r#"{ "color_uniform": { "from": "black", "to": "white" } }"#);
-    let beside = r#""n": { "role": "randomized", "type": "number", "affects": ["S"], "distribution": { "uniform": { "low": 0, "high": 1 } } },"#;
-    let variant = default(&task(&format!("{beside}{own}"), ""));
+    let own = color_parameter(r#"{ "color_uniform": { "from": "black", "to": "white" } }"#);
+    let other = r#""n": { "role": "randomized", "type": "number", "affects": ["S"], "distribution": { "uniform": { "low": 0, "high": 1 } } },"#;
+    let variant = default(&task(&format!("{other}{own}"), ""));
     let count = 64;
     for sequence in [Sequence::Sobol, Sequence::LatinHypercube { first: 0, count }] {
         let drawn = colors(&Sampler::new(&variant, 9).with_sequence(sequence), count);
@@ -234,15 +234,15 @@ const OF_LAWS: &str = r#"
     "line": { "law": { "color_uniform": { "from": "red", "to": "blue", "channels": "together" } } }"#;
 
 #[test]
-fn drift_between_laws_goes_through_oklab_and_the_shorter_way_of_hues() {
+fn drift_interpolates_colours_in_oklab_and_hues_the_shorter_way() {
     let task = task(LAWS, OF_LAWS);
-    let of = |name: &str| task.variant(name).expect("it is declared");
+    let of = |name: &str| task.variant(name).expect("the task declares it");
     let at = |from: &str, to: &str, t: f64| {
         let between = drift(&of(from), &of(to), t).unwrap_or_else(|error| panic!("{from} to {to}: {error}"));
         law(&between)
     };
     let Distribution::ColorNormal { mean, std } = at("sure", "loose", 0.5) else {
-        panic!("two of one family have one between them")
+        panic!("distributions of one family are interpolated")
     };
     // The purple of CSS Color 4's color-mix(in oklab, red, blue).
     let near = mean
@@ -253,13 +253,13 @@ fn drift_between_laws_goes_through_oklab_and_the_shorter_way_of_hues() {
     assert!(near, "{mean:?}");
     assert_eq!(std, ChannelSpread::Each([0.05, 0.1, 0.15]));
     let Distribution::ColorHsv { hue, saturation, value } = at("before", "after", 0.5) else {
-        panic!("two of one family have one between them")
+        panic!("distributions of one family are interpolated")
     };
     // From about 350 across red to about 20, via 5.
     assert_eq!(hue, Some([-10.0, 20.0]));
     assert_eq!((saturation, value), (Some([0.0, 1.0]), Some([0.25, 0.75])));
     let Distribution::ColorPerturb { value, high, .. } = at("noisy", "cut", 0.5) else {
-        panic!("two of one family have one between them")
+        panic!("distributions of one family are interpolated")
     };
     let gray = Color::from_name("gray").expect("a CSS name").0;
     let silver = Color::from_name("silver").expect("a CSS name").0;
@@ -276,7 +276,7 @@ fn drift_between_laws_goes_through_oklab_and_the_shorter_way_of_hues() {
 }
 
 #[test]
-fn every_variant_of_a_drift_between_laws_can_be_drawn() {
+fn every_variant_of_a_drift_between_distributions_is_valid() {
     let task = task(LAWS, OF_LAWS);
     let variants = task.all_variants();
     for (from, to) in variants
@@ -303,7 +303,7 @@ fn each_object_of_a_group_has_its_own_colour() {
         "variants": { "autumn": { "leaf": "darkgoldenrod" } } }"#;
     let task = TaskSpec::from_json("woods.json", text).unwrap_or_else(|error| panic!("{error}"));
     for (name, middle) in [("default", "green"), ("autumn", "darkgoldenrod")] {
-        let world = Sampler::new(&task.variant(name).expect("it is declared"), 1)
+        let world = Sampler::new(&task.variant(name).expect("the task declares it"), 1)
             .world(0)
             .expect("room for all");
         let middle = Color::from_name(middle).expect("a CSS name").0;
@@ -314,8 +314,8 @@ fn each_object_of_a_group_has_its_own_colour() {
                 let color = tree.color.expect("every tree has one").0;
                 // The second channel of both is never clipped.
                 let shade = color[1] - middle[1];
-                let off = |k: usize| color[k] - (middle[k] + shade).clamp(0.0, 1.0);
-                assert!((0..3).all(|k| off(k).abs() < 1e-12), "{color:?}");
+                let deviation = |k: usize| color[k] - (middle[k] + shade).clamp(0.0, 1.0);
+                assert!((0..3).all(|k| deviation(k).abs() < 1e-12), "{color:?}");
                 assert_eq!(tree.reward, middle[1]);
                 shade
             })

@@ -1,4 +1,4 @@
-//! Laws of doors and keys in doorways, tested on random rooms.
+//! Properties of doors and keys in doorways, tested on random rooms.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -19,7 +19,10 @@ fn task(rooms: &str, groups: &str) -> Arc<TaskSpec> {
 }
 
 fn world(task: &Arc<TaskSpec>, seed: u64, index: u64) -> World {
-    let sampler = Sampler::new(&task.variant("default").expect("there is one"), seed);
+    let sampler = Sampler::new(
+        &task.variant("default").expect("the default variant always exists"),
+        seed,
+    );
     sampler.world(index).unwrap_or_else(|error| panic!("{error}"))
 }
 
@@ -35,19 +38,19 @@ fn keys(world: &World) -> Vec<&Object> {
         .collect()
 }
 
-/// The cells beside a doorway.
-fn beside(plan: &Plan, doorway: usize) -> [usize; 2] {
+/// The cells on both sides of a doorway.
+fn cells_beside(plan: &Plan, doorway: usize) -> [usize; 2] {
     let doorway = &plan.doorways[doorway];
     let axis = usize::from(doorway.heading == 0.0);
     [-0.1, 0.1].map(|metres| {
         let mut at = doorway.center;
         at[axis] += metres;
-        plan.cell_at(at).expect("a cell is beside a doorway")
+        plan.cell_at(at).expect("a cell is on each side of a doorway")
     })
 }
 
-/// The cells that can be reached by opening only doors whose key was reached before. An independent implementation: checks
-/// everything again until nothing changes.
+/// The cells that can be reached by opening only doors with keys that were reached earlier. An independent implementation,
+/// which repeats all checks until nothing changes.
 fn reached(world: &World) -> BTreeSet<usize> {
     let (plan, doors, keys) = (world.plan().expect("it has rooms"), doors(world), keys(world));
     let start = plan
@@ -65,7 +68,7 @@ fn reached(world: &World) -> BTreeSet<usize> {
         for (number, object) in doors.iter().enumerate() {
             let door = object.door.as_ref().expect("it is a door");
             if door.key.is_some() && !owned.contains(&door.key) {
-                let [a, b] = beside(plan, number);
+                let [a, b] = cells_beside(plan, number);
                 shut.extend([(a, b), (b, a)]);
             }
         }
@@ -118,13 +121,13 @@ proptest! {
         }
         prop_assert_eq!(reached(&world).len(), plan.cells.len());
         // Keys lie in free space, away from each other, the coins and the agent.
-        for (place, key) in keys.iter().enumerate() {
+        for (index, key) in keys.iter().enumerate() {
             prop_assert!(world.enclosure(key.coordinates).is_none());
             let start = world.agent_params.coordinates;
             let coins = world.objects.iter().filter(|object| object.class == "geometric").map(|coin| coin.coordinates);
-            for other in keys[..place].iter().map(|key| key.coordinates).chain(coins).chain([start]) {
-                let away = [0, 1].map(|axis| key.coordinates[axis] - other[axis]);
-                prop_assert!(libm::hypot(away[0], away[1]) >= 0.79, "{:?} and {other:?}", key.coordinates);
+            for other in keys[..index].iter().map(|key| key.coordinates).chain(coins).chain([start]) {
+                let offset = [0, 1].map(|axis| key.coordinates[axis] - other[axis]);
+                prop_assert!(libm::hypot(offset[0], offset[1]) >= 0.79, "{:?} and {other:?}", key.coordinates);
             }
         }
         // The world round-trips through JSON.
@@ -139,7 +142,7 @@ proptest! {
         };
         let [without, keyed] = ["none", "keyed"].map(with);
         prop_assert!(doors(&without).is_empty() && keys(&without).is_empty());
-        // A start in a door is drawn again.
+        // A start inside a door is drawn again.
         prop_assume!(without.agent_params.coordinates == keyed.agent_params.coordinates);
         prop_assert_eq!(&without.objects[..], &keyed.objects[..3]);
         prop_assert_eq!((without.plan(), without.seed), (keyed.plan(), keyed.seed));
@@ -147,7 +150,7 @@ proptest! {
 }
 
 #[test]
-fn worlds_differ_in_key_places_and_colours() {
+fn worlds_differ_in_key_positions_and_colours() {
     let task = task(r#"{ "rooms": { "grid": [2, 2], "doors": "keyed", "seed": 4 } }"#, "[]");
     let worlds: Vec<World> = (0..10).map(|index| world(&task, 7, index)).collect();
     let first = |world: &World| format!("{:?}", keys(world)[0].coordinates);
@@ -194,9 +197,9 @@ fn missing_cell_for_a_key_is_an_error() {
             "placement": { "grid": { "low": [-2, -1], "high": [2, 1], "columns": 8, "rows": 4 } } }]"#,
     );
     let error = Sampler::new(&task.variant("default").unwrap(), 1).world(0).unwrap_err();
-    let said = error.to_string();
+    let message = error.to_string();
     assert!(
-        said.contains("keys of the layout's doors") && said.contains("lower the counts of groups"),
-        "{said}"
+        message.contains("keys of the layout's doors") && message.contains("lower the counts of groups"),
+        "{message}"
     );
 }

@@ -1,4 +1,4 @@
-//! Layouts of sampled worlds: each world has its own, objects are in free space, and the seed is saved.
+//! Layouts of sampled worlds: each world has its own layout, objects are in free space, and the seed is saved.
 
 use std::sync::Arc;
 
@@ -16,7 +16,7 @@ fn task(layout: &str, more: &str) -> Arc<TaskSpec> {
 }
 
 fn sampler(task: &Arc<TaskSpec>, variant: &str, seed: u64) -> Sampler {
-    Sampler::new(&task.variant(variant).expect("there is one"), seed)
+    Sampler::new(&task.variant(variant).expect("the task has the variant"), seed)
 }
 
 fn world(sampler: &Sampler, index: u64) -> World {
@@ -31,9 +31,13 @@ fn each_world_has_its_own_maze_and_saves_its_seed() {
     for (index, drawn) in worlds.iter().enumerate().rev() {
         // Random access, and a round trip through JSON.
         assert_eq!(*drawn, world(&sampler(&task, "default", 7), index as u64));
-        let read = World::from_json("w.json", &drawn.to_json()).expect("a sampled world is sound");
+        let read = World::from_json("w.json", &drawn.to_json()).expect("a sampled world is valid");
         assert_eq!(read.plan(), drawn.plan());
-        let layout = drawn.environment_params.layout.as_ref().expect("it has one");
+        let layout = drawn
+            .environment_params
+            .layout
+            .as_ref()
+            .expect("the world has a layout");
         assert!(layout.seed().is_some() && layout.seed() != drawn.seed);
         for object in &drawn.objects {
             assert!(drawn.enclosure(object.coordinates).is_none());
@@ -41,7 +45,7 @@ fn each_world_has_its_own_maze_and_saves_its_seed() {
     }
     let mazes: std::collections::BTreeSet<String> = worlds
         .iter()
-        .map(|world| format!("{:?}", world.plan().expect("it has a layout").walls))
+        .map(|world| format!("{:?}", world.plan().expect("the world has a layout").walls))
         .collect();
     assert_eq!(mazes.len(), worlds.len());
     let other = world(&sampler(&task, "default", 8), 0);
@@ -61,19 +65,19 @@ fn variants_share_mazes_and_a_parameter_removes_walls() {
         "range": [0, 1], "default": 1 } }, "variants": { "open": { "standing": 0 }, "half": { "standing": 0.5 } },"#;
     let task = task(r#"{ "maze": {}, "standing": { "param": "standing" } }"#, parameters);
     let [open, half, all] = ["open", "half", "default"].map(|variant| world(&sampler(&task, variant, 3), 0));
-    let [open, half, all] = [&open, &half, &all].map(|world| world.plan().expect("it has a layout"));
+    let [open, half, all] = [&open, &half, &all].map(|world| world.plan().expect("the world has a layout"));
     assert!(open.walls.is_empty() && !half.walls.is_empty());
     for (half, all) in half.cells.iter().zip(&all.cells) {
         assert_eq!(
             half.sides & all.sides,
             all.sides,
-            "what is open in the whole maze is open in half of it"
+            "every open side of the full maze is open in the half maze"
         );
     }
 }
 
 #[test]
-fn drawn_numbers_that_make_no_layout_are_an_error() {
+fn drawn_numbers_that_make_an_invalid_layout_are_an_error() {
     let task = task(
         r#"{ "maze": { "cells": [2, 2], "seed": 1, "wall": { "uniform": { "low": 2, "high": 4 } } } }"#,
         "",

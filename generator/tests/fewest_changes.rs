@@ -1,5 +1,6 @@
-//! Laws of variants at a given distance, with parameters of every type: every distance that an exhaustive search finds is found,
-//! with no more changes, and no idle parameter changes. Numbers alone, cut by requirements, are tested in `at_distance.rs`.
+//! Tests of the search for variants at a given distance, with parameters of every type: it finds every distance that an
+//! exhaustive search finds, with no more changes, and changes no parameter needlessly. Numbers alone, cut off by requirements,
+//! are tested in `at_distance.rs`.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +12,7 @@ use crate::drawn_task::{Drawn, Numbers};
 /// Tolerance of a found distance.
 const TOLERANCE: f64 = 1e-3;
 
-/// Distances to request per task.
+/// Number of distances to request per task.
 fn distances() -> usize {
     crate::tier::quick_or_full(6, 24)
 }
@@ -41,8 +42,8 @@ fn grid_of(from: &Variant, name: &str, parts: usize) -> Vec<Value> {
     values
 }
 
-/// The difference of two variants in a parameter, as a share of its range; strings and booleans are 0 or 1 apart.
-fn apart(from: &Variant, to: &Variant, name: &str) -> f64 {
+/// The difference of two variants in a parameter, as a share of its range; 0 or 1 for strings and booleans.
+fn difference(from: &Variant, to: &Variant, name: &str) -> f64 {
     let parameter = &from.task().parameters()[name];
     let [low, high] = parameter.range.unwrap_or([0.0, 1.0]);
     let (a, b) = (from.value_as_read(name), to.value_as_read(name));
@@ -67,8 +68,8 @@ fn apart(from: &Variant, to: &Variant, name: &str) -> f64 {
     }
 }
 
-/// The Wasserstein-1 distance of the uniform laws from `lo` to `hi`, which are compared by what is drawn from them.
-fn drawn_apart(from: &Variant, to: &Variant) -> f64 {
+/// The Wasserstein-1 distance between the uniform distributions from `lo` to `hi`, which are compared as distributions.
+fn distribution_distance(from: &Variant, to: &Variant) -> f64 {
     let number = |variant: &Variant, name| variant.value(name).and_then(Value::as_number);
     let ends = |name| Some(number(from, name)? - number(to, name)?);
     let (Some(low), Some(high)) = (ends("lo"), ends("hi")) else {
@@ -77,14 +78,14 @@ fn drawn_apart(from: &Variant, to: &Variant) -> f64 {
     if low * high >= 0.0 {
         return f64::midpoint(low.abs(), high.abs());
     }
-    // The quantiles cross: two triangles.
+    // The quantile functions cross, which leaves two triangles.
     (low * low + high * high) / (2.0 * (low.abs() + high.abs()))
 }
 
 /// The sum over all parameters, as in `similarity`.
 fn distance(from: &Variant, to: &Variant, names: &[String]) -> f64 {
     let by_value = names.iter().filter(|name| *name != "lo" && *name != "hi");
-    by_value.map(|name| apart(from, to, name)).sum::<f64>() + drawn_apart(from, to)
+    by_value.map(|name| difference(from, to, name)).sum::<f64>() + distribution_distance(from, to)
 }
 
 fn changed<'a>(from: &Variant, to: &Variant, names: &'a [String]) -> Vec<&'a String> {
@@ -98,7 +99,7 @@ fn digits(distance: f64) -> Digits {
     (distance * 1e9).round() as Digits
 }
 
-/// Every distance on a grid of allowed variants, with the fewest changes that reach it.
+/// Every distance on a grid of allowed variants, with the minimum number of changes that reaches it.
 fn on_a_grid(from: &Variant, names: &[String]) -> BTreeMap<Digits, usize> {
     let smooth = |name: &&String| {
         let parameter = &from.task().parameters()[*name];
@@ -129,17 +130,17 @@ fn on_a_grid(from: &Variant, names: &[String]) -> BTreeMap<Digits, usize> {
     found
 }
 
-/// The smallest distance above 0, the largest, and others at random, one in each of equal intervals between them.
-fn asked(grid: &BTreeMap<Digits, usize>, numbers: &mut Numbers, most: usize) -> Vec<Digits> {
+/// The smallest distance above 0, the largest, and random distances from equal intervals between them.
+fn targets(grid: &BTreeMap<Digits, usize>, numbers: &mut Numbers, max: usize) -> Vec<Digits> {
     let all: Vec<Digits> = grid.keys().copied().filter(|distance| *distance > 0).collect();
-    if all.len() <= most {
+    if all.len() <= max {
         return all;
     }
-    let (step, last) = ((all.len() - 2) as f64 / (most - 2) as f64, all.len() - 1);
-    let between = (0..most - 2).map(|k| all[(1.0 + (k as f64 + numbers.share()) * step) as usize]);
-    let mut asked: Vec<Digits> = [all[0], all[last]].into_iter().chain(between).collect();
-    asked.dedup();
-    asked
+    let (step, last) = ((all.len() - 2) as f64 / (max - 2) as f64, all.len() - 1);
+    let between = (0..max - 2).map(|k| all[(1.0 + (k as f64 + numbers.share()) * step) as usize]);
+    let mut targets: Vec<Digits> = [all[0], all[last]].into_iter().chain(between).collect();
+    targets.dedup();
+    targets
 }
 
 /// The fault in the answer for a distance that the grid reaches with `fewest` changes.
@@ -177,23 +178,23 @@ fn fault(from: &Variant, names: &[String], target: f64, fewest: usize) -> Option
 fn fault_beyond(from: &Variant, names: &[String], farthest: f64) -> Option<String> {
     let measure = |other: &Variant| distance(from, other, names);
     match at_distance(from, &Subject::Parameters(names.to_vec()), 50.0, TOLERANCE, measure) {
-        Err(GeneratorError::TooFar { farthest: most, .. }) if most >= farthest - 1e-9 => None,
+        Err(GeneratorError::TooFar { farthest: max, .. }) if max >= farthest - 1e-9 => None,
         Err(GeneratorError::NoneBetween { .. }) => None,
         other => Some(format!("50: found {other:?}, the grid's farthest is {farthest}")),
     }
 }
 
 /// Requests many distances of each of `tasks` random tasks; returns the faults in the answers.
-fn faults(seed: u64, tasks: usize, most: usize) -> Vec<String> {
+fn faults(seed: u64, tasks: usize, max: usize) -> Vec<String> {
     let mut numbers = Numbers(seed);
     let (mut found, mut checked) = (Vec::new(), 0);
     while checked < tasks {
         let Drawn { text, names } = Drawn::new(&mut numbers);
-        // If the variant breaks a requirement, there is no variant to start from.
+        // If the variant violates a requirement, there is no variant to start from.
         let Ok(task) = TaskSpec::from_json("t", &text) else {
             continue;
         };
-        let from = task.variant("here").expect("it is declared");
+        let from = task.variant("here").expect("the task declares it");
         let grid = on_a_grid(&from, &names);
         // Only the variant itself is allowed.
         if grid.len() < 2 {
@@ -201,8 +202,8 @@ fn faults(seed: u64, tasks: usize, most: usize) -> Vec<String> {
         }
         checked += 1;
         let as_number = |digits: Digits| digits as f64 / 1e9;
-        let asked = asked(&grid, &mut numbers, most);
-        let mut wrong: Vec<String> = asked
+        let targets = targets(&grid, &mut numbers, max);
+        let mut wrong: Vec<String> = targets
             .iter()
             .filter_map(|target| fault(&from, &names, as_number(*target), grid[target]))
             .collect();
@@ -216,8 +217,8 @@ fn faults(seed: u64, tasks: usize, most: usize) -> Vec<String> {
 }
 
 #[track_caller]
-fn check(seed: u64, tasks: usize, most: usize) {
-    let faults = faults(seed, tasks, most);
+fn check(seed: u64, tasks: usize, max: usize) {
+    let faults = faults(seed, tasks, max);
     assert!(
         faults.is_empty(),
         "{} of {tasks} tasks:\n{}",
@@ -238,7 +239,7 @@ macro_rules! drawn_tasks {
     };
 }
 
-/// Everything that an exhaustive search finds is found, with no more changes.
+/// The search finds everything that an exhaustive search finds, with no more changes.
 mod what_a_grid_finds_is_found_by_as_few_changes {
     drawn_tasks! {
         4:
@@ -262,7 +263,7 @@ fn single_sufficient_parameter_is_changed_alone() {
         "b": { "role": "variant", "type": "number", "affects": ["T"], "range": [0, 1], "default": 0.5 },
         "word": { "role": "variant", "type": "string", "affects": ["T"], "choices": ["x", "y", "z"], "default": "x" } } }"#;
     let task = TaskSpec::from_json("t", text).expect("its defaults are allowed");
-    let from = task.variant("here").expect("it is declared");
+    let from = task.variant("here").expect("the task declares it");
     let names = ["a", "b", "word"].map(str::to_owned);
     let find = |target: f64| {
         let found = at_distance(&from, &Subject::Element(Element::T), target, 1e-6, |other| {
@@ -280,8 +281,8 @@ fn single_sufficient_parameter_is_changed_alone() {
 fn vector_moves_to_its_farthest_corner() {
     let text = r#"{ "name": "t", "variants": { "here": {} }, "parameters": {
         "pays": { "role": "variant", "type": "vector", "affects": ["T"], "range": [-10, 10], "default": [8, -8] } } }"#;
-    let task = TaskSpec::from_json("t", text).expect("it is sound");
-    let from = task.variant("here").expect("it is declared");
+    let task = TaskSpec::from_json("t", text).expect("the task is valid");
+    let from = task.variant("here").expect("the task declares it");
     let names = ["pays".to_owned()];
     let find = |target| {
         at_distance(&from, &Subject::Element(Element::T), target, 1e-6, |other| {
@@ -296,7 +297,7 @@ fn vector_moves_to_its_farthest_corner() {
 }
 
 #[test]
-fn number_that_decides_what_is_read_moves_for_the_sake_of_another() {
+fn number_moves_so_that_another_parameter_is_read() {
     let text = r#"{ "name": "t", "variants": { "here": { "hi": 0.4, "m": 1, "word": "x" } }, "parameters": {
         "lo": { "role": "variant", "affects": ["T"], "type": "number", "range": [0, 1], "default": 0.1 },
         "hi": { "role": "variant", "affects": ["T"], "type": "number", "range": [0, 1], "default": 0.4 },
@@ -307,9 +308,9 @@ fn number_that_decides_what_is_read_moves_for_the_sake_of_another() {
                  "choices": [{ "constant": { "value": 0.2 } }, { "uniform": { "low": 0, "high": 1 } }, { "normal": { "mean": 0.9, "std": 0.1 } }] },
         "drawn": { "role": "randomized", "type": "number", "affects": ["T"],
                    "distribution": { "uniform": { "low": { "param": "lo" }, "high": { "param": "hi" } } } } } }"#;
-    let task = TaskSpec::from_json("t", text).expect("it is sound");
-    let from = task.variant("here").expect("it is declared");
+    let task = TaskSpec::from_json("t", text).expect("the task is valid");
+    let from = task.variant("here").expect("the task declares it");
     let names = ["lo", "hi", "m", "arc", "word", "law"].map(str::to_owned);
-    // 1 for the word, 0.7 for the law, 0.05 for lo at 0, under which m is read: five whole steps of eleven; the rest for the arc.
+    // 1 for the word, 0.7 for the law, 0.05 for lo at 0, where m is read and adds five of eleven steps; the rest for the arc.
     assert_eq!(fault(&from, &names, 2.482_323_232, 5), None);
 }

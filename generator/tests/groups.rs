@@ -1,5 +1,5 @@
-//! Groups around each other, their distances and headings; requirements, sequences, and maps from files. Statistics of places are
-//! tested separately.
+//! Tests groups around each other, with their distances and headings, and requirements, sequences and maps from files.
+//! `statistics_of_places.rs` tests the statistics of positions.
 
 #![expect(clippy::disallowed_methods, reason = "compared within a tolerance")]
 
@@ -38,7 +38,8 @@ fn distance(a: &Object, b: &Object) -> f64 {
     (a.coordinates[0] - b.coordinates[0]).hypot(a.coordinates[1] - b.coordinates[1])
 }
 
-/// Houses surrounded by fences that face them, trees that keep away from houses, rocks that face the nearest tree.
+/// A task with houses surrounded by fences that face them, trees that keep away from the houses, rocks that face the nearest
+/// tree, and bags that face the agent.
 fn village(fences: &str) -> Arc<TaskSpec> {
     load(&format!(
         r#"{{ "version": 2, "name": "village", "groups": [
@@ -56,11 +57,11 @@ fn village(fences: &str) -> Arc<TaskSpec> {
     ))
 }
 
-/// Difference between an object's heading and the direction to a place, in degrees.
-fn off(object: &Object, to: [f64; 2]) -> f64 {
+/// Absolute difference between an object's heading and the direction to a point, in degrees.
+fn heading_error(object: &Object, point: [f64; 2]) -> f64 {
     let [x, y] = object.coordinates;
-    let wanted = (to[0] - x).atan2(to[1] - y).to_degrees();
-    ((object.heading - wanted + 180.0).rem_euclid(360.0) - 180.0).abs()
+    let expected = (point[0] - x).atan2(point[1] - y).to_degrees();
+    ((object.heading - expected + 180.0).rem_euclid(360.0) - 180.0).abs()
 }
 
 #[test]
@@ -75,22 +76,22 @@ fn groups_around_others_keep_their_distances_and_headings() {
                 "{index}: {}",
                 distance(fence, house)
             );
-            assert!(off(fence, house.coordinates) < 1e-6);
+            assert!(heading_error(fence, house.coordinates) < 1e-6);
         }
         for tree in &trees {
             assert!(houses.iter().all(|house| distance(tree, house) >= 12.0));
-            assert!(off(tree, [50.0, 50.0]) < 1e-6);
+            assert!(heading_error(tree, [50.0, 50.0]) < 1e-6);
         }
         for rock in tagged(&world, "rocks") {
             let nearest = trees
                 .iter()
                 .min_by(|a, b| distance(rock, a).total_cmp(&distance(rock, b)));
-            assert!(off(rock, nearest.expect("there are trees").coordinates) < 1e-6);
+            assert!(heading_error(rock, nearest.expect("there are trees").coordinates) < 1e-6);
         }
         assert!(
             tagged(&world, "bags")
                 .into_iter()
-                .all(|bag| off(bag, [0.0, 0.0]) < 1e-6)
+                .all(|bag| heading_error(bag, [0.0, 0.0]) < 1e-6)
         );
     }
 }
@@ -98,15 +99,15 @@ fn groups_around_others_keep_their_distances_and_headings() {
 #[test]
 fn one_more_object_around_each_anchor_moves_no_other_object() {
     let (few, more) = (world(&village("3"), 5), world(&village("4"), 5));
-    let fences = |world: &World, around: usize, of: usize| -> Vec<Object> {
-        let all = tagged(world, "fences");
-        all[around * of..around * of + 3]
+    let first_fences = |world: &World, house: usize, count: usize| -> Vec<Object> {
+        let fences = tagged(world, "fences");
+        fences[house * count..house * count + 3]
             .iter()
             .map(|fence| (*fence).clone())
             .collect()
     };
     for house in 0..4 {
-        assert_eq!(fences(&few, house, 3), fences(&more, house, 4));
+        assert_eq!(first_fences(&few, house, 3), first_fences(&more, house, 4));
     }
 }
 
@@ -131,22 +132,27 @@ const SIZES: &str = r#"{ "version": 2, "name": "sizes", "parameters": {
   "variants": { "possible": {}, "impossible": { "gap": 1.5 } } }"#;
 
 #[test]
-fn worlds_that_break_a_requirement_are_drawn_again_and_the_others_stay() {
+fn worlds_that_break_a_requirement_are_redrawn_and_the_others_unchanged() {
     let task = load(SIZES);
     let free = load(&SIZES.replace(r#""require": ["low + gap < high"],"#, ""));
-    let (held, free) = (sampler(&task, 7), sampler(&free, 7));
-    let mut kept = 0;
+    let (restricted, free) = (sampler(&task, 7), sampler(&free, 7));
+    let mut unchanged = 0;
     for index in 0..500 {
-        let number = |values: &[(&str, Value)], place: usize| values[place].1.as_number().expect("a number");
-        let values = held.values(index).expect("one in eight draws holds");
+        let number = |values: &[(&str, Value)], position: usize| values[position].1.as_number().expect("a number");
+        let values = restricted
+            .values(index)
+            .expect("one in eight draws meets the requirement");
         assert!(number(&values, 0) + 0.5 < number(&values, 1), "{index}");
-        let before = free.values(index).expect("nothing is required");
-        if number(&before, 0) + 0.5 < number(&before, 1) {
-            assert_eq!(values, before, "{index}: what held at once is not drawn again");
-            kept += 1;
+        let first_draw = free.values(index).expect("the task has no requirements");
+        if number(&first_draw, 0) + 0.5 < number(&first_draw, 1) {
+            assert_eq!(
+                values, first_draw,
+                "{index}: a first draw that meets the requirement stays"
+            );
+            unchanged += 1;
         }
     }
-    assert!((30..100).contains(&kept), "about one in eight: {kept}");
+    assert!((30..100).contains(&unchanged), "about one in eight: {unchanged}");
 }
 
 #[test]
@@ -154,7 +160,7 @@ fn a_requirement_that_never_holds_is_an_error_with_the_last_values() {
     let task = load(SIZES);
     let impossible = task
         .variant("impossible")
-        .expect("it is random, so loading cannot know");
+        .expect("loading cannot detect it, as the values are random");
     let error = sample(&impossible, 7, 0).expect_err("the gap is wider than the range");
     assert!(matches!(error, GeneratorError::Requirement { .. }));
     insta::assert_snapshot!(error);
@@ -166,18 +172,18 @@ const SPREAD: &str = r#"{ "version": 2, "name": "spread", "parameters": {
     "start": { "role": "randomized", "type": "point", "affects": ["S"], "distribution": { "box": { "low": [0, 0], "high": [16, 16] } } },
     "model": { "role": "randomized", "type": "string", "affects": ["S"], "distribution": { "choice": { "values": ["1", "2"] } } } } }"#;
 
-/// The number of worlds in each share of a parameter's range.
-fn shares(
+/// Number of worlds in each of `count` bins.
+fn histogram(
     sampler: &Sampler,
     worlds: std::ops::Range<u64>,
-    share_of: impl Fn(&[(&str, Value)]) -> usize,
+    bin_of: impl Fn(&[(&str, Value)]) -> usize,
     count: usize,
 ) -> Vec<usize> {
-    let mut shares = vec![0; count];
+    let mut bins = vec![0; count];
     for index in worlds {
-        shares[share_of(&sampler.values(index).expect("nothing is required"))] += 1;
+        bins[bin_of(&sampler.values(index).expect("the task has no requirements"))] += 1;
     }
-    shares
+    bins
 }
 
 #[test]
@@ -189,35 +195,40 @@ fn sequences_spread_numbers_and_points_evenly_with_random_access() {
         _ => usize::MAX,
     };
     let sobol = sampler(&task, 3).with_sequence(Sequence::Sobol);
-    assert_eq!(shares(&sobol, 64..128, light, 64), vec![1; 64]);
+    assert_eq!(histogram(&sobol, 64..128, light, 64), vec![1; 64]);
     assert_eq!(
-        shares(&sobol, 0..64, cell, 16),
+        histogram(&sobol, 0..64, cell, 16),
         vec![4; 16],
-        "points cover the square, not only its sides"
+        "points are spread over both coordinates together"
     );
     let cube = sampler(&task, 3).with_sequence(Sequence::LatinHypercube { first: 10, count: 64 });
-    assert_eq!(shares(&cube, 10..74, light, 64), vec![1; 64]);
+    assert_eq!(histogram(&cube, 10..74, light, 64), vec![1; 64]);
     let independent = sampler(&task, 3);
-    assert_ne!(shares(&independent, 64..128, light, 64), vec![1; 64]);
-    // Choices are not scalar: they are drawn independently.
-    let model = |sampler: &Sampler, index| sampler.values(index).expect("nothing is required")[3].1.clone();
+    assert_ne!(histogram(&independent, 64..128, light, 64), vec![1; 64]);
+    // Choices are not numeric, so they are drawn independently.
+    let model = |sampler: &Sampler, index| {
+        sampler.values(index).expect("the task has no requirements")[3]
+            .1
+            .clone()
+    };
     assert!((0..64).all(|index| model(&sobol, index) == model(&independent, index)));
-    let again = sampler(&task, 3).with_sequence(Sequence::Sobol);
+    let repeated = sampler(&task, 3).with_sequence(Sequence::Sobol);
     assert_eq!(
-        again.values(100).expect("any world"),
-        sobol.values(100).expect("any world")
+        repeated.values(100).expect("the task has no requirements"),
+        sobol.values(100).expect("the task has no requirements")
     );
     assert_ne!(
         sampler(&task, 4)
             .with_sequence(Sequence::Sobol)
             .values(100)
-            .expect("any world"),
-        sobol.values(100).expect("any world")
+            .expect("the task has no requirements"),
+        sobol.values(100).expect("the task has no requirements")
     );
 }
 
-/// Winding number of a polygon around a point, by angles: an independent oracle. Odd inside, also if the polygon touches itself.
-fn turns(polygon: &[[f64; 2]], [x, y]: [f64; 2]) -> f64 {
+/// Winding number of a polygon around a point, summed from angles as an independent oracle. It is odd inside, even if the
+/// polygon touches itself.
+fn winding_number(polygon: &[[f64; 2]], [x, y]: [f64; 2]) -> f64 {
     let next = polygon.iter().cycle().skip(1);
     let angles = polygon.iter().zip(next).map(|(a, b)| {
         let angle = (b[1] - y).atan2(b[0] - x) - (a[1] - y).atan2(a[0] - x);
@@ -259,12 +270,12 @@ fn maps_file_replaces_built_in_layouts_and_keeps_its_regions_free() {
             layout
                 .excluded_regions
                 .iter()
-                .all(|region| turns(&region.0, start).round() as i64 % 2 == 0),
+                .all(|region| winding_number(&region.0, start).round() as i64 % 2 == 0),
             "{start:?}"
         );
         for object in &world.objects {
             for region in &layout.excluded_regions {
-                let turns = turns(&region.0, object.coordinates);
+                let turns = winding_number(&region.0, object.coordinates);
                 assert!(
                     turns.round() as i64 % 2 == 0,
                     "map {map}: {:?} is inside {region:?}",
@@ -272,8 +283,8 @@ fn maps_file_replaces_built_in_layouts_and_keeps_its_regions_free() {
                 );
             }
         }
-        let again = World::from_json("w", &world.to_json()).unwrap_or_else(|error| panic!("{error}"));
-        assert_eq!(again, world, "the world carries its map");
+        let reread = World::from_json("w", &world.to_json()).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(reread, world, "the world's document contains its map");
     }
     assert_eq!(seen.len(), 5);
 }
@@ -293,11 +304,11 @@ fn an_agent_never_starts_inside_a_region_that_cannot_be_entered() {
     );
     let error = sampler(&never, 7)
         .world(0)
-        .expect_err("a metre around the origin is all ridge");
+        .expect_err("the whole disc lies inside the ridge");
     assert!(matches!(error, GeneratorError::NoStart { tries: 1000, .. }), "{error}");
 }
 
-/// A row of stalls that are placed in turn, with fixtures in the way of some.
+/// A task with a row of stalls that are placed in turn, and with fixtures that may block some positions.
 fn row(placement: &str, count: u32, fixtures: &str) -> Arc<TaskSpec> {
     load(&format!(
         r#"{{ "version": 2, "name": "row", "world": {{ "environment_params": {{ "map_size": [60, 60] }}, "objects": [{fixtures}],
@@ -307,7 +318,7 @@ fn row(placement: &str, count: u32, fixtures: &str) -> Arc<TaskSpec> {
     ))
 }
 
-fn places(world: &World) -> Vec<[f64; 2]> {
+fn positions(world: &World) -> Vec<[f64; 2]> {
     tagged(world, "stalls")
         .iter()
         .map(|object| object.coordinates)
@@ -315,21 +326,21 @@ fn places(world: &World) -> Vec<[f64; 2]> {
 }
 
 #[test]
-fn object_whose_place_in_turn_is_taken_takes_the_next_free_one() {
+fn object_with_its_position_taken_takes_the_next_free_one() {
     let list = r#"{ "points": { "values": [[0, 0], [4, 0], [8, 0], [12, 0]] } }"#;
     let blocked = r#"{ "class": "rock", "coordinates": [4, 1] }"#;
     assert_eq!(
-        places(&world(&row(list, 3, ""), 0)),
+        positions(&world(&row(list, 3, ""), 0)),
         [[0.0, 0.0], [4.0, 0.0], [8.0, 0.0]]
     );
     assert_eq!(
-        places(&world(&row(list, 3, blocked), 0)),
+        positions(&world(&row(list, 3, blocked), 0)),
         [[0.0, 0.0], [8.0, 0.0], [12.0, 0.0]]
     );
-    // The last one wraps around to the beginning of the list; if all places are taken, that is an error.
-    let late = r#"{ "class": "rock", "coordinates": [0, 1] }"#;
+    // If the first position is taken, every object moves on by one; if too few positions are free, sampling fails.
+    let first_blocked = r#"{ "class": "rock", "coordinates": [0, 1] }"#;
     assert_eq!(
-        places(&world(&row(list, 3, late), 0)),
+        positions(&world(&row(list, 3, first_blocked), 0)),
         [[4.0, 0.0], [8.0, 0.0], [12.0, 0.0]]
     );
     let error = sampler(&row(list, 4, blocked), 7).world(0).unwrap_err();
@@ -337,14 +348,14 @@ fn object_whose_place_in_turn_is_taken_takes_the_next_free_one() {
         panic!("{error}")
     };
     assert_eq!(*object, 4, "{error}");
-    // The same on a grid, whose cells are the places; with jitter, each object tries its own cell first.
+    // The same on a grid with one position a cell; with jitter, each object tries its own cell first.
     let grid = r#"{ "grid": { "low": [-2, -2], "high": [14, 2], "columns": 4, "rows": 1 } }"#;
     assert_eq!(
-        places(&world(&row(grid, 3, blocked), 0)),
+        positions(&world(&row(grid, 3, blocked), 0)),
         [[0.0, 0.0], [8.0, 0.0], [12.0, 0.0]]
     );
-    let strays = r#"{ "grid": { "low": [-2, -2], "high": [14, 2], "columns": 4, "rows": 1, "jitter": 0.2 } }"#;
-    let cells: Vec<f64> = places(&world(&row(strays, 3, blocked), 3))
+    let jittered = r#"{ "grid": { "low": [-2, -2], "high": [14, 2], "columns": 4, "rows": 1, "jitter": 0.2 } }"#;
+    let cells: Vec<f64> = positions(&world(&row(jittered, 3, blocked), 3))
         .iter()
         .map(|[x, _]| (x / 4.0).round())
         .collect();
@@ -353,7 +364,7 @@ fn object_whose_place_in_turn_is_taken_takes_the_next_free_one() {
 
 #[test]
 fn list_too_short_for_its_group_is_refused_on_loading() {
-    let said = |placement: &str, count: &str| {
+    let error_for = |placement: &str, count: &str| {
         let text = format!(
             r#"{{ "version": 2, "name": "row", "groups": [{{ "name": "stalls", "count": {count}, "object": {{ "class": "table" }},
                 "separation": 3, "placement": {placement} }}] }}"#
@@ -363,19 +374,19 @@ fn list_too_short_for_its_group_is_refused_on_loading() {
             .map(|error| error.to_string())
     };
     let near = r#"{ "points": { "values": [[0, 0], [2, 0], [4, 0], [6, 0]] } }"#;
-    assert_eq!(said(near, "2"), None);
-    let refused = said(near, "3").expect("only two are 3 m apart");
+    assert_eq!(error_for(near, "2"), None);
+    let message = error_for(near, "3").expect("only two are 3 m apart");
     assert!(
-        refused.contains("4 places, of which 2 are free in turn 3 m apart"),
-        "{refused}"
+        message.contains("4 places, of which 2 are free in turn 3 m apart"),
+        "{message}"
     );
-    assert!(said(near, r#"{ "integer_uniform": { "low": 3, "high": 5 } }"#).is_some());
+    assert!(error_for(near, r#"{ "integer_uniform": { "low": 3, "high": 5 } }"#).is_some());
     assert_eq!(
-        said(near, r#"{ "integer_uniform": { "low": 1, "high": 5 } }"#),
+        error_for(near, r#"{ "integer_uniform": { "low": 1, "high": 5 } }"#),
         None,
-        "some worlds have few"
+        "some worlds have few enough stalls"
     );
     let grid = r#"{ "grid": { "low": [-9, -9], "high": [9, 9], "columns": 6, "rows": 6 } }"#;
-    assert_eq!(said(grid, "36"), None);
-    assert!(said(grid, "37").is_some(), "there are 36 cells");
+    assert_eq!(error_for(grid, "36"), None);
+    assert!(error_for(grid, "37").is_some(), "the grid has only 36 cells");
 }

@@ -1,11 +1,11 @@
-//! Parameters of type layout: variants, draws and drifts.
+//! Tests parameters of type layout in variants, draws and drifts.
 
 use std::sync::Arc;
 
 use driftworld_generator::{Sampler, drift};
 use driftworld_spec::{Layout, Maze, ParameterType, Plan, TaskSpec, Value, Variant, World};
 
-/// A task whose layout is a variant parameter; `more` adds keys of the parameter.
+/// A task whose layout is a variant parameter; `more` adds keys to the parameter.
 fn task(more: &str) -> Arc<TaskSpec> {
     let text = format!(
         r#"{{ "name": "t", "parameters": {{ "map": {{ "role": "variant", "type": "layout", "affects": ["T"], {more}
@@ -37,17 +37,17 @@ fn plan(world: &World) -> &Plan {
 #[test]
 fn variants_keep_their_layouts_through_json() {
     let task = task("");
-    let again = TaskSpec::from_json("again", &task.to_json()).unwrap();
+    let reread = TaskSpec::from_json("again", &task.to_json()).unwrap();
     assert_eq!(task.parameters()["map"].kind, ParameterType::Layout);
-    for task in [&task, &again] {
+    for task in [&task, &reread] {
         assert_eq!(plan(&world(&task.variant("small").unwrap())).cells.len(), 16);
         assert_eq!(plan(&world(&task.variant("large").unwrap())).cells.len(), 54);
     }
     assert_eq!(
-        again.variant("large").unwrap().hash(),
+        reread.variant("large").unwrap().hash(),
         task.variant("large").unwrap().hash()
     );
-    // The same numbers with keys in a different order and without defaults.
+    // The variant writes the same values with its keys in a different order than the choice.
     assert_eq!(
         task.variant("small").unwrap().value("map"),
         Some(
@@ -59,14 +59,14 @@ fn variants_keep_their_layouts_through_json() {
 }
 
 #[test]
-fn drift_from_open_field_to_maze_adds_walls_and_keeps_the_way_open() {
+fn drift_from_open_field_to_maze_adds_walls_and_keeps_cells_reachable() {
     let task = task("");
     let [open, small] = ["open", "small"].map(|name| task.variant(name).unwrap());
     let mut walls = Vec::new();
     for step in 0..=8 {
         let between = drift(&open, &small, f64::from(step) / 8.0).unwrap_or_else(|error| panic!("{error}"));
         let world = world(&between);
-        // The open end is the arena without a layout.
+        // At the open end, the world has no layout.
         let Some(plan) = world.plan() else {
             walls.push(0.0);
             continue;
@@ -89,8 +89,8 @@ fn drift_from_open_field_to_maze_adds_walls_and_keeps_the_way_open() {
 /// The longer side of a wall's bounding box.
 fn length(polygon: &[[f64; 2]]) -> f64 {
     let side = |axis: usize| {
-        let along = polygon.iter().map(|corner| corner[axis]);
-        along.clone().fold(f64::MIN, f64::max) - along.fold(f64::MAX, f64::min)
+        let coordinates = polygon.iter().map(|corner| corner[axis]);
+        coordinates.clone().fold(f64::MIN, f64::max) - coordinates.fold(f64::MAX, f64::min)
     };
     side(0).max(side(1))
 }
@@ -101,7 +101,7 @@ fn layouts_of_the_same_kind_interpolate_linearly_and_round_integers() {
     let [small, large, rooms] = ["small", "large", "rooms"].map(|name| task.variant(name).unwrap());
     let at = |from: &Variant, to: &Variant, t: f64| match drift(from, to, t).unwrap().value("map") {
         Some(Value::Layout(layout)) => (**layout).clone(),
-        other => panic!("{other:?} is no layout"),
+        other => panic!("{other:?} is not a layout"),
     };
     let maze = |cells, cell| Layout {
         maze: Some(Maze {
@@ -139,16 +139,16 @@ fn numbers_in_a_layout_are_parameters_and_sizes_can_be_swept() {
     let [a, b] = ["a", "b"].map(|name| task.variant(name).unwrap());
     assert_eq!(plan(&world(&a)).lattice, [4, 3]);
     assert_eq!(plan(&world(&drift(&a, &b, 0.6).unwrap())).lattice, [5, 7]);
-    let ends = |name: &str| {
+    let num_dead_ends = |name: &str| {
         let world = world(&task.variant(name).unwrap());
         plan(&world).cells.iter().filter(|cell| cell.open_sides() == 1).count()
     };
-    assert!(ends("dense-0") > 0 && ends("dense-1") == 0);
+    assert!(num_dead_ends("dense-0") > 0 && num_dead_ends("dense-1") == 0);
 }
 
 #[test]
-fn invalid_layouts_are_refused_at_their_place() {
-    let said = |parameter: &str| {
+fn invalid_layout_is_refused_with_its_json_pointer() {
+    let error_for = |parameter: &str| {
         let text = format!(
             r#"{{ "name": "t", "parameters": {{ "map": {parameter} }},
                  "world": {{ "environment_params": {{ "layout": {{ "param": "map" }} }} }} }}"#
@@ -156,17 +156,17 @@ fn invalid_layouts_are_refused_at_their_place() {
         TaskSpec::from_json("t", &text).map_or_else(|error| error.to_string(), |_| String::new())
     };
     let fixed = |layout: &str| {
-        said(&format!(
+        error_for(&format!(
             r#"{{ "role": "fixed", "type": "layout", "value": {layout} }}"#
         ))
     };
-    let drawn = |layout: &str| {
-        said(&format!(
+    let randomized = |layout: &str| {
+        error_for(&format!(
             r#"{{ "role": "randomized", "type": "layout", "affects": ["T"],
                  "distribution": {{ "choice": {{ "values": [{{ "maze": {{}} }}, {layout}] }} }} }}"#
         ))
     };
-    for (layout, place, expected) in [
+    for (layout, pointer, expected) in [
         (
             r#"{ "maze": { "cells": [4, 4], "wall": 5 } }"#,
             "/maze/wall",
@@ -184,14 +184,14 @@ fn invalid_layouts_are_refused_at_their_place() {
         ),
         (r##"{ "text": ["#. ", "#"] }"##, "/text/1", "3, as the first line has"),
     ] {
-        let found = fixed(layout);
+        let error = fixed(layout);
         assert!(
-            found.contains(&format!("(/parameters/map/value{place}): ")) && found.contains(expected),
-            "{found}"
+            error.contains(&format!("(/parameters/map/value{pointer}): ")) && error.contains(expected),
+            "{error}"
         );
-        let found = drawn(layout);
-        let place = format!("(/parameters/map/distribution/choice/values/1{place}): ");
-        assert!(found.contains(&place) && found.contains(expected), "{found}");
+        let error = randomized(layout);
+        let pointer = format!("(/parameters/map/distribution/choice/values/1{pointer}): ");
+        assert!(error.contains(&pointer) && error.contains(expected), "{error}");
     }
-    assert_eq!(drawn(r#"{ "rooms": {} }"#), "");
+    assert_eq!(randomized(r#"{ "rooms": {} }"#), "");
 }

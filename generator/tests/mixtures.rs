@@ -1,5 +1,5 @@
-//! Drifts that switch whole variants: every world belongs to the first or the second variant, drawn from the same stream, and the
-//! share of the second equals the drift's progress.
+//! Tests drifts that switch whole variants. Every world belongs to the first or the second variant and equals that variant's own
+//! world. The share of the second variant equals the drift's progress.
 
 use std::sync::Arc;
 
@@ -13,14 +13,14 @@ const TASKS: [&str; 3] = ["find_objects", "get_to_goal", "moving_object"];
 const WORLDS: u64 = 400;
 
 fn variants() -> Vec<Variant> {
-    let read = |name: &str| {
+    let load = |name: &str| {
         let path = format!("{}/../examples/tasks/{name}.json", env!("CARGO_MANIFEST_DIR"));
         let text = std::fs::read_to_string(path).expect("the example tasks ship with the project");
         TaskSpec::from_json(name, &text).unwrap_or_else(|error| panic!("{error}"))
     };
     TASKS
         .iter()
-        .flat_map(|name| Arc::clone(&read(name)).all_variants())
+        .flat_map(|name| Arc::clone(&load(name)).all_variants())
         .collect()
 }
 
@@ -42,50 +42,56 @@ proptest! {
         let all = variants();
         let (from, to) = (a.get(&all).clone(), b.get(&all).clone());
         let declared = RegimeDrift { switch: DriftSwitch::Task, ..RegimeDrift::to(to.name()) };
-        let drift = Drift::declared(&declared, from.clone(), to.clone(), seed).expect("any two are mixed");
-        let mut of_second = 0;
+        let drift = Drift::declared(&declared, from.clone(), to.clone(), seed).expect("any two variants can be mixed");
+        let mut num_second = 0;
         for index in 0..WORLDS {
-            let drawn = drift.at(progress, index).expect("one of the two");
+            let drawn = drift.at(progress, index).expect("a mixture returns one of its variants");
             prop_assert!([from.id(), to.id()].contains(&drawn.id()), "{}", drawn.id());
-            of_second += u64::from(drawn.id() == to.id());
+            num_second += u64::from(drawn.id() == to.id());
             if index < 4 {
-                let own = hash(&drawn, seed, index);
-                prop_assert!(own == hash(&from, seed, index) || own == hash(&to, seed, index));
+                let found = hash(&drawn, seed, index);
+                prop_assert!(found == hash(&from, seed, index) || found == hash(&to, seed, index));
             }
         }
         if from.id() != to.id() {
-            let share = of_second as f64 / WORLDS as f64;
+            let share = num_second as f64 / WORLDS as f64;
             let error = (progress * (1.0 - progress) / WORLDS as f64).sqrt();
             prop_assert!((share - progress).abs() <= 5.0 * error + 0.01, "{share} at {progress}");
         }
         for (progress, only) in [(0.0, &from), (1.0, &to)] {
-            prop_assert_eq!(drift.at(progress, seed).expect("an end").id(), only.id());
+            prop_assert_eq!(drift.at(progress, seed).expect("a mixture returns one of its variants").id(), only.id());
         }
     }
 }
 
 #[test]
-fn world_that_switched_stays_switched() {
+fn world_that_has_switched_stays_switched() {
     let all = variants();
     let drift = Drift::mixing(all[0].clone(), all[1].clone(), 5).with_schedule(DriftSchedule::Linear);
     let is_second = |progress: f64, index: u64| {
-        let drawn = drift.at(progress, index).expect("one of the two");
+        let drawn = drift
+            .at(progress, index)
+            .expect("a mixture returns one of its variants");
         drawn.id() == all[1].id()
     };
     for index in 0..50 {
-        let turned = (0..=20)
+        let num_second = (0..=20)
             .filter(|step| is_second(f64::from(*step) / 20.0, index))
             .count();
-        let first = (0..=20).position(|step| is_second(f64::from(step) / 20.0, index));
-        assert_eq!(turned, 21 - first.expect("the end is the second"), "world {index}");
+        let first_step = (0..=20).position(|step| is_second(f64::from(step) / 20.0, index));
+        assert_eq!(
+            num_second,
+            21 - first_step.expect("the drift ends with the second"),
+            "world {index}"
+        );
     }
 }
 
 #[test]
-fn between_two_tasks_only_whole_variants_switch() {
+fn drift_between_two_tasks_without_whole_switch_is_refused() {
     let all = variants();
     let other = all.iter().find(|variant| variant.task().name() != all[0].task().name());
-    let other = other.expect("there are several tasks").clone();
+    let other = other.expect("the variants come from several tasks").clone();
     let drift = Drift::mixing(all[0].clone(), other, 5).with_switch(driftworld_generator::Switch::AtPoint);
     assert!(matches!(drift.at(0.5, 0), Err(GeneratorError::DifferentTasks { .. })));
     assert!(drift.at(0.0, 0).is_ok() && drift.at(1.0, 0).is_ok());

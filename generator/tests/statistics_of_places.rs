@@ -1,11 +1,11 @@
-//! Objects are placed according to the declared law. Numbers are tested in `statistics.rs`.
+//! Tests that the positions of objects follow the declared placement. `statistics.rs` tests numbers.
 
 #![expect(clippy::disallowed_methods, reason = "compared within a tolerance")]
 
 use driftworld_generator::Sampler;
 use driftworld_spec::{Distribution, TaskSpec, World};
 
-/// Samples of a group that keeps no distances, in an arena wide enough for all.
+/// A sampler of a group without minimum distances, in an arena with room for all objects, and its placement.
 fn sampler(placement: &str, count: u32, more: &str) -> (Sampler, Distribution) {
     let text = format!(
         r#"{{ "version": 2, "name": "places", "world": {{ "environment_params": {{ "map_size": [300, 300] }} }},
@@ -13,36 +13,36 @@ fn sampler(placement: &str, count: u32, more: &str) -> (Sampler, Distribution) {
                           "keep_out": {{ "walls": 0, "agent": 0 }} {more} }}] }}"#
     );
     let task = TaskSpec::from_json("places.json", &text).unwrap_or_else(|error| panic!("{error}"));
-    let variant = task.variant("default").expect("it is always there");
-    let law = variant.settle(match &task.groups()[0].spec.placement {
+    let variant = task.variant("default").expect("the default variant always exists");
+    let declared = variant.settle(match &task.groups()[0].spec.placement {
         driftworld_spec::Source::Distribution(distribution) => distribution,
-        _ => panic!("the placements here are written out"),
+        _ => panic!("these placements are written out, not parameters"),
     });
-    (Sampler::new(&variant, 7), law)
+    (Sampler::new(&variant, 7), declared)
 }
 
 fn world(sampler: &Sampler, index: u64) -> World {
     sampler.world(index).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The places of all objects in 200 worlds of 50 objects each.
-fn places(placement: &str) -> (Vec<[f64; 2]>, Distribution) {
-    let (sampler, law) = sampler(placement, 50, "");
+/// The positions of all objects in 200 worlds of 50 objects each, and their placement.
+fn positions(placement: &str) -> (Vec<[f64; 2]>, Distribution) {
+    let (sampler, declared) = sampler(placement, 50, "");
     let worlds = (0..200).map(|index| world(&sampler, index));
     (
         worlds
             .flat_map(|world| world.into_draft().objects.into_iter().map(|object| object.coordinates))
             .collect(),
-        law,
+        declared,
     )
 }
 
 #[track_caller]
 fn check_moments(placement: &str) {
-    let (places, law) = places(placement);
-    let n = places.len() as f64;
-    let expected = law.planar_moments().expect("it draws points");
-    let mean = [0, 1].map(|axis| places.iter().map(|place| place[axis]).sum::<f64>() / n);
+    let (positions, declared) = positions(placement);
+    let n = positions.len() as f64;
+    let expected = declared.planar_moments().expect("placements draw points");
+    let mean = [0, 1].map(|axis| positions.iter().map(|position| position[axis]).sum::<f64>() / n);
     for axis in 0..2 {
         let error = (expected.covariance[axis][axis] / n).sqrt();
         assert!(
@@ -51,23 +51,23 @@ fn check_moments(placement: &str) {
         );
     }
     for (i, j) in [(0, 0), (0, 1), (1, 1)] {
-        let deviation = |place: &[f64; 2], axis: usize| place[axis] - expected.mean[axis];
-        let products: Vec<f64> = places
+        let deviation = |position: &[f64; 2], axis: usize| position[axis] - expected.mean[axis];
+        let products: Vec<f64> = positions
             .iter()
-            .map(|place| deviation(place, i) * deviation(place, j))
+            .map(|position| deviation(position, i) * deviation(position, j))
             .collect();
         let found = products.iter().sum::<f64>() / n;
         let error = (products.iter().map(|p| (p - found) * (p - found)).sum::<f64>() / n / n).sqrt();
-        let wanted = expected.covariance[i][j];
+        let covariance = expected.covariance[i][j];
         assert!(
-            (found - wanted).abs() <= 5.0 * error + 1e-9,
-            "{placement}: covariance {i}{j} {found}, expected {wanted}"
+            (found - covariance).abs() <= 5.0 * error + 1e-9,
+            "{placement}: covariance {i}{j} {found}, expected {covariance}"
         );
     }
 }
 
 #[test]
-fn places_have_the_moments_of_their_law() {
+fn positions_have_the_moments_of_their_placement() {
     for placement in [
         r#"{ "box": { "low": [-40, 0], "high": [80, 10] } }"#,
         r#"{ "disc": { "center": [5, -5], "radius": 30 } }"#,
@@ -84,7 +84,7 @@ fn places_have_the_moments_of_their_law() {
     }
 }
 
-/// Chi-square test of places over cells of equal probability; the bound is five standard deviations above the mean.
+/// Chi-square test of positions over cells of equal probability. The bound lies five standard deviations above the mean.
 fn check_cells(name: &str, cells: &[usize], count: usize) {
     let expected = cells.len() as f64 / count as f64;
     let mut found = vec![0.0; count];
@@ -100,19 +100,19 @@ fn check_cells(name: &str, cells: &[usize], count: usize) {
 }
 
 #[test]
-fn boxes_discs_and_rings_are_filled_evenly() {
-    let (places_of_box, _) = places(r#"{ "box": { "low": [0, 0], "high": [80, 40] } }"#);
-    let cells: Vec<usize> = places_of_box
+fn positions_in_boxes_discs_and_rings_are_uniform() {
+    let (positions_in_box, _) = positions(r#"{ "box": { "low": [0, 0], "high": [80, 40] } }"#);
+    let cells: Vec<usize> = positions_in_box
         .iter()
         .map(|[x, y]| (x / 10.0) as usize * 4 + (y / 10.0) as usize)
         .collect();
     check_cells("box", &cells, 32);
-    // Eight rings of equal area times eight sectors.
+    // Divides the area into eight rings of equal area by eight sectors.
     for (placement, inner) in [
         (r#"{ "disc": { "center": [0, 0], "radius": 50 } }"#, 0.0_f64),
         (r#"{ "annulus": { "center": [0, 0], "inner": 30, "outer": 50 } }"#, 30.0),
     ] {
-        let cells: Vec<usize> = places(placement)
+        let cells: Vec<usize> = positions(placement)
             .0
             .iter()
             .map(|[x, y]| {
@@ -126,7 +126,7 @@ fn boxes_discs_and_rings_are_filled_evenly() {
 }
 
 #[test]
-fn lists_and_grids_are_taken_in_turn() {
+fn points_and_grid_cells_are_taken_in_turn() {
     let (points, _) = sampler(r#"{ "points": { "values": [[0, 0], [10, 0], [0, 40]] } }"#, 5, "");
     let found: Vec<[f64; 2]> = world(&points, 9)
         .objects
@@ -154,7 +154,7 @@ fn lists_and_grids_are_taken_in_turn() {
 }
 
 #[test]
-fn poisson_discs_keep_distance_within_the_group_only() {
+fn poisson_disc_keeps_distance_within_its_group() {
     let (discs, _) = sampler(
         r#"{ "poisson_disc": { "low": [-50, -50], "high": [50, 50], "distance": 8 } }"#,
         60,
@@ -182,7 +182,7 @@ fn poisson_discs_keep_distance_within_the_group_only() {
 }
 
 #[test]
-fn counts_around_each_object_follow_their_law_and_placements_rotate_with_it() {
+fn counts_around_objects_follow_their_distribution_and_placements_rotate() {
     let text = r#"{ "version": 2, "name": "around", "world": { "environment_params": { "map_size": [300, 300] } }, "groups": [
         { "name": "houses", "count": 20, "object": { "class": "building" }, "facing": "random",
           "placement": { "box": { "low": [-120, -120], "high": [120, 120] } } },
@@ -190,18 +190,18 @@ fn counts_around_each_object_follow_their_law_and_placements_rotate_with_it() {
           "object": { "class": "fence" }, "placement": { "points": { "values": [[0, 5], [0, 6], [0, 7]] } },
           "keep_out": { "walls": 0, "agent": 0 } } ] }"#;
     let task = TaskSpec::from_json("around.json", text).unwrap_or_else(|error| panic!("{error}"));
-    let sampler = Sampler::new(&task.variant("default").expect("it is always there"), 3);
-    let (mut houses, mut flags) = (0, [0_u32; 4]);
+    let sampler = Sampler::new(&task.variant("default").expect("the default variant always exists"), 3);
+    let (mut num_houses, mut histogram) = (0, [0_u32; 4]);
     for index in 0..100 {
         let world = world(&sampler, index);
-        let (around, middle): (Vec<_>, Vec<_>) = world
+        let (flags_of_world, houses_of_world): (Vec<_>, Vec<_>) = world
             .objects
             .iter()
             .partition(|object| object.tag.as_deref() == Some("flags"));
-        let mut rest = &around[..];
-        for house in middle {
-            houses += 1;
-            // In front of the house: 5, 6 and 7 m along its heading, which grows clockwise from north.
+        let mut remaining = &flags_of_world[..];
+        for house in houses_of_world {
+            num_houses += 1;
+            // The flags stand 5, 6 and 7 m ahead of the house. Headings grow clockwise from north.
             let ahead = |metres: f64| {
                 let angle = house.heading.to_radians();
                 [
@@ -209,7 +209,7 @@ fn counts_around_each_object_follow_their_law_and_placements_rotate_with_it() {
                     house.coordinates[1] + metres * angle.cos(),
                 ]
             };
-            let own = rest
+            let count = remaining
                 .iter()
                 .zip([5.0, 6.0, 7.0])
                 .take_while(|(flag, metres)| {
@@ -217,18 +217,18 @@ fn counts_around_each_object_follow_their_law_and_placements_rotate_with_it() {
                     (flag.coordinates[0] - x).hypot(flag.coordinates[1] - y) < 1e-9
                 })
                 .count();
-            flags[own] += 1;
-            rest = &rest[own..];
+            histogram[count] += 1;
+            remaining = &remaining[count..];
         }
-        assert!(rest.is_empty(), "every flag stands ahead of its house");
+        assert!(remaining.is_empty(), "every flag stands ahead of its house");
     }
-    let odds = [0.216, 0.432, 0.288, 0.064];
-    for (found, odds) in flags.iter().zip(odds) {
-        let expected = f64::from(houses) * odds;
-        let error = (expected * (1.0 - odds)).sqrt();
+    let probabilities = [0.216, 0.432, 0.288, 0.064];
+    for (found, probability) in histogram.iter().zip(probabilities) {
+        let expected = f64::from(num_houses) * probability;
+        let error = (expected * (1.0 - probability)).sqrt();
         assert!(
             (f64::from(*found) - expected).abs() < 5.0 * error,
-            "{flags:?} of {houses}"
+            "{histogram:?} of {num_houses}"
         );
     }
 }

@@ -1,4 +1,4 @@
-//! Interpolated variants, and variants at given distances. Worlds are tested in `worlds.rs`.
+//! Tests interpolated variants, variants at given distances, and named choices. `worlds.rs` tests worlds.
 
 use std::sync::Arc;
 
@@ -57,14 +57,14 @@ fn number(variant: &Variant, name: &str) -> f64 {
 }
 
 #[test]
-fn numbers_interpolate_linearly_headings_the_short_way_and_counts_in_integers() {
+fn numbers_interpolate_linearly_headings_the_short_way_and_integers_rounded() {
     let half = between("a", "b", 0.5);
     assert_eq!((number(&half, "light"), number(&half, "pay")), (2.0, 0.0));
     assert_eq!(number(&half, "look"), 10.0, "from 350 over north to 30");
     assert_eq!(half.value("count"), Some(&Value::Integer(4)));
     assert_eq!(half.name(), "a..b@0.5");
     let Some(Distribution::Disc { center, radius }) = half.distribution("scatter") else {
-        panic!("two discs have a disc between them")
+        panic!("two discs interpolate to a disc")
     };
     assert_eq!((center, radius), ([5.0, 0.0], 10.0));
     assert_eq!(
@@ -78,36 +78,36 @@ fn numbers_interpolate_linearly_headings_the_short_way_and_counts_in_integers() 
 fn colours_interpolate_in_oklab_and_may_leave_the_list_of_choices() {
     let half = between("a", "b", 0.5);
     let Some(Value::Color(Color([red, green, blue]))) = half.value("color") else {
-        panic!("a colour stays one")
+        panic!("colours interpolate to a colour")
     };
-    // The purple of CSS Color 4's color-mix(in oklab, red, blue).
+    // The purple that CSS Color 4 defines as color-mix(in oklab, red, blue).
     for (found, expected) in [(red, 0.548_6), (green, 0.324_4), (blue, 0.635_4)] {
         assert!((found - expected).abs() < 0.002, "{found}, expected {expected}");
     }
 }
 
 #[test]
-fn values_without_interpolation_switch_at_a_point_or_by_chance() {
+fn values_without_interpolation_switch_at_a_point_or_at_random() {
     assert_eq!(between("a", "b", 0.24).value("model"), Some(&Value::Text("1".into())));
     assert_eq!(between("a", "b", 0.25).value("model"), Some(&Value::Text("3".into())));
     assert_eq!(between("a", "b", 0.49).value("solid"), Some(&Value::Boolean(true)));
     let mixed = Drift::new(variant("a"), variant("b"))
-        .expect("one task")
+        .expect("both variants belong to one task")
         .with_switch(Switch::Mixture { seed: 3 });
-    let switched = |progress| {
-        let new = |index: &u64| {
-            let at = mixed.at(progress, *index).expect("every variant on the way can be had");
-            at.value("solid") == Some(&Value::Boolean(false))
+    let num_switched = |progress| {
+        let is_switched = |index: &u64| {
+            let variant = mixed.at(progress, *index).expect("every variant of the drift is valid");
+            variant.value("solid") == Some(&Value::Boolean(false))
         };
-        (0..2000).filter(new).count()
+        (0..2000).filter(is_switched).count()
     };
-    assert!((150..250).contains(&switched(0.1)) && (1350..1450).contains(&switched(0.7)));
+    assert!((150..250).contains(&num_switched(0.1)) && (1350..1450).contains(&num_switched(0.7)));
 }
 
 #[test]
-fn distributions_of_two_families_are_mixed_and_gaussians_meet_in_their_covariance() {
+fn different_distributions_mix_and_gaussians_interpolate_their_covariance() {
     let Some(Distribution::Mixture { parts, weights }) = between("a", "c", 0.25).distribution("scatter") else {
-        panic!("a disc and a gaussian are mixed")
+        panic!("a disc and a Gaussian interpolate to a mixture")
     };
     assert_eq!((parts.len(), weights), (2, Some(vec![0.75, 0.25])));
     let covariance = between("c", "d", 0.5)
@@ -125,20 +125,27 @@ fn drift_starts_and_ends_with_the_given_variants() {
         DriftSchedule::Sawtooth(2),
     ] {
         let drift = Drift::new(variant("a"), variant("b"))
-            .expect("one task")
+            .expect("both variants belong to one task")
             .with_schedule(schedule);
-        assert_eq!(drift.at(0.0, 0).expect("the first").values(), variant("a").values());
-        assert_eq!(drift.at(1.0, 0).expect("the last").values(), variant("b").values());
+        assert_eq!(
+            drift.at(0.0, 0).expect("the start is valid").values(),
+            variant("a").values()
+        );
+        assert_eq!(
+            drift.at(1.0, 0).expect("the end is valid").values(),
+            variant("b").values()
+        );
     }
-    let other = TaskSpec::from_json("u.json", r#"{ "name": "u" }"#).expect("a name is enough");
-    let other = other.variant("default").expect("it is always there");
+    let other = TaskSpec::from_json("u.json", r#"{ "name": "u" }"#).expect("a task needs only a name");
+    let other = other.variant("default").expect("the default variant always exists");
     assert!(matches!(
         Drift::new(variant("a"), other),
         Err(GeneratorError::DifferentTasks { .. })
     ));
 }
 
-/// A distance with a known shape: a weighted sum of shares of ranges for numbers, and 0 or 1 for other values.
+/// A distance from a variant with a known shape: a weighted sum of changes in numbers relative to their ranges, plus 0.3 if the
+/// colours differ.
 fn distance(from: &Variant) -> impl Fn(&Variant) -> f64 + '_ {
     let parts = [("light", 4.0, 0.3), ("pay", 200.0, 0.2), ("count", 10.0, 0.2)];
     move |other| {
@@ -158,7 +165,8 @@ fn distance(from: &Variant) -> impl Fn(&Variant) -> f64 + '_ {
 #[test]
 fn variant_at_given_distance_changes_only_its_subject() {
     let a = variant("a");
-    let found = at_distance(&a, &Subject::Element(Element::R), 0.1, 1e-9, distance(&a)).expect("half of the range");
+    let found =
+        at_distance(&a, &Subject::Element(Element::R), 0.1, 1e-9, distance(&a)).expect("half of the range of pay");
     assert!((number(&found.variant, "pay") - 0.0).abs() < 1e-5);
     let changed: Vec<&String> = found
         .variant
@@ -168,20 +176,22 @@ fn variant_at_given_distance_changes_only_its_subject() {
         .map(|(name, _)| name)
         .collect();
     assert_eq!(changed, ["pay"]);
-    let again = at_distance(&a, &Subject::Element(Element::R), 0.1, 1e-9, distance(&a)).expect("as before");
-    assert_eq!(again.variant.values(), found.variant.values());
-    // More than light alone can reach: the colour changes too, and light makes up the rest.
-    let both = at_distance(&a, &Subject::Element(Element::O), 0.4, 1e-6, distance(&a)).expect("colour and light");
-    assert!((both.distance - 0.4).abs() <= 1e-6 && both.variant.value("color") != a.value("color"));
+    let repeated =
+        at_distance(&a, &Subject::Element(Element::R), 0.1, 1e-9, distance(&a)).expect("as in the first search");
+    assert_eq!(repeated.variant.values(), found.variant.values());
+    // Light alone cannot reach this distance, so the colour changes too and light makes up the rest.
+    let combined = at_distance(&a, &Subject::Element(Element::O), 0.4, 1e-6, distance(&a)).expect("colour and light");
+    assert!((combined.distance - 0.4).abs() <= 1e-6 && combined.variant.value("color") != a.value("color"));
 }
 
 #[test]
 fn a_distance_that_cannot_be_had_says_how_near_one_comes() {
     let a = variant("a");
     let far = at_distance(&a, &Subject::Element(Element::R), 0.9, 1e-3, distance(&a)).expect_err("pay is worth 0.2");
-    let gap =
-        at_distance(&a, &Subject::Parameters(vec!["color".into()]), 0.2, 1e-3, distance(&a)).expect_err("0 or 0.3");
-    let none = at_distance(&a, &Subject::Element(Element::A), 0.2, 1e-3, distance(&a)).expect_err("no such parameter");
+    let gap = at_distance(&a, &Subject::Parameters(vec!["color".into()]), 0.2, 1e-3, distance(&a))
+        .expect_err("colours contribute 0 or 0.3");
+    let none =
+        at_distance(&a, &Subject::Element(Element::A), 0.2, 1e-3, distance(&a)).expect_err("no parameter affects A");
     insta::assert_snapshot!(format!("{far}\n{gap}\n{none}"));
 }
 
@@ -189,7 +199,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: crate::tier::quick_or_full(24, 64), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn every_distance_within_reach_is_met(target in 0.0..0.7_f64) {
+    fn every_reachable_distance_is_met(target in 0.0..0.7_f64) {
         let a = variant("a");
         let names = ["light", "pay", "color"].map(str::to_owned).to_vec();
         let found = at_distance(&a, &Subject::Parameters(names), target, 1e-6, distance(&a));
@@ -197,14 +207,14 @@ proptest! {
     }
 
     #[test]
-    fn every_variant_of_a_drift_can_be_drawn(t in 0.0..=1.0_f64, index in any::<u64>()) {
+    fn every_variant_of_a_drift_can_be_sampled(t in 0.0..=1.0_f64, index in any::<u64>()) {
         for to in ["b", "c", "d"] {
             prop_assert!(sample(&between("a", to, t), 5, index).is_ok());
         }
     }
 }
 
-/// Names of choices stand for their values: a task with names draws the same worlds as one with the values listed.
+/// A task that names its choices draws the same worlds as one that lists their values.
 #[test]
 fn named_choices_draw_the_same_worlds_as_listed_ones() {
     let (open, maze) = (r#"{ "walls": [] }"#, r#"{ "maze": { "cells": [4, 4], "cell": 5 } }"#);
@@ -259,30 +269,30 @@ fn named_choices_draw_the_same_worlds_as_listed_ones() {
     for (name, parameter) in names.parameters() {
         assert_eq!(parameter.name_of(second.value(name).unwrap()), Some("two"), "{name}");
     }
-    let again = TaskSpec::from_json("again", &names.to_json()).unwrap();
-    assert_eq!(again.to_json(), names.to_json());
+    let reread = TaskSpec::from_json("again", &names.to_json()).unwrap();
+    assert_eq!(reread.to_json(), names.to_json());
 }
 
 #[test]
 fn errors_in_named_choices_quote_the_names() {
-    let said = |kind: &str, choices: &str, default: &str, own: &str| {
+    let error_for = |kind: &str, choices: &str, default: &str, value: &str| {
         let text = format!(
             r#"{{ "version": 2, "name": "t", "parameters": {{ "p": {{ "role": "variant", "type": "{kind}", "affects": ["S"],
-                "choices": {choices}, "default": {default} }} }}, "variants": {{ "v": {{ "p": {own} }} }} }}"#
+                "choices": {choices}, "default": {default} }} }}, "variants": {{ "v": {{ "p": {value} }} }} }}"#
         );
         TaskSpec::from_json("t", &text).map_or_else(|error| error.to_string(), |_| String::new())
     };
     let maps = r#"{ "open": { "walls": [] }, "maze": { "maze": { "cells": [4, 4] } } }"#;
-    assert_eq!(said("layout", maps, r#""open""#, r#""maze""#), "");
+    assert_eq!(error_for("layout", maps, r#""open""#, r#""maze""#), "");
     assert!(
-        said("layout", maps, r#""open""#, r#""maize""#)
+        error_for("layout", maps, r#""open""#, r#""maize""#)
             .contains(r#"(/variants/v/p): found "maize", expected one of open, maze; did you mean "maze"?"#)
     );
-    assert!(said("layout", maps, r#""opn""#, r#""maze""#).contains("(/parameters/p/default): found \"opn\""));
-    let wrong = maps.replace("cells", "cel");
+    assert!(error_for("layout", maps, r#""opn""#, r#""maze""#).contains("(/parameters/p/default): found \"opn\""));
+    let misspelt = maps.replace("cells", "cel");
     assert!(
-        said("layout", &wrong, r#""open""#, r#""maze""#)
+        error_for("layout", &misspelt, r#""open""#, r#""maze""#)
             .contains("(/parameters/p/choices/maze/maze/cel): found the unknown key")
     );
-    assert!(said("number", r#"{ "one": 1 }"#, "1", "1").contains("(/parameters/p/choices): found"));
+    assert!(error_for("number", r#"{ "one": 1 }"#, "1", "1").contains("(/parameters/p/choices): found"));
 }

@@ -1,4 +1,4 @@
-//! Sampled worlds: reproducible, valid, independent or shared as specified.
+//! Tests that sampled worlds are reproducible and valid, keep their distances, and share random numbers as specified.
 
 #![expect(clippy::disallowed_methods, reason = "compared within a tolerance")]
 
@@ -18,7 +18,7 @@ fn load(text: &str) -> Arc<TaskSpec> {
 }
 
 fn world(task: &Arc<TaskSpec>, variant: &str, seed: u64, index: u64) -> World {
-    let variant = task.variant(variant).expect("the test names variants that there are");
+    let variant = task.variant(variant).expect("the tests name existing variants");
     sample(&variant, seed, index).unwrap_or_else(|error| panic!("{error}"))
 }
 
@@ -30,7 +30,7 @@ fn tagged<'a>(world: &'a World, tag: &str) -> Vec<&'a Object> {
         .collect()
 }
 
-/// `DRIFTWORLD_UPDATE_GOLDEN=1` rewrites the files; that is a breaking change of values.
+/// `DRIFTWORLD_UPDATE_GOLDEN=1` rewrites the files. A difference is a breaking change, as the same seeds then draw other worlds.
 #[test]
 fn golden_worlds_are_reproduced() {
     for (task, variant, index) in [
@@ -48,7 +48,7 @@ fn golden_worlds_are_reproduced() {
             std::fs::write(&path, &found).expect("the golden file can be written");
         }
         let golden = std::fs::read_to_string(&path).expect("the golden file is committed");
-        assert!(found == golden, "{path} is no longer what is drawn");
+        assert!(found == golden, "the sampled world differs from {path}");
     }
 }
 
@@ -57,7 +57,7 @@ fn worlds_do_not_depend_on_the_order_of_drawing() {
     let task = example("find_objects");
     let sampler = Sampler::new(&task.variant("red").expect("red is a variant"), 3);
     let forwards: Vec<String> = (0..20)
-        .map(|index| sampler.world(index).expect("it can be placed").to_json())
+        .map(|index| sampler.world(index).expect("all objects can be placed").to_json())
         .collect();
     for index in (0..20).rev() {
         assert_eq!(world(&task, "red", 3, index).to_json(), forwards[index as usize]);
@@ -69,19 +69,19 @@ fn worlds_do_not_depend_on_the_order_of_drawing() {
 #[test]
 fn variants_share_random_numbers() {
     let task = example("find_objects");
-    let (blue, penalty) = (world(&task, "red", 7, 5), world(&task, "penalty", 7, 5));
-    let mut paid = blue.into_draft();
-    for object in paid.objects.iter_mut().filter(|object| object.reward == 100.0) {
+    let (red, penalty) = (world(&task, "red", 7, 5), world(&task, "penalty", 7, 5));
+    let mut expected = red.into_draft();
+    for object in expected.objects.iter_mut().filter(|object| object.reward == 100.0) {
         object.reward = -100.0;
     }
     assert_eq!(
-        paid, *penalty,
-        "variants that differ in what they pay differ in nothing else"
+        expected, *penalty,
+        "variants that differ in rewards differ in nothing else"
     );
 }
 
 #[test]
-fn new_parameter_group_or_object_moves_nothing_else() {
+fn added_parameter_group_or_object_leaves_the_rest_unchanged() {
     let text = std::fs::read_to_string(format!(
         "{}/../examples/tasks/find_objects.json",
         env!("CARGO_MANIFEST_DIR")
@@ -109,7 +109,8 @@ fn new_parameter_group_or_object_moves_nothing_else() {
 
 #[test]
 fn groups_keep_their_distances() {
-    let far = |a: &Object, b: &Object| (a.coordinates[0] - b.coordinates[0]).hypot(a.coordinates[1] - b.coordinates[1]);
+    let distance =
+        |a: &Object, b: &Object| (a.coordinates[0] - b.coordinates[0]).hypot(a.coordinates[1] - b.coordinates[1]);
     for index in 0..50 {
         let world = world(&example("find_objects"), "blue", 1, index);
         assert_eq!(tagged(&world, "targets").len(), 5);
@@ -122,23 +123,23 @@ fn groups_keep_their_distances() {
             assert!(
                 world.objects[..number]
                     .iter()
-                    .all(|other| far(object, other) >= separation),
+                    .all(|other| distance(object, other) >= separation),
                 "{index}"
             );
             assert!(
                 object.coordinates.iter().all(|metres| metres.abs() <= 29.0),
-                "a metre from the walls"
+                "objects stay a metre from the walls"
             );
             assert!(
                 object.coordinates[0].hypot(object.coordinates[1]) >= 2.0,
-                "off the agent's start"
+                "objects stay away from the agent's start"
             );
         }
     }
 }
 
 #[test]
-fn nothing_stands_in_a_region_that_cannot_be_entered() {
+fn objects_keep_out_of_excluded_regions() {
     for map in 1..=4_u8 {
         let text = format!(
             r#"{{ "name": "maps", "world": {{ "environment_params": {{ "predefined_map": {map} }}, "agent_params": {{ "coordinates": {{ "box": {{ "low": [-99, -99], "high": [99, 99] }} }} }} }},
@@ -148,7 +149,7 @@ fn nothing_stands_in_a_region_that_cannot_be_entered() {
         for object in &world(&load(&text), "default", 5, 0).objects {
             let [x, y] = object.coordinates;
             for region in maps::excluded_regions(map).iter().map(|region| &region.0) {
-                // Winding number by angles: an independent oracle.
+                // Sums the winding number from angles, as an independent oracle.
                 let turns: f64 = region
                     .iter()
                     .zip(region.iter().cycle().skip(1))
@@ -160,7 +161,7 @@ fn nothing_stands_in_a_region_that_cannot_be_entered() {
                 assert!(turns.abs() < 1.0, "map {map}: {x}, {y} is inside {region:?}");
                 assert!(
                     region.iter().all(|c| (c[0] - x).hypot(c[1] - y) >= 1.5),
-                    "map {map}: too near a corner"
+                    "map {map}: too close to a corner"
                 );
             }
         }
@@ -174,14 +175,24 @@ fn what_cannot_be_placed_says_which_group_and_what_to_loosen() {
              "groups": [{ "name": "crowd", "count": 100, "object": { "class": "cube" },
                           "placement": { "box": { "low": [-5, -5], "high": [5, 5] } }, "separation": 3 }] }"#,
     );
-    let error = sample(&crowd.variant("default").expect("it is always there"), 0, 0).expect_err("100 do not fit");
+    let error = sample(
+        &crowd.variant("default").expect("the default variant always exists"),
+        0,
+        0,
+    )
+    .expect_err("100 cubes do not fit");
     assert_eq!(error.code(), "generator/no-place");
     insta::assert_snapshot!(error);
     let beyond = load(
         r#"{ "name": "beyond", "groups": [{ "name": "g", "count": 1, "object": { "class": "cube" },
                           "placement": { "points": { "values": [[80, 0]] } } }] }"#,
     );
-    let error = sample(&beyond.variant("default").expect("it is always there"), 0, 0).expect_err("80 m is outside");
+    let error = sample(
+        &beyond.variant("default").expect("the default variant always exists"),
+        0,
+        0,
+    )
+    .expect_err("80 m is outside");
     insta::assert_snapshot!(error);
 }
 
@@ -190,7 +201,7 @@ fn a_draw_outside_the_range_of_its_place_is_an_error_that_names_it() {
     let wild = load(
         r#"{ "name": "wild", "world": { "environment_params": { "light_intensity": { "normal": { "mean": 1, "std": 50 } } } } }"#,
     );
-    let variant = wild.variant("default").expect("it is always there");
+    let variant = wild.variant("default").expect("the default variant always exists");
     let error = (0..100)
         .find_map(|index| sample(&variant, 0, index).err())
         .expect("half of the draws are negative");
@@ -200,28 +211,28 @@ fn a_draw_outside_the_range_of_its_place_is_an_error_that_names_it() {
 
 #[test]
 fn draws_that_do_not_go_together_are_an_error_that_says_why() {
-    let fine = load(
+    let pictures = load(
         r#"{ "name": "fine", "world": { "agent_params": {
              "observation_size": { "integer_uniform": { "low": 84, "high": 4096 } },
              "supersampling": { "integer_uniform": { "low": 1, "high": 4 } } } } }"#,
     );
-    let variant = fine.variant("default").expect("it is always there");
+    let variant = pictures.variant("default").expect("the default variant always exists");
     let worlds: Vec<_> = (0..100).map(|index| sample(&variant, 0, index)).collect();
-    let sound = worlds
+    let large = worlds
         .iter()
         .flatten()
         .find(|world| world.agent_params.observation_size > 1000);
-    assert!(sound.is_some(), "large pictures alone are sound");
+    assert!(large.is_some(), "large pictures without much supersampling are valid");
     let error = worlds
         .into_iter()
         .find_map(Result::err)
-        .expect("some pictures are too fine");
+        .expect("some pictures have too many samples");
     assert!(matches!(error, GeneratorError::Clash { .. }));
     insta::assert_snapshot!(error);
 }
 
 #[test]
-fn ten_thousand_objects_find_their_places() {
+fn ten_thousand_objects_can_be_placed() {
     let many = load(
         r#"{ "name": "many", "world": { "environment_params": { "map_size": [300, 300] } },
              "groups": [{ "name": "g", "count": 10000, "object": { "class": "rock" },
@@ -239,8 +250,8 @@ proptest! {
             let task = example(name);
             for variant in task.all_variants() {
                 let world = sample(&variant, seed, index).unwrap_or_else(|error| panic!("{error}"));
-                let again = World::from_json("sampled", &world.to_json()).unwrap_or_else(|error| panic!("{error}"));
-                prop_assert_eq!(again, world);
+                let reread = World::from_json("sampled", &world.to_json()).unwrap_or_else(|error| panic!("{error}"));
+                prop_assert_eq!(reread, world);
             }
         }
     }

@@ -1,4 +1,4 @@
-//! Benchmarks of reading and checking documents. Drawing worlds is measured in generator/benches/worlds.rs.
+//! Benchmarks of reading and checking documents. Sampling worlds is measured in generator/benches/worlds.rs.
 
 use std::hint::black_box;
 
@@ -14,26 +14,26 @@ fn world_of(objects: u32) -> String {
     });
     let objects = objects.collect();
     let draft = WorldDraft::with_objects(objects);
-    draft.check().expect("the world is sound").to_json()
+    draft.check().expect("the world is valid").to_json()
 }
 
 fn documents(c: &mut Criterion) {
     let text = world_of(30);
     c.bench_function("validate a world of 30 objects", |bench| {
-        bench.iter(|| World::from_json("world.json", black_box(&text)).expect("it is sound"));
+        bench.iter(|| World::from_json("world.json", black_box(&text)).expect("the world is valid"));
     });
-    let broken = text.replacen("\"heading\"", "\"haeding\"", 1);
+    let misspelt = text.replacen("\"heading\"", "\"haeding\"", 1);
     c.bench_function("refuse a world of 30 objects", |bench| {
-        bench.iter(|| World::from_json("world.json", black_box(&broken)).expect_err("a key is misspelt"));
+        bench.iter(|| World::from_json("world.json", black_box(&misspelt)).expect_err("a key is misspelt"));
     });
-    let world = World::from_json("world.json", &text).expect("it is sound");
+    let world = World::from_json("world.json", &text).expect("the world is valid");
     c.bench_function("write a world of 30 objects", |bench| {
         bench.iter(|| black_box(&world).to_json());
     });
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/tasks/settlement.json");
     let task = std::fs::read_to_string(path).expect("the example tasks ship with the project");
     c.bench_function("load a task spec", |bench| {
-        bench.iter(|| TaskSpec::from_json("task.json", black_box(&task)).expect("it is sound"));
+        bench.iter(|| TaskSpec::from_json("task.json", black_box(&task)).expect("the task is valid"));
     });
 }
 

@@ -1,4 +1,4 @@
-//! [`Classes`]: the classes and models of objects that a reader of documents knows.
+//! [`Classes`]: the object classes and models that are known when a document is read.
 
 use std::sync::Arc;
 
@@ -7,7 +7,7 @@ use crate::suggest::nearest;
 use crate::world::{Model, Object};
 
 /// Maximum number of classes or models listed in a message.
-const LISTED: usize = 40;
+const MAX_LISTED: usize = 40;
 
 /// The classes that objects may have. Case is ignored.
 ///
@@ -37,7 +37,7 @@ pub trait Models: std::fmt::Debug + Send + Sync {
 }
 
 impl Classes {
-    /// The given classes, with any models.
+    /// The given classes; any model is accepted.
     pub fn new<S: AsRef<str>>(names: impl IntoIterator<Item = S>) -> Self {
         let mut names: Vec<String> = names.into_iter().map(|name| plain(name.as_ref())).collect();
         names.sort();
@@ -67,12 +67,12 @@ impl Classes {
         self.names.binary_search(&plain(class)).is_ok()
     }
 
-    /// The problem with an unknown class.
+    /// The problem with an unknown class; `None` if the class is known.
     pub(crate) fn problem(&self, pointer: impl Into<String>, class: &str) -> Option<Problem> {
         if self.has(class) {
             return None;
         }
-        let near = nearest(class, &self.names).or_else(|| self.called_otherwise(class));
+        let near = nearest(class, &self.names).or_else(|| self.class_of_synonym(class));
         let found = format!("the unknown class {class:?}");
         let problem = Problem::new("spec/unknown-class", pointer, found, one_of(&self.names));
         Some(self.advise(problem, near))
@@ -86,13 +86,13 @@ impl Classes {
         }
         let names = models.names(&plain(class));
         let found = format!("the unknown model {:?} of class {class:?}", model.0);
-        let is_counted = names.iter().zip(1..).all(|(name, number)| *name == number.to_string());
+        let is_numbered = names.iter().zip(1..).all(|(name, number)| *name == number.to_string());
         let expected = match names.len() {
-            count if is_counted && count > 2 => format!("one of 1 to {count}"),
+            count if is_numbered && count > 2 => format!("one of 1 to {count}"),
             _ => one_of(&names),
         };
         let problem = Problem::new("spec/unknown-model", pointer, found, expected);
-        Some(self.advise(problem, nearest(&model.0, &names).filter(|_| !is_counted)))
+        Some(self.advise(problem, nearest(&model.0, &names).filter(|_| !is_numbered)))
     }
 
     /// The problems with the class and the models of an object.
@@ -118,20 +118,20 @@ impl Classes {
 
 /// The first names, and how many more there are.
 fn one_of(names: &[String]) -> String {
-    format!("one of {}", driftworld_text::first_of(names, LISTED))
+    format!("one of {}", driftworld_text::first_of(names, MAX_LISTED))
 }
 
 impl Classes {
     /// The class that an everyday word means, if any.
-    fn called_otherwise(&self, word: &str) -> Option<String> {
-        let near = nearest(word, OTHER_WORDS.map(|(other, _)| other))?;
-        let meant = OTHER_WORDS.iter().find(|(other, _)| *other == near)?.1;
+    fn class_of_synonym(&self, word: &str) -> Option<String> {
+        let near = nearest(word, SYNONYMS.map(|(other, _)| other))?;
+        let meant = SYNONYMS.iter().find(|(other, _)| *other == near)?.1;
         self.has(meant).then(|| meant.to_owned())
     }
 }
 
 /// Everyday words, each with the class that it means.
-const OTHER_WORDS: [(&str, &str); 22] = [
+const SYNONYMS: [(&str, &str); 22] = [
     ("ball", "icosphere"),
     ("barrier", "roadblock"),
     ("bookcase", "shelf"),

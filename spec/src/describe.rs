@@ -1,4 +1,4 @@
-//! Formats values, numbers and places for messages.
+//! Formats values, numbers and JSON pointers for messages.
 
 use std::fmt::Write;
 
@@ -37,7 +37,7 @@ fn fits(value: &Value, room: &mut usize) -> bool {
 }
 
 fn fits_text(text: &str, room: &mut usize) -> bool {
-    // Far too long: not worth escaping to count.
+    // Far too long to fit, so skip the escaping.
     if text.len() > 4 * *room {
         return false;
     }
@@ -58,10 +58,10 @@ pub(crate) fn plain_number(number: f64) -> String {
 
 /// Bytes in hexadecimal, two digits each.
 pub(crate) fn hexadecimal(bytes: &[u8]) -> String {
-    let letters = String::with_capacity(2 * bytes.len());
-    bytes.iter().fold(letters, |mut letters, byte| {
-        write!(letters, "{byte:02x}").expect("writing to a String does not fail");
-        letters
+    let digits = String::with_capacity(2 * bytes.len());
+    bytes.iter().fold(digits, |mut digits, byte| {
+        write!(digits, "{byte:02x}").expect("writing to a String does not fail");
+        digits
     })
 }
 
@@ -85,15 +85,15 @@ mod tests {
 
     #[test]
     fn values_up_to_60_characters_including_escapes_are_shown_whole() {
-        let of_quotes = |a: usize, b: usize| json!({ "a": "\"".repeat(a), "b": "\"".repeat(b) });
+        let quotes = |a: usize, b: usize| json!({ "a": "\"".repeat(a), "b": "\"".repeat(b) });
         for (a, b) in [(12, 10), (0, 0), (22, 0), (0, 22)] {
-            let text = of_quotes(a, b).to_string();
+            let text = quotes(a, b).to_string();
             assert!(text.len() <= 60, "{text}");
-            assert_eq!(describe(&of_quotes(a, b)), text);
+            assert_eq!(describe(&quotes(a, b)), text);
         }
         for (a, b) in [(20, 12), (23, 0), (0, 23)] {
-            assert!(of_quotes(a, b).to_string().len() > 60);
-            assert_eq!(describe(&of_quotes(a, b)), "an object");
+            assert!(quotes(a, b).to_string().len() > 60);
+            assert_eq!(describe(&quotes(a, b)), "an object");
         }
     }
 }

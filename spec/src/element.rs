@@ -3,30 +3,30 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// An element of the decision process that a parameter touches.
+/// An element of the decision process that a parameter affects.
 ///
-/// Five are coarse. Two are fine, as the L2Explorer paper has them: the law of the initial state is part of [`Element::S`],
-/// the emission part of [`Element::O`]. Who says the coarse one allows for the fine one; who says the fine one alone says
-/// that nothing else changes.
+/// Five are coarse. Two are fine, as in the L2Explorer paper: the distribution of the initial state is part of [`Element::S`],
+/// the emission is part of [`Element::O`]. Declaring a coarse element also allows changes of its fine one; declaring only the
+/// fine one excludes all other changes.
 #[derive(
     Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema, strum::IntoStaticStr,
 )]
 pub enum Element {
-    /// The states: what is where. Covers `p`.
+    /// The states: which things are where. Covers `p`.
     S,
-    /// The actions that the agent has.
+    /// The actions available to the agent.
     A,
-    /// The transitions: how the world answers an action.
+    /// The transitions: how the world responds to an action.
     T,
     /// The rewards.
     R,
     /// The observations: what the agent sees of a state. Covers `phi`.
     O,
-    /// The law of the initial state, in a state space that stays: where things are at the start, and how many.
+    /// The distribution of the initial state, in an unchanged state space: where things are at the start, and how many.
     #[serde(rename = "p")]
     #[strum(serialize = "p")]
     P,
-    /// The emission φ, in an observation space that stays: how a state looks.
+    /// The emission φ, in an unchanged observation space: how a state looks.
     #[serde(rename = "phi")]
     #[strum(serialize = "phi")]
     Phi,

@@ -10,10 +10,10 @@ use crate::suggest::{did_you_mean, nearest};
 pub const MAX_PROBLEMS: usize = 300;
 
 /// Maximum number of problems shown in one message.
-const SHOWN: usize = 20;
+const MAX_SHOWN: usize = 20;
 
 /// Maximum number of characters of a value shown in a message.
-const SHOWN_CHARACTERS: usize = 100;
+const MAX_SHOWN_CHARACTERS: usize = 100;
 
 /// One problem of a document: where it is, what was found, what was expected, what to do.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -177,7 +177,7 @@ pub enum SpecError {
 }
 
 impl SpecError {
-    /// Stable code of this kind of error; for a document, that of its first problem.
+    /// Stable code of this kind of error; for a document, the code of its first problem.
     pub fn code(&self) -> &'static str {
         match self {
             Self::Syntax { .. } => "spec/syntax",
@@ -234,12 +234,12 @@ fn list(name: &str, problems: &[Problem], more: bool) -> String {
     let name = one_line(name);
     let mut lines: Vec<String> = problems
         .iter()
-        .take(SHOWN)
+        .take(MAX_SHOWN)
         .map(|problem| format!("{name}:{problem}"))
         .collect();
-    if problems.len() > SHOWN {
+    if problems.len() > MAX_SHOWN {
         let at_least = if more { "at least " } else { "" };
-        lines.push(format!("{name}: and {at_least}{} more", problems.len() - SHOWN));
+        lines.push(format!("{name}: and {at_least}{} more", problems.len() - MAX_SHOWN));
     } else if more {
         lines.push(format!("{name}: and perhaps more"));
     }
@@ -248,12 +248,12 @@ fn list(name: &str, problems: &[Problem], more: bool) -> String {
 
 /// A text for a message, cut to a limit.
 pub(crate) fn cut(text: &str) -> String {
-    driftworld_text::shortened(text, SHOWN_CHARACTERS)
+    driftworld_text::shortened(text, MAX_SHOWN_CHARACTERS)
 }
 
 /// Names for a message: the first of them, and how many more there are.
 pub(crate) fn first_of<S: AsRef<str>>(known: &[S]) -> String {
-    driftworld_text::first_of(known, SHOWN)
+    driftworld_text::first_of(known, MAX_SHOWN)
 }
 
 #[cfg(test)]

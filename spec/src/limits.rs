@@ -9,7 +9,7 @@ pub const MAX_BYTES: usize = 64 << 20;
 /// Maximum number of values in a world, ours or the original's: numbers, strings, lists, objects and so on.
 pub const MAX_WORLD_VALUES: usize = 4_000_000;
 
-/// Maximum number of values in a scenario, ours or the original's: as many as 100,000 blocks of four regimes have.
+/// Maximum number of values in a scenario, ours or the original's: enough for 100,000 blocks of four regimes.
 pub const MAX_SCENARIO_VALUES: usize = 2_000_000;
 
 /// Maximum number of values in a task spec, a maps file or a single object.
@@ -17,5 +17,5 @@ pub const MAX_VALUES: usize = 1_000_000;
 
 pub use driftworld_text::json::{MAX_DEPTH, MAX_KEY_BYTES};
 
-/// Greatest depth of nested lists and objects in a task spec, whose values may be any JSON.
+/// Maximum depth of nested lists and objects in a task spec, where values may be any JSON.
 pub const MAX_TASK_DEPTH: usize = 48;

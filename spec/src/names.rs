@@ -12,10 +12,10 @@ pub(crate) fn problem(pointer: impl Into<String>, name: &str) -> Option<Problem>
     Some(Problem::new("spec/name", pointer, found, fault.expected()))
 }
 
-/// Checks a name that a user wants to give: like [`driftworld_text::check_name`], with the fault in words.
+/// Checks a name chosen by a user, like [`driftworld_text::check_name`], and describes the fault in words.
 ///
 /// # Errors
-/// What was found and what was expected, as one sentence.
+/// A sentence that says what was found and what was expected, if the name is invalid.
 ///
 /// # Example
 /// ```

@@ -1,5 +1,5 @@
-//! [`Oklab`]: a colour space whose Euclidean distance follows perception. Uses `libm`, so that every platform gives
-//! the same bits.
+//! [`Oklab`]: a colour space whose Euclidean distance follows perception. Uses `libm`, so that results are
+//! identical on every platform.
 
 use crate::Color;
 
@@ -12,7 +12,7 @@ const CONES_FROM_LINEAR: Matrix = [
     [0.088_302_461_9, 0.281_718_837_6, 0.629_978_700_5],
 ];
 
-/// From the cube roots of those to lightness, green to red, blue to yellow.
+/// From the cube roots of the cone responses to lightness, green–red and blue–yellow.
 const LAB_FROM_ROOTS: Matrix = [
     [0.210_454_255_3, 0.793_617_785_0, -0.004_072_046_8],
     [1.977_998_495_1, -2.428_592_205_0, 0.450_593_709_9],
@@ -68,8 +68,8 @@ impl Oklab {
 }
 
 impl Color {
-    /// Euclidean distance in [`Oklab`]: 0 for equal colours, about 0.02 just noticeable, 1 between black and white, which
-    /// is the largest.
+    /// Euclidean distance in [`Oklab`]: 0 for equal colours, about 0.02 just noticeable, 1 between black and white, the
+    /// maximum.
     ///
     /// # Example
     /// ```
@@ -121,7 +121,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn mix_keeps_the_ends_and_black_with_white_is_middle_grey() {
+    fn mix_of_a_colour_with_itself_is_unchanged_and_of_black_and_white_is_grey() {
         let colors = ["red", "green", "blue", "white", "black", "gold", "rebeccapurple"];
         for color in colors.map(|name| Color::from_name(name).unwrap()) {
             let back = color.mix(color, 0.3);

@@ -6,7 +6,7 @@ use serde_json::Value as Json;
 use crate::schema::part;
 use crate::world::{Compared, Comparison, FieldPlace, World};
 
-/// The parts of a world, one table each: the title, and the pointer to the part.
+/// The parts of a world, one table each: title and pointer.
 const PARTS: [(&str, &str); 7] = [
     ("The world as a whole", ""),
     ("The arena and its light", "/environment_params"),
@@ -70,7 +70,7 @@ fn is_below(pointer: &str, part: &str) -> bool {
     pointer.strip_prefix(part).is_some_and(|rest| rest.starts_with('/'))
 }
 
-/// The keys in the order of the table, with those inside progress, which the table lists only as a whole.
+/// The keys in table order, including the keys inside progress, which the table lists only as a whole.
 fn keys() -> Vec<FieldPlace> {
     let mut keys = Vec::new();
     for place in World::places().iter().filter(|place| place.is_key) {
@@ -159,7 +159,7 @@ fn type_of(own: &Json, value: &Json) -> String {
             format!("{} numbers{}", value["minItems"], limits(&value["items"]))
         }
         Some("array") => match value["maxItems"].as_u64() {
-            Some(most) => format!("list of at most {most}"),
+            Some(max) => format!("list of at most {max}"),
             None => "list".to_owned(),
         },
         _ => forms(value),

@@ -1,4 +1,4 @@
-//! Default values for serde, and the test that skips defaults in written documents.
+//! Default values for serde, and predicates that skip defaults when documents are written.
 
 pub(crate) fn one() -> f64 {
     1.0

@@ -7,19 +7,19 @@ pub fn did_you_mean<S: AsRef<str>>(word: &str, known: impl IntoIterator<Item = S
     nearest(word, known).map_or_else(String::new, |near| format!("; did you mean {near:?}?"))
 }
 
-/// The known word that was most likely meant by a misspelt one.
+/// The known word most likely meant by a misspelt one.
 pub fn nearest<S: AsRef<str>>(word: &str, known: impl IntoIterator<Item = S>) -> Option<String> {
     // No name is this long, and comparing takes memory proportional to the product of the lengths.
     if word.len() > MAX_KEY_BYTES {
         return None;
     }
     let lower = word.to_lowercase();
-    let letters = lower.chars().count();
+    let num_chars = lower.chars().count();
     let near = known.into_iter().filter_map(|candidate| {
         let name = candidate.as_ref();
         let length = name.chars().count();
         // A word of a very different length is not similar.
-        if name.len() > MAX_KEY_BYTES || length.abs_diff(letters) > 2 + length / 4 {
+        if name.len() > MAX_KEY_BYTES || length.abs_diff(num_chars) > 2 + length / 4 {
             return None;
         }
         let distance = strsim::damerau_levenshtein(&lower, &name.to_lowercase());

@@ -24,16 +24,16 @@ pub enum ParameterType {
     Color,
     /// A point on the ground, `[x, y]` in metres.
     Point,
-    /// A direction in degrees, 0 is +y, growing clockwise; 350 is as near to 10 as 10 to 30.
+    /// A direction in degrees clockwise from +y; 350 is as near to 10 as 10 is to 30.
     Heading,
-    /// A list of numbers, as long in every variant.
+    /// A list of numbers, of the same length in every variant.
     Vector,
-    /// A distribution: what is drawn, or where objects stand, is itself a parameter.
+    /// A distribution: the distribution of a draw or of positions is itself a parameter.
     Distribution,
-    /// What divides the arena: a maze, rooms, a text, a predefined map, or walls.
+    /// The walls that divide the arena: a maze, rooms, a text, a predefined map, or a list of walls.
     Layout,
-    /// Whatever may stand where it is used, in JSON: a list, an object, a word, a number, or `null` for what may be
-    /// absent. Its values are checked by the schema of each place where it stands.
+    /// Any JSON that is valid where it is used: a list, an object, a word, a number, or `null` for a key that may be absent.
+    /// Its values are checked against the schema of each place of use.
     Json,
 }
 
@@ -80,18 +80,18 @@ pub enum Value {
     Vector(#[schemars(length(min = 1, max = 100))] Vec<f64>),
     /// A distribution whose numbers may refer to parameters.
     Distribution(Box<Distribution<Number>>),
-    /// A layout. Before it is cast it is any JSON.
+    /// A layout; any JSON before it is cast.
     #[schemars(skip)]
     #[serde(skip_deserializing)]
     Layout(Box<Layout>),
-    /// Any other JSON, and any at all once it is cast to [`ParameterType::Json`].
+    /// Any other JSON, and any JSON after a cast to [`ParameterType::Json`].
     #[schemars(skip)]
     Json(#[serde(deserialize_with = "canonical_json")] Box<serde_json::Value>),
 }
 
 impl Value {
-    /// Converts the value to a type if possible: integers are numbers, CSS names are colours, headings of any size are wrapped
-    /// into 0..360, and everything is JSON.
+    /// Converts the value to a type if possible: integers become numbers, CSS names become colours, headings of any size are
+    /// wrapped into 0..360, and everything can become JSON.
     pub fn cast(&self, kind: ParameterType) -> Option<Self> {
         use ParameterType as P;
         match (kind, self) {
@@ -176,7 +176,7 @@ impl Value {
         match self {
             Self::Json(json) => (**json).clone(),
             other => serde_json::to_value(other)
-                .expect("values are numbers, texts and lists and maps of them, which always serialise"),
+                .expect("values consist of numbers and strings in lists and maps, which always serialise"),
         }
     }
 }
@@ -214,7 +214,7 @@ fn whole(number: f64) -> Option<i64> {
     (number.fract() == 0.0 && number.abs() <= 9_007_199_254_740_992.0).then_some(number as i64)
 }
 
-/// A heading of any size, wrapped into 0..360; a tiny negative one would otherwise be rounded up to 360.
+/// Wraps a heading of any size into 0..360; a tiny negative heading would otherwise round up to 360.
 pub(crate) fn turned(degrees: f64) -> f64 {
     let turned = degrees.rem_euclid(360.0);
     if turned >= 360.0 { 0.0 } else { turned }

@@ -1,4 +1,4 @@
-//! Versions of the documents: refuses newer ones and upgrades older ones.
+//! Versions of the document formats: rejects newer ones and upgrades older ones.
 
 use serde_json::{Map, Value as Json, json};
 
@@ -43,7 +43,7 @@ impl Format {
         let map = document.as_object_mut()?;
         let found = match map.get("version") {
             None => 1,
-            // The schema refuses anything but an integer from 1.
+            // The schema rejects anything but an integer from 1.
             Some(version) => version.as_u64().filter(|version| *version >= 1)?,
         };
         if found > u64::from(self.current) {

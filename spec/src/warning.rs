@@ -1,4 +1,4 @@
-//! [`Warning`]: an oddity of a readable document, with its place. Only the first few hundred are kept.
+//! [`Warning`]: a warning about a readable document, with its line and column. Only the first few hundred are kept.
 
 use std::fmt;
 
@@ -32,7 +32,7 @@ impl fmt::Display for Warning {
     }
 }
 
-/// The first few hundred oddities of a document.
+/// The first few hundred warnings about a document.
 #[derive(Debug, Default)]
 pub(crate) struct Remarks {
     /// Pairs of a pointer to the subject and the text of the remark.
@@ -49,7 +49,7 @@ impl Remarks {
         }
     }
 
-    /// The remarks sorted by their places in the text; `name` is the document's name in messages.
+    /// The remarks sorted by line and column in the text; `name` is the document's name in messages.
     pub(crate) fn in_text(self, name: &str, text: &str) -> Vec<Warning> {
         let pointers: Vec<&str> = self.first.iter().map(|(pointer, _)| pointer.as_str()).collect();
         let places = places_in(text, &pointers);

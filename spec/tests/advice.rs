@@ -7,7 +7,7 @@ use driftworld_spec::maps::MapLibrary;
 use driftworld_spec::{Problem, Scenario, SpecError, TaskSpec, World};
 use serde_json::Value;
 
-/// Phrases before a value that a piece of advice spells out.
+/// Phrases that precede a value spelt out in advice.
 const BEFORE_A_VALUE: [&str; 4] = [
     "drop the quotes: ",
     "write the number alone: ",
@@ -24,8 +24,8 @@ fn load(kind: &str, text: &str) -> Result<(), SpecError> {
     }
 }
 
-/// The document after following the advice; `None` if the advice leaves a choice to the author.
-fn mended(document: &Value, problem: &Problem) -> Option<Value> {
+/// The document after following the advice; `None` if the advice leaves the author a choice.
+fn corrected(document: &Value, problem: &Problem) -> Option<Value> {
     let mut document = document.clone();
     let advice = problem.advice.as_deref()?;
     let spelt_out = BEFORE_A_VALUE.iter().find_map(|before| advice.strip_prefix(before));
@@ -59,7 +59,7 @@ fn rename(object: &mut Value, key: &str, near: String) -> Option<()> {
     Some(())
 }
 
-/// The problems of a document, by place and complaint, without line numbers.
+/// The problems of a document as pairs of pointer and finding, without line numbers.
 fn complaints(kind: &str, text: &str) -> Vec<(String, String)> {
     let error = load(kind, text).err();
     let problems = error.iter().flat_map(SpecError::problems);
@@ -68,7 +68,7 @@ fn complaints(kind: &str, text: &str) -> Vec<(String, String)> {
         .collect()
 }
 
-/// The texts of the bad documents of a kind.
+/// The texts of the invalid documents of a kind.
 fn bad_documents(kind: &str) -> impl Iterator<Item = String> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../tests/documents/bad")
@@ -81,19 +81,22 @@ fn bad_documents(kind: &str) -> impl Iterator<Item = String> {
 
 #[test]
 fn following_the_advice_fixes_the_reported_problem() {
-    let mut taken = 0;
+    let mut followed = 0;
     for kind in ["world", "task", "scenario", "maps"] {
         for text in bad_documents(kind) {
             let document: Value = serde_json::from_str(&text).unwrap();
             for problem in load(kind, &text).unwrap_err().problems() {
-                let Some(mended) = mended(&document, problem).map(|mended| mended.to_string()) else {
+                let Some(corrected) = corrected(&document, problem).map(|corrected| corrected.to_string()) else {
                     continue;
                 };
-                taken += 1;
+                followed += 1;
                 let complaint = (problem.pointer.clone(), problem.found.clone());
-                assert!(!complaints(kind, &mended).contains(&complaint), "{problem}\n{mended}");
+                assert!(
+                    !complaints(kind, &corrected).contains(&complaint),
+                    "{problem}\n{corrected}"
+                );
             }
         }
     }
-    assert!(taken >= 50, "{taken} pieces of advice taken");
+    assert!(followed >= 50, "{followed} pieces of advice taken");
 }

@@ -1,4 +1,5 @@
-//! Mistakes of different kinds in different parts of a task are reported together, without problems that merely follow from them.
+//! Tests that mistakes of different kinds in different parts of a task are reported together, without problems that merely
+//! follow from them.
 
 use std::collections::BTreeSet;
 
@@ -31,23 +32,23 @@ fn mistakes() -> Vec<Mistake> {
     ]
 }
 
-fn sound() -> Value {
+fn valid_task() -> Value {
     let path = format!("{}/../examples/tasks/find_objects.json", env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(path).expect("the example tasks ship with the project");
-    serde_json::from_str(&text).expect("it is JSON")
+    serde_json::from_str(&text).expect("the task is JSON")
 }
 
 /// The problems of a task with these mistakes, without line and column.
-fn said(chosen: &[&Mistake]) -> BTreeSet<String> {
-    let mut task = sound();
+fn problems_with(chosen: &[&Mistake]) -> BTreeSet<String> {
+    let mut task = valid_task();
     for (pointer, value) in chosen {
-        let (parent, key) = pointer.rsplit_once('/').expect("it is a pointer");
+        let (parent, key) = pointer.rsplit_once('/').expect("the pointer has a parent");
         let parent = task
             .pointer_mut(parent)
             .unwrap_or_else(|| panic!("{pointer}: nothing there"));
         parent
             .as_object_mut()
-            .expect("it is an object")
+            .expect("the parent is an object")
             .insert(key.to_owned(), value.clone());
     }
     let classes = Classes::new(["geometric", "tree", "rock"]);
@@ -61,9 +62,9 @@ fn said(chosen: &[&Mistake]) -> BTreeSet<String> {
 
 #[test]
 fn single_mistake_is_reported_at_its_place() {
-    assert!(said(&[]).is_empty(), "{:?}", said(&[]));
+    assert!(problems_with(&[]).is_empty(), "{:?}", problems_with(&[]));
     for mistake in &mistakes() {
-        let found = said(&[mistake]);
+        let found = problems_with(&[mistake]);
         let near = |problem: &String| {
             problem.starts_with(mistake.0) || mistake.0.starts_with(problem.split(' ').next().unwrap_or("-"))
         };
@@ -77,11 +78,11 @@ proptest! {
     #[test]
     fn combined_mistakes_report_each_problem(chosen in prop::sample::subsequence((0..mistakes().len()).collect::<Vec<_>>(), 1..7)) {
         let all = mistakes();
-        // A group that the schema refuses is not checked any further.
+        // A group that the schema rejects is not checked any further.
         let hidden = |mistake: &Mistake| mistake.0 == "/groups/1/object/class" && chosen.iter().any(|other| all[*other].0 == "/groups/1/count");
         let chosen: Vec<&Mistake> = chosen.iter().map(|number| &all[*number]).filter(|mistake| !hidden(mistake)).collect();
-        let alone: BTreeSet<String> = chosen.iter().flat_map(|mistake| said(&[mistake])).collect();
-        prop_assert_eq!(said(&chosen), alone);
+        let alone: BTreeSet<String> = chosen.iter().flat_map(|mistake| problems_with(&[mistake])).collect();
+        prop_assert_eq!(problems_with(&chosen), alone);
     }
 }
 
@@ -89,7 +90,7 @@ proptest! {
 fn both_mistakes_in_the_docs_are_reported_together() {
     let variant = ("/variants/dusk/light", json!(60));
     let reference = ("/world/environment_params/light_intensity", json!({ "param": "ligth" }));
-    let found: Vec<String> = said(&[&variant, &reference]).into_iter().collect();
+    let found: Vec<String> = problems_with(&[&variant, &reference]).into_iter().collect();
     assert_eq!(found.len(), 2, "{found:?}");
     assert!(found[0].starts_with("/variants/dusk/light 60"), "{found:?}");
     assert!(
@@ -101,7 +102,7 @@ fn both_mistakes_in_the_docs_are_reported_together() {
 /// When checking stops before the end of a list, there may be more problems than were counted; the message says so.
 #[test]
 fn incomplete_count_of_problems_is_reported_as_a_minimum() {
-    let said = |num: usize| {
+    let summary_of = |num: usize| {
         let objects = vec![json!({ "class": "cube", "coordinates": [0, "x"], "heading": "h", "reward": "r" }); num];
         let text = json!({ "objects": objects }).to_string();
         let error = driftworld_spec::World::from_json("w", &text).unwrap_err();
@@ -110,13 +111,13 @@ fn incomplete_count_of_problems_is_reported_as_a_minimum() {
             error.to_string().lines().last().unwrap_or_default().to_owned(),
         )
     };
-    let (more, last) = said(20);
+    let (more, last) = summary_of(20);
     assert!(
         !more && last.starts_with("w: and ") && !last.contains("at least"),
         "{last}"
     );
     for num in [101, 110, 400] {
-        let (more, last) = said(num);
+        let (more, last) = summary_of(num);
         assert!(more && last.starts_with("w: and at least "), "{num}: {last}");
     }
 }

@@ -1,4 +1,4 @@
-//! Reading any text gives a document or an error with a place, but never panics.
+//! Tests that reading any text gives a document or an error with a line and column, but never panics.
 
 use driftworld_spec::{Scenario, SpecError, TaskSpec, World};
 use proptest::prelude::*;
@@ -9,7 +9,7 @@ fn example(name: &str) -> String {
     std::fs::read_to_string(path).expect("the example tasks ship with the project")
 }
 
-/// Reads a text as every kind of document; every problem must have a place in the text.
+/// Reads a text as every kind of document; every problem must have a line and column in the text.
 fn read_all(text: &str) {
     let lines = text.lines().count().max(1) + 1;
     let errors = [
@@ -80,9 +80,9 @@ proptest! {
     }
 
     #[test]
-    fn task_with_any_value_replaced_is_read_or_refused(place in 0usize..260, with in wrong_value()) {
+    fn task_with_any_value_replaced_is_read_or_refused(index in 0usize..260, with in wrong_value()) {
         let mut json: Value = serde_json::from_str(&example("find_objects")).expect("the example is JSON");
-        replace_nth(&mut json, &mut place.clone(), &with);
+        replace_nth(&mut json, &mut index.clone(), &with);
         read_all(&serde_json::to_string_pretty(&json).expect("JSON serialises"));
     }
 

@@ -1,4 +1,4 @@
-//! Errors of look-ups in tasks, and their places. The resulting worlds are tested in the generator.
+//! Errors of look-ups in tasks, and their pointers. The resulting worlds are tested in the generator.
 
 use driftworld_spec::{TaskSpec, Value};
 
@@ -11,7 +11,7 @@ const PARAMETERS: &str = r#"
     "size": { "role": "randomized", "type": "number", "affects": ["S"], "distribution": { "uniform": { "low": 1, "high": 2 } } },
     "map": { "role": "variant", "type": "layout", "affects": ["S"], "choices": [{ "walls": [] }], "default": { "walls": [] } }"#;
 
-/// A task with this light, and further parameters.
+/// A task with this light and additional parameters.
 fn task(light: &str, more: &str) -> String {
     format!(
         r#"{{ "name": "t", "parameters": {{ {PARAMETERS}{more} }},
@@ -20,7 +20,7 @@ fn task(light: &str, more: &str) -> String {
     )
 }
 
-fn said(text: &str) -> String {
+fn message_for(text: &str) -> String {
     TaskSpec::from_json("t.json", text).map_or_else(|error| error.to_string(), |_| "accepted".to_owned())
 }
 
@@ -56,13 +56,13 @@ fn a_look_up_that_comes_to_nothing_is_refused_where_it_is_wrong() {
         r#""a": { "role": "randomized", "type": "number", "affects": ["S"], "distribution": { "case": { "param": "cue" }, "of": { "red": "high" }, "else": 3 } }"#,
         r#""a": { "role": "fixed", "type": "distribution", "value": { "uniform": { "low": 0, "high": { "case": { "param": "cue" }, "of": { "red": 1 }, "else": 3 } } } }"#,
     ];
-    let lights = lights.iter().map(|light| (*light, said(&task(light, ""))));
+    let lights = lights.iter().map(|light| (*light, message_for(&task(light, ""))));
     let parameters = parameters
         .iter()
-        .map(|more| (*more, said(&task("1", &format!(", {more}")))));
+        .map(|more| (*more, message_for(&task("1", &format!(", {more}")))));
     let report: Vec<String> = lights
         .chain(parameters)
-        .map(|(text, said)| format!("{text}\n{said}\n"))
+        .map(|(text, error)| format!("{text}\n{error}\n"))
         .collect();
     insta::assert_snapshot!(report.join("\n"));
 }
@@ -71,16 +71,19 @@ fn a_look_up_that_comes_to_nothing_is_refused_where_it_is_wrong() {
 fn value_without_a_case_is_refused_when_a_variant_takes_it() {
     let text = task(r#"{ "case": { "param": "tint" }, "of": { "red": 1, "blue": 2 } }"#, "");
     let task = TaskSpec::from_json("t.json", &text).unwrap_or_else(|error| panic!("{error}"));
-    let near = task.variant("near").expect("it is declared");
+    let near = task.variant("near").expect("the task declares it");
     let between = |color: &str| near.with("between", [("tint".to_owned(), Value::Text(color.to_owned()))]);
     assert!(between("blue").is_ok());
-    let said = between("purple").expect_err("there is no case for it").to_string();
-    assert!(said.contains("tint = purple") && said.contains("red, blue"), "{said}");
+    let error = between("purple").expect_err("purple has no case").to_string();
+    assert!(
+        error.contains("tint = purple") && error.contains("red, blue"),
+        "{error}"
+    );
 }
 
 #[test]
 fn margin_without_a_case_is_refused_when_a_variant_takes_it() {
-    let apart = r#"{ "case": { "param": "tint" }, "of": { "red": 1, "blue": 2 } }"#;
+    let distance = r#"{ "case": { "param": "tint" }, "of": { "red": 1, "blue": 2 } }"#;
     let group = |margins: &str| {
         let cubes =
             r#""count": 1, "object": { "class": "cube" }, "placement": { "disc": { "center": [0, 0], "radius": 9 } }"#;
@@ -90,16 +93,17 @@ fn margin_without_a_case_is_refused_when_a_variant_takes_it() {
         )
     };
     for margins in [
-        format!(r#""separation": {apart}"#),
-        format!(r#""keep_out": {{ "groups": {{ "a": {apart} }} }}"#),
-        format!(r#""facing": {{ "point": [0, {apart}] }}"#),
+        format!(r#""separation": {distance}"#),
+        format!(r#""keep_out": {{ "groups": {{ "a": {distance} }} }}"#),
+        format!(r#""facing": {{ "point": [0, {distance}] }}"#),
     ] {
         let task = TaskSpec::from_json("t.json", &format!("{{ {} }}", group(&margins)));
         let task = task.unwrap_or_else(|error| panic!("{error}"));
-        let variant = task.variant("default").expect("it is always there");
-        let said = variant.with("between", [("tint".to_owned(), Value::Text("purple".into()))]);
+        let variant = task.variant("default").expect("the default variant always exists");
+        let error = variant.with("between", [("tint".to_owned(), Value::Text("purple".into()))]);
         assert!(
-            said.expect_err("there is no case")
+            error
+                .expect_err("purple has no case")
                 .to_string()
                 .contains("tint = purple")
         );

@@ -1,4 +1,4 @@
-//! Every error code of this crate, with a document that causes it and the message that its author sees.
+//! Every error code of this crate, with a document that causes it and the message shown to its author.
 
 use std::collections::BTreeSet;
 
@@ -35,7 +35,7 @@ fn look_ups() -> [SpecError; 2] {
 
 fn cases() -> Vec<SpecError> {
     let number = r#""parameters": { "p": { "role": "variant", "type": "number", "affects": ["S"], "range": [0, 1], "default": 0 } }"#;
-    let plain = TaskSpec::from_json("t.json", "{ \"name\": \"t\" }").expect("a task with nothing but a name is one");
+    let plain = TaskSpec::from_json("t.json", "{ \"name\": \"t\" }").expect("a name is enough for a task");
     let limited = TaskSpec::from_json(
         "t.json",
         &format!(r#"{{ "name": "t", {number}, "require": ["p > 0"] }}"#),
@@ -140,11 +140,11 @@ fn cases() -> Vec<SpecError> {
 fn every_code_in_the_source_has_a_case_here_and_every_case_its_message() {
     let mut errors = cases();
     errors.extend(look_ups());
-    let said: Vec<String> = errors
+    let messages: Vec<String> = errors
         .iter()
         .map(|error| format!("{}\n{error}\n", error.code()))
         .collect();
-    insta::assert_snapshot!(said.join("\n"));
+    insta::assert_snapshot!(messages.join("\n"));
     let covered: BTreeSet<String> = errors.iter().map(|error| error.code().to_owned()).collect();
     let missing: Vec<String> = codes_in_source().difference(&covered).cloned().collect();
     assert!(missing.is_empty(), "no case for {missing:?}");
@@ -155,7 +155,7 @@ fn codes_in_source() -> BTreeSet<String> {
     let mut folders = vec![std::path::PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/src"))];
     let mut codes = BTreeSet::new();
     while let Some(folder) = folders.pop() {
-        for entry in std::fs::read_dir(folder).expect("the source is there while its tests run") {
+        for entry in std::fs::read_dir(folder).expect("the source exists while its tests run") {
             let path = entry.expect("the source can be listed").path();
             if path.is_dir() {
                 folders.push(path);

@@ -1,4 +1,5 @@
-//! Laws of distributions, compared with scipy's values and with their definitions. Draws are tested in the generator.
+//! Moments, CDFs and quantiles of distributions, compared with scipy's values and with their definitions. Draws are tested in
+//! the generator.
 
 use driftworld_spec::{Distribution, Number, Spread, Value};
 use proptest::prelude::*;
@@ -13,8 +14,8 @@ struct Case {
     quantile: Vec<[f64; 2]>,
 }
 
-/// The difference of two numbers, relative to the greater, or absolute if both are small.
-fn miss(found: f64, expected: f64) -> f64 {
+/// The difference of two numbers, relative to the expected one, or absolute if that is below 1.
+fn relative_error(found: f64, expected: f64) -> f64 {
     (found - expected).abs() / expected.abs().max(1.0)
 }
 
@@ -22,28 +23,28 @@ fn miss(found: f64, expected: f64) -> f64 {
 #[test]
 fn moments_cumulative_function_and_quantiles_agree_with_scipy() {
     let text = include_str!("oracles/distributions.json");
-    let cases: Vec<Case> = serde_json::from_str(text).expect("the oracle file is what its script writes");
+    let cases: Vec<Case> = serde_json::from_str(text).expect("the oracle file has the form that its script writes");
     assert!(cases.len() >= 40);
     for case in cases {
         let name = case.distribution.to_string();
         assert_eq!(case.distribution.fault(), None, "{name}");
-        // scipy itself loses digits of variances of narrow distributions far from 0, because it subtracts squares.
+        // scipy itself loses digits in the variances of narrow distributions far from 0, because it subtracts squares.
         let tolerance = 1e-9;
         let mean = case.distribution.mean().expect("it draws numbers");
         assert!(
-            miss(mean, case.mean) < tolerance,
+            relative_error(mean, case.mean) < tolerance,
             "{name}: mean {mean}, expected {}",
             case.mean
         );
         let variance = case.distribution.variance().expect("it draws numbers");
         assert!(
-            miss(variance, case.variance) < tolerance,
+            relative_error(variance, case.variance) < tolerance,
             "{name}: variance {variance}, expected {}",
             case.variance
         );
         for [x, expected] in case.cdf {
             let found = case.distribution.cdf(x).expect("it draws numbers");
-            // Binomials of 100,000 use the logarithm of the gamma function: about 1e6, whose last digit is 1e-10.
+            // Binomials of 100,000 use the logarithm of the gamma function, about 1e6, with a precision of 1e-10.
             assert!(
                 (found - expected).abs() < 1e-10,
                 "{name}: cdf({x}) is {found}, expected {expected}"
@@ -53,14 +54,14 @@ fn moments_cumulative_function_and_quantiles_agree_with_scipy() {
             let found = case.distribution.quantile(p).expect("it draws numbers");
             // At 1 - 1e-9, a quantile moves with the last bits of p.
             assert!(
-                miss(found, expected) < 1e-7,
+                relative_error(found, expected) < 1e-7,
                 "{name}: quantile({p}) is {found}, expected {expected}"
             );
         }
     }
 }
 
-/// Any drawable distribution of numbers, except mixtures.
+/// Any valid distribution of numbers, except mixtures.
 fn any_family() -> impl Strategy<Value = Distribution> {
     prop_oneof![
         (-9.0..9.0, 0.01..9.0).prop_map(|(low, wide): (f64, f64)| Distribution::Uniform { low, high: low + wide }),
@@ -114,7 +115,7 @@ fn any_family() -> impl Strategy<Value = Distribution> {
     ]
 }
 
-/// Any drawable distribution of numbers.
+/// Any valid distribution of numbers.
 fn any_numbers() -> impl Strategy<Value = Distribution> {
     any_family().prop_recursive(2, 6, 3, |inner| {
         prop::collection::vec((inner, 0.01..3.0), 1..4).prop_map(|parts: Vec<(Distribution, f64)>| {
@@ -136,9 +137,9 @@ proptest! {
         let quantile = |p| law.quantile(p).expect("it draws numbers");
         let cdf = |x| law.cdf(x).expect("it draws numbers");
         let x = quantile(p);
-        let beside = 1e-9 * x.abs().max(1.0);
-        prop_assert!(cdf(x + beside) >= p - 1e-9, "{law}: at least {p} lies up to {x}, found {}", cdf(x));
-        prop_assert!(cdf(x - beside) <= p + 1e-9, "{law}: at most {p} lies below {x}, found {}", cdf(x - beside));
+        let margin = 1e-9 * x.abs().max(1.0);
+        prop_assert!(cdf(x + margin) >= p - 1e-9, "{law}: at least {p} lies up to {x}, found {}", cdf(x));
+        prop_assert!(cdf(x - margin) <= p + 1e-9, "{law}: at most {p} lies below {x}, found {}", cdf(x - margin));
         prop_assert!((p <= q) == (quantile(p) <= quantile(q)) || quantile(p) == quantile(q), "{law}");
         prop_assert!(cdf(x) >= cdf(x - 1.0) && (0.0..=1.0).contains(&cdf(x)));
     }
@@ -146,7 +147,7 @@ proptest! {
     #[test]
     fn distribution_round_trips_through_json(law in any_numbers()) {
         let text = serde_json::to_string(&law).expect("a distribution serialises");
-        prop_assert_eq!(serde_json::from_str::<Distribution>(&text).expect("and reads back"), law);
+        prop_assert_eq!(serde_json::from_str::<Distribution>(&text).expect("a written distribution can be read"), law);
         prop_assert!(serde_json::from_str::<Distribution<Number>>(&text).is_ok());
     }
 }
@@ -185,12 +186,12 @@ proptest! {
     }
 }
 
-fn close(found: [[f64; 2]; 2], expected: [[f64; 2]; 2]) -> bool {
+fn is_close(found: [[f64; 2]; 2], expected: [[f64; 2]; 2]) -> bool {
     (0..2).all(|i| (0..2).all(|j| (found[i][j] - expected[i][j]).abs() < 1e-9))
 }
 
 #[test]
-fn points_have_the_moments_of_their_shapes() {
+fn planar_moments_match_closed_forms() {
     let covariance = |law: &Distribution| law.planar_moments().expect("it draws points").covariance;
     let gaussian = |std, correlation| Distribution::Gaussian {
         mean: [1.0, 2.0],
@@ -198,11 +199,11 @@ fn points_have_the_moments_of_their_shapes() {
         correlation,
         covariance: None,
     };
-    assert!(close(
+    assert!(is_close(
         covariance(&gaussian(Some(Spread::Round(3.0)), None)),
         [[9.0, 0.0], [0.0, 9.0]]
     ));
-    assert!(close(
+    assert!(is_close(
         covariance(&gaussian(Some(Spread::Axes([3.0, 2.0])), Some(-0.5))),
         [[9.0, -3.0], [-3.0, 4.0]]
     ));
@@ -210,7 +211,7 @@ fn points_have_the_moments_of_their_shapes() {
         center: [0.0, 0.0],
         radius: 4.0,
     };
-    assert!(close(covariance(&disc), [[4.0, 0.0], [0.0, 4.0]]));
+    assert!(is_close(covariance(&disc), [[4.0, 0.0], [0.0, 4.0]]));
     // Two points 2 apart along x with equal weights: variance 1 along x, none along y.
     let two = Distribution::Mixture {
         parts: [-1.0, 1.0]
@@ -220,7 +221,7 @@ fn points_have_the_moments_of_their_shapes() {
             .to_vec(),
         weights: None,
     };
-    assert!(close(covariance(&two), [[1.0, 0.0], [0.0, 0.0]]));
+    assert!(is_close(covariance(&two), [[1.0, 0.0], [0.0, 0.0]]));
     // A grid's cells, counted one by one.
     let grid = |jitter| Distribution::Grid {
         low: [0.0, 0.0],
@@ -230,12 +231,12 @@ fn points_have_the_moments_of_their_shapes() {
         jitter,
         order: driftworld_spec::Order::Turn,
     };
-    assert!(close(covariance(&grid(None)), [[8.0 / 3.0, 0.0], [0.0, 1.0]]));
-    assert!(close(covariance(&grid(Some(1.0))), [[3.0, 0.0], [0.0, 16.0 / 12.0]]));
+    assert!(is_close(covariance(&grid(None)), [[8.0 / 3.0, 0.0], [0.0, 1.0]]));
+    assert!(is_close(covariance(&grid(Some(1.0))), [[3.0, 0.0], [0.0, 16.0 / 12.0]]));
 }
 
 #[test]
-fn headings_scatter_around_their_direction() {
+fn von_mises_is_centred_on_its_mean_direction() {
     let around = |mean, kappa| Distribution::VonMises { mean, kappa };
     assert_eq!(around(-90.0, 3.0).mean(), Some(270.0));
     assert_eq!(around(0.0, 3.0).variance(), None);

@@ -1,5 +1,5 @@
-//! The documents under `tests/documents`: the committed schemas alone refuse the bad ones and accept the good ones, and each bad
-//! one gives the message in its snapshot. Checks beyond the schemas are tested in `tasks.rs` and `codes.rs`.
+//! The documents under `tests/documents`: the committed schemas alone reject the bad ones and accept the good ones, and each
+//! bad one gives the message in its snapshot. Checks beyond the schemas are tested in `tasks.rs` and `codes.rs`.
 
 use std::collections::BTreeSet;
 use std::panic::catch_unwind;
@@ -16,7 +16,7 @@ const KEYS_WITHOUT_A_DOCUMENT: [(&str, &str); 0] = [];
 /// One file of the suite.
 struct Case {
     kind: &'static str,
-    /// The file's path below `tests/documents`, which is its name in messages.
+    /// The file's path below `tests/documents`, used as its name in messages.
     name: String,
     path: PathBuf,
 }
@@ -30,7 +30,7 @@ impl Case {
         serde_json::from_str(&self.text()).unwrap_or_else(|error| panic!("{}: {error}", self.name))
     }
 
-    /// Reads the document as a user's would be read.
+    /// Reads the document like a user's document.
     fn load(&self) -> Result<(), SpecError> {
         let text = self.text();
         match self.kind {
@@ -76,33 +76,33 @@ fn schema(kind: &str) -> Value {
     serde_json::from_str(&text).expect("a committed schema is JSON")
 }
 
-/// The documents of a verdict that the committed schemas judge differently, and the total number.
-fn judged_otherwise(verdict: &str, expect_valid: bool) -> (Vec<String>, usize) {
-    let mut otherwise = Vec::new();
+/// The documents of a verdict that the committed schemas judge differently, and the number of all documents of that verdict.
+fn misjudged(verdict: &str, expect_valid: bool) -> (Vec<String>, usize) {
+    let mut misjudged_names = Vec::new();
     let mut count = 0;
     for kind in KINDS {
         let validator = jsonschema::validator_for(&schema(kind)).expect("a committed schema is a schema");
         let cases = cases(verdict, kind);
         count += cases.len();
-        let surprises = cases
+        let differing = cases
             .iter()
             .filter(|case| validator.is_valid(&case.value()) != expect_valid);
-        otherwise.extend(surprises.map(|case| case.name.clone()));
+        misjudged_names.extend(differing.map(|case| case.name.clone()));
     }
-    (otherwise, count)
+    (misjudged_names, count)
 }
 
 #[test]
 fn schemas_alone_refuse_every_bad_document() {
-    let (accepted, count) = judged_otherwise("bad", false);
+    let (accepted, count) = misjudged("bad", false);
     assert!(accepted.is_empty(), "accepted, though bad: {accepted:#?}");
     assert!(count >= 300, "{count} bad documents");
 }
 
 #[test]
 fn schemas_alone_accept_every_good_document() {
-    let (refused, count) = judged_otherwise("good", true);
-    assert!(refused.is_empty(), "refused, though good: {refused:#?}");
+    let (rejected, count) = misjudged("good", true);
+    assert!(rejected.is_empty(), "refused, though good: {rejected:#?}");
     assert!(count >= 30, "{count} good documents");
 }
 
@@ -121,12 +121,12 @@ fn compare(case: &Case) {
     settings.set_prepend_module_to_snapshot(false);
     settings.set_omit_expression(true);
     let stem = case.path.file_stem().and_then(|stem| stem.to_str());
-    settings.bind(|| insta::assert_snapshot!(stem.expect("the name was listed as text"), error.to_string()));
+    settings.bind(|| insta::assert_snapshot!(stem.expect("the file's name is UTF-8"), error.to_string()));
 }
 
 #[test]
 fn every_bad_document_gives_its_snapshot_message() {
-    // A change of wording affects many messages: continues after the first difference.
+    // A change of wording affects many messages, so continues after the first difference.
     let differs = |case: &Case| catch_unwind(|| compare(case)).is_err();
     let cases = KINDS.iter().flat_map(|kind| cases("bad", kind));
     let changed: Vec<String> = cases.filter(differs).map(|case| case.name).collect();
@@ -142,7 +142,7 @@ fn every_bad_document_gives_its_snapshot_message() {
     }
 }
 
-/// Collects pointers to the schema's properties that a value has, or to all of them without a value.
+/// Collects pointers to the schema's properties that a value has, or to all properties if there is no value.
 fn properties(schema: &Value, pointer: &str, value: Option<&Value>, found: &mut BTreeSet<String>) {
     let Some(node) = schema.pointer(pointer).and_then(Value::as_object) else {
         return;
@@ -157,13 +157,14 @@ fn properties(schema: &Value, pointer: &str, value: Option<&Value>, found: &mut 
         }
     }
     let own = node.get("properties").and_then(Value::as_object);
-    for (key, place) in own.into_iter().flatten() {
+    for (key, schema_of_key) in own.into_iter().flatten() {
         let inner = value.map(|value| value.get(key));
-        let place_pointer = format!("{pointer}/properties/{key}");
-        let fresh = *place != Value::Bool(false) && inner != Some(None) && found.insert(place_pointer.clone());
-        // Without a value, a place seen before adds nothing.
-        if fresh || matches!(inner, Some(Some(_))) {
-            properties(schema, &place_pointer, inner.flatten(), found);
+        let pointer_of_key = format!("{pointer}/properties/{key}");
+        let is_new =
+            *schema_of_key != Value::Bool(false) && inner != Some(None) && found.insert(pointer_of_key.clone());
+        // Without a value, a property that was visited before adds nothing.
+        if is_new || matches!(inner, Some(Some(_))) {
+            properties(schema, &pointer_of_key, inner.flatten(), found);
         }
     }
     let items = value.map(|value| value.as_array().into_iter().flatten().collect::<Vec<_>>());
@@ -180,7 +181,7 @@ fn properties(schema: &Value, pointer: &str, value: Option<&Value>, found: &mut 
     }
 }
 
-/// Each value of a list, or once `None` without a list.
+/// Each value of a list, or a single `None` if there is no list.
 fn each(values: Option<Vec<&Value>>) -> Vec<Option<&Value>> {
     values.map_or_else(|| vec![None], |values| values.into_iter().map(Some).collect())
 }

@@ -1,9 +1,9 @@
-//! Parameters of type JSON: the place that uses one decides which values it may have, when the task is read.
+//! Parameters of type JSON: where one is used decides, when the task is read, which values it may have.
 
 use driftworld_spec::{ParameterType, TaskSpec, Value};
 
-/// The message for a task with this parameter, which fills a part of the world.
-fn said(parameter: &str, world: &str, variants: &str) -> String {
+/// The message for a task with this parameter, used in this world.
+fn message_for(parameter: &str, world: &str, variants: &str) -> String {
     let text = format!(
         r#"{{ "name": "t", "parameters": {{ "p": {parameter} }}, "world": {world}, "variants": {{ "v": {variants} }} }}"#
     );
@@ -74,29 +74,29 @@ fn values_are_checked_where_they_stand_and_refused_where_they_are_written() {
     let report: Vec<String> = cases
         .iter()
         .map(|(parameter, world, variant)| {
-            let said = said(parameter, world, variant);
-            assert!(!said.is_empty(), "{parameter} {world} {variant}");
-            format!("{parameter} {world} {variant}\n{said}\n")
+            let message = message_for(parameter, world, variant);
+            assert!(!message.is_empty(), "{parameter} {world} {variant}");
+            format!("{parameter} {world} {variant}\n{message}\n")
         })
         .collect();
     insta::assert_snapshot!(report.join("\n"));
 }
 
 #[test]
-fn choice_called_default_is_checked_by_its_place() {
+fn choice_named_default_is_checked_where_it_is_used() {
     let parameter = r#"{ "role": "variant", "type": "json", "affects": ["O"],
         "choices": { "a": ["depht"], "default": ["depht"] }, "default": "a" }"#;
-    let said = said(
+    let message = message_for(
         parameter,
         r#"{ "agent_params": { "modalities": { "param": "p" } } }"#,
         "{}",
     );
-    assert!(said.contains("/choices/a/0"), "{said}");
-    assert!(said.contains("/choices/default/0"), "{said}");
+    assert!(message.contains("/choices/a/0"), "{message}");
+    assert!(message.contains("/choices/default/0"), "{message}");
 }
 
 #[test]
-fn value_outside_the_choices_is_also_refused_in_code() {
+fn value_outside_the_choices_is_refused_when_set_in_code() {
     let text = r#"{ "name": "t", "parameters": { "p": {
         "role": "variant", "type": "json", "affects": ["O"], "choices": [["rgb"], null], "default": ["rgb"] } } }"#;
     let task = TaskSpec::from_json("t", text).unwrap();
@@ -108,10 +108,10 @@ fn value_outside_the_choices_is_also_refused_in_code() {
             .value("p")
             .is_some_and(|value| value.to_json().is_null())
     );
-    let said = with(r#"["depth"]"#).unwrap_err().to_string();
+    let message = with(r#"["depth"]"#).unwrap_err().to_string();
     assert!(
-        said.contains(r#"found ["depth"], expected one of ["rgb"], null"#),
-        "{said}"
+        message.contains(r#"found ["depth"], expected one of ["rgb"], null"#),
+        "{message}"
     );
 }
 
@@ -127,7 +127,7 @@ fn variants_of_families_are_named_after_their_values() {
     );
     let scale = task.variant("v-scale3").unwrap();
     assert_eq!(scale.value("p").unwrap().to_string(), r#"{"scale":2}"#);
-    let again = TaskSpec::from_json("again", &task.to_json()).unwrap();
-    assert_eq!(again.variant("v-scale3").unwrap().hash(), scale.hash());
+    let reread = TaskSpec::from_json("again", &task.to_json()).unwrap();
+    assert_eq!(reread.variant("v-scale3").unwrap().hash(), scale.hash());
     assert_eq!(task.parameters()["p"].kind, ParameterType::Json);
 }

@@ -1,7 +1,7 @@
-//! L2Explorer's dialect: reads its own map files, and every world that it can describe. Lenient forms of single values are tested
-//! next to the code.
+//! L2Explorer's dialect: its own map files, and every world that it can describe, are read. Lenient forms of single values are
+//! tested next to the code.
 //!
-//! The original's files are not in the repository; without them, their test is visibly skipped.
+//! The original's files are not in the repository; without them, their test is skipped with a message.
 
 use driftworld_spec::{
     ActionModel, AgentParams, Color, EnvironmentParams, GameMode, ImageParams, Model, MotionModel, Object, Rules,
@@ -27,14 +27,14 @@ fn every_map_of_the_original_is_read() {
         let (world, found) = World::from_l2explorer(file, &text).unwrap_or_else(|error| panic!("{error}"));
         assert_eq!(world.objects.len(), objects, "{file}");
         assert_eq!(found.len(), warnings, "{file}: {found:#?}");
-        let again = World::from_json(file, &world.to_json()).unwrap_or_else(|error| panic!("{error}"));
-        assert_eq!(again, world, "{file} survives writing and strict reading");
+        let reread = World::from_json(file, &world.to_json()).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(reread, world, "{file}: written and read strictly");
     }
 }
 
 const BLACK: Color = Color([0.0; 3]);
 
-/// Speed of moving objects in metres per second, which the original's files do not give.
+/// Assumed speed of moving objects in metres per second, which the original's files do not contain.
 const ASSUMED_SPEED: f64 = 2.0;
 
 fn moves(model: MotionModel) -> bool {
@@ -97,7 +97,8 @@ fn agent() -> impl Strategy<Value = AgentParams> {
         )
 }
 
-/// An object that the original can describe, with its place as a share of the arena; `named` objects get a name later.
+/// An object that the original can describe, with its position as a share of the arena; the flag says whether it gets a name
+/// later.
 fn object() -> impl Strategy<Value = (Object, bool)> {
     let class = prop_oneof![
         select(vec!["geometric", "cube", "icosphere", "tree", "barrel"]).prop_map(str::to_owned),
@@ -139,7 +140,7 @@ fn object() -> impl Strategy<Value = (Object, bool)> {
 }
 
 /// Worlds that the original can describe completely.
-fn sayable() -> impl Strategy<Value = WorldDraft> {
+fn describable_world() -> impl Strategy<Value = WorldDraft> {
     let image =
         (0.1..=100.0, 1u32..=360, 1u32..=360).prop_map(|(zoom, yaw_subdivisions, vertical_subdivisions)| ImageParams {
             zoom,
@@ -201,7 +202,7 @@ const KEYS: [(&str, &str); 4] = [
     ),
 ];
 
-/// A world as a file of the original, with only its keys.
+/// A world as a file of the original, with only the original's keys.
 fn original(world: &World) -> String {
     let mut json: serde_json::Value = serde_json::from_str(&world.to_json()).expect("a world is JSON");
     let keep = |part: &mut serde_json::Value, keys: &str| {
@@ -221,7 +222,7 @@ fn original(world: &World) -> String {
     json.to_string()
 }
 
-fn sound(world: WorldDraft) -> Result<World, TestCaseError> {
+fn checked(world: WorldDraft) -> Result<World, TestCaseError> {
     world.check().map_err(|error| TestCaseError::fail(error.to_string()))
 }
 
@@ -229,21 +230,22 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 192)))]
 
     #[test]
-    fn world_that_the_original_can_describe_is_read_without_other_warnings(world in sayable()) {
-        let world = sound(world)?;
+    fn world_that_the_original_can_describe_is_read_without_other_warnings(world in describable_world()) {
+        let world = checked(world)?;
         let text = original(&world);
-        let (back, found) = World::from_l2explorer("written", &text).map_err(|e| TestCaseError::fail(e.to_string()))?;
-        // Except the speed of moving objects, which is assumed with a warning, and objects inside the walls of a map.
+        let (reread, found) = World::from_l2explorer("written", &text).map_err(|e| TestCaseError::fail(e.to_string()))?;
+        // The only warnings are about the assumed speed of moving objects, and objects inside the walls of a map.
         let movers = world.objects.iter().filter(|object| moves(object.motion_model)).count();
         let assumed = found.iter().filter(|warning| warning.text.contains("m/s is assumed")).count();
         let walled = found.iter().filter(|warning| warning.text.contains("inside region")).count();
         prop_assert_eq!((assumed, found.len()), (movers, movers + walled), "{:?}", found);
-        // Its map is the original's.
-        prop_assert_eq!(back, world.with_maps(driftworld_spec::maps::of_l2explorer()));
+        // The map comes from the original.
+        prop_assert_eq!(reread, world.with_maps(driftworld_spec::maps::of_l2explorer()));
     }
 }
 
-/// The starting documents of the test below: a small one like those of the original's generator, and its examples if available.
+/// The documents edited in the test below: a small one like those from the original's generator, and the original's examples if
+/// available.
 fn originals() -> Vec<(String, serde_json::Value)> {
     let object = |class: &str, x: f64| {
         serde_json::json!({
@@ -346,17 +348,17 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 1024)))]
 
     /// After any edits of the original's keys, the document loads unless a number is out of range; unedited parts are read as
-    /// before, and each assumption gives one warning at its place.
+    /// before, and each assumption gives one warning at its pointer.
     #[test]
     fn edited_document_of_the_original_loads_and_nothing_else_changes(
         which in any::<proptest::sample::Index>(),
-        spoilt in vec((any::<proptest::sample::Index>(), replacement(), any::<bool>()), 1..4),
+        edits in vec((any::<proptest::sample::Index>(), replacement(), any::<bool>()), 1..4),
     ) {
         let originals = originals();
         let (name, document) = which.get(&originals);
         let mut changed = document.clone();
         let mut touched = Vec::new();
-        for (place, value, shouted) in spoilt {
+        for (place, value, in_capitals) in edits {
             let mut all = Vec::new();
             pointers(&changed, "", &mut all);
             if all.is_empty() {
@@ -364,7 +366,7 @@ proptest! {
             }
             let pointer = place.get(&all).clone();
             let value = match changed.pointer(&pointer).and_then(serde_json::Value::as_str) {
-                Some(word) if shouted => Some(serde_json::json!(word.to_uppercase())),
+                Some(word) if in_capitals => Some(serde_json::json!(word.to_uppercase())),
                 _ => value,
             };
             put(&mut changed, &pointer, value);
@@ -375,15 +377,15 @@ proptest! {
         let (after, warnings) = match read(&changed) {
             Ok(read) => read,
             Err(error) => {
-                // Only numbers out of range and overlong strings are refused, at their place.
+                // Only numbers out of range and overlong strings are rejected, at their pointer.
                 for problem in error.problems() {
                     let found = changed.pointer(&problem.pointer).cloned().unwrap_or_default();
-                    let is_beyond = has_number_or_long_text(&found);
-                    // Items shift when an earlier one is removed, so compares by part.
+                    let is_out_of_range = has_number_or_long_text(&found);
+                    // Items shift when an earlier one is removed, so pointers are compared by part.
                     let part = |pointer: &str| pointer.split('/').nth(1).map(str::to_owned);
-                    let is_spoilt = touched.iter().any(|place| part(place) == part(&problem.pointer));
+                    let is_edited = touched.iter().any(|place| part(place) == part(&problem.pointer));
                     let is_side = problem.pointer == "/environment_params/map_size";
-                    prop_assert!(is_beyond && is_spoilt || is_side, "{}\n{}", error, changed);
+                    prop_assert!(is_out_of_range && is_edited || is_side, "{}\n{}", error, changed);
                 }
                 prop_assert!(!error.problems().is_empty(), "{}", error);
                 return Ok(());
@@ -391,11 +393,11 @@ proptest! {
         };
         let strict = World::from_json("read", &after.to_json());
         prop_assert!(strict.is_ok(), "{:?}", strict);
-        let mut told: Vec<(&str, &str)> = warnings.iter().map(|w| (w.pointer.as_str(), w.text.as_str())).collect();
-        let count = told.len();
-        told.sort_unstable();
-        told.dedup();
-        prop_assert_eq!(told.len(), count, "each is told once: {:?}", warnings);
+        let mut reported: Vec<(&str, &str)> = warnings.iter().map(|w| (w.pointer.as_str(), w.text.as_str())).collect();
+        let count = reported.len();
+        reported.sort_unstable();
+        reported.dedup();
+        prop_assert_eq!(reported.len(), count, "each is reported once: {:?}", warnings);
         prop_assert!(warnings.iter().all(|w| w.line > 0 && changed.pointer(&w.pointer).is_some()), "{:?}", warnings);
         let is_touched = |part: &str| touched.iter().any(|pointer| pointer.starts_with(part));
         if !is_touched("/environment_params") {

@@ -1,4 +1,4 @@
-//! Laws of plans, tested on random layouts. Invalid layouts are tested in `codes.rs`.
+//! Properties of plans, tested on random layouts. Invalid layouts are tested in `codes.rs`.
 
 use std::collections::BTreeMap;
 
@@ -40,7 +40,7 @@ fn rooms() -> impl Strategy<Value = Rooms> {
     )
 }
 
-/// A text with a border of walls around walls, floor and doorways.
+/// A text of walls, floor and doorways inside a border of walls.
 fn texts() -> impl Strategy<Value = Layout> {
     (1_usize..8, 1_usize..8).prop_flat_map(|(columns, rows)| {
         let letters = prop::sample::select(vec!['#', '*', ' ', '.', 'A', 'D', 'G']);
@@ -76,13 +76,13 @@ fn layouts() -> impl Strategy<Value = Layout> {
     (drawn, 0.0..=1.0).prop_map(|(layout, standing)| Layout { standing, ..layout })
 }
 
-/// The number of pairs of neighbouring cells that are open to each other.
+/// The number of pairs of neighbouring cells that are connected.
 fn open_sides(plan: &Plan) -> usize {
     plan.cells.iter().map(|cell| cell.open_sides() as usize).sum::<usize>() / 2
 }
 
 /// Whether a convex, counterclockwise polygon contains a point, including its border.
-fn holds(corners: &[[f64; 2]], point: [f64; 2]) -> bool {
+fn contains(corners: &[[f64; 2]], point: [f64; 2]) -> bool {
     (0..corners.len()).all(|k| {
         let (a, b) = (corners[k], corners[(k + 1) % corners.len()]);
         (b[0] - a[0]) * (point[1] - a[1]) - (b[1] - a[1]) * (point[0] - a[0]) >= -1e-9
@@ -102,8 +102,8 @@ fn distance(corners: &[[f64; 2]], point: [f64; 2]) -> f64 {
     (along[0] * along[0] + along[1] * along[1]).sqrt()
 }
 
-fn in_a_wall(plan: &Plan, point: [f64; 2]) -> bool {
-    plan.walls.iter().any(|wall| holds(&wall.polygon, point))
+fn is_in_a_wall(plan: &Plan, point: [f64; 2]) -> bool {
+    plan.walls.iter().any(|wall| contains(&wall.polygon, point))
 }
 
 proptest! {
@@ -121,7 +121,7 @@ proptest! {
     fn every_cell_of_mazes_and_rooms_can_be_reached(layout in layouts()) {
         let plan = layout.plan(0);
         if layout.text.is_none() {
-            prop_assert_eq!(plan.cut_off(), 0);
+            prop_assert_eq!(plan.num_cut_off_cells(), 0);
             prop_assert!(plan.walking_distances(0).iter().all(|metres| metres.is_finite()));
         }
     }
@@ -130,7 +130,7 @@ proptest! {
     fn perfect_maze_has_one_path_between_any_two_cells(drawn in mazes()) {
         let plan = maze(Maze { braid: 0.0, ..drawn }, 1.0).plan(0);
         prop_assert_eq!(open_sides(&plan), plan.cells.len() - 1);
-        prop_assert_eq!(plan.cut_off(), 0);
+        prop_assert_eq!(plan.num_cut_off_cells(), 0);
     }
 
     #[test]
@@ -143,25 +143,25 @@ proptest! {
     #[test]
     fn more_braid_opens_more_sides(drawn in mazes(), less in 0.0..=1.0) {
         let of = |braid| maze(Maze { braid, ..drawn.clone() }, 1.0).plan(0);
-        let (few, many) = (of(less * drawn.braid), of(drawn.braid));
-        for (few, many) in few.cells.iter().zip(&many.cells) {
-            prop_assert_eq!(few.sides & many.sides, few.sides);
+        let (fewer, more) = (of(less * drawn.braid), of(drawn.braid));
+        for (fewer, more) in fewer.cells.iter().zip(&more.cells) {
+            prop_assert_eq!(fewer.sides & more.sides, fewer.sides);
         }
     }
 
     #[test]
     fn walls_of_a_smaller_share_are_a_subset(layout in layouts(), share in 0.0..=1.0) {
-        let [few, many] = [share * layout.standing, layout.standing]
+        let [fewer, more] = [share * layout.standing, layout.standing]
             .map(|standing| Layout { standing, ..layout.clone() }.plan(0));
-        // Checks the corners and the middle of each wall, and a grid of points.
-        for wall in &few.walls {
+        // Checks the middle of each wall, and a grid of points.
+        for wall in &fewer.walls {
             let middle = [0, 1].map(|axis| wall.polygon.iter().map(|corner| corner[axis]).sum::<f64>() / 4.0);
-            prop_assert!(in_a_wall(&many, middle), "{middle:?}");
+            prop_assert!(is_in_a_wall(&more, middle), "{middle:?}");
         }
         for x in 0..40 {
             for y in 0..40 {
-                let point = [0, 1].map(|axis| (f64::from([x, y][axis]) / 40.0 + 0.0113 - 0.5) * few.size[axis]);
-                prop_assert!(!in_a_wall(&few, point) || in_a_wall(&many, point));
+                let point = [0, 1].map(|axis| (f64::from([x, y][axis]) / 40.0 + 0.0113 - 0.5) * fewer.size[axis]);
+                prop_assert!(!is_in_a_wall(&fewer, point) || is_in_a_wall(&more, point));
             }
         }
         let none = Layout { standing: 0.0, ..layout.clone() }.plan(0);
@@ -189,23 +189,23 @@ proptest! {
         let plan = layout.plan(0);
         for (number, cell) in plan.cells.iter().enumerate() {
             let open: Vec<usize> = plan.neighbours(number).collect();
-            for (other, beside) in plan.cells.iter().enumerate() {
-                let way = [0, 1].map(|axis| (cell.center[axis] - beside.center[axis]).abs() / plan.cell[axis]);
-                if (way[0] + way[1] - 1.0).abs() > 1e-6 || way[0].min(way[1]) > 1e-6 {
+            for (other, other_cell) in plan.cells.iter().enumerate() {
+                let offset = [0, 1].map(|axis| (cell.center[axis] - other_cell.center[axis]).abs() / plan.cell[axis]);
+                if (offset[0] + offset[1] - 1.0).abs() > 1e-6 || offset[0].min(offset[1]) > 1e-6 {
                     continue;
                 }
-                let middle = [0, 1].map(|axis| f64::midpoint(cell.center[axis], beside.center[axis]));
+                let middle = [0, 1].map(|axis| f64::midpoint(cell.center[axis], other_cell.center[axis]));
                 let doorway = plan.doorways.iter().find(|doorway| distance(&[middle], doorway.center) < plan.cell[0].max(plan.cell[1]));
                 if doorway.is_none() {
-                    prop_assert_eq!(open.contains(&other), !in_a_wall(&plan, middle));
+                    prop_assert_eq!(open.contains(&other), !is_in_a_wall(&plan, middle));
                 }
-                prop_assert!(plan.neighbours(other).any(|back| back == number) == open.contains(&other));
+                prop_assert!(plan.neighbours(other).any(|next| next == number) == open.contains(&other));
             }
         }
     }
 
     #[test]
-    fn no_wall_crosses_a_doorway_and_every_room_is_joined(rooms in rooms()) {
+    fn no_wall_crosses_a_doorway_and_all_rooms_are_connected(rooms in rooms()) {
         let layout = Layout { rooms: Some(rooms.clone()), ..Layout::default() };
         prop_assume!(rooms.doorway + rooms.wall <= rooms.room[0].min(rooms.room[1]));
         let plan = layout.plan(0);
@@ -214,7 +214,7 @@ proptest! {
             for share in [-0.499, -0.25, 0.0, 0.25, 0.499] {
                 let mut point = doorway.center;
                 point[along] += share * doorway.width;
-                prop_assert!(!in_a_wall(&plan, point), "{doorway:?} at {point:?}");
+                prop_assert!(!is_in_a_wall(&plan, point), "{doorway:?} at {point:?}");
             }
             prop_assert!(doorway.rooms[0] < doorway.rooms[1]);
         }
@@ -240,7 +240,7 @@ proptest! {
                 let cell = plan.cell_at([x, y]);
                 let is_wall = matches!(letter, '#' | '*');
                 prop_assert_eq!(cell.is_none(), is_wall);
-                prop_assert_eq!(in_a_wall(&plan, [x, y]), is_wall);
+                prop_assert_eq!(is_in_a_wall(&plan, [x, y]), is_wall);
                 let own = (!matches!(letter, '.' | ' ')).then_some(*letter);
                 prop_assert!(cell.is_none_or(|cell| plan.cells[cell].letter == own));
             }
@@ -274,7 +274,7 @@ fn maps_of_minigrid_and_deepmind_lab_are_read() {
         .cells
         .iter()
         .find(|cell| cell.letter == Some('G'))
-        .expect("there is one");
+        .expect("the text has a goal");
     assert_eq!((goal.center, goal.room, goal.open_sides()), ([2.0, -1.0], 1, 1));
 
     let lab = world(
@@ -282,8 +282,8 @@ fn maps_of_minigrid_and_deepmind_lab_are_read() {
              "legend": { "A": { "group": "apples" }, "G": { "group": "goal" }, "I": "doorway" } }"#,
     );
     let plan = lab.plan().expect("the world has a layout");
-    assert_eq!((plan.cut_off(), plan.doorways.len()), (0, 1));
-    let layout = lab.environment_params.layout.as_ref().expect("it is there");
+    assert_eq!((plan.num_cut_off_cells(), plan.doorways.len()), (0, 1));
+    let layout = lab.environment_params.layout.as_ref().expect("the world has a layout");
     assert_eq!(
         (layout.meaning('P'), layout.meaning('I')),
         (Some(Legend::Start), Some(Legend::Doorway))
@@ -293,7 +293,8 @@ fn maps_of_minigrid_and_deepmind_lab_are_read() {
 #[test]
 fn predefined_layout_is_the_map_with_its_number() {
     let layout = world(r#"{ "predefined": 2 }"#);
-    let map = World::from_json("w.json", r#"{ "environment_params": { "predefined_map": 2 } }"#).expect("it is sound");
+    let map =
+        World::from_json("w.json", r#"{ "environment_params": { "predefined_map": 2 } }"#).expect("the world is valid");
     let shapes = |world: &World| {
         let corners: Vec<Vec<[f64; 2]>> = world.obstacles().map(<[_]>::to_vec).collect();
         (corners, world.environment_params.arena_size())
@@ -315,7 +316,7 @@ fn layout_without_a_seed_uses_the_worlds() {
         let text =
             format!(r#"{{ {seed} "environment_params": {{ "layout": {{ "maze": {{ "cells": [6, 6]{own} }} }} }} }}"#);
         let world = World::from_json("w.json", &text).unwrap_or_else(|error| panic!("{error}"));
-        world.plan().expect("it has a layout").clone()
+        world.plan().expect("the world has a layout").clone()
     };
     assert_eq!(of(r#""seed": 5,"#, ""), of("", r#", "seed": 5"#));
     assert_eq!(of(r#""seed": 7,"#, r#", "seed": 5"#), of("", r#", "seed": 5"#));
@@ -326,7 +327,7 @@ fn layout_without_a_seed_uses_the_worlds() {
 fn unreachable_cells_get_a_remark() {
     let text = "{ \"environment_params\": {\n \"layout\": { \"text\": [\"#####\", \"#.#.#\", \"#####\"] } } }";
     let remarks = World::from_json("w.json", text)
-        .expect("it is sound")
+        .expect("the world is valid")
         .remarks("w.json", text);
     assert_eq!(
         remarks.iter().map(ToString::to_string).collect::<Vec<_>>(),
@@ -343,7 +344,7 @@ fn overlapping_walls_are_allowed() {
         r#"{ "walls": [{ "from": [-3, 0], "to": [3, 0] }, { "from": [0, -3], "to": [0, 3], "thickness": 1, "height": 1 },
              { "circle": { "center": [0, 0], "radius": 2 } }, { "polygon": [[5, 5], [6, 5], [5, 6]], "color": "red" }] }"#,
     );
-    let plan = crossed.plan().expect("it has a layout");
+    let plan = crossed.plan().expect("the world has a layout");
     assert_eq!(
         (plan.walls.len(), plan.size, crossed.environment_params.arena_size()),
         (4, [0.0; 2], [100.0; 2])

@@ -1,4 +1,4 @@
-//! Models of classes: a task is accepted exactly if every object that it can draw has a model of its class.
+//! Tests that a task is accepted exactly if every object that it can sample has a model of its class.
 
 use driftworld_spec::{Classes, Model, Models, TaskSpec};
 use proptest::prelude::*;
@@ -27,17 +27,17 @@ impl Models for Wood {
 /// The source of a string.
 #[derive(Clone, Debug)]
 enum Origin {
-    Written(&'static str),
+    Literal(&'static str),
     Varied(Vec<&'static str>),
     Drawn(Vec<&'static str>),
 }
 
 fn origin(words: &'static [&'static str]) -> impl Strategy<Value = Origin> {
-    let some = || subsequence(words.to_vec(), 1..=2);
+    let words_of = || subsequence(words.to_vec(), 1..=2);
     prop_oneof![
-        some().prop_map(|words| Origin::Written(words[0])),
-        some().prop_map(Origin::Varied),
-        some().prop_map(Origin::Drawn)
+        words_of().prop_map(|words| Origin::Literal(words[0])),
+        words_of().prop_map(Origin::Varied),
+        words_of().prop_map(Origin::Drawn)
     ]
 }
 
@@ -45,7 +45,7 @@ impl Origin {
     /// The string's form in the object; declares the parameters that it uses.
     fn declared(&self, name: &str, parameters: &mut serde_json::Map<String, Value>) -> Value {
         let declared = match self {
-            Self::Written(word) => return json!(word),
+            Self::Literal(word) => return json!(word),
             Self::Varied(words) => {
                 json!({ "role": "variant", "type": "string", "affects": ["S"], "choices": words, "default": words[0] })
             }
@@ -59,7 +59,7 @@ impl Origin {
 
     fn words(&self) -> &[&'static str] {
         match self {
-            Self::Written(word) => std::slice::from_ref(word),
+            Self::Literal(word) => std::slice::from_ref(word),
             Self::Varied(words) | Self::Drawn(words) => words,
         }
     }
@@ -101,17 +101,17 @@ proptest! {
         let unknown = |class: &str, model: &str| !Wood.has(class, &Model(model.to_owned()));
         let any = |classes: &[&str], models: &[&str]| classes.iter().any(|class| models.iter().any(|model| unknown(class, model)));
         let (classes, models) = (class.words(), model.words());
-        let is_written = |origin: &Origin| matches!(origin, Origin::Written(_));
+        let is_written = |origin: &Origin| matches!(origin, Origin::Literal(_));
         let expected = if is_written(&class) || is_written(&model) {
             any(classes, models)
         } else {
-            let nobodys = models.iter().any(|model| classes.iter().all(|class| unknown(class, model)));
-            nobodys || [false, true].into_iter().any(|last| any(class.of_variant(last), model.of_variant(last)))
+            let has_unknown_model = models.iter().any(|model| classes.iter().all(|class| unknown(class, model)));
+            has_unknown_model || [false, true].into_iter().any(|last| any(class.of_variant(last), model.of_variant(last)))
         };
         let known = Classes::new(["tree", "rock"]).with_models(Wood);
-        let refused = TaskSpec::from_json_with("t", &task.to_string(), Some(&known)).err();
-        prop_assert_eq!(refused.is_some(), expected, "{:#} {:?}", task, refused);
-        for problem in refused.iter().flat_map(driftworld_spec::SpecError::problems) {
+        let error = TaskSpec::from_json_with("t", &task.to_string(), Some(&known)).err();
+        prop_assert_eq!(error.is_some(), expected, "{:#} {:?}", task, error);
+        for problem in error.iter().flat_map(driftworld_spec::SpecError::problems) {
             prop_assert_eq!(problem.code, "spec/unknown-model");
             prop_assert!(problem.pointer.ends_with(key), "{problem:?}");
         }

@@ -1,4 +1,4 @@
-//! Single mistakes in the shipped tasks: nearly all messages point to the place of the mistake.
+//! Tests that messages about single mistakes in the shipped tasks nearly always point to the mistake.
 
 use driftworld_spec::TaskSpec;
 use serde_json::{Value, json};
@@ -11,8 +11,8 @@ enum Mistake {
     Mistyped,
 }
 
-/// Objects whose keys are names chosen by the author: renaming one is not a mistake at that place.
-fn is_chosen(parent: &str) -> bool {
+/// Whether an object's keys are names chosen by the author, so that renaming one is not a mistake in that object.
+fn has_chosen_keys(parent: &str) -> bool {
     let words: Vec<&str> = parent.split('/').skip(1).collect();
     matches!(
         words.as_slice(),
@@ -25,7 +25,7 @@ fn keys(json: &Value, pointer: &str, found: &mut Vec<(String, String)>) {
     match json {
         Value::Object(map) => {
             for (key, child) in map {
-                if !is_chosen(pointer) {
+                if !has_chosen_keys(pointer) {
                     found.push((pointer.to_owned(), key.clone()));
                 }
                 keys(child, &format!("{pointer}/{}", escaped(key)), found);
@@ -43,23 +43,23 @@ fn escaped(key: &str) -> String {
     key.replace('~', "~0").replace('/', "~1")
 }
 
-/// The document with a mistake, and the place of the mistake.
-fn mistaken(document: &Value, parent: &str, key: &str, mistake: Mistake) -> (Value, String) {
+/// The document with a mistake, and the pointer to the mistake.
+fn with_mistake(document: &Value, parent: &str, key: &str, mistake: Mistake) -> (Value, String) {
     let mut document = document.clone();
     let map = document
         .pointer_mut(parent)
         .and_then(Value::as_object_mut)
-        .expect("the key is there");
+        .expect("the key exists");
     let mut at = key.to_owned();
     match mistake {
         Mistake::Missing => drop(map.shift_remove(key)),
         Mistake::Misspelt => {
-            let value = map.shift_remove(key).expect("the key is there");
+            let value = map.shift_remove(key).expect("the key exists");
             at.insert(at.len() / 2, 'q');
             map.insert(at.clone(), value);
         }
         Mistake::Mistyped => {
-            let wrong = match &map[key] {
+            let mistyped = match &map[key] {
                 Value::Null | Value::Number(_) | Value::Bool(_) => json!("what"),
                 Value::String(_) => json!(7.5),
                 Value::Array(items) => items
@@ -69,7 +69,7 @@ fn mistaken(document: &Value, parent: &str, key: &str, mistake: Mistake) -> (Val
                     .unwrap_or(json!("what")),
                 Value::Object(_) => json!([true]),
             };
-            map.insert(at.clone(), wrong);
+            map.insert(at.clone(), mistyped);
         }
     }
     (document, format!("{parent}/{}", escaped(&at)))
@@ -77,27 +77,27 @@ fn mistaken(document: &Value, parent: &str, key: &str, mistake: Mistake) -> (Val
 
 #[test]
 fn nearly_every_mistake_in_a_shipped_task_is_reported_at_its_place() {
-    let (mut refused, mut missed) = (0, Vec::new());
+    let (mut num_rejected, mut missed) = (0, Vec::new());
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/tasks");
-    for entry in std::fs::read_dir(folder).expect("the tasks are there") {
+    for entry in std::fs::read_dir(folder).expect("the tasks ship with the project") {
         let path = entry.expect("the folder can be read").path();
-        let text = std::fs::read_to_string(&path).expect("it is text");
-        let document: Value = serde_json::from_str(&text).expect("it is JSON");
+        let text = std::fs::read_to_string(&path).expect("a task is UTF-8");
+        let document: Value = serde_json::from_str(&text).expect("a task is JSON");
         let mut all = Vec::new();
         keys(&document, "", &mut all);
         // A sample is enough, a different one for each task.
         let step = crate::tier::quick_or_full(11, 2);
-        for (place, (parent, key)) in all
+        for (index, (parent, key)) in all
             .iter()
             .enumerate()
-            .filter(|(place, _)| place % step == text.len() % step)
+            .filter(|(index, _)| index % step == text.len() % step)
         {
-            let mistake = [Mistake::Misspelt, Mistake::Missing, Mistake::Mistyped][place / step % 3];
-            let (wrong, at) = mistaken(&document, parent, key, mistake);
-            let Err(error) = TaskSpec::from_json("t", &wrong.to_string()) else {
+            let mistake = [Mistake::Misspelt, Mistake::Missing, Mistake::Mistyped][index / step % 3];
+            let (mistyped, at) = with_mistake(&document, parent, key, mistake);
+            let Err(error) = TaskSpec::from_json("t", &mistyped.to_string()) else {
                 continue;
             };
-            refused += 1;
+            num_rejected += 1;
             let names = |pointer: &str| {
                 let missing = pointer == parent && matches!(mistake, Mistake::Missing | Mistake::Misspelt);
                 missing || pointer == at || pointer.starts_with(&format!("{at}/"))
@@ -107,7 +107,7 @@ fn nearly_every_mistake_in_a_shipped_task_is_reported_at_its_place() {
             }
         }
     }
-    assert!(refused > 100, "{refused}");
-    let share = 1.0 - missed.len() as f64 / f64::from(refused);
-    assert!(share >= 0.95, "{share} of {refused}:\n{}", missed.join("\n"));
+    assert!(num_rejected > 100, "{num_rejected}");
+    let share = 1.0 - missed.len() as f64 / f64::from(num_rejected);
+    assert!(share >= 0.95, "{share} of {num_rejected}:\n{}", missed.join("\n"));
 }

@@ -20,7 +20,7 @@ fn scenario(name: &str, regime: &str) -> Result<Scenario, SpecError> {
     Scenario::from_json("s.json", &document.to_string())
 }
 
-/// The errors for a name in every place that takes one.
+/// The errors for a name, for each kind of name.
 fn refusals(name: &str) -> [Option<SpecError>; 4] {
     [
         task(name, "g").err(),
@@ -32,9 +32,9 @@ fn refusals(name: &str) -> [Option<SpecError>; 4] {
 
 #[track_caller]
 fn check(name: &str) {
-    let sound = check_name(name).is_ok();
+    let is_valid = check_name(name).is_ok();
     for (place, refusal) in refusals(name).into_iter().enumerate() {
-        assert_eq!(refusal.is_none(), sound, "{name:?} in place {place}: {refusal:?}");
+        assert_eq!(refusal.is_none(), is_valid, "{name:?} in place {place}: {refusal:?}");
         if let Some(refusal) = refusal {
             let message = refusal.to_string();
             assert!(!message.contains(is_unprintable), "{message:?}");
@@ -87,16 +87,16 @@ fn names_that_leave_a_folder_or_deceive_a_terminal_are_refused_everywhere() {
 
 #[test]
 fn message_states_place_name_and_fault() {
-    let said = |variant: &str| task(variant, "g").expect_err("it is no name").to_string();
+    let error_for = |variant: &str| task(variant, "g").expect_err("the name is invalid").to_string();
     assert_eq!(
-        said("con"),
+        error_for("con"),
         "t.json:1:151 (/variants/con): found the name \"con\" with a word that Windows keeps for a device, expected a name that can be \
          that of a file everywhere"
     );
     assert!(
-        said("..").contains("(/variants/..): found the name \"..\", expected a name of letters, digits"),
+        error_for("..").contains("(/variants/..): found the name \"..\", expected a name of letters, digits"),
         "{}",
-        said("..")
+        error_for("..")
     );
 }
 
@@ -109,7 +109,7 @@ fn device_name_is_refused_for_a_task_and_allowed_for_a_parameter() {
         TaskSpec::from_json("t.json", &document.to_string())
     };
     assert!(spec("task").is_ok());
-    assert_eq!(spec("con").expect_err("it is a device").code(), "spec/name");
+    assert_eq!(spec("con").expect_err("con is a device").code(), "spec/name");
 }
 
 #[test]
@@ -118,7 +118,7 @@ fn members_of_a_family_have_valid_names() {
     let parameters = json!({ "word": { "role": "variant", "type": "string", "affects": ["S"], "choices": choices, "default": "x" } });
     let variants = json!({ "look": { "grid": { "word": choices } } });
     let document = json!({ "version": 2, "name": "t", "parameters": parameters, "variants": variants });
-    let task = TaskSpec::from_json("t.json", &document.to_string()).expect("words become names");
+    let task = TaskSpec::from_json("t.json", &document.to_string()).expect("invalid characters are replaced in names");
     assert!(
         task.variant_names().iter().all(|name| check_name(name).is_ok()),
         "{:?}",

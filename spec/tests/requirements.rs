@@ -1,4 +1,4 @@
-//! Comparisons that `require` allows, and the messages for others. The grammar is tested in `task/expression/mod.rs`.
+//! Comparisons that `require` allows, and the messages for all others. The grammar is tested in `task/expression/mod.rs`.
 
 use driftworld_spec::{TaskSpec, Value};
 use proptest::prelude::*;
@@ -45,7 +45,7 @@ fn values_of_the_same_type_are_compared() {
 
 #[test]
 fn what_cannot_be_compared_is_refused_with_what_was_found_and_expected() {
-    let said = [
+    let messages = [
         "trigger == count",
         "trigger == 'tuoch'",
         "trigger < other_trigger",
@@ -79,10 +79,10 @@ fn what_cannot_be_compared_is_refused_with_what_was_found_and_expected() {
             .collect::<Vec<_>>()
             .join(" ")
     });
-    insta::assert_snapshot!(said.join("\n"));
+    insta::assert_snapshot!(messages.join("\n"));
 }
 
-/// Conditions of random parts, valid or not.
+/// Conditions made of random parts, which may be invalid.
 fn condition() -> impl Strategy<Value = String> {
     let parts =
         "count drawn day trigger other_trigger mode good bad name_of_color pays[0] start[1] 2 'red' 'touch' true";
@@ -108,7 +108,7 @@ proptest! {
         let Ok(task) = task(&require) else { return Ok(()) };
         let text = |which: bool, one: &str, other: &str| Value::Text(if which { one } else { other }.to_owned());
         let color = |which: bool, one: &str, other: &str| {
-            Value::Color(driftworld_spec::Color::from_name(if which { one } else { other }).expect("it is a CSS name"))
+            Value::Color(driftworld_spec::Color::from_name(if which { one } else { other }).expect("a CSS name"))
         };
         let value_of = |name: &str| Some(match name {
             "count" => Value::Integer(count),

@@ -1,4 +1,4 @@
-//! The schemas are valid, equal to the committed files, and agree with the types.
+//! Tests that the schemas are valid, equal to the committed files, and agree with the types.
 
 use driftworld_spec::{Object, World, reference, schema};
 use serde_json::Value;
@@ -34,9 +34,9 @@ fn committed_reference_is_up_to_date() {
 #[test]
 fn schemas_accept_what_the_types_write() {
     let mut world = World::default();
-    world.push(Object::new("tree", [1.0, 2.0])).expect("a tree is sound");
-    let again = World::from_json("written", &world.to_json()).unwrap_or_else(|error| panic!("{error}"));
-    assert_eq!(again, world);
+    world.push(Object::new("tree", [1.0, 2.0])).expect("a tree is valid");
+    let reread = World::from_json("written", &world.to_json()).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(reread, world);
 }
 
 /// Every part of a schema with its pointer, without conditions (`if`, `then`), which repeat other parts.
@@ -67,7 +67,7 @@ fn every_key_has_a_description_and_every_schema_an_identifier() {
                 .is_some_and(|id| id.starts_with("urn:driftworld:")),
             "{name}"
         );
-        let mut silent = Vec::new();
+        let mut without_description = Vec::new();
         parts(schema.json(), "", &mut |pointer, part| {
             for (key, property) in part["properties"].as_object().into_iter().flatten() {
                 let referred = property["$ref"]
@@ -75,12 +75,12 @@ fn every_key_has_a_description_and_every_schema_an_identifier() {
                     .and_then(|text| schema.json().pointer(text.trim_start_matches('#')));
                 let described = |schema: &Value| schema["description"].is_string();
                 if property.is_object() && !described(property) && !referred.is_some_and(described) {
-                    silent.push(format!("{pointer}/properties/{key}"));
+                    without_description.push(format!("{pointer}/properties/{key}"));
                 }
             }
         });
         assert_eq!(
-            silent,
+            without_description,
             Vec::<String>::new(),
             "{name}: keys that an editor cannot explain"
         );
@@ -107,17 +107,18 @@ fn every_definition_of_an_object_has_examples_and_every_example_is_valid() {
             let alone = serde_json::json!({ "$ref": reference, "$defs": json["$defs"], "examples": examples });
             all.push((format!("{name}: {definition}"), alone));
         }
-        for (place, schema) in all {
-            let validator = jsonschema::validator_for(&schema).unwrap_or_else(|error| panic!("{place}: {error}"));
+        for (definition_name, schema) in all {
+            let validator =
+                jsonschema::validator_for(&schema).unwrap_or_else(|error| panic!("{definition_name}: {error}"));
             for example in schema["examples"].as_array().into_iter().flatten() {
                 let errors: Vec<String> = validator.iter_errors(example).map(|error| error.to_string()).collect();
-                assert_eq!(errors, Vec::<String>::new(), "{place}: {example}");
+                assert_eq!(errors, Vec::<String>::new(), "{definition_name}: {example}");
             }
         }
     }
 }
 
-/// Lists of words need no example.
+/// Whether a schema is a list of words, which needs no example.
 fn is_enumeration(part: &Value) -> bool {
     part["oneOf"]
         .as_array()

@@ -1,4 +1,4 @@
-//! The shipped task specs load, and broken ones are refused with the messages that authors see.
+//! Tests that the shipped task specs load, and that broken ones are rejected with the expected messages.
 
 use driftworld_spec::{Color, TaskSpec, Value};
 
@@ -119,16 +119,16 @@ fn task_spec_of_version_1_is_read_with_its_margins() {
     );
 }
 
-/// The error of a task that once caused a bug, or `None` if it is valid.
+/// The error message of a task, or `None` if the task is valid.
 #[track_caller]
-fn said(text: &str) -> Option<String> {
+fn error_for(text: &str) -> Option<String> {
     TaskSpec::from_json("t.json", text).err().map(|error| error.to_string())
 }
 
 #[test]
 fn counts_in_any_notation_are_read_or_refused_without_panic() {
     let with = |count: &str| {
-        said(&format!(
+        error_for(&format!(
             r#"{{ "version": 2, "name": "t", "parameters": {{ "v": {{ "role": "fixed", "type": "vector", "value": [1, 2] }} }},
                 "groups": [{{ "name": "g", "count": {count}, "object": {{ "class": "cube" }},
                 "placement": {{ "disc": {{ "center": [0, 0], "radius": 20 }} }} }}] }}"#
@@ -144,13 +144,13 @@ fn counts_in_any_notation_are_read_or_refused_without_panic() {
 #[test]
 fn single_place_needs_a_distribution_that_ignores_earlier_objects() {
     let start = |law: &str| {
-        said(&format!(
+        error_for(&format!(
             r#"{{ "version": 2, "name": "t", "world": {{ "agent_params": {{ "coordinates": {law} }} }} }}"#
         ))
     };
     assert!(
         start(r#"{ "points": { "values": [[1, 1], [2, 2]] } }"#)
-            .is_some_and(|said| said.contains("\"order\": \"random\""))
+            .is_some_and(|error| error.contains("\"order\": \"random\""))
     );
     assert_eq!(
         start(r#"{ "points": { "values": [[1, 1], [2, 2]], "order": "random" } }"#),
@@ -167,8 +167,8 @@ fn index_is_checked_against_the_shortest_possible_vector() {
                "default": { "dirichlet": { "alpha": [1, 1, 1] } } },
         "v": { "role": "randomized", "type": "vector", "affects": ["R"], "distribution": { "param": "d" } } },
       "world": { "rules": { "step_reward": { "param": "v", "index": INDEX } } } }"#;
-    assert_eq!(said(&text.replace("INDEX", "1")), None);
-    assert!(said(&text.replace("INDEX", "2")).is_some_and(|said| said.contains("which has 2 numbers")));
+    assert_eq!(error_for(&text.replace("INDEX", "1")), None);
+    assert!(error_for(&text.replace("INDEX", "2")).is_some_and(|error| error.contains("which has 2 numbers")));
 }
 
 #[test]

@@ -1,31 +1,31 @@
-//! Finds the answer that changes the fewest parameters, and among those the one with the smallest changes.
+//! Finds the answer that changes the fewest parameters and, among such answers, the one with the smallest changes.
 
 use driftworld_spec::{Domain, ParameterType, Value, Variant};
 
 use super::level::Profiles;
-use super::reach::{Reach, Way};
+use super::reach::{ChangeSet, Reach};
 use super::search::{Found, Search};
 use super::space::Space;
 use super::subject::FreeParameters;
 
-/// Budgets in measured variants: for straight lines, and for scans where requirements cut these off, each per number of changed
-/// parameters; and the total beyond which no larger number of changes is tried.
-const MOST_LOOKS: usize = 24_000;
-const MOST_SCANNED: usize = 24_000;
-const MOST_IN_ALL: usize = 200_000;
+/// Budgets in measured variants: for straight lines, and for scans where requirements cut these off, both per number of changed
+/// parameters; and in total, after which no larger number of changes is tried.
+const MAX_STRAIGHT: usize = 24_000;
+const MAX_SCANNED: usize = 24_000;
+const MAX_TOTAL: usize = 200_000;
 
 /// Minimum number of variants to measure for each set of parameters whose straight line is cut off.
-const FEWEST_SCANNED: usize = 500;
+const MIN_SCANNED: usize = 500;
 
-/// Maximum number of points to compute where distances add up, per number of changed parameters; and limits per way.
-const MOST_ON_LEVELS: usize = 40_000;
-const MOST_POINTS: usize = 400;
-const FEWEST_POINTS: usize = 24;
+/// Maximum number of points to compute where distances add up, per number of changed parameters; and limits per change set.
+const MAX_ON_LEVELS: usize = 40_000;
+const MAX_POINTS: usize = 400;
+const MIN_POINTS: usize = 24;
 
-/// Maximum number of variants to measure in search of a better answer once there is one.
-const MOST_FOR_BETTER: usize = 6_000;
+/// Maximum number of variants to measure while looking for a better answer once there is one.
+const MAX_FOR_BETTER: usize = 6_000;
 
-/// Shares of ranges that differ by less count as equal.
+/// Shares of ranges that differ by less than this count as equal.
 const EQUAL: f64 = 1e-6;
 
 /// The best answer, if any was found.
@@ -39,7 +39,7 @@ pub(super) fn fewest<'a, D: FnMut(&Variant) -> f64>(
         if let Some(found) = of_size(search, &mut reach, &mut profiles, size) {
             return Some(without_idle_changes(search, found));
         }
-        if search.num_looks > MOST_IN_ALL {
+        if search.num_measured > MAX_TOTAL {
             break;
         }
     }
@@ -53,69 +53,71 @@ fn of_size<'a, D: FnMut(&Variant) -> f64>(
     profiles: &mut Profiles,
     size: usize,
 ) -> Option<Found> {
-    let ways = reach.ways(search, size);
+    let sets = reach.change_sets(search, size);
     let mut best = None;
-    let cut = straight(search, &ways, &mut best);
+    let cut = straight(search, &sets, &mut best);
     if best.is_some() {
         return best;
     }
-    let sums = || cut.iter().filter(|way| way.are_tied.contains(&false));
-    let points = (MOST_ON_LEVELS / sums().count().max(1)).min(MOST_POINTS);
-    for points in [FEWEST_POINTS, points] {
-        let until = search.num_looks + MOST_ON_LEVELS;
-        for way in sums() {
-            let found = search.on_level(way, profiles, points);
+    let sums = || cut.iter().filter(|set| set.are_tied.contains(&false));
+    let points = (MAX_ON_LEVELS / sums().count().max(1)).min(MAX_POINTS);
+    for points in [MIN_POINTS, points] {
+        let until = search.num_measured + MAX_ON_LEVELS;
+        for set in sums() {
+            let found = search.on_level(set, profiles, points);
             if found.is_some() {
                 return found;
             }
-            if search.num_looks > until {
+            if search.num_measured > until {
                 break;
             }
         }
     }
-    let budget = (MOST_SCANNED / cut.len().max(1)).max(FEWEST_SCANNED);
-    for way in cut.into_iter().take(MOST_SCANNED / FEWEST_SCANNED) {
+    let budget = (MAX_SCANNED / cut.len().max(1)).max(MIN_SCANNED);
+    for set in cut.into_iter().take(MAX_SCANNED / MIN_SCANNED) {
         search.nearest = None;
-        if search.scan(&Space::new(search.from, &way.smooth), &way.choices, budget) {
+        if search.scan(&Space::new(search.from, &set.smooth), &set.choices, budget) {
             return search.nearest.take();
         }
     }
     None
 }
 
-/// Searches every way in a straight line; returns those that are cut off.
+/// Searches every change set along a straight line; returns those that are cut off.
 fn straight<'w, 'a, D: FnMut(&Variant) -> f64>(
     search: &mut Search<'a, D>,
-    ways: &'w [Way<'a>],
+    sets: &'w [ChangeSet<'a>],
     best: &mut Option<Found>,
-) -> Vec<&'w Way<'a>> {
-    let (until, until_better) = (search.num_looks + MOST_LOOKS, search.num_looks + MOST_FOR_BETTER);
+) -> Vec<&'w ChangeSet<'a>> {
+    let (until, until_better) = (search.num_measured + MAX_STRAIGHT, search.num_measured + MAX_FOR_BETTER);
     let mut cut = Vec::new();
     let change = |search: &Search<D>, found: &Found| total_change(search.from, &found.variant);
-    for way in ways {
-        if search.num_looks >= until_better && best.is_some() {
+    for set in sets {
+        if search.num_measured >= until_better && best.is_some() {
             break;
         }
-        let refused = search.num_refused;
+        let rejected_before = search.num_rejected;
         search.nearest = None;
-        let found = match &way.smooth[..] {
+        let found = match &set.smooth[..] {
             [] => search
-                .look(way.choices.clone())
+                .look(set.choices.clone())
                 .filter(|found| search.meets(found))
                 .into_iter()
                 .collect(),
-            [(_, parameter)] if way.sum.is_some() && parameter.kind != ParameterType::Vector => {
-                search.along_a_line(&way.choices, way.smooth[0])
+            [(_, parameter)] if set.sum.is_some() && parameter.kind != ParameterType::Vector => {
+                search.along_a_line(&set.choices, set.smooth[0])
             }
             smooth => {
-                let is_met = search.num_looks < until
-                    && if way.sum.is_some() {
-                        search.straight(&way.choices, smooth)
+                let is_met = search.num_measured < until
+                    && if set.sum.is_some() {
+                        search.straight(&set.choices, smooth)
                     } else {
-                        search.straight_to_corners(&way.choices, smooth)
+                        search.straight_to_corners(&set.choices, smooth)
                     };
-                if !is_met && (way.sum.is_none() || search.num_refused > refused || search.num_looks >= until) {
-                    cut.push(way);
+                if !is_met
+                    && (set.sum.is_none() || search.num_rejected > rejected_before || search.num_measured >= until)
+                {
+                    cut.push(set);
                 }
                 search.nearest.take().filter(|_| is_met).into_iter().collect::<Vec<_>>()
             }
@@ -132,7 +134,7 @@ fn straight<'w, 'a, D: FnMut(&Variant) -> f64>(
     cut
 }
 
-/// Drops changes without which the answer still meets the target, starting with those that nothing reads.
+/// Drops changes that are not needed to meet the target, starting with those that nothing reads.
 fn without_idle_changes<D: FnMut(&Variant) -> f64>(search: &mut Search<D>, found: Found) -> Found {
     let mut names = changed(search.from, &found.variant);
     names.sort_by_key(|name| found.variant.reads(name));
@@ -170,11 +172,11 @@ fn total_change(from: &Variant, to: &Variant) -> f64 {
                 Some((squares.sum::<f64>() / a.len().max(1) as f64).sqrt())
             }
             (a, b) => {
-                let apart = (a.as_number()? - b.as_number()?).abs();
+                let difference = (a.as_number()? - b.as_number()?).abs();
                 if parameter.kind == ParameterType::Heading {
-                    return Some(apart.min(360.0 - apart) / width.min(360.0));
+                    return Some(difference.min(360.0 - difference) / width.min(360.0));
                 }
-                Some(apart / width)
+                Some(difference / width)
             }
         }
     };

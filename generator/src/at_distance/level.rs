@@ -1,12 +1,12 @@
-//! Moves several numbers at once, one of which adds its distance to that of the others: computes points with the required sum,
-//! and asks the task whether it allows each. `scan.rs` takes over if no number adds its distance, or the allowed region is too
+//! Moves several numbers at once, if the distance of one adds to the distance of the others: computes points with the required
+//! sum, and checks whether the task allows each. `scan.rs` takes over if no distance adds up, or the allowed region is too
 //! narrow to hit.
 
 use std::collections::HashMap;
 
 use driftworld_spec::{Value, Variant};
 
-use super::reach::Way;
+use super::reach::ChangeSet;
 use super::search::{Changes, Found, Search, with};
 use super::space::Space;
 use super::subject::Free;
@@ -16,11 +16,11 @@ const PARTS: usize = 128;
 const PARTS_OF_VECTOR: usize = 6;
 
 /// Bisection steps within a part.
-const HALVINGS: u32 = 40;
+const MAX_BISECTIONS: u32 = 40;
 
 /// Values of a parameter from end to end of its range, each with its distance.
 struct Profile {
-    places: Vec<(Vec<f64>, f64)>,
+    points_of_profile: Vec<(Vec<f64>, f64)>,
 }
 
 /// The profiles measured so far, by parameter.
@@ -34,7 +34,7 @@ impl Profiles {
         }
         let space = Space::new(search.from, &[free]);
         let parts = if space.axes.len() == 1 { PARTS } else { PARTS_OF_VECTOR };
-        let mut places = vec![Vec::new()];
+        let mut points_of_profile = vec![Vec::new()];
         for axis in &space.axes {
             let mut stops: Vec<f64> = (0..=parts).map(|part| axis.at(part, parts)).collect();
             stops.push(axis.here);
@@ -46,57 +46,62 @@ impl Profiles {
                     .map(move |stop| [&place[..], &[*stop]].concat())
                     .collect::<Vec<_>>()
             };
-            places = places.into_iter().flat_map(longer).take(PARTS * PARTS).collect();
+            points_of_profile = points_of_profile
+                .into_iter()
+                .flat_map(longer)
+                .take(PARTS * PARTS)
+                .collect();
         }
-        let measured = places.into_iter().filter_map(|place| {
-            let distance = search.beyond(space.changes(&place))?;
+        let measured = points_of_profile.into_iter().filter_map(|place| {
+            let distance = search.measure_beyond(space.changes(&place))?;
             Some((place, distance))
         });
-        let places = measured.collect();
-        self.0.insert(free.0.to_owned(), Profile { places });
+        let points_of_profile = measured.collect();
+        self.0.insert(free.0.to_owned(), Profile { points_of_profile });
     }
 }
 
 impl<'a, D: FnMut(&Variant) -> f64> Search<'a, D> {
-    /// An allowed point of a way with the required sum, out of about `points` candidates; `None` if there is none among them.
-    pub(super) fn on_level(&mut self, way: &Way<'a>, profiles: &mut Profiles, points: usize) -> Option<Found> {
-        for free in &way.smooth {
+    /// An allowed point of a change set with the required sum, out of about `points` candidates; `None` if no candidate is
+    /// allowed.
+    pub(super) fn on_level(&mut self, set: &ChangeSet<'a>, profiles: &mut Profiles, points: usize) -> Option<Found> {
+        for free in &set.smooth {
             profiles.measure(self, *free);
         }
-        for last in (0..way.smooth.len()).filter(|last| !way.are_tied[*last]) {
-            let mut others = way.smooth.clone();
+        for last in (0..set.smooth.len()).filter(|last| !set.are_tied[*last]) {
+            let mut others = set.smooth.clone();
             let last = others.remove(last);
             if matches!(self.from.value(last.0), Some(Value::Vector(_))) {
                 continue;
             }
             let each = libm::pow(points as f64, 1.0 / others.len().max(1) as f64) as usize;
-            let mut anchors: Vec<(Changes, f64)> = vec![(way.choices.clone(), way.sum.unwrap_or(0.0))];
+            let mut anchors: Vec<(Changes, f64)> = vec![(set.choices.clone(), set.sum.unwrap_or(0.0))];
             for other in others {
                 let space = Space::new(self.from, &[other]);
-                let places = &profiles.0[other.0].places;
-                let step = (places.len() as f64 / each.max(2) as f64).max(1.0);
+                let points_of_profile = &profiles.0[other.0].points_of_profile;
+                let step = (points_of_profile.len() as f64 / each.max(2) as f64).max(1.0);
                 let chosen = (0..)
                     .map(|k| (f64::from(k) * step) as usize)
-                    .take_while(|index| *index < places.len() - 1);
-                let chosen: Vec<usize> = chosen.chain([places.len() - 1]).collect();
+                    .take_while(|index| *index < points_of_profile.len() - 1);
+                let chosen: Vec<usize> = chosen.chain([points_of_profile.len() - 1]).collect();
                 let extend = |(changes, sum): &(Changes, f64)| {
                     let moved = chosen.iter().map(|index| {
-                        let (place, distance) = &places[*index];
+                        let (place, distance) = &points_of_profile[*index];
                         (with(changes, &space.changes(place)), sum + distance)
                     });
-                    let may_be = |sum: f64| way.sum.is_none() || sum <= self.target + self.tolerance;
-                    moved.filter(|(_, sum)| may_be(*sum)).collect::<Vec<_>>()
+                    let is_possible = |sum: f64| set.sum.is_none() || sum <= self.target + self.tolerance;
+                    moved.filter(|(_, sum)| is_possible(*sum)).collect::<Vec<_>>()
                 };
                 anchors = anchors.iter().flat_map(extend).take(4 * points).collect();
             }
             let profile = &profiles.0[last.0];
             for (changes, sum) in &anchors {
-                let sum = if way.sum.is_some() {
+                let sum = if set.sum.is_some() {
                     Some(*sum)
                 } else {
-                    self.beyond(changes.clone())
+                    self.measure_beyond(changes.clone())
                 };
-                let found = sum.and_then(|sum| self.meet(last, profile, changes, sum));
+                let found = sum.and_then(|sum| self.complete_sum(last, profile, changes, sum));
                 if found.is_some() {
                     return found;
                 }
@@ -105,21 +110,25 @@ impl<'a, D: FnMut(&Variant) -> f64> Search<'a, D> {
         None
     }
 
-    /// An allowed value of the last number that supplies the rest of the sum.
-    fn meet(&mut self, last: Free<'a>, profile: &Profile, changes: &Changes, sum: f64) -> Option<Found> {
+    /// An allowed value of the last number that contributes the rest of the sum.
+    fn complete_sum(&mut self, last: Free<'a>, profile: &Profile, changes: &Changes, sum: f64) -> Option<Found> {
         let space = Space::new(self.from, &[last]);
-        let lack = self.target - sum;
-        for part in profile.places.windows(2) {
+        let missing = self.target - sum;
+        for part in profile.points_of_profile.windows(2) {
             let [(low, near), (high, far)] = part else { continue };
-            if (*near - lack) * (*far - lack) > 0.0 {
+            if (*near - missing) * (*far - missing) > 0.0 {
                 continue;
             }
             let (mut low, mut high) = (low[0], high[0]);
             let is_rising = near < far;
-            let mut share = if near == far { 0.0 } else { (lack - near) / (far - near) };
-            for _ in 0..HALVINGS {
+            let mut share = if near == far {
+                0.0
+            } else {
+                (missing - near) / (far - near)
+            };
+            for _ in 0..MAX_BISECTIONS {
                 let at = if share == 0.0 { low } else { low + (high - low) * share };
-                // If this value is not allowed, neighbouring values are not either.
+                // If this value is not allowed, neighbouring values are assumed not to be either.
                 let Some(found) = self.look(with(changes, &space.changes(&[at]))) else {
                     break;
                 };

@@ -1,5 +1,5 @@
-//! Moves a single number whose distance does not depend on the others: finds where it gives the target distance, and checks
-//! whether the task allows that.
+//! Moves a single number with a distance that does not depend on the others: finds where it meets the target distance, and
+//! checks whether the task allows that value.
 
 use driftworld_spec::{ParameterType, Variant};
 
@@ -8,10 +8,11 @@ use super::space::Space;
 use super::subject::Free;
 
 /// Bisection steps per interval.
-const HALVINGS: u32 = 60;
+const MAX_BISECTIONS: u32 = 60;
 
-/// Offsets of the target to try, as shares of the tolerance: if a requirement ends exactly at the target, one of them is allowed.
-const TRIED: [f64; 3] = [0.0, -0.95, 0.95];
+/// Offsets of the target to try, as shares of the tolerance: if a requirement's border lies exactly at the target, one of them
+/// is allowed.
+const TARGET_OFFSETS: [f64; 3] = [0.0, -0.95, 0.95];
 
 impl<'a, D: FnMut(&Variant) -> f64> Search<'a, D> {
     /// All allowed values of a number that, together with some choices, meet the target.
@@ -29,28 +30,28 @@ impl<'a, D: FnMut(&Variant) -> f64> Search<'a, D> {
         }
         stops.sort_by(f64::total_cmp);
         stops.dedup();
-        let mut measure = |search: &mut Self, at: f64| search.beyond(with(choices, &space.changes(&[at])));
+        let mut measure = |search: &mut Self, at: f64| search.measure_beyond(with(choices, &space.changes(&[at])));
         let mut found = Vec::new();
-        for stretch in stops.windows(2) {
-            let (Some(low), Some(high)) = (measure(self, stretch[0]), measure(self, stretch[1])) else {
+        for interval in stops.windows(2) {
+            let (Some(low), Some(high)) = (measure(self, interval[0]), measure(self, interval[1])) else {
                 continue;
             };
-            for part in TRIED {
-                let target = self.target + part * self.tolerance;
+            for offset in TARGET_OFFSETS {
+                let target = self.target + offset * self.tolerance;
                 let at = if (low - target).abs() <= self.tolerance * 0.04 {
-                    stretch[0]
+                    interval[0]
                 } else if (high - target).abs() <= self.tolerance * 0.04 {
-                    stretch[1]
+                    interval[1]
                 } else if (low < target) == (high < target) {
                     continue;
                 } else {
-                    self.halved(stretch, target, low < target, &mut measure)
+                    self.bisect_interval(interval, target, low < target, &mut measure)
                 };
-                if let Some(there) = self
+                if let Some(candidate) = self
                     .look(with(choices, &space.changes(&[at])))
-                    .filter(|there| self.meets(there))
+                    .filter(|candidate| self.meets(candidate))
                 {
-                    found.push(there);
+                    found.push(candidate);
                     break;
                 }
             }
@@ -58,16 +59,16 @@ impl<'a, D: FnMut(&Variant) -> f64> Search<'a, D> {
         found
     }
 
-    /// Bisects an interval for the target distance. `is_rising`: the distance grows from start to end.
-    fn halved(
+    /// Bisects an interval for the target distance. `is_rising` says whether the distance grows from start to end.
+    fn bisect_interval(
         &mut self,
-        stretch: &[f64],
+        interval: &[f64],
         target: f64,
         is_rising: bool,
         measure: &mut impl FnMut(&mut Self, f64) -> Option<f64>,
     ) -> f64 {
-        let (mut low, mut high) = (stretch[0], stretch[1]);
-        for _ in 0..HALVINGS {
+        let (mut low, mut high) = (interval[0], interval[1]);
+        for _ in 0..MAX_BISECTIONS {
             let at = f64::midpoint(low, high);
             let Some(distance) = measure(self, at) else { break };
             if (distance - target).abs() <= self.tolerance * 0.04 {

@@ -14,28 +14,28 @@ use driftworld_spec::{Domain, Value, Variant};
 
 use crate::GeneratorError;
 pub use search::Found;
-use search::{Changes, MOST_COMBINATIONS, Search, with};
+use search::{Changes, MAX_COMBINATIONS, Search, with};
 use space::Space;
 pub use subject::Subject;
 use subject::{Free, FreeParameters, parameters_of};
 
-/// Maximum number of variants to measure where requirements cut off the straight line, and minimum per combination.
-const MOST_LOOKS: usize = 60_000;
-const FEWEST_LOOKS: usize = 1500;
+/// Maximum number of variants to measure where requirements cut off the straight line, and the minimum per combination.
+const MAX_MEASURED: usize = 60_000;
+const MIN_MEASURED: usize = 1500;
 
 /// Finds a variant whose distance from `from` is `target` within `tolerance`, with as few changed parameters as possible.
 ///
-/// Searches all of the subject's choices and ranges that the task's requirements allow. For each combination of choices the
-/// numbers move together towards the farthest ends of their ranges. If requirements cut that way off, or a number decides what is
-/// read, each number moves separately. Among answers that change equally few parameters, takes the one with the smallest changes
-/// as shares of their ranges. A parameter that nothing reads in the answer stays as it is in `from`, unless a requirement forbids
-/// that. The same arguments always find the same variant. Calls `distance` a few hundred times, or tens of thousands of times if
-/// requirements cut ways off. `distance` must never be negative, and must be 0 for `from`.
+/// Searches all of the subject's choices and ranges that the task's requirements allow. For each combination of choices, the
+/// numbers move together towards the farthest ends of their ranges. If requirements cut off that line, or a number decides what
+/// is read, each number moves separately. Among answers that change the same number of parameters, picks the one with the
+/// smallest changes as shares of their ranges. A parameter that nothing reads in the answer keeps its value from `from`, unless
+/// a requirement forbids that. The same arguments always find the same variant. Calls `distance` a few hundred times, or tens
+/// of thousands of times if requirements cut off lines. `distance` must never be negative, and must be 0 for `from`.
 ///
 /// # Errors
 /// [`GeneratorError::NothingToVary`] if the subject has no parameter that could change; [`GeneratorError::TooFar`] with the
-/// farthest variant that the task allows if it is nearer than `target`; [`GeneratorError::NoneBetween`] with the nearest miss if
-/// the choices leave a gap around `target`, or the search ran out of budget.
+/// farthest variant that the task allows, if it is nearer than `target`; [`GeneratorError::NoneBetween`] with the nearest miss,
+/// if the choices leave a gap around `target` or the search ran out of budget.
 ///
 /// # Example
 /// ```
@@ -66,8 +66,8 @@ pub fn at_distance(
         nearest: None,
         nearest_of_all: None,
         farthest: None,
-        num_looks: 0,
-        num_refused: 0,
+        num_measured: 0,
+        num_rejected: 0,
         is_complete: true,
     };
     if let Some(best) = fewest::fewest(&mut search, &free) {
@@ -78,18 +78,18 @@ pub fn at_distance(
     search.finish()
 }
 
-/// All combinations of choices, fewest changes first, and whether the list is complete: its length is limited.
+/// All combinations of choices, fewest changes first, and whether the list, which has a maximum length, is complete.
 fn combinations(from: &Variant, listed: &[Free]) -> (Vec<Changes>, bool) {
     let mut all: Vec<Changes> = vec![Vec::new()];
-    let mut are_all = true;
+    let mut is_complete = true;
     for (name, parameter) in listed {
         let Some(Domain::Choices(choices)) = parameter.domain() else {
             continue;
         };
         let others = choices.into_iter().filter(|choice| from.value(name) != Some(choice));
         let others: Vec<Value> = others.collect();
-        let room = MOST_COMBINATIONS.saturating_sub(all.len());
-        are_all &= all.len() * others.len() <= room;
+        let room = MAX_COMBINATIONS.saturating_sub(all.len());
+        is_complete &= all.len() * others.len() <= room;
         let more: Vec<Changes> = all
             .iter()
             .flat_map(|before| {
@@ -102,32 +102,32 @@ fn combinations(from: &Variant, listed: &[Free]) -> (Vec<Changes>, bool) {
         all.extend(more);
     }
     all.sort_by_key(Vec::len);
-    (all, are_all)
+    (all, is_complete)
 }
 
 impl<'a, D: FnMut(&Variant) -> f64> Search<'a, D> {
     /// Searches every combination of choices and all of the ranges until the target is met.
     fn whole(&mut self, free: &FreeParameters<'a>) {
-        let (combinations, are_all) = combinations(self.from, &free.listed);
-        self.is_complete = are_all;
+        let (combinations, is_complete) = combinations(self.from, &free.listed);
+        self.is_complete = is_complete;
         let mut cut: Vec<Changes> = Vec::new();
         for combination in combinations {
-            let refused = self.num_refused;
+            let rejected_before = self.num_rejected;
             if self.straight(&combination, &free.smooth) {
                 return;
             }
-            if free.is_bent || self.num_refused > refused {
+            if free.is_bent || self.num_rejected > rejected_before {
                 cut.push(combination);
             }
         }
         let space = Space::new(self.from, &free.smooth);
-        let budget = (MOST_LOOKS / cut.len().max(1)).max(FEWEST_LOOKS);
-        let most = MOST_LOOKS / FEWEST_LOOKS;
-        for combination in cut.iter().take(most) {
+        let budget = (MAX_MEASURED / cut.len().max(1)).max(MIN_MEASURED);
+        let max_scanned = MAX_MEASURED / MIN_MEASURED;
+        for combination in cut.iter().take(max_scanned) {
             if self.scan(&space, combination, budget) {
                 return;
             }
         }
-        self.is_complete &= cut.len() <= most;
+        self.is_complete &= cut.len() <= max_scanned;
     }
 }

@@ -1,29 +1,29 @@
-//! Measures the greatest distance that each parameter can reach by itself, and lists the sets of parameters and choices that can
-//! add up to the target distance. Ignores requirements: `fewest.rs` checks them on the variants.
+//! Measures the largest distance that each parameter can reach by itself, and lists the sets of parameters and choices that can
+//! add up to the target distance. Ignores requirements, which `fewest.rs` checks on the variants.
 //!
-//! Distances of independent parameters add up, and each grows as its number moves away. Every pair is tested for this; if the
-//! distances do not add up, all values of the pair are measured together.
+//! Distances of independent parameters add up, and each grows as its number moves away. Every pair is tested for additivity; if
+//! the distances do not add up, all values of the pair are measured together.
 
 use std::collections::HashMap;
 
 use driftworld_spec::{Domain, Value, Variant};
 
-use super::search::{Changes, MOST_COMBINATIONS, Search, with};
+use super::search::{Changes, MAX_COMBINATIONS, Search, with};
 use super::space::Space;
 use super::straight::ends_of;
 use super::subject::{Free, FreeParameters};
 
-/// Widest range of integers that are tried one by one.
-const WIDEST_LIST: f64 = 128.0;
+/// Maximum width of a range of integers that are tried one by one.
+const MAX_LISTED_WIDTH: f64 = 128.0;
 
 /// Maximum number of sets of parameters to consider per size.
-const MOST_SETS: usize = 100_000;
+const MAX_SETS: usize = 100_000;
 
-/// Sums that differ by less count as equal.
+/// Sums that differ by less than this count as equal.
 const ROUNDING: f64 = 1e-9;
 
-/// Share by which the reach of a way may exceed the distance at its last point whose worlds can be drawn.
-const NEARLY: f64 = 1e-4;
+/// Share by which the reach of a change set may exceed the distance at its last valid point.
+const REACH_TOLERANCE: f64 = 1e-4;
 
 /// Number of parts in which to measure the range of a number that may decide what is read, and each range of a vector of two.
 const PARTS: usize = 32;
@@ -35,17 +35,17 @@ struct Candidate<'a> {
     /// The other choices with their distances; empty if the parameter moves smoothly.
     choices: Vec<(Value, f64)>,
     ends: Vec<Value>,
-    /// For a number that may decide what is read: values from end to end, and how much farther it may reach between them; no
-    /// values and infinity if there would be too many.
+    /// For a number that may decide what is read: values from end to end, and how much farther it may reach between them. If
+    /// there would be too many values, none and infinity.
     between: (Vec<Value>, f64),
-    least: f64,
-    most: f64,
+    min: f64,
+    max: f64,
     /// Whether its distance depends on another parameter.
     is_tied: bool,
 }
 
-/// Parameters that all change: listed ones to these choices, smooth ones to whatever meets the target.
-pub(super) struct Way<'a> {
+/// A set of parameters that all change: listed ones to these choices, smooth ones to any values that meet the target.
+pub(super) struct ChangeSet<'a> {
     pub(super) choices: Changes,
     pub(super) smooth: Vec<Free<'a>>,
     /// The sum of the choices' distances; `None` if some distance depends on another parameter.
@@ -60,7 +60,7 @@ pub(super) struct Reach<'a> {
     spans: JointSpans,
 }
 
-/// Least and greatest distance of parameters that were measured together, by their names and choices.
+/// Minimum and maximum distance of parameters that were measured together, by their names and choices.
 type JointSpans = HashMap<String, Option<(f64, f64)>>;
 
 impl<'a> Reach<'a> {
@@ -82,8 +82,8 @@ impl<'a> Reach<'a> {
                 }
             }
         }
-        // Sorted by reach: if there are too many sets, those of the farthest-reaching parameters are considered.
-        candidates.sort_by(|a, b| b.most.total_cmp(&a.most));
+        // Sorted by reach, so that if there are too many sets, those of the farthest-reaching parameters are considered.
+        candidates.sort_by(|a, b| b.max.total_cmp(&a.max));
         Self {
             candidates,
             spans: JointSpans::new(),
@@ -95,48 +95,59 @@ impl<'a> Reach<'a> {
         self.candidates.len()
     }
 
-    /// All ways with `size` changes that may meet the target; their number is limited.
-    pub(super) fn ways<D: FnMut(&Variant) -> f64>(&mut self, search: &mut Search<'a, D>, size: usize) -> Vec<Way<'a>> {
-        let (mut ways, mut num_sets) = (Vec::new(), 0);
+    /// All change sets of this size that may meet the target, up to a maximum number.
+    pub(super) fn change_sets<D: FnMut(&Variant) -> f64>(
+        &mut self,
+        search: &mut Search<'a, D>,
+        size: usize,
+    ) -> Vec<ChangeSet<'a>> {
+        let (mut change_sets, mut num_sets) = (Vec::new(), 0);
         let mut set: Vec<usize> = (0..size).collect();
         loop {
             num_sets += 1;
-            if num_sets > MOST_SETS || ways.len() >= MOST_COMBINATIONS {
+            if num_sets > MAX_SETS || change_sets.len() >= MAX_COMBINATIONS {
                 break;
             }
             let members: Vec<&Candidate> = set.iter().map(|index| &self.candidates[*index]).collect();
-            ways_of(&members, search, &mut self.spans, &mut ways);
+            add_change_sets(&members, search, &mut self.spans, &mut change_sets);
             // The next set of this size in lexical order.
-            let Some(place) = (0..size).rev().find(|place| set[*place] < self.len() - size + place) else {
+            let Some(position) = (0..size)
+                .rev()
+                .find(|position| set[*position] < self.len() - size + position)
+            else {
                 break;
             };
-            set[place] += 1;
-            for later in place + 1..size {
+            set[position] += 1;
+            for later in position + 1..size {
                 set[later] = set[later - 1] + 1;
             }
         }
-        ways
+        change_sets
     }
 }
 
-/// Adds the ways of one set of parameters.
-fn ways_of<'a, D: FnMut(&Variant) -> f64>(
+/// Adds the change sets of one set of parameters.
+fn add_change_sets<'a, D: FnMut(&Variant) -> f64>(
     members: &[&Candidate<'a>],
     search: &mut Search<'a, D>,
     known: &mut JointSpans,
-    ways: &mut Vec<Way<'a>>,
+    change_sets: &mut Vec<ChangeSet<'a>>,
 ) {
     let (low, high) = (search.target - search.tolerance, search.target + search.tolerance);
     let is_smooth = |member: &&&Candidate| member.choices.is_empty();
-    let (tied, apart): (Vec<&Candidate>, Vec<&Candidate>) = members.iter().partition(|member| member.is_tied);
-    let reach: f64 = apart.iter().map(|member| member.most).sum();
-    let least: f64 = apart.iter().map(|member| member.least).sum();
-    if least > high || (tied.is_empty() && reach < low) {
+    let (tied, independent): (Vec<&Candidate>, Vec<&Candidate>) = members.iter().partition(|member| member.is_tied);
+    let reach: f64 = independent.iter().map(|member| member.max).sum();
+    let min: f64 = independent.iter().map(|member| member.min).sum();
+    if min > high || (tied.is_empty() && reach < low) {
         return;
     }
     let smooth: Vec<Free> = members.iter().filter(is_smooth).map(|member| member.free).collect();
-    let listed: Vec<&Candidate> = apart.iter().filter(|member| !is_smooth(member)).copied().collect();
-    let moving: f64 = apart.iter().filter(is_smooth).map(|member| member.most).sum();
+    let listed: Vec<&Candidate> = independent
+        .iter()
+        .filter(|member| !is_smooth(member))
+        .copied()
+        .collect();
+    let moving: f64 = independent.iter().filter(is_smooth).map(|member| member.max).sum();
     let tied_smooth: Vec<&Candidate> = tied.iter().filter(is_smooth).copied().collect();
     let tied_listed: Vec<&Candidate> = tied.iter().filter(|member| !is_smooth(member)).copied().collect();
     for together in products(&tied_listed, |_| true) {
@@ -152,28 +163,28 @@ fn ways_of<'a, D: FnMut(&Variant) -> f64>(
         // The remaining choices can only increase the sum.
         for (choices, sum) in products(&listed, |sum| sum + from <= high) {
             if sum + to >= low {
-                ways.push(Way {
+                change_sets.push(ChangeSet {
                     choices: with(&together.0, &choices),
                     smooth: smooth.clone(),
                     sum: tied.is_empty().then_some(sum),
                     are_tied: members.iter().filter(is_smooth).map(|member| member.is_tied).collect(),
                 });
             }
-            if ways.len() >= MOST_COMBINATIONS {
+            if change_sets.len() >= MAX_COMBINATIONS {
                 return;
             }
         }
     }
 }
 
-/// All combinations of choices with the sums of their distances, if `may_be` accepts these.
-fn products(members: &[&Candidate], may_be: impl Fn(f64) -> bool) -> Vec<(Changes, f64)> {
+/// All combinations of choices with the sums of their distances, if `is_possible` accepts these.
+fn products(members: &[&Candidate], is_possible: impl Fn(f64) -> bool) -> Vec<(Changes, f64)> {
     let mut all = vec![(Changes::new(), 0.0)];
     for member in members {
         let mut longer = Vec::new();
         for (changes, sum) in &all {
             for (choice, distance) in &member.choices {
-                if may_be(sum + distance) && longer.len() < 16 * MOST_COMBINATIONS {
+                if is_possible(sum + distance) && longer.len() < 16 * MAX_COMBINATIONS {
                     longer.push((
                         with(changes, &vec![(member.free.0.to_owned(), choice.clone())]),
                         sum + distance,
@@ -186,7 +197,7 @@ fn products(members: &[&Candidate], may_be: impl Fn(f64) -> bool) -> Vec<(Change
     all
 }
 
-/// Least and greatest distance of numbers that are tied to each other and to choices; `None` if the choices are impossible.
+/// Minimum and maximum distance of numbers that are tied to each other and to choices; `None` if the choices are impossible.
 fn reach_together<D: FnMut(&Variant) -> f64>(
     search: &mut Search<D>,
     choices: &Changes,
@@ -196,7 +207,9 @@ fn reach_together<D: FnMut(&Variant) -> f64>(
         return Some((0.0, 0.0));
     }
     if smooth.is_empty() {
-        return search.beyond(choices.clone()).map(|distance| (distance, distance));
+        return search
+            .measure_beyond(choices.clone())
+            .map(|distance| (distance, distance));
     }
     let mut corners = vec![choices.clone()];
     let mut farther = 0.0;
@@ -208,7 +221,7 @@ fn reach_together<D: FnMut(&Variant) -> f64>(
             let moved = ends.map(|end| with(corner, &vec![(candidate.free.0.to_owned(), end.clone())]));
             moved.chain([corner.clone()]).collect::<Vec<_>>()
         };
-        corners = corners.iter().flat_map(to).take(MOST_COMBINATIONS).collect();
+        corners = corners.iter().flat_map(to).take(MAX_COMBINATIONS).collect();
     }
     if farther.is_infinite() {
         return Some((0.0, farther));
@@ -216,9 +229,9 @@ fn reach_together<D: FnMut(&Variant) -> f64>(
     let mut farthest: f64 = 0.0;
     for corner in corners {
         let ends: Changes = corner[choices.len()..].to_vec();
-        // If a corner cannot be drawn, takes the nearest point to it that can.
-        if let Some((distance, _)) = search.towards(choices, ends, Search::beyond) {
-            farthest = farthest.max(distance * (1.0 + NEARLY));
+        // If a corner is invalid, uses the nearest valid point to it.
+        if let Some((distance, _)) = search.towards(choices, ends, Search::measure_beyond) {
+            farthest = farthest.max(distance * (1.0 + REACH_TOLERANCE));
         }
     }
     Some((0.0, farthest + farther))
@@ -230,7 +243,7 @@ impl<'a> Candidate<'a> {
         let here = search.from.value(name).cloned();
         let choices = match (parameter.domain(), &here) {
             (Some(Domain::Choices(choices)), _) => choices,
-            (Some(Domain::Range([low, high])), Some(Value::Integer(_))) if high - low <= WIDEST_LIST => {
+            (Some(Domain::Range([low, high])), Some(Value::Integer(_))) if high - low <= MAX_LISTED_WIDTH => {
                 (low.ceil() as i64..=high.floor() as i64).map(Value::Integer).collect()
             }
             _ => Vec::new(),
@@ -242,7 +255,7 @@ impl<'a> Candidate<'a> {
         };
         let mut is_tied = false;
         let mut measure = |value: &Value| {
-            let distance = search.beyond(vec![(name.to_owned(), value.clone())]);
+            let distance = search.measure_beyond(vec![(name.to_owned(), value.clone())]);
             is_tied |= distance.is_none();
             distance.unwrap_or(0.0)
         };
@@ -256,12 +269,12 @@ impl<'a> Candidate<'a> {
         let reaches: Vec<f64> = ends.iter().map(&mut measure).collect();
         let distances = choices.iter().map(|(_, distance)| *distance);
         Self {
-            least: if ends.is_empty() {
+            min: if ends.is_empty() {
                 distances.clone().fold(f64::INFINITY, f64::min)
             } else {
                 0.0
             },
-            most: distances.chain(reaches).fold(0.0, f64::max),
+            max: distances.chain(reaches).fold(0.0, f64::max),
             free,
             choices,
             ends,
@@ -270,7 +283,7 @@ impl<'a> Candidate<'a> {
         }
     }
 
-    /// Values from end to end, and how much farther the number may reach between two neighbouring ones.
+    /// Values from end to end, and how much farther the number may reach between two neighbouring values.
     fn between(&self, from: &Variant) -> (Vec<Value>, f64) {
         if !self.choices.is_empty() {
             return (Vec::new(), 0.0);
@@ -287,14 +300,11 @@ impl<'a> Candidate<'a> {
             points = points.into_iter().flat_map(longer).collect();
         }
         let changes = points.into_iter().filter_map(|point| space.changes(&point).pop());
-        (
-            changes.map(|(_, value)| value).collect(),
-            2.0 * self.most / parts as f64,
-        )
+        (changes.map(|(_, value)| value).collect(), 2.0 * self.max / parts as f64)
     }
 
     /// Representative values for testing whether distances add up.
-    fn some(&self) -> Vec<&Value> {
+    fn representative_values(&self) -> Vec<&Value> {
         let ends = [self.choices.first(), self.choices.last()];
         self.ends
             .iter()
@@ -305,12 +315,12 @@ impl<'a> Candidate<'a> {
     /// Whether changing both gives the sum of the two distances.
     fn adds_up_with<D: FnMut(&Variant) -> f64>(&self, other: &Self, search: &mut Search<D>) -> bool {
         let change = |candidate: &Self, value: &Value| vec![(candidate.free.0.to_owned(), value.clone())];
-        for a in self.some() {
-            for b in other.some() {
+        for a in self.representative_values() {
+            for b in other.representative_values() {
                 let (a, b) = (change(self, a), change(other, b));
-                let both = search.beyond(with(&a, &b));
-                // If one of them alone cannot be drawn, the pair gives no evidence.
-                let (Some(a), Some(b)) = (search.beyond(a), search.beyond(b)) else {
+                let both = search.measure_beyond(with(&a, &b));
+                // If one of the two changes is invalid by itself, the pair gives no evidence.
+                let (Some(a), Some(b)) = (search.measure_beyond(a), search.measure_beyond(b)) else {
                     continue;
                 };
                 let Some(both) = both else { return false };

@@ -1,7 +1,8 @@
-//! Scans everything that a task's requirements allow within the ranges, for cases where the straight line to their ends is cut off.
+//! Scans the region that a task's requirements allow within the ranges, for cases where the straight line to the ends is cut
+//! off.
 //!
-//! Walks lines along every axis through the whole box. Where a line leaves the allowed region, bisects for its border; between
-//! two points on either side of the target distance, bisects for that distance. From the nearest points it continues in all
+//! Walks lines along every axis through the whole box. Where a line leaves the allowed region, bisects to its border; between
+//! two points on either side of the target distance, bisects to that distance. From the nearest points it continues in all
 //! directions with ever smaller steps. Deterministic: the same arguments find the same variant.
 
 use driftworld_spec::Variant;
@@ -12,31 +13,31 @@ use super::space::{Axis, Point, Space};
 /// Points on each line, except the first.
 const PARTS: usize = 32;
 
-/// A budget below this is too small to search every line closely: then the whole box is searched coarsely first.
-const LITTLE: usize = 3000;
-const PARTS_OF_LITTLE: usize = 3;
+/// With a budget below this, which is too small to search every line closely, the whole box is searched coarsely first.
+const SMALL_BUDGET: usize = 3000;
+const COARSE_PARTS: usize = 3;
 
 /// Bisection steps towards a border, and towards the target distance.
-const HALVINGS: u32 = 48;
+const MAX_BISECTIONS: u32 = 48;
 
 /// Number of points from which the search continues in small steps.
-const STARTS: usize = 12;
+const MAX_STARTS: usize = 12;
 
 /// Number of times the small steps are halved.
-const FINENESS: u32 = 30;
+const STEP_HALVINGS: u32 = 30;
 
-/// Four times the number of points on either side of the target distance that are tried in pairs.
+/// Four times the number of points to try in pairs on either side of the target distance.
 const PAIRS: usize = 24;
 
 /// Maximum number of axes for which diagonals are also tried.
-const MOST_DIAGONAL: usize = 8;
+const MAX_DIAGONAL_AXES: usize = 8;
 
 /// Directions of small steps: along each axis and, if there are few axes, along the diagonals of each pair.
 fn directions(axes: usize) -> Vec<Vec<(usize, f64)>> {
     let mut found = Vec::new();
     for a in 0..axes {
         found.extend([1.0, -1.0].map(|sign| vec![(a, sign)]));
-        for b in (0..a).filter(|_| axes <= MOST_DIAGONAL) {
+        for b in (0..a).filter(|_| axes <= MAX_DIAGONAL_AXES) {
             let signs = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)];
             found.extend(signs.map(|(first, second)| vec![(a, first), (b, second)]));
         }
@@ -45,7 +46,7 @@ fn directions(axes: usize) -> Vec<Vec<(usize, f64)>> {
 }
 
 /// An allowed point, and its distance.
-type Seen = (Point, f64);
+type MeasuredPoint = (Point, f64);
 
 impl<'a, D: FnMut(&Variant) -> f64> Search<'a, D> {
     /// Searches one combination of choices in every direction; true if the target was met.
@@ -70,63 +71,63 @@ pub(super) struct Scan<'s, 'a, D> {
 }
 
 /// Ends the search: the target distance was met, or the budget is used up.
-struct Over;
+struct SearchEnd;
 
 impl<D: FnMut(&Variant) -> f64> Scan<'_, '_, D> {
     /// Scans the whole box; true if the target distance was met.
     pub(super) fn run(mut self) -> bool {
-        // The search's nearest variant shows which of the two it was.
-        let _over = self.all();
+        // The search's nearest variant shows whether the target was met.
+        let _end = self.scan_all();
         let is_met = self.search.is_met();
         self.search.is_complete &= is_met || self.budget > 0;
         is_met
     }
 
-    fn all(&mut self) -> Result<(), Over> {
-        let mut seen: Vec<Seen> = Vec::new();
+    fn scan_all(&mut self) -> Result<(), SearchEnd> {
+        let mut measured: Vec<MeasuredPoint> = Vec::new();
         let here = self.space.here();
         if self.space.axes.is_empty() {
             return Ok(());
         }
-        seen.extend(self.look(&here)?.map(|distance| (here.clone(), distance)));
-        if self.budget < LITTLE && self.space.axes.len() > 1 {
+        measured.extend(self.look(&here)?.map(|distance| (here.clone(), distance)));
+        if self.budget < SMALL_BUDGET && self.space.axes.len() > 1 {
             for along in 0..self.space.axes.len() {
-                for anchor in self.space.anchors(along, PARTS_OF_LITTLE) {
-                    self.line(&anchor, along, PARTS / 2, &mut seen)?;
+                for anchor in self.space.anchors(along, COARSE_PARTS) {
+                    self.line(&anchor, along, PARTS / 2, &mut measured)?;
                 }
             }
         }
         for along in 0..self.space.axes.len() {
-            self.line(&here, along, 4 * PARTS, &mut seen)?;
+            self.line(&here, along, 4 * PARTS, &mut measured)?;
         }
-        // First from the neighbourhood, which usually suffices, then through the whole box.
-        self.nearer(&mut seen, 1)?;
+        // First the neighbourhood, which usually suffices, then the whole box.
+        self.continue_from_nearest(&mut measured, 1)?;
         if self.space.axes.len() == 1 {
             return Ok(());
         }
         for along in 0..self.space.axes.len() {
             for anchor in self.space.anchors(along, PARTS) {
-                self.line(&anchor, along, PARTS, &mut seen)?;
+                self.line(&anchor, along, PARTS, &mut measured)?;
             }
         }
-        self.nearer(&mut seen, STARTS)
+        self.continue_from_nearest(&mut measured, MAX_STARTS)
     }
 
     /// Continues from the nearest points.
-    fn nearer(&mut self, seen: &mut [Seen], starts: usize) -> Result<(), Over> {
-        self.pairs(seen)?;
+    fn continue_from_nearest(&mut self, measured: &mut [MeasuredPoint], starts: usize) -> Result<(), SearchEnd> {
+        self.pairs(measured)?;
         let target = self.search.target;
-        seen.sort_by(|a, b| (a.1 - target).abs().total_cmp(&(b.1 - target).abs()));
-        for start in spread(seen, self.space, starts) {
-            self.climb(start)?;
+        measured.sort_by(|a, b| (a.1 - target).abs().total_cmp(&(b.1 - target).abs()));
+        for start in spaced_out(measured, self.space, starts) {
+            self.refine(start)?;
         }
         Ok(())
     }
 
     /// The distance of a point; `None` if the task does not allow it.
-    fn look(&mut self, point: &[f64]) -> Result<Option<f64>, Over> {
+    fn look(&mut self, point: &[f64]) -> Result<Option<f64>, SearchEnd> {
         if self.budget == 0 {
-            return Err(Over);
+            return Err(SearchEnd);
         }
         self.budget -= 1;
         let changes = with(self.combination, &self.space.changes(point));
@@ -134,13 +135,19 @@ impl<D: FnMut(&Variant) -> f64> Scan<'_, '_, D> {
             return Ok(None);
         };
         if self.search.meets(&found) {
-            return Err(Over);
+            return Err(SearchEnd);
         }
         Ok(Some(found.distance))
     }
 
     /// Walks along an axis through a point, from end to end.
-    fn line(&mut self, through: &[f64], along: usize, parts: usize, seen: &mut Vec<Seen>) -> Result<(), Over> {
+    fn line(
+        &mut self,
+        through: &[f64],
+        along: usize,
+        parts: usize,
+        measured: &mut Vec<MeasuredPoint>,
+    ) -> Result<(), SearchEnd> {
         let parts = self.space.parts(along, parts);
         let mut before: Option<(Point, Option<f64>)> = None;
         for part in 0..=parts {
@@ -149,24 +156,29 @@ impl<D: FnMut(&Variant) -> f64> Scan<'_, '_, D> {
             let distance = self.look(&point)?;
             match (&before, distance) {
                 (Some((last, Some(near))), Some(far)) => self.between((last, *near), (&point, far))?,
-                (Some((last, Some(inside))), None) => self.border((last, *inside), &point, seen)?,
+                (Some((last, Some(inside))), None) => self.border((last, *inside), &point, measured)?,
                 (Some((last, None)), Some(inside)) => {
                     let last = last.clone();
-                    self.border((&point, inside), &last, seen)?;
+                    self.border((&point, inside), &last, measured)?;
                 }
                 _ => {}
             }
-            seen.extend(distance.map(|distance| (point.clone(), distance)));
+            measured.extend(distance.map(|distance| (point.clone(), distance)));
             before = Some((point, distance));
         }
         Ok(())
     }
 
     /// Moves from an allowed point towards one that is not, as far as possible.
-    fn border(&mut self, inside: (&[f64], f64), outside: &[f64], seen: &mut Vec<Seen>) -> Result<(), Over> {
+    fn border(
+        &mut self,
+        inside: (&[f64], f64),
+        outside: &[f64],
+        measured: &mut Vec<MeasuredPoint>,
+    ) -> Result<(), SearchEnd> {
         let (mut low, mut high) = (0.0, 1.0);
         let mut last = None;
-        for _ in 0..HALVINGS {
+        for _ in 0..MAX_BISECTIONS {
             let t = f64::midpoint(low, high);
             let point = between(inside.0, outside, t);
             match self.look(&point)? {
@@ -179,21 +191,21 @@ impl<D: FnMut(&Variant) -> f64> Scan<'_, '_, D> {
         }
         if let Some((point, distance)) = last {
             self.between(inside, (&point, distance))?;
-            seen.push((point, distance));
+            measured.push((point, distance));
         }
         Ok(())
     }
 
     /// Bisects between two points on either side of the target distance.
-    fn between(&mut self, a: (&[f64], f64), b: (&[f64], f64)) -> Result<(), Over> {
+    fn between(&mut self, a: (&[f64], f64), b: (&[f64], f64)) -> Result<(), SearchEnd> {
         let target = self.search.target;
         if (a.1 < target) == (b.1 < target) {
             return Ok(());
         }
         let (mut low, mut high) = (0.0, 1.0);
-        for _ in 0..HALVINGS {
+        for _ in 0..MAX_BISECTIONS {
             let t = f64::midpoint(low, high);
-            // Without an allowed point between them, the two are not connected.
+            // If the point between them is not allowed, the two are not connected.
             let Some(distance) = self.look(&between(a.0, b.0, t))? else {
                 return Ok(());
             };
@@ -206,11 +218,11 @@ impl<D: FnMut(&Variant) -> f64> Scan<'_, '_, D> {
         Ok(())
     }
 
-    /// Tries straight lines between points nearer and points farther than the target distance.
-    fn pairs(&mut self, seen: &[Seen]) -> Result<(), Over> {
+    /// Tries straight lines between points continue_from_nearest and points farther than the target distance.
+    fn pairs(&mut self, measured: &[MeasuredPoint]) -> Result<(), SearchEnd> {
         let target = self.search.target;
         let side = |far: bool| {
-            let mut side: Vec<&Seen> = seen
+            let mut side: Vec<&MeasuredPoint> = measured
                 .iter()
                 .filter(|(_, distance)| (*distance >= target) == far)
                 .collect();
@@ -226,12 +238,12 @@ impl<D: FnMut(&Variant) -> f64> Scan<'_, '_, D> {
         Ok(())
     }
 
-    /// From a point, takes ever smaller steps in any direction that brings it nearer to the target distance.
-    fn climb(&mut self, (start, distance): Seen) -> Result<(), Over> {
+    /// From a point, takes ever smaller steps in any direction that brings it continue_from_nearest to the target distance.
+    fn refine(&mut self, (start, distance): MeasuredPoint) -> Result<(), SearchEnd> {
         let target = self.search.target;
         let directions = directions(self.space.axes.len());
         let (mut at, mut distance, mut step) = (start, distance, 0.25);
-        for _ in 0..FINENESS {
+        for _ in 0..STEP_HALVINGS {
             let mut moved = true;
             while moved {
                 moved = false;
@@ -241,8 +253,8 @@ impl<D: FnMut(&Variant) -> f64> Scan<'_, '_, D> {
                         let Axis {
                             low, high, is_whole, ..
                         } = &self.space.axes[*axis];
-                        let least = if *is_whole { 1.0 } else { 0.0 };
-                        point[*axis] = (point[*axis] + sign * ((high - low) * step).max(least)).clamp(*low, *high);
+                        let min_step = if *is_whole { 1.0 } else { 0.0 };
+                        point[*axis] = (point[*axis] + sign * ((high - low) * step).max(min_step)).clamp(*low, *high);
                     }
                     if point == at {
                         continue;
@@ -261,16 +273,16 @@ impl<D: FnMut(&Variant) -> f64> Scan<'_, '_, D> {
 }
 
 /// The nearest points, no two of them close together.
-fn spread(sorted: &[Seen], space: &Space, most: usize) -> Vec<Seen> {
-    let mut kept: Vec<Seen> = Vec::new();
+fn spaced_out(sorted: &[MeasuredPoint], space: &Space, max: usize) -> Vec<MeasuredPoint> {
+    let mut kept: Vec<MeasuredPoint> = Vec::new();
     for (point, distance) in sorted {
-        let is_close = |(other, _): &Seen| {
-            let mut apart = space.axes.iter().zip(point.iter().zip(other));
-            apart.all(|(axis, (a, b))| (a - b).abs() <= 0.1 * (axis.high - axis.low))
+        let is_close = |(other, _): &MeasuredPoint| {
+            let mut differences = space.axes.iter().zip(point.iter().zip(other));
+            differences.all(|(axis, (a, b))| (a - b).abs() <= 0.1 * (axis.high - axis.low))
         };
         if !kept.iter().any(is_close) {
             kept.push((point.clone(), *distance));
-            if kept.len() == most {
+            if kept.len() == max {
                 break;
             }
         }

@@ -1,11 +1,11 @@
-//! [`Search`]: measures variants and remembers the nearest and the farthest.
+//! [`Search`]: measures variants, and records the nearest and the farthest.
 
 use driftworld_spec::{Value, Variant};
 
 use crate::GeneratorError;
 
 /// Maximum number of combinations of choices to try.
-pub(super) const MOST_COMBINATIONS: usize = 4096;
+pub(super) const MAX_COMBINATIONS: usize = 4096;
 
 /// A found variant with its distance.
 #[derive(Clone, Debug)]
@@ -23,21 +23,21 @@ pub(super) fn with(changes: &Changes, more: &Changes) -> Changes {
     changes.iter().chain(more).cloned().collect()
 }
 
-/// A search, and what it has found so far.
+/// A search and its results so far.
 pub(super) struct Search<'a, D> {
     pub(super) from: &'a Variant,
-    /// Name of the variants on the way.
+    /// Name of the variants tried.
     pub(super) name: String,
     pub(super) target: f64,
     pub(super) tolerance: f64,
     pub(super) distance: D,
-    /// The nearest variant in the part being searched.
+    /// The nearest variant in the part that is being searched.
     pub(super) nearest: Option<Found>,
     pub(super) nearest_of_all: Option<Found>,
     pub(super) farthest: Option<Found>,
-    pub(super) num_looks: usize,
+    pub(super) num_measured: usize,
     /// Number of variants that the task did not allow.
-    pub(super) num_refused: u64,
+    pub(super) num_rejected: u64,
     /// Whether the search has covered everything.
     pub(super) is_complete: bool,
 }
@@ -50,9 +50,9 @@ impl<D: FnMut(&Variant) -> f64> Search<'_, D> {
 
     /// Measures a variant and records it; `None` if the task does not allow it.
     pub(super) fn look(&mut self, changes: Changes) -> Option<Found> {
-        self.num_looks += 1;
+        self.num_measured += 1;
         let Ok(variant) = self.from.with(&self.name, changes) else {
-            self.num_refused += 1;
+            self.num_rejected += 1;
             return None;
         };
         let distance = (self.distance)(&variant);
@@ -73,9 +73,9 @@ impl<D: FnMut(&Variant) -> f64> Search<'_, D> {
         Some(found)
     }
 
-    /// The distance of a variant that need not meet the requirements; `None` if its worlds cannot be drawn.
-    pub(super) fn beyond(&mut self, changes: Changes) -> Option<f64> {
-        self.num_looks += 1;
+    /// The distance of a variant that may violate requirements; `None` if the variant is invalid for another reason.
+    pub(super) fn measure_beyond(&mut self, changes: Changes) -> Option<f64> {
+        self.num_measured += 1;
         let variant = self.from.beyond_requirements(&self.name, changes).ok()?;
         Some((self.distance)(&variant))
     }
@@ -84,7 +84,7 @@ impl<D: FnMut(&Variant) -> f64> Search<'_, D> {
         (found.distance - self.target).abs() <= self.tolerance
     }
 
-    /// The nearest variant if it meets the target, else the error that describes the search's outcome.
+    /// The nearest variant if it meets the target, otherwise an error that describes the outcome.
     pub(super) fn finish(&mut self) -> Result<Found, GeneratorError> {
         let (target, variant) = (self.target, self.from.id());
         let (Some(nearest), Some(farthest)) = (self.nearest_of_all.clone(), self.farthest.clone()) else {

@@ -7,9 +7,9 @@ use super::subject::Free;
 
 /// One number that may move.
 pub(super) struct Axis {
-    /// Index of its parameter among those that move.
+    /// Index of its parameter among the moving parameters.
     owner: usize,
-    place: Option<usize>,
+    component: Option<usize>,
     pub(super) here: f64,
     pub(super) low: f64,
     pub(super) high: f64,
@@ -26,7 +26,7 @@ impl Axis {
     }
 }
 
-/// The numbers that may move, and the parameters that they belong to.
+/// The numbers that may move, and the parameters to which they belong.
 pub(super) struct Space<'a> {
     from: &'a Variant,
     owners: Vec<Free<'a>>,
@@ -43,10 +43,10 @@ impl<'a> Space<'a> {
             let (Some(Domain::Range([low, high])), Some(value)) = (parameter.domain(), from.value(name)) else {
                 continue;
             };
-            let mut axis = |place, here, high| {
+            let mut axis = |component, here, high| {
                 axes.push(Axis {
                     owner,
-                    place,
+                    component,
                     here,
                     low,
                     high,
@@ -55,11 +55,11 @@ impl<'a> Space<'a> {
             };
             match value {
                 Value::Vector(numbers) => {
-                    for (place, here) in numbers.iter().enumerate() {
-                        axis(Some(place), *here, high);
+                    for (component, here) in numbers.iter().enumerate() {
+                        axis(Some(component), *here, high);
                     }
                 }
-                // An arc may cross north: measured along it, from its low end.
+                // An arc may cross north, so the position is measured along the arc, from its low end.
                 Value::Number(here) if parameter.kind == ParameterType::Heading => {
                     let arc = (high - low).min(360.0);
                     axis(None, low + (here - low).rem_euclid(360.0).min(arc), low + arc);
@@ -86,11 +86,11 @@ impl<'a> Space<'a> {
                 continue;
             }
             let (name, parameter) = self.owners[axis.owner];
-            if axis.place.is_some() && changes.last().is_none_or(|(last, _)| last != name) {
+            if axis.component.is_some() && changes.last().is_none_or(|(last, _)| last != name) {
                 changes.extend(self.from.value(name).map(|value| (name.to_owned(), value.clone())));
             }
-            match (axis.place, changes.last_mut()) {
-                (Some(place), Some((_, Value::Vector(numbers)))) => numbers[place] = *number,
+            match (axis.component, changes.last_mut()) {
+                (Some(component), Some((_, Value::Vector(numbers)))) => numbers[component] = *number,
                 _ if axis.is_whole => changes.push((name.to_owned(), Value::Integer(number.round() as i64))),
                 _ if parameter.kind == ParameterType::Heading => {
                     changes.push((name.to_owned(), Value::Number(number.rem_euclid(360.0))));
@@ -101,15 +101,15 @@ impl<'a> Space<'a> {
         changes
     }
 
-    /// Number of steps along an axis: at most `most`, and no more than a short integer range has.
-    pub(super) fn parts(&self, axis: usize, most: usize) -> usize {
+    /// Number of steps along an axis: at most `max`, and no more than the steps of a short integer range.
+    pub(super) fn parts(&self, axis: usize, max: usize) -> usize {
         let Axis {
             low, high, is_whole, ..
         } = &self.axes[axis];
         if *is_whole {
-            (((high - low) as usize).max(1)).min(most)
+            (((high - low) as usize).max(1)).min(max)
         } else {
-            most
+            max
         }
     }
 
@@ -117,10 +117,10 @@ impl<'a> Space<'a> {
         self.axes[axis].at(part, parts)
     }
 
-    /// Points through which to draw lines along one axis: a grid over all other axes, coarser the more axes there are,
-    /// with at most `most` parts per axis.
-    pub(super) fn anchors(&self, along: usize, most: usize) -> Vec<Point> {
-        let most = most.min(match self.axes.len() {
+    /// Points through which to draw lines along one axis: a grid over all other axes, coarser the more axes there are, with at
+    /// most `max` parts per axis.
+    pub(super) fn anchors(&self, along: usize, max: usize) -> Vec<Point> {
+        let max = max.min(match self.axes.len() {
             0..=2 => 16,
             3 => 6,
             4 => 3,
@@ -133,7 +133,7 @@ impl<'a> Space<'a> {
         });
         let mut anchors = vec![self.here()];
         for axis in (0..self.axes.len()).filter(|axis| *axis != along) {
-            let parts = self.parts(axis, most);
+            let parts = self.parts(axis, max);
             let moved = |anchor: Point| {
                 (0..=parts).map(move |part| {
                     let mut moved = anchor.clone();

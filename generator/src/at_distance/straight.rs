@@ -1,4 +1,4 @@
-//! Searches the straight line from a variant to ends of its ranges, along which all numbers move together.
+//! Searches straight lines from a variant to ends of its ranges, along which all numbers move together.
 
 use driftworld_spec::{Domain, Parameter, ParameterType, Value, Variant};
 
@@ -7,16 +7,16 @@ use super::subject::Free;
 use crate::interpolation::interpolate;
 
 /// Maximum number of corners of the ranges to try if distances do not add up.
-const MOST_CORNERS: usize = 81;
+const MAX_CORNERS: usize = 81;
 
 /// Bisection steps towards the border of the allowed region.
-const HALVINGS_TO_BORDER: u32 = 24;
+const MAX_BISECTIONS_TO_BORDER: u32 = 24;
 
 /// Bisection steps per interval.
-const HALVINGS: u32 = 80;
+const MAX_BISECTIONS: u32 = 80;
 
 impl<D: FnMut(&Variant) -> f64> Search<'_, D> {
-    /// Goes straight from a combination of choices to the ends; true if it meets the target.
+    /// Moves straight from a combination of choices to the ends; true if it meets the target.
     pub(super) fn straight(&mut self, combination: &Changes, smooth: &[Free]) -> bool {
         let Some(base) = self.look(combination.clone()) else {
             return false;
@@ -31,8 +31,8 @@ impl<D: FnMut(&Variant) -> f64> Search<'_, D> {
         self.straight_to(combination, &base, &ends)
     }
 
-    /// Like [`Self::straight`], but to one corner after another, the farthest first: for numbers whose joint reach is not the sum
-    /// of their reaches.
+    /// Like [`Self::straight`], but to one corner after another, the farthest first: for numbers with a joint reach that is not
+    /// the sum of their reaches.
     pub(super) fn straight_to_corners(&mut self, combination: &Changes, smooth: &[Free]) -> bool {
         let Some(base) = self.look(combination.clone()) else {
             return false;
@@ -46,7 +46,7 @@ impl<D: FnMut(&Variant) -> f64> Search<'_, D> {
                     .map(|end| with(corner, &vec![((*name).to_owned(), end.clone())]));
                 moved.chain([corner.clone()]).collect::<Vec<_>>()
             };
-            corners = corners.iter().flat_map(to).take(MOST_CORNERS).collect();
+            corners = corners.iter().flat_map(to).take(MAX_CORNERS).collect();
         }
         let mut reached: Vec<(f64, Changes)> = Vec::new();
         for corner in corners {
@@ -67,7 +67,8 @@ impl<D: FnMut(&Variant) -> f64> Search<'_, D> {
         })
     }
 
-    /// The distance at some ends together with a combination of choices or, if that is not allowed, as near to them as possible.
+    /// The distance at the given ends together with a combination of choices or, if that is not allowed, as near to the ends as
+    /// possible.
     pub(super) fn towards(
         &mut self,
         combination: &Changes,
@@ -78,9 +79,9 @@ impl<D: FnMut(&Variant) -> f64> Search<'_, D> {
             return Some((distance, ends));
         }
         let (mut low, mut high, mut last) = (0.0, 1.0, None);
-        for _ in 0..HALVINGS_TO_BORDER {
+        for _ in 0..MAX_BISECTIONS_TO_BORDER {
             let t = f64::midpoint(low, high);
-            let between = self.on_the_way(&ends, t);
+            let between = self.point_towards(&ends, t);
             match measure(self, with(combination, &between)) {
                 Some(distance) => (low, last) = (t, Some((distance, between))),
                 None => high = t,
@@ -89,8 +90,8 @@ impl<D: FnMut(&Variant) -> f64> Search<'_, D> {
         last
     }
 
-    /// A point at share `t` of the way from the variant to some ends.
-    fn on_the_way(&self, ends: &Changes, t: f64) -> Changes {
+    /// The point at fraction `t` of the line from the variant to the given ends.
+    fn point_towards(&self, ends: &Changes, t: f64) -> Changes {
         let between = ends.iter().map(|(name, end)| {
             let parameter = &self.from.task().parameters()[name];
             let value = self.from.value(name).expect("variant parameters have values");
@@ -105,7 +106,7 @@ impl<D: FnMut(&Variant) -> f64> Search<'_, D> {
             return false;
         };
         let crosses = (base.distance - self.target) * (end.distance - self.target) <= 0.0;
-        self.meets(&end) || (crosses && self.halve(combination, ends))
+        self.meets(&end) || (crosses && self.bisect(combination, ends))
     }
 
     /// The farthest ends of the ranges together with a combination of choices, chosen one parameter at a time.
@@ -128,15 +129,15 @@ impl<D: FnMut(&Variant) -> f64> Search<'_, D> {
         ends
     }
 
-    /// Bisects the way to the ends until it meets the target; false if it cannot.
-    fn halve(&mut self, combination: &Changes, ends: &Changes) -> bool {
+    /// Bisects the line to the ends until it meets the target; false if it cannot.
+    fn bisect(&mut self, combination: &Changes, ends: &Changes) -> bool {
         let (mut low, mut high) = (0.0, 1.0);
         let Some(start) = self.look(combination.clone()) else {
             return false;
         };
-        for _ in 0..HALVINGS {
+        for _ in 0..MAX_BISECTIONS {
             let t = f64::midpoint(low, high);
-            let changes = with(combination, &self.on_the_way(ends, t));
+            let changes = with(combination, &self.point_towards(ends, t));
             let Some(found) = self.look(changes) else { return false };
             if self.meets(&found) {
                 return true;

@@ -1,10 +1,10 @@
-//! [`Subject`]: the parameters that may change on the way to a target distance.
+//! [`Subject`]: the parameters that may change to reach a target distance.
 
 use driftworld_spec::{Domain, Element, Parameter, ParameterType, Role, Variant, nearest};
 
 use crate::GeneratorError;
 
-/// The parameters that may change on the way to a target distance.
+/// The parameters that may change to reach a target distance.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Subject {
     /// The variant parameters that affect only this element of the decision process.
@@ -40,14 +40,14 @@ fn declared(from: &Variant) -> impl Iterator<Item = Free<'_>> {
 /// A parameter that may change: its name and declaration.
 pub(super) type Free<'a> = (&'a str, &'a Parameter);
 
-/// The parameters that may change: those that move smoothly, and those with a list of choices.
+/// The parameters that may change: those that move continuously, and those with a list of choices.
 pub(super) struct FreeParameters<'a> {
     pub(super) smooth: Vec<Free<'a>>,
     pub(super) listed: Vec<Free<'a>>,
     /// Parameters that decide what is read, or are read only under a condition.
     pub(super) tied: Vec<&'a str>,
-    /// Whether the distance may not grow evenly when all numbers move together: one decides what is read, or moves in
-    /// integer steps.
+    /// Whether the distance may grow unevenly when all numbers move together: one decides what is read, or moves in integer
+    /// steps.
     pub(super) is_bent: bool,
 }
 
@@ -55,10 +55,11 @@ pub(super) fn parameters_of<'a>(from: &'a Variant, subject: &Subject) -> Result<
     if let Subject::Parameters(names) = subject {
         let known: Vec<&str> = declared(from).map(|(name, _)| name).collect();
         if let Some(unknown) = names.iter().find(|name| !known.contains(&name.as_str())) {
-            let meant = nearest(unknown, known).map_or_else(String::new, |near| format!(" (did you mean {near:?}?)"));
+            let suggestion =
+                nearest(unknown, known).map_or_else(String::new, |near| format!(" (did you mean {near:?}?)"));
             return Err(GeneratorError::NothingToVary {
                 variant: from.id(),
-                asked: format!("variant parameter named {unknown}{meant}"),
+                asked: format!("variant parameter named {unknown}{suggestion}"),
             });
         }
     }

@@ -13,18 +13,18 @@ use crate::stream::Rng;
 /// The tag of every door.
 const DOOR: &str = "door";
 
-/// The colours of locked doors, all clearly different. If there are more doors, several share a colour, and their keys
-/// open each of them.
+/// The colours of locked doors, all clearly different. If there are more doors than colours, doors share colours, and a key
+/// opens every door of its colour.
 const COLORS: [&str; 8] = ["red", "blue", "yellow", "lime", "magenta", "cyan", "orange", "white"];
 
-/// Minimum distance of a key from walls, and from objects and the agent, in metres; less in smaller cells.
-const FROM_WALLS: f64 = 0.4;
-const FROM_OTHERS: f64 = 0.8;
+/// Minimum distances of a key, in metres: from walls, and from objects and the agent; smaller in small cells.
+const MIN_WALL_DISTANCE: f64 = 0.4;
+const MIN_OBJECT_DISTANCE: f64 = 0.8;
 
 /// Number of cells to try at random before going through them one by one.
 const RANDOM_TRIES: usize = 32;
 
-/// Number of places to try in a cell, the middle first.
+/// Number of positions to try in a cell, the centre first.
 const TRIES_IN_CELL: usize = 8;
 
 impl Sampler {
@@ -55,8 +55,8 @@ impl Sampler {
         plan.doorways.iter().enumerate().map(door).collect()
     }
 
-    /// The keys of `doors`, as returned by [`Sampler::doors`]. No key lies behind its own door: from the agent's start,
-    /// all doors can be opened one after the other.
+    /// The keys of `doors`, as returned by [`Sampler::doors`]. No key lies behind its own door: from the agent's start, all
+    /// doors can be opened one after another.
     pub(super) fn keys(&self, doors: &[Object], draft: &mut Draft) -> Result<Vec<Object>, GeneratorError> {
         let locked = |door: &Object| door.door.as_ref().and_then(|door| door.key.clone());
         let plan = draft
@@ -67,7 +67,7 @@ impl Sampler {
             return Ok(Vec::new());
         };
         let start = plan.cell_at(draft.world.agent_params.coordinates).unwrap_or(0);
-        let order = Order::drawn(plan, start, &mut self.doors.at(draft.index, 1, 0));
+        let order = Order::random(plan, start, &mut self.doors.at(draft.index, 1, 0));
         let mut keys = Vec::with_capacity(doors.len());
         for (number, reached) in order.doors {
             let door = &doors[number];
@@ -88,7 +88,7 @@ impl Sampler {
             draft.context.occupy(coordinates);
             keys.push(Object {
                 color: door.color,
-                // Keys never block the way.
+                // Keys never block a path.
                 solid: false,
                 tag: locked(door),
                 portable: Some(Portable::default()),
@@ -99,7 +99,7 @@ impl Sampler {
     }
 }
 
-/// Which doors a world's rooms have.
+/// The kind of doors in a world's rooms.
 fn doors_of(world: &WorldDraft) -> RoomDoors {
     let layout: Option<&Layout> = world.environment_params.layout.as_ref();
     let rooms = layout.and_then(|layout| layout.rooms.as_ref());
@@ -114,8 +114,8 @@ pub(super) fn stands_in_door(world: &WorldDraft, free_space: &FreeSpace, [x, y]:
         .filter(|_| doors_of(world) != RoomDoors::None);
     plan.into_iter().flat_map(|plan| &plan.doorways).any(|doorway| {
         let [across, along] = if doorway.heading == 0.0 { [0, 1] } else { [1, 0] };
-        let away = [(x - doorway.center[0]).abs(), (y - doorway.center[1]).abs()];
-        away[across] < doorway.width / 2.0 && away[along] < doorway.depth / 2.0 + radius
+        let offset = [(x - doorway.center[0]).abs(), (y - doorway.center[1]).abs()];
+        offset[across] < doorway.width / 2.0 && offset[along] < doorway.depth / 2.0 + radius
     })
 }
 
@@ -129,15 +129,15 @@ fn colors(rng: &mut Rng) -> [&'static str; COLORS.len()] {
 
 /// An order in which all doors can be opened.
 struct Order {
-    /// The cells in the order in which they are reached.
+    /// The cells, in the order in which they are reached.
     cells: Vec<usize>,
     /// The doors by index, each with the number of cells reached before it is opened.
     doors: Vec<(usize, usize)>,
 }
 
 impl Order {
-    fn drawn(plan: &Plan, start: usize, rng: &mut Rng) -> Self {
-        // The cells on both sides: a doorway is in the middle of one side of each.
+    fn random(plan: &Plan, start: usize, rng: &mut Rng) -> Self {
+        // The cells on both sides of each doorway, which is in the middle of their common side.
         let sides: Vec<[Option<usize>; 2]> = plan
             .doorways
             .iter()
@@ -170,10 +170,11 @@ impl Order {
             while let Some(&cell) = cells.get(next) {
                 next += 1;
                 near.extend(&doors_of_cell[cell]);
-                for beside in plan.neighbours(cell) {
-                    if !shut.contains(&[Some(cell), Some(beside)]) && !std::mem::replace(&mut is_reached[beside], true)
+                for next_cell in plan.neighbours(cell) {
+                    if !shut.contains(&[Some(cell), Some(next_cell)])
+                        && !std::mem::replace(&mut is_reached[next_cell], true)
                     {
-                        cells.push(beside);
+                        cells.push(next_cell);
                     }
                 }
             }
@@ -193,10 +194,13 @@ impl Order {
     }
 }
 
-/// A place in one of these cells that is clear of walls, objects and the agent: tries cells at random, then all in turn.
+/// A position in one of these cells that is clear of walls, objects and the agent: tries cells at random, then all in turn.
 fn free_place(plan: &Plan, cells: &[usize], draft: &Draft, rng: &mut Rng) -> Option<[f64; 2]> {
-    let least = plan.cell[0].min(plan.cell[1]);
-    let (walls, others) = (FROM_WALLS.min(least / 4.0), FROM_OTHERS.min(least / 2.0));
+    let shorter_side = plan.cell[0].min(plan.cell[1]);
+    let (walls, others) = (
+        MIN_WALL_DISTANCE.min(shorter_side / 4.0),
+        MIN_OBJECT_DISTANCE.min(shorter_side / 2.0),
+    );
     let mut first = 0;
     (0..RANDOM_TRIES + cells.len()).find_map(|turn| {
         if turn < RANDOM_TRIES {
@@ -205,11 +209,11 @@ fn free_place(plan: &Plan, cells: &[usize], draft: &Draft, rng: &mut Rng) -> Opt
         let cell = cells[(first + turn.saturating_sub(RANDOM_TRIES - 1)) % cells.len()];
         let middle = plan.cells[cell].center;
         (0..TRIES_IN_CELL).find_map(|number| {
-            let mut stray = |axis: usize| {
+            let mut jittered = |axis: usize| {
                 let share = if number == 0 { 0.0 } else { rng.unit() - 0.5 };
                 middle[axis] + share * plan.cell[axis]
             };
-            let place = [stray(0), stray(1)];
+            let place = [jittered(0), jittered(1)];
             draft.context.is_clear(place, walls, others).then_some(place)
         })
     })

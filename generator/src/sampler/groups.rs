@@ -1,11 +1,11 @@
-//! Samples the objects of a group: their number, kinds, places and headings. Free places are found in `placement.rs`.
+//! Samples the objects of a group: their number, kinds, positions and headings. `placement.rs` finds free positions.
 
 use driftworld_spec::{Distribution, Turns, Value, WorldDraft};
 
 use super::Sampler;
 use crate::GeneratorError;
 use crate::cells::FreePlace;
-use crate::compiled::{Address, Group, GroupCount, Look};
+use crate::compiled::{Address, FacingRule, Group, GroupCount};
 use crate::placement::{Anchor, PlacementContext, Request};
 
 impl Sampler {
@@ -19,7 +19,8 @@ impl Sampler {
         draft: &mut Draft,
     ) -> Result<(), GeneratorError> {
         let index = draft.index;
-        // Each anchor has its own random numbers, so that adding an object around one anchor moves no objects around the others.
+        // Each anchor has its own random numbers, so that adding an object around one anchor does not move objects around
+        // others.
         let first = anchor_number << 32;
         let count = count_of(group, first, draft);
         let found = draft.world.objects.len().saturating_add(count as usize);
@@ -48,16 +49,16 @@ impl Sampler {
                 object.seed = object.seed.or_else(|| Some(seeds.seed(first + turn)));
             }
             let mut rng = group.placement.stream.at(index, first + turn, 0);
-            // The agent must fit between the object and the wall: a body is about as wide as its scale, walls are
-            // thinner than agents.
-            let mouth = 1.5 * draft.world.agent_params.agent_width + object.scale / 2.0;
-            let is_free = !object.solid || draft.context.asks_for_doorways(asked, cells.as_ref(), mouth);
+            // The agent must fit between the object and the wall. A body is about as wide as its scale; walls are thinner than
+            // agents.
+            let doorway_clearance = 1.5 * draft.world.agent_params.agent_width + object.scale / 2.0;
+            let is_free = !object.solid || draft.context.allows_doorways(asked, cells.as_ref(), doorway_clearance);
             let request = Request {
                 placement: asked,
                 margins: &group.margins,
                 anchor,
                 group: number,
-                mouth: if is_free { 0.0 } else { mouth },
+                doorway_clearance: if is_free { 0.0 } else { doorway_clearance },
                 number: turn,
             };
             let found = match &mut cells {
@@ -77,7 +78,7 @@ impl Sampler {
             object.coordinates = place;
             object.heading = along.unwrap_or(object.heading);
             if place.iter().any(|metres| metres.abs() > 300.0) {
-                // This happens only if no distance to walls is kept, so that the arena itself is the limit.
+                // This happens only without a minimum distance to walls, so that the arena itself is the limit.
                 return Err(self.out_of_range(
                     index,
                     &format!("group/{}/placement", group.name),
@@ -87,14 +88,14 @@ impl Sampler {
             }
             let towards = match &group.facing {
                 None => None,
-                Some(Look::Random(stream)) => {
+                Some(FacingRule::Random(stream)) => {
                     object.heading = 360.0 * stream.at(index, first + turn, 0).unit();
                     None
                 }
-                Some(Look::Agent) => Some(draft.world.agent_params.coordinates),
-                Some(Look::Middle) => Some(anchor.at),
-                Some(Look::Point(point)) => Some(*point),
-                Some(Look::Group(group)) => draft.context.group(*group).nearest(place),
+                Some(FacingRule::Agent) => Some(draft.world.agent_params.coordinates),
+                Some(FacingRule::Middle) => Some(anchor.at),
+                Some(FacingRule::Point(point)) => Some(*point),
+                Some(FacingRule::Group(group)) => draft.context.group(*group).nearest(place),
             };
             if let Some(to) = towards.filter(|to| *to != place) {
                 object.heading = heading(place, to);
@@ -121,16 +122,16 @@ fn count_of(group: &Group, first: u64, draft: &Draft<'_, '_>) -> u32 {
     }
 }
 
-/// A drawn count; saturates, because a count beyond `u32` is too many in any case.
+/// A count that was drawn; saturates, because a count beyond `u32` is too large in any case.
 fn whole(value: &Value) -> u32 {
     value
         .as_integer()
         .map_or(0, |count| u32::try_from(count.max(0)).unwrap_or(u32::MAX))
 }
 
-/// The heading in degrees from one place to another.
+/// The heading in degrees from one position to another.
 fn heading([x, y]: [f64; 2], [to_x, to_y]: [f64; 2]) -> f64 {
     let turned = libm::atan2(to_x - x, to_y - y).to_degrees().rem_euclid(360.0);
-    // A tiny negative angle would be rounded up to 360.
+    // A tiny negative angle would round up to 360.
     if turned >= 360.0 { 0.0 } else { turned }
 }

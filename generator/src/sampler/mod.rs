@@ -1,4 +1,4 @@
-//! [`Sampler`]: a variant under a seed, compiled so that any of its worlds can be drawn directly.
+//! [`Sampler`]: a variant under a seed, compiled so that any of its worlds can be sampled directly.
 
 mod doors;
 mod groups;
@@ -18,10 +18,10 @@ use crate::{GeneratorError, WorldId};
 use doors::stands_in_door;
 use groups::Draft;
 
-/// Maximum number of draws of a world's randomized parameters; after that, an unmet requirement is an error.
-pub(crate) const ATTEMPTS: u32 = 1000;
+/// Maximum number of times to draw a world's randomized parameters; after that, a violated requirement is an error.
+pub(crate) const MAX_ATTEMPTS: u32 = 1000;
 
-/// Draws the worlds of one variant under one seed, with random access.
+/// Samples the worlds of one variant under one seed, with random access.
 ///
 /// World `index` is a pure function of the task's name, the variant's values, the seed and the index. Two variants of a task draw
 /// the same numbers under the same seed and index: their worlds differ only where the variants differ.
@@ -59,7 +59,7 @@ pub struct Sampler {
 }
 
 impl Sampler {
-    /// Prepares a variant for drawing.
+    /// Prepares a variant for sampling.
     pub fn new(variant: &Variant, seed: u64) -> Self {
         let compiled = Compiled::new(variant, seed);
         let is_random = |requirement: &&Requirement| {
@@ -89,7 +89,7 @@ impl Sampler {
             free_space: None,
             start_varies: false,
         };
-        sampler.settle_free_space();
+        sampler.prepare_free_space();
         sampler
     }
 
@@ -100,16 +100,16 @@ impl Sampler {
         self
     }
 
-    /// Takes the layouts of predefined maps from a library and writes each world's layout into the world.
+    /// Takes the layouts of predefined maps from a library, and writes each world's layout into the world.
     #[must_use]
     pub fn with_maps(mut self, maps: Arc<MapLibrary>) -> Self {
         self.maps = Some(maps);
-        self.settle_free_space();
+        self.prepare_free_space();
         self
     }
 
     /// Prepares the map and the free space once, if they are the same in every world.
-    fn settle_free_space(&mut self) {
+    fn prepare_free_space(&mut self) {
         let keys = ["predefined_map", "map_size", "map_regions", "walls", "layout"];
         let shapes = keys.map(|key| format!("/environment_params/{key}"));
         let layout = &mut self.compiled.world.base.environment_params.layout;
@@ -131,12 +131,12 @@ impl Sampler {
         }
     }
 
-    /// The variant that it draws from.
+    /// The variant from which it samples.
     pub fn variant(&self) -> &Variant {
         &self.variant
     }
 
-    /// The seed that it draws under.
+    /// The seed under which it samples.
     pub fn seed(&self) -> u64 {
         self.seed
     }
@@ -145,16 +145,16 @@ impl Sampler {
     ///
     /// # Errors
     /// [`GeneratorError::Requirement`] if the task's requirements fail in every try, [`GeneratorError::NoStart`] if the agent's
-    /// start is never in free space, [`GeneratorError::OutOfRange`] for a draw that the world does not allow.
+    /// start is never in free space, [`GeneratorError::OutOfRange`] if a draw is outside the range that the world allows.
     pub fn values(&self, index: u64) -> Result<Vec<(&str, Value)>, GeneratorError> {
         let names = self.compiled.parameters.iter().map(|parameter| parameter.name.as_str());
         Ok(names.zip(self.empty_world(index)?.1).collect())
     }
 
-    /// The randomized parameters of the first attempt, counted from `first`, that meets the requirements, and the number
-    /// of that attempt.
+    /// The randomized parameters of the first attempt from `first` on that meets the requirements, and the number of that
+    /// attempt.
     fn draw_values(&self, index: u64, first: u32) -> Result<(Vec<Value>, u32), GeneratorError> {
-        for attempt in first..ATTEMPTS {
+        for attempt in first..MAX_ATTEMPTS {
             let mut values = vec![Value::Boolean(false); self.compiled.parameters.len()];
             for &number in &self.compiled.order {
                 let parameter = &self.compiled.parameters[number];
@@ -173,35 +173,35 @@ impl Sampler {
                     .map(|number| values[number].clone())
                     .or_else(|| self.variant.value(name).cloned())
             };
-            let broken = self
+            let violated = self
                 .requirements
                 .iter()
                 .find(|requirement| requirement.holds(value_of) != Some(true));
-            match broken {
+            match violated {
                 None => return Ok((values, attempt)),
-                Some(requirement) if attempt + 1 == ATTEMPTS => {
+                Some(requirement) if attempt + 1 == MAX_ATTEMPTS => {
                     return Err(GeneratorError::Requirement {
                         world: self.id(index),
                         requirement: requirement.text().to_owned(),
                         values: requirement.describe(value_of),
-                        tries: ATTEMPTS,
+                        tries: MAX_ATTEMPTS,
                     });
                 }
                 Some(_) => {}
             }
         }
-        unreachable!("callers begin below the last attempt, which returns")
+        unreachable!("callers start below the last attempt, which returns")
     }
 
-    /// The free space of all worlds, or the world's own.
+    /// The free space shared by all worlds, or the world's own.
     fn free_space_of<'a>(&'a self, own: Option<&'a FreeSpace>) -> &'a FreeSpace {
         self.free_space
             .as_ref()
             .or(own)
-            .expect("a world has its own where there is none for all")
+            .expect("a world has its own free space unless it is shared")
     }
 
-    /// The world without its objects, and its free space unless that is shared. If a drawn start is not in free space, it is
+    /// The world without its objects, and its free space unless that is shared. If a random start is not in free space, it is
     /// drawn again together with the parameters.
     fn empty_world(&self, index: u64) -> Result<(WorldDraft, Vec<Value>, Option<FreeSpace>), GeneratorError> {
         let mut first = 0;
@@ -237,7 +237,7 @@ impl Sampler {
                 return Ok((world, values, own_free_space));
             }
             let tries = attempt + 1;
-            if !self.start_varies || tries == ATTEMPTS {
+            if !self.start_varies || tries == MAX_ATTEMPTS {
                 let world = self.id(index);
                 return Err(GeneratorError::NoStart { world, start, tries });
             }
@@ -248,14 +248,14 @@ impl Sampler {
     /// World number `index`.
     ///
     /// # Errors
-    /// [`GeneratorError`] if no place is found for an object or the agent, a draw is out of range, draws do not fit together, a
-    /// requirement is never met, or there are too many objects.
+    /// [`GeneratorError`] if no position is found for an object or the agent, a draw is out of range, the drawn values
+    /// conflict, a requirement is never met, or there are too many objects.
     pub fn world(&self, index: u64) -> Result<World, GeneratorError> {
         let (mut world, values, own_free_space) = self.empty_world(index)?;
         world.seed = Some(self.seeds.seed(index));
         let free_space = self.free_space_of(own_free_space.as_ref());
         let mut context = PlacementContext::new(free_space, world.agent_params.coordinates, self.compiled.groups.len());
-        world.objects.reserve_exact(self.compiled.room);
+        world.objects.reserve_exact(self.compiled.capacity);
         for (number, fixture) in self.compiled.fixtures.iter().enumerate() {
             let object = self.fill(fixture, Address::first(index, number as u64), &values)?;
             context.occupy(object.coordinates);
@@ -297,7 +297,7 @@ impl Sampler {
             world.objects.extend(doors.into_iter().chain(keys));
             self.check_count(world.objects.len(), index)?;
         }
-        // Loading the task and `fill` check each value by itself; only this check sees whether values fit together.
+        // Loading the task and `fill` check each value by itself; only this check finds conflicts between values.
         world
             .check_in_range_with(free_space.plan.clone())
             .map_err(|source| GeneratorError::Clash {
@@ -333,7 +333,7 @@ impl Sampler {
                     ));
                 }
                 hole.fill(&mut target, value)
-                    .expect("loading the task tried every value that this hole can be given");
+                    .expect("loading the task tried every value that this hole can receive");
                 Ok(())
             })?;
         }
@@ -349,7 +349,7 @@ impl Sampler {
         }
     }
 
-    /// The error for more objects than a world may have.
+    /// Fails if there are more objects than a world may have.
     fn check_count(&self, found: usize, index: u64) -> Result<(), GeneratorError> {
         if found <= MAX_OBJECTS {
             return Ok(());
@@ -375,7 +375,7 @@ impl Sampler {
     }
 }
 
-/// Whether a layout is an open field, which yields bit for bit the arena without a layout.
+/// Whether a layout has no walls, so that its arena is identical to one without a layout.
 fn is_open(layout: &Layout) -> bool {
     layout.walls.as_ref().is_some_and(Vec::is_empty)
 }

@@ -1,5 +1,5 @@
-//! Places the agent in a cell of a layout. A start given as a point or a distribution of points is not handled here: it
-//! is a hole in the world's template, filled like any other.
+//! Places the agent in a cell of a layout. A start given as a point or a distribution of points is a hole in the world's
+//! template, filled like any other.
 
 use driftworld_spec::{CellKind, Distribution, Legend, WorldDraft};
 
@@ -10,7 +10,7 @@ use crate::clearance::FreeSpace;
 use crate::compiled::Start;
 
 impl Sampler {
-    /// Places the agent in a cell: where the task or the letters of the layout say, else in any cell.
+    /// Places the agent in a cell: as set by the task or the letters of the layout, otherwise in any cell.
     pub(super) fn start_in_cell(
         &self,
         world: &mut WorldDraft,
@@ -54,7 +54,7 @@ impl Sampler {
         let found = Cells::find(plan, layout, asked, "", world.agent_params.coordinates)
             .and_then(|mut cells| {
                 if is_default {
-                    cells.leave_letters();
+                    cells.exclude_letters();
                 }
                 cells.take(&mut rng, is_free).map_err(|(_, reason)| reason)
             })

@@ -1,4 +1,4 @@
-//! Random tasks for tests: a few parameters of any type, requirements on them, and one that is read only under a condition.
+//! Random tasks for tests: a few parameters of any type, with requirements, some of them read only under a condition.
 
 /// Deterministic pseudo-random numbers: Vigna's splitmix64.
 pub(crate) struct Numbers(pub(crate) u64);
@@ -61,7 +61,7 @@ fn candidates() -> Vec<Candidate> {
 
 const END: &str = r#""type": "number", "range": [0, 1]"#;
 
-/// A task as JSON, and the parameters that a search may change.
+/// A random task as JSON, and the parameters that a search may change.
 pub(crate) struct Drawn {
     pub(crate) text: String,
     pub(crate) names: Vec<String>,
@@ -70,9 +70,9 @@ pub(crate) struct Drawn {
 impl Drawn {
     pub(crate) fn new(numbers: &mut Numbers) -> Self {
         let (all, mut candidates) = (candidates(), Vec::new());
-        let wanted = 2 + numbers.below(4);
+        let num_parameters = 2 + numbers.below(4);
         let mut axes = 0;
-        while candidates.len() < wanted {
+        while candidates.len() < num_parameters {
             let candidate = numbers.one_of(&all).clone();
             let more = match candidate.0 {
                 "ends" | "pays" => 2,
@@ -83,12 +83,12 @@ impl Drawn {
                 axes += more;
             }
         }
-        if let Some(place) = candidates.iter().position(|(name, ..)| *name == "ends") {
+        if let Some(index) = candidates.iter().position(|(name, ..)| *name == "ends") {
             let ends: [Candidate; 2] = [
                 ("lo", END, vec!["0", "0.1", "0.4"]),
                 ("hi", END, vec!["0.4", "0.7", "1"]),
             ];
-            candidates.splice(place..=place, ends);
+            candidates.splice(index..=index, ends);
         }
         let names: Vec<&str> = candidates.iter().map(|(name, ..)| *name).collect();
         let require: Vec<String> = (0..=numbers.below(3)).map(|_| requirement(numbers, &names)).collect();
@@ -128,7 +128,7 @@ impl Drawn {
     }
 }
 
-/// One of the names whose values are numbers, with the scale of its values.
+/// A random numeric parameter among the names, with the scale of its values.
 fn number(numbers: &mut Numbers, names: &[&str]) -> Option<(String, f64)> {
     let scale = |name: &str| match name {
         "a" | "lo" | "hi" => Some((name.to_owned(), 1.0)),
@@ -175,7 +175,7 @@ fn condition(numbers: &mut Numbers, names: &[&str]) -> String {
         "law" => "true".to_owned(),
         other => {
             let (name, scale) = number(numbers, &[other]).expect("all others are numbers");
-            // A search, even one on a grid, meets an exact real number only by accident.
+            // A search, even on a grid, would meet an exact real number only by accident.
             let sign = if matches!(other, "n" | "m") { "!=" } else { "<=" };
             format!("{name} {sign} {}", (scale / 2.0).round())
         }

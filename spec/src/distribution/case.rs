@@ -1,4 +1,4 @@
-//! [`Case`]: a look-up, which selects a value by the value of a parameter.
+//! [`Case`]: a look-up that selects a value by the value of a parameter.
 
 use std::borrow::Cow;
 
@@ -12,10 +12,11 @@ use super::reference::{Number, ParamRef};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, bound(deserialize = "T: Deserialize<'de>"))]
 pub struct Case<T> {
-    /// The parameter that selects; it may have any role.
+    /// The parameter whose value selects the result; it may have any role.
     #[serde(rename = "case")]
     pub by: ParamRef,
-    /// The results by the values of the parameter as strings: words, names of choices or colours, numbers, `true`, `false`.
+    /// The results, keyed by the parameter's value as a string: a word, the name of a choice or colour, a number, `true` or
+    /// `false`.
     pub of: IndexMap<String, T>,
     /// The result for all other values; `None` if every value has a case.
     #[serde(rename = "else", default, skip_serializing_if = "Option::is_none")]
@@ -40,14 +41,14 @@ impl JsonSchema for Case<Number> {
 
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         let number = generator.subschema_for::<Number>();
-        schema(generator, "A number by the value of a parameter.", &number)
+        schema(generator, "A number selected by the value of a parameter.", &number)
     }
 }
 
 /// The schema of a look-up, given the schema of its cases.
 pub(crate) fn schema(generator: &mut SchemaGenerator, description: &str, case: &Schema) -> Schema {
     let parameter = generator.subschema_for::<ParamRef>();
-    let of = "The cases, by the values of the parameter as texts: words, names of choices or colours, numbers, `true`, `false`.";
+    let of = "The results, keyed by the parameter's value as a string: a word, the name of a choice or colour, a number, `true` or `false`.";
     json_schema!({
         "description": description,
         "type": "object",

@@ -3,20 +3,20 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Which cells of a layout, by how many sides they can be left.
+/// Selects cells of a layout by their number of open sides.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum CellKind {
     /// Every cell.
     #[default]
     Any,
-    /// Those that can be left by one side.
+    /// Cells with one open side.
     DeadEnd,
-    /// Those that can be left by two sides, corners too.
+    /// Cells with two open sides, including corners.
     Corridor,
-    /// Those that can be left by three or four sides.
+    /// Cells with three or four open sides.
     Junction,
-    /// No cells but the doorways between rooms. Objects stand in their middle, turned along the wall.
+    /// Doorways between rooms, instead of cells. Objects are placed in the middle of a doorway and turned along the wall.
     Doorway,
 }
 
@@ -44,11 +44,11 @@ impl CellKind {
     }
 }
 
-/// Which room of a layout, as seen from the agent's start.
+/// Selects rooms of a layout relative to the agent's start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum CellRoom {
-    /// Another room than that in which the agent starts.
+    /// Any room except the one in which the agent starts.
     OtherThanAgent,
     /// The room in which the agent starts.
     SameAsAgent,

@@ -1,4 +1,4 @@
-//! [`Channels`]: a colour in a distribution, whose channels may be references.
+//! [`Channels`]: a colour in a distribution; its channels may be references.
 
 use std::borrow::Cow;
 
@@ -14,7 +14,7 @@ pub trait Channel: From<f64> {
     /// The channels that refer to a parameter's colour; `None` if this type has no references.
     fn of_parameter(reference: &ParamRef) -> Option<[Self; 3]>;
 
-    /// The parameter whose whole colour these channels refer to, if they do.
+    /// The parameter to whose whole colour these channels refer, if they do.
     fn parameter_of(channels: &[Self; 3]) -> Option<ParamRef>;
 }
 
@@ -115,19 +115,19 @@ impl<N: JsonSchema> JsonSchema for Channels<N> {
     }
 }
 
-/// How far each channel of a colour strays.
+/// The spread of the channels of a colour.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged, expecting = "a number, or [r, g, b]")]
 #[schemars(rename = "ChannelSpread")]
 pub enum ChannelSpread<N = f64> {
-    /// All as far.
+    /// The same for all channels.
     Same(N),
-    /// Red, green and blue.
+    /// Separate spreads for red, green and blue.
     Each([N; 3]),
 }
 
 impl ChannelSpread {
-    /// The channels as numbers.
+    /// The spreads of red, green and blue.
     pub fn to_array(&self) -> [f64; 3] {
         match self {
             Self::Same(spread) => [*spread; 3],
@@ -136,14 +136,14 @@ impl ChannelSpread {
     }
 }
 
-/// Whether each channel of a colour has a number of chance of its own.
+/// Whether the channels of a colour vary independently.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ChannelChance {
-    /// Each has its own: red may stray up where green strays down.
+    /// Independently: red may rise while green falls.
     #[default]
     Apart,
-    /// All three have the same: they stray up and down together, as the shades of one colour do.
+    /// Together, from one random number: all three rise and fall together, like shades of one colour.
     #[serde(rename = "together")]
     Shared,
 }
@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn settled_channels_have_no_references() {
+    fn resolved_channels_reject_references() {
         let red: Channels = serde_json::from_str("\"red\"").expect("a CSS name");
         assert_eq!(red, Channels::from(Color([1.0, 0.0, 0.0])));
         assert!(serde_json::from_str::<Channels>(r#"{"param": "leaf"}"#).is_err());

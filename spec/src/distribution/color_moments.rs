@@ -1,4 +1,4 @@
-//! [`Moments`] of distributions that draw colours: mean and covariance.
+//! [`Moments`] of distributions of colours: mean and covariance.
 
 use super::color::dip;
 use super::{Distribution, Moments};
@@ -27,7 +27,7 @@ impl Distribution<f64> {
                 Some(Moments::mixed(&parts, weights.as_deref()))
             }
             Self::ColorHsv { .. } => self.hsv_moments(),
-            // One random number moves all channels, each piecewise linearly between its knots.
+            // One random number drives all channels; each is piecewise linear between its knots.
             _ => {
                 let knots = self.knots()?;
                 let at = |u: f64| self.color_at([u; 3]).map_or([0.0; 3], |color| color.0);
@@ -39,7 +39,7 @@ impl Distribution<f64> {
         }
     }
 
-    /// The knots in `0..=1` of the random number between which channels that vary together are linear.
+    /// Values of the random number in `0..=1` between which all channels that vary together are linear.
     fn knots(&self) -> Option<Vec<f64>> {
         let mut knots = vec![0.0, 1.0];
         match self {
@@ -65,7 +65,7 @@ impl Distribution<f64> {
         Some(knots)
     }
 
-    /// A channel is `v − v s d` for a dip `d` that depends on the hue; hue, saturation and value are independent.
+    /// Each channel is `v − v s d`, where the dip `d` depends on the hue; hue, saturation and value are independent.
     fn hsv_moments(&self) -> Option<Moments<3>> {
         let [hue, saturation, value] = self.hsv_ends()?;
         let mean_of = |[low, high]: [f64; 2]| f64::midpoint(low, high);
@@ -93,7 +93,7 @@ impl Distribution<f64> {
     }
 }
 
-/// The integral, between knots, of a function that is a polynomial of degree 3 or less on each piece: Simpson's rule.
+/// Integrates a function that is a polynomial of degree 3 or less between knots, by Simpson's rule.
 fn integral(knots: &[f64], of: impl Fn(f64) -> f64) -> f64 {
     let piece = |low: f64, high: f64| (high - low) / 6.0 * (of(low) + 4.0 * of(f64::midpoint(low, high)) + of(high));
     knots.windows(2).map(|ends| piece(ends[0], ends[1])).sum()
@@ -154,7 +154,7 @@ mod tests {
         let moments = law.color_moments().expect("it draws colours");
         assert_eq!(moments.mean, [0.25, 0.5, 0.25]);
         assert_eq!(moments.covariance[0], [0.1875, -0.125, -0.0625]);
-        let channels = law.color_channels().expect("no part is of hues");
+        let channels = law.color_channels().expect("no part is a `color_hsv`");
         assert_eq!(
             channels.map(|channel| channel.mean()),
             [Some(0.25), Some(0.5), Some(0.25)]

@@ -1,4 +1,4 @@
-//! Cumulative distribution functions of all distributions that draw numbers. The inverse is in `quantile.rs`.
+//! Cumulative distribution functions (CDFs) of all distributions of numbers. The inverse is in `quantile.rs`.
 
 use super::moments::ends;
 use super::special::{beta_below, normal_cdf};
@@ -6,11 +6,11 @@ use super::{Distribution, discrete, von_mises};
 use crate::value::Value;
 
 impl Distribution<f64> {
-    /// Probability of a draw up to `x`; false counts as 0 and true as 1.
+    /// Probability that a draw is at most `x`; false counts as 0 and true as 1.
     ///
-    /// Headings are counted clockwise from the one opposite the mean direction: `x` is first brought into
-    /// `mean − 180° ≤ x < mean + 180°`. Closed forms with an absolute error below 1e-10 (much lower, except for counts of
-    /// 100,000); `von_mises` by quadrature, below 1e-12. `None` if it draws no numbers.
+    /// Headings are accumulated clockwise, starting opposite the mean direction: `x` is first wrapped into `mean − 180° ≤ x <
+    /// mean + 180°`. Closed forms with an absolute error below 1e-10 (much lower, except for counts near 100,000); `von_mises`
+    /// by quadrature, below 1e-12. `None` if it draws no numbers.
     pub fn cdf(&self, x: f64) -> Option<f64> {
         Some(match self {
             Self::Constant { value } => step(x >= value.as_number()?),
@@ -94,7 +94,7 @@ fn truncated(x: f64, mean: f64, std: f64, low: f64, high: f64) -> f64 {
     }
     let z = |x: f64| (x - mean) / std;
     if z(low) > 0.0 {
-        // The upper tail loses digits next to 1; its mirror image keeps them.
+        // Probabilities close to 1 lose digits in the upper tail; the mirror image keeps them.
         return 1.0 - truncated(-x, -mean, std, -high, -low);
     }
     (normal_cdf(z(x)) - normal_cdf(z(low))) / (normal_cdf(z(high)) - normal_cdf(z(low)))

@@ -1,11 +1,11 @@
-//! Laws of counts: binomial, Poisson and geometric.
+//! Distributions of counts: binomial, Poisson and geometric.
 
 use super::special::{beta_below, gamma_above, normal_quantile};
 
-/// Largest mean for which counts are summed one by one; beyond it the cumulative function is searched.
-const SHORT_WALK: f64 = 64.0;
+/// Largest mean for which probabilities are summed one by one; above it, the CDF is searched.
+const MAX_SUMMED_MEAN: f64 = 64.0;
 
-/// Probability of at most `k` successes in `n` tries.
+/// Probability of at most `k` successes in `n` trials.
 pub(super) fn binomial_cdf(k: f64, n: f64, p: f64) -> f64 {
     let k = k.floor();
     if k < 0.0 {
@@ -17,7 +17,7 @@ pub(super) fn binomial_cdf(k: f64, n: f64, p: f64) -> f64 {
     }
 }
 
-/// Probability of at most `k` events if `mean` are expected.
+/// Probability of at most `k` events when `mean` events are expected.
 pub(super) fn poisson_cdf(k: f64, mean: f64) -> f64 {
     let k = k.floor();
     if k < 0.0 {
@@ -41,7 +41,7 @@ pub(super) fn geometric_cdf(k: f64, p: f64) -> f64 {
     }
 }
 
-/// The `u` quantile of the number of successes in `n` tries.
+/// The `u` quantile of the number of successes in `n` trials.
 pub(super) fn binomial_quantile(u: f64, n: f64, p: f64) -> f64 {
     if p == 0.0 || n == 0.0 {
         return 0.0;
@@ -49,24 +49,24 @@ pub(super) fn binomial_quantile(u: f64, n: f64, p: f64) -> f64 {
     if p == 1.0 || u >= 1.0 {
         return n;
     }
-    if n * p <= SHORT_WALK {
+    if n * p <= MAX_SUMMED_MEAN {
         let odds = p / (1.0 - p);
-        let none = libm::exp(n * libm::log1p(-p));
-        return walk(u, none, n, |k| odds * (n - k) / (k + 1.0));
+        let p_zero = libm::exp(n * libm::log1p(-p));
+        return sum_until(u, p_zero, n, |k| odds * (n - k) / (k + 1.0));
     }
     let deviation = (n * p * (1.0 - p)).sqrt();
     search(u, n * p, deviation, n, |k| binomial_cdf(k, n, p))
 }
 
-/// The `u` quantile of the number of events if `mean` are expected.
+/// The `u` quantile of the number of events when `mean` events are expected.
 pub(super) fn poisson_quantile(u: f64, mean: f64) -> f64 {
-    if mean <= SHORT_WALK {
+    if mean <= MAX_SUMMED_MEAN {
         // Beyond mean + 40 deviations the remaining probability is below 2⁻⁵³.
-        let most = mean + 40.0 * (mean + 1.0).sqrt();
-        return walk(u, libm::exp(-mean), most.ceil(), |k| mean / (k + 1.0));
+        let max = mean + 40.0 * (mean + 1.0).sqrt();
+        return sum_until(u, libm::exp(-mean), max.ceil(), |k| mean / (k + 1.0));
     }
-    let most = mean + 40.0 * mean.sqrt();
-    search(u, mean, mean.sqrt(), most.ceil(), |k| poisson_cdf(k, mean))
+    let max = mean + 40.0 * mean.sqrt();
+    search(u, mean, mean.sqrt(), max.ceil(), |k| poisson_cdf(k, mean))
 }
 
 /// The `u` quantile of the number of failures before the first success.
@@ -76,7 +76,7 @@ pub(super) fn geometric_quantile(u: f64, p: f64) -> f64 {
     }
     let u = u.min(1.0 - f64::EPSILON / 2.0);
     let count = (libm::log1p(-u) / libm::log1p(-p) - 1.0).ceil().max(0.0);
-    // If u equals a cumulative probability, rounding may have gone one too far.
+    // If u equals a cumulative probability, rounding may have overshot by one.
     if count >= 1.0 && geometric_cdf(count - 1.0, p) >= u {
         count - 1.0
     } else {
@@ -84,10 +84,11 @@ pub(super) fn geometric_quantile(u: f64, p: f64) -> f64 {
     }
 }
 
-/// Sums probabilities from 0 until they reach `u`; `step(k)` is the ratio of the probability of `k + 1` to that of `k`.
-fn walk(u: f64, none: f64, most: f64, step: impl Fn(f64) -> f64) -> f64 {
-    let (mut k, mut probability, mut sum) = (0.0, none, none);
-    while sum < u && k < most {
+/// Sums the probabilities of 0, 1, 2 … until they reach `u` and returns the last count. `step(k)` is the probability of `k + 1`
+/// divided by the probability of `k`.
+fn sum_until(u: f64, p_zero: f64, max: f64, step: impl Fn(f64) -> f64) -> f64 {
+    let (mut k, mut probability, mut sum) = (0.0, p_zero, p_zero);
+    while sum < u && k < max {
         probability *= step(k);
         k += 1.0;
         sum += probability;
@@ -95,13 +96,13 @@ fn walk(u: f64, none: f64, most: f64, step: impl Fn(f64) -> f64) -> f64 {
     k
 }
 
-/// The least integer at which a cumulative function reaches `u`; starts near the quantile of a normal distribution.
-fn search(u: f64, mean: f64, deviation: f64, most: f64, cdf: impl Fn(f64) -> f64) -> f64 {
+/// The smallest integer at which a CDF reaches `u`; starts near the quantile of a normal distribution.
+fn search(u: f64, mean: f64, deviation: f64, max: f64, cdf: impl Fn(f64) -> f64) -> f64 {
     let inner = u.clamp(1e-300, 1.0 - f64::EPSILON / 2.0);
-    let mut high = (mean + deviation * normal_quantile(inner)).round().clamp(0.0, most);
+    let mut high = (mean + deviation * normal_quantile(inner)).round().clamp(0.0, max);
     let mut stride = 1.0;
-    while high < most && cdf(high) < u {
-        high = (high + stride).min(most);
+    while high < max && cdf(high) < u {
+        high = (high + stride).min(max);
         stride *= 2.0;
     }
     let mut low = high;

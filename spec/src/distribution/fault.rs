@@ -28,18 +28,18 @@ impl Distribution<f64> {
             }
             Self::Normal { std, .. } => unless(*std >= 0.0, format!("std {std}"), "a standard deviation of at least 0"),
             Self::TruncatedNormal { mean, std, low, high } => {
-                let fine = *std > 0.0 && low < high && *low <= mean + 6.0 * std && *high >= mean - 6.0 * std;
+                let is_valid = *std > 0.0 && low < high && *low <= mean + 6.0 * std && *high >= mean - 6.0 * std;
                 let found = format!("mean {mean}, std {std}, low {low}, high {high}");
                 unless(
-                    fine,
+                    is_valid,
                     found,
                     "std above 0, low below high, and the range within 6 std of the mean",
                 )
             }
             Self::LogNormal { mu, sigma } => {
-                let fine = (0.0..=30.0).contains(sigma) && mu.abs() <= 300.0;
+                let is_valid = (0.0..=30.0).contains(sigma) && mu.abs() <= 300.0;
                 unless(
-                    fine,
+                    is_valid,
                     format!("mu {mu} and sigma {sigma}"),
                     "mu in -300..300 and sigma in 0..30",
                 )
@@ -47,18 +47,18 @@ impl Distribution<f64> {
             Self::Exponential { rate } => unless(*rate > 0.0, format!("rate {rate}"), "a rate above 0"),
             Self::Beta { alpha, beta, low, high } => {
                 let shapes = (1e-3..=1e6).contains(alpha) && (1e-3..=1e6).contains(beta);
-                let fine = shapes && low.unwrap_or(0.0) < high.unwrap_or(1.0);
+                let is_valid = shapes && low.unwrap_or(0.0) < high.unwrap_or(1.0);
                 let found = format!(
                     "alpha {alpha}, beta {beta}, low {}, high {}",
                     low.unwrap_or(0.0),
                     high.unwrap_or(1.0)
                 );
-                unless(fine, found, "alpha and beta in 0.001..1000000 and low below high")
+                unless(is_valid, found, "alpha and beta in 0.001..1000000 and low below high")
             }
             Self::Triangular { low, mode, high } => {
-                let fine = low < high && (*low..=*high).contains(mode);
+                let is_valid = low < high && (*low..=*high).contains(mode);
                 unless(
-                    fine,
+                    is_valid,
                     format!("low {low}, mode {mode}, high {high}"),
                     "low below high and the mode between them",
                 )
@@ -67,21 +67,25 @@ impl Distribution<f64> {
                 let limits = low.zip(*high).is_none_or(|(low, high)| low <= high);
                 unless(
                     limits && *noise >= 0.0,
-                    perturbed(*noise, *low, *high),
+                    describe_perturb(*noise, *low, *high),
                     "noise of at least 0 and low not above high",
                 )
             }
             Self::VonMises { kappa, .. } => outside(0.0..=1e4, "kappa", *kappa, "a concentration in 0..10000"),
             Self::Bernoulli { p } => outside(0.0..=1.0, "p", *p, "a probability in 0..1"),
             Self::Binomial { n, p } => {
-                let fine = (0.0..=1.0).contains(p) && n.fract() == 0.0 && (0.0..=100_000.0).contains(n);
-                unless(fine, format!("n {n} and p {p}"), "a whole n in 0..100000 and p in 0..1")
+                let is_valid = (0.0..=1.0).contains(p) && n.fract() == 0.0 && (0.0..=100_000.0).contains(n);
+                unless(
+                    is_valid,
+                    format!("n {n} and p {p}"),
+                    "a whole n in 0..100000 and p in 0..1",
+                )
             }
             Self::Poisson { mean } => outside(0.0..=1e5, "mean", *mean, "a mean in 0..100000"),
             Self::Geometric { p } => outside(1e-9..=1.0, "p", *p, "a probability in 0.000000001..1"),
             Self::Dirichlet { alpha } => {
-                let fine = alpha.iter().all(|shape| (1e-3..=1e6).contains(shape));
-                unless(fine, format!("alpha {alpha:?}"), "shapes in 0.001..1000000")
+                let is_valid = alpha.iter().all(|shape| (1e-3..=1e6).contains(shape));
+                unless(is_valid, format!("alpha {alpha:?}"), "shapes in 0.001..1000000")
             }
             Self::ColorUniform { .. }
             | Self::ColorNormal { .. }
@@ -93,17 +97,17 @@ impl Distribution<f64> {
 
     fn color_fault(&self) -> Fault {
         let color = |channels: &Channels| {
-            let fine = channels.0.iter().all(|channel| (0.0..=1.0).contains(channel));
+            let is_valid = channels.0.iter().all(|channel| (0.0..=1.0).contains(channel));
             unless(
-                fine,
+                is_valid,
                 format!("the colour {:?}", channels.0),
                 "a colour with channels in 0..1",
             )
         };
         let spread = |name: &str, spread: &ChannelSpread| {
-            let fine = spread.to_array().iter().all(|spread| (0.0..=10.0).contains(spread));
+            let is_valid = spread.to_array().iter().all(|spread| (0.0..=10.0).contains(spread));
             unless(
-                fine,
+                is_valid,
                 format!("{name} {:?}", spread.to_array()),
                 "a spread of channels in 0..10",
             )
@@ -120,18 +124,18 @@ impl Distribution<f64> {
             } => {
                 let limits = [low, high].into_iter().flatten().find_map(color);
                 let crossed = low.as_ref().zip(high.as_ref()).and_then(|(low, high)| {
-                    let fine = (0..3).all(|k| low.0[k] <= high.0[k]);
+                    let is_valid = (0..3).all(|k| low.0[k] <= high.0[k]);
                     let found = format!("low {:?} and high {:?}", low.0, high.0);
-                    unless(fine, found, "low not above high in any channel")
+                    unless(is_valid, found, "low not above high in any channel")
                 });
                 color(value).or_else(|| spread("noise", noise)).or(limits).or(crossed)
             }
             _ => self.hsv_ends().and_then(|[hue, saturation, value]| {
                 let turns = hue[0] <= hue[1] && hue[1] - hue[0] <= 360.0 && hue[0] >= -360.0 && hue[1] <= 720.0;
                 let part = |name: &str, ends: [f64; 2]| {
-                    let fine = 0.0 <= ends[0] && ends[0] <= ends[1] && ends[1] <= 1.0;
+                    let is_valid = 0.0 <= ends[0] && ends[0] <= ends[1] && ends[1] <= 1.0;
                     unless(
-                        fine,
+                        is_valid,
                         format!("{name} {ends:?}"),
                         "two numbers in 0..1, the first not above the second",
                     )
@@ -146,9 +150,9 @@ impl Distribution<f64> {
 
     fn planar_fault(&self) -> Fault {
         let rectangle = |low: &[f64; 2], high: &[f64; 2]| {
-            let fine = low[0] < high[0] && low[1] < high[1];
+            let is_valid = low[0] < high[0] && low[1] < high[1];
             unless(
-                fine,
+                is_valid,
                 format!("low {low:?} and high {high:?}"),
                 "low below high in both coordinates",
             )
@@ -180,9 +184,9 @@ impl Distribution<f64> {
             } => rectangle(low, high).or_else(|| {
                 let whole = |n: &f64| n.fract() == 0.0 && (1.0..=1000.0).contains(n);
                 let jitter = jitter.unwrap_or(0.0);
-                let fine = whole(columns) && whole(rows) && (0.0..=1.0).contains(&jitter);
+                let is_valid = whole(columns) && whole(rows) && (0.0..=1.0).contains(&jitter);
                 let found = format!("columns {columns}, rows {rows}, jitter {jitter}");
-                unless(fine, found, "whole columns and rows in 1..1000 and jitter in 0..1")
+                unless(is_valid, found, "whole columns and rows in 1..1000 and jitter in 0..1")
             }),
             Self::Cells { walk, jitter, .. } => {
                 let [least, most] = walk.unwrap_or([0.0, 0.0]);
@@ -199,7 +203,7 @@ impl Distribution<f64> {
         }
     }
 
-    /// The fault of coordinates beyond any arena, whose squares would overflow.
+    /// The fault of coordinates far beyond any arena; their squares could overflow.
     fn far_fault(&self) -> Fault {
         let mut far = None;
         let mapped: Result<Self, std::convert::Infallible> = self.try_map(&mut |number| {
@@ -213,8 +217,8 @@ impl Distribution<f64> {
     }
 }
 
-fn unless(fine: bool, found: String, expected: &'static str) -> Fault {
-    (!fine).then_some((found, expected))
+fn unless(is_valid: bool, found: String, expected: &'static str) -> Fault {
+    (!is_valid).then_some((found, expected))
 }
 
 /// The fault of a number outside its limits.
@@ -224,17 +228,17 @@ fn outside(limits: RangeInclusive<f64>, name: &str, number: f64, expected: &'sta
 
 fn weights_fault(count: usize, weights: Option<&[f64]>) -> Fault {
     let weights = weights?;
-    let fine = weights.len() == count
+    let is_valid = weights.len() == count
         && weights.iter().all(|weight| *weight >= 0.0 && weight.is_finite())
         && weights.iter().sum::<f64>() > 0.0;
     unless(
-        fine,
+        is_valid,
         format!("weights {weights:?}"),
         "one weight per value, none negative, not all 0",
     )
 }
 
-fn perturbed(noise: f64, low: Option<f64>, high: Option<f64>) -> String {
+fn describe_perturb(noise: f64, low: Option<f64>, high: Option<f64>) -> String {
     let limit = |name: &str, limit: Option<f64>| limit.map_or_else(String::new, |limit| format!(", {name} {limit}"));
     format!("noise {noise}{}{}", limit("low", low), limit("high", high))
 }
@@ -255,19 +259,19 @@ fn gaussian(std: Option<&Spread>, correlation: Option<f64>, covariance: Option<&
                 Spread::Axes([x, y]) => x.min(*y),
             };
             let correlation = correlation.unwrap_or(0.0);
-            let fine = least >= 0.0 && (-1.0..=1.0).contains(&correlation);
+            let is_valid = least >= 0.0 && (-1.0..=1.0).contains(&correlation);
             let found = format!("std {least} and correlation {correlation}");
             unless(
-                fine,
+                is_valid,
                 found,
                 "standard deviations of at least 0 and a correlation in -1..1",
             )
         }
         (None, Some([[xx, xy], [yx, yy]])) => {
-            let fine = xy == yx && *xx >= 0.0 && *yy >= 0.0 && xy * xy <= xx * yy && correlation.is_none();
+            let is_valid = xy == yx && *xx >= 0.0 && *yy >= 0.0 && xy * xy <= xx * yy && correlation.is_none();
             let found = format!("covariance [[{xx}, {xy}], [{yx}, {yy}]]");
             unless(
-                fine,
+                is_valid,
                 found,
                 "a symmetric matrix without negative eigenvalues, and no correlation beside it",
             )

@@ -1,4 +1,4 @@
-//! Maps every number of a distribution through a function; used for settling references and interpolating variants.
+//! Maps every number of a distribution through a function; used to resolve references and to interpolate variants.
 
 use super::{ChannelSpread, Channels, Distribution, Spread};
 
@@ -6,18 +6,18 @@ type Map<'a, N, M, E> = &'a mut dyn FnMut(&N) -> Result<M, E>;
 
 /// Builds a distribution of the same family, with each field from the expression after its name.
 macro_rules! same_family {
-    ($from:expr => $($family:ident { $($field:ident: $made:expr),+ $(,)? })+) => {
+    ($from:expr => $($family:ident { $($field:ident: $mapped:expr),+ $(,)? })+) => {
         match $from {
-            $(Distribution::$family { $($field),+ } => Distribution::$family { $($field: $made),+ },)+
+            $(Distribution::$family { $($field),+ } => Distribution::$family { $($field: $mapped),+ },)+
         }
     };
 }
 
 impl<N> Distribution<N> {
-    /// The same distribution with every number passed through `f`, in the order of the text.
+    /// The same distribution with every number passed through `f`, in document order.
     ///
     /// # Errors
-    /// The first error of `f`.
+    /// Returns the first error of `f`.
     pub fn try_map<M, E>(&self, f: Map<N, M, E>) -> Result<Distribution<M>, E> {
         Ok(same_family! { self =>
             Constant { value: value.clone() }

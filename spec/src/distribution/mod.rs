@@ -1,4 +1,4 @@
-//! [`Distribution`]: a probability distribution as data, with its laws.
+//! [`Distribution`]: a probability distribution as data, with its moments, CDF and quantiles.
 
 pub(crate) mod case;
 mod cells;
@@ -29,17 +29,19 @@ pub use channels::{Channel, ChannelChance, ChannelSpread, Channels};
 pub use moments::Moments;
 pub use planar::{Order, Spread};
 pub use reference::{Number, ParamRef};
-pub(crate) use support::MOST_ATOMS;
+pub(crate) use support::MAX_ATOMS;
 pub use turn::Turns;
 
 use crate::serde_defaults::is_default;
 use crate::value::Value;
 
-/// How values scatter. `N` is [`Number`] in a spec, where numbers may be references, and `f64` once a variant has settled them.
+/// A probability distribution. `N` is [`Number`] in a spec, where numbers may be references, and `f64` once a variant has
+/// resolved them.
 ///
-/// Families of numbers have closed-form laws where there are any: [`mean`](Distribution::mean),
-/// [`variance`](Distribution::variance), [`cdf`](Distribution::cdf), [`quantile`](Distribution::quantile). Families of points
-/// have [`planar_moments`](Distribution::planar_moments), those of colours [`color_moments`](Distribution::color_moments).
+/// Distributions of numbers have closed forms where they exist: [`mean`](Distribution::mean),
+/// [`variance`](Distribution::variance), [`cdf`](Distribution::cdf), [`quantile`](Distribution::quantile). Distributions of
+/// points have [`planar_moments`](Distribution::planar_moments), distributions of colours have
+/// [`color_moments`](Distribution::color_moments).
 ///
 /// # Example
 /// ```
@@ -70,29 +72,29 @@ pub enum Distribution<N = f64> {
         #[schemars(with = "serde_json::Value")]
         value: Value,
     },
-    /// One of a list, by weight.
+    /// One value of a list, chosen by weight.
     Choice {
-        /// What may be chosen.
+        /// The possible values.
         #[schemars(length(min = 1, max = 10_000), with = "Vec<serde_json::Value>")]
         values: Vec<Value>,
-        /// Weight of each value, at least 0, not all 0; all alike if absent.
+        /// Weight of each value: at least 0, not all 0; equal weights if absent.
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(length(min = 1, max = 10_000), transform = schema::none_negative)]
         weights: Option<Vec<N>>,
     },
-    /// Every number in `low..high` alike.
+    /// All numbers in `low..high`, equally likely.
     Uniform {
-        /// Lower end, may occur.
+        /// Lower end, included.
         low: N,
-        /// Upper end, above `low`; does not occur.
+        /// Upper end, excluded; above `low`.
         high: N,
     },
-    /// Every whole number in `low..=high` alike.
+    /// All whole numbers in `low..=high`, equally likely.
     IntegerUniform {
         /// Least value.
         #[schemars(extend("multipleOf" = 1))]
         low: N,
-        /// Greatest value, not below `low`.
+        /// Largest value, not below `low`.
         #[schemars(extend("multipleOf" = 1))]
         high: N,
     },
@@ -104,19 +106,19 @@ pub enum Distribution<N = f64> {
         #[schemars(extend("minimum" = 0))]
         std: N,
     },
-    /// The normal distribution, given that it falls in `low..=high`.
+    /// The normal distribution, truncated to `low..=high`.
     TruncatedNormal {
-        /// Mean of the normal before truncation.
+        /// Mean of the normal distribution before truncation.
         mean: N,
-        /// Standard deviation of the normal before truncation, above 0.
+        /// Standard deviation of the normal distribution before truncation, above 0.
         #[schemars(extend("exclusiveMinimum" = 0))]
         std: N,
         /// Least value.
         low: N,
-        /// Greatest value, above `low`.
+        /// Largest value, above `low`.
         high: N,
     },
-    /// Numbers above 0 whose logarithm is normal.
+    /// Numbers above 0 with a normally distributed logarithm.
     LogNormal {
         /// Mean of the natural logarithm.
         #[schemars(extend("minimum" = -300, "maximum" = 300))]
@@ -125,18 +127,18 @@ pub enum Distribution<N = f64> {
         #[schemars(extend("minimum" = 0, "maximum" = 30))]
         sigma: N,
     },
-    /// Waiting times without memory: density `rate × exp(−rate × x)` above 0.
+    /// Memoryless waiting times: density `rate × exp(−rate × x)` for `x` above 0.
     Exponential {
         /// Events per unit, above 0; the mean is 1 / `rate`.
         #[schemars(extend("exclusiveMinimum" = 0))]
         rate: N,
     },
-    /// The beta distribution, stretched from 0..1 to `low..high`.
+    /// The beta distribution, rescaled from 0..1 to `low..high`.
     Beta {
-        /// First shape, above 0: large values push towards `high`.
+        /// First shape parameter, above 0: large values favour `high`.
         #[schemars(extend("minimum" = 0.001, "maximum" = 1_000_000))]
         alpha: N,
-        /// Second shape, above 0: large values push towards `low`.
+        /// Second shape parameter, above 0: large values favour `low`.
         #[schemars(extend("minimum" = 0.001, "maximum" = 1_000_000))]
         beta: N,
         /// Lower end; 0 if absent.
@@ -146,7 +148,7 @@ pub enum Distribution<N = f64> {
         #[serde(skip_serializing_if = "Option::is_none")]
         high: Option<N>,
     },
-    /// A density that rises straight from `low` to `mode` and falls straight to `high`.
+    /// A density that rises linearly from `low` to `mode` and falls linearly to `high`.
     Triangular {
         /// Lower end.
         low: N,
@@ -155,25 +157,26 @@ pub enum Distribution<N = f64> {
         /// Upper end, above `low`.
         high: N,
     },
-    /// A value with uniform noise, cut off at limits.
+    /// A value with uniform noise, clipped to limits.
     Perturb {
-        /// The value in the middle.
+        /// The value without noise.
         value: N,
-        /// Greatest deviation to either side, at least 0.
+        /// Largest deviation in either direction, at least 0.
         #[schemars(extend("minimum" = 0))]
         noise: N,
-        /// Limit below, at which smaller results are cut off; none if absent.
+        /// Lower limit to which smaller results are clipped; none if absent.
         #[serde(skip_serializing_if = "Option::is_none")]
         low: Option<N>,
-        /// Limit above, at which greater results are cut off; none if absent.
+        /// Upper limit to which larger results are clipped; none if absent.
         #[serde(skip_serializing_if = "Option::is_none")]
         high: Option<N>,
     },
-    /// The von Mises distribution: headings around a mean direction, as the normal is for numbers.
+    /// The von Mises distribution: headings around a mean direction, the circular counterpart of the normal distribution.
     VonMises {
         /// Mean direction in degrees clockwise from +y.
         mean: N,
-        /// Concentration from 0 (every heading alike) to 10,000; about 3283 / (standard deviation in degrees)² when large.
+        /// Concentration from 0 (all headings equally likely) to 10,000; about 3283 / (standard deviation in degrees)² when
+        /// large.
         #[schemars(extend("minimum" = 0, "maximum" = 10_000))]
         kappa: N,
     },
@@ -183,41 +186,42 @@ pub enum Distribution<N = f64> {
         #[schemars(extend("minimum" = 0, "maximum" = 1))]
         p: N,
     },
-    /// How many of `n` tries succeed.
+    /// Number of successes in `n` trials.
     Binomial {
-        /// Number of tries, a whole number from 0 to 100,000.
+        /// Number of trials, a whole number from 0 to 100,000.
         #[schemars(extend("minimum" = 0, "maximum" = 100_000, "multipleOf" = 1))]
         n: N,
-        /// Probability that a try succeeds, 0..1.
+        /// Probability that a trial succeeds, 0..1.
         #[schemars(extend("minimum" = 0, "maximum" = 1))]
         p: N,
     },
-    /// How many events fall into a stretch when they come independently.
+    /// Number of independent events in an interval.
     Poisson {
         /// Mean number of events, from 0 to 100,000.
         #[schemars(extend("minimum" = 0, "maximum" = 100_000))]
         mean: N,
     },
-    /// How many tries fail before the first that succeeds.
+    /// Number of failed trials before the first success.
     Geometric {
-        /// Probability that a try succeeds, above 0, at most 1.
+        /// Probability that a trial succeeds, above 0, at most 1.
         #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1))]
         p: N,
     },
-    /// Shares that sum to 1: a vector with one entry per shape.
+    /// Shares that sum to 1: a vector with one entry per entry of `alpha`.
     Dirichlet {
-        /// Shape of each share, above 0; equal shapes above 1 pull towards equal shares, below 1 towards one taking all.
+        /// Shape parameter of each share, above 0; equal shapes above 1 favour equal shares, equal shapes below 1 favour one
+        /// large share.
         #[schemars(length(min = 2, max = 100), transform = schema::shapes)]
         alpha: Vec<N>,
     },
-    /// Every point of a rectangle alike.
+    /// A uniformly random point of a rectangle.
     Box {
         /// South-west corner in metres.
         low: [N; 2],
         /// North-east corner in metres, above `low` in both coordinates.
         high: [N; 2],
     },
-    /// Every point of a disc alike.
+    /// A uniformly random point of a disc.
     Disc {
         /// Centre in metres.
         center: [N; 2],
@@ -225,7 +229,7 @@ pub enum Distribution<N = f64> {
         #[schemars(extend("exclusiveMinimum" = 0))]
         radius: N,
     },
-    /// Every point of a ring alike.
+    /// A uniformly random point of a ring.
     Annulus {
         /// Centre in metres.
         center: [N; 2],
@@ -236,7 +240,8 @@ pub enum Distribution<N = f64> {
         #[schemars(extend("exclusiveMinimum" = 0))]
         outer: N,
     },
-    /// The normal distribution of the plane: `std` (round, or along each axis) with a correlation, or the covariance itself.
+    /// The normal distribution in the plane: either `std` (one number, or one per axis) with an optional correlation, or
+    /// `covariance`.
     Gaussian {
         /// Mean in metres.
         mean: [N; 2],
@@ -244,11 +249,11 @@ pub enum Distribution<N = f64> {
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(transform = schema::none_negative)]
         std: Option<Spread<N>>,
-        /// Correlation of x and y beside `std`, −1..1; 0 if absent.
+        /// Correlation of x and y, given together with `std`, −1..1; 0 if absent.
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(extend("minimum" = -1, "maximum" = 1))]
         correlation: Option<N>,
-        /// Covariance matrix in square metres in place of `std`: symmetric, no negative eigenvalue.
+        /// Covariance matrix in square metres, given instead of `std`: symmetric, without negative eigenvalues.
         #[serde(skip_serializing_if = "Option::is_none")]
         covariance: Option<[[N; 2]; 2]>,
     },
@@ -257,11 +262,11 @@ pub enum Distribution<N = f64> {
         /// The points in metres.
         #[schemars(length(min = 1, max = 100_000))]
         values: Vec<[N; 2]>,
-        /// Whether the points are taken in turn, round and round, or drawn.
+        /// Whether the points are taken in turn, starting over after the last, or at random.
         #[serde(default, skip_serializing_if = "is_default")]
         order: Order,
     },
-    /// The centres of the cells of a grid, taken in turn from the south-west, row by row, or drawn.
+    /// The centres of the cells of a grid, taken in turn from the south-west, row by row, or at random.
     Grid {
         /// South-west corner in metres.
         low: [N; 2],
@@ -273,104 +278,108 @@ pub enum Distribution<N = f64> {
         /// Cells from south to north, a whole number from 1 to 1,000.
         #[schemars(extend("minimum" = 1, "maximum" = 1_000, "multipleOf" = 1))]
         rows: N,
-        /// How far a point strays from its cell's centre, as a share of the cell: 0 not at all, 1 anywhere in it; 0 if absent.
+        /// How far a point may lie from its cell's centre, as a share of the cell: 0 exactly there, 1 anywhere in the cell; 0
+        /// if absent.
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(extend("minimum" = 0, "maximum" = 1))]
         jitter: Option<N>,
-        /// Whether the cells are taken in turn, round and round, or drawn.
+        /// Whether the cells are taken in turn, starting over after the last, or at random.
         #[serde(default, skip_serializing_if = "is_default")]
         order: Order,
     },
-    /// Every point of a rectangle alike, but for keeping its distance from the group's own points: Poisson-disc sampling.
+    /// Random points of a rectangle that keep a minimum distance from each other within the group: Poisson-disc sampling.
     PoissonDisc {
         /// South-west corner in metres.
         low: [N; 2],
         /// North-east corner in metres, above `low` in both coordinates.
         high: [N; 2],
-        /// Least distance in metres between two objects of the group, above 0.
+        /// Minimum distance in metres between two objects of the group, above 0.
         #[schemars(extend("exclusiveMinimum" = 0))]
         distance: N,
     },
-    /// The free cells of the layout, each alike, and each for one object of the group: for groups, and, without `room` and
-    /// `walk`, for the agent's start.
+    /// A uniformly random free cell of the layout; each cell takes only one object of the group. For groups and, without `room`
+    /// and `walk`, for the agent's start.
     Cells {
-        /// By how many sides they can be left; any if absent.
+        /// Which cells, by their number of open sides; any if absent.
         #[serde(default, skip_serializing_if = "is_default")]
         kind: CellKind,
-        /// Those that one of these letters of a text stands for; any if absent. Letters for floor count if the legend names them.
+        /// Only cells marked with one of these letters in a text layout; any if absent. Letters for floor count if the legend
+        /// names them.
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(length(min = 1, max = 100))]
         letter: Option<String>,
-        /// Those whose letters the legend gives to the group.
+        /// Whether to use only the cells whose letters the legend assigns to the group.
         #[serde(default, skip_serializing_if = "is_default")]
         of_group: bool,
-        /// Those of the room in which the agent starts, or of the others; of all rooms if absent.
+        /// Only cells of the room in which the agent starts, or only of the other rooms; of all rooms if absent.
         #[serde(skip_serializing_if = "Option::is_none")]
         room: Option<CellRoom>,
-        /// Least and greatest metres to walk from the cell in which the agent starts, from middle to middle; any if absent.
+        /// Minimum and maximum walking distance in metres from the cell in which the agent starts, between cell centres; any if
+        /// absent.
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(transform = schema::none_negative)]
         walk: Option<[N; 2]>,
-        /// How far a place strays from the middle of its cell, as a share of the cell: 0 not at all, 1 anywhere in it; 0 if absent.
+        /// How far an object may lie from the centre of its cell, as a share of the cell: 0 exactly there, 1 anywhere in the
+        /// cell; 0 if absent.
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(extend("minimum" = 0, "maximum" = 1))]
         jitter: Option<N>,
     },
-    /// Every colour of a box in sRGB alike, or of the line between two of its corners.
+    /// A uniformly random colour of a box in sRGB, or of the diagonal between two of its corners.
     ColorUniform {
         /// One corner.
         from: Channels<N>,
-        /// The corner opposite; each channel lies between those of the two, whichever is greater.
+        /// The opposite corner; each channel lies between its values at the two corners, whichever is greater.
         to: Channels<N>,
-        /// Whether each channel has chance of its own, which fills the box, or all have the same, which goes along the line.
+        /// Whether the channels vary independently, which fills the box, or together, which follows the diagonal.
         #[serde(default, skip_serializing_if = "is_default")]
         channels: ChannelChance,
     },
-    /// Colours around a colour: each channel is normal, given that it falls in 0..1.
+    /// Colours around a mean: each channel is normal, truncated to 0..1.
     ColorNormal {
-        /// The colour in the middle: the mean before truncation.
+        /// The mean before truncation.
         mean: Channels<N>,
         /// Standard deviation of the channels before truncation, 0..10: one number for all, or one for each.
         #[schemars(transform = schema::small_spread)]
         std: ChannelSpread<N>,
     },
-    /// A colour with uniform noise, each channel cut off at limits, as the original's templates have it.
+    /// A colour with uniform noise, each channel clipped to limits, as in L2Explorer's templates.
     ColorPerturb {
-        /// The colour in the middle.
+        /// The colour without noise.
         value: Channels<N>,
-        /// Greatest deviation of the channels to either side, 0..10: one number for all, or one for each.
+        /// Largest deviation of the channels in either direction, 0..10: one number for all, or one for each.
         #[schemars(transform = schema::small_spread)]
         noise: ChannelSpread<N>,
-        /// Limits below, at which smaller channels are cut off; black if absent.
+        /// Lower limits to which smaller channels are clipped; black if absent.
         #[serde(skip_serializing_if = "Option::is_none")]
         low: Option<Channels<N>>,
-        /// Limits above, at which greater channels are cut off; white if absent.
+        /// Upper limits to which larger channels are clipped; white if absent.
         #[serde(skip_serializing_if = "Option::is_none")]
         high: Option<Channels<N>>,
-        /// Whether each channel has noise of its own, or all have the same, which makes lighter and darker shades.
+        /// Whether each channel has its own noise, or all share one, which makes lighter and darker shades.
         #[serde(default, skip_serializing_if = "is_default")]
         channels: ChannelChance,
     },
-    /// Colours by hue, saturation and value, each drawn alike between its ends.
+    /// Colours by hue, saturation and value, each uniformly distributed between its ends.
     ColorHsv {
-        /// Hues in degrees, clockwise from the first to the second: 0 red, 120 green, 240 blue; across red as `[-20, 20]`; all if absent.
+        /// Hues in degrees from the first to the second: 0 red, 120 green, 240 blue; across red as `[-20, 20]`; all if absent.
         #[serde(skip_serializing_if = "Option::is_none")]
         hue: Option<[N; 2]>,
-        /// Saturation from 0 (grey) to 1 (full); all if absent.
+        /// Saturation from 0 (grey) to 1 (full); 0 to 1 if absent.
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(transform = schema::up_to_1)]
         saturation: Option<[N; 2]>,
-        /// Value from 0 (black) to 1 (bright); all if absent.
+        /// Value from 0 (black) to 1 (bright); 0 to 1 if absent.
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(transform = schema::up_to_1)]
         value: Option<[N; 2]>,
     },
-    /// One of several distributions, by weight, and then a draw from that.
+    /// A draw from one of several distributions, chosen by weight.
     Mixture {
         /// The distributions: all of numbers, all of points, or all of colours.
         #[schemars(length(min = 1, max = 100))]
         parts: Vec<Distribution<N>>,
-        /// Weight of each part, at least 0, not all 0; all alike if absent.
+        /// Weight of each part: at least 0, not all 0; equal weights if absent.
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(length(min = 1, max = 100), transform = schema::none_negative)]
         weights: Option<Vec<N>>,
@@ -405,7 +414,7 @@ impl<N> Distribution<N> {
         }
     }
 
-    /// Whether its draws depend on earlier objects: places taken in turn, or kept apart. Allowed in groups only.
+    /// Whether its draws depend on earlier objects: points taken in turn, or kept apart. Allowed in groups only.
     pub fn needs_group(&self) -> bool {
         match self {
             Self::Points { order, .. } | Self::Grid { order, .. } => *order == Order::Turn,

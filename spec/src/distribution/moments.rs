@@ -1,4 +1,4 @@
-//! Mean and variance of the distributions that draw numbers, and the type [`Moments`] for those that draw points or colours.
+//! Mean and variance of distributions of numbers, and the type [`Moments`] for distributions of points or colours.
 
 use std::array;
 
@@ -44,7 +44,7 @@ impl<const N: usize> Moments<N> {
 impl Distribution<f64> {
     /// The mean; `p` for a Bernoulli distribution, the mean direction in degrees for headings.
     ///
-    /// `None` if it draws no numbers. All are closed forms.
+    /// `None` if it draws no numbers. Always a closed form.
     pub fn mean(&self) -> Option<f64> {
         self.mean_and_variance().map(|(mean, _)| mean)
     }
@@ -110,7 +110,7 @@ impl Distribution<f64> {
     }
 }
 
-/// The lower end and the width of a stretched beta.
+/// The lower end and the width of a rescaled beta distribution.
 pub(super) fn ends(low: Option<f64>, high: Option<f64>) -> (f64, f64) {
     let low = low.unwrap_or(0.0);
     (low, high.unwrap_or(1.0) - low)
@@ -126,7 +126,7 @@ fn square(x: f64) -> f64 {
     x * x
 }
 
-/// Mean and variance of a mixture, given those of its parts.
+/// Mean and variance of a mixture, given the mean and variance of each part.
 fn weighted(parts: &[(f64, f64)], weights: Option<&[f64]>) -> (f64, f64) {
     let parts = parts
         .iter()
@@ -138,7 +138,7 @@ fn weighted(parts: &[(f64, f64)], weights: Option<&[f64]>) -> (f64, f64) {
 fn truncated(mean: f64, std: f64, low: f64, high: f64) -> (f64, f64) {
     let (a, b) = ((low - mean) / std, (high - mean) / std);
     if a > 0.0 {
-        // The upper tail loses digits next to 1; its mirror image keeps them.
+        // Probabilities close to 1 lose digits in the upper tail; the mirror image keeps them.
         let (mirrored, variance) = truncated(-mean, std, -high, -low);
         return (-mirrored, variance);
     }

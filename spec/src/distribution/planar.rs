@@ -1,4 +1,4 @@
-//! Distributions that draw points: their spread and order, maps from random numbers to points, means and covariances.
+//! Distributions of points: their spread and order, maps from random numbers to points, means and covariances.
 
 use std::f64::consts::TAU;
 
@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::{Distribution, Moments};
 use crate::value::Value;
 
-/// The standard deviation of a normal distribution of the plane.
+/// The standard deviation of a normal distribution in the plane.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged, expecting = "a number, or [x, y]")]
 #[schemars(rename = "Spread")]
@@ -19,14 +19,15 @@ pub enum Spread<N = f64> {
     Axes([N; 2]),
 }
 
-/// How a list of places is gone through.
+/// The order in which objects take the points of a list.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Order {
-    /// The first object takes the first place, and so on, round and round; one whose place is not free takes the next free one.
+    /// The first object takes the first point, and so on, starting over after the last; if a point is not free, the object
+    /// takes the next free one.
     #[default]
     Turn,
-    /// Each object takes one at random.
+    /// Each object takes a random point.
     Random,
 }
 
@@ -43,8 +44,8 @@ impl Moments<2> {
 }
 
 impl Distribution<f64> {
-    /// The point for two random numbers in 0..1; for `poisson_disc` without its spacing. `None` for distributions that take more
-    /// or fewer numbers.
+    /// The point for two random numbers in 0..1; for `poisson_disc`, ignoring its spacing. `None` for distributions that need
+    /// more or fewer numbers.
     #[inline]
     pub fn point_at(&self, [u, v]: [f64; 2]) -> Option<[f64; 2]> {
         let ring = |[x, y]: [f64; 2], inner: f64, outer: f64| {
@@ -61,7 +62,7 @@ impl Distribution<f64> {
                 let [[xx, xy], [_, yy]] = self.gaussian_covariance()?;
                 let normal = Self::Normal { mean: 0.0, std: 1.0 };
                 let (a, b) = (normal.quantile(u)?, normal.quantile(v)?);
-                // Cholesky: x takes the first number, y its share of it and the rest from the second.
+                // Cholesky factor: x depends on the first number, y on both.
                 let along = xx.sqrt();
                 let shared = if along > 0.0 { xy / along } else { 0.0 };
                 let across = (yy - shared * shared).max(0.0).sqrt();
@@ -71,8 +72,8 @@ impl Distribution<f64> {
         })
     }
 
-    /// Mean and covariance, exact; for places taken in turn those of one round, for `poisson_disc` those without its spacing.
-    /// `None` if it draws no points.
+    /// Exact mean and covariance: of one round for points taken in turn, and ignoring the spacing of a `poisson_disc`. `None`
+    /// if it draws no points.
     pub fn planar_moments(&self) -> Option<Moments<2>> {
         let points = |points: &[[f64; 2]], weights: Option<&[f64]>| {
             let parts = points.iter().map(|point| Moments::point(*point));

@@ -1,4 +1,4 @@
-//! Quantiles: worlds are drawn through them, so that variants under one seed share random numbers.
+//! Quantile functions. Worlds are sampled through them, so that variants under one seed share random numbers.
 
 use super::moments::{cut, ends};
 use super::special::{beta_quantile, normal_cdf, normal_quantile};
@@ -8,9 +8,9 @@ use crate::value::{ParameterType, Value};
 impl Distribution<f64> {
     /// The smallest number that a draw does not exceed with probability at least `p`, in `0..=1`.
     ///
-    /// The same bits on every platform. Closed forms; `beta`, `von_mises` and mixtures by root finding to the last bits.
-    /// Infinite at 0 or 1 if the distribution is unbounded there; headings lie in `mean − 180..=mean + 180` degrees. `None` if
-    /// it draws no numbers.
+    /// Results are identical bit for bit on every platform. Closed forms; `beta`, `von_mises` and mixtures by root finding down
+    /// to the last bits. Infinite at 0 or 1 if the distribution is unbounded there; headings lie in `mean − 180..=mean + 180`
+    /// degrees. `None` if it draws no numbers.
     pub fn quantile(&self, p: f64) -> Option<f64> {
         let p = p.clamp(0.0, 1.0);
         Some(match self {
@@ -65,13 +65,13 @@ impl Distribution<f64> {
             Self::Poisson { mean } => discrete::poisson_quantile(p, *mean),
             Self::Geometric { p: odds } if p >= 1.0 && *odds < 1.0 => f64::INFINITY,
             Self::Geometric { p: odds } => discrete::geometric_quantile(p, *odds),
-            Self::Mixture { parts, weights } => self.mixed(p, parts, weights.as_deref())?,
+            Self::Mixture { parts, weights } => self.mixture_quantile(p, parts, weights.as_deref())?,
             _ => return None,
         })
     }
 
-    /// Bisects between the least and greatest quantile of the parts, down to two neighbouring numbers.
-    fn mixed(&self, p: f64, parts: &[Self], weights: Option<&[f64]>) -> Option<f64> {
+    /// Bisects between the smallest and largest quantile of the parts, down to two adjacent floating-point numbers.
+    fn mixture_quantile(&self, p: f64, parts: &[Self], weights: Option<&[f64]>) -> Option<f64> {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for (k, part) in parts.iter().enumerate() {
             if weights.is_none_or(|weights| weights[k] > 0.0) {
@@ -104,10 +104,10 @@ impl Distribution<f64> {
     pub fn value_at(&self, p: f64) -> Option<Value> {
         Some(match self {
             Self::Constant { value } => value.clone(),
-            Self::Choice { values, weights } => values[chosen(values.len(), weights.as_deref(), p)].clone(),
+            Self::Choice { values, weights } => values[chosen_index(values.len(), weights.as_deref(), p)].clone(),
             Self::Bernoulli { p: odds } => Value::Boolean(p > 1.0 - odds),
             Self::IntegerUniform { low, high } => {
-                // Not through the quantile: `floor` gives each value a half-open share of p.
+                // Bypasses the quantile: `floor` gives each value a half-open interval of p.
                 Value::Integer((low + ((high - low + 1.0) * p).floor()).min(*high) as i64)
             }
             Self::Binomial { .. } | Self::Poisson { .. } | Self::Geometric { .. } => {
@@ -122,7 +122,7 @@ impl Distribution<f64> {
 }
 
 impl<N> Distribution<N> {
-    /// Whether one random number decides the draw, so that [`Distribution::value_at`] gives it.
+    /// Whether one random number determines the draw, so that [`Distribution::value_at`] returns it.
     pub fn is_scalar(&self) -> bool {
         !self.is_planar() && !self.draws_colors() && !matches!(self, Self::Mixture { .. } | Self::Dirichlet { .. })
             || matches!(self, Self::Constant { .. } | Self::Choice { .. })
@@ -134,15 +134,15 @@ impl Distribution<f64> {
     /// other distribution.
     pub fn chosen_at(&self, p: f64) -> usize {
         match self {
-            Self::Choice { values, weights } => chosen(values.len(), weights.as_deref(), p),
-            Self::Mixture { parts, weights } => chosen(parts.len(), weights.as_deref(), p),
+            Self::Choice { values, weights } => chosen_index(values.len(), weights.as_deref(), p),
+            Self::Mixture { parts, weights } => chosen_index(parts.len(), weights.as_deref(), p),
             _ => 0,
         }
     }
 }
 
 /// Index of the value, out of `count`, for a random number `p` in `0..1`.
-fn chosen(count: usize, weights: Option<&[f64]>, p: f64) -> usize {
+fn chosen_index(count: usize, weights: Option<&[f64]>, p: f64) -> usize {
     let Some(weights) = weights else {
         return ((count as f64 * p) as usize).min(count - 1);
     };
@@ -153,14 +153,14 @@ fn chosen(count: usize, weights: Option<&[f64]>, p: f64) -> usize {
         }
         left -= weight;
     }
-    // Rounding can leave a sliver: it belongs to the last value that can occur.
+    // Rounding can leave a small remainder, which goes to the last value that can occur.
     weights.iter().rposition(|weight| *weight > 0.0).unwrap_or(0)
 }
 
 fn truncated(p: f64, mean: f64, std: f64, low: f64, high: f64) -> f64 {
     let z = |x: f64| (x - mean) / std;
     if z(low) > 0.0 {
-        // The upper tail loses digits next to 1; its mirror image keeps them.
+        // Probabilities close to 1 lose digits in the upper tail; the mirror image keeps them.
         return -truncated(1.0 - p, -mean, std, -high, -low);
     }
     let (below, above) = (normal_cdf(z(low)), normal_cdf(z(high)));

@@ -6,20 +6,21 @@ use serde::{Deserialize, Serialize};
 use super::Distribution;
 use super::case::Case;
 
-/// A number in a distribution: itself, or that of a fixed or variant parameter, or one by the value of any parameter.
+/// A number in a distribution: a literal, the value of a fixed or variant parameter, or one selected by the value of any
+/// parameter.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged, expecting = "a number, or {\"param\": NAME}")]
 pub enum Number {
     /// The number itself.
     Literal(f64),
-    /// The number that a parameter has.
+    /// The value of a parameter.
     Param(ParamRef),
-    /// A number by the value of a parameter.
+    /// A number selected by the value of a parameter.
     Case(Box<Case<Number>>),
 }
 
 impl Distribution<Number> {
-    /// Its numbers in the order of the text.
+    /// Its numbers in document order.
     pub(crate) fn numbers(&self) -> Vec<Number> {
         let mut numbers = Vec::new();
         let collected: Result<Distribution, ()> = self.try_map(&mut |number| {
@@ -61,13 +62,13 @@ impl From<f64> for Number {
 pub struct ParamRef {
     /// The parameter's name.
     pub param: String,
-    /// Which number of a vector, point or colour, counted from 0; absent for the whole value.
+    /// Index of one number of a vector, point or colour, from 0; absent for the whole value.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0, max = 99))]
     pub index: Option<usize>,
 }
 
-/// For people to read: `light`, or `shares[1]`.
+/// The readable form: `light`, or `shares[1]`.
 impl std::fmt::Display for ParamRef {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         match self.index {

@@ -2,7 +2,8 @@
 
 use serde_json::json;
 
-/// Requires a literal number to be at least 0, alone or in a list; a parameter's number is checked when a variant settles it.
+/// Requires a literal number to be at least 0, alone or in a list; the value of a parameter is checked when a variant resolves
+/// it.
 pub(super) fn none_negative(schema: &mut schemars::Schema) {
     if schema.get("items").is_none() {
         schema.insert("minimum".to_owned(), json!(0));

@@ -1,7 +1,7 @@
-//! Special functions behind the laws, computed with `libm` alone, so that they give the same bits on every platform.
+//! Special functions used by the distributions. They use `libm` alone, so that results are identical on every platform.
 //!
-//! Implemented here because the available libraries call the platform's maths functions, and quantiles decide which
-//! worlds are drawn.
+//! Implemented here because the available libraries call the platform's maths functions, and quantiles decide which worlds are
+//! sampled.
 
 use std::f64::consts::{PI, SQRT_2};
 

@@ -5,13 +5,13 @@ use super::moments::cut;
 use crate::value::{ParameterType, Value};
 
 /// Maximum number of values to list for a distribution or a parameter.
-pub(crate) const MOST_ATOMS: usize = 1000;
+pub(crate) const MAX_ATOMS: usize = 1000;
 
 impl<N> Distribution<N> {
-    /// Whether all its draws fit a place of this type.
+    /// Whether all its draws can be used where a value of this type is expected.
     pub fn yields(&self, kind: ParameterType) -> bool {
         match self {
-            // Only listed values can be checked at their place.
+            // Only listed values can be checked where they are used.
             Self::Constant { .. } | Self::Choice { .. } if kind == ParameterType::Json => true,
             Self::Constant { value } => value.cast(kind).is_some(),
             Self::Choice { values, .. } => values.iter().all(|value| value.cast(kind).is_some()),
@@ -74,7 +74,7 @@ impl Distribution<f64> {
             // The corners: one share is 1.
             Self::Dirichlet { alpha } => {
                 let corner =
-                    |all: usize| Value::Vector((0..alpha.len()).map(|k| f64::from(u8::from(k == all))).collect());
+                    |full: usize| Value::Vector((0..alpha.len()).map(|k| f64::from(u8::from(k == full))).collect());
                 Some((0..alpha.len()).map(corner).collect())
             }
             Self::Box { low, high } | Self::Grid { low, high, .. } | Self::PoissonDisc { low, high, .. } => {
@@ -105,12 +105,12 @@ impl Distribution<f64> {
         }
     }
 
-    /// Its values with their probabilities, if it draws from a list of at most [`MOST_ATOMS`].
+    /// Its values with their probabilities, if it draws from a list of at most [`MAX_ATOMS`].
     pub(crate) fn atoms(&self) -> Option<Vec<(Value, f64)>> {
         let shares = |count: usize, weights: &Option<Vec<f64>>| {
             let weights = weights.clone().unwrap_or_else(|| vec![1.0; count]);
-            let all: f64 = weights.iter().sum();
-            weights.into_iter().map(move |weight| weight / all)
+            let total: f64 = weights.iter().sum();
+            weights.into_iter().map(move |weight| weight / total)
         };
         let atoms: Vec<(Value, f64)> = match self {
             Self::Constant { value } => vec![(value.clone(), 1.0)],
@@ -119,7 +119,7 @@ impl Distribution<f64> {
                 values.iter().cloned().zip(shares).collect()
             }
             Self::Bernoulli { p } => vec![(Value::Boolean(false), 1.0 - p), (Value::Boolean(true), *p)],
-            Self::IntegerUniform { low, high } if high - low < MOST_ATOMS as f64 => {
+            Self::IntegerUniform { low, high } if high - low < MAX_ATOMS as f64 => {
                 let count = high - low + 1.0;
                 (*low as i64..=*high as i64)
                     .map(|whole| (Value::Integer(whole), 1.0 / count))
@@ -134,10 +134,10 @@ impl Distribution<f64> {
             }
             _ => return None,
         };
-        (atoms.len() <= MOST_ATOMS).then_some(atoms)
+        (atoms.len() <= MAX_ATOMS).then_some(atoms)
     }
 
-    /// Some value that it can draw, to test a template with.
+    /// A value that it can draw, used to check templates.
     pub(crate) fn example(&self) -> Value {
         match self {
             Self::Poisson { .. } | Self::Geometric { .. } => Value::Integer(0),

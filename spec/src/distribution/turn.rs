@@ -1,20 +1,20 @@
-//! Places that a group takes in turn: which one an object takes if its own is not free, and whether there are enough.
+//! Points that a group takes in turn: which one an object takes if its own is not free, and whether there are enough.
 
 use std::collections::HashMap;
 
 use super::{Distribution, Order};
 
 /// Maximum number of places to try for one object.
-const TRIES: usize = 1000;
+const MAX_TRIES: usize = 1000;
 
 /// Maximum number of tries when checking whether a group fits; beyond that, only sampling decides.
-const MOST_CHECKED: usize = 200_000;
+const MAX_CHECKED: usize = 200_000;
 
 /// Tracks the places that the objects of one group around one anchor have taken, for a `points` or `grid` taken in turn.
 ///
-/// Object number `n` of a group has place `n` of the list, round and round. If it is not free, the object takes the next free
-/// one, in the order of the list and wrapping around; a place that another object has taken in this round is not free. At most
-/// 1,000 places are tried per object.
+/// Object number `n` of a group has place `n` of the list, starting over after the last. If it is not free, the object takes
+/// the next free one, in the order of the list and wrapping around; a place that another object has taken in this round is not
+/// free. At most 1,000 places are tried per object.
 ///
 /// # Example
 /// ```
@@ -49,10 +49,10 @@ impl Turns {
             None => *place >= own,
             Some(taken) => u64::from(taken[*place]) <= round,
         };
-        (own..self.places).chain(0..own).filter(free).take(TRIES)
+        (own..self.places).chain(0..own).filter(free).take(MAX_TRIES)
     }
 
-    /// Object `number` takes a place; all earlier objects must have taken theirs.
+    /// Records that object `number` takes a place; all earlier objects must have taken theirs.
     pub fn take(&mut self, number: u64, place: usize) {
         let places = self.places as u64;
         if self.taken.is_none() && place as u64 == number % places {
@@ -85,7 +85,7 @@ impl Distribution {
     }
 
     /// Place `number` of a `points` or `grid`, in metres; `None` if places are random.
-    fn certain_place(&self, number: usize) -> Option<[f64; 2]> {
+    fn fixed_place(&self, number: usize) -> Option<[f64; 2]> {
         match self {
             Self::Points { values, .. } => values.get(number).copied(),
             Self::Grid {
@@ -108,7 +108,7 @@ impl Distribution {
     /// random, or takes too long to compute.
     pub(crate) fn room_in_turn(&self, count: u64, separation: f64) -> Option<u64> {
         let places = self.num_turns()?;
-        self.certain_place(0)?;
+        self.fixed_place(0)?;
         if separation <= 0.0 {
             return Some(count);
         }
@@ -117,10 +117,10 @@ impl Distribution {
         for number in 0..count {
             let candidates = turns.candidates(number).inspect(|_| checked += 1);
             let free = candidates
-                .filter_map(|place| Some((place, self.certain_place(place)?)))
+                .filter_map(|place| Some((place, self.fixed_place(place)?)))
                 .find(|(_, at)| !field.is_near(*at));
             let Some((place, at)) = free else { return Some(number) };
-            if checked > MOST_CHECKED {
+            if checked > MAX_CHECKED {
                 return None;
             }
             field.push(at);
@@ -130,7 +130,7 @@ impl Distribution {
     }
 }
 
-/// Points in square cells with the required distance as their side.
+/// Points sorted into square cells with the required distance as their side.
 struct Field {
     separation: f64,
     cells: HashMap<[i64; 2], Vec<[f64; 2]>>,
@@ -173,8 +173,8 @@ mod tests {
         fn take(&mut self, number: u64, blocked: &[bool]) -> Option<usize> {
             let places = self.0.len();
             let own = number as usize % places;
-            let ways = (0..places).map(|step| (own + step) % places);
-            let place = ways
+            let candidates = (0..places).map(|step| (own + step) % places);
+            let place = candidates
                 .filter(|place| self.0[*place] <= number / places as u64)
                 .find(|place| !blocked[*place])?;
             self.0[place] += 1;
@@ -231,11 +231,11 @@ mod tests {
         assert_eq!(grid(None).room_in_turn(6, 4.0), Some(6));
         assert_eq!(grid(None).room_in_turn(7, 4.0), Some(6));
         assert_eq!(grid(None).room_in_turn(6, 4.5), Some(3), "every other cell");
+        assert_eq!(grid(None).room_in_turn(60, 0.0), Some(60), "objects may overlap");
         assert_eq!(
-            grid(None).room_in_turn(60, 0.0),
-            Some(60),
-            "they may stand in each other"
+            grid(Some(0.5)).room_in_turn(7, 4.0),
+            None,
+            "jitter makes positions random"
         );
-        assert_eq!(grid(Some(0.5)).room_in_turn(7, 4.0), None, "cells are wide");
     }
 }

@@ -1,4 +1,5 @@
-//! The von Mises law of headings, by quadrature, because it has no closed form. Angles are in radians from the mean.
+//! The von Mises distribution of headings, computed by quadrature because it has no closed form. Angles are in radians from the
+//! mean.
 
 use std::f64::consts::PI;
 
@@ -15,26 +16,26 @@ const GAUSS: [(f64, f64); 5] = [
 ];
 
 /// Number of intervals that a half turn is split into.
-const STRETCHES: u32 = 8;
+const NUM_INTERVALS: u32 = 8;
 
 /// Half-width of the range outside which the probability is below 1e-17.
 fn reach(kappa: f64) -> f64 {
     (9.0 / kappa.sqrt()).min(PI)
 }
 
-/// The density up to a factor: 1 at the mean.
+/// The density up to a constant factor; 1 at the mean.
 fn shape(angle: f64, kappa: f64) -> f64 {
     // cos θ − 1 = −2 sin²(θ/2) keeps its digits near the mean.
     let half = libm::sin(angle / 2.0);
     libm::exp(-2.0 * kappa * half * half)
 }
 
-/// ∫ shape(θ) dθ between two angles, split into `stretches` intervals.
-fn integral([from, to]: [f64; 2], stretches: u32, kappa: f64) -> f64 {
-    let half = (to - from) / f64::from(stretches) / 2.0;
-    (0..stretches)
-        .map(|stretch| {
-            let middle = from + half * f64::from(2 * stretch + 1);
+/// ∫ shape(θ) dθ between two angles, split into `intervals` intervals.
+fn integral([from, to]: [f64; 2], intervals: u32, kappa: f64) -> f64 {
+    let half = (to - from) / f64::from(intervals) / 2.0;
+    (0..intervals)
+        .map(|interval| {
+            let middle = from + half * f64::from(2 * interval + 1);
             let points = GAUSS
                 .iter()
                 .flat_map(|(x, weight)| [(middle - half * x, weight), (middle + half * x, weight)]);
@@ -45,17 +46,17 @@ fn integral([from, to]: [f64; 2], stretches: u32, kappa: f64) -> f64 {
 
 /// ∫ shape(θ) dθ over one side, from the mean to [`reach`].
 fn side(kappa: f64) -> f64 {
-    integral([0.0, reach(kappa)], STRETCHES, kappa)
+    integral([0.0, reach(kappa)], NUM_INTERVALS, kappa)
 }
 
 /// Probability of an angle from −π up to `angle`, in −π..=π. Absolute error below 1e-12.
 pub(super) fn cdf(angle: f64, kappa: f64) -> f64 {
-    let within = integral([0.0, angle.abs().min(reach(kappa))], STRETCHES, kappa);
+    let within = integral([0.0, angle.abs().min(reach(kappa))], NUM_INTERVALS, kappa);
     let share = within / side(kappa) / 2.0;
     if angle < 0.0 { 0.5 - share } else { 0.5 + share }
 }
 
-/// The angle in −π..=π up to which an angle falls with probability `p`.
+/// The `p` quantile: an angle in −π..=π.
 ///
 /// Newton's method on one side; each step integrates only between the two latest angles.
 pub(super) fn quantile(p: f64, kappa: f64) -> f64 {
@@ -73,7 +74,7 @@ pub(super) fn quantile(p: f64, kappa: f64) -> f64 {
     };
     let (mut low, mut high) = (0.0, reach);
     let mut angle = start.clamp(low, high);
-    let mut within = integral([0.0, angle], STRETCHES, kappa);
+    let mut within = integral([0.0, angle], NUM_INTERVALS, kappa);
     for _ in 0..100 {
         if within < target {
             low = angle;
@@ -89,12 +90,12 @@ pub(super) fn quantile(p: f64, kappa: f64) -> f64 {
         if (next - angle).abs() <= 4.0 * f64::EPSILON * next {
             break;
         }
-        let stretches = if (next - angle).abs() < 0.1 * reach {
+        let intervals = if (next - angle).abs() < 0.1 * reach {
             1
         } else {
-            STRETCHES
+            NUM_INTERVALS
         };
-        within += integral([angle, next], stretches, kappa);
+        within += integral([angle, next], intervals, kappa);
         angle = next;
     }
     if p < 0.5 { -angle } else { angle }

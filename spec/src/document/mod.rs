@@ -1,4 +1,4 @@
-//! [`Document`]: a parsed JSON text that knows the line and column of each value, for error messages.
+//! [`Document`]: a parsed JSON text that can locate each value by line and column, for error messages.
 
 use serde::de::DeserializeOwned;
 use serde_json::Value;
@@ -18,9 +18,9 @@ pub(crate) struct Document<'a> {
 }
 
 impl<'a> Document<'a> {
-    /// Parses a text of at most `most` values; refuses text that is not JSON, and repeated keys in one object.
-    pub(crate) fn parse(name: &'a str, text: &'a str, most: usize) -> Result<Self, SpecError> {
-        let (document, repeated) = Self::parse_leniently(name, text, most)?;
+    /// Parses a text of at most `max_values` values; rejects invalid JSON and repeated keys in one object.
+    pub(crate) fn parse(name: &'a str, text: &'a str, max_values: usize) -> Result<Self, SpecError> {
+        let (document, repeated) = Self::parse_leniently(name, text, max_values)?;
         let twice = |pointer: String| {
             let found = format!("the key {:?} twice", json::last_key(&pointer));
             Problem::new(
@@ -36,7 +36,11 @@ impl<'a> Document<'a> {
 
     /// Parses a text as most programs do: the last of repeated keys in one object counts. Also returns pointers of repeated keys,
     /// up to a limit.
-    pub(crate) fn parse_leniently(name: &'a str, text: &'a str, most: usize) -> Result<(Self, Vec<String>), SpecError> {
+    pub(crate) fn parse_leniently(
+        name: &'a str,
+        text: &'a str,
+        max_values: usize,
+    ) -> Result<(Self, Vec<String>), SpecError> {
         let text = without_mark(text);
         if text.len() > MAX_BYTES {
             return Err(SpecError::TooLarge {
@@ -45,10 +49,10 @@ impl<'a> Document<'a> {
                 limit: MAX_BYTES,
             });
         }
-        let refused = |(error, stop): (serde_json::Error, Option<Stop>)| match stop {
+        let to_error = |(error, stop): (serde_json::Error, Option<Stop>)| match stop {
             Some(Stop::TooMany) => SpecError::TooManyValues {
                 name: name.to_owned(),
-                limit: most,
+                limit: max_values,
             },
             Some(Stop::LongKey) => SpecError::LongKey {
                 name: name.to_owned(),
@@ -59,13 +63,13 @@ impl<'a> Document<'a> {
             Some(Stop::Repeated) | None => syntax_error(name, text, &error),
         };
         // One pass builds the value and detects repeated keys; their places are looked up only if there are any.
-        let (value, repeated) = match json::parse(text, most, Repeats::Stop) {
+        let (value, repeated) = match json::parse(text, max_values, Repeats::Stop) {
             Ok(value) => (value, Vec::new()),
             Err((_, Some(Stop::Repeated))) => {
-                let value = json::parse(text, most, Repeats::LastCounts).map_err(refused)?;
+                let value = json::parse(text, max_values, Repeats::LastCounts).map_err(to_error)?;
                 (value, json::repeated(text, MAX_PROBLEMS + 1))
             }
-            Err(found) => return Err(refused(found)),
+            Err(found) => return Err(to_error(found)),
         };
         Ok((Self { name, text, value }, repeated))
     }
@@ -81,7 +85,7 @@ impl<'a> Document<'a> {
         typed(&self.value).map_err(|problem| self.error(vec![problem]))
     }
 
-    /// Fails if there are any problems, after finding the place of each.
+    /// Fails if there are any problems, after looking up the line and column of each.
     pub(crate) fn fail_on(&self, found: impl Into<Listed>) -> Result<(), SpecError> {
         let found = found.into();
         if found.problems.is_empty() {
@@ -91,7 +95,7 @@ impl<'a> Document<'a> {
         }
     }
 
-    /// The error for these problems, after finding the place of each.
+    /// The error for these problems, after looking up the line and column of each.
     pub(crate) fn error(&self, found: impl Into<Listed>) -> SpecError {
         let Listed { mut problems, more } = found.into();
         let more = more || problems.len() > MAX_PROBLEMS;
@@ -160,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn keys_of_wide_and_narrow_objects_are_found_alike() {
+    fn places_of_keys_are_found_in_wide_and_narrow_objects() {
         for width in [1, 32, 1000, 10_000] {
             let keys: Vec<String> = (0..width).map(|key| format!("\"k{key}\": 1")).collect();
             let text = format!("{{\n{}\n}}", keys.join(",\n"));

@@ -6,7 +6,7 @@ use super::read::Reader;
 use crate::describe::describe;
 
 impl Reader {
-    /// Numbers written as strings, alone or in a list.
+    /// Converts numbers written as strings, alone or in a list.
     pub(super) fn number(&mut self, at: &str, map: &mut Map<String, Json>, key: &str) {
         let Some(value) = map.get_mut(key) else { return };
         let mut found = Vec::new();
@@ -21,13 +21,13 @@ impl Reader {
         }
     }
 
-    /// Integers written as strings or with a decimal point; the point alone gives no warning.
+    /// Converts integers written as strings or with a decimal point; the decimal point alone gives no warning.
     pub(super) fn whole(&mut self, at: &str, map: &mut Map<String, Json>, key: &str) {
         self.number(at, map, key);
         drop_decimal_point(map, key);
     }
 
-    /// Headings of any size, wrapped into 0..360.
+    /// Wraps headings of any size into 0..360.
     pub(super) fn heading(&mut self, at: &str, map: &mut Map<String, Json>) {
         let Some(heading) = map.get("heading").and_then(Json::as_f64) else {
             return;
@@ -42,8 +42,8 @@ impl Reader {
         }
     }
 
-    /// Lists of stimuli: names in any case, with or without underscores; a single name counts as a list of one. Synonyms are
-    /// accepted with a warning; unknown names are dropped with a warning.
+    /// Normalises a list of stimuli: names in any case, with or without underscores; a single name counts as a list of one.
+    /// Synonyms are accepted with a warning; unknown names are dropped with a warning.
     pub(super) fn stimuli(&mut self, at: &str, map: &mut Map<String, Json>, key: &str) {
         let Some(value) = map.get_mut(key) else { return };
         let place = format!("{at}/{key}");
@@ -82,7 +82,7 @@ impl Reader {
         map.insert(key.to_owned(), json!(names));
     }
 
-    /// Colours in 0..255, which is assumed if a channel is above 1.
+    /// Converts colours from 0..255, which is assumed if a channel is above 1.
     pub(super) fn color(&mut self, at: &str, map: &mut Map<String, Json>, key: &str) {
         self.number(at, map, key);
         word(map, key);
@@ -92,8 +92,8 @@ impl Reader {
         let Some(channels) = items.iter().map(Json::as_f64).collect::<Option<Vec<f64>>>() else {
             return;
         };
-        let bytes = channels.len() >= 3 && channels.iter().any(|channel| *channel > 1.0);
-        if bytes {
+        let is_0_to_255 = channels.len() >= 3 && channels.iter().any(|channel| *channel > 1.0);
+        if is_0_to_255 {
             *items = channels.iter().map(|channel| json!(channel / 255.0)).collect();
             self.warn(
                 format!("{at}/{key}"),
@@ -137,8 +137,8 @@ fn without_decimal_point(value: &mut Json) {
     }
 }
 
-/// Words in any case, alone or in a list. The original's words are ASCII; other characters stay as they are, so that a word keeps
-/// its length.
+/// Converts words to lower case, alone or in a list. The original's words are ASCII; other characters stay as they are, so that
+/// a word keeps its length.
 pub(super) fn word(map: &mut Map<String, Json>, key: &str) {
     let lower = |value: &mut Json| {
         if let Json::String(text) = value {
@@ -152,7 +152,7 @@ pub(super) fn word(map: &mut Map<String, Json>, key: &str) {
     }
 }
 
-/// The stimulus that a word of the original or of its users means, in any case and with or without underscores.
+/// The stimulus meant by a word of the original or a common synonym, in any case and with or without underscores.
 pub(super) fn stimulus(word: &str) -> Option<&'static str> {
     let plain = word.replace(['_', '-', ' '], "").to_lowercase();
     let bare = plain.strip_prefix("agent").unwrap_or(&plain);

@@ -1,5 +1,5 @@
-//! Repairs entries of the original's keys that are empty, incomplete or of the wrong type: each gets the default, or its readable
-//! part, with a warning. Values out of range and our own keys are not repaired; they are checked as in our documents.
+//! Repairs entries of the original's keys that are empty, incomplete or of the wrong type: each keeps its readable part or gets
+//! the default, with a warning. Values out of range and our own keys are not repaired; they are checked as in our documents.
 
 use serde_json::{Map, Value as Json, json};
 
@@ -30,10 +30,10 @@ pub(super) enum Entry {
 }
 
 /// Maximum length of a string in characters.
-const MOST_LETTERS: usize = 100;
+const MAX_CHARACTERS: usize = 100;
 
 /// Largest model number.
-const MOST_MODELS: u64 = 1_000_000;
+const MAX_MODEL: u64 = 1_000_000;
 
 impl Entry {
     /// The form that a world's schema requires of a property; `None` for parts and for lists of words.
@@ -84,10 +84,10 @@ impl Reader {
             return;
         }
         let found = describe(value);
-        let assumed = match entry.mended(value, default) {
-            Some(mended) if is_same(&mended, value) => return,
-            Some(mended) => {
-                *value = mended;
+        let assumed = match entry.repaired(value, default) {
+            Some(repaired) if is_same(&repaired, value) => return,
+            Some(repaired) => {
+                *value = repaired;
                 format!("{} is assumed", plain(value))
             }
             None => {
@@ -128,13 +128,13 @@ impl Entry {
             Self::Pair(low, high) => format!("two numbers from {low} to {high}"),
             Self::Word(words) => format!("one of {}", words.join(", ")),
             Self::Color => "a colour of three numbers in 0..1".to_owned(),
-            Self::Text => format!("a text of 1 to {MOST_LETTERS} letters"),
-            Self::Model => format!("a text of 1 to {MOST_LETTERS} letters, or a whole number to {MOST_MODELS}"),
+            Self::Text => format!("a text of 1 to {MAX_CHARACTERS} letters"),
+            Self::Model => format!("a text of 1 to {MAX_CHARACTERS} letters, or a whole number to {MAX_MODEL}"),
         }
     }
 
     /// The repaired value, equal to the original if that is valid; `None` if nothing can be recovered.
-    fn mended(&self, value: &Json, default: Option<&Json>) -> Option<Json> {
+    fn repaired(&self, value: &Json, default: Option<&Json>) -> Option<Json> {
         match self {
             Self::Number(..) => value.is_number().then(|| value.clone()),
             Self::Whole(..) => whole(value),
@@ -171,7 +171,7 @@ fn is_same(a: &Json, b: &Json) -> bool {
     }
 }
 
-/// The first two numbers of a list, with defaults in place of anything else. `None` if neither is a number.
+/// The first two numbers of a list, with defaults replacing anything else. `None` if neither is a number.
 fn pair(value: &Json, default: Option<&Json>) -> Option<Json> {
     let items = value.as_array()?;
     let number = |axis: usize| items.get(axis).filter(|item| item.is_number());
@@ -206,7 +206,7 @@ fn text(value: &Json) -> Option<Json> {
     (!text.is_empty()).then(|| json!(text))
 }
 
-/// A value for people to read: integers without a decimal point.
+/// A readable form of a value: integers without a decimal point.
 fn plain(value: &Json) -> String {
     match value {
         Json::Number(number) => number

@@ -20,7 +20,7 @@ use mend::Entry;
 
 /// The table of fields for one part of a reset file.
 struct Part {
-    /// The original's keys, then those that only our worlds have, then those of early files, which the reader converts.
+    /// The original's keys, then keys that only our worlds have, then keys of early files, which the reader converts.
     keys: Vec<&'static str>,
     /// The required forms of the original's keys; lists and parts are read separately.
     entries: Vec<(&'static str, Entry)>,
@@ -29,7 +29,7 @@ struct Part {
 }
 
 impl Part {
-    /// The part that becomes a `T` with this schema; `old` are its keys in early files.
+    /// The part that becomes a `T` with this schema; `old` lists its keys in early files.
     fn of<T: Fields + Serialize>(default: &T, schema: &Json, old: &[&'static str]) -> Self {
         let fields = T::ROWS.iter().map(|row| row.field);
         let (original, ours): (Vec<Field>, Vec<Field>) = fields
@@ -73,8 +73,8 @@ static PARTS: LazyLock<Parts> = LazyLock::new(|| {
     }
 });
 
-/// Assumed speed of the original's moving objects in metres per second, which its documents do not give: the speed of
-/// the balls in the built-in `moving_object`, a fifth of the agent's.
+/// Assumed speed of the original's moving objects in metres per second, because its documents do not state it: the speed of the
+/// balls in the built-in `moving_object`, a fifth of the agent's.
 const ASSUMED_SPEED: f64 = 2.0;
 
 /// Whether black is a deliberate colour for this class (in lower case); for all others it is the default and means the

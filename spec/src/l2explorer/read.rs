@@ -1,4 +1,4 @@
-//! Reads L2Explorer's reset files into a [`World`], with a warning for everything that is not in plain form.
+//! Reads L2Explorer's reset files into a [`World`], with a warning for everything that is not in standard form.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -21,20 +21,20 @@ impl World {
     /// The original's default colour is (0, 0, 0); on anything but `geometric`, `cube` and `icosphere` it is read as the
     /// asset's own colours.
     ///
-    /// Entries of the original's keys that are empty or of the wrong type get their defaults, or their readable part, each with a
-    /// warning that says what is assumed: an object without a place is put at (0, 0), a moving object gets 2 m/s unless our own
-    /// key `speed` is given. Objects outside the arena or inside walls stay where they are, with a warning. Predefined maps are
-    /// the original's, written into the world as `map_regions`.
+    /// Entries of the original's keys that are empty or of the wrong type get their defaults, or their readable part, each with
+    /// a warning that says what is assumed: an object without coordinates is placed at (0, 0), a moving object gets 2 m/s
+    /// unless our own key `speed` is given. Objects outside the arena or inside walls stay where they are, with a warning. The
+    /// original's predefined maps are written into the world as `map_regions`.
     ///
     /// # Errors
-    /// [`SpecError`] if the file is not a JSON object, has a number out of range or more objects than a world may hold, or has
-    /// keys of ours with invalid values.
+    /// [`SpecError`] if the file is not a JSON object, has a number out of range, has more objects than a world may hold, or
+    /// has invalid values for our own keys.
     pub fn from_l2explorer(name: &str, text: &str) -> Result<(Self, Vec<Warning>), SpecError> {
         Self::from_l2explorer_with(name, text, &MapLibrary::default())
     }
 
-    /// Like [`World::from_l2explorer`], with the layouts of a library in place of the original's. They are written into the world
-    /// as by [`World::with_maps`], before the check for objects inside walls.
+    /// Like [`World::from_l2explorer`], with the layouts of a library replacing the original's. They are written into the world
+    /// like [`World::with_maps`] does, before the check for objects inside walls.
     ///
     /// # Errors
     /// As [`World::from_l2explorer`].
@@ -58,8 +58,8 @@ impl World {
         let draft: WorldDraft = document.deserialize()?;
         document.fail_on(draft.problems().into_iter().map(original).collect::<Vec<_>>())?;
         let world = draft.check_in_range()?;
-        let is_told = world.environment_params.map_regions.is_some();
-        let world = if is_told {
+        let has_map_regions = world.environment_params.map_regions.is_some();
+        let world = if has_map_regions {
             world
         } else {
             world.with_maps(maps::of_l2explorer())
@@ -70,7 +70,9 @@ impl World {
                 continue;
             };
             // The regions are not in the file: they come from its map.
-            if let (false, Some(Enclosure::OwnRegion { index })) = (is_told, world.enclosure(object.coordinates)) {
+            if let (false, Some(Enclosure::OwnRegion { index })) =
+                (has_map_regions, world.enclosure(object.coordinates))
+            {
                 let (map, count) = (world.environment_params.map(), world.environment_params.regions().len());
                 let name = maps.name(map).unwrap_or_else(|| maps::name(map));
                 let region = format!("region {} of {count} of map {map} ({name})", index + 1);
@@ -111,7 +113,7 @@ impl Object {
     }
 }
 
-/// Maps a place in the world to its place in the file, whose skipped objects shift the indices.
+/// Maps a pointer into the world to a pointer into the file, where skipped objects shift the indices.
 fn original_pointer(pointer: &str, kept: &[usize]) -> String {
     let mut tokens: Vec<String> = pointer.split('/').map(str::to_owned).collect();
     if let [_, list, index, ..] = &mut tokens[..]
@@ -123,7 +125,7 @@ fn original_pointer(pointer: &str, kept: &[usize]) -> String {
     tokens.join("/")
 }
 
-/// Maps a place under our names to its place in the file, where keys may be spelled differently.
+/// Maps a pointer with our key names to a pointer into the file, where keys may be spelled differently.
 fn as_spelled(pointer: String, spelled: &BTreeMap<String, String>) -> String {
     let ends = pointer.match_indices('/').map(|(end, _)| end).chain([pointer.len()]);
     let longest_known = ends
@@ -140,7 +142,7 @@ pub(super) struct Reader {
     warnings: Remarks,
     /// For each object of the world, its index in the file.
     pub(super) kept: Vec<usize>,
-    /// Places of entries whose keys the file spells differently: from our names to the places in the file.
+    /// Entries with keys that the file spells differently: from pointers with our names to pointers into the file.
     pub(super) spelled: BTreeMap<String, String>,
 }
 
@@ -149,7 +151,7 @@ impl Reader {
         self.warnings.push(as_spelled(pointer.into(), &self.spelled), text);
     }
 
-    /// Warns that something else was found. `expected` says what was expected and what is assumed.
+    /// Warns about an unexpected value. `expected` says what was expected and what is assumed.
     pub(super) fn warn_instead(&mut self, pointer: impl Into<String>, found: &Json, expected: &str) {
         self.warn(pointer, format!("found {}, expected {expected}", describe(found)));
     }
@@ -198,7 +200,7 @@ impl Reader {
         Json::Object(world)
     }
 
-    /// The entries under our names for the keys; unknown keys are dropped with a warning.
+    /// Renames keys to our names; unknown keys are dropped with a warning.
     fn keys(&mut self, pointer: &str, map: Map<String, Json>, known: &Part) -> Map<String, Json> {
         let plain = |key: &str| key.replace('_', "").to_lowercase();
         let mut renamed = Map::new();
@@ -245,7 +247,7 @@ impl Reader {
         map
     }
 
-    /// The agent's entries that need more than the common rules.
+    /// Reads the agent's entries that need more than the common rules.
     fn agent(&mut self, at: &str, agent: &mut Map<String, Json>) {
         for key in ["modalities", "actions"] {
             word(agent, key);

@@ -13,7 +13,7 @@ use crate::limits::MAX_OBJECTS;
 
 impl Reader {
     pub(super) fn objects(&mut self, objects: Vec<Json>) -> Vec<Json> {
-        // The schema will refuse too many objects, so they are not read one by one first.
+        // The schema will reject too many objects, so reading them one by one first would be wasted.
         if objects.len() > MAX_OBJECTS {
             return objects;
         }
@@ -144,11 +144,11 @@ impl Reader {
         let is_collectible = match &collectible {
             Some(Json::Bool(is_collectible)) => *is_collectible,
             Some(other) => {
-                let is_meant = matches!(other.as_str(), Some(word) if word.eq_ignore_ascii_case("true"))
+                let is_true = matches!(other.as_str(), Some(word) if word.eq_ignore_ascii_case("true"))
                     || other.as_f64().is_some_and(|number| number != 0.0);
-                let expected = format!("true or false; {is_meant} is assumed");
+                let expected = format!("true or false; {is_true} is assumed");
                 self.warn_instead(format!("{at}/collectible"), other, &expected);
-                is_meant
+                is_true
             }
             None => false,
         };

@@ -71,7 +71,7 @@ impl Reader {
     }
 
     fn name(&mut self, found: Option<&Json>) -> String {
-        let fits = |letter: char| letter.is_ascii_alphanumeric() || matches!(letter, '_' | '.' | '-');
+        let fits = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '.' | '-');
         let Some(text) = found.and_then(Json::as_str).filter(|text| !text.is_empty()) else {
             self.warnings.push(
                 "",
@@ -79,11 +79,7 @@ impl Reader {
             );
             return "scenario".to_owned();
         };
-        let mut name: String = text
-            .chars()
-            .take(100)
-            .map(|letter| if fits(letter) { letter } else { '_' })
-            .collect();
+        let mut name: String = text.chars().take(100).map(|c| if fits(c) { c } else { '_' }).collect();
         // Invalid file names: a leading dot or hyphen, a trailing dot, a Windows device name.
         if name.starts_with(['.', '-']) {
             name.replace_range(..1, "_");
@@ -129,13 +125,13 @@ impl Reader {
         let task = self.text(at, map, "task");
         let count = self.whole(at, map, "count", 1, u64::from(MAX_EXPERIENCES)).unwrap_or(1);
         let params = format!("{at}/params");
-        let said = map.get("params").and_then(Json::as_object).unwrap_or(&empty);
-        self.unknown(&params, said, &["map", "maxsteps"]);
+        let params_map = map.get("params").and_then(Json::as_object).unwrap_or(&empty);
+        self.unknown(&params, params_map, &["map", "maxsteps"]);
         if map.get("params").is_none_or(Json::is_object) {
-            let world = self.text(&params, said, "map");
-            let max_steps = said
+            let world = self.text(&params, params_map, "map");
+            let max_steps = params_map
                 .contains_key("maxsteps")
-                .then(|| self.whole(&params, said, "maxsteps", 0, MAX_STEPS))
+                .then(|| self.whole(&params, params_map, "maxsteps", 0, MAX_STEPS))
                 .flatten();
             return Regime {
                 max_steps: max_steps.map(|steps| steps as u32),
@@ -155,13 +151,13 @@ impl Reader {
         }
         let stem = stem(world);
         let plain = |name: &str| -> String {
-            let letters = name.chars().filter(char::is_ascii_alphanumeric);
-            letters.collect::<String>().to_ascii_lowercase()
+            let chars = name.chars().filter(char::is_ascii_alphanumeric);
+            chars.collect::<String>().to_ascii_lowercase()
         };
         let taken = self.taken.entry(task.to_owned()).or_default();
         let number = self.numbers.entry((task.to_owned(), stem.clone())).or_insert(1);
         let mut name = stem.clone();
-        // Taken names stay taken: the search continues where it ended for the last map of this name.
+        // Names are never released, so the search continues where it ended for the last map of this name.
         while taken.contains(&plain(&name)) {
             *number += 1;
             name = format!("{stem}-v{number}");
@@ -191,18 +187,18 @@ impl Reader {
         }
     }
 
-    fn whole(&mut self, at: &str, map: &Map<String, Json>, key: &str, least: u64, most: u64) -> Option<u64> {
+    fn whole(&mut self, at: &str, map: &Map<String, Json>, key: &str, min: u64, max: u64) -> Option<u64> {
         let number = map.get(key).and_then(Json::as_f64);
-        let number = number.filter(|number| number.fract() == 0.0 && (least as f64..=most as f64).contains(number));
+        let number = number.filter(|number| number.fract() == 0.0 && (min as f64..=max as f64).contains(number));
         if number.is_none() {
-            self.wrong(at, map, key, &format!("a whole number in {least}..{most}"));
+            self.wrong(at, map, key, &format!("a whole number in {min}..{max}"));
         }
         number.map(|number| number as u64)
     }
 
     /// Reports a key that is missing or has an invalid value.
     fn wrong(&mut self, at: &str, map: &Map<String, Json>, key: &str, expected: &str) {
-        // More would not be listed.
+        // Further problems would not be listed.
         if self.problems.len() > MAX_PROBLEMS {
             return;
         }
@@ -238,20 +234,20 @@ fn stem(path: &str) -> String {
 mod tests {
     use super::*;
 
-    /// A scenario file of the original, with one regime of these entries.
+    /// A scenario file of the original with one regime that has these entries.
     fn file(regime: &str) -> String {
         format!(r#"{{ "logging_base_dir": "logs", "scenario": [{{ "type": "train", "regimes": [{{ {regime} }}] }}] }}"#)
     }
 
-    fn refused(text: &str) -> String {
+    fn error_for(text: &str) -> String {
         Scenario::from_l2explorer("s.json", text).unwrap_err().to_string()
     }
 
     #[test]
     fn missing_regime_keys_are_reported_with_their_place() {
         let check = |regime: &str, expected: &str| {
-            let said = refused(&file(regime));
-            assert!(said.ends_with(expected), "{said}");
+            let messages = error_for(&file(regime));
+            assert!(messages.ends_with(expected), "{messages}");
         };
         let params = r#""params": { "map": "m.json" }"#;
         check(
@@ -270,12 +266,12 @@ mod tests {
             r#""task": "a", "count": 1, "params": [3]"#,
             "(/scenario/0/regimes/0/params): found [3], expected an object with the key \"map\"",
         );
-        assert!(refused("[1]").ends_with("expected the key \"scenario\" with a list of 1 to 100000 blocks"));
+        assert!(error_for("[1]").ends_with("expected the key \"scenario\" with a list of 1 to 100000 blocks"));
         let wake = file("").replace("train", "wake");
         assert!(
-            refused(&wake).contains("found \"wake\", expected \"train\" or \"test\""),
+            error_for(&wake).contains("found \"wake\", expected \"train\" or \"test\""),
             "{}",
-            refused(&wake)
+            error_for(&wake)
         );
     }
 
@@ -285,12 +281,12 @@ mod tests {
             .replace("\"logs\"", "\"my logs\"");
         let (scenario, warnings) = Scenario::from_l2explorer("s.json", &text).unwrap();
         assert_eq!((scenario.name.as_str(), scenario.num_experiences()), ("my_logs", 2));
-        let said: Vec<&str> = warnings.iter().map(|warning| warning.text.as_str()).collect();
+        let messages: Vec<&str> = warnings.iter().map(|warning| warning.text.as_str()).collect();
         let expected = [
             "\"my logs\" is read as the name \"my_logs\"",
             "the key \"fog\" has no meaning here and is left out",
         ];
-        assert_eq!(said, expected);
+        assert_eq!(messages, expected);
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Checks a layout beyond its schema, and remarks on oddities.
+//! Checks a layout beyond its schema, and reports oddities.
 
 use super::walls::present;
 use super::{Kind, Layout, LayoutWall, MAX_CELLS, MAX_LAYOUT_SIDE, Plan};
@@ -8,7 +8,7 @@ use crate::error::Problem;
 pub(crate) const POINTER: &str = "/environment_params/layout";
 
 impl Layout {
-    /// All problems, with pointers from the world. A layout without problems can be planned.
+    /// All problems, with pointers that start at the world. A layout without problems can be planned.
     pub(crate) fn problems(&self) -> Vec<Problem> {
         let kinds = self.kinds();
         let [kind] = kinds.as_slice() else {
@@ -27,7 +27,10 @@ impl Layout {
             ("height", "text", self.height.is_some()),
             ("legend", "text", !self.legend.is_empty()),
         ];
-        for (key, ..) in keys.into_iter().filter(|(_, owner, stands)| *stands && owner != kind) {
+        for (key, ..) in keys
+            .into_iter()
+            .filter(|(_, owner, is_present)| *is_present && owner != kind)
+        {
             let expected = "no such key beside ".to_owned() + kind;
             let problem = Problem::new(
                 "spec/layout-kind",
@@ -58,11 +61,11 @@ impl Layout {
             }
             Some(Kind::Rooms(rooms)) => {
                 problems.extend(too_many("rooms/grid", rooms.lattice()));
-                let least = rooms.room[0].min(rooms.room[1]);
-                // A doorway with walls that fills the side exactly may exceed it by rounding.
-                if rooms.doorway + rooms.wall > least * (1.0 + 1e-12) {
+                let shorter = rooms.room[0].min(rooms.room[1]);
+                // A doorway and wall that fill the side exactly may exceed it by rounding.
+                if rooms.doorway + rooms.wall > shorter * (1.0 + 1e-12) {
                     let found = format!(
-                        "doorways of {} m and walls of {} m in rooms of {least} m",
+                        "doorways of {} m and walls of {} m in rooms of {shorter} m",
                         rooms.doorway, rooms.wall
                     );
                     let expected = "together at most the side of a room";
@@ -152,9 +155,9 @@ impl Layout {
         problems
     }
 
-    /// An oddity of the layout, as one sentence without a place; `plan` is the layout's plan.
+    /// An oddity of the layout, as one sentence without a pointer; `plan` is the layout's plan.
     pub(crate) fn remark(plan: &Plan) -> Option<String> {
-        let cut_off = plan.cut_off();
+        let cut_off = plan.num_cut_off_cells();
         (cut_off > 0).then(|| {
             let all = plan.cells.len();
             format!(

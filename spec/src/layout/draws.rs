@@ -8,11 +8,11 @@ const DOMAIN: u64 = 0x6c61_796f_7574_2031;
 /// The purpose of a stream of random numbers.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Purpose {
-    /// The spanning tree of a maze, or of joined rooms.
+    /// The spanning tree of a maze, or of connected rooms.
     Tree = 1,
-    /// Which dead ends are opened, and where; which further walls of rooms get doorways.
+    /// Which dead ends are opened, and where; which additional walls between rooms get doorways.
     Loops = 2,
-    /// The place of a doorway in its wall.
+    /// The position of a doorway in its wall.
     Doorways = 3,
     /// The order in which walls are removed.
     Standing = 4,
@@ -23,7 +23,7 @@ pub(super) struct Draws {
     key: [u64; 2],
     counter: [u64; 4],
     numbers: [u64; 4],
-    /// How many 32-bit halves of `numbers` are used.
+    /// Number of 32-bit halves of `numbers` already used.
     used: usize,
 }
 
@@ -37,7 +37,7 @@ impl Draws {
         }
     }
 
-    /// An integer below `bound`, by the high half of a product; the bias is below `bound / 2³²`.
+    /// An integer below `bound`, taken from the high half of a product; the bias is below `bound / 2³²`.
     pub(super) fn below(&mut self, bound: usize) -> usize {
         if self.used == 8 {
             self.numbers = philox(self.key, self.counter);
@@ -67,7 +67,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_draw_stays_below_its_bound_and_reaches_all() {
+    fn draws_cover_all_integers_below_the_bound() {
         let mut draws = Draws::new(7, Purpose::Tree);
         let mut seen = [0_u32; 5];
         for _ in 0..5000 {

@@ -1,10 +1,10 @@
-//! [`Grid`]: cells between thin walls, for mazes and rooms; turns the walls into polygons. Walls as thick as cells
+//! [`Grid`]: cells between thin walls, for mazes and rooms; turns the walls into polygons. Layouts with walls as thick as cells
 //! are in `text.rs`.
 
 use super::draws::{Draws, Purpose, share_of};
 use super::plan::{Doorway, EAST, NORTH, Plan, PlanCell, PlanWall, SOUTH, WEST};
 
-/// What separates two cells.
+/// The boundary between two cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Side {
     Open,
@@ -13,7 +13,7 @@ pub(super) enum Side {
     Doorway,
 }
 
-/// For each cell, what separates it from its eastern and northern neighbours.
+/// The boundaries of each cell with its eastern and northern neighbours.
 pub(super) struct Grid {
     /// Columns and rows.
     pub(super) lattice: [usize; 2],
@@ -37,7 +37,7 @@ pub(super) struct Scale {
 pub(super) type SideOf = (usize, usize);
 
 impl Grid {
-    /// A grid whose sides are all of one kind.
+    /// A grid with all sides of one kind.
     pub(super) fn new(lattice: [usize; 2], side: Side) -> Self {
         let sides = vec![side; lattice[0] * lattice[1]];
         Self {
@@ -46,8 +46,8 @@ impl Grid {
         }
     }
 
-    /// The neighbours of a cell, each with the side between.
-    pub(super) fn beside(&self, cell: usize) -> impl Iterator<Item = (usize, SideOf)> + use<> {
+    /// The neighbours of a cell, each with the side in between.
+    pub(super) fn neighbours(&self, cell: usize) -> impl Iterator<Item = (usize, SideOf)> + use<> {
         let [columns, rows] = self.lattice;
         let (column, row) = (cell % columns, cell / columns);
         let east = (column + 1 < columns).then(|| (cell + 1, (cell, 0)));
@@ -68,8 +68,8 @@ impl Grid {
     }
 
     /// Opens sides so that exactly one path connects any two cells (a spanning tree, depth first). Each opened side
-    /// becomes `as_what`.
-    pub(super) fn open_tree(&mut self, as_what: Side, draws: &mut Draws) {
+    /// becomes `opened`.
+    pub(super) fn open_tree(&mut self, opened: Side, draws: &mut Draws) {
         let count = self.sides[0].len();
         let mut seen = vec![false; count];
         let mut stack = Vec::with_capacity(count);
@@ -77,48 +77,53 @@ impl Grid {
         seen[first] = true;
         stack.push(first);
         while let Some(&cell) = stack.last() {
-            let mut fresh = [(0, (0, 0)); 4];
-            let mut number = 0;
-            for found in self.beside(cell).filter(|(next, _)| !seen[*next]) {
-                fresh[number] = found;
-                number += 1;
+            let mut unvisited = [(0, (0, 0)); 4];
+            let mut count_unvisited = 0;
+            for neighbour in self.neighbours(cell).filter(|(next, _)| !seen[*next]) {
+                unvisited[count_unvisited] = neighbour;
+                count_unvisited += 1;
             }
-            if number == 0 {
+            if count_unvisited == 0 {
                 stack.pop();
                 continue;
             }
-            let (next, (cell, axis)) = fresh[if number == 1 { 0 } else { draws.below(number) }];
-            self.sides[axis][cell] = as_what;
+            let (next, (cell, axis)) = unvisited[if count_unvisited == 1 {
+                0
+            } else {
+                draws.below(count_unvisited)
+            }];
+            self.sides[axis][cell] = opened;
             seen[next] = true;
             stack.push(next);
         }
     }
 
-    /// Removes walls until a share of them is left; the walls left for a smaller share are a subset of those for a larger one.
-    pub(super) fn let_stand(&mut self, share: f64, seed: u64) {
+    /// Removes walls until a share of them is left; the walls left for a smaller share are a subset of the walls left for a
+    /// larger one.
+    pub(super) fn remove_walls(&mut self, share: f64, seed: u64) {
         if share >= 1.0 {
             return;
         }
         let mut sides: Vec<SideOf> = self.between_cells().collect();
         sides.retain(|(cell, axis)| self.sides[*axis][*cell] != Side::Open);
         Draws::new(seed, Purpose::Standing).shuffle(&mut sides);
-        let stand = share_of(share, sides.len());
-        for (cell, axis) in sides.drain(stand..) {
+        let num_standing = share_of(share, sides.len());
+        for (cell, axis) in sides.drain(num_standing..) {
             self.sides[axis][cell] = Side::Open;
         }
     }
 
     /// The open sides of each cell, as bits.
-    fn ways_out(&self) -> Vec<u8> {
-        let mut ways = vec![0; self.sides[0].len()];
+    fn open_sides(&self) -> Vec<u8> {
+        let mut open_sides = vec![0; self.sides[0].len()];
         for (cell, axis) in self
             .between_cells()
             .filter(|(cell, axis)| self.sides[*axis][*cell] != Side::Wall)
         {
-            ways[cell] |= [EAST, NORTH][axis];
-            ways[cell + self.strides()[axis]] |= [WEST, SOUTH][axis];
+            open_sides[cell] |= [EAST, NORTH][axis];
+            open_sides[cell + self.strides()[axis]] |= [WEST, SOUTH][axis];
         }
-        ways
+        open_sides
     }
 
     /// The steps in a cell's index to its eastern and northern neighbours.
@@ -126,15 +131,15 @@ impl Grid {
         [1, self.lattice[0]]
     }
 
-    /// The plan of the grid; `room_of` gives the room of a cell by column and row.
+    /// The plan of the grid; `room_of` returns the room of a cell, given its column and row.
     pub(super) fn plan(&self, scale: &Scale, seed: u64, room_of: impl Fn([usize; 2]) -> u32) -> Plan {
-        let ways = self.ways_out();
-        let place = |cell: usize| [cell % self.lattice[0], cell / self.lattice[0]];
+        let open_sides = self.open_sides();
+        let column_and_row = |cell: usize| [cell % self.lattice[0], cell / self.lattice[0]];
         let mut plan = Plan::of_cells(scale.size, self.lattice, seed, |cell, center| {
             Some(PlanCell {
                 center,
-                room: room_of(place(cell)),
-                sides: ways[cell],
+                room: room_of(column_and_row(cell)),
+                sides: open_sides[cell],
                 letter: None,
             })
         });
@@ -159,40 +164,40 @@ impl Grid {
                 for at in 0..self.lattice[along] {
                     let cell = line * strides[across] + at * strides[along];
                     match self.sides[across][cell] {
-                        Side::Open => run.stop(metres(at) + scale.wall / 2.0),
-                        Side::Wall => run.go(metres(at) - scale.wall / 2.0),
+                        Side::Open => run.end_at(metres(at) + scale.wall / 2.0),
+                        Side::Wall => run.begin(metres(at) - scale.wall / 2.0),
                         Side::Doorway => {
                             let center = metres(at) + side[along] / 2.0;
-                            run.go(metres(at) - scale.wall / 2.0);
-                            run.stop(center - scale.doorway / 2.0);
-                            run.go(center + scale.doorway / 2.0);
+                            run.begin(metres(at) - scale.wall / 2.0);
+                            run.end_at(center - scale.doorway / 2.0);
+                            run.begin(center + scale.doorway / 2.0);
                             let beyond = cell + strides[across];
                             plan.doorways.push(Doorway {
                                 center: point(across, middle, center),
                                 heading: [90.0, 0.0][across],
                                 width: scale.doorway,
                                 depth: scale.wall,
-                                rooms: [cell, beyond].map(|cell| room_of(place(cell))),
+                                rooms: [cell, beyond].map(|cell| room_of(column_and_row(cell))),
                             });
                         }
                     }
                 }
-                run.stop(half[along]);
+                run.end_at(half[along]);
             }
         }
         plan
     }
 }
 
-/// The point at these coordinates across and along a line; `across` is the axis across it.
-fn point(across: usize, on_it: f64, along: f64) -> [f64; 2] {
-    if across == 0 { [on_it, along] } else { [along, on_it] }
+/// The point with these coordinates across and along a line; `across` is the axis perpendicular to the line.
+fn point(across: usize, offset: f64, along: f64) -> [f64; 2] {
+    if across == 0 { [offset, along] } else { [along, offset] }
 }
 
 /// A straight wall under construction along a line.
 struct Run<'a> {
     scale: &'a Scale,
-    /// The axis across the line, and the line's coordinate on it.
+    /// The axis perpendicular to the line, and the line's coordinate on that axis.
     across: usize,
     middle: f64,
     /// Half the arena's length along the line, where every wall ends.
@@ -202,11 +207,11 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    fn go(&mut self, from: f64) {
+    fn begin(&mut self, from: f64) {
         self.start.get_or_insert(from.max(-self.end));
     }
 
-    fn stop(&mut self, to: f64) {
+    fn end_at(&mut self, to: f64) {
         let Some(from) = self.start.take() else { return };
         let (to, half) = (to.min(self.end), self.scale.wall / 2.0);
         let corner = |along: f64, across: f64| point(self.across, self.middle + across, along);

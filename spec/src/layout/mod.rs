@@ -1,4 +1,4 @@
-//! [`Layout`]: rooms, mazes and walls of an arena as a value, and the [`Plan`] made from it.
+//! [`Layout`]: rooms, mazes and walls of an arena as a value, and the [`Plan`] computed from it.
 
 mod check;
 mod draws;
@@ -30,7 +30,7 @@ use text::TextMap;
 /// Maximum number of cells in a layout, including wall cells.
 pub const MAX_CELLS: usize = 10_000;
 
-/// Longest side of a layout in metres, which is that of an arena.
+/// Maximum side of a layout in metres, the same as for an arena.
 pub const MAX_LAYOUT_SIDE: f64 = 300.0;
 
 /// Side of a predefined map in metres.
@@ -40,9 +40,9 @@ const MAP_SIDE: f64 = 200.0;
 const TEXT_CELL: f64 = 2.0;
 
 fields! {
-    /// What divides the arena: a maze, rooms, a text, a predefined map, or walls one by one. Exactly one of the five.
+    /// The walls that divide the arena: exactly one of a maze, rooms, a text, a predefined map, or a list of walls.
     ///
-    /// All but walls say how large the arena is.
+    /// All but a list of walls set the size of the arena.
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
     #[serde(default, deny_unknown_fields)]
     #[schemars(extend("examples" = [
@@ -59,40 +59,39 @@ fields! {
         /// Rooms with doorways between them.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub rooms: Option<Rooms> = None => Field::ours(AsPart),
-        /// Lines of letters, the northernmost first, all as long: `#` and `*` are walls, a space, `.` and `_` floor, `A` and
-        /// `P` where the agent may start, `D` a doorway; the legend says what others are.
+        /// Lines of letters, the northernmost first, all of the same length: `#` and `*` are walls, a space, `.` and `_` are
+        /// floor, the agent may start at `A` and `P`, `D` is a doorway; the legend defines other letters.
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(length(min = 1, max = 1000), inner(length(min = 1, max = 1000)))]
         pub text: Option<Vec<String>> = None
             => Field::ours(AsPart).fixed("its letters belong together; the layout as a whole can vary"),
-        /// A predefined map, as `predefined_map` has it.
+        /// Number of a predefined map, as in `predefined_map`.
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = 1, max = 4))]
         pub predefined: Option<u8> = None => Field::ours(AsPart),
-        /// Sides of the arena that a predefined map is stretched or shrunk to, in metres; 200 × 200 if absent. Only beside
-        /// `predefined`.
+        /// Sides of the arena in metres, to which a predefined map is scaled; 200 × 200 if absent. Only with `predefined`.
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(inner(range(min = 1.0, max = 300.0)))]
         pub size: Option<[f64; 2]> = None => Field::ours(AsPart).unit("m"),
-        /// Walls one by one, in an arena of `map_size`. They may overlap.
+        /// A list of walls, in an arena of `map_size`. They may overlap.
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(length(max = 1000))]
         pub walls: Option<Vec<LayoutWall>> = None => Field::ours(AsPart),
-        /// Side of a letter's cell in metres; 2 if absent. Only beside `text`.
+        /// Side of a letter's cell in metres; 2 if absent. Only with `text`.
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = 0.1, max = 100.0))]
         pub cell: Option<f64> = None => Field::ours(AsPart).unit("m"),
-        /// Height of a text's walls in metres; the arena's `wall_height` if absent. Only beside `text`.
+        /// Height of a text's walls in metres; the arena's `wall_height` if absent. Only with `text`.
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = 0.0, max = 50.0))]
         pub height: Option<f64> = None => Field::ours(AsPart).unit("m"),
-        /// What letters of a text stand for, in place of their plain meaning. Only beside `text`.
+        /// Meanings of letters of a text, overriding their default meanings. Only with `text`.
         #[serde(skip_serializing_if = "BTreeMap::is_empty")]
         #[schemars(extend("maxProperties" = 1000))]
         pub legend: BTreeMap<String, Legend> = BTreeMap::new()
             => Field::ours(AsPart).fixed("it belongs to the text; the layout as a whole can vary"),
-        /// Share of the inner walls that stand, 0..1. They are taken away in an order of the layout's own, so that the walls
-        /// of a smaller share are among those of a larger one, and what could be reached still can.
+        /// Share of the inner walls that are kept, 0..1. Each layout removes its walls in a fixed order, so the walls kept for
+        /// a smaller share are a subset of those kept for a larger one, and every reachable place stays reachable.
         #[schemars(range(min = 0.0, max = 1.0))]
         pub standing: f64 = 1.0 => Field::ours(AsPart),
     }
@@ -132,7 +131,7 @@ impl Layout {
         self.walls.as_deref().map(Kind::Walls)
     }
 
-    /// Side lengths of the arena in metres; `None` for a list of walls, which leaves them to the world.
+    /// Side lengths of the arena in metres; `None` for a list of walls, where the world sets the arena size.
     pub fn size(&self) -> Option<[f64; 2]> {
         match self.kind()? {
             Kind::Maze(maze) => Some(maze.size()),
@@ -166,7 +165,7 @@ impl Layout {
             .or_else(|| self.rooms.as_ref().and_then(|rooms| rooms.seed))
     }
 
-    /// The regions of a predefined map as walls, scaled to the arena; with a share below 1, only the first ones.
+    /// The regions of a predefined map as walls, scaled to the arena; with `standing` below 1, only the first ones.
     fn map_plan(&self, regions: &[Region]) -> Plan {
         let size = self.size.unwrap_or([MAP_SIDE; 2]);
         let factor = size.map(|side| side / MAP_SIDE);
@@ -191,9 +190,9 @@ impl Layout {
         }
     }
 
-    /// Makes the plan. `seed` is the world's, used if the layout has no seed of its own.
+    /// Computes the plan. `seed` is the world's, used if the layout has no seed of its own.
     ///
-    /// The same layout and seed give bit for bit the same plan on every machine.
+    /// The same layout and seed give the same plan, bit for bit, on every machine.
     ///
     /// # Example
     /// ```
@@ -207,7 +206,7 @@ impl Layout {
         self.plan_with(seed, maps::excluded_regions(self.predefined.unwrap_or(0)))
     }
 
-    /// Like [`Layout::plan`], with these regions in place of its predefined map's.
+    /// Like [`Layout::plan`], with these regions replacing those of its predefined map.
     pub(crate) fn plan_with(&self, seed: u64, regions: &[Region]) -> Plan {
         let seed = self.seed().unwrap_or(seed);
         match self.kind() {

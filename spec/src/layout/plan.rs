@@ -1,4 +1,4 @@
-//! [`Plan`]: the walls, free cells and doorways of a layout, in metres. Each kind of layout makes its plan in its own file.
+//! [`Plan`]: the walls, free cells and doorways of a layout, in metres. Each kind of layout computes its plan in its own file.
 
 use std::collections::VecDeque;
 
@@ -8,13 +8,13 @@ pub(super) const NORTH: u8 = 2;
 pub(super) const WEST: u8 = 4;
 pub(super) const SOUTH: u8 = 8;
 
-/// No cell at this place of the lattice.
+/// Marks a lattice position without a cell.
 const NONE: u32 = u32::MAX;
 
-/// The plan of a layout: where its walls are, and where an object can be.
+/// The plan of a layout: where its walls are, and where objects can be.
 ///
-/// Made by [`Layout::plan`](crate::Layout::plan); a checked [`World`](crate::World) keeps that of its layout. Coordinates are in
-/// metres, x east, y north, with the origin in the middle of the arena.
+/// Computed by [`Layout::plan`](crate::Layout::plan); a checked [`World`](crate::World) stores the plan of its layout.
+/// Coordinates are in metres, x east, y north, with the origin in the middle of the arena.
 ///
 /// # Example
 /// ```
@@ -28,15 +28,15 @@ const NONE: u32 = u32::MAX;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
-    /// Side lengths of the arena along x and y in metres; `[0, 0]` for a list of walls, which leaves them to the world.
+    /// Side lengths of the arena along x and y in metres; `[0, 0]` for a list of walls, where the world sets the arena size.
     pub size: [f64; 2],
-    /// The seed it was made with.
+    /// The seed from which it was computed.
     pub seed: u64,
-    /// The walls inside the arena, without the outer one.
+    /// The walls inside the arena, excluding its outer wall.
     pub walls: Vec<PlanWall>,
     /// The free cells, row by row from the south-west; empty for a predefined map and for a list of walls.
     pub cells: Vec<PlanCell>,
-    /// The least width of corridors and doorways in metres; infinite if unknown.
+    /// Minimum width of corridors and doorways in metres; infinite if unknown.
     pub corridor: f64,
     /// Passages between rooms, in the order of their walls.
     pub doorways: Vec<Doorway>,
@@ -44,7 +44,7 @@ pub struct Plan {
     pub lattice: [usize; 2],
     /// Side lengths of a cell along x and y in metres.
     pub cell: [f64; 2],
-    /// For each place of the lattice, row by row from the south-west, the index of its cell.
+    /// For each position of the lattice, row by row from the south-west, the index of its cell.
     index: Vec<u32>,
 }
 
@@ -101,8 +101,8 @@ impl Default for Plan {
 }
 
 impl Plan {
-    /// A plan without walls, with cells in a lattice over an arena of these sides: `cell_at` returns the cell at each place, row
-    /// by row from the south-west, or `None`.
+    /// A plan without walls, with cells in a lattice over an arena of the given size: `cell_at` returns the cell at each
+    /// position, row by row from the south-west, or `None`.
     pub(super) fn of_cells(
         size: [f64; 2],
         lattice: [usize; 2],
@@ -148,10 +148,10 @@ impl Plan {
         self.at(row? * self.lattice[0] + column?)
     }
 
-    /// The cell at a place of the lattice.
-    fn at(&self, place: usize) -> Option<usize> {
+    /// The cell at a position of the lattice.
+    fn at(&self, position: usize) -> Option<usize> {
         self.index
-            .get(place)
+            .get(position)
             .filter(|number| **number != NONE)
             .map(|number| *number as usize)
     }
@@ -162,24 +162,24 @@ impl Plan {
         [0, 1].map(|axis| ((center[axis] + self.size[axis] / 2.0) / self.cell[axis]) as usize)
     }
 
-    /// The cells one step from a cell.
+    /// The cells one step away from a cell.
     ///
     /// # Panics
     /// If the cell does not exist.
     pub fn neighbours(&self, cell: usize) -> impl Iterator<Item = usize> {
         let [column, row] = self.column_and_row(cell);
         let columns = self.lattice[0];
-        let (place, sides) = (row * columns + column, self.cells[cell].sides);
-        let beside = [
-            (EAST, place + 1),
-            (NORTH, place + columns),
-            (WEST, place.wrapping_sub(1)),
-            (SOUTH, place.wrapping_sub(columns)),
+        let (position, sides) = (row * columns + column, self.cells[cell].sides);
+        let adjacent = [
+            (EAST, position + 1),
+            (NORTH, position + columns),
+            (WEST, position.wrapping_sub(1)),
+            (SOUTH, position.wrapping_sub(columns)),
         ];
-        beside
+        adjacent
             .into_iter()
             .filter(move |(side, _)| sides & side != 0)
-            .filter_map(|(_, place)| self.at(place))
+            .filter_map(|(_, position)| self.at(position))
     }
 
     /// Walking distances in metres from the centre of a cell to the centre of every cell, through centres of neighbours; infinite
@@ -196,9 +196,9 @@ impl Plan {
             let here = self.cells[cell].center;
             for next in self.neighbours(cell) {
                 let there = self.cells[next].center;
-                let way = metres[cell] + (here[0] - there[0]).abs() + (here[1] - there[1]).abs();
-                if way < metres[next] - 1e-9 {
-                    metres[next] = way;
+                let length = metres[cell] + (here[0] - there[0]).abs() + (here[1] - there[1]).abs();
+                if length < metres[next] - 1e-9 {
+                    metres[next] = length;
                     open.push_back(next);
                 }
             }
@@ -207,7 +207,7 @@ impl Plan {
     }
 
     /// Number of cells outside the largest connected part.
-    pub fn cut_off(&self) -> usize {
+    pub fn num_cut_off_cells(&self) -> usize {
         let mut seen = vec![false; self.cells.len()];
         let parts = (0..self.cells.len()).map(|first| self.reach(first, &mut seen, |_, _| true));
         self.cells.len() - parts.max().unwrap_or(0)

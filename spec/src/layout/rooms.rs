@@ -10,19 +10,19 @@ use crate::world::MAX_SEED;
 use crate::world::fields::{fields, word};
 
 fields! {
-    /// Rooms in rows and columns. A wall between two rooms has at most one doorway, somewhere along it; from every room
-    /// there is a way to each other one.
+    /// Rooms in rows and columns. A wall between two rooms has at most one doorway, at a random position; every room can be
+    /// reached from every other.
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
     #[serde(default, deny_unknown_fields)]
     #[schemars(extend("examples" = [{ "grid": [2, 2], "room": [8, 8], "doorway": 1.5 }]))]
     pub struct Rooms {
-        /// How many rooms there are along x and y.
+        /// Number of rooms along x and y.
         #[schemars(inner(range(min = 1, max = 100)))]
         pub grid: [u32; 2] = [2, 2] => Field::ours(AsPart),
-        /// Sides of a room along x and y in metres, from the middle of a wall to that of the next.
+        /// Sides of a room along x and y in metres, from the middle of one wall to the middle of the next.
         #[schemars(inner(range(min = 0.1, max = 300.0)))]
         pub room: [f64; 2] = [8.0, 8.0] => Field::ours(AsPart).unit("m"),
-        /// Width of the doorways in metres; with a wall's thickness at most a room's side.
+        /// Width of the doorways in metres; together with a wall's thickness, at most the side of a room.
         #[schemars(range(min = 0.1, max = 100.0))]
         pub doorway: f64 = 1.5 => Field::ours(AsPart).unit("m"),
         /// Thickness of the walls in metres.
@@ -32,33 +32,33 @@ fields! {
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = 0.0, max = 50.0))]
         pub height: Option<f64> = None => Field::ours(AsPart).unit("m"),
-        /// Of the walls that no way between two rooms needs, the share that have a doorway, too, 0..1: 0 leaves one way from
-        /// each room to each other, with 1 every wall between two rooms has a doorway.
+        /// Share of the remaining walls between rooms that get a doorway too, 0..1: 0 leaves exactly one path between any two
+        /// rooms, 1 puts a doorway into every wall between two rooms.
         #[schemars(range(min = 0.0, max = 1.0))]
         pub loops: f64 = 1.0 => Field::ours(AsPart),
-        /// What stands in the doorways. The doors and keys are objects that sampling adds to the world; in a world that is
-        /// not sampled the word alone makes none.
+        /// Doors in the doorways. Sampling adds the doors and keys to the world as objects; in a world that is not sampled,
+        /// this key adds none.
         pub doors: RoomDoors = RoomDoors::None => Field::ours(AsPart),
-        /// What it is drawn with. Without it the world's `seed` decides, or 0 where that is absent, too; a sampled world has
-        /// one of its own.
+        /// Seed of the rooms. If absent, the world's `seed` is used, or 0 if that is absent too; a sampled world has its own
+        /// seed.
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = 0, max = MAX_SEED))]
         pub seed: Option<u64> = None => Field::ours(AsPart),
     }
 }
 
-/// What stands in the doorways of rooms.
+/// Doors in the doorways of rooms.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum RoomDoors {
-    /// Nothing.
+    /// No doors.
     #[default]
     None,
-    /// A door that stands open.
+    /// Open doors.
     Open,
-    /// A door that is shut, and opened by interaction.
+    /// Closed doors, opened by interaction.
     Closed,
-    /// A door that is shut and wants the key of its colour, which lies in a free cell.
+    /// Closed doors, each opened with the key of its colour, which lies in a free cell.
     Keyed,
 }
 
@@ -82,14 +82,14 @@ impl Rooms {
     }
 
     pub(super) fn plan(&self, standing: f64, seed: u64) -> Plan {
-        let joined = self.joined(seed);
+        let connected = self.connected(seed);
         let (cells, lattice) = (self.cells_of_room(), self.lattice());
         let mut grid = Grid::new(lattice, Side::Open);
         let mut draws = Draws::new(seed, Purpose::Doorways);
-        // The place of a doorway in its wall does not depend on which walls have one.
-        for (room, axis) in joined.between_cells() {
-            let [column, row] = [room % joined.lattice[0], room / joined.lattice[0]];
-            let has_doorway = joined.sides[axis][room] == Side::Doorway;
+        // The position of a doorway in its wall does not depend on which walls have one.
+        for (room, axis) in connected.between_cells() {
+            let [column, row] = [room % connected.lattice[0], room / connected.lattice[0]];
+            let has_doorway = connected.sides[axis][room] == Side::Doorway;
             let along = cells[1 - axis];
             let doorway = draws.below(along);
             for at in 0..along {
@@ -102,7 +102,7 @@ impl Rooms {
                 };
             }
         }
-        grid.let_stand(standing, seed);
+        grid.remove_walls(standing, seed);
         let scale = Scale {
             size: self.size(),
             wall: self.wall,
@@ -115,16 +115,16 @@ impl Rooms {
         })
     }
 
-    /// The rooms as cells of a grid, with doorways between those that are joined.
-    fn joined(&self, seed: u64) -> Grid {
-        let mut joined = Grid::new(self.grid.map(|count| count as usize), Side::Wall);
-        joined.open_tree(Side::Doorway, &mut Draws::new(seed, Purpose::Tree));
-        let mut others: Vec<SideOf> = joined.between_cells().collect();
-        others.retain(|(cell, axis)| joined.sides[*axis][*cell] == Side::Wall);
+    /// The rooms as cells of a grid, with doorways between connected rooms.
+    fn connected(&self, seed: u64) -> Grid {
+        let mut connected = Grid::new(self.grid.map(|count| count as usize), Side::Wall);
+        connected.open_tree(Side::Doorway, &mut Draws::new(seed, Purpose::Tree));
+        let mut others: Vec<SideOf> = connected.between_cells().collect();
+        others.retain(|(cell, axis)| connected.sides[*axis][*cell] == Side::Wall);
         Draws::new(seed, Purpose::Loops).shuffle(&mut others);
         for (cell, axis) in &others[..share_of(self.loops, others.len())] {
-            joined.sides[*axis][*cell] = Side::Doorway;
+            connected.sides[*axis][*cell] = Side::Doorway;
         }
-        joined
+        connected
     }
 }

@@ -1,4 +1,4 @@
-//! A layout drawn with letters: each is a cell, either wall or free.
+//! A layout drawn with letters: each letter is a cell, either wall or free.
 
 use std::collections::BTreeMap;
 
@@ -8,20 +8,20 @@ use serde::{Deserialize, Serialize};
 use super::draws::{Draws, Purpose, share_of};
 use super::plan::{Doorway, EAST, NORTH, Plan, PlanCell, PlanWall, SOUTH, WEST};
 
-/// What a letter of a text stands for.
+/// The meaning of a letter of a text.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 #[schemars(extend("examples" = ["wall", "floor", { "group": "goal" }]))]
 pub enum Legend {
     /// A wall that fills the cell.
     Wall,
-    /// Floor without anything.
+    /// Empty floor.
     Floor,
     /// Floor on which the agent may start.
     Start,
-    /// Floor in a gap between two walls: on either side of it is another room.
+    /// Floor in a gap between two walls, with a different room on either side.
     Doorway,
-    /// Floor on which objects of the group of this name stand.
+    /// Floor on which objects of the group with this name are placed.
     Group(#[schemars(length(min = 1, max = 100))] String),
 }
 
@@ -73,8 +73,8 @@ impl TextMap<'_> {
         own.cloned().or_else(|| Legend::of_letter(letter))
     }
 
-    /// Whether a letter carries more information than plain floor; a floor letter that the legend names does.
-    fn says_more(&self, letter: char) -> bool {
+    /// Whether a letter means more than plain floor; a floor letter named in the legend does.
+    fn is_meaningful(&self, letter: char) -> bool {
         match self.meaning(letter) {
             Some(Legend::Wall) => false,
             Some(Legend::Floor) => self.legend.contains_key(&*letter.encode_utf8(&mut [0; 4])),
@@ -94,14 +94,14 @@ impl TextMap<'_> {
                 Some(Legend::Floor | Legend::Start | Legend::Group(_)) => Square::Floor,
             })
             .collect();
-        let_stand(&mut squares, [columns, rows], standing, seed);
+        remove_walls(&mut squares, [columns, rows], standing, seed);
         let rooms = rooms(&squares, columns);
-        let mut plan = Plan::of_cells(self.size(), [columns, rows], seed, |place, center| {
-            (squares[place] != Square::Wall).then(|| PlanCell {
+        let mut plan = Plan::of_cells(self.size(), [columns, rows], seed, |position, center| {
+            (squares[position] != Square::Wall).then(|| PlanCell {
                 center,
-                room: rooms[place],
-                sides: sides(&squares, columns, place),
-                letter: self.says_more(letters[place]).then_some(letters[place]),
+                room: rooms[position],
+                sides: sides(&squares, columns, position),
+                letter: self.is_meaningful(letters[position]).then_some(letters[position]),
             })
         });
         plan.corridor = self.cell;
@@ -123,45 +123,46 @@ impl TextMap<'_> {
     }
 }
 
-/// The eastern, northern, western and southern neighbours of a place, if they are inside the text.
-fn beside(place: usize, columns: usize, count: usize) -> [Option<usize>; 4] {
-    let (column, row) = (place % columns, place / columns);
+/// The eastern, northern, western and southern neighbours of a position, if they are inside the text.
+fn neighbours(position: usize, columns: usize, count: usize) -> [Option<usize>; 4] {
+    let (column, row) = (position % columns, position / columns);
     [
-        (column + 1 < columns).then(|| place + 1),
-        (place + columns < count).then(|| place + columns),
-        (column > 0).then(|| place - 1),
-        (row > 0).then(|| place - columns),
+        (column + 1 < columns).then(|| position + 1),
+        (position + columns < count).then(|| position + columns),
+        (column > 0).then(|| position - 1),
+        (row > 0).then(|| position - columns),
     ]
 }
 
-/// The open sides of a place.
-fn sides(squares: &[Square], columns: usize, place: usize) -> u8 {
-    let ways = beside(place, columns, squares.len());
-    ways.into_iter()
+/// The open sides of a position.
+fn sides(squares: &[Square], columns: usize, position: usize) -> u8 {
+    let neighbours_here = neighbours(position, columns, squares.len());
+    neighbours_here
+        .into_iter()
         .zip([EAST, NORTH, WEST, SOUTH])
         .filter(|(next, _)| next.is_some_and(|next| squares[next] != Square::Wall))
         .fold(0, |all, (_, side)| all | side)
 }
 
 /// Removes walls until a share of those inside the outermost ring is left.
-fn let_stand(squares: &mut [Square], [columns, rows]: [usize; 2], share: f64, seed: u64) {
+fn remove_walls(squares: &mut [Square], [columns, rows]: [usize; 2], share: f64, seed: u64) {
     if share >= 1.0 {
         return;
     }
-    let is_inner = |place: usize| {
-        let (column, row) = (place % columns, place / columns);
+    let is_inner = |position: usize| {
+        let (column, row) = (position % columns, position / columns);
         column > 0 && row > 0 && column + 1 < columns && row + 1 < rows
     };
     let mut walls: Vec<usize> = (0..squares.len())
-        .filter(|place| squares[*place] == Square::Wall && is_inner(*place))
+        .filter(|position| squares[*position] == Square::Wall && is_inner(*position))
         .collect();
     Draws::new(seed, Purpose::Standing).shuffle(&mut walls);
-    for place in walls.drain(share_of(share, walls.len())..) {
-        squares[place] = Square::Floor;
+    for position in walls.drain(share_of(share, walls.len())..) {
+        squares[position] = Square::Floor;
     }
 }
 
-/// The room of each place: a connected part without doorways. A doorway belongs to the first room beside it.
+/// The room of each position: a connected part without doorways. A doorway belongs to the first adjacent room.
 fn rooms(squares: &[Square], columns: usize) -> Vec<u32> {
     const NONE: u32 = u32::MAX;
     let mut rooms = vec![NONE; squares.len()];
@@ -172,8 +173,8 @@ fn rooms(squares: &[Square], columns: usize) -> Vec<u32> {
         }
         rooms[first] = count;
         let mut open = vec![first];
-        while let Some(place) = open.pop() {
-            for next in beside(place, columns, squares.len()).into_iter().flatten() {
+        while let Some(position) = open.pop() {
+            for next in neighbours(position, columns, squares.len()).into_iter().flatten() {
                 if squares[next] == Square::Floor && rooms[next] == NONE {
                     rooms[next] = count;
                     open.push(next);
@@ -182,10 +183,10 @@ fn rooms(squares: &[Square], columns: usize) -> Vec<u32> {
         }
         count += 1;
     }
-    for place in (0..squares.len()).filter(|place| squares[*place] == Square::Doorway) {
-        let near = beside(place, columns, squares.len()).into_iter().flatten();
+    for position in (0..squares.len()).filter(|position| squares[*position] == Square::Doorway) {
+        let near = neighbours(position, columns, squares.len()).into_iter().flatten();
         let near = near.filter(|next| squares[*next] == Square::Floor);
-        rooms[place] = near.map(|next| rooms[next]).min().unwrap_or_else(|| {
+        rooms[position] = near.map(|next| rooms[next]).min().unwrap_or_else(|| {
             count += 1;
             count - 1
         });
@@ -194,14 +195,14 @@ fn rooms(squares: &[Square], columns: usize) -> Vec<u32> {
 }
 
 fn doorways(squares: &[Square], columns: usize, rooms: &[u32], plan: &Plan, cell: f64) -> Vec<Doorway> {
-    let places = plan.cells.iter().enumerate().map(|(number, found)| {
+    let positions = plan.cells.iter().enumerate().map(|(number, found)| {
         let [column, row] = plan.column_and_row(number);
         (row * columns + column, found.center)
     });
-    places
-        .filter(|(place, _)| squares[*place] == Square::Doorway)
-        .map(|(place, center)| {
-            let [east, north, west, south] = beside(place, columns, squares.len());
+    positions
+        .filter(|(position, _)| squares[*position] == Square::Doorway)
+        .map(|(position, center)| {
+            let [east, north, west, south] = neighbours(position, columns, squares.len());
             let is_floor = |next: &Option<usize>| next.is_some_and(|next| squares[next] != Square::Wall);
             // The doorway leads along the axis with more floor neighbours; northwards on a tie.
             let count = |pair: [Option<usize>; 2]| pair.iter().filter(|next| is_floor(next)).count();
@@ -209,7 +210,7 @@ fn doorways(squares: &[Square], columns: usize, rooms: &[u32], plan: &Plan, cell
             let [before, beyond] = if along_x { [west, east] } else { [south, north] };
             let room = |next: Option<usize>| {
                 next.filter(|next| is_floor(&Some(*next)))
-                    .map_or(rooms[place], |next| rooms[next])
+                    .map_or(rooms[position], |next| rooms[next])
             };
             Doorway {
                 center,

@@ -11,7 +11,7 @@ use crate::world::fields::fields;
 /// Default thickness of a segment in metres.
 const THICKNESS: f64 = 0.3;
 
-/// Corners of a circle.
+/// Number of corners of a circle.
 const CORNERS: usize = 24;
 
 fields! {
@@ -28,7 +28,7 @@ fields! {
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(inner(range(min = -1e4, max = 1e4)))]
         pub from: Option<[f64; 2]> => Field::ours(AsPart).unit("m"),
-        /// Its other end in metres.
+        /// The other end of the segment in metres.
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(inner(range(min = -1e4, max = 1e4)))]
         pub to: Option<[f64; 2]> => Field::ours(AsPart).unit("m"),
@@ -36,7 +36,7 @@ fields! {
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = 0.01, max = 50.0))]
         pub thickness: Option<f64> => Field::ours(AsPart).unit("m"),
-        /// A round wall; it stands as a polygon of 24 corners on the circle.
+        /// A round wall; built as a polygon with 24 corners on the circle.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub circle: Option<Circle> => Field::ours(AsPart),
         /// Corners in metres, in order; the last joins the first.
@@ -59,7 +59,7 @@ fields! {
     #[serde(deny_unknown_fields)]
     #[schemars(extend("examples" = [{ "center": [0, 0], "radius": 2 }]))]
     pub struct Circle {
-        /// Its middle in metres.
+        /// Its centre in metres.
         #[schemars(inner(range(min = -1e4, max = 1e4)))]
         pub center: [f64; 2] => Field::ours(AsPart).unit("m"),
         /// Its radius in metres.
@@ -75,7 +75,7 @@ pub(super) fn present<const N: usize>(keys: [(&'static str, bool); N]) -> Vec<&'
 }
 
 impl LayoutWall {
-    /// The keys of its forms.
+    /// The keys of the forms it has.
     pub(super) fn forms(&self) -> Vec<&'static str> {
         present([
             ("from", self.from.is_some() || self.to.is_some()),
@@ -87,12 +87,12 @@ impl LayoutWall {
     /// Its corners, counterclockwise for a segment and a circle.
     fn corners(&self) -> Vec<[f64; 2]> {
         if let (Some(from), Some(to)) = (self.from, self.to) {
-            let way = [to[0] - from[0], to[1] - from[1]];
-            let length = libm::hypot(way[0], way[1]).max(f64::MIN_POSITIVE);
+            let direction = [to[0] - from[0], to[1] - from[1]];
+            let length = libm::hypot(direction[0], direction[1]).max(f64::MIN_POSITIVE);
             let half = self.thickness.unwrap_or(THICKNESS) / 2.0 / length;
-            let right = [way[1] * half, -way[0] * half];
-            let beside = |end: [f64; 2], side: f64| [end[0] + side * right[0], end[1] + side * right[1]];
-            return vec![beside(from, 1.0), beside(to, 1.0), beside(to, -1.0), beside(from, -1.0)];
+            let right = [direction[1] * half, -direction[0] * half];
+            let offset = |end: [f64; 2], side: f64| [end[0] + side * right[0], end[1] + side * right[1]];
+            return vec![offset(from, 1.0), offset(to, 1.0), offset(to, -1.0), offset(from, -1.0)];
         }
         if let Some(circle) = self.circle {
             let corner = |number: usize| {
@@ -108,7 +108,7 @@ impl LayoutWall {
     }
 }
 
-/// The plan with a share of the walls; the order in which they are removed is that of seed 0.
+/// The plan with a share of the walls; they are always removed in the order of seed 0.
 pub(super) fn plan(walls: &[LayoutWall], standing: f64, seed: u64) -> Plan {
     let mut order: Vec<usize> = (0..walls.len()).collect();
     Draws::new(0, Purpose::Standing).shuffle(&mut order);

@@ -1,4 +1,4 @@
-//! [`MapLibrary`]: layouts read from files, in place of the built-in ones.
+//! [`MapLibrary`]: layouts read from files, replacing the built-in ones.
 
 use std::sync::LazyLock;
 
@@ -14,14 +14,14 @@ use crate::limits::MAX_VALUES;
 use crate::schema::document::DocumentSchema;
 use crate::world::{Region, WorldDraft};
 
-/// A maps file as its document has it.
+/// The document of a maps file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(extend("examples" = [
     { "unit": "metre", "maps": [{ "id": 2, "name": "yard", "excluded_regions": [[[-5, -5], [5, -5], [5, 5], [-5, 5]]] }] },
 ]))]
 pub(crate) struct MapsDocument {
-    /// Where the JSON Schema of this document is, for editors.
+    /// The address of this document's JSON Schema, for editors.
     #[serde(rename = "$schema", default, skip_serializing_if = "Option::is_none")]
     schema: Option<String>,
     /// The unit of all coordinates.
@@ -56,14 +56,14 @@ enum Unit {
     Metre,
 }
 
-/// One layout: which number it stands for, and the regions that cannot be entered.
+/// One layout: its map number, and the regions that cannot be entered.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(extend("examples" = [
     { "id": 2, "name": "yard", "excluded_regions": [[[-5, -5], [5, -5], [5, 5], [-5, 5]]] },
 ]))]
 pub struct MapLayout {
-    /// The `predefined_map` that it is the layout of.
+    /// The `predefined_map` number of this layout.
     #[schemars(range(min = 0, max = 4))]
     pub id: u8,
     /// Its name.
@@ -75,7 +75,8 @@ pub struct MapLayout {
     /// South and north end of the arena in metres; −100 and 100.
     #[serde(default = "whole_arena")]
     pub y_limits: [f64; 2],
-    /// The regions: polygons in metres, corners in order, the last joins the first. They may touch themselves and each other.
+    /// The regions: polygons in metres, with corners in order; the last corner connects to the first. They may touch themselves
+    /// and each other.
     #[schemars(length(max = 1000))]
     pub excluded_regions: Vec<Region>,
 }
@@ -115,7 +116,7 @@ impl MapLibrary {
         })
     }
 
-    /// Adds the layouts of another library; they replace ours with the same number.
+    /// Adds the layouts of another library; they replace layouts with the same number.
     pub fn extend(&mut self, other: Self) {
         self.maps.extend(other.maps);
     }
@@ -130,7 +131,8 @@ impl MapLibrary {
         self.maps.values()
     }
 
-    /// Writes the layout of the world's predefined map into the world, if the library has it; the world then needs no library.
+    /// Writes the layout of the world's predefined map into the world, if the library has it; after that, the world needs no
+    /// library.
     pub fn apply(&self, world: &mut WorldDraft) {
         let environment = &mut world.environment_params;
         if let Some(map) = self.maps.get(&environment.map()) {
@@ -201,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn layout_that_does_not_fit_its_arena_is_refused() {
+    fn invalid_layouts_are_rejected() {
         check(
             r#"[{ "id": 1, "name": "a", "excluded_regions": [] }, { "id": 1, "name": "b", "excluded_regions": [] }]"#,
             "maps.json:1:70 (/maps/1/id): found 1, which map 0 has too, expected a number of its own",

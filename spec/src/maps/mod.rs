@@ -1,6 +1,6 @@
-//! The four built-in layouts: regions of a 200 × 200 m arena that cannot be entered. They are ours, in `builtin.json`; only names
-//! and numbers are the original's. The original's own layouts, for worlds in its dialect, are in `l2explorer.json`, under the
-//! licence next to it.
+//! The four built-in layouts: regions of a 200 × 200 m arena that cannot be entered. The layouts are ours, in `builtin.json`;
+//! only their names and numbers come from L2Explorer. L2Explorer's own layouts, used for worlds in its dialect, are in
+//! `l2explorer.json`, under the licence next to it.
 
 mod library;
 
@@ -15,14 +15,14 @@ use crate::world::Region;
 /// a square and two lanes; 3 craters: six round pits; 4 bisected: a wall from west to east with a gate at each third.
 fn built_in(predefined_map: u8) -> Option<&'static MapLayout> {
     static MAPS: LazyLock<MapsDocument> =
-        LazyLock::new(|| serde_json::from_str(include_str!("builtin.json")).expect("the built-in layouts are sound"));
+        LazyLock::new(|| serde_json::from_str(include_str!("builtin.json")).expect("the built-in layouts are valid"));
     MAPS.maps.iter().find(|map| map.id == predefined_map)
 }
 
-/// The original's layouts of its maps 1 to 4, used for worlds in its dialect.
+/// L2Explorer's layouts of its maps 1 to 4, used for worlds in its dialect.
 pub fn of_l2explorer() -> &'static MapLibrary {
     static MAPS: LazyLock<MapLibrary> = LazyLock::new(|| {
-        MapLibrary::from_json("l2explorer.json", include_str!("l2explorer.json")).expect("the layouts are sound")
+        MapLibrary::from_json("l2explorer.json", include_str!("l2explorer.json")).expect("the layouts are valid")
     });
     &MAPS
 }
@@ -42,7 +42,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_layout_fits_its_arena_and_keeps_the_middle_of_each_side_reachable() {
+    fn built_in_layouts_have_regions_inside_the_arena() {
         for map in 1..=4 {
             assert!(!excluded_regions(map).is_empty(), "{}", name(map));
             for corner in excluded_regions(map).iter().flat_map(|region| &region.0) {

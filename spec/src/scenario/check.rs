@@ -19,8 +19,8 @@ fn regimes(scenario: &Scenario) -> impl Iterator<Item = (String, &Block, &Regime
     })
 }
 
-/// The start or end variant of a regime.
-struct Made<'a> {
+/// The start or end variant that a regime declares.
+struct DeclaredVariant<'a> {
     pointer: String,
     /// The key that names the variant.
     key: &'static str,
@@ -31,9 +31,9 @@ struct Made<'a> {
     world: Option<&'a str>,
 }
 
-/// The variant that a regime starts with, and the one that its drift leads to.
-fn made<'a>(pointer: &str, regime: &'a Regime) -> impl Iterator<Item = Made<'a>> {
-    let start = Made {
+/// The start variant of a regime, and the end variant of its drift.
+fn declared_variants<'a>(pointer: &str, regime: &'a Regime) -> impl Iterator<Item = DeclaredVariant<'a>> {
+    let start = DeclaredVariant {
         pointer: pointer.to_owned(),
         key: "variant",
         task: &regime.task,
@@ -42,7 +42,7 @@ fn made<'a>(pointer: &str, regime: &'a Regime) -> impl Iterator<Item = Made<'a>>
         name: regime.name.as_deref(),
         world: regime.world.as_deref(),
     };
-    let end = regime.drift.as_ref().map(|drift| Made {
+    let end = regime.drift.as_ref().map(|drift| DeclaredVariant {
         pointer: format!("{pointer}/drift"),
         key: "to",
         task: regime.end_task(),
@@ -54,8 +54,8 @@ fn made<'a>(pointer: &str, regime: &'a Regime) -> impl Iterator<Item = Made<'a>>
     [start].into_iter().chain(end)
 }
 
-impl<'a> Made<'a> {
-    fn called(&self) -> &'a str {
+impl<'a> DeclaredVariant<'a> {
+    fn display_name(&self) -> &'a str {
         self.name.unwrap_or(self.variant)
     }
 
@@ -64,12 +64,12 @@ impl<'a> Made<'a> {
         format!("{}/{key}", self.pointer)
     }
 
-    fn same(&self, other: &Self) -> bool {
+    fn is_same(&self, other: &Self) -> bool {
         (self.variant, self.values, self.world) == (other.variant, other.values, other.world)
     }
 
-    /// A name without values, or values without a name.
-    fn unnamed(&self) -> Option<Problem> {
+    /// Reports a name without values, or values without a name.
+    fn naming_problem(&self) -> Option<Problem> {
         let (name, values) = (format!("{}/name", self.pointer), format!("{}/values", self.pointer));
         match (self.name, self.values.is_empty()) {
             (Some(found), true) => {
@@ -91,9 +91,9 @@ pub(super) fn alone(scenario: &Scenario) -> Vec<Problem> {
     let mut problems = phases(scenario);
     problems.extend(budgets(scenario));
     problems.extend(names::problem("/name", &scenario.name));
-    let mut called: BTreeMap<(&str, &str), Made> = BTreeMap::new();
+    let mut display_name: BTreeMap<(&str, &str), DeclaredVariant> = BTreeMap::new();
     for (pointer, _, regime) in regimes(scenario) {
-        // Names elsewhere refer to tasks, which follow the grammar; a world file has no task.
+        // Other names refer to tasks, which follow the grammar; a world file has no task.
         if regime.world.is_some() {
             problems.extend(names::problem(format!("{pointer}/task"), &regime.task));
             problems.extend(names::problem(format!("{pointer}/variant"), &regime.variant));
@@ -131,22 +131,28 @@ pub(super) fn alone(scenario: &Scenario) -> Vec<Problem> {
             problems.push(problem.advise("between two tasks there is nothing: only whole variants can switch"));
             continue;
         }
-        let fault = made(&pointer, regime).find_map(|made| {
-            let own = made.name.and_then(|name| names::problem(made.pointer_to_name(), name));
-            made.unnamed().or(own)
+        let fault = declared_variants(&pointer, regime).find_map(|declared| {
+            let own = declared
+                .name
+                .and_then(|name| names::problem(declared.pointer_to_name(), name));
+            declared.naming_problem().or(own)
         });
         if let Some(fault) = fault {
             problems.push(fault);
             continue;
         }
-        for made in made(&pointer, regime) {
-            let key = (made.task, made.called());
-            if let Some(first) = called.get(&key).filter(|first| !made.same(first)) {
-                let found = format!("{:?}, which is another variant at {}", made.called(), first.pointer);
+        for declared in declared_variants(&pointer, regime) {
+            let key = (declared.task, declared.display_name());
+            if let Some(first) = display_name.get(&key).filter(|first| !declared.is_same(first)) {
+                let found = format!(
+                    "{:?}, which is another variant at {}",
+                    declared.display_name(),
+                    first.pointer
+                );
                 let expected = "one variant of a task under each name";
-                problems.push(Problem::new("spec/value", made.pointer_to_name(), found, expected));
+                problems.push(Problem::new("spec/value", declared.pointer_to_name(), found, expected));
             }
-            called.entry(key).or_insert(made);
+            display_name.entry(key).or_insert(declared);
         }
     }
     problems
@@ -167,8 +173,8 @@ fn phases(scenario: &Scenario) -> Vec<Problem> {
     scenario.blocks.iter().enumerate().filter(late).map(problem).collect()
 }
 
-/// Step budgets where the number of experiences must be known: evaluations are compared, and a drift ends with the
-/// last experience.
+/// Reports step budgets where the number of experiences must be known: evaluations are compared, and a drift ends with the last
+/// experience.
 fn budgets(scenario: &Scenario) -> impl Iterator<Item = Problem> {
     regimes(scenario).filter_map(|(pointer, block, regime)| {
         let is_fixed = block.kind == BlockKind::Evaluation || regime.drift.is_some();
@@ -186,7 +192,7 @@ pub(super) fn against_tasks(scenario: &Scenario, mut find: impl FnMut(&str) -> O
     for (pointer, _, regime) in regimes(scenario).filter(|(.., regime)| regime.world.is_none()) {
         let mut found = |name| tasks.entry(name).or_insert_with(|| find(name)).clone();
         let (task, end_task) = (found(&regime.task), found(regime.end_task()));
-        // Each regime takes time: variants and similar names are looked up.
+        // Checking a regime takes time, because variants and similar names are looked up.
         if problems.len() > MAX_PROBLEMS {
             break;
         }
@@ -230,7 +236,7 @@ fn placed(error: SpecError, pointer: &str, key: &str) -> Vec<Problem> {
 mod tests {
     use super::*;
 
-    fn said(regimes: &str) -> String {
+    fn error_for(regimes: &str) -> String {
         let text = format!(r#"{{ "name": "s", "blocks": [{{ "type": "learning", "regimes": [{regimes}] }}] }}"#);
         let task = TaskSpec::from_json(
             "t",
@@ -264,16 +270,16 @@ mod tests {
                 .fold(row.to_owned(), |row, (word, text)| row.replace(word, text));
             let (regimes, expected) = whole.split_once(" =>").expect("a row has two parts");
             let expected = expected.trim().replace("at 0", "at /blocks/0/regimes/0");
-            let said = said(regimes);
+            let error = error_for(regimes);
             assert!(
-                said.contains(&expected) && said.is_empty() == expected.is_empty(),
-                "{row}: {said}"
+                error.contains(&expected) && error.is_empty() == expected.is_empty(),
+                "{row}: {error}"
             );
         }
     }
 
     #[test]
-    fn values_need_a_name_and_a_name_means_one_variant() {
+    fn values_require_a_name_and_a_name_belongs_to_one_variant() {
         check(
             r#"
 DIM =>
@@ -287,7 +293,7 @@ DIM, { AT, "values": { "light": 1.5 }, "name": "dim" } => (1/name): found "dim",
 
     #[test]
     fn end_of_a_drift_follows_the_rules_of_names() {
-        // A name belongs to one task, not to all.
+        // A name belongs to a single task.
         check(
             r#"
 { AT, "drift": { "to": "day", "values": { "light": 1 }, "name": "dim" } } =>

@@ -8,9 +8,10 @@ use serde::{Deserialize, Serialize};
 use crate::serde_defaults::{is_default, is_one, one};
 use crate::value::Value;
 
-/// A drift from a regime's variant to another: of the same task, or, where whole variants switch, of any.
+/// A drift from a regime's variant to another variant: of the same task, or of any task if whole variants switch.
 ///
-/// A drift crosses the border of a block where the next block's regime goes on from the progress at which the one before stopped.
+/// A drift can cross a block boundary: the next block's regime continues from the progress at which the previous regime
+/// stopped.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(extend("examples" = [
@@ -20,32 +21,32 @@ use crate::value::Value;
     { "to": "plain", "task": "get_to_goal", "switch": "task" },
 ]))]
 pub struct RegimeDrift {
-    /// The variant that it leads to.
+    /// The end variant.
     #[schemars(length(min = 1, max = 200))]
     pub to: String,
-    /// The task of the variant that it leads to; the regime's if absent. Another only goes with the switch `task`.
+    /// The task of the end variant; the regime's task if absent. A different task requires the switch `task`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(length(min = 1, max = 4096))]
     pub task: Option<String>,
-    /// Values laid over those of the variant that it leads to, by parameter.
+    /// Values that override those of the end variant, by parameter.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     #[schemars(schema_with = "super::regime::values_schema")]
     pub values: IndexMap<String, Value>,
-    /// What the variant with these values is called in tables and logs; goes with `values` only.
+    /// The name of the variant with these values in tables and logs; only with `values`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(length(min = 1, max = 100), regex(pattern = NAME_PATTERN))]
     pub name: Option<String>,
-    /// How far it has come, as a function of its progress.
+    /// How far the drift has come, as a function of its progress.
     #[serde(default, skip_serializing_if = "is_default")]
     pub schedule: DriftSchedule,
-    /// How values that have nothing between them change.
+    /// How values that cannot be interpolated change.
     #[serde(default, skip_serializing_if = "is_default")]
     pub switch: DriftSwitch,
-    /// Its progress at the regime's first experience, 0..1; 0 if absent.
+    /// Progress of the drift at the regime's first experience, 0..1; 0 if absent.
     #[serde(default, skip_serializing_if = "is_default")]
     #[schemars(range(min = 0.0, max = 1.0))]
     pub from: f64,
-    /// Its progress at the regime's last experience, 0..1; 1 if absent.
+    /// Progress of the drift at the regime's last experience, 0..1; 1 if absent.
     #[serde(default = "one", skip_serializing_if = "is_one")]
     #[schemars(range(min = 0.0, max = 1.0))]
     pub until: f64,
@@ -62,17 +63,17 @@ pub enum DriftSchedule {
     /// Evenly.
     #[default]
     Linear,
-    /// Slowly at first and at last.
+    /// Slowly at the beginning and at the end.
     Cosine,
-    /// In so many equal steps.
+    /// In this number of equal steps.
     Steps(#[schemars(range(min = 1, max = 1_000_000))] u32),
-    /// Up to the end and back at once to the beginning, so many times.
+    /// From the beginning to the end, then straight back to the beginning, this number of times.
     Sawtooth(#[schemars(range(min = 1, max = 1_000_000))] u32),
 }
 
 impl DriftSchedule {
-    /// How far the drift has come, 0..=1, at a `progress` of 0..=1. Cosine: (1 − cos π·progress) / 2. With steps, the
-    /// first is at `1 / (steps + 1)` of the way, the last at `steps / (steps + 1)`.
+    /// How far the drift has come, 0..=1, at a `progress` of 0..=1. Cosine: (1 − cos π·progress) / 2. With steps, the first
+    /// happens at progress `1 / (steps + 1)`, the last at `steps / (steps + 1)`.
     pub fn at(self, progress: f64) -> f64 {
         let progress = progress.clamp(0.0, 1.0);
         match self {
@@ -88,17 +89,17 @@ impl DriftSchedule {
     }
 }
 
-/// How values that have nothing between them change in a drift: texts, true and false, numbers out of a list.
+/// How values that cannot be interpolated change in a drift: texts, booleans, numbers from a list.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum DriftSwitch {
-    /// At the fraction that the parameter declares as `switch_at`; a half where it declares none.
+    /// At the fraction that the parameter declares as `switch_at`; at one half by default.
     #[default]
     AtPoint,
-    /// By chance: at fraction t of the drift a world has the new value with probability t, drawn under the regime's seed.
+    /// At random: at fraction t of the drift, a world has the new value with probability t, drawn under the regime's seed.
     Mixture,
-    /// By chance, and all at once: at fraction t of the drift a world is one of the variant that the drift leads to with probability
-    /// t, and else one of the variant that it begins at. There is nothing between the two, not of numbers either.
+    /// At random, with all values at once: at fraction t of the drift, a world comes from the end variant with probability t,
+    /// otherwise from the start variant. Nothing is interpolated, not even numbers.
     Task,
 }
 
@@ -117,7 +118,7 @@ impl RegimeDrift {
         }
     }
 
-    /// Name of the end variant in tables and logs: the drift's name if it has one, else the variant's.
+    /// Name of the end variant in tables and logs: the drift's name if it has one, otherwise the variant's.
     pub fn variant_name(&self) -> &str {
         self.name.as_deref().unwrap_or(&self.to)
     }

@@ -36,35 +36,35 @@ pub const MAX_EXPERIENCES: u32 = 10_000_000;
         { "type": "evaluation", "regimes": [{ "task": "find_objects", "variant": "red", "count": 10, "seed": 3 }] } ] },
 ]))]
 pub struct Scenario {
-    /// Where the JSON Schema of this document is, for editors.
+    /// The address of this document's JSON Schema, for editors.
     #[serde(rename = "$schema", default, skip_serializing_if = "Option::is_none")]
     pub schema: Option<String>,
-    /// The version of this form of document. Older ones are read, newer ones refused; without it, it is taken to be 1.
+    /// The version of the document format. Older versions are read, newer ones rejected; 1 if absent.
     #[serde(default = "current")]
     #[schemars(range(min = 1, max = 1))]
     pub version: u32,
     /// The scenario's name; logs are named after it.
     #[schemars(length(min = 1, max = 100), regex(pattern = NAME_PATTERN))]
     pub name: String,
-    /// What it is for, in a sentence or two.
+    /// The purpose of the scenario, in a sentence or two.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub description: String,
-    /// How its blocks are arranged; logs are marked with it. Custom if absent.
+    /// How its blocks are arranged; recorded in logs. Custom if absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub form: Option<ScenarioForm>,
-    /// How complex it is, in l2logger's words; logs are marked with it. Nothing if absent.
+    /// How complex it is, in l2logger's terms; recorded in logs. Not recorded if absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub complexity: Option<ScenarioComplexity>,
-    /// How hard its tasks are, in l2logger's words; logs are marked with it. Nothing if absent.
+    /// How hard its tasks are, in l2logger's terms; recorded in logs. Not recorded if absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub difficulty: Option<ScenarioDifficulty>,
-    /// Whether the learner is told which task it is in; by default it is not.
+    /// Whether the learner is told which task it is in; not told by default.
     #[serde(default, skip_serializing_if = "is_default")]
     pub task_label: TaskLabel,
-    /// That its variants differ in one element only, as an experiment saw it; of scenarios that probe an element.
+    /// Experimental evidence that its variants differ in one element only; for scenarios that probe an element.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub proof: Option<ScenarioProof>,
-    /// The blocks, in the order in which they are lived.
+    /// The blocks, in the order in which they are run.
     #[schemars(length(min = 1, max = 100_000))]
     pub blocks: Vec<Block>,
 }
@@ -73,27 +73,27 @@ fn current() -> u32 {
     SCENARIO_VERSION
 }
 
-/// The arrangements of blocks that lifelong learning knows by name.
+/// Named arrangements of blocks in lifelong learning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum ScenarioForm {
     /// Each task once, in one long learning block.
     Condensed,
-    /// Each task again and again, in several short learning blocks.
+    /// Each task repeatedly, in several short learning blocks.
     Dispersed,
-    /// The tasks in an order drawn by chance, another in every lifetime.
+    /// The tasks in a random order, different in every lifetime.
     Permuted,
-    /// Two tasks in turn.
+    /// Two tasks alternating.
     Alternating,
-    /// One task alone, to compare a lifelong learner with; `ste` in a log.
+    /// A single task, as a baseline for a lifelong learner; `ste` in a log.
     Expert,
-    /// All tasks at once, among each other: joint training, an upper bound for a lifelong learner; `custom` in a log.
+    /// All tasks interleaved: joint training, an upper bound for a lifelong learner; `custom` in a log.
     Joint,
     /// Anything else.
     Custom,
 }
 
-/// How complex a scenario is: l2logger's words, which its author chooses between.
+/// How complex a scenario is, in l2logger's terms; chosen by its author.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum ScenarioComplexity {
     /// Low.
@@ -107,7 +107,7 @@ pub enum ScenarioComplexity {
     High,
 }
 
-/// How hard the tasks of a scenario are: l2logger's words, which its author chooses between.
+/// How hard the tasks of a scenario are, in l2logger's terms; chosen by its author.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum ScenarioDifficulty {
     /// Easy.
@@ -125,10 +125,10 @@ pub enum ScenarioDifficulty {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum TaskLabel {
-    /// It is not.
+    /// It is not told.
     #[default]
     None,
-    /// Beside its observations.
+    /// In the info, separate from its observations.
     Info,
     /// As part of its observations.
     Observation,
@@ -144,26 +144,26 @@ pub struct Block {
     /// Whether the agent may learn.
     #[serde(rename = "type")]
     pub kind: BlockKind,
-    /// Whether it belongs to the time before deployment, whose blocks come before all others.
+    /// Whether the block belongs to the time before deployment; such blocks come before all others.
     #[serde(default, skip_serializing_if = "is_default")]
     pub phase: Phase,
-    /// In which order its experiences are run; one regime after the other if absent.
+    /// The order in which its experiences are run; one regime after another if absent.
     #[serde(default, skip_serializing_if = "is_default")]
     pub mix: BlockMix,
-    /// Stretches of experiences of one variant each.
+    /// Sequences of experiences, each of one variant.
     #[schemars(length(min = 1, max = 100_000))]
     pub regimes: Vec<Regime>,
 }
 
-/// In which order the experiences of a block are run.
+/// The order in which the experiences of a block are run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum BlockMix {
-    /// One regime after the other.
+    /// One regime after another.
     #[default]
     InOrder,
-    /// All regimes among each other, in an order drawn by the seed of the first: joint training. Within a regime too, the
-    /// worlds come in that order.
+    /// All regimes interleaved, in a random order drawn from the first regime's seed: joint training. The worlds within a
+    /// regime come in that order too.
     Shuffled,
 }
 
@@ -171,13 +171,13 @@ pub enum BlockMix {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum BlockKind {
-    /// It may.
+    /// The agent may learn.
     Learning,
-    /// It is frozen.
+    /// The agent is frozen.
     Evaluation,
 }
 
-/// The part of a lifetime that a block belongs to.
+/// The part of a lifetime to which a block belongs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Phase {
@@ -272,7 +272,7 @@ impl Scenario {
     /// The scenario as indented JSON with a final newline.
     pub fn to_json_pretty(&self) -> String {
         let mut text = serde_json::to_string_pretty(self)
-            .expect("a scenario is texts, finite numbers and maps by text, which serialise");
+            .expect("a scenario has only strings, finite numbers and maps with string keys, which serialise");
         text.push('\n');
         text
     }

@@ -1,4 +1,4 @@
-//! [`ScenarioProof`]: a recorded experiment that shows that a scenario's variants differ in only one element.
+//! [`ScenarioProof`]: a recorded experiment showing that a scenario's variants differ in only one element.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::element::Element;
 use crate::world::Modality;
 
-/// An experiment on pairs of worlds: which elements each variant changes, compared with the base, for a learner's images.
+/// An experiment on pairs of worlds: which elements each variant changes compared with the base, for the given kinds of image.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(extend("examples" = [
@@ -16,22 +16,22 @@ use crate::world::Modality;
 pub struct ScenarioProof {
     /// The element that the scenario probes.
     pub element: Element,
-    /// The variant that the others were compared with.
+    /// The variant with which the others were compared.
     #[schemars(length(min = 1, max = 1000))]
     pub base: String,
-    /// The images for which it holds: other kinds of image may show more differences.
+    /// The kinds of image for which the result holds: other kinds may show more differences.
     #[schemars(length(max = 5))]
     pub modalities: Vec<Modality>,
-    /// Pairs of worlds that were tried for each variant.
+    /// Number of pairs of worlds tested for each variant.
     #[schemars(range(min = 1, max = 10_000))]
     pub worlds: u64,
-    /// The seed under which they were drawn.
+    /// The seed under which the worlds were drawn.
     #[schemars(range(min = 0, max = MAX_SAFE_INTEGER))]
     pub seed: u64,
-    /// Steps that both worlds of a pair took from the same state with the same command, summed over all pairs.
+    /// Number of steps that both worlds of a pair took from the same state with the same command, summed over all pairs.
     #[schemars(range(min = 0, max = MAX_SAFE_INTEGER))]
     pub steps: u64,
-    /// States in which the two observations were compared, summed over all pairs.
+    /// Number of states in which the two observations were compared, summed over all pairs.
     #[schemars(range(min = 0, max = MAX_SAFE_INTEGER))]
     pub observations: u64,
     /// The other variants, in the order in which they were found.
@@ -39,7 +39,7 @@ pub struct ScenarioProof {
     pub variants: Vec<ProvenVariant>,
 }
 
-/// What a variant was seen to change.
+/// The elements that a variant was observed to change.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(extend("examples" = [{ "variant": "find_objects#modest", "measured": ["R"] }]))]

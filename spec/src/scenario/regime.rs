@@ -12,7 +12,7 @@ use crate::error::SpecError;
 use crate::task::{TaskSpec, Variant};
 use crate::value::Value;
 
-/// A stretch of experiences (episodes) of one variant, or of the way from it to another.
+/// A sequence of experiences (episodes) of one variant, or of a drift from it to another.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(extend("examples" = [
@@ -28,19 +28,19 @@ pub struct Regime {
     /// The variant of the task.
     #[schemars(length(min = 1, max = 100))]
     pub variant: String,
-    /// Values laid over the variant's, by parameter: they make a variant of it that the task does not declare.
+    /// Values that override the variant's, by parameter: they make a new variant that the task does not declare.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     #[schemars(schema_with = "values_schema")]
     pub values: IndexMap<String, Value>,
-    /// What the variant with these values is called in tables and logs; goes with `values` only.
+    /// The name of the variant with these values in tables and logs; only with `values`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(length(min = 1, max = 100), regex(pattern = NAME_PATTERN))]
     pub name: Option<String>,
-    /// How many experiences.
+    /// Number of experiences.
     #[schemars(range(min = 1, max = 10_000_000))]
     pub count: u32,
-    /// A budget of decisions for a block of learning: once so many were made in its experiences, no more of them begin. `count` is the
-    /// most experiences then.
+    /// A budget of decisions for a learning block: once its experiences have used it up, no further experience begins. `count`
+    /// is then the maximum number of experiences.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1, max = 1_000_000_000))]
     pub steps: Option<u32>,
@@ -50,21 +50,21 @@ pub struct Regime {
     /// The index of its first world; the others follow.
     #[serde(default)]
     pub first_index: u64,
-    /// A world file, ours or L2Explorer's, whose world is lived each time instead of drawn ones; found from the scenario's folder.
-    /// Task and variant are mere names then.
+    /// A world file, ours or L2Explorer's, used in every experience instead of sampled worlds; relative to the scenario's
+    /// folder. Task and variant are then only names.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(length(min = 1, max = 4096))]
     pub world: Option<String>,
-    /// Steps after which an experience is cut off, in place of what the world says; 0 = never.
+    /// Steps after which an experience is cut off, overriding the world's value; 0 = never.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0, max = 1_000_000_000))]
     pub max_steps: Option<u32>,
-    /// Leads from the variant to another while the experiences pass.
+    /// A drift from the variant to another over the course of the experiences.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drift: Option<RegimeDrift>,
 }
 
-/// Values by parameter. Only the task knows what each may be, so the schema accepts anything that can be a value.
+/// Values by parameter. Only the task knows which values are valid, so the schema accepts anything that can be a value.
 pub(super) fn values_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
     schemars::json_schema!({
         "type": "object",
@@ -84,7 +84,7 @@ impl Regime {
         }
     }
 
-    /// Name of its variant in tables and logs: the regime's name if it has one, else the variant's.
+    /// Name of its variant in tables and logs: the regime's name if it has one, otherwise the variant's.
     pub fn variant_name(&self) -> &str {
         self.name.as_deref().unwrap_or(&self.variant)
     }
@@ -92,7 +92,8 @@ impl Regime {
     /// The variant from which its worlds are drawn, with its values applied; for a drift, the start variant.
     ///
     /// # Errors
-    /// [`SpecError::UnknownVariant`]; [`SpecError::Values`] if the variant cannot have the values.
+    /// [`SpecError::UnknownVariant`] if the task has no such variant; [`SpecError::Values`] if the variant cannot have the
+    /// values.
     ///
     /// # Example
     /// ```
@@ -107,7 +108,7 @@ impl Regime {
     /// # Ok::<(), driftworld_spec::SpecError>(())
     /// ```
     pub fn resolve(&self, task: &Arc<TaskSpec>) -> Result<Variant, SpecError> {
-        laid_over(task, &self.variant, &self.values, self.variant_name())
+        with_overrides(task, &self.variant, &self.values, self.variant_name())
     }
 
     /// The task of the drift's end variant, as the scenario names it; the regime's own task without a drift.
@@ -123,12 +124,12 @@ impl Regime {
     pub fn resolve_end(&self, task: &Arc<TaskSpec>) -> Result<Option<Variant>, SpecError> {
         self.drift
             .as_ref()
-            .map(|drift| laid_over(task, &drift.to, &drift.values, drift.variant_name()))
+            .map(|drift| with_overrides(task, &drift.to, &drift.values, drift.variant_name()))
             .transpose()
     }
 }
 
-fn laid_over(
+fn with_overrides(
     task: &Arc<TaskSpec>,
     variant: &str,
     values: &IndexMap<String, Value>,

@@ -1,4 +1,4 @@
-//! Advice for values that are nearly right: misspelt names, and numbers or booleans written as strings.
+//! Advice for values that are almost valid: misspelt names, and numbers or booleans written as strings.
 
 use driftworld_text::{WordKind, removed};
 use serde_json::Value;
@@ -22,12 +22,12 @@ pub(super) fn for_types(value: &Value, allows: impl Fn(&str) -> bool) -> Option<
     if allows("number") || allows("integer") {
         return for_number(text);
     }
-    let truth = match text.to_lowercase().as_str() {
+    let boolean = match text.to_lowercase().as_str() {
         "yes" | "true" | "on" => true,
         "no" | "false" | "off" => false,
         _ => return None,
     };
-    allows("boolean").then(|| format!("write {truth}, without quotes"))
+    allows("boolean").then(|| format!("write {boolean}, without quotes"))
 }
 
 /// Advice for an element of the decision process written as a word instead of its letter: `R` for `reward`.
@@ -60,12 +60,12 @@ fn finite(text: &str) -> Option<f64> {
 /// The name in lower-case letters, digits and underscores: `max_steps` for `maxSteps` and `max-steps`.
 pub(super) fn snake_case(name: &str) -> Option<String> {
     let mut snake = String::new();
-    let mut after_small = false;
+    let mut after_lowercase = false;
     for c in name.trim().chars() {
-        if c.is_ascii_uppercase() && after_small {
+        if c.is_ascii_uppercase() && after_lowercase {
             snake.push('_');
         }
-        after_small = c.is_ascii_lowercase() || c.is_ascii_digit();
+        after_lowercase = c.is_ascii_lowercase() || c.is_ascii_digit();
         match c {
             '-' | ' ' | '.' | '/' => snake.push('_'),
             c => snake.push(c.to_ascii_lowercase()),
@@ -77,7 +77,7 @@ pub(super) fn snake_case(name: &str) -> Option<String> {
 }
 
 /// The known word that shares its beginning with the given one: `param` for `parameter`.
-pub(super) fn begins_alike<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
+pub(super) fn shares_beginning<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     let alike =
         |known: &&&str| word.len().min(known.len()) >= 4 && (word.starts_with(**known) || known.starts_with(word));
     known.iter().filter(alike).max_by_key(|known| known.len()).copied()

@@ -6,10 +6,11 @@ use crate::Color;
 use crate::describe::describe;
 use crate::error::Problem;
 
-/// Wording of a colour in messages.
+/// Description of a valid colour in messages.
 pub(super) const EXPECTED: &str = "a CSS colour name or [r, g, b] in 0..1";
 
-/// The problem with a string or list that is not a colour; `None` for a list of three, whose invalid channels are reported one by one.
+/// The problem with a string or list that is not a colour; `None` for a list of three, where invalid channels are reported one
+/// by one.
 pub(super) fn problem(pointer: &str, value: &Value) -> Option<Problem> {
     let problem = Problem::new("spec/value", pointer, describe(value), EXPECTED);
     let advised = match value {
@@ -18,7 +19,7 @@ pub(super) fn problem(pointer: &str, value: &Value) -> Option<Problem> {
             None => problem.suggest(text, Color::names()),
         },
         Value::Array(items) => match channels(items) {
-            Some(bytes) if in_bytes(&bytes) => {
+            Some(bytes) if are_bytes(&bytes) => {
                 let color = [bytes[0], bytes[1], bytes[2]].map(|byte| byte / 255.0);
                 problem.advise(format!("divide by 255: {}", triple(color)))
             }
@@ -39,7 +40,7 @@ fn channels(items: &[Value]) -> Option<Vec<f64>> {
     matches!(numbers.len(), 3 | 4).then_some(numbers)
 }
 
-fn in_bytes(channels: &[f64]) -> bool {
+fn are_bytes(channels: &[f64]) -> bool {
     channels.iter().all(|channel| (0.0..=255.0).contains(channel)) && channels.iter().any(|channel| *channel >= 2.0)
 }
 
@@ -70,7 +71,7 @@ mod tests {
     }
 
     #[test]
-    fn other_colour_notations_get_advice_in_ours() {
+    fn other_colour_notations_get_advice() {
         check(&json!("#ff0000"), Some("write [1, 0, 0]"));
         check(&json!("#0f8"), Some("write [0, 1, 0.533]"));
         check(&json!("bleu"), Some("did you mean \"blue\"?"));

@@ -1,4 +1,4 @@
-//! [`DocumentSchema`]: the schema of a document type, generated from the Rust type; finds the problems of a value.
+//! [`DocumentSchema`]: the schema of a document type, generated from the Rust type, and the problems that it finds.
 
 use std::collections::BTreeSet;
 use std::sync::OnceLock;
@@ -13,16 +13,16 @@ use super::explain;
 use crate::error::{Listed, MAX_PROBLEMS};
 
 /// Depth beyond which values of a schema are written on one line; the keys of definitions are at this depth.
-const DEEPEST_BREAK: usize = 4;
+const MAX_BREAK_DEPTH: usize = 4;
 
 /// Maximum length in bytes of a value that is written on one line at any depth.
-const SHORT_LINE: usize = 100;
+const MAX_LINE_LENGTH: usize = 100;
 
 /// The schema of one document type, ready to check values.
 pub struct DocumentSchema {
     json: Value,
     validator: Validator,
-    /// Lists errors; compiled only for invalid documents.
+    /// Lists the errors of invalid documents; compiled when first needed.
     listing: OnceLock<BoundedErrors>,
 }
 
@@ -34,7 +34,8 @@ impl DocumentSchema {
 
     /// A schema given as JSON.
     pub(crate) fn new(json: Value) -> Self {
-        let validator = jsonschema::validator_for(&json).expect("the schema is made from our own types and is tested");
+        let validator =
+            jsonschema::validator_for(&json).expect("the schema is generated from our own types and tested");
         Self {
             json,
             validator,
@@ -65,19 +66,19 @@ impl DocumentSchema {
         if self.allows(value) {
             return Listed::default();
         }
-        let listing = self
-            .listing
-            .get_or_init(|| BoundedErrors::new(&self.json, MAX_PROBLEMS).expect("the other validator was built of it"));
+        let listing = self.listing.get_or_init(|| {
+            BoundedErrors::new(&self.json, MAX_PROBLEMS).expect("the first validator was compiled from the same schema")
+        });
         let (problems, more) = listing.list(value, |errors| explain::problems(&self.json, value, errors));
         Listed { problems, more }
     }
 }
 
-/// Writes a value on one line if it is short or deeply nested, else with one line per entry.
+/// Writes a value on one line if it is short or deeply nested, otherwise with one line per entry.
 fn write_lines(value: &Value, depth: usize, text: &mut String) {
     let line = value.to_string();
     let entries: Vec<(String, &Value)> = match value {
-        _ if depth == DEEPEST_BREAK || line.len() <= SHORT_LINE => Vec::new(),
+        _ if depth == MAX_BREAK_DEPTH || line.len() <= MAX_LINE_LENGTH => Vec::new(),
         Value::Object(map) => map
             .iter()
             .map(|(key, value)| (format!("{}:", json!(key)), value))
@@ -115,7 +116,7 @@ pub(crate) fn of_type<T: JsonSchema>(id: &str, title: &str) -> Value {
     json
 }
 
-/// Moves the examples, which the type's declaration puts elsewhere, to the end.
+/// Moves the examples to the end.
 fn put_examples_last(part: &mut Value) {
     if let Some(map) = part.as_object_mut()
         && let Some(examples) = map.shift_remove("examples")
@@ -166,13 +167,14 @@ fn references(part: &Value) -> Vec<String> {
 fn describe_forms(part: &mut Value) {
     match part {
         Value::Object(map) => {
-            let said = map.get("description").cloned();
-            if let (Some(said), Some(properties)) = (said, map.get_mut("properties").and_then(Value::as_object_mut))
+            let description = map.get("description").cloned();
+            if let (Some(description), Some(properties)) =
+                (description, map.get_mut("properties").and_then(Value::as_object_mut))
                 && properties.len() == 1
             {
                 for (_, property) in properties {
                     if let Some(property) = property.as_object_mut() {
-                        property.entry("description").or_insert_with(|| said.clone());
+                        property.entry("description").or_insert_with(|| description.clone());
                     }
                 }
             }

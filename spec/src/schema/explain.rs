@@ -17,7 +17,7 @@ use crate::world::TEXT_PATTERN;
 /// A problem, with a measure of how specific it is.
 pub(super) struct Finding {
     pub(super) problem: Problem,
-    /// The number of forms on offer, if the value matches none; 0 for every other problem.
+    /// The number of allowed forms, if the value matches none of them; 0 for every other problem.
     pub(super) forms: usize,
 }
 
@@ -41,7 +41,7 @@ impl From<Problem> for Finding {
     }
 }
 
-/// All problems behind the schema's errors, without duplicates; if several concern one value, only the most specific.
+/// The problems behind the schema's errors, without duplicates; if several concern one value, only the most specific one.
 pub(super) fn problems<'a>(
     schema: &Value,
     document: &Value,
@@ -52,19 +52,19 @@ pub(super) fn problems<'a>(
     let mut best: BTreeMap<&str, (usize, usize)> = BTreeMap::new();
     for (index, finding) in findings.iter().enumerate() {
         if let Some(rank) = finding.rank() {
-            let least = best.entry(&finding.problem.pointer).or_insert((rank, index));
-            *least = (*least).min((rank, index));
+            let lowest = best.entry(&finding.problem.pointer).or_insert((rank, index));
+            *lowest = (*lowest).min((rank, index));
         }
     }
     let kept = findings.iter().enumerate().filter(|(index, finding)| {
         let pointer = finding.problem.pointer.as_str();
-        let narrowest = finding.rank().is_none_or(|rank| {
+        let is_most_specific = finding.rank().is_none_or(|rank| {
             // Two rules may forbid the same key; report it once.
             best.get(pointer)
-                .is_none_or(|(least, first)| rank == *least && (rank > 0 || first == index))
+                .is_none_or(|(lowest, first)| rank == *lowest && (rank > 0 || first == index))
         });
         // Problems inside a value of the wrong type, or under an unknown key, do not matter.
-        narrowest && !parents(pointer).any(|parent| best.get(parent).is_some_and(|(least, _)| *least <= 1))
+        is_most_specific && !parents(pointer).any(|parent| best.get(parent).is_some_and(|(lowest, _)| *lowest <= 1))
     });
     kept.map(|(_, finding)| finding.problem.clone()).collect()
 }
@@ -115,7 +115,7 @@ impl Explainer<'_> {
         }
     }
 
-    /// The value that an error is about, which the error does not store.
+    /// The value that an error is about; the error itself does not store it.
     pub(super) fn instance(&self, error: &ValidationError) -> &Value {
         let place = error.instance_path();
         self.document.pointer(place.as_str()).unwrap_or(&Value::Null)
@@ -143,8 +143,8 @@ impl Explainer<'_> {
                 advice::for_word_of_list(value, &words)
                     .or_else(|| advice::for_types(value, |name| types(kind).iter().any(|kind| kind == name)))
             }
-            ValidationErrorKind::Pattern { pattern } if pattern == TEXT_PATTERN => in_capitals(value),
-            ValidationErrorKind::Pattern { .. } => renamed(value),
+            ValidationErrorKind::Pattern { pattern } if pattern == TEXT_PATTERN => advice_for_sign_text(value),
+            ValidationErrorKind::Pattern { .. } => advice_for_name(value),
             _ => None,
         };
         Finding {
@@ -168,7 +168,7 @@ impl Explainer<'_> {
         let name = error.instance().as_str().unwrap_or_default();
         let place = format!("{pointer}/{}", escape(name));
         let problem = Problem::new("spec/name", place, format!("the name {name:?}"), self.expected(error));
-        let advice = renamed(error.instance());
+        let advice = advice_for_name(error.instance());
         Problem { advice, ..problem }
     }
 
@@ -192,7 +192,7 @@ impl Explainer<'_> {
         parts.into_iter().find(has)
     }
 
-    /// The problem for a key that is not allowed beside another key, or beside that key's value.
+    /// The problem for a key that is not allowed together with another key, or with that key's value.
     fn forbidden_key(&self, error: &ValidationError) -> Problem {
         let pointer = error.instance_path().as_str();
         let (parent, key) = pointer.rsplit_once('/').unwrap_or(("", pointer));
@@ -264,23 +264,23 @@ fn unknown_key(pointer: &str, key: &str, known: &[String]) -> Problem {
         format!("the unknown key {key:?}"),
         expected,
     );
-    // Keys of version 1 in a task spec that claims version 2.
-    let known_now = version::OLD_MARGINS.iter().find(|(old, _)| *old == key);
-    match known_now.filter(|_| known.iter().any(|key| key == "keep_out")) {
+    // Keys of version 1 in a task spec that declares version 2.
+    let replacement = version::OLD_MARGINS.iter().find(|(old, _)| *old == key);
+    match replacement.filter(|_| known.iter().any(|key| key == "keep_out")) {
         Some((_, new)) => problem.advise(format!("write \"keep_out\": {{ {new:?}: … }}")),
         None => problem.suggest(key, known),
     }
 }
 
 /// Advice for text that a sign cannot show.
-fn in_capitals(value: &Value) -> Option<String> {
+fn advice_for_sign_text(value: &Value) -> Option<String> {
     let text = value.as_str()?;
     let capitals = text.to_uppercase();
     (capitals != text).then(|| format!("write {capitals:?}"))
 }
 
 /// Advice for a name that does not match its pattern.
-fn renamed(value: &Value) -> Option<String> {
+fn advice_for_name(value: &Value) -> Option<String> {
     let near = advice::snake_case(value.as_str()?)?;
     Some(format!("did you mean {near:?}?"))
 }

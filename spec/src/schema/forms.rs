@@ -1,4 +1,4 @@
-//! Explains values that match none of several allowed forms: which form the author meant, or which ones exist.
+//! Explains values that match none of several allowed forms: names the form that the author meant, or lists the forms.
 
 use jsonschema::ValidationError;
 use jsonschema::error::ValidationErrorKind;
@@ -41,13 +41,13 @@ impl Form<'_, '_> {
     }
 
     /// Whether the value has a different JSON type.
-    fn is_of_another_type(&self, own: &str) -> bool {
+    fn has_wrong_type(&self, own: &str) -> bool {
         let wrong = |kind: &ValidationErrorKind| matches!(kind, ValidationErrorKind::Type { .. });
         self.errors_at(own).any(|error| wrong(error.kind()))
     }
 
     /// Whether the value is a word that this form does not allow.
-    fn is_another_word(&self, own: &str) -> bool {
+    fn is_wrong_word(&self, own: &str) -> bool {
         use ValidationErrorKind as Kind;
         let wrong = |kind: &Kind| matches!(kind, Kind::Constant { .. } | Kind::Enum { .. });
         self.errors_at(own).any(|error| wrong(error.kind()))
@@ -76,7 +76,7 @@ impl Form<'_, '_> {
         }
     }
 
-    /// Whether it is a look-up, which messages do not offer beside the forms of its cases.
+    /// Whether it is a look-up, which messages do not list in addition to the forms of its cases.
     fn is_case(&self) -> bool {
         self.is("Case") || self.is("NumberCase")
     }
@@ -96,7 +96,7 @@ impl Form<'_, '_> {
             .collect()
     }
 
-    /// Its label in a list of forms, with its rank there; `None` if it need not be mentioned.
+    /// Its rank and label in a list of forms; `None` if it need not be mentioned.
     fn label(&self, beside_text: bool) -> Option<(usize, String)> {
         let of_numbers = self.schema.pointer("/items/type").is_some_and(|kind| kind == "number");
         let label = match self.name {
@@ -148,22 +148,22 @@ impl Explainer<'_> {
         let mut forms = Vec::new();
         self.unfold(own, branches, context, name, &mut forms);
         let value = self.instance(error);
-        let of_its_type: Vec<&Form> = forms.iter().filter(|form| !form.is_of_another_type(own)).collect();
-        if !of_its_type.is_empty()
-            && of_its_type.iter().any(|form| form.is("Color"))
-            && of_its_type.iter().all(|form| form.is("Color") || form.is_a_triple())
+        let same_type: Vec<&Form> = forms.iter().filter(|form| !form.has_wrong_type(own)).collect();
+        if !same_type.is_empty()
+            && same_type.iter().any(|form| form.is("Color"))
+            && same_type.iter().all(|form| form.is("Color") || form.is_a_triple())
             && let Some(problem) = color::problem(own, value)
         {
             return vec![Finding { problem, forms: 1 }];
         }
-        let meant = match value {
-            Value::Object(map) => match meant_object(own, map, &forms) {
-                Ok(meant) => meant,
+        let intended = match value {
+            Value::Object(map) => match intended_object(own, map, &forms) {
+                Ok(intended) => intended,
                 Err(problem) => return vec![problem.into()],
             },
-            _ => meant_value(own, &of_its_type),
+            _ => intended_value(own, &same_type),
         };
-        match meant {
+        match intended {
             Some(form) => form.errors.iter().flat_map(|error| self.explain(error)).collect(),
             None => vec![none_of(own, value, &forms)],
         }
@@ -249,12 +249,12 @@ impl Explainer<'_> {
     }
 }
 
-/// The form that a non-object value was meant to have: the one of its type with the fewest errors.
-fn meant_value<'f, 'a, 'e>(own: &str, of_its_type: &[&'f Form<'a, 'e>]) -> Option<&'f Form<'a, 'e>> {
-    let fitting: Vec<_> = of_its_type
+/// The form intended by a value that is not an object: the one of its type with the fewest errors.
+fn intended_value<'f, 'a, 'e>(own: &str, same_type: &[&'f Form<'a, 'e>]) -> Option<&'f Form<'a, 'e>> {
+    let fitting: Vec<_> = same_type
         .iter()
         .copied()
-        .filter(|form| !form.is_another_word(own))
+        .filter(|form| !form.is_wrong_word(own))
         .collect();
     let best = fitting
         .iter()
@@ -264,8 +264,8 @@ fn meant_value<'f, 'a, 'e>(own: &str, of_its_type: &[&'f Form<'a, 'e>]) -> Optio
     (fitting.len() == 1 || best.errors_at(own).count() == 0).then_some(best)
 }
 
-/// The form that an object was meant to have, by its keys; an error if it has several at once.
-fn meant_object<'f, 'a, 'e>(
+/// The form intended by an object, judging by its keys; an error if it has keys of several forms.
+fn intended_object<'f, 'a, 'e>(
     own: &str,
     object: &Map<String, Value>,
     forms: &'f [Form<'a, 'e>],
@@ -378,11 +378,11 @@ fn advice_for(value: &Value, forms: &[Form], words: &[&str]) -> Option<String> {
                 return Some(format!("write {{{tag:?}: {{…}}}}"));
             }
             let key = object.keys().next()?;
-            let near = nearest(key, &tags).or_else(|| advice::begins_alike(key, &tags).map(str::to_owned));
+            let near = nearest(key, &tags).or_else(|| advice::shares_beginning(key, &tags).map(str::to_owned));
             if let Some(near) = near {
                 return Some(format!("did you mean {near:?}?"));
             }
-            let tag = forms.iter().find_map(|form| holds(form, object))?;
+            let tag = forms.iter().find_map(|form| tag_of_contents(form, object))?;
             Some(format!("name it, as in {{{tag:?}: {{…}}}}"))
         }
         _ => None,
@@ -390,14 +390,14 @@ fn advice_for(value: &Value, forms: &[Form], words: &[&str]) -> Option<String> {
 }
 
 /// The tag of a form whose inner object has exactly these keys.
-fn holds<'f>(form: &'f Form, object: &Map<String, Value>) -> Option<&'f str> {
+fn tag_of_contents<'f>(form: &'f Form, object: &Map<String, Value>) -> Option<&'f str> {
     let tag = form.tag()?;
     let inside = form.properties()?.get(tag)?;
     let known = inside.get("properties")?.as_object()?;
     let required = inside.get("required")?.as_array()?;
-    let all_there = required
+    let has_all_required = required
         .iter()
         .filter_map(Value::as_str)
         .all(|key| object.contains_key(key));
-    (all_there && object.keys().all(|key| known.contains_key(key))).then_some(tag)
+    (has_all_required && object.keys().all(|key| known.contains_key(key))).then_some(tag)
 }

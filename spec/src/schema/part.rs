@@ -26,7 +26,7 @@ pub(crate) fn property<'a>(schema: &'a Value, part: &'a Value, pointer: &str) ->
     })
 }
 
-/// The part without the `null` of an optional value, references resolved.
+/// The part without the `null` of an optional value, with references resolved.
 fn whole<'a>(schema: &'a Value, part: &'a Value) -> &'a Value {
     let part = resolve(schema, part);
     match part["anyOf"].as_array().map(Vec::as_slice) {

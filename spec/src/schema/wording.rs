@@ -1,4 +1,4 @@
-//! Words the expectations of a schema for messages: types, limits, patterns.
+//! Describes the expectations of a schema for messages: types, limits, patterns.
 
 use driftworld_text::{IDENTIFIER_PATTERN, NAME_PATTERN, counted};
 use jsonschema::ValidationError;
@@ -52,7 +52,7 @@ pub(super) fn expected(error: &ValidationError, root: &Value, schema: &Value) ->
         ValidationErrorKind::MultipleOf { multiple_of } if (multiple_of - 1.0).abs() < f64::EPSILON => {
             article("integer")
         }
-        ValidationErrorKind::Pattern { pattern } => letters(pattern),
+        ValidationErrorKind::Pattern { pattern } => describe_pattern(pattern),
         ValidationErrorKind::Constant { expected_value } => expected_value.to_string(),
         ValidationErrorKind::UniqueItems => "no value twice".to_owned(),
         _ => error.to_string(),
@@ -68,7 +68,7 @@ pub(super) fn types(kind: &TypeKind) -> Vec<String> {
 }
 
 /// A pattern of our schemas in words.
-fn letters(pattern: &str) -> String {
+fn describe_pattern(pattern: &str) -> String {
     match pattern {
         IDENTIFIER_PATTERN => "lower-case letters, digits and underscores, starting with a letter".to_owned(),
         NAME_PATTERN => "a name of letters, digits, _, -, + and ., which begins with a letter, a digit or _ and does not end with a dot".to_owned(),
@@ -77,7 +77,7 @@ fn letters(pattern: &str) -> String {
     }
 }
 
-/// A limit for people to read: 360 rather than 360.0.
+/// A limit in readable form: 360 rather than 360.0.
 fn plain(limit: &Value) -> String {
     limit
         .as_f64()
@@ -145,12 +145,12 @@ pub(super) fn object(schema: &Value) -> String {
 
 /// «a, b or c».
 pub(super) fn either(words: Vec<String>) -> String {
-    joined(words, "or")
+    join(words, "or")
 }
 
 /// «"a" and "b"».
 pub(super) fn both(words: &[&str]) -> String {
-    joined(quoted(words), "and")
+    join(quoted(words), "and")
 }
 
 /// Words in quotes.
@@ -158,9 +158,9 @@ pub(super) fn quoted(words: &[&str]) -> Vec<String> {
     words.iter().map(|word| format!("{word:?}")).collect()
 }
 
-fn joined(mut words: Vec<String>, last_by: &str) -> String {
+fn join(mut words: Vec<String>, conjunction: &str) -> String {
     match words.pop() {
-        Some(last) if !words.is_empty() => format!("{} {last_by} {last}", words.join(", ")),
+        Some(last) if !words.is_empty() => format!("{} {conjunction} {last}", words.join(", ")),
         last => last.unwrap_or_default(),
     }
 }

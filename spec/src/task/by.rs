@@ -1,4 +1,4 @@
-//! [`By`]: names of the ways to compare variants and worlds, each a subject and a measure.
+//! [`By`]: the ways to compare variants and worlds, each named by a subject and a measure.
 
 use driftworld_text::{WordKind, removed};
 use schemars::JsonSchema;
@@ -7,7 +7,7 @@ use strum::VariantNames as _;
 
 use crate::did_you_mean;
 
-/// What two variants or worlds are compared by: of what, and after a colon by which measure of it.
+/// How two variants or worlds are compared: a subject and, after a colon, a measure of it.
 #[derive(
     Clone,
     Copy,
@@ -24,11 +24,11 @@ use crate::did_you_mean;
 #[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "snake_case")]
 pub enum By {
-    /// Variants of one task by what it declares: 1 is one parameter moved over its whole range.
+    /// Variants of one task, by declared parameters: 1 is one parameter moved over its whole range.
     Parameters,
-    /// What is in worlds, in the units of the reference page on comparison.
+    /// The contents of worlds, in the units of the reference page on comparison.
     Worlds,
-    /// What an agent sees: the mean Oklab difference of the pixels that show objects, and that of the others.
+    /// What an agent sees: the mean Oklab difference of the pixels that show objects, and of the other pixels.
     Pictures,
     /// What an agent sees: the mean Oklab difference of all pixels.
     #[serde(rename = "pictures:whole")]
@@ -38,55 +38,55 @@ pub enum By {
     #[serde(rename = "pictures:structure")]
     #[strum(serialize = "pictures:structure")]
     PicturesStructure,
-    /// Where objects are: the least work that moves them, by cells.
+    /// Positions of objects: the minimum work to move them, on a grid of cells.
     Occupancy,
-    /// Which cells are taken: the share of them that is taken in one world alone.
+    /// Occupied cells: the share that is occupied in only one of the worlds.
     #[serde(rename = "occupancy:jaccard")]
     #[strum(serialize = "occupancy:jaccard")]
     OccupancyJaccard,
-    /// Which cells are taken: the farthest that one is from the nearest of the other world.
+    /// Occupied cells: the largest distance from one to the nearest in the other world.
     #[serde(rename = "occupancy:hausdorff")]
     #[strum(serialize = "occupancy:hausdorff")]
     OccupancyHausdorff,
-    /// Which cells are taken: how far each is from the nearest of the other world, on average.
+    /// Occupied cells: the mean distance from each to the nearest in the other world.
     #[serde(rename = "occupancy:chamfer")]
     #[strum(serialize = "occupancy:chamfer")]
     OccupancyChamfer,
-    /// Where objects come to stand in all worlds of a variant together: the law of places, with what walls do to it.
+    /// The distribution of object positions over all worlds of a variant, including the effect of walls.
     Placements,
     /// Which objects there are, and where: OSPA, class by class.
     Objects,
-    /// Which objects there are: the share of them without a counterpart of their class.
+    /// Which objects there are: the share without a counterpart of the same class.
     #[serde(rename = "objects:counts")]
     #[strum(serialize = "objects:counts")]
     ObjectsCounts,
-    /// Which colours objects have: assigned to each other, in Oklab.
+    /// Colours of objects, matched with each other, in Oklab.
     Colors,
-    /// The same in sRGB.
+    /// Colours of objects, in sRGB.
     #[serde(rename = "colors:srgb")]
     #[strum(serialize = "colors:srgb")]
     ColorsSrgb,
-    /// The same in CIELAB.
+    /// Colours of objects, in CIELAB.
     #[serde(rename = "colors:cie76")]
     #[strum(serialize = "colors:cie76")]
     ColorsCie76,
-    /// The same by CIEDE2000.
+    /// Colours of objects, by CIEDE2000.
     #[serde(rename = "colors:ciede2000")]
     #[strum(serialize = "colors:ciede2000")]
     ColorsCiede2000,
-    /// The same by `hyab`.
+    /// Colours of objects, by `hyab`.
     #[serde(rename = "colors:hyab")]
     #[strum(serialize = "colors:hyab")]
     ColorsHyab,
-    /// What worlds reward: EPIC, 0 to 1.
+    /// The rewards of worlds: EPIC distance, 0 to 1.
     Rewards,
-    /// What actions pay and where they lead: the Wasserstein MDP distance, state by state.
+    /// Rewards and transitions of actions: the Wasserstein MDP distance, state by state.
     Dynamics,
-    /// What can be earned by the same actions: bisimulation of the starts.
+    /// Rewards attainable by the same actions: bisimulation distance of the starts.
     #[serde(rename = "dynamics:bisimulation")]
     #[strum(serialize = "dynamics:bisimulation")]
     DynamicsBisimulation,
-    /// What experts earn in each other's worlds: their regret, in hundreds of points.
+    /// Returns of experts in each other's worlds: their regret, in hundreds of points.
     #[serde(alias = "behaviour")]
     #[strum(serialize = "behavior")]
     Behavior,
@@ -116,7 +116,7 @@ impl By {
     /// Finds it by name; `behaviour` is accepted for `behavior`.
     ///
     /// # Errors
-    /// What was found, and the known names.
+    /// A message with the unknown name and the known names.
     pub fn from_name(name: &str) -> Result<Self, String> {
         let american = name.replacen("behaviour", "behavior", 1);
         american.parse().map_err(|_| {
@@ -140,7 +140,7 @@ mod tests {
             assert_eq!(serde_json::to_value(by).unwrap(), *name);
             assert!(
                 By::from_name(by.subject()).is_ok(),
-                "{name}: its subject has a usual measure"
+                "{name}: its subject has a default measure"
             );
         }
         assert_eq!(By::from_name("behaviour:success"), Ok(By::BehaviorSuccess));

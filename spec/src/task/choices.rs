@@ -10,7 +10,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use crate::describe::escape;
 use crate::value::Value;
 
-/// The values that a parameter may have. Named values are given by name in defaults, variants and captions.
+/// The values that a parameter may have. Defaults, variants and captions refer to named values by name.
 ///
 /// # Example
 /// ```
@@ -38,8 +38,8 @@ impl Choices {
     /// The value with this name.
     pub(super) fn named(&self, name: &Value) -> Option<&Value> {
         let name = name.as_text()?;
-        let place = self.names.iter().position(|known| known == name)?;
-        self.values.get(place)
+        let index = self.names.iter().position(|known| known == name)?;
+        self.values.get(index)
     }
 
     /// Each value with its key in the document.

@@ -1,4 +1,4 @@
-//! [`Compare`]: how a task compares its variants: measures and weights of parameters.
+//! [`Compare`]: how a task compares its variants, by measures and weights of parameters.
 
 use std::collections::BTreeSet;
 
@@ -19,13 +19,13 @@ use crate::value::{ParameterType, Value};
     { "costs": [[0, 0.2, 1], [0.2, 0, 1], [1, 1, 0]] },
 ]))]
 pub struct Compare {
-    /// What the parameter weighs among those that touch the same element; 1 if absent, 0 leaves it out.
+    /// Weight of the parameter among those that affect the same element; 1 if absent, 0 leaves it out.
     #[schemars(range(min = 0.0, max = 1e6))]
     pub weight: f64,
-    /// The measure; that of the parameter's type if absent.
+    /// The measure; the default of the parameter's type if absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub measure: Option<MeasureName>,
-    /// For choices: how far each is from each, a row for every choice in their order; divided by the largest when it counts.
+    /// For choices: the distance between each two, with one row per choice, in their order; divided by the largest distance.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(length(min = 1, max = 1000))]
     pub costs: Option<Vec<Vec<f64>>>,
@@ -41,52 +41,55 @@ impl Default for Compare {
     }
 }
 
-/// A measure of how far two values, or two distributions, are apart.
+/// A measure of the distance between two values or two distributions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema, strum::IntoStaticStr)]
 #[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "snake_case")]
 pub enum MeasureName {
-    /// Numbers: the difference over the declared range. What numbers have if nothing is said.
+    /// Numbers: the difference, divided by the declared range. The default for numbers.
     Difference,
-    /// Numbers above 0: the logarithm of their ratio, over that of the range. For scales, where twice is as far as half.
+    /// Numbers above 0: the logarithm of their ratio, divided by that of the range's ends. For scales, where doubling counts
+    /// like halving.
     LogRatio,
-    /// Numbers: the difference over the larger of the two, over the most that the range allows. Anything is as far from 0 as can be.
+    /// Numbers: the difference divided by the larger of the two, then by the maximum in the range. Every number is at the
+    /// largest distance from 0.
     RelativeDifference,
-    /// Any type: 0 if they are the same, 1 if not.
+    /// Any type: 0 if the values are equal, 1 otherwise.
     SameOrNot,
-    /// Colours, and the ways of drawn ones: Euclidean in sRGB, as in the L2Explorer paper.
+    /// Colours, also for moving random colours: Euclidean distance in sRGB, as in the L2Explorer paper.
     Srgb,
-    /// Colours: Euclidean in CIELAB.
+    /// Colours: Euclidean distance in CIELAB.
     Cie76,
     /// Colours: CIEDE2000. Not a metric.
     Ciede2000,
-    /// Colours: Euclidean in Oklab. What colours have if nothing is said.
+    /// Colours: Euclidean distance in Oklab. The default for colours.
     Oklab,
-    /// Colours: the difference of lightness plus the way in a and b of CIELAB, after Abasi and others. For large differences.
+    /// Colours: the difference in lightness plus the distance in a and b of CIELAB, after Abasi et al. For large differences.
     Hyab,
-    /// Distributions of numbers, points or colours: least work. What they have if nothing is said.
+    /// Distributions of numbers, points or colours: minimum transport cost. Their default.
     #[serde(rename = "wasserstein_1")]
     #[strum(serialize = "wasserstein_1")]
     Wasserstein1,
-    /// Distributions of numbers, points or colours: least squared work, its root.
+    /// Distributions of numbers, points or colours: the root of the minimum squared transport cost.
     #[serde(rename = "wasserstein_2")]
     #[strum(serialize = "wasserstein_2")]
     Wasserstein2,
-    /// Distributions: the largest difference of the probabilities that they give to any set.
+    /// Distributions: the largest difference between the probabilities that they assign to any set.
     TotalVariation,
-    /// Distributions: Hellinger's distance.
+    /// Distributions: the Hellinger distance.
     Hellinger,
-    /// Distributions: the root of Jensen and Shannon's divergence.
+    /// Distributions: the root of the Jensen–Shannon divergence.
     JensenShannon,
-    /// Distributions of numbers: the energy distance, its root.
+    /// Distributions of numbers: the root of the energy distance.
     Energy,
-    /// Distributions of points: least squared work between normal distributions of the same means and spreads, its root.
+    /// Distributions of points: the root of the minimum squared transport cost between normal distributions with the same means
+    /// and spreads.
     BuresWasserstein,
-    /// Layouts: what stands of the walls in one alone, as a share of what stands in either. Doors and letters do not count.
+    /// Layouts: the walls present in only one of them, as a share of the walls in either. Doors and letters do not count.
     WallJaccard,
-    /// Layouts: how much the lengths of ways differ, as a share of the longer. Doors and letters do not count.
+    /// Layouts: how much walking distances differ, as a share of the longer one. Doors and letters do not count.
     WalkingDistance,
-    /// Layouts: how far the mass of walls has to be moved, in sides of the arena. Doors and letters do not count.
+    /// Layouts: how far the mass of the walls must be moved, in sides of the arena. Doors and letters do not count.
     WallTransport,
 }
 
@@ -96,12 +99,12 @@ impl MeasureName {
         self.into()
     }
 
-    /// The measures that fit a distribution; `None` if this one fits. `kind` is the parameter's type.
+    /// The measures that fit a distribution, unless this one does. `kind` is the parameter's type.
     pub(super) fn misfit_of_draws(self, drawn: &Distribution<Number>, kind: ParameterType) -> Option<&'static str> {
         let is_color = self.is_of_colors();
         let overlaps = matches!(self, Self::TotalVariation | Self::Hellinger | Self::JensenShannon);
         let moves = matches!(self, Self::Wasserstein1 | Self::Wasserstein2);
-        let (fits, those) = match Draws::of(drawn, kind) {
+        let (fits, allowed) = match Draws::of(drawn, kind) {
             _ if self == Self::SameOrNot => return None,
             Draws::Colors => (
                 is_color || moves,
@@ -136,7 +139,7 @@ impl MeasureName {
                  same_or_not",
             ),
         };
-        (!fits).then_some(those)
+        (!fits).then_some(allowed)
     }
 
     fn is_of_colors(self) -> bool {
@@ -146,7 +149,7 @@ impl MeasureName {
         )
     }
 
-    /// The kind of parameter that this measure needs; `None` if the given one fits.
+    /// The kind of parameter that this measure needs, unless the given parameter fits.
     fn misfit(self, parameter: &Parameter) -> Option<&'static str> {
         let by_distribution = parameter.role == Role::Randomized || parameter.kind == ParameterType::Distribution;
         let of_numbers = !by_distribution && matches!(parameter.kind, ParameterType::Number | ParameterType::Integer);
@@ -188,8 +191,8 @@ impl MeasureName {
     }
 }
 
-/// The distributions that a parameter declares: its own, or its possible values. If it is drawn from another
-/// parameter, `Check::compared_by` checks the measure against that parameter's distributions.
+/// The distributions that a parameter declares: its own, or its possible values. If it is drawn from another parameter,
+/// `Check::measure_fits` checks the measure against that parameter's distributions.
 fn distributions(parameter: &Parameter) -> impl Iterator<Item = &Distribution<Number>> {
     let own = match &parameter.distribution {
         Some(Source::Distribution(distribution)) => Some(&**distribution),

@@ -3,28 +3,28 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// What each element of the decision process weighs in a task's distances; 1 where nothing is said.
+/// The weight of each element of the decision process in a task's distances; 1 by default.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 #[schemars(extend("examples" = [{ "R": 2, "O": 0.5 }]))]
 pub struct ElementWeights {
-    /// The states.
+    /// Weight of the states.
     #[serde(rename = "S")]
     #[schemars(range(min = 0.0, max = 1e6))]
     pub state: f64,
-    /// The actions.
+    /// Weight of the actions.
     #[serde(rename = "A")]
     #[schemars(range(min = 0.0, max = 1e6))]
     pub action: f64,
-    /// The transitions.
+    /// Weight of the transitions.
     #[serde(rename = "T")]
     #[schemars(range(min = 0.0, max = 1e6))]
     pub transition: f64,
-    /// The rewards.
+    /// Weight of the rewards.
     #[serde(rename = "R")]
     #[schemars(range(min = 0.0, max = 1e6))]
     pub reward: f64,
-    /// The observations.
+    /// Weight of the observations.
     #[serde(rename = "O")]
     #[schemars(range(min = 0.0, max = 1e6))]
     pub observation: f64,
@@ -43,7 +43,7 @@ impl Default for ElementWeights {
 }
 
 impl ElementWeights {
-    /// In the order of [`Element::ALL`](crate::Element::ALL).
+    /// The weights in the order of [`Element::ALL`](crate::Element::ALL).
     pub fn to_array(self) -> [f64; 5] {
         [self.state, self.action, self.transition, self.reward, self.observation]
     }

@@ -7,18 +7,18 @@ use indexmap::IndexMap;
 
 use super::TaskSpec;
 use super::parameter::{Domain, Parameter, Role};
-use super::variant::{DEFAULT_VARIANT, Variant, broken};
+use super::variant::{DEFAULT_VARIANT, Variant, violated_requirement};
 use crate::distribution::Distribution;
 use crate::value::{ParameterType, Value};
 
 /// Maximum number of combinations of values.
-const MOST_ENDS: usize = 256;
+const MAX_ENDS: usize = 256;
 
 impl TaskSpec {
     /// The distributions of a parameter at the range ends and choices of all parameters that it depends on, in all
     /// combinations, without duplicates; beyond 256 combinations each parameter varies alone, with the others at their
-    /// defaults. Leaves out distributions that cannot be drawn from, and combinations that break a requirement on only
-    /// these and fixed parameters. Ignores declared variants. Empty for a parameter that is not drawn.
+    /// defaults. Skips invalid distributions, and combinations that violate a requirement on these and fixed parameters alone.
+    /// Ignores declared variants. Empty for a parameter without a distribution.
     ///
     /// # Example
     /// ```
@@ -31,11 +31,11 @@ impl TaskSpec {
     /// # Ok::<(), driftworld_spec::SpecError>(())
     /// ```
     pub fn distributions_at_ends(self: &Arc<Self>, parameter: &str) -> Vec<Distribution> {
-        let drawn_by = self.drawn_by(parameter);
+        let dependencies = self.dependencies(parameter);
         let ends: Vec<(&String, Vec<Value>)> = self
             .parameters()
             .iter()
-            .filter(|(name, declared)| declared.role == Role::Variant && drawn_by.contains(name.as_str()))
+            .filter(|(name, declared)| declared.role == Role::Variant && dependencies.contains(name.as_str()))
             .map(|(name, declared)| (name, ends_of(declared)))
             .collect();
         let mut found: Vec<Distribution> = Vec::new();
@@ -51,7 +51,7 @@ impl TaskSpec {
     }
 
     /// A parameter, and everything that its distribution depends on.
-    fn drawn_by<'a>(&'a self, parameter: &'a str) -> BTreeSet<&'a str> {
+    fn dependencies<'a>(&'a self, parameter: &'a str) -> BTreeSet<&'a str> {
         let mut found = BTreeSet::from([parameter]);
         loop {
             let known = found.len();
@@ -74,15 +74,15 @@ impl TaskSpec {
     fn distribution_at(self: &Arc<Self>, parameter: &str, changed: IndexMap<String, Value>) -> Option<Distribution> {
         let mut values = IndexMap::new();
         for (name, declared) in self.parameters() {
-            let settled = declared.value.as_ref().or(declared.default.as_ref());
-            if let Some(value) = settled.and_then(|value| declared.typed(value)) {
+            let fixed_or_default = declared.value.as_ref().or(declared.default.as_ref());
+            if let Some(value) = fixed_or_default.and_then(|value| declared.typed(value)) {
                 values.insert(name.clone(), value);
             }
         }
-        let mut speaks_of = values.clone();
-        speaks_of.retain(|name, _| self.parameters()[name].role == Role::Fixed);
-        speaks_of.extend(changed.clone());
-        if !changed.is_empty() && broken(self.requirements(), &speaks_of).is_some() {
+        let mut known = values.clone();
+        known.retain(|name, _| self.parameters()[name].role == Role::Fixed);
+        known.extend(changed.clone());
+        if !changed.is_empty() && violated_requirement(self.requirements(), &known).is_some() {
             return None;
         }
         values.extend(changed);
@@ -91,7 +91,7 @@ impl TaskSpec {
     }
 }
 
-/// The ends of a range or all choices; for a vector every corner or, if there are too many, the first and the last.
+/// The ends of a range or all choices; for a vector, all corners or, if there are too many, only the first and the last.
 fn ends_of(parameter: &Parameter) -> Vec<Value> {
     match parameter.domain() {
         Some(Domain::Choices(choices)) => choices,
@@ -99,7 +99,7 @@ fn ends_of(parameter: &Parameter) -> Vec<Value> {
             let length = parameter.vector_length().unwrap_or(1);
             let corner = |bits: usize| Value::Vector((0..length).map(|at| ends[bits >> at.min(63) & 1]).collect());
             match u32::try_from(length) {
-                Ok(few) if few <= MOST_ENDS.ilog2() => (0..1 << few).map(corner).collect(),
+                Ok(few) if few <= MAX_ENDS.ilog2() => (0..1 << few).map(corner).collect(),
                 _ => ends.map(|end| Value::Vector(vec![end; length])).to_vec(),
             }
         }
@@ -116,12 +116,12 @@ fn combinations(ends: &[(&String, Vec<Value>)]) -> Vec<IndexMap<String, Value>> 
     let count = ends
         .iter()
         .try_fold(1_usize, |count, (_, values)| count.checked_mul(values.len()));
-    if count.is_none_or(|count| count > MOST_ENDS) {
+    if count.is_none_or(|count| count > MAX_ENDS) {
         let alone = ends.iter().flat_map(|(name, values)| {
             let one = |value: &Value| IndexMap::from([((*name).clone(), value.clone())]);
             values.iter().map(one)
         });
-        return alone.take(MOST_ENDS).collect();
+        return alone.take(MAX_ENDS).collect();
     }
     let mut all = vec![IndexMap::new()];
     for (name, values) in ends {

@@ -12,10 +12,10 @@ use crate::error::Problem;
 use crate::names;
 use crate::value::{ParameterType, Value};
 
-/// Maximum number of variants of one task, with families unfolded.
+/// Maximum number of variants of one task, after unfolding families.
 const MAX_VARIANTS: usize = 10_000;
 
-/// Maximum number of values in all variants of a task together: variants times parameters.
+/// Maximum total number of values in the variants of a task: variants times parameters.
 const MAX_VARIANT_VALUES: usize = 400_000;
 
 /// Maximum length of a variant's name in characters, as in scenarios.
@@ -30,7 +30,7 @@ pub struct Sweep {
     pub from: f64,
     /// The last value.
     pub to: f64,
-    /// How many values, both ends among them.
+    /// Number of values, including both ends.
     #[schemars(range(min = 2, max = 1000))]
     pub steps: u32,
     /// How the values are spaced.
@@ -87,7 +87,7 @@ pub(crate) type Variants = IndexMap<String, Declared>;
 /// One axis of a family: a parameter with its values in order.
 type Axis<'a> = (&'a String, Vec<Value>);
 
-/// What was found and expected if a task has too many variants, or too many values in them.
+/// Describes what was found and expected if a task has too many variants, or too many values in them.
 fn too_many(variants: usize, parameters: usize) -> Option<(String, String)> {
     if variants > MAX_VARIANTS {
         return Some((format!("{variants} variants"), format!("at most {MAX_VARIANTS} in all")));
@@ -132,8 +132,8 @@ pub(crate) fn unfold(
         let size = axes
             .iter()
             .fold(1_usize, |size, axis| size.saturating_mul(axis.1.len()));
-        let all = variants.len().saturating_add(size);
-        if let Some((found, expected)) = too_many(all, parameters.len()) {
+        let total = variants.len().saturating_add(size);
+        if let Some((found, expected)) = too_many(total, parameters.len()) {
             problems.push(Problem::new("spec/length", pointer, found, expected));
             continue;
         }
@@ -236,8 +236,8 @@ fn pattern_of<'a>(spec: &'a VariantSpec, axes: &[Axis], pointer: &str) -> Result
     }
     let mut pieces = Vec::new();
     let mut rest = name;
-    while let Some((before, behind)) = rest.split_once('{') {
-        let Some((parameter, behind)) = behind.split_once('}') else {
+    while let Some((before, after)) = rest.split_once('{') {
+        let Some((parameter, after)) = after.split_once('}') else {
             return Err(refused(format!("{name:?}"), "a } behind every {".to_owned()));
         };
         let Some(axis) = axes.iter().position(|(known, _)| *known == parameter) else {
@@ -246,7 +246,7 @@ fn pattern_of<'a>(spec: &'a VariantSpec, axes: &[Axis], pointer: &str) -> Result
             return Err(problem.suggest(&found, &known));
         };
         pieces.extend([Piece::Text(before), Piece::Value(axis)]);
-        rest = behind;
+        rest = after;
     }
     pieces.push(Piece::Text(rest));
     let is_named = |axis: usize| {
@@ -300,7 +300,7 @@ fn member_of(
     (own, declared)
 }
 
-/// A value as part of a name: letters, digits, `.`, `+` and `_`, and the minus sign of a number.
+/// A value as part of a name, made of letters, digits, `.`, `+`, `_` and the minus sign of a number.
 fn word(value: &Value, index: usize) -> String {
     let numbers = |numbers: &[f64]| numbers.iter().map(f64::to_string).collect::<Vec<_>>().join("_");
     match value {
@@ -325,7 +325,7 @@ fn word(value: &Value, index: usize) -> String {
     }
 }
 
-/// JSON as part of a name: words, numbers and short lists of words as they are, others with an index.
+/// JSON as part of a name: words, numbers and short lists of words unchanged, anything else with an index.
 fn word_of_json(json: &serde_json::Value, index: usize) -> String {
     use serde_json::Value as Json;
     match json {
@@ -344,7 +344,7 @@ fn word_of_json(json: &serde_json::Value, index: usize) -> String {
     }
 }
 
-/// The problems of the values on a family's axes, with their places.
+/// The problems of the values on a family's axes, with their pointers.
 pub(crate) fn problems(
     parameters: &IndexMap<String, Parameter>,
     name: &str,
@@ -372,7 +372,7 @@ pub(crate) fn problems(
             continue;
         }
         if known.is_none() {
-            // No variant can set it: one report is enough.
+            // No variant can set it, so one report is enough.
             found.extend(problems_of(&at, parameter, &Value::Number(sweep.from)));
             continue;
         }
@@ -395,10 +395,10 @@ mod tests {
     fn refused(json: &str) -> String {
         let spec: IndexMap<String, VariantSpec> = serde_json::from_str(json).unwrap();
         let (_, problems) = unfold(&IndexMap::new(), &spec);
-        let said = problems
+        let messages = problems
             .iter()
             .map(|problem| format!("{}: {}, {}", problem.pointer, problem.found, problem.expected));
-        said.collect::<Vec<_>>().join("; ")
+        messages.collect::<Vec<_>>().join("; ")
     }
 
     #[test]

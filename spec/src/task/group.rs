@@ -1,4 +1,4 @@
-//! A group of similar objects with random places, as declared in a task spec.
+//! A group of similar objects with random positions, as declared in a task spec.
 
 use driftworld_text::NAME_PATTERN;
 use indexmap::IndexMap;
@@ -10,7 +10,7 @@ use super::template::Source;
 use crate::distribution::{Distribution, Number};
 use crate::serde_defaults::is_default;
 
-/// A group of objects: how many, what each is, and where they stand.
+/// A group of objects: their number, their template, and their positions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(extend("examples" = [
@@ -19,51 +19,52 @@ use crate::serde_defaults::is_default;
         "object": { "class": "fence" }, "placement": { "annulus": { "center": [0, 0], "inner": 6, "outer": 9 } } },
 ]))]
 pub struct Group {
-    /// The group's name; its objects carry it as their `tag` unless the template gives another.
+    /// The group's name; its objects get it as their `tag` unless the template sets another.
     #[schemars(length(min = 1, max = 100), regex(pattern = NAME_PATTERN))]
     pub name: String,
-    /// How many objects, or how many around each object of another group: a whole number, a parameter, or a distribution.
+    /// Number of objects, or of objects around each object of another group: a whole number, a parameter, or a distribution.
     #[schemars(schema_with = "super::template::count_schema")]
     pub count: Json,
-    /// What each object is; any leaf may be a value, a parameter, or a distribution, which is drawn for each object.
+    /// The template of each object; any leaf may be a value, a parameter, or a distribution, from which each object draws.
     #[schemars(schema_with = "super::template::object_schema")]
     pub object: Json,
-    /// Where they stand: a distribution of points, or a parameter that is one; if absent, at the letters that the legend of
-    /// the world's layout gives to the group.
+    /// The positions of the objects: a distribution of points, or a parameter of that type; if absent, the cells with letters
+    /// that the legend of the world's layout assigns to the group.
     #[serde(default = "at_letters", skip_serializing_if = "is_at_letters")]
     pub placement: Source,
-    /// A group placed before, around each of whose objects this one is placed: `count` and `placement` then hold for each of
-    /// them, with the origin at its place (co-occurrence). Absent: the world's origin.
+    /// Name of an earlier group. This group is placed around each object of that group (co-occurrence): `count` and `placement`
+    /// apply once per such object, with the origin at its position. If absent, the origin is the world's.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(length(min = 1, max = 100))]
     pub around: Option<String>,
-    /// With `around`: whether the placement turns with the heading of the object in its middle.
+    /// With `around`: whether the placement is rotated by the heading of the object in its middle.
     #[serde(default, skip_serializing_if = "is_default")]
     pub turned: bool,
-    /// Where the objects look, in place of their template's `heading`.
+    /// The direction the objects face, overriding their template's `heading`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub facing: Option<Facing>,
-    /// Least distance in metres to the centre of any object placed before.
+    /// Minimum distance in metres to the centre of any object placed earlier.
     #[serde(default = "zero")]
     #[schemars(extend("minimum" = 0, "maximum" = 300))]
     pub separation: Number,
-    /// What the objects keep clear of.
+    /// Minimum clearances of the objects.
     #[serde(default)]
     pub keep_out: KeepOut,
 }
 
-/// Distances that a group's objects keep, in metres from centre to border or centre.
+/// Minimum clearances of a group's objects, in metres, from the object's centre to the border of a wall or region, or to the
+/// centre of another object.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 #[schemars(extend("examples" = [{ "walls": 1, "agent": 4, "groups": { "houses": 8 } }]))]
 pub struct KeepOut {
-    /// Least distance to the arena's walls and to regions that cannot be entered.
+    /// Minimum distance to the arena's walls and to regions that cannot be entered.
     #[schemars(extend("minimum" = 0, "maximum" = 300))]
     pub walls: Number,
-    /// Least distance to the agent's start.
+    /// Minimum distance to the agent's start.
     #[schemars(extend("minimum" = 0, "maximum" = 300))]
     pub agent: Number,
-    /// Least distance to the objects of other groups, placed before, by the group's name.
+    /// Minimum distances to the objects of earlier groups, by the group's name.
     #[serde(skip_serializing_if = "IndexMap::is_empty")]
     #[schemars(transform = distances)]
     pub groups: IndexMap<String, Number>,
@@ -79,7 +80,7 @@ impl Default for KeepOut {
     }
 }
 
-/// Where an object looks.
+/// The direction an object faces.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 #[schemars(extend("examples" = [
@@ -88,7 +89,7 @@ impl Default for KeepOut {
     { "group": "houses" },
 ]))]
 pub enum Facing {
-    /// Anywhere, each heading alike.
+    /// In a uniformly random direction.
     Random,
     /// Towards the agent's start.
     Agent,
@@ -96,7 +97,7 @@ pub enum Facing {
     Middle,
     /// Towards a point in metres.
     Point([Number; 2]),
-    /// Towards the nearest object of another group, placed before; where that has none, as the template says.
+    /// Towards the nearest object of an earlier group; if that group is empty, as set by the template.
     Group(#[schemars(length(min = 1, max = 100))] String),
 }
 

@@ -9,12 +9,12 @@ use crate::layout::POINTER;
 use crate::schema::document::DocumentSchema;
 use crate::{Layout, SpecError};
 
-/// The problems of JSON read as a layout, with pointers into it.
+/// The problems of JSON that should be a layout, with pointers into it.
 pub(super) fn problems(json: &Json) -> Vec<Problem> {
     static SCHEMA: LazyLock<DocumentSchema> = LazyLock::new(|| DocumentSchema::of::<Layout>("layout", "Layout"));
-    let refused = SCHEMA.problems(json).problems;
-    if !refused.is_empty() {
-        return refused;
+    let schema_problems = SCHEMA.problems(json).problems;
+    if !schema_problems.is_empty() {
+        return schema_problems;
     }
     serde_json::from_value::<Layout>(json.clone()).map_or_else(|_| Vec::new(), |layout| beyond_schema(&layout))
 }
@@ -52,8 +52,8 @@ impl Layout {
     /// The layout at fraction `t`, 0..=1, of the way to another.
     ///
     /// Two layouts of one kind that differ only in numbers are interpolated linearly, with integers rounded. Otherwise the
-    /// walls of the first are removed one by one up to the halfway point, and then those of the second are added, so that the
-    /// way stays open.
+    /// walls of the first are removed one by one up to the halfway point, and then the walls of the second are added, so that
+    /// every place stays reachable.
     ///
     /// # Example
     /// ```
@@ -65,11 +65,11 @@ impl Layout {
     /// ```
     #[must_use]
     pub fn toward(&self, other: &Self, t: f64) -> Self {
-        let [mine, theirs] = [self, other].map(|layout| serde_json::to_value(layout).expect("a layout serialises"));
-        let straight = between(&mine, &theirs, t).and_then(|json| serde_json::from_value::<Self>(json).ok());
-        // Two numbers that are valid at both ends can be too large together on the way.
-        if let Some(straight) = straight.filter(|layout| layout.problems().is_empty()) {
-            return straight;
+        let [own, theirs] = [self, other].map(|layout| serde_json::to_value(layout).expect("a layout serialises"));
+        let interpolated = between(&own, &theirs, t).and_then(|json| serde_json::from_value::<Self>(json).ok());
+        // Two numbers that are valid at both ends can be too large together in between.
+        if let Some(interpolated) = interpolated.filter(|layout| layout.problems().is_empty()) {
+            return interpolated;
         }
         let (near, share) = if t < 0.5 {
             (self, 1.0 - 2.0 * t)

@@ -49,10 +49,10 @@ use crate::version;
 use crate::world::{Object, WorldDraft};
 use scope::{Scope, Unsettled};
 
-/// A task: what its worlds have in common, and exactly what varies between them.
+/// A task: what its worlds have in common, and what varies between them.
 ///
-/// Loading checks everything that can be checked before a world is drawn: types, domains, references, distributions of every
-/// variant, and every chain of `extends`.
+/// Loading checks everything that can be checked before a world is sampled: types, domains, references, the distributions of
+/// every variant, and every chain of `extends`.
 ///
 /// # Example
 /// ```
@@ -81,7 +81,7 @@ pub struct TaskSpec {
     readers: OnceLock<BTreeMap<String, Readers>>,
 }
 
-/// A group of a checked task: its declaration, with count and object as templates.
+/// A group of a checked task: its declaration, with its count and object ready for sampling.
 #[derive(Debug)]
 pub struct PlacedGroup {
     /// The group as declared.
@@ -107,8 +107,8 @@ pub enum Count {
     Drawn(Source),
 }
 
-/// Maximum size in bytes of a document that is searched for further problems after the schema has refused it.
-const MOST_COPIED: usize = 1 << 17;
+/// Maximum size in bytes of a document that is searched for further problems after the schema has rejected it.
+const MAX_COPIED_BYTES: usize = 1 << 17;
 
 impl TaskSpec {
     /// Reads and checks a task spec. `name` is the document's name in messages, usually its path.
@@ -119,7 +119,7 @@ impl TaskSpec {
         Self::from_json_with(name, text, None)
     }
 
-    /// Like [`TaskSpec::from_json`]; if classes are given, also refuses objects with other classes or models.
+    /// Like [`TaskSpec::from_json`]; if classes are given, also rejects objects with other classes or models.
     ///
     /// # Errors
     /// As [`TaskSpec::from_json`].
@@ -127,11 +127,11 @@ impl TaskSpec {
         let mut document = Document::parse(name, text, MAX_VALUES)?;
         document.fail_on(Vec::from_iter(too_deep(&document.value, "", 0)))?;
         document.upgrade(&version::TASK)?;
-        let refused = TaskDocument::schema().problems(&document.value);
-        if !refused.problems.is_empty() {
+        let listed = TaskDocument::schema().problems(&document.value);
+        if !listed.problems.is_empty() {
             // The search for other problems needs a copy, which would take too much memory for a large document.
-            let Listed { mut problems, more } = refused;
-            if text.len() <= MOST_COPIED {
+            let Listed { mut problems, more } = listed;
+            if text.len() <= MAX_COPIED_BYTES {
                 problems = check::partial::problems(&document.value, problems, classes);
             }
             document.fail_on(Listed { problems, more })?;
@@ -144,9 +144,9 @@ impl TaskSpec {
         })
     }
 
-    /// All objects whose class or model is, or can be, unknown.
+    /// The problems of all objects that have, or can have, an unknown class or model.
     pub fn unknown_classes(&self, classes: &Classes) -> Vec<Problem> {
-        // Everything else has already been found valid.
+        // Everything else was already valid when the task was loaded.
         check::compile(self.document.clone(), Some(classes), check::Unsound::default())
             .err()
             .unwrap_or_default()
@@ -177,7 +177,7 @@ impl TaskSpec {
         self.document.element_weights
     }
 
-    /// The default comparison of variants: what the task declares, or parameters.
+    /// The default comparison of variants: declared by the task, otherwise by parameters.
     pub fn compare_by(&self) -> By {
         self.document.compare_by.unwrap_or(By::Parameters)
     }
@@ -187,7 +187,7 @@ impl TaskSpec {
         &self.world
     }
 
-    /// The templates of the objects outside groups, each with a place of its own.
+    /// The templates of the objects outside groups, each with its own position.
     pub fn fixtures(&self) -> &[Template<Object>] {
         &self.fixtures
     }
@@ -218,7 +218,7 @@ impl TaskSpec {
         }
     }
 
-    /// The names of the variants in a family, which a grid or a sweep declares, in order; `None` if there is no such family.
+    /// The names of the variants in a family (declared by a grid or a sweep), in order; `None` if there is no such family.
     pub fn family(&self, name: &str) -> Option<Vec<&str>> {
         let spec = self.document.variants.get(name)?;
         let is_family = !spec.grid.is_empty() || !spec.sweep.is_empty();
@@ -232,11 +232,11 @@ impl TaskSpec {
         names.filter(|name| self.family(name).is_some()).collect()
     }
 
-    /// The document as text, from which [`TaskSpec::from_json`] reads the same task.
+    /// The document as text; [`TaskSpec::from_json`] reads the same task from it.
     pub fn to_json(&self) -> String {
         let mut json = serde_json::to_value(&self.document).expect("a document that was read serialises");
         if let Some(map) = json.as_object_mut() {
-            // A task without a world has no such key: `null` would be refused.
+            // A task without a world has no such key, because `null` would be rejected.
             map.retain(|key, value| key != "world" || !value.is_null());
         }
         let parameters = json.get_mut("parameters").and_then(Json::as_object_mut);
@@ -257,7 +257,7 @@ impl TaskSpec {
     /// The variant with this name. [`DEFAULT_VARIANT`], with every parameter at its default, always exists.
     ///
     /// # Errors
-    /// [`SpecError::UnknownVariant`] with the known names; [`SpecError::Values`] if the defaults break a requirement.
+    /// [`SpecError::UnknownVariant`] with the known names; [`SpecError::Values`] if the defaults violate a requirement.
     pub fn variant(self: &Arc<Self>, name: &str) -> Result<Variant, SpecError> {
         if !self.variants.contains_key(name) && name != DEFAULT_VARIANT {
             let known: Vec<&str> = match self.family(name) {
@@ -272,7 +272,7 @@ impl TaskSpec {
         }
         let values = variant_spec::values_of(&self.document.parameters, &self.variants, name)
             .expect("loading the task checked every chain of extends");
-        // Declared variants were checked on loading, but not the defaults, which may never be needed.
+        // Loading checked the declared variants, but not the defaults, which may never be needed.
         let problems = if self.variants.contains_key(name) {
             Vec::new()
         } else {
@@ -302,9 +302,9 @@ impl TaskSpec {
         json
     }
 
-    /// Reasons why a variant with these values cannot be drawn: faulty distributions and broken requirements.
+    /// Reasons why a variant with these values cannot be sampled: invalid distributions and violated requirements.
     pub(crate) fn problems_of(&self, values: &IndexMap<String, Value>) -> Vec<Problem> {
-        if let Some((requirement, shown)) = variant::broken(&self.requirements, values) {
+        if let Some((requirement, shown)) = variant::violated_requirement(&self.requirements, values) {
             let expected = format!("what \"require\" states: {requirement}");
             let mut problems = self.faults_of(values);
             problems.push(Problem::new("spec/requirement", "/require", shown, expected));
@@ -313,8 +313,8 @@ impl TaskSpec {
         self.faults_of(values)
     }
 
-    /// Reasons, other than requirements, why a variant with these values cannot be drawn: faulty distributions and
-    /// margins out of range.
+    /// Reasons, other than requirements, why a variant with these values cannot be sampled: invalid distributions and margins
+    /// out of range.
     pub(crate) fn faults_of(&self, values: &IndexMap<String, Value>) -> Vec<Problem> {
         let mut problems = Vec::new();
         let scope = Scope::new(&self.document.parameters, values);

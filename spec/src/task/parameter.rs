@@ -17,15 +17,15 @@ use crate::error::{Problem, cut, first_of};
 use crate::schema::document::DocumentSchema;
 use crate::value::{ParameterType, Value};
 
-/// Who settles a parameter's value, and when.
+/// What determines a parameter's value, and when.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Role {
     /// The task: one value in every variant.
     Fixed,
-    /// The variant: one value in every world of it.
+    /// The variant: one value in every world of the variant.
     Variant,
-    /// Chance: drawn anew for every world.
+    /// Chance: drawn separately for every world.
     Randomized,
 }
 
@@ -40,50 +40,52 @@ pub enum Role {
     { "role": "randomized", "type": "heading", "unit": "deg", "affects": ["S"], "distribution": { "uniform": { "low": 0, "high": 360 } } },
 ]))]
 pub struct Parameter {
-    /// Who settles its value.
+    /// What determines its value.
     pub role: Role,
     /// Its type.
     #[serde(rename = "type")]
     pub kind: ParameterType,
-    /// Which elements of the decision process it touches: state `S`, action `A`, transition `T`, reward `R`, observation
-    /// `O`; the law of the initial state alone `p`, the emission alone `phi`.
+    /// The elements of the decision process that it affects: state `S`, action `A`, transition `T`, reward `R`, observation
+    /// `O`; `p` for the distribution of the initial state alone, `phi` for the emission alone.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schemars(length(max = 7))]
     pub affects: Vec<Element>,
     /// Its unit, such as `m` or `deg`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit: Option<String>,
-    /// What it is, in a sentence.
+    /// The parameter in a sentence.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
     /// Fixed only: its value.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "present")]
     #[schemars(schema_with = "any_value")]
     pub value: Option<Value>,
-    /// Variant only: the values it may have, in a list; layouts, distributions and JSON also by names, which then stand for them.
+    /// Variant only: a list of the values it may have; for layouts, distributions and JSON also an object with named values,
+    /// which are then referred to by name.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(schema_with = "choices::schema")]
     pub choices: Option<Choices>,
-    /// Variant only: the least and greatest number it may have.
+    /// Variant only: the smallest and largest number it may have.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub range: Option<[f64; 2]>,
     /// Variant only: its value in variants that do not set it.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "given")]
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "present")]
     #[schemars(schema_with = "any_value")]
     pub default: Option<Value>,
-    /// Variant only, for values that do not interpolate: at which fraction (0..1) of a drift it switches; a half if absent.
+    /// Variant only, for values that cannot be interpolated: the fraction (0..1) of a drift at which it switches; one half if
+    /// absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0, max = 1.0))]
     pub switch_at: Option<f64>,
-    /// Randomized only: how it is drawn; a distribution, or a parameter that is one.
+    /// Randomized only: the distribution it is drawn from, or a parameter of type distribution.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub distribution: Option<Source>,
-    /// Variant only: the condition under which anything reads it, as `"trigger == 'AgentInRange'"`, of fixed and variant
-    /// parameters. In variants that do not meet it the parameter counts as if it stood at its default.
+    /// Variant only: the condition under which anything reads it, over fixed and variant parameters, such as `"trigger ==
+    /// 'AgentInRange'"`. In variants that do not meet it, the parameter counts as if it had its default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(length(min = 1, max = 500))]
     pub read_if: Option<String>,
-    /// Not for fixed ones: by which measure two variants are compared in it, and how much that counts.
+    /// Variant and randomized only: the measure by which two variants are compared in this parameter, and its weight.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub compare: Option<Compare>,
 }
@@ -98,7 +100,7 @@ pub enum Domain {
 }
 
 /// Reads a value that may be `null`, which serde would otherwise treat as absent.
-fn given<'de, D: Deserializer<'de>>(value: D) -> Result<Option<Value>, D::Error> {
+fn present<'de, D: Deserializer<'de>>(value: D) -> Result<Option<Value>, D::Error> {
     Value::deserialize(value).map(Some)
 }
 
@@ -176,7 +178,7 @@ fn require_what_the_role_needs(schema: &mut schemars::Schema) {
     schema.insert("allOf".to_owned(), json!(rules));
 }
 
-/// The only place where two values of the same structure differ; `None` if they differ as a whole, or in more than one place.
+/// The only part in which two values of the same structure differ; `None` if they differ as a whole, or in more than one part.
 fn only_difference(found: &serde_json::Value, choice: &serde_json::Value, pointer: &str) -> Option<Problem> {
     use serde_json::Value as Json;
     let inner: Vec<(String, Option<&Json>, Option<&Json>)> = match (found, choice) {
@@ -214,7 +216,7 @@ fn only_difference(found: &serde_json::Value, choice: &serde_json::Value, pointe
 impl Parameter {
     /// Whether it affects this element, or the finer one within it, and no other.
     pub fn affects_only(&self, element: Element) -> bool {
-        !self.affects.is_empty() && self.affects.iter().all(|touched| element.covers(*touched))
+        !self.affects.is_empty() && self.affects.iter().all(|affected| element.covers(*affected))
     }
 
     /// The possible values of a variant parameter.
@@ -240,10 +242,10 @@ impl Parameter {
     /// The name of a choice, if choices have names.
     pub fn name_of(&self, value: &Value) -> Option<&str> {
         let choices = self.choices.as_ref().filter(|choices| !choices.names().is_empty())?;
-        let place = choices
+        let index = choices
             .iter()
             .position(|choice| choice.cast(self.kind).as_ref() == Some(value))?;
-        choices.names().get(place).map(String::as_str)
+        choices.names().get(index).map(String::as_str)
     }
 
     /// A value for messages: by name, if choices have names.
@@ -251,7 +253,7 @@ impl Parameter {
         self.name_of(value).map_or_else(|| value.to_string(), str::to_owned)
     }
 
-    /// The value with the parameter's type if it is in the domain; else what was expected.
+    /// The value with the parameter's type if it is in the domain; otherwise a description of what was expected.
     pub(crate) fn accept(&self, value: &Value) -> Result<Value, String> {
         let typed = self.accept_typed(value)?;
         match self.domain() {
@@ -284,12 +286,12 @@ impl Parameter {
             return of_type.into_iter().map(within).collect();
         }
         let choices = self.choices.iter().flat_map(Choices::entries);
-        let alike = choices.into_iter().find_map(|(key, choice)| {
+        let only_differs = choices.into_iter().find_map(|(key, choice)| {
             let difference = only_difference(&json, &choice.to_json(), "")?;
             Some(within(difference).advise(format!("choice {key} is the same but for this")))
         });
-        if let Some(alike) = alike {
-            return vec![alike];
+        if let Some(only_differs) = only_differs {
+            return vec![only_differs];
         }
         let word = value.as_text().unwrap_or_default();
         let choices: Vec<String> = self.choices.iter().flatten().map(ToString::to_string).collect();
@@ -330,7 +332,7 @@ impl Parameter {
         if let Value::Layout(layout) = &typed {
             layout.check().map_err(|error| format!("a sound layout; {error}"))?;
         }
-        if let Some(expected) = self.vector_length().filter(|_| !self.is_as_long(&typed)) {
+        if let Some(expected) = self.vector_length().filter(|_| !self.has_same_length(&typed)) {
             return Err(format!("a list of {expected} numbers"));
         }
         let Some([low, high]) = self.range else {
@@ -356,13 +358,13 @@ impl Parameter {
         }
     }
 
-    /// The length of a vector: that of its value, default or first choice.
+    /// The length of a vector, taken from its value, default or first choice.
     pub fn vector_length(&self) -> Option<usize> {
         self.declared().next()?.as_vector().map(<[f64]>::len)
     }
 
     /// Whether a value has the length of this parameter's vectors; true for other types.
-    fn is_as_long(&self, value: &Value) -> bool {
+    fn has_same_length(&self, value: &Value) -> bool {
         self.kind != ParameterType::Vector || value.as_vector().map(<[f64]>::len) == self.vector_length()
     }
 
@@ -390,7 +392,7 @@ impl Parameter {
         })
     }
 
-    /// Checks of a single parameter beyond the schema.
+    /// Checks a single parameter beyond the schema.
     pub(crate) fn problems(&self, name: &str) -> Vec<Problem> {
         let pointer = format!("/parameters/{}", escape(name));
         let at = |key: &str| format!("{pointer}/{key}");
@@ -408,7 +410,7 @@ impl Parameter {
         }
         for (key, value) in self.entries().filter(|(key, _)| key != "default") {
             let typed = value.cast(self.kind);
-            if typed.is_none() || !self.is_as_long(value) {
+            if typed.is_none() || !self.has_same_length(value) {
                 let expected = format!("a value of type {kind}");
                 problems.push(Problem::new("spec/type", at(&key), value.to_string(), expected));
             }

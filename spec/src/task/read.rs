@@ -1,5 +1,5 @@
-//! Finds the readers of a parameter: the worlds of a task, or only the draws of other parameters; and whether anything reads it
-//! in a variant, by its `read_if`. A parameter that nothing reads does not count in distances.
+//! Finds the readers of a parameter: the worlds of a task, or only the draws of other parameters. Also decides, by `read_if`,
+//! whether anything reads it in a variant. A parameter that nothing reads does not count in distances.
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
@@ -24,7 +24,7 @@ pub struct Readers {
 }
 
 impl Readers {
-    /// Whether only distributions read it: those of randomized parameters, or the values of distribution parameters.
+    /// Whether only distributions read it: of randomized parameters, or values of distribution parameters.
     pub fn are_draws_alone(&self) -> bool {
         !self.worlds && !self.draws.is_empty()
     }
@@ -46,12 +46,12 @@ impl TaskSpec {
     /// # Ok::<(), driftworld_spec::SpecError>(())
     /// ```
     pub fn readers(&self, parameter: &str) -> &Readers {
-        static NOBODY: Readers = Readers {
+        static NO_READERS: Readers = Readers {
             worlds: false,
             draws: Vec::new(),
         };
         let readers = self.readers.get_or_init(|| self.find_readers());
-        readers.get(parameter).unwrap_or(&NOBODY)
+        readers.get(parameter).unwrap_or(&NO_READERS)
     }
 
     fn find_readers(&self) -> BTreeMap<String, Readers> {
@@ -109,8 +109,8 @@ impl Variant {
         condition.is_none_or(|condition| condition.holds(value_of) != Some(false))
     }
 
-    /// The variant reduced to what matters: parameters that nothing reads in it are at their defaults, unless a distribution
-    /// could then not be drawn from. It may break a requirement.
+    /// The variant with all parameters that nothing reads set to their defaults, unless this would make a distribution invalid.
+    /// It may violate a requirement.
     #[must_use]
     pub fn as_read(&self) -> Self {
         let mut read = self.values().clone();
@@ -131,8 +131,8 @@ impl Variant {
         }
     }
 
-    /// The value of a fixed or variant parameter as far as it matters: the default if nothing reads it in this variant. `None`
-    /// for a randomized or unknown parameter.
+    /// The effective value of a fixed or variant parameter: the default if nothing reads it in this variant. `None` for a
+    /// randomized or unknown parameter.
     pub fn value_as_read(&self, parameter: &str) -> Option<Cow<'_, Value>> {
         let value = self.value(parameter)?;
         if self.reads(parameter) {
@@ -186,11 +186,11 @@ mod tests {
     }
 
     #[test]
-    fn read_if_may_name_only_settled_parameters() {
-        let said = |read_if: &str| {
+    fn read_if_may_not_name_randomized_parameters() {
+        let error_for = |read_if: &str| {
             TaskSpec::from_json("t", &text(read_if)).map_or_else(|error| error.to_string(), |_| String::new())
         };
-        assert_eq!(said("reach > 0 or trigger == 'near'"), "");
+        assert_eq!(error_for("reach > 0 or trigger == 'near'"), "");
         for (wrong, expected) in [
             ("drawn > 1", "a fixed or variant parameter"),
             ("triger == 'near'", "trigger"),
@@ -198,7 +198,7 @@ mod tests {
             ("reach + 1", "found a number in \"reach + 1\", expected a condition"),
             ("trigger == 'neer'", "did you mean 'near'?"),
         ] {
-            assert!(said(wrong).contains(expected), "{wrong}: {}", said(wrong));
+            assert!(error_for(wrong).contains(expected), "{wrong}: {}", error_for(wrong));
         }
     }
 }

@@ -1,4 +1,4 @@
-//! [`Scope`]: known values of a task's parameters, with which sources and look-ups are resolved.
+//! [`Scope`]: known values of a task's parameters, used to resolve sources and look-ups.
 
 use indexmap::IndexMap;
 
@@ -10,9 +10,9 @@ use crate::error::first_of;
 use crate::value::{ParameterType, Value};
 
 /// Maximum number of combinations of the draws that a look-up reads.
-const MOST_WAYS: usize = 4096;
+const MAX_COMBINATIONS: usize = 4096;
 
-/// Known values of a task's parameters: those of a variant, and those of drawn parameters as far as known.
+/// Known values of a task's parameters: a variant's values, and the randomized parameters drawn so far.
 #[derive(Clone, Copy)]
 pub(crate) struct Scope<'a> {
     pub(crate) parameters: &'a IndexMap<String, Parameter>,
@@ -23,11 +23,11 @@ pub(crate) struct Scope<'a> {
 /// Why a source cannot be resolved.
 #[derive(Debug)]
 pub(crate) enum Unsettled {
-    /// A look-up reads this randomized parameter, whose value is not known.
+    /// A look-up reads this randomized parameter, and its value is not known.
     Drawn(String),
     /// A look-up has no case for a value: what was found and expected.
     NoCase(String, String),
-    /// The draws that look-ups read cannot be enumerated, or a reference names no number.
+    /// The draws read by look-ups cannot be enumerated, or a reference names no number.
     Unknown,
 }
 
@@ -105,25 +105,25 @@ impl<'a> Scope<'a> {
     /// probabilities.
     pub(crate) fn outcomes(&self, source: &Source) -> Result<Vec<(Distribution, f64)>, Unsettled> {
         let mut outcomes = Outcomes::default();
-        self.spread(source, 1.0, &mut outcomes)?;
+        self.add_outcomes(source, 1.0, &mut outcomes)?;
         Ok(outcomes.found)
     }
 
-    fn spread(&self, source: &Source, weight: f64, outcomes: &mut Outcomes) -> Result<(), Unsettled> {
+    fn add_outcomes(&self, source: &Source, weight: f64, outcomes: &mut Outcomes) -> Result<(), Unsettled> {
         let distribution_of = |name: &str| {
             let parameter = self.parameters.get(name).ok_or(Unsettled::Unknown)?;
             Ok((parameter, parameter.distribution.as_ref().ok_or(Unsettled::Unknown)?))
         };
         let mut unsettled = match self.resolve(source) {
             Ok(Resolved::Randomized(reference)) => {
-                return self.spread(distribution_of(&reference.param)?.1, weight, outcomes);
+                return self.add_outcomes(distribution_of(&reference.param)?.1, weight, outcomes);
             }
             Ok(Resolved::Value(value)) => return outcomes.add(Distribution::Constant { value }, weight),
             Ok(Resolved::Draw(distribution)) => return outcomes.add(distribution, weight),
             Err(Unsettled::Drawn(name)) => name,
             Err(other) => return Err(other),
         };
-        // The parameter may itself have a look-up: resolves the earliest draw first.
+        // The parameter may itself have a look-up, so the earliest draw is resolved first.
         for _ in 0..self.parameters.len() {
             let (parameter, own) = distribution_of(&unsettled)?;
             let atoms = match self.resolve(own) {
@@ -140,7 +140,7 @@ impl<'a> Scope<'a> {
                 let mut drawn = self.drawn.to_vec();
                 drawn.push((&unsettled, parameter.typed(&value).ok_or(Unsettled::Unknown)?));
                 let deeper = Scope { drawn: &drawn, ..*self };
-                deeper.spread(source, weight * probability, outcomes)?;
+                deeper.add_outcomes(source, weight * probability, outcomes)?;
             }
             return Ok(());
         }
@@ -148,20 +148,20 @@ impl<'a> Scope<'a> {
     }
 }
 
-/// The distributions found, without duplicates, with their probabilities, and the number of combinations.
+/// The distributions found so far, without duplicates, with their probabilities, and the number of combinations.
 #[derive(Default)]
 struct Outcomes {
     found: Vec<(Distribution, f64)>,
-    ways: usize,
+    num_combinations: usize,
 }
 
 impl Outcomes {
     fn add(&mut self, distribution: Distribution, weight: f64) -> Result<(), Unsettled> {
-        self.ways += 1;
-        weigh(&mut self.found, distribution, weight);
-        if self.ways > MOST_WAYS {
-            let expected = format!("at most {MOST_WAYS} ways");
-            let found = format!("draws that fall out in more than {MOST_WAYS} ways");
+        self.num_combinations += 1;
+        add_weight(&mut self.found, distribution, weight);
+        if self.num_combinations > MAX_COMBINATIONS {
+            let expected = format!("at most {MAX_COMBINATIONS} num_combinations");
+            let found = format!("draws that fall out in more than {MAX_COMBINATIONS} num_combinations");
             return Err(Unsettled::NoCase(found, expected));
         }
         Ok(())
@@ -169,15 +169,15 @@ impl Outcomes {
 }
 
 /// Adds the weight to an existing entry, or adds an entry.
-fn weigh<T: PartialEq>(found: &mut Vec<(T, f64)>, new: T, weight: f64) {
+fn add_weight<T: PartialEq>(found: &mut Vec<(T, f64)>, new: T, weight: f64) {
     match found.iter_mut().find(|(known, _)| *known == new) {
         Some((_, known)) => *known += weight,
         None => found.push((new, weight)),
     }
 }
 
-/// One distribution for all outcomes: a list if all are lists, else a mixture.
-pub(crate) fn mixed(mut outcomes: Vec<(Distribution, f64)>) -> Distribution {
+/// One distribution for all outcomes: a list if all are lists, otherwise a mixture.
+pub(crate) fn merged(mut outcomes: Vec<(Distribution, f64)>) -> Distribution {
     if outcomes.len() == 1 {
         return outcomes.remove(0).0;
     }
@@ -195,7 +195,7 @@ pub(crate) fn mixed(mut outcomes: Vec<(Distribution, f64)>) -> Distribution {
         .into_iter()
         .flat_map(|(atoms, weight)| atoms.into_iter().map(move |(value, own)| (value, own * weight)))
     {
-        weigh(&mut all, value, weight);
+        add_weight(&mut all, value, weight);
     }
     let (values, weights) = all.into_iter().unzip();
     let weights = Some(weights);

@@ -1,4 +1,4 @@
-//! Templates: a world or an object with holes that parameters and distributions fill.
+//! Templates: worlds or objects with holes that parameters and distributions fill.
 
 use std::borrow::Cow;
 use std::sync::LazyLock;
@@ -15,17 +15,17 @@ use crate::schema::part;
 use crate::value::{ParameterType, Value};
 use crate::world::{FieldPlace, Object, Place, Setter, World, WorldDraft, places_of};
 
-/// Where a value comes from: a parameter, a draw, or one of several by the value of a parameter.
+/// The source of a value: a parameter, a draw, or a look-up by the value of a parameter.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged, expecting = "a distribution, or {\"param\": NAME}")]
 pub enum Source {
-    /// The value of a parameter of any role, or a draw from one of type distribution.
+    /// The value of a parameter of any role, or a draw from a parameter of type distribution.
     Param(ParamRef),
-    /// What the value of a parameter says, of any role.
+    /// A source selected by the value of a parameter of any role.
     Case(Box<Case<Source>>),
-    /// A draw of its own.
+    /// A separate draw.
     Distribution(Box<Distribution<Number>>),
-    /// A value that is written out, as a case of a look-up.
+    /// A literal value, as a case of a look-up.
     #[schemars(skip)]
     Value(Value),
 }
@@ -36,8 +36,7 @@ impl JsonSchema for Case<Source> {
     }
 
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        let description =
-            "What stands here by the value of a parameter: cases are values, parameters, distributions or look-ups.";
+        let description = "Selects what is used here by the value of a parameter: cases are values, parameters, distributions or look-ups.";
         case::schema(generator, description, &Schema::from(true))
     }
 }
@@ -58,7 +57,7 @@ impl Source {
         serde_json::from_value(json.clone()).ok().map(Self::Distribution)
     }
 
-    /// All possible results of look-ups, with their places inside: itself, or each case.
+    /// All possible results of look-ups, with pointers into the source: the source itself, or each case.
     pub(crate) fn leaves(&self) -> Vec<(String, &Self)> {
         let Self::Case(case) = self else {
             return vec![(String::new(), self)];
@@ -70,7 +69,7 @@ impl Source {
         inside.collect()
     }
 
-    /// Its look-ups, with their places inside.
+    /// Its look-ups, with pointers into the source.
     pub(crate) fn cases(&self) -> Vec<(String, &Case<Self>)> {
         let Self::Case(own) = self else { return Vec::new() };
         let inside = own.entries().flat_map(|(key, case)| {
@@ -97,18 +96,18 @@ impl Source {
     }
 }
 
-/// A place to be filled, with its source.
+/// A hole in a template: a value to be filled in, and its source.
 #[derive(Clone, Debug)]
 pub struct Hole<T> {
     /// JSON pointer from the template.
     pub pointer: String,
     /// The source of its values.
     pub source: Source,
-    /// The type of value at this place.
+    /// The type of value expected here.
     pub kind: ParameterType,
     /// The numbers allowed there, both ends included.
     pub range: [f64; 2],
-    /// The schema of the place, without its definitions.
+    /// The schema of the hole, without its definitions.
     schema: Option<&'static Json>,
     /// The path to it in a `T`.
     steps: Vec<usize>,
@@ -116,16 +115,16 @@ pub struct Hole<T> {
 }
 
 impl<T> Hole<T> {
-    /// A value in the form of the place: counts are integers.
-    pub(crate) fn written(&self, value: &Value) -> Json {
-        let counts = self.schema.is_some_and(|schema| schema["items"]["type"] == "integer");
-        match value.as_vector().filter(|_| counts) {
+    /// A value as JSON in the form that the hole expects: counts are integers.
+    pub(crate) fn to_json(&self, value: &Value) -> Json {
+        let needs_integers = self.schema.is_some_and(|schema| schema["items"]["type"] == "integer");
+        match value.as_vector().filter(|_| needs_integers) {
             Some(numbers) => numbers.iter().map(|number| Json::from(number.round() as i64)).collect(),
             None => value.to_json(),
         }
     }
 
-    /// Returns a function that checks values by the schema of the place; pointers are within the value.
+    /// Returns a function that checks values against the schema of the hole; pointers are relative to the value.
     pub(crate) fn checker(&self) -> impl Fn(&Value) -> Vec<Problem> + use<T> {
         let schema = self.schema.map(|schema| {
             let mut own = schema.clone();
@@ -208,7 +207,7 @@ pub(crate) fn hole<T: Place>((pointer, source): &Opening, schema: &'static Json)
     })
 }
 
-/// The least and greatest number that the schema of a part of a world allows at a pointer into it.
+/// The smallest and largest number that the schema of a part of a world allows at a pointer into it.
 fn range_at(part: &Json, pointer: &str) -> [f64; 2] {
     let Some(mut leaf) = part::at(World::schema().json(), part, pointer) else {
         return [f64::MIN, f64::MAX];
@@ -220,8 +219,8 @@ fn range_at(part: &Json, pointer: &str) -> [f64; 2] {
     [end("minimum", f64::MIN), end("maximum", f64::MAX)]
 }
 
-/// The schemas of the two kinds of template, derived from those of the concrete documents: each open place also accepts a
-/// parameter or a distribution.
+/// The schemas of the two kinds of template, derived from the schemas of the concrete documents: each place that can vary also
+/// accepts a parameter or a distribution.
 struct TemplateSchemas {
     world: Json,
     object: Json,
@@ -240,7 +239,7 @@ static SCHEMAS: LazyLock<TemplateSchemas> = LazyLock::new(|| {
     world["additionalProperties"] = json!(false);
     world["properties"]["objects"]["items"] = object.clone();
     world["description"] =
-        json!("The world, but for its groups. Any leaf may be a value, a parameter, or a distribution.");
+        json!("The world, except for its groups. Any leaf may be a value, a parameter, or a distribution.");
     if let Some(properties) = world["properties"].as_object_mut() {
         for key in ["$schema", "version", "seed", "progress"] {
             properties.shift_remove(key);
@@ -266,7 +265,7 @@ fn inline(schema: &Json, node: &Json) -> Json {
     if let (true, Some(description)) = (has_parts, node.get("description")) {
         copy["description"] = description.clone();
     }
-    // An example of the whole does not help in a template, and would be repeated at every place.
+    // An example of the whole does not help in a template, and would be repeated everywhere.
     if let Some(map) = copy.as_object_mut() {
         map.shift_remove("examples");
     }
@@ -294,7 +293,7 @@ fn inline(schema: &Json, node: &Json) -> Json {
     copy
 }
 
-/// Lets each open place also accept a parameter or a distribution.
+/// Lets each place that can vary also accept a parameter or a distribution.
 fn open(schema: &mut Json, places: &[FieldPlace]) {
     let open = places.iter().filter(|place| place.kind.is_some());
     // Inner places come after outer ones, so in reverse order they are opened first.
@@ -362,7 +361,7 @@ pub(crate) fn object_schema(generator: &mut SchemaGenerator) -> Schema {
 pub(crate) fn count_schema(generator: &mut SchemaGenerator) -> Schema {
     define(generator);
     Schema::try_from(json!({
-        "description": "How many objects: a whole number, a parameter, or a distribution.",
+        "description": "Number of objects: a whole number, a parameter, or a distribution.",
         "anyOf": [
             { "type": "integer", "minimum": 0, "maximum": crate::MAX_OBJECTS },
             { "$ref": "#/$defs/ParamRef" },

@@ -27,7 +27,7 @@ pub struct Variant {
     values: Arc<IndexMap<String, Value>>,
 }
 
-/// What a source resolves to in a variant.
+/// The result of resolving a source in a variant.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Resolved {
     /// The same value in every world.
@@ -110,17 +110,18 @@ impl Variant {
         }
     }
 
-    /// Resolves a source; if its look-ups read drawn values, to a draw that mixes all cases.
+    /// Resolves a source. If its look-ups read randomized parameters, the result is a draw that mixes all cases.
     pub fn resolve(&self, source: &Source) -> Resolved {
         self.resolve_with(source, &[]).unwrap_or_else(|| {
             let outcomes = self.scope().outcomes(source);
-            Resolved::Draw(scope::mixed(
-                outcomes.expect("loading the task went through the cases of every look-up"),
+            Resolved::Draw(scope::merged(
+                outcomes.expect("loading the task checked the cases of every look-up"),
             ))
         })
     }
 
-    /// Resolves a source in a world with these values of randomized parameters; `None` if its look-ups read other randomized parameters.
+    /// Resolves a source in a world with these values of randomized parameters; `None` if its look-ups read other randomized
+    /// parameters.
     pub fn resolve_with(&self, source: &Source, drawn: &[(&str, Value)]) -> Option<Resolved> {
         let scope = Scope { drawn, ..self.scope() };
         match scope.resolve(source) {
@@ -152,17 +153,17 @@ impl Variant {
     /// like the colours of a drift.
     ///
     /// # Errors
-    /// [`SpecError::Values`] with every parameter that cannot have its value, a distribution that cannot be drawn from, or a
-    /// broken requirement.
+    /// [`SpecError::Values`] with every parameter that cannot have its value, an invalid distribution, or a violated
+    /// requirement.
     pub fn with(&self, name: &str, changes: impl IntoIterator<Item = (String, Value)>) -> Result<Self, SpecError> {
         self.changed(name, changes, TaskSpec::problems_of)
     }
 
     /// Like [`Variant::with`], but without checking the task's requirements, so that distances to forbidden variants can be
-    /// measured. Do not draw worlds from it.
+    /// measured. Do not sample worlds from it.
     ///
     /// # Errors
-    /// [`SpecError::Values`] with every parameter that cannot have its value, or a distribution that cannot be drawn from.
+    /// [`SpecError::Values`] with every parameter that cannot have its value, or an invalid distribution.
     pub fn beyond_requirements(
         &self,
         name: &str,
@@ -218,14 +219,14 @@ fn accepted(parameters: &IndexMap<String, Parameter>, name: &str, value: &Value)
         .map_err(|expected| Problem::new("spec/value", format!("/{name}"), value.to_string(), expected))
 }
 
-/// The first broken requirement on settled parameters only, with the values that break it.
-pub(crate) fn broken<'a>(
+/// The first violated requirement on the given parameters, with the values that violate it.
+pub(crate) fn violated_requirement<'a>(
     requirements: &'a [Requirement],
     values: &IndexMap<String, Value>,
 ) -> Option<(&'a Requirement, String)> {
     let value_of = |name: &str| values.get(name).cloned();
-    let broken = requirements
+    let violated = requirements
         .iter()
         .find(|requirement| requirement.holds(value_of) == Some(false))?;
-    Some((broken, broken.describe(value_of)))
+    Some((violated, violated.describe(value_of)))
 }

@@ -1,4 +1,4 @@
-//! [`VariantSpec`]: a variant as declared in a document. Applies its values over those of the variants that it extends,
+//! [`VariantSpec`]: a variant as declared in a document. Applies its values on top of those of the variants that it extends,
 //! and checks them.
 
 use driftworld_text::IDENTIFIER_PATTERN;
@@ -23,23 +23,23 @@ use crate::value::Value;
     { "sweep": { "light": { "from": 0.2, "to": 4, "steps": 5 } } },
 ]))]
 pub struct VariantSpec {
-    /// The variant whose values it starts from; the defaults if absent.
+    /// The variant that it extends, overriding its values; the defaults if absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(length(min = 1, max = 200))]
     pub extends: Option<String>,
-    /// What it is, in a sentence.
+    /// The variant in a sentence.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
-    /// Of a family: what its members are called, with a parameter in braces for each value, as `{target_color}-{light}`.
-    /// Without it they are named after the family and its values, as `look-red-0.5`.
+    /// For a family: the name pattern of its members, with a parameter in braces for each value, such as
+    /// `{target_color}-{light}`. If absent, members are named after the family and its values, such as `look-red-0.5`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(length(min = 1, max = 200))]
     pub name: Option<String>,
-    /// Makes it a family: for each parameter the values that it takes; one variant for every combination, called as `name` says.
+    /// Makes it a family: lists values for each parameter; one variant for every combination, named by `name`.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     #[schemars(schema_with = "grid_schema")]
     pub grid: IndexMap<String, Vec<Value>>,
-    /// Makes it a family: for each parameter evenly spaced values; combined with those of the grid and of each other.
+    /// Makes it a family: evenly spaced values for each parameter, combined with the grid and with each other.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     #[schemars(length(min = 1, max = 20))]
     pub sweep: IndexMap<String, Sweep>,
@@ -49,7 +49,7 @@ pub struct VariantSpec {
     pub values: IndexMap<String, Value>,
 }
 
-/// The keys of a variant besides parameters' names.
+/// The keys of a variant that are not names of parameters.
 pub(crate) const RESERVED: [&str; 5] = ["extends", "description", "name", "grid", "sweep"];
 
 fn values_of_parameters(schema: &mut schemars::Schema) {
@@ -79,9 +79,9 @@ fn grid_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
 /// Maximum length of a chain of variants that extend each other.
 pub(crate) const MAX_EXTENDED: usize = 100;
 
-/// The values of a variant: its own over those of the variants that it extends, over the defaults.
+/// The values of a variant: its own, then those of the variants that it extends, then the defaults.
 ///
-/// `Err` if the chain of `extends` is broken, cyclic or too long; [`problems`] finds invalid values.
+/// Fails if the chain of `extends` is broken, cyclic or too long; [`problems`] finds invalid values.
 pub(crate) fn values_of(
     parameters: &IndexMap<String, Parameter>,
     variants: &Variants,

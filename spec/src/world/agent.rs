@@ -17,7 +17,7 @@ fields! {
         { "action_model": "byvelocity", "coordinates": [0, 0], "heading": 90, "observation_size": 84 },
     ]))]
     pub struct AgentParams {
-        /// What the numbers of an action mean.
+        /// The meaning of the numbers of an action.
         pub action_model: ActionModel = ActionModel::ByVelocity => Field::original(Leaves(ModelOfActions)),
         /// Height of the camera above the ground in metres.
         #[schemars(range(min = 0.1, max = 10.0))]
@@ -25,27 +25,27 @@ fields! {
         /// Width (diameter) of the agent's collider in metres.
         #[schemars(range(min = 0.05, max = 10.0))]
         pub agent_width: f64 = 1.0 => Field::original(Measured(&[Width])).unit("m"),
-        /// Largest speed in metres per second.
+        /// Maximum speed in metres per second.
         #[schemars(range(min = 0.0, max = 100.0))]
         pub max_linear_speed: f64 = 10.0 => Field::original(Measured(&[LargestSpeed])).unit("m/s"),
-        /// Largest turn rate in degrees per second.
+        /// Maximum turn rate in degrees per second.
         #[schemars(range(min = 0.0, max = 3600.0))]
         pub max_angular_speed: f64 = 90.0 => Field::original(Measured(&[LargestTurnRate])).unit("degrees/s"),
-        /// Height of the observations in pixels, and their width unless `observation_width` says otherwise.
+        /// Height of the observations in pixels, and also their width unless `observation_width` is set.
         #[schemars(range(min = 1, max = 4096))]
         pub observation_size: u32 = 84 => Field::original(Measured(&[CameraAndWeather])).unit("pixels"),
-        /// Width of the observations in pixels; as high as wide if absent.
+        /// Width of the observations in pixels; the same as their height if absent.
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = 1, max = 4096))]
         pub observation_width: Option<u32> = None => Field::ours(Measured(&[CameraAndWeather])).unit("pixels"),
-        /// Points per pixel along each side that colours are the mean of: 1 is fast, 2 and more are smooth.
+        /// Sample points per pixel along each side, averaged to its colour: 1 is fast, 2 and more are smooth.
         #[serde(skip_serializing_if = "is_one")]
         #[schemars(range(min = 1, max = 4))]
         pub supersampling: u32 = 1 => Field::ours(Leaves(CameraAndWeather)),
         /// Start position in metres.
         #[schemars(inner(range(min = -300.0, max = 300.0)))]
         pub coordinates: [f64; 2] = [0.0, 0.0] => Field::original(Measured(&[Start])).unit("m"),
-        /// Start heading in degrees: 0 looks along +y, growing clockwise.
+        /// Start heading in degrees clockwise from +y.
         #[schemars(range(min = 0.0, max = 360.0))]
         pub heading: f64 = 0.0 => Field::original(Measured(&[Heading])).heading(),
         /// Simulated seconds per time step.
@@ -58,58 +58,58 @@ fields! {
         /// Vertical field of view in degrees.
         #[schemars(range(min = 1.0, max = 170.0))]
         pub field_of_view: f64 = DEFAULT_FIELD_OF_VIEW => Field::ours(Leaves(CameraAndWeather)).unit("degrees"),
-        /// Which images an observation holds. Segmentation by reward category shows what is worth what, so it is none of them
-        /// unless it is asked for.
+        /// The images in an observation. Segmentation by reward category reveals the value of each object, so it is not
+        /// included unless requested.
         #[schemars(length(max = 5))]
         pub modalities: Vec<Modality> = vec![Modality::Rgb, Modality::Depth]
             => Field::ours(Leaves(CameraAndWeather)),
-        /// What the state vector holds, in this order.
+        /// The contents of the state vector, in this order.
         #[serde(skip_serializing_if = "is_classic")]
         #[schemars(length(max = 20))]
         pub state_features: Vec<StateFeature> = StateFeature::CLASSIC.to_vec() => Field::ours(Leaves(CameraAndWeather)),
-        /// Numbers that tell the agent what to do, after the features in the state vector: say 1 for the colour that is wanted,
-        /// 0 for the others.
+        /// Numbers that tell the agent what to do, appended to the features in the state vector: for example, 1 for the wanted
+        /// colour, 0 for the others.
         #[serde(skip_serializing_if = "is_default")]
         #[schemars(length(max = 64), inner(range(min = -1e6, max = 1e6)))]
         pub instruction: Vec<f64> = Vec::new() => Field::ours(Leaves(CameraAndWeather)),
-        /// How actions are given.
+        /// The form in which actions are given.
         pub actions: ActionSpace = ActionSpace::Continuous => Field::ours(Leaves(SpaceOfActions)),
-        /// Whether the agent can interact: without, the third number of an action by velocity is ignored, and the default table of
-        /// actions has no row for it.
+        /// Whether the agent can interact. If not, the third number of an action by velocity is ignored, and the default table
+        /// of actions has no row for interacting.
         #[serde(skip_serializing_if = "is_true")]
         pub interact: bool = true => Field::ours(Leaves(SpaceOfActions)),
-        /// How many things the agent can carry at once; 0 is none.
+        /// Number of things that the agent can carry at once; 0 means none.
         #[serde(skip_serializing_if = "is_default")]
         #[schemars(range(min = 0, max = 100))]
         pub carry_limit: u32 = 0 => Field::ours(Leaves(SpaceOfActions)),
-        /// Whether pictures from the agent's eyes show what it carries: small, at the lower edge of the colours, and in
-        /// no other image.
+        /// Whether colour images from the agent's view show what it carries, small and at the lower edge; other kinds of image
+        /// never do.
         #[serde(skip_serializing_if = "is_default")]
         pub show_carried: bool = false => Field::ours(Leaves(CameraAndWeather)),
-        /// The agent's energy, which falls and rises; without it there is none. What comes of it is said by an end condition and by the
-        /// state feature `energy`.
+        /// The agent's energy, which falls and rises; if absent, the agent has no energy. It takes effect through end
+        /// conditions and the state feature `energy`.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub energy: Option<Energy> = None => Field::ours(Leaves(EnergyOfAgent)),
     }
 }
 
 fields! {
-    /// How the agent's energy changes. It is never less than 0 and never more than `most`. Objects give it by their `energy`.
+    /// How the agent's energy changes. It stays between 0 and `most`. Objects add to it by their `energy`.
     #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
     #[serde(default, deny_unknown_fields)]
     #[schemars(extend("examples" = [{ "start": 100, "per_second": -1, "per_metre": -0.1, "most": 100 }]))]
     pub struct Energy {
-        /// What the agent has at the start.
+        /// Energy at the start.
         #[schemars(range(min = 0.0, max = 1e9))]
         pub start: f64 = 100.0 => Field::ours(AsPart),
-        /// What every second of the world's own time adds; less than 0 to use it up.
+        /// Energy gained per simulated second; below 0, energy is used up.
         #[schemars(range(min = -1e9, max = 1e9))]
         pub per_second: f64 = -1.0 => Field::ours(AsPart).unit("1/s"),
-        /// What every metre adds that the agent goes.
+        /// Energy gained per metre that the agent moves.
         #[serde(skip_serializing_if = "is_default")]
         #[schemars(range(min = -1e9, max = 1e9))]
         pub per_metre: f64 = 0.0 => Field::ours(AsPart).unit("1/m"),
-        /// The most that it can have.
+        /// Maximum energy.
         #[schemars(range(min = 0.0, max = 1e9))]
         pub most: f64 = 100.0 => Field::ours(AsPart),
     }
@@ -158,7 +158,7 @@ impl AgentParams {
     }
 }
 
-/// What the three numbers of an action mean.
+/// The meaning of the three numbers of an action.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum ActionModel {
@@ -166,13 +166,13 @@ pub enum ActionModel {
     ByVelocity,
     /// A point (x, y) in metres to walk to, and a camera turn rate in °/s.
     ByWaypoint,
-    /// Input is ignored: the agent tours all objects of positive reward by itself, nearest first.
+    /// Input is ignored: the agent visits all objects with positive reward by itself, nearest first.
     OnRails,
     /// Input is ignored: the agent stands still.
     None,
 }
 
-/// How a learner hands in actions.
+/// The form in which a learner gives actions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 #[schemars(extend("examples" = [
@@ -183,11 +183,11 @@ pub enum ActionModel {
 pub enum ActionSpace {
     /// Three numbers, in the units of the action model.
     Continuous,
-    /// Three numbers in −1..1, cut off there: shares of the largest speed and turn rate, under `bywaypoint` of half the arena's
-    /// sides; above 0 is to interact.
+    /// Three numbers, clipped to −1..1: shares of the maximum speed and turn rate, or of half the arena's sides under
+    /// `bywaypoint`; a third number above 0 interacts.
     Normalized,
-    /// The number of a row of a table that comes with the agent: ahead, ahead and left, ahead and right, left,
-    /// right, back, and interact if it can; not under `bywaypoint`, which knows no ahead.
+    /// The number of a row of a built-in table: forwards, forwards and left, forwards and right, left, right, backwards, and
+    /// interact if the agent can; not under `bywaypoint`, which has no direction ahead.
     DefaultDiscrete,
     /// The number of a row of this table; each row holds three numbers in the units of the action model.
     Discrete(#[schemars(length(min = 1, max = 1000))] Vec<[f64; 3]>),

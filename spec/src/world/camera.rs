@@ -1,4 +1,4 @@
-//! The agent's camera: the kinds of images, their size and the field of view. Its keys are in `agent.rs`.
+//! The agent's camera: kinds of image, their size, and the field of view. Its keys are in `agent.rs`.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -18,8 +18,8 @@ pub enum Modality {
     Depth,
     /// Reward category per pixel, `(size, size)` bytes.
     Segmentation,
-    /// Object class per pixel, `(size, size)` numbers that are the same in every world: built-in classes have 1 to 29, unknown ones
-    /// 31, those of libraries follow from 32 on in the order of their names; 0 where there is no object.
+    /// Object class per pixel, `(size, size)` numbers that are the same in every world: built-in classes have 1 to 29, unknown
+    /// classes 31, and classes of libraries follow from 32 on in the order of their names; 0 where there is no object.
     Class,
     /// Object per pixel, `(size, size)` numbers: its index in the world plus 1; 0 where there is no object.
     Instance,

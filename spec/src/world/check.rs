@@ -43,7 +43,7 @@ impl Object {
     /// let mut tree = Object::new("tree", [3.0, 4.0]);
     /// assert!(tree.check().is_ok());
     /// tree.scale = 0.0;
-    /// let error = tree.check().expect_err("nothing is of no size");
+    /// let error = tree.check().expect_err("a scale of 0 is invalid");
     /// assert_eq!(error.problems()[0].pointer, "/scale");
     /// ```
     pub fn check(&self) -> Result<(), SpecError> {
@@ -62,7 +62,7 @@ impl WorldDraft {
     /// use driftworld_spec::WorldDraft;
     /// let mut draft = WorldDraft::default();
     /// draft.environment_params.sun_direction = [0.0; 3];
-    /// let error = draft.check().expect_err("the sun shines from somewhere");
+    /// let error = draft.check().expect_err("the sun needs a direction");
     /// assert_eq!(error.problems()[0].pointer, "/environment_params/sun_direction");
     /// ```
     pub fn check(self) -> Result<World, SpecError> {
@@ -70,7 +70,7 @@ impl WorldDraft {
         Ok(World::planned(self))
     }
 
-    /// Like [`WorldDraft::check`], for fields whose values are all known to be in range: checks only the rules across fields.
+    /// Like [`WorldDraft::check`], for fields that are all known to be in range: checks only the rules across fields.
     ///
     /// # Errors
     /// As [`WorldDraft::check`].
@@ -78,16 +78,16 @@ impl WorldDraft {
     /// # Panics
     /// With debug assertions, if a value is out of range.
     pub fn check_in_range(self) -> Result<World, SpecError> {
-        let plan = self.sound_plan();
+        let plan = self.valid_plan();
         self.check_in_range_with(plan)
     }
 
     /// The plan of its layout, if there is a valid one.
-    pub(super) fn sound_plan(&self) -> Option<Arc<Plan>> {
+    pub(super) fn valid_plan(&self) -> Option<Arc<Plan>> {
         self.layout_problems().is_empty().then(|| self.plan()).flatten()
     }
 
-    /// Like [`WorldDraft::check_in_range`], with the plan of the layout that [`WorldDraft::plan`] has already made.
+    /// Like [`WorldDraft::check_in_range`], with the plan of the layout that [`WorldDraft::plan`] has already computed.
     ///
     /// # Errors
     /// As [`WorldDraft::check`].
@@ -100,13 +100,19 @@ impl WorldDraft {
             return Err(SpecError::of_document("world", problems));
         }
         if cfg!(debug_assertions) {
-            check("world", &self, World::schema(), problems).expect("each value is in range, as the caller knows");
-            assert_eq!(plan, self.plan(), "the plan is that of the layout, as the caller knows");
+            check("world", &self, World::schema(), problems)
+                .expect("the caller guarantees that each value is in range");
+            assert_eq!(
+                plan,
+                self.plan(),
+                "the caller guarantees that the plan belongs to the layout"
+            );
         }
         Ok(World { draft: self, plan })
     }
 
-    /// The plan of the layout, made with the layout's own seed or else with the world's; `None` without a layout.
+    /// The plan of the layout, computed with the layout's own seed or, if it has none, with the world's; `None` without a
+    /// layout.
     ///
     /// The layout must be valid, see [`WorldDraft::layout_problems`].
     pub fn plan(&self) -> Option<Arc<Plan>> {
@@ -223,7 +229,8 @@ impl World {
         draft.check()
     }
 
-    /// The world with the layout of its predefined map from a library, if it has one; it then needs no library.
+    /// Writes the layout of the world's predefined map from a library into the world, if the library has one; the world then
+    /// needs no library.
     #[must_use]
     pub fn with_maps(mut self, maps: &MapLibrary) -> Self {
         // A library's layouts follow the same rules as a world's own regions, and no other rule depends on them.
@@ -290,14 +297,14 @@ mod tests {
     fn check(change: impl FnOnce(&mut Object), expected: &str) {
         let mut object = Object::new("tree", [3.0, 4.0]);
         change(&mut object);
-        let said = object.check().expect_err("the object is not sound").to_string();
-        assert!(said.contains(expected), "{said}");
+        let error = object.check().expect_err("the object is invalid").to_string();
+        assert!(error.contains(expected), "{error}");
     }
 
     #[test]
     fn single_object_is_read_like_one_in_a_world() {
         let tree = Object::from_json("spawn", r#"{ "class": "tree", "coordinates": [3, 4], "color": "red" }"#)
-            .expect("the object is sound");
+            .expect("the object is valid");
         assert_eq!(
             (tree.coordinates, tree.color),
             ([3.0, 4.0], crate::Color::from_name("red"))
@@ -322,6 +329,6 @@ mod tests {
         check(|object| object.reward = f64::NAN, "(/reward): found null");
         Object::new("dragon", [0.0, 0.0])
             .check()
-            .expect("a class that is not known is a placeholder");
+            .expect("unknown classes are allowed, and shown by a placeholder");
     }
 }

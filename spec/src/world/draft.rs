@@ -25,25 +25,24 @@ fields! {
     ]))]
     #[schemars(inline)]
     pub struct WorldDraft {
-        /// Where the JSON Schema of this document is, for editors; not part of the world.
+        /// The address of this document's JSON Schema, for editors; not part of the world.
         #[serde(rename = "$schema", skip_serializing)]
         pub schema: Option<String> = None => Field::ours(Not("it names a schema for editors"))
                 .named("$schema")
                 .fixed("it names a schema for editors, and is no part of the world"),
-        /// The version of this document format. Older versions are read, newer ones refused; if missing, 1 is assumed.
+        /// The version of this document format. Older versions are read, newer ones rejected; 1 if absent.
         #[schemars(range(min = 1, max = 1))]
         pub version: u32 = WORLD_VERSION => Field::ours(Not("it is the form of the document"))
                 .fixed("it is the version of the document format, and there is only one"),
-        /// The seed of all random numbers in the running world: where wanderers go, which pulls of a bandit arm pay,
-        /// where objects reappear. In a sampled world it is derived from the task, the sampling seed and the world's
-        /// number, so that all variants of the task share it. Without it, the initial positions of things determine
-        /// the random numbers.
+        /// The seed of all random numbers in the running world: where wandering objects go, which pulls of a bandit arm pay,
+        /// where objects reappear. In a sampled world it is derived from the task, the sampling seed and the world's number, so
+        /// that all variants of the task share it. Without it, the initial positions of things determine the random numbers.
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = 0, max = MAX_SEED))]
         pub seed: Option<u64> = None
             => Field::ours(Not("two worlds that differ in their seeds alone are two runs of one world"))
                 .fixed("a sampled world derives it from its task, seed and number, so that all variants share it"),
-        /// What the world is for.
+        /// The purpose of the world.
         pub game_mode: GameMode = GameMode::default()
             => Field::original(Not("photographing objects is no decision process")),
         /// Steps until the episode is truncated; 0 means never.
@@ -64,9 +63,10 @@ fields! {
         #[serde(skip_serializing_if = "Option::is_none")]
         pub image_params: Option<ImageParams> = None
             => Field::original(Not("photographing objects is no decision process")),
-        /// Rewards and endings beside those of the objects.
+        /// Rewards and endings in addition to those of the objects.
         pub rules: Rules = Rules::default() => Field::ours(AsPart),
-        /// What stands in the world. Moving objects move in this order: where two meet, the one listed first goes on.
+        /// The objects of the world. Moving objects move in this order: where two meet, the one listed first has the right of
+        /// way.
         #[schemars(length(max = 100_000))]
         pub objects: Vec<Object> = Vec::new()
             => Field::original(Measured(&[Unmatched, Rewards, UnmatchedLooks]))
@@ -79,7 +79,7 @@ fields! {
     }
 }
 
-/// What a world is for.
+/// The purpose of a world.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum GameMode {
@@ -99,10 +99,10 @@ fields! {
         /// Camera distance, as a multiple of the distance at which the object just fits into the picture.
         #[schemars(range(min = 0.1, max = 100.0))]
         pub zoom: f64 = 2.0 => Field::original(AsPart),
-        /// Views around each object.
+        /// Number of views around each object.
         #[schemars(range(min = 1, max = 360))]
         pub yaw_subdivisions: u32 = 8 => Field::original(AsPart),
-        /// Views from the side up to the top.
+        /// Number of views from the side up to the top.
         #[schemars(range(min = 1, max = 360))]
         pub vertical_subdivisions: u32 = 1 => Field::original(AsPart),
     }

@@ -27,11 +27,12 @@ fields! {
         /// Brightness of the sun: 2.3 to 3.5 reads as day, 0.2 as dusk.
         #[schemars(range(min = 0.0, max = 100.0))]
         pub light_intensity: f64 = 2.3 => Field::original(Measured(&[Light])),
-        /// Which arena: 0 is an empty one of `map_size`; 1 backslash, 2 village, 3 craters, 4 bisected are 200 × 200 m.
+        /// Number of the arena: 0 is empty, of size `map_size`; 1 backslash, 2 village, 3 craters and 4 bisected are 200 × 200
+        /// m.
         #[schemars(range(min = 0, max = 4))]
         pub predefined_map: u8 = 0 => Field::original(Measured(&[MapAndWalls, ArenaSize])),
-        /// Regions of the predefined map that cannot be entered, from a maps file, in place of the built-in layout of that number:
-        /// polygons in metres, corners in order, the last joins the first.
+        /// Regions of the predefined map that cannot be entered, from a maps file, replacing the built-in layout with that
+        /// number: polygons in metres, with corners in order; the last corner connects to the first.
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(length(max = 1000))]
         pub map_regions: Option<Vec<Region>> = None => Field::ours(Leaves(MapAndWalls)).unit("m"),
@@ -41,36 +42,36 @@ fields! {
         /// Height of the walls in metres.
         #[schemars(range(min = 0.0, max = 50.0))]
         pub wall_height: f64 = 4.0 => Field::ours(Leaves(CameraAndWeather)).unit("m"),
-        /// Regions that cannot be entered, beside those of the map.
+        /// Regions that cannot be entered, in addition to those of the map.
         #[serde(skip_serializing_if = "Vec::is_empty")]
         #[schemars(length(max = 1000))]
         pub walls: Vec<Wall> = Vec::new() => Field::ours(Leaves(MapAndWalls)),
-        /// Direction towards the sun (x east, y north, z up); any length but 0.
+        /// Direction towards the sun (x east, y north, z up), of any length except 0.
         #[schemars(inner(range(min = -1e6, max = 1e6)))]
         pub sun_direction: [f64; 3] = [0.45, -0.35, 0.82] => Field::ours(Leaves(CameraAndWeather)),
         /// Colour of the sunlight.
         pub light_color: Color = Color([1.0, 0.97, 0.9]) => Field::ours(Measured(&[ColorsOfSurroundings])),
-        /// Share of the light that reaches every side of everything, 0..1.
+        /// Share of the light that is ambient and reaches all surfaces equally, 0..1.
         #[schemars(range(min = 0.0, max = 1.0))]
         pub ambient_light: f64 = 0.35 => Field::ours(Leaves(CameraAndWeather)),
         /// Colour of the sky at the zenith; it pales towards the horizon.
         pub sky_color: Color = Color([0.36, 0.62, 0.9]) => Field::ours(Measured(&[ColorsOfSurroundings])),
         /// Colour of the ground.
         pub ground_color: Color = Color([0.45, 0.56, 0.34]) => Field::ours(Measured(&[ColorsOfSurroundings])),
-        /// Distance in metres at which half of what is seen is fog, in the colour of the horizon; no fog if absent.
+        /// Distance in metres at which fog, in the colour of the horizon, hides half of the view; no fog if absent.
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = 0.1, max = 10_000.0))]
         pub fog_distance: Option<f64> = None => Field::ours(Leaves(CameraAndWeather)).unit("m"),
-        /// Parts of the ground that do something to the agent that is in them: they pay, slow, end the episode or put it elsewhere.
+        /// Parts of the ground that affect the agent inside them: they pay, change its speed, end the episode or teleport it.
         #[serde(skip_serializing_if = "Vec::is_empty")]
         #[schemars(length(max = 1000))]
         pub zones: Vec<Zone> = Vec::new() => Field::ours(Measured(&[Zones, ZonePay, ZoneLooks])),
-        /// What divides the arena: a maze, rooms, a map drawn with letters, a predefined map, or walls. All but walls say how
-        /// large the arena is, in place of `map_size`. Not beside a `predefined_map`.
+        /// The walls that divide the arena: a maze, rooms, a map drawn with letters, a predefined map, or a list of walls. All
+        /// but a list of walls set the size of the arena, overriding `map_size`. Not together with a `predefined_map`.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub layout: Option<Layout> = None => Field::ours(Measured(&[Layouts])).layout(),
-        /// In which style the world is drawn: `"plain"`, `"natural"`, or an object that says what covers the ground and walls,
-        /// and whether there are shadows and a ceiling.
+        /// The style in which the world is drawn: `"plain"`, `"natural"`, or an object that also sets the surfaces of the
+        /// ground and walls, shadows and a ceiling.
         #[serde(skip_serializing_if = "is_default")]
         #[schemars(with = "LooksForm")]
         pub looks: Looks = Looks::default() => Field::ours(Measured(&[CameraAndWeather, ColorsOfSurroundings])),
@@ -78,7 +79,8 @@ fields! {
 }
 
 impl EnvironmentParams {
-    /// Side lengths of the arena in metres: the layout's if it has any, else `map_size`, or 200 × 200 for a predefined map.
+    /// Side lengths of the arena in metres: the layout's if it sets them, otherwise `map_size`, or 200 × 200 for a predefined
+    /// map.
     pub fn arena_size(&self) -> [f64; 2] {
         if let Some(size) = self.layout.as_ref().and_then(Layout::size) {
             size
@@ -89,17 +91,17 @@ impl EnvironmentParams {
         }
     }
 
-    /// The number of the predefined map: `predefined_map`, or that of a layout that is one.
+    /// The number of the predefined map, from the layout if it is one, otherwise `predefined_map`.
     pub fn map(&self) -> u8 {
         let own = self.layout.as_ref().and_then(|layout| layout.predefined);
         own.unwrap_or(self.predefined_map)
     }
 
-    /// The regions of the map that cannot be entered: from a maps file, else from the built-in map. They include neither `walls`
-    /// nor the walls of the layout, which are in the plan of a checked [`World`](crate::World).
+    /// The regions of the map that cannot be entered: from a maps file, otherwise from the built-in map. They include neither
+    /// `walls` nor the walls of the layout, which are in the plan of a checked [`World`](crate::World).
     pub fn regions(&self) -> Vec<&[[f64; 2]]> {
         let regions = match &self.map_regions {
-            // A layout that is a map has them in its plan.
+            // The plan of a layout that is a predefined map already contains them.
             _ if self.layout.as_ref().is_some_and(|layout| layout.predefined.is_some()) => &[],
             Some(regions) => regions.as_slice(),
             None => maps::excluded_regions(self.predefined_map),
@@ -147,7 +149,7 @@ impl EnvironmentParams {
         })
     }
 
-    /// Why a place cannot be reached: it is outside the arena, or inside this wall; `None` on free ground.
+    /// Why a point cannot be reached: it is outside the arena, or inside a wall; `None` on free ground.
     pub(super) fn out_of_reach(&self, at: [f64; 2], plan: Option<&Plan>) -> Option<String> {
         if self.contains(at) {
             return Some(format!("inside {}", self.enclosure(at, plan)?));
@@ -211,7 +213,7 @@ impl fmt::Display for Enclosure {
     }
 }
 
-/// A polygon on the ground: corners in metres, in order; the last joins the first. It may touch itself.
+/// A polygon on the ground: corners in metres, in order; the last corner connects to the first. It may touch itself.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(transparent)]
 pub struct Region(
@@ -233,12 +235,12 @@ impl Place for Region {
 }
 
 fields! {
-    /// A region that cannot be entered: a polygon on the ground, standing up as a wall.
+    /// A region that cannot be entered: a polygon on the ground, raised to a wall.
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
     #[serde(deny_unknown_fields)]
     #[schemars(extend("examples" = [{ "polygon": [[0, 0], [8, 0], [8, 1], [0, 1]], "height": 2 }]))]
     pub struct Wall {
-        /// Corners in metres, in order; the last joins the first.
+        /// Corners in metres, in order; the last corner connects to the first.
         #[schemars(length(min = 3, max = 1000), inner(inner(range(min = -1e4, max = 1e4))))]
         pub polygon: Vec<[f64; 2]> => Field::ours(AsPart).unit("m"),
         /// Height in metres; the arena's `wall_height` if absent.

@@ -7,8 +7,9 @@ use super::fields::word;
 
 /// One named part of the state vector.
 ///
-/// "Ahead" and "right" are the agent's own axes; a *target* is an object that pays a positive reward now, its turn in a sequence included; a *goal* is an object
-/// of the tag that the world's shaping, or else its success by touch, names. Where there is none, numbers are 0.
+/// "Ahead" and "right" are the agent's own axes. A *target* is an object that would pay a positive reward now, taking its turn
+/// in a sequence into account. A *goal* is an object with the tag named by the world's shaping or, without shaping, by its
+/// success by touch. If there is none, the numbers are 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum StateFeature {
@@ -18,29 +19,29 @@ pub enum StateFeature {
     Heading,
     /// The agent's velocity along x and y over the last time step, in metres per second.
     Velocity,
-    /// Sine and cosine of the heading: where the agent looks along x and y, −1..1.
+    /// Sine and cosine of the heading: the agent's direction of view along x and y, −1..1.
     Direction,
     /// The agent's velocity ahead and to the right, in metres per second.
     OwnVelocity,
-    /// Way to the nearest goal, ahead and to the right, in metres; then 1 if there is a goal, else 0.
+    /// Offset of the nearest goal, ahead and to the right, in metres; then 1 if there is a goal, otherwise 0.
     Goal,
-    /// Way to the nearest target, ahead and to the right, in metres; then 1 if there is a target, else 0.
+    /// Offset of the nearest target, ahead and to the right, in metres; then 1 if there is a target, otherwise 0.
     NearestTarget,
-    /// How many targets are left; then how many objects have been collected.
+    /// Number of targets left; then number of objects collected.
     Counts,
-    /// What the last step paid.
+    /// Reward of the last step.
     LastReward,
-    /// The last event of the last step: 0 for none, 1 for a contact, 2 for an interaction, 3 for coming into range; then what it
-    /// paid; then 1 if it destroyed its object, else 0.
+    /// The last event of the last step: 0 for none, 1 for a contact, 2 for an interaction, 3 for coming into range; then its
+    /// reward; then 1 if it destroyed its object, otherwise 0.
     LastEvent,
-    /// Share of the steps that are left, 1 to 0; always 1 without a limit.
+    /// Share of the steps left, from 1 down to 0; always 1 without a limit.
     StepsLeft,
-    /// How many things the agent carries; then of the one that was picked up last the number of its class, and its index in the
-    /// world plus 1, as in pictures of classes and instances.
+    /// Number of things the agent carries; then, for the one picked up last, the number of its class and its index in the world
+    /// plus 1, as in images of classes and instances.
     Carrying,
-    /// The agent's energy; 0 where it has none to use.
+    /// The agent's energy; 0 in worlds without energy.
     Energy,
-    /// How many zones the agent is in; then what a second in them pays.
+    /// Number of zones the agent is in; then their reward per second.
     Zone,
 }
 

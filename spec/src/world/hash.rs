@@ -1,4 +1,4 @@
-//! Hashes of a world: of all its content, and of the places in it, which seeds the randomness of a world without `seed`.
+//! Hashes of a world: of all its content, and of its positions; the latter seeds the random numbers of a world without `seed`.
 
 use sha2::{Digest, Sha256};
 
@@ -11,10 +11,10 @@ impl World {
         hexadecimal(&Sha256::digest(self.to_json()))
     }
 
-    /// The SHA-256 of the arena and of the places of the agent and of all objects, in hexadecimal, 64 characters.
+    /// The SHA-256 of the arena and the positions of the agent and of all objects, in hexadecimal, 64 characters.
     ///
-    /// Looks, rewards, names and the order of the objects do not affect it: worlds that differ only in these have the same
-    /// hash of places.
+    /// Looks, rewards, names and the order of the objects do not affect it: worlds that differ only in these have the same hash
+    /// of positions.
     ///
     /// # Example
     /// ```
@@ -30,7 +30,7 @@ impl World {
     pub fn hash_of_places(&self) -> String {
         let mut hash = Sha256::new();
         hash.update(b"driftworld places 1\0");
-        let mut take = |points: &mut dyn Iterator<Item = [f64; 2]>| {
+        let mut add = |points: &mut dyn Iterator<Item = [f64; 2]>| {
             let mut count: u64 = 0;
             for point in points {
                 for metres in point {
@@ -41,19 +41,19 @@ impl World {
             hash.update(count.to_le_bytes());
         };
         let arena = &self.environment_params;
-        take(&mut [arena.arena_size()].into_iter());
+        add(&mut [arena.arena_size()].into_iter());
         for corners in self.obstacles() {
-            take(&mut corners.iter().copied());
+            add(&mut corners.iter().copied());
         }
-        take(&mut [self.agent_params.coordinates].into_iter());
-        let mut places: Vec<[f64; 2]> = self.objects.iter().map(|object| object.coordinates).collect();
-        places.sort_unstable_by_key(|place| place.map(bits));
-        take(&mut places.into_iter());
+        add(&mut [self.agent_params.coordinates].into_iter());
+        let mut positions: Vec<[f64; 2]> = self.objects.iter().map(|object| object.coordinates).collect();
+        positions.sort_unstable_by_key(|position| position.map(bits));
+        add(&mut positions.into_iter());
         hexadecimal(&hash.finalize())
     }
 }
 
-/// The bits of a number; 0 and −0 are the same.
+/// The bits of a number, with −0 treated as 0.
 fn bits(metres: f64) -> u64 {
     (metres + 0.0).to_bits()
 }

@@ -1,16 +1,16 @@
-//! Remarks on the places of doors and keys: doors whose keys are all behind locked doors, and doors that overlap.
+//! Remarks on the positions of doors and keys: doors with all keys behind locked doors, and doors that overlap.
 
 use std::collections::BTreeSet;
 
 use super::World;
 use crate::layout::Plan;
 
-/// Maximum number of doors in a world that is checked, because the check compares all doors with each other.
-const MOST_DOORS: usize = 1000;
+/// Maximum number of doors that are checked, because the check compares all doors with each other.
+const MAX_DOORS: usize = 1000;
 
 /// The part of a layout that a locked door blocks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Bar {
+enum Barrier {
     /// The side between two cells, the lower index first.
     Side(usize, usize),
     /// The cell in which the door stands.
@@ -20,17 +20,17 @@ enum Bar {
 /// The remarks, as pairs of a pointer to the subject and a text.
 pub(super) fn lock_remarks(world: &World) -> Vec<(String, String)> {
     let doors = world.objects.iter().filter(|object| object.door.is_some()).count();
-    if doors == 0 || doors > MOST_DOORS {
+    if doors == 0 || doors > MAX_DOORS {
         return Vec::new();
     }
-    let mut found = behind_their_doors(world);
+    let mut found = locked_forever(world);
     found.extend(overlapping(world));
     found
 }
 
-/// The locked doors of a layout whose keys are all behind locked doors that stay shut. Doors without a lock, and those that a
-/// switch or a clock opens, count as open.
-fn behind_their_doors(world: &World) -> Vec<(String, String)> {
+/// The locked doors of a layout with all keys behind locked doors that stay shut. Doors without a lock, and doors opened by a
+/// switch or a clock, count as open.
+fn locked_forever(world: &World) -> Vec<(String, String)> {
     let Some(plan) = world.plan() else { return Vec::new() };
     let Some(start) = plan.cell_at(world.agent_params.coordinates) else {
         return Vec::new();
@@ -39,15 +39,15 @@ fn behind_their_doors(world: &World) -> Vec<(String, String)> {
         let mut switches = world.objects.iter().filter_map(|object| object.switch.as_ref());
         tag.is_some() && switches.any(|switch| Some(&switch.target) == tag)
     };
-    let mut locked: Vec<(usize, &String, Bar)> = Vec::new();
+    let mut locked: Vec<(usize, &String, Barrier)> = Vec::new();
     for (index, object) in world.objects.iter().enumerate() {
         let Some(door) = object.door.as_ref().filter(|door| !door.open && door.period.is_none()) else {
             continue;
         };
         if let Some(key) = door.key.as_ref().filter(|_| !switched(object.tag.as_ref()))
-            && let Some(bar) = bar(plan, object.coordinates)
+            && let Some(barrier) = barrier(plan, object.coordinates)
         {
-            locked.push((index, key, bar));
+            locked.push((index, key, barrier));
         }
     }
     let keys: Vec<(&String, usize)> = world
@@ -59,7 +59,7 @@ fn behind_their_doors(world: &World) -> Vec<(String, String)> {
     let tags: BTreeSet<&String> = keys.iter().map(|(tag, _)| *tag).collect();
     locked.retain(|(_, key, _)| tags.contains(key));
     loop {
-        let reached = reached(plan, start, &locked.iter().map(|(.., bar)| *bar).collect());
+        let reached = reached(plan, start, &locked.iter().map(|(.., barrier)| *barrier).collect());
         let owned: BTreeSet<&String> = keys
             .iter()
             .filter(|(_, cell)| reached[*cell])
@@ -71,7 +71,7 @@ fn behind_their_doors(world: &World) -> Vec<(String, String)> {
             break;
         }
     }
-    let remark = |(index, key, _): (usize, &String, Bar)| {
+    let remark = |(index, key, _): (usize, &String, Barrier)| {
         let text = format!(
             "every {key:?} lies behind this door or behind others that stay locked; put one where the agent gets without it"
         );
@@ -80,10 +80,11 @@ fn behind_their_doors(world: &World) -> Vec<(String, String)> {
     locked.into_iter().map(remark).collect()
 }
 
-/// The part of the layout that a door at a place blocks.
-fn bar(plan: &Plan, place: [f64; 2]) -> Option<Bar> {
-    let own = plan.cell_at(place);
-    let stands_in = |center: [f64; 2], width: f64| (0..2).all(|axis| (center[axis] - place[axis]).abs() < width / 2.0);
+/// The part of the layout blocked by a door at this position.
+fn barrier(plan: &Plan, position: [f64; 2]) -> Option<Barrier> {
+    let own = plan.cell_at(position);
+    let stands_in =
+        |center: [f64; 2], width: f64| (0..2).all(|axis| (center[axis] - position[axis]).abs() < width / 2.0);
     let doorway = plan
         .doorways
         .iter()
@@ -99,19 +100,21 @@ fn bar(plan: &Plan, place: [f64; 2]) -> Option<Bar> {
         let is_between = plan.cell_at(doorway.center) != before && doorway.depth < plan.cell[axis];
         is_between.then_some((before?, beyond?))
     });
-    sides.map(|(a, b)| Bar::Side(a.min(b), a.max(b))).or(own.map(Bar::Cell))
+    sides
+        .map(|(a, b)| Barrier::Side(a.min(b), a.max(b)))
+        .or(own.map(Barrier::Cell))
 }
 
-/// For each cell, whether it can be reached from `start` without passing a bar.
-fn reached(plan: &Plan, start: usize, bars: &BTreeSet<Bar>) -> Vec<bool> {
+/// For each cell, whether it can be reached from `start` without passing a barrier.
+fn reached(plan: &Plan, start: usize, barriers: &BTreeSet<Barrier>) -> Vec<bool> {
     let mut reached = vec![false; plan.cells.len()];
     plan.reach(start, &mut reached, |cell, next| {
-        !bars.contains(&Bar::Cell(next)) && !bars.contains(&Bar::Side(cell.min(next), cell.max(next)))
+        !barriers.contains(&Barrier::Cell(next)) && !barriers.contains(&Barrier::Side(cell.min(next), cell.max(next)))
     });
     reached
 }
 
-/// Doors that overlap: nearer to each other than half the narrower one's width.
+/// Doors that overlap: closer to each other than half the width of the narrower one.
 fn overlapping(world: &World) -> Vec<(String, String)> {
     let mut doors: Vec<(usize, [f64; 2], f64)> = world
         .objects
@@ -122,14 +125,14 @@ fn overlapping(world: &World) -> Vec<(String, String)> {
         .collect();
     doors.sort_by(|a, b| a.1[0].total_cmp(&b.1[0]).then(a.0.cmp(&b.0)));
     let mut found = Vec::new();
-    for (number, (index, place, scale)) in doors.iter().enumerate() {
+    for (number, (index, position, scale)) in doors.iter().enumerate() {
         // One report per door is enough, and keeps the search short if all are in one place.
         let near = doors[number + 1..]
             .iter()
-            .take_while(|(_, other, _)| other[0] - place[0] < scale / 2.0);
+            .take_while(|(_, other, _)| other[0] - position[0] < scale / 2.0);
         let mut near = near.filter(|(_, other, width)| {
-            let away = [0, 1].map(|axis| other[axis] - place[axis]);
-            libm::hypot(away[0], away[1]) < scale.min(*width) / 2.0
+            let offset = [0, 1].map(|axis| other[axis] - position[axis]);
+            libm::hypot(offset[0], offset[1]) < scale.min(*width) / 2.0
         });
         if let Some((other, ..)) = near.next() {
             let (first, second) = (index.min(other), index.max(other));
@@ -151,7 +154,7 @@ mod tests {
                 "objects": {objects} }}"#
         );
         let world: WorldDraft = serde_json::from_str(&text).expect("it is a world");
-        let world = world.check().expect("what is odd is not wrong");
+        let world = world.check().expect("the world is valid despite remarks");
         lock_remarks(&world)
             .into_iter()
             .map(|(at, text)| format!("{at}: {text}"))
@@ -198,11 +201,11 @@ mod tests {
             )
         };
         let plan = serde_json::from_str::<crate::Layout>(rooms).unwrap().plan(0);
-        let place = |text: String| text.replace("DOOR", &plan.doorways[0].center[1].to_string());
-        assert_eq!(remarks(rooms, &place(objects("-2", ""))), [""; 0]);
-        assert_eq!(remarks(rooms, &place(objects("2", ""))).len(), 1);
+        let position = |text: String| text.replace("DOOR", &plan.doorways[0].center[1].to_string());
+        assert_eq!(remarks(rooms, &position(objects("-2", ""))), [""; 0]);
+        assert_eq!(remarks(rooms, &position(objects("2", ""))).len(), 1);
         let switch = r#", { "class": "switch", "coordinates": [-2, -0.5], "switch": { "target": "gate" } }"#;
-        assert_eq!(remarks(rooms, &place(objects("2", switch))), [""; 0]);
+        assert_eq!(remarks(rooms, &position(objects("2", switch))), [""; 0]);
     }
 
     #[test]

@@ -19,21 +19,21 @@ use crate::serde_defaults::{is_default, is_one, one};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Style {
-    /// Flat colours, squares on the ground, light that is the same from every height of the sun.
+    /// Flat colours, squares on the ground, and light that does not depend on the height of the sun.
     #[default]
     Plain,
-    /// Surfaces, shadows, a sky with clouds and a sun whose light is warm when it is low.
+    /// Surface patterns, shadows, a sky with clouds, and a sun with warm light when it is low.
     Natural,
 }
 
-/// What covers a face: a pattern in its colour, lighter and darker. From afar it is the colour alone.
+/// A surface pattern in lighter and darker shades of the face's colour. From afar it blends into the plain colour.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Surface {
-    /// Nothing: the colour as it is.
+    /// No pattern: the plain colour.
     #[default]
     Plain,
-    /// Grain of all sizes up to 2 m: grass, earth, plaster, carpet.
+    /// Noise at all scales up to 2 m: grass, earth, plaster, carpet.
     Noise,
     /// Bricks of 0.5 × 0.25 m.
     Brick,
@@ -45,23 +45,23 @@ pub enum Surface {
     Stripes,
     /// Squares of 0.5 m.
     Checker,
-    /// Courses of rough stones 0.33 m high, each of another length.
+    /// Courses of rough stones 0.33 m high, of varying length.
     Stone,
-    /// Fine grain, here and there worn.
+    /// Fine grain, worn in places.
     Plaster,
     /// Round stones of 0.2 m.
     Cobbles,
 }
 
 fields! {
-    /// What covers the ground or walls.
+    /// The surface of the ground or walls.
     #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
     #[serde(remote = "Self", deny_unknown_fields)]
     #[schemars(extend("examples" = [{ "surface": "brick", "scale": 1.5 }]))]
     pub struct Covering {
-        /// Which pattern.
+        /// The pattern.
         pub surface: Surface => Field::ours(Measured(&[CameraAndWeather])),
-        /// Factor on the pattern's size in metres.
+        /// Scale of the pattern, relative to its natural size in metres.
         #[serde(default = "one", skip_serializing_if = "is_one")]
         #[schemars(range(min = 0.1, max = 100.0))]
         pub scale: f64 => Field::ours(Measured(&[CameraAndWeather])),
@@ -69,30 +69,30 @@ fields! {
 }
 
 fields! {
-    /// Looks, part by part. What is absent is as the style has it.
+    /// Looks, part by part. Absent parts come from the style.
     #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
     #[serde(remote = "Self", default, deny_unknown_fields)]
     #[schemars(extend("examples" = [
         { "style": "natural", "ground": "plank", "walls": { "surface": "brick", "scale": 1.5 }, "shadows": false },
     ]))]
     pub struct Looks {
-        /// How the world is drawn. In the plain style nothing else counts here but `fog_in_depth`.
+        /// The style of rendering. In the plain style, all other keys except `fog_in_depth` are ignored.
         pub style: Style = Style::Plain
             => Field::ours(Measured(&[CameraAndWeather, ColorsOfSurroundings, ModelsOfObjects])),
-        /// What covers the ground, zones too; if absent, noise, or tiles under a ceiling.
+        /// The surface of the ground, including zones; if absent, noise, or tiles under a ceiling.
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(with = "Option<CoveringForm>")]
         pub ground: Option<Covering> = None => Field::ours(Measured(&[CameraAndWeather])),
-        /// What covers walls; bricks if absent.
+        /// The surface of walls; bricks if absent.
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(with = "Option<CoveringForm>")]
         pub walls: Option<Covering> = None => Field::ours(Measured(&[CameraAndWeather])),
-        /// Whether there is a ceiling, as high as the highest wall of the layout or else of the arena, and light that comes from
-        /// everywhere beneath it; if absent, where the layout is a maze, rooms, or drawn with letters.
+        /// Whether there is a ceiling, as high as the highest wall of the layout or, without a layout, of the arena, with
+        /// diffuse light below it; if absent, only if the layout is a maze, rooms, or drawn with letters.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub ceiling: Option<bool> = None => Field::ours(Measured(&[CameraAndWeather, ColorsOfSurroundings])),
         /// Colour of the ceiling.
-        #[serde(skip_serializing_if = "is_white_enough")]
+        #[serde(skip_serializing_if = "is_default_ceiling")]
         pub ceiling_color: Color = CEILING => Field::ours(Measured(&[ColorsOfSurroundings])),
         /// Whether objects and walls cast shadows on the ground; they do if absent.
         #[serde(skip_serializing_if = "Option::is_none")]
@@ -100,8 +100,8 @@ fields! {
         /// Whether there are clouds in the sky; there are if absent.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub clouds: Option<bool> = None => Field::ours(Measured(&[CameraAndWeather])),
-        /// Whether depth sees the fog: no distance d is then greater than that of the fog f, and each is
-        /// d · f / √(d² + f²). It looks through the fog otherwise.
+        /// Whether fog limits depth images: each distance d then becomes d · f / √(d² + f²), which stays below the fog distance
+        /// f. Otherwise depth images see through the fog.
         #[serde(skip_serializing_if = "is_default")]
         pub fog_in_depth: bool = false => Field::ours(Measured(&[CameraAndWeather])),
     }
@@ -110,7 +110,7 @@ fields! {
 /// The default colour of the ceiling.
 const CEILING: Color = Color([0.86, 0.85, 0.82]);
 
-fn is_white_enough(color: &Color) -> bool {
+fn is_default_ceiling(color: &Color) -> bool {
     *color == CEILING
 }
 
@@ -159,10 +159,10 @@ impl Looks {
         self.style == Style::Natural && self.clouds.unwrap_or(true)
     }
 
-    fn covering(&self, said: Option<Covering>, own: Surface) -> Covering {
+    fn covering(&self, declared: Option<Covering>, own: Surface) -> Covering {
         match self.style {
             Style::Plain => Covering::of(Surface::Plain),
-            Style::Natural => said.unwrap_or_else(|| Covering::of(own)),
+            Style::Natural => declared.unwrap_or_else(|| Covering::of(own)),
         }
     }
 }
@@ -270,7 +270,7 @@ mod tests {
             short,
             read(r#"{ "style": "natural", "ground": { "surface": "plank", "scale": 1 } }"#)
         );
-        let written = serde_json::to_value(short.expect("it is sound")).expect("it serialises");
+        let written = serde_json::to_value(short.expect("the looks are valid")).expect("it serialises");
         assert_eq!(written, json!({ "style": "natural", "ground": { "surface": "plank" } }));
         assert!(read(r#""pretty""#).is_err_and(|error| error.contains("`plain` or `natural`")));
         assert!(read(r#"{ "gound": "plank" }"#).is_err_and(|error| error.contains("gound")));

@@ -55,10 +55,10 @@ pub const MAX_SEED: u64 = (1 << 53) - 1;
 /// Maximum number of samples in one image: 4096 × 4096 pixels with 2 × 2 samples each.
 pub const MAX_POINTS: u64 = 1 << 26;
 
-/// One fully concrete world: what a reset takes.
+/// One fully concrete world, as passed to a reset.
 ///
-/// A superset of L2Explorer's reset payload. Reading is strict: [`World::from_json`] names every unknown key, wrong type
-/// and value out of range at once, with its place.
+/// A superset of L2Explorer's reset payload. Reading is strict: [`World::from_json`] reports all unknown keys, wrong types and
+/// values out of range at once, each with its line and column.
 ///
 /// # Example
 /// ```
@@ -83,7 +83,7 @@ impl PartialEq for World {
     }
 }
 
-/// Gives read access to the fields of the [`WorldDraft`]; they can be changed only through a draft, so that every world has been
+/// Gives read access to the fields of the [`WorldDraft`]; they can be changed only through a draft, so that every world is
 /// checked.
 impl Deref for World {
     type Target = WorldDraft;
@@ -109,7 +109,7 @@ impl World {
         Self::from_json_with(name, text, None)
     }
 
-    /// Like [`World::from_json`]; if classes are given, also refuses objects with other classes or models.
+    /// Like [`World::from_json`]; if classes are given, also rejects objects with other classes or models.
     ///
     /// # Errors
     /// As [`World::from_json`].
@@ -159,7 +159,7 @@ impl World {
 }
 
 impl WorldDraft {
-    /// All objects whose class or model is unknown.
+    /// The problems of all objects with an unknown class or model.
     pub fn unknown_classes(&self, classes: &Classes) -> Vec<Problem> {
         let objects = self.objects.iter().enumerate();
         objects

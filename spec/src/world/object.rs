@@ -1,4 +1,4 @@
-//! [`Object`]: an object of a world, and what touching it does.
+//! [`Object`]: an object of a world, its appearance, motion and rewards.
 
 use std::borrow::Cow;
 
@@ -15,7 +15,7 @@ use crate::value::{ParameterType, Value};
 pub(crate) const TEXT_PATTERN: &str = "^[A-Z0-9!?<>+ -]*$";
 
 fields! {
-    /// An object: its look, its place, what it is worth.
+    /// An object: its appearance, position, motion and reward.
     ///
     /// Every field but `class` and `coordinates` has a default.
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -25,54 +25,54 @@ fields! {
             "reward_once_stimulus": ["AgentCollide"], "destroy_stimulus": ["AgentCollide"] },
     ]))]
     pub struct Object {
-        /// Kind of asset: `geometric`, `tree`, `barrel`, …; commands refuse classes and models that are not known.
+        /// Kind of asset: `geometric`, `tree`, `barrel`, …; commands reject unknown classes and models.
         #[schemars(length(min = 1, max = 100))]
         pub class: String = String::new() => Field::original(Measured(&[Unmatched, Rewards, UnmatchedLooks])),
-        /// Which asset of the class: its name, such as `sphere` or `fox`, or its number from "1".
+        /// The asset of the class: its name, such as `sphere` or `fox`, or its number from "1".
         #[serde(default)]
         pub model: Model = Model::default() => Field::original(Leaves(ModelsOfObjects)),
-        /// The model of the class whose body it has, whatever it looks like: the shape that is bumped into, and the height from which
-        /// its range is measured. That of its own model if absent.
+        /// The model (of the same class) whose body this object uses, whatever it looks like: the shape that is collided with,
+        /// and the height from which range is measured. Defaults to the object's own model.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub body_model: Option<Model> = None => Field::ours(Leaves(Bodies)),
-        /// What a sign says, in block letters on its front: capital letters, digits, spaces and `! ? < > + -`. Only the class `sign`
-        /// shows it.
+        /// The text of a sign, in block letters on its front: capital letters, digits, spaces and `! ? < > + -`. Only the class
+        /// `sign` shows it.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(length(max = 8), regex(pattern = TEXT_PATTERN))]
         pub text: Option<String> = None => Field::ours(Leaves(ModelsOfObjects)),
         /// Position on the ground in metres.
         #[schemars(inner(range(min = -300.0, max = 300.0)))]
         pub coordinates: [f64; 2] = [0.0; 2] => Field::original(Measured(&[PlacesOfObjects])).unit("m"),
-        /// Where the object faces, in degrees: 0 is +y, growing clockwise.
+        /// The direction the object faces, in degrees clockwise from +y.
         #[serde(default)]
         #[schemars(range(min = 0.0, max = 360.0))]
         pub heading: f64 = 0.0 => Field::ours(Measured(&[HeadingsOfObjects])).heading(),
-        /// Factor on the asset's natural size.
+        /// Size relative to the asset's natural size.
         #[serde(default = "one")]
         #[schemars(range(min = 0.01, max = 100.0))]
         pub scale: f64 = 1.0 => Field::ours(Measured(&[SizesOfObjects])),
         /// Main colour; the asset's own colours if absent.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub color: Option<Color> = None => Field::original(Measured(&[ColorsOfObjects])),
-        /// What covers it, where the world's looks are natural: a pattern at its own size in metres, whatever the object's `scale`.
+        /// Its surface pattern, shown only in worlds with natural looks; drawn at its own size in metres regardless of `scale`.
         #[serde(default, skip_serializing_if = "is_default")]
         pub surface: Surface = Surface::Plain => Field::ours(Leaves(ModelsOfObjects)),
-        /// Whether the agent is stopped by it.
+        /// Whether it stops the agent.
         #[serde(default = "yes")]
         pub solid: bool = true => Field::ours(Leaves(Bodies)),
-        /// Makes it a body that the agent pushes along the ground; absent for one that stands fast. Only solid objects that do not
-        /// move by themselves are pushed.
+        /// Makes it a body that the agent can push along the ground; absent if it stays put. Only solid objects that do not
+        /// move by themselves can be pushed.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub pushable: Option<Pushable> = None => Field::ours(Leaves(Bodies)),
-        /// What one triggering is worth.
+        /// Reward each time the object is triggered.
         #[serde(default)]
         #[schemars(range(min = -1e9, max = 1e9))]
         pub reward: f64 = 0.0 => Field::original(Measured(&[Rewards])),
-        /// Probability that triggering pays at all (a bandit arm), 0..1.
+        /// Probability that a trigger pays the reward (a bandit arm), 0..1.
         #[serde(default = "one", skip_serializing_if = "is_one")]
         #[schemars(range(min = 0.0, max = 1.0))]
         pub reward_probability: f64 = 1.0 => Field::ours(Measured(&[RewardProbabilities])),
-        /// Stimuli of which each triggering pays `reward`.
+        /// Stimuli that pay `reward` every time they occur.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         #[schemars(length(max = 3))]
         pub reward_stimulus: Vec<Stimulus> = Vec::new() => Field::original(Leaves(PaidFor)),
@@ -95,7 +95,7 @@ fields! {
         #[serde(default, skip_serializing_if = "is_default")]
         #[schemars(range(min = 0.0, max = 100.0))]
         pub speed: f64 = 0.0 => Field::ours(Leaves(Motion)).unit("m/s"),
-        /// Largest turn of the object's own motion in degrees per second; at once if absent.
+        /// Maximum turn rate of the object's own motion in degrees per second; turns instantly if absent.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = 0.0, max = 3600.0))]
         pub turn_rate: Option<f64> = None => Field::ours(Leaves(Motion)).unit("degrees/s"),
@@ -107,24 +107,24 @@ fields! {
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         #[schemars(length(max = 1000), inner(inner(range(min = -1e4, max = 1e4))))]
         pub waypoints: Vec<[f64; 2]> = Vec::new() => Field::ours(Leaves(Motion)).unit("m"),
-        /// Place in a scavenger sequence, from 1: it pays only when all lower places have been collected.
+        /// Position in a scavenger sequence, from 1: it pays only once all objects with lower numbers have been collected.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = 1, max = 100_000))]
         pub order: Option<u32> = None => Field::ours(Leaves(PaidFor)),
         /// How the object comes back after it was destroyed.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub respawn: Option<Respawn> = None => Field::ours(Leaves(Bodies)),
-        /// The seed of its own random numbers, whatever else is in the world and in which order. Sampled objects
-        /// have one of their group's name and their number in it; without it the place where it starts decides. Objects
-        /// that share one are distinguished by their order.
+        /// Seed of the object's own random numbers, so that they do not depend on other objects or their order. Sampled objects
+        /// get a seed derived from their group's name and their number in the group. If absent, the seed is derived from the
+        /// object's starting position. Objects with the same seed are told apart by their order.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = 0, max = MAX_SEED))]
         pub seed: Option<u64> = None => Field::ours(Not("two worlds that differ in their seeds alone are two runs of one world")),
-        /// A free word that rules and logs refer to; the name of the group for sampled objects.
+        /// A free-form label by which rules and logs refer to it; the name of the group for sampled objects.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(length(min = 1, max = 100))]
-        pub tag: Option<String> = None => Field::ours(Not("it is a name: what rules make of it is compared")),
-        /// A name that no other object of the world has.
+        pub tag: Option<String> = None => Field::ours(Not("it is only a name; its effect through the rules is what is compared")),
+        /// A name that is unique in the world.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(length(min = 1, max = 100))]
         pub unique_name: Option<String> = None => Field::original(Not("it is a name"))
@@ -132,13 +132,14 @@ fields! {
         /// Makes it a door.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub door: Option<Door> = None => Field::ours(Leaves(Bodies)),
-        /// Makes it a switch of doors.
+        /// Makes it a switch for doors.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub switch: Option<Switch> = None => Field::ours(Leaves(Bodies)),
         /// Makes it a thing that the agent can carry, such as a key.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub portable: Option<Portable> = None => Field::ours(Leaves(Bodies)),
-        /// Energy that the agent gains when a triggering pays its reward, be that 0, or destroys it; once for what pays once.
+        /// Energy the agent gains whenever the object pays its reward (even a reward of 0) or is destroyed; only once if the
+        /// reward is paid only once.
         #[serde(default, skip_serializing_if = "is_default")]
         #[schemars(range(min = -1e9, max = 1e9))]
         pub energy: f64 = 0.0 => Field::ours(Leaves(Bodies)),
@@ -146,15 +147,15 @@ fields! {
         /// range comes into it in the first time step.
         #[serde(default, skip_serializing_if = "is_default")]
         pub range_trigger: Trigger = Trigger::Edge => Field::ours(Leaves(PaidFor)),
-        /// How often `AgentCollide` holds: when the bodies meet, or at every time step in which they touch. An agent that starts in
-        /// touch meets it in the first time step.
+        /// How often `AgentCollide` holds: when the bodies meet, or at every time step in which they touch. An agent that
+        /// starts in contact with it counts as meeting it in the first time step.
         #[serde(default, skip_serializing_if = "is_default")]
         pub contact_trigger: Trigger = Trigger::Edge => Field::ours(Leaves(PaidFor)),
     }
 }
 
 impl Object {
-    /// An object of this class at this place in metres, with everything else at its default.
+    /// An object of this class at this position in metres, with everything else at its default.
     pub fn new(class: impl Into<String>, coordinates: [f64; 2]) -> Self {
         Self {
             class: class.into(),
@@ -173,7 +174,7 @@ impl Object {
         self.door.is_some() || self.switch.is_some() || self.portable.is_some()
     }
 
-    /// Whether its behaviour is random: it wanders, pays with a probability, or returns at a random place.
+    /// Whether its behaviour is random: it wanders, pays with a probability, or respawns.
     pub fn takes_chances(&self) -> bool {
         self.motion_model == MotionModel::RandomWaypoint || self.reward_probability < 1.0 || self.respawn.is_some()
     }
@@ -218,7 +219,7 @@ impl JsonSchema for Model {
 
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         json_schema!({
-            "description": "Which asset of the class: \"1\", 1, or a name such as \"sphere\".",
+            "description": "The asset of the class: \"1\", 1, or a name such as \"sphere\".",
             "anyOf": [
                 { "type": "string", "minLength": 1, "maxLength": 100 },
                 { "type": "integer", "minimum": 0, "maximum": 1_000_000 }
@@ -227,20 +228,20 @@ impl JsonSchema for Model {
     }
 }
 
-/// What sets an object off.
+/// A stimulus that triggers an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
 #[expect(clippy::enum_variant_names, reason = "the words of L2Explorer's documents")]
 pub enum Stimulus {
-    /// The agent's body meets the object's; again when it comes back from at least a quarter of a metre away.
+    /// The agent's body meets the object's; fires again only after they have been at least a quarter of a metre apart.
     AgentCollide,
-    /// The agent interacts while the object is in the 1 m cube right in front of it.
+    /// The agent interacts while the object is in the 1 m cube directly in front of it.
     AgentInteract,
-    /// The centres come closer than `range_stimulus_distance`, even for a part of a step; again when they come back from a quarter of
-    /// a metre beyond.
+    /// The centres come closer than `range_stimulus_distance`, even for part of a step; fires again only after they have been a
+    /// quarter of a metre farther apart than that.
     AgentInRange,
 }
 
-/// How often a stimulus sets an object off while it lasts.
+/// How often a stimulus triggers an object while it lasts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Trigger {
@@ -255,22 +256,22 @@ pub enum Trigger {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum MotionModel {
-    /// It does not.
+    /// It does not move.
     #[default]
     Stationary,
     /// Towards the agent.
     Predator,
     /// Away from the agent.
     Prey,
-    /// To random points, one after the other.
+    /// To random points, one after another.
     RandomWaypoint,
     /// Along its `waypoints`.
     Patrol,
 }
 
 fields! {
-    /// How an object comes back: with the heading and reward that it began with, at rest. Where no free place is found for it
-    /// in a time step, it is looked for again in the next. What it paid or counted for before its return stays so.
+    /// How an object comes back: with its initial heading and reward, at rest. If no free position is found in a time step, the
+    /// search continues in the next one. Rewards already paid, and credit already given, are not undone by its return.
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
     #[serde(deny_unknown_fields)]
     #[schemars(extend("examples" = [{ "delay": 5, "radius": 10 }]))]
@@ -278,7 +279,7 @@ fields! {
         /// Seconds between its destruction and its return.
         #[schemars(range(min = 0.0, max = 1e6))]
         pub delay: f64 => Field::ours(AsPart).unit("s"),
-        /// Radius in metres around its first place within which it returns; 0 is the same place.
+        /// Radius in metres around its initial position within which it returns; 0 means the same position.
         #[serde(default)]
         #[schemars(range(min = 0.0, max = 300.0))]
         pub radius: f64 => Field::ours(AsPart).unit("m"),

@@ -1,4 +1,4 @@
-//! [`Progress`]: the state of a running world, without which a saved world could not continue unchanged.
+//! [`Progress`]: the state of a running world, with which a saved world continues exactly as if it had not been interrupted.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -8,18 +8,18 @@ use super::fields::Place;
 use crate::error::Problem;
 use crate::serde_defaults::{is_default, is_true};
 
-/// The course of a running world; absent at its start.
+/// The progress of a running world; absent at its start.
 ///
-/// The objects of a world with progress are those of its start and those that were spawned since, where they are now; the
-/// destroyed ones are among them. `Environment::state` writes it, a reset to such a world goes on from there.
+/// The objects of a world with progress are its initial objects and those spawned since, including destroyed ones, at their
+/// current positions. `Environment::state` writes it; a reset to such a world continues from there.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 #[schemars(extend("examples" = [
     { "steps": 2, "ticks": 2, "episode_return": 1, "unshaped_return": 1, "velocity": [0, 1], "objects": [{ "collected": true }] },
 ]))]
 pub struct Progress {
-    /// In a world without a `seed`, what its random numbers follow from: the hash of where things stood at the start, 64 hexadecimal
-    /// letters. Absent if nothing is random.
+    /// In a world without a `seed`, the source of its random numbers: the hash of the initial positions, 64 hexadecimal digits.
+    /// Absent if nothing is random.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(regex(pattern = "^[0-9a-f]{64}$"))]
     pub seed: Option<String>,
@@ -27,15 +27,15 @@ pub struct Progress {
     #[schemars(range(min = 0, max = 4_294_967_295_u32))]
     pub steps: u32,
     /// Time steps since the start.
-    #[schemars(range(min = 0, max = MOST_TICKS))]
+    #[schemars(range(min = 0, max = MAX_TICKS))]
     pub ticks: u64,
     /// The sum of rewards since the start.
     #[schemars(range(min = -1e15, max = 1e15))]
     pub episode_return: f64,
-    /// The same without what shaping paid.
+    /// The sum of rewards since the start, without shaping.
     #[schemars(range(min = -1e15, max = 1e15))]
     pub unshaped_return: f64,
-    /// What the last step paid.
+    /// Reward of the last step.
     #[serde(skip_serializing_if = "is_default")]
     #[schemars(range(min = -1e15, max = 1e15))]
     pub last_reward: f64,
@@ -48,25 +48,25 @@ pub struct Progress {
     /// The agent's velocity over the last time step in metres per second.
     #[schemars(inner(range(min = -1e6, max = 1e6)))]
     pub velocity: [f64; 2],
-    /// Where the agent set out; absent if it is there.
+    /// The agent's initial state; absent if unchanged.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub origin: Option<Origin>,
-    /// Written by versions of Driftworld before objects had random streams of their own. Accepted and ignored.
+    /// Written by versions of Driftworld in which objects had no random streams of their own. Accepted and ignored.
     #[serde(rename = "chance", skip_serializing)]
-    #[schemars(range(min = 0, max = MOST))]
+    #[schemars(range(min = 0, max = MAX_INTEGER))]
     pub former_draws: Option<u64>,
-    /// What an agent on rails is about to do.
+    /// The current target of an agent on rails.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rails: Option<RailsProgress>,
-    /// Places in the list of the zones that the agent has entered and is in, rising.
+    /// Indices of the zones that the agent has entered and is still in, in ascending order.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[schemars(length(max = 1000), inner(range(min = 0, max = 999)))]
     pub zones: Vec<u32>,
-    /// The agent's energy; absent if it has none to use.
+    /// The agent's energy; absent in worlds without energy.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0, max = 1e9))]
     pub energy: Option<f64>,
-    /// One for each object, in order.
+    /// One entry for each object, in order.
     #[schemars(length(max = 100_000))]
     pub objects: Vec<ObjectProgress>,
     /// Indices of the objects that the agent carries, in the order in which it picked them up.
@@ -79,118 +79,115 @@ pub struct Progress {
 impl Place for Progress {}
 
 /// The largest integer that every JSON reader represents exactly: 2⁵³ − 1.
-const MOST: u64 = (1 << 53) - 1;
+const MAX_INTEGER: u64 = (1 << 53) - 1;
 
-/// Maximum number of draws of one kind; leaves room for as many again.
-const MOST_DRAWN: u64 = 1 << 31;
+/// Maximum number of draws of one kind; leaves room for the same number again.
+const MAX_DRAWS: u64 = 1 << 31;
 
-/// Maximum number of time steps; leaves room for as many again.
-const MOST_TICKS: u64 = 1 << 52;
+/// Maximum number of time steps; leaves room for the same number again.
+const MAX_TICKS: u64 = 1 << 52;
 
-/// An event, as the state vector tells it.
+/// An event, as reported in the state vector.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(extend("examples" = [{ "stimulus": "AgentCollide", "reward": 1, "destroyed": false }]))]
 pub struct LastEvent {
-    /// What set it off.
+    /// The stimulus that caused it.
     pub stimulus: super::Stimulus,
-    /// What was paid for it.
+    /// The reward paid for it.
     #[schemars(range(min = -1e15, max = 1e15))]
     pub reward: f64,
     /// Whether it destroyed the object.
     pub destroyed: bool,
 }
 
-/// How something stood at the start.
+/// The initial state of the agent or an object.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(extend("examples" = [{ "coordinates": [3, 4], "heading": 90, "reward": 1 }]))]
 pub struct Origin {
-    /// Its place in metres.
+    /// Its position in metres.
     #[schemars(inner(range(min = -300.0, max = 300.0)))]
     pub coordinates: [f64; 2],
     /// Its heading in degrees.
     #[schemars(range(min = 0.0, max = 360.0))]
     pub heading: f64,
-    /// What one triggering was worth.
+    /// Its reward each time it is triggered.
     #[serde(default, skip_serializing_if = "is_default")]
     #[schemars(range(min = -1e9, max = 1e9))]
     pub reward: f64,
 }
 
-/// How far an object has come.
+/// The progress of an object.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
-#[expect(
-    clippy::struct_excessive_bools,
-    reason = "facts that have nothing to do with each other"
-)]
+#[expect(clippy::struct_excessive_bools, reason = "the facts are independent")]
 #[schemars(extend("examples" = [{ "present": false, "collected": true, "returns_at": 99 }]))]
 pub struct ObjectProgress {
-    /// Whether it is there.
+    /// Whether it is present.
     #[serde(skip_serializing_if = "is_true")]
     pub present: bool,
-    /// Whether it has paid, or was destroyed: places in a sequence count on it.
+    /// Whether it has paid, or was destroyed: sequences depend on it.
     #[serde(skip_serializing_if = "is_default")]
     pub collected: bool,
-    /// Whether the agent touches it, so that it is no new contact.
+    /// Whether the agent is touching it, so that touching it is not a new contact.
     #[serde(skip_serializing_if = "is_default")]
     pub touched: bool,
     /// Whether the agent was in its range at the end of the last step.
     #[serde(skip_serializing_if = "is_default")]
     pub in_range: bool,
-    /// How it stood at the start; absent if it still stands so.
+    /// Its initial state; absent if unchanged.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub origin: Option<Origin>,
-    /// The time step in which it comes back.
+    /// The time step in which it returns.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0, max = MOST))]
+    #[schemars(range(min = 0, max = MAX_INTEGER))]
     pub returns_at: Option<u64>,
-    /// Where a wanderer is going, in metres.
+    /// The current goal of a wandering object, in metres.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(inner(inner(range(min = -300.0, max = 300.0))))]
     pub goal: Option<[f64; 2]>,
-    /// Number of the next point of a patrol, from 0.
+    /// Index of the next waypoint of a patrol, from 0.
     #[serde(skip_serializing_if = "is_default")]
     #[schemars(range(min = 0, max = 999))]
     pub waypoint: u32,
-    /// How many goals a wanderer has drawn.
+    /// Number of goals that a wandering object has drawn.
     #[serde(skip_serializing_if = "is_default")]
-    #[schemars(range(min = 0, max = MOST_DRAWN))]
+    #[schemars(range(min = 0, max = MAX_DRAWS))]
     pub goals: u64,
-    /// How often a bandit arm has been pulled: each pull is one draw, whatever it pays.
+    /// Number of pulls of a bandit arm: each pull is one draw, whatever it pays.
     #[serde(skip_serializing_if = "is_default")]
-    #[schemars(range(min = 0, max = MOST_DRAWN))]
+    #[schemars(range(min = 0, max = MAX_DRAWS))]
     pub pulls: u64,
-    /// How often it has come back.
+    /// Number of times it has returned.
     #[serde(skip_serializing_if = "is_default")]
-    #[schemars(range(min = 0, max = MOST_DRAWN))]
+    #[schemars(range(min = 0, max = MAX_DRAWS))]
     pub returns: u64,
-    /// Places that were tried for its next return.
+    /// Number of positions tried for its next return.
     #[serde(skip_serializing_if = "is_default")]
-    #[schemars(range(min = 0, max = MOST_DRAWN))]
+    #[schemars(range(min = 0, max = MAX_DRAWS))]
     pub tries: u64,
-    /// As `chance` of the whole: accepted and ignored.
+    /// Like `chance` of the world's progress: accepted and ignored.
     #[serde(rename = "chance", skip_serializing)]
-    #[schemars(range(min = 0, max = MOST))]
+    #[schemars(range(min = 0, max = MAX_INTEGER))]
     pub former_draws: Option<u64>,
-    /// Velocity of what was pushed, in metres per second.
+    /// Velocity of a pushed object, in metres per second.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(inner(inner(range(min = -1e6, max = 1e6))))]
     pub velocity: Option<[f64; 2]>,
-    /// How fast what was pushed turns, in degrees per second clockwise.
+    /// Turn rate of a pushed object, in degrees per second clockwise.
     #[serde(skip_serializing_if = "is_default")]
     #[schemars(range(min = -1e9, max = 1e9))]
     pub spin: f64,
-    /// Whether a door is open; as at the start if absent.
+    /// Whether a door is open; unchanged since the start if absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub open: Option<bool>,
     /// Whether a door was unlocked by its key.
     #[serde(skip_serializing_if = "is_default")]
     pub unlocked: bool,
-    /// The time step from which on an open door closes, as soon as nobody stands in it.
+    /// The time step from which an open door closes, as soon as nothing stands in it.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0, max = MOST))]
+    #[schemars(range(min = 0, max = MAX_INTEGER))]
     pub closes_at: Option<u64>,
 }
 
@@ -219,26 +216,26 @@ impl Default for ObjectProgress {
     }
 }
 
-/// What an agent on rails is about to do.
+/// The current target of an agent on rails.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 #[schemars(extend("examples" = [{ "target": 0, "goal": [3, 4], "avoided": [1], "patience": 7 }]))]
 pub struct RailsProgress {
-    /// Index of the object that it goes to.
+    /// Index of the target object.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0, max = 99_999))]
     pub target: Option<u32>,
-    /// Where that object stood when it was chosen, in metres.
+    /// Position of the target when it was chosen, in metres.
     #[schemars(inner(range(min = -300.0, max = 300.0)))]
     pub goal: [f64; 2],
-    /// Indices of the objects that the way leads around.
+    /// Indices of the objects that the path avoids.
     #[schemars(length(max = 100_000), inner(range(min = 0, max = 99_999)))]
     pub avoided: Vec<u32>,
-    /// Steps on this target.
+    /// Number of steps spent on this target.
     #[serde(rename = "patience")]
     #[schemars(range(min = 0, max = 4_294_967_295_u32))]
     pub steps_on_target: u32,
-    /// Indices of the targets that were left for later.
+    /// Indices of the targets postponed for later.
     #[schemars(length(max = 100_000), inner(range(min = 0, max = 99_999)))]
     pub given_up: Vec<u32>,
 }
@@ -287,12 +284,16 @@ fn carried_problems(world: &WorldDraft, progress: &Progress) -> Vec<Problem> {
         let is_away = |own: &ObjectProgress| !own.present && own.returns_at.is_none();
         is_portable && progress.objects.get(index).is_some_and(is_away)
     };
-    let mut places = carried.iter().enumerate();
-    if let Some((place, thing)) =
-        places.find(|(place, thing)| !is_carried(**thing) || carried[..*place].contains(thing))
+    let mut entries = carried.iter().enumerate();
+    if let Some((position, thing)) =
+        entries.find(|(position, thing)| !is_carried(**thing) || carried[..*position].contains(thing))
     {
         let expected = "a portable object, once, that is not present and does not return";
-        problems.push(wrong(&format!("carried/{place}"), format!("object {thing}"), expected));
+        problems.push(wrong(
+            &format!("carried/{position}"),
+            format!("object {thing}"),
+            expected,
+        ));
     }
     let limit = world.agent_params.carry_limit;
     if carried.len() > limit as usize {
@@ -302,13 +303,13 @@ fn carried_problems(world: &WorldDraft, progress: &Progress) -> Vec<Problem> {
     problems
 }
 
-fn wrong(place: &str, found: impl Into<String>, expected: impl Into<String>) -> Problem {
-    Problem::new("spec/progress", format!("/progress/{place}"), found, expected)
+fn wrong(position: &str, found: impl Into<String>, expected: impl Into<String>) -> Problem {
+    Problem::new("spec/progress", format!("/progress/{position}"), found, expected)
 }
 
 /// The problem of the first index that is out of range.
-fn beyond(place: &str, what: &str, numbers: impl IntoIterator<Item = u32>, count: usize) -> Option<Problem> {
+fn beyond(position: &str, noun: &str, numbers: impl IntoIterator<Item = u32>, count: usize) -> Option<Problem> {
     let number = numbers.into_iter().find(|number| *number as usize >= count)?;
-    let expected = format!("one of {count} {what}s, counted from 0");
-    Some(wrong(place, format!("{what} {number}"), expected))
+    let expected = format!("one of {count} {noun}s, counted from 0");
+    Some(wrong(position, format!("{noun} {number}"), expected))
 }

@@ -9,13 +9,14 @@ use crate::warning::{Remarks, Warning};
 impl Object {
     /// Whether the object should move by itself but cannot: it has no speed, or its patrol has no waypoints.
     pub fn stands_still(&self) -> bool {
-        let goes_nowhere = self.motion_model == MotionModel::Patrol && self.waypoints.is_empty();
-        self.motion_model != MotionModel::Stationary && (self.speed == 0.0 || goes_nowhere)
+        let has_no_waypoints = self.motion_model == MotionModel::Patrol && self.waypoints.is_empty();
+        self.motion_model != MotionModel::Stationary && (self.speed == 0.0 || has_no_waypoints)
     }
 }
 
 impl World {
-    /// The remarks on this world, with their places in the text it was read from; `name` is the text's name in messages.
+    /// The remarks on this world, with their lines and columns in the text from which it was read; `name` is the text's name in
+    /// messages.
     ///
     /// # Example
     /// ```
@@ -29,15 +30,15 @@ impl World {
     /// # Ok::<(), driftworld_spec::SpecError>(())
     /// ```
     pub fn remarks(&self, name: &str, text: &str) -> Vec<Warning> {
-        self.found_odd().in_text(name, text)
+        self.collect_remarks().in_text(name, text)
     }
 
     /// Like [`World::remarks`], for a world that was not read from a text: without lines and columns.
     pub fn remarks_without_text(&self) -> Vec<Warning> {
-        self.found_odd().without_text("world")
+        self.collect_remarks().without_text("world")
     }
 
-    fn found_odd(&self) -> Remarks {
+    fn collect_remarks(&self) -> Remarks {
         let mut remarks = Remarks::default();
         let arena = &self.environment_params;
         let [width, depth] = arena.arena_size();
@@ -91,13 +92,13 @@ impl World {
             }
             if object.stands_still() {
                 let model = serde_json::to_value(object.motion_model).unwrap_or_default();
-                let lack = if object.speed == 0.0 {
+                let missing = if object.speed == 0.0 {
                     "it has no speed; set \"speed\""
                 } else {
                     "it has no waypoints; set \"waypoints\""
                 };
                 let (class, model) = (&object.class, model.as_str().unwrap_or_default());
-                let text = format!("the {class} is to move as {model} and stands still: {lack}");
+                let text = format!("the {class} is to move as {model} and stands still: {missing}");
                 remarks.push(format!("/objects/{index}/motion_model"), text);
             }
         }
@@ -107,7 +108,7 @@ impl World {
         remarks
     }
 
-    /// Polygons of walls and zones without area, or that cross themselves.
+    /// Polygons of walls and zones that have no area or cross themselves.
     fn polygon_faults(&self) -> Vec<(String, &'static str)> {
         let arena = &self.environment_params;
         let walls = arena.walls.iter().map(|wall| Some(&wall.polygon));
@@ -124,10 +125,10 @@ impl World {
                 arena.zones.iter().map(|zone| zone.polygon.as_ref()).collect(),
             ),
         ];
-        let (mut left, mut faults) = (MOST_PAIRS, Vec::new());
+        let (mut pairs_left, mut faults) = (MAX_PAIRS, Vec::new());
         for (list, polygons) in lists {
             for (index, corners) in polygons.into_iter().enumerate() {
-                let fault = corners.and_then(|corners| polygon_fault(corners, &mut left));
+                let fault = corners.and_then(|corners| polygon_fault(corners, &mut pairs_left));
                 faults.extend(fault.map(|fault| (format!("{list}/{index}/polygon"), fault)));
             }
         }
@@ -145,7 +146,7 @@ impl World {
         is_end || object.is_target()
     }
 
-    /// Why an object cannot be reached: it is outside the arena, or inside this wall; `None` on free ground.
+    /// Why an object cannot be reached: it is outside the arena, or inside a wall; `None` on free ground.
     pub(crate) fn out_of_reach(&self, object: &Object) -> Option<String> {
         let place = self.environment_params.out_of_reach(object.coordinates, self.plan())?;
         let ([x, y], class) = (object.coordinates, &object.class);
@@ -156,10 +157,10 @@ impl World {
 }
 
 /// Maximum number of pairs of polygon sides to compare in one world.
-const MOST_PAIRS: usize = 2_000_000;
+const MAX_PAIRS: usize = 2_000_000;
 
-/// The fault of a polygon; `left` is the number of pairs of sides that may still be compared.
-fn polygon_fault(corners: &[[f64; 2]], left: &mut usize) -> Option<&'static str> {
+/// The fault of a polygon; `pairs_left` is the number of pairs of sides that may still be compared.
+fn polygon_fault(corners: &[[f64; 2]], pairs_left: &mut usize) -> Option<&'static str> {
     let turn = |a: [f64; 2], b: [f64; 2], c: [f64; 2]| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
     let first = *corners.first()?;
     if corners
@@ -169,11 +170,12 @@ fn polygon_fault(corners: &[[f64; 2]], left: &mut usize) -> Option<&'static str>
         return Some("has no area");
     }
     let sides: Vec<_> = corners.iter().zip(corners.iter().cycle().skip(1)).collect();
-    *left = left.checked_sub(sides.len() * sides.len() / 2)?;
-    let are_apart = |p: f64, q: f64| (p > 0.0 && q < 0.0) || (p < 0.0 && q > 0.0);
+    *pairs_left = pairs_left.checked_sub(sides.len() * sides.len() / 2)?;
+    let have_opposite_signs = |p: f64, q: f64| (p > 0.0 && q < 0.0) || (p < 0.0 && q > 0.0);
     let crosses = |(index, (a, b)): (usize, &(&[f64; 2], &[f64; 2]))| {
         sides[..index].iter().any(|(c, d)| {
-            are_apart(turn(**a, **b, **c), turn(**a, **b, **d)) && are_apart(turn(**c, **d, **a), turn(**c, **d, **b))
+            have_opposite_signs(turn(**a, **b, **c), turn(**a, **b, **d))
+                && have_opposite_signs(turn(**c, **d, **a), turn(**c, **d, **b))
         })
     };
     sides.iter().enumerate().any(crosses).then_some("crosses itself")
@@ -203,15 +205,17 @@ mod tests {
                     r#"{{ "environment_params": {{ "{part}": {list} }}, "agent_params": {{ "coordinates": [-9, -9] }} }}"#
                 );
                 let world = World::from_json("w", &text).expect("it is valid");
-                let said: Vec<String> = world.remarks("w", &text).iter().map(ToString::to_string).collect();
-                let fits = said.iter().filter(|said| said.contains("/0/polygon): the polygon "));
+                let remarks_of: Vec<String> = world.remarks("w", &text).iter().map(ToString::to_string).collect();
+                let fits = remarks_of
+                    .iter()
+                    .filter(|remarks_of| remarks_of.contains("/0/polygon): the polygon "));
                 let fits: Vec<bool> = fits
-                    .map(|said| expected.is_some_and(|expected| said.contains(expected)))
+                    .map(|remarks_of| expected.is_some_and(|expected| remarks_of.contains(expected)))
                     .collect();
                 assert_eq!(
                     fits,
                     vec![true; usize::from(expected.is_some())],
-                    "{part} {polygon}: {said:?}"
+                    "{part} {polygon}: {remarks_of:?}"
                 );
             }
         }
@@ -219,7 +223,7 @@ mod tests {
 
     #[test]
     fn start_and_goal_in_a_failing_zone_get_remarks() {
-        let said = |start: [f64; 2], goal: [f64; 2], ends: Option<ZoneEnd>| {
+        let remarks_of = |start: [f64; 2], goal: [f64; 2], ends: Option<ZoneEnd>| {
             let mut world = WorldDraft::default();
             let mut zone = Zone::disc([5.0, 0.0], 2.0);
             zone.ends = ends;
@@ -232,20 +236,20 @@ mod tests {
                 success: vec![EndCondition::Touch("goal".to_owned())],
                 ..Rules::default()
             };
-            let world = world.check().expect("the world is sound");
+            let world = world.check().expect("the world is valid");
             let text = serde_json::to_string(&world).expect("a world is JSON");
             let remarks = world.remarks("w.json", &text);
             remarks.iter().map(ToString::to_string).collect::<Vec<_>>()
         };
         let fails = Some(ZoneEnd::Failure);
-        assert_eq!(said([-5.0, 0.0], [-9.0, 0.0], fails), [""; 0]);
-        assert_eq!(said([5.0, 0.0], [5.0, 0.0], Some(ZoneEnd::Success)), [""; 0]);
-        let start = said([5.0, 1.0], [-9.0, 0.0], fails);
+        assert_eq!(remarks_of([-5.0, 0.0], [-9.0, 0.0], fails), [""; 0]);
+        assert_eq!(remarks_of([5.0, 0.0], [5.0, 0.0], Some(ZoneEnd::Success)), [""; 0]);
+        let start = remarks_of([5.0, 1.0], [-9.0, 0.0], fails);
         assert!(
             start.len() == 1 && start[0].contains("the agent starts in zone 0"),
             "{start:?}"
         );
-        let goal = said([-5.0, 0.0], [4.0, 0.0], fails);
+        let goal = remarks_of([-5.0, 0.0], [4.0, 0.0], fails);
         assert!(
             goal.len() == 1 && goal[0].contains("the cube stands in zone 0"),
             "{goal:?}"

@@ -1,4 +1,4 @@
-//! [`Rules`]: rewards of an episode besides those of objects, and the conditions that end it early.
+//! [`Rules`]: rewards of an episode in addition to those of objects, and the conditions that end it early.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -16,19 +16,20 @@ fields! {
         { "step_reward": -0.1, "shaping": { "toward": "goal", "scale": 1 }, "success": ["all_collected"], "failure": [{ "return_at_most": -50 }] },
     ]))]
     pub struct Rules {
-        /// Paid at every step; a small negative number makes haste worth while.
+        /// Paid at every step; a small negative number rewards haste.
         #[schemars(range(min = -1e9, max = 1e9))]
         pub step_reward: f64 = 0.0 => Field::ours(Measured(&[StepReward])),
-        /// Paid for every second of the world's own time, in each time step its share. Unlike `step_reward` it does not depend on how
-        /// long a step lasts.
+        /// Paid per simulated second, proportionally in each time step. Unlike `step_reward`, it does not depend on the length
+        /// of a step.
         #[serde(skip_serializing_if = "is_default")]
         #[schemars(range(min = -1e9, max = 1e9))]
         pub reward_per_second: f64 = 0.0 => Field::ours(Measured(&[StepReward])),
-        /// Paid, in place of its reward, for setting off an object before its turn in a sequence; at most 0 makes it a penalty.
+        /// Paid instead of an object's reward if the object is triggered before its turn in a sequence; a negative number makes
+        /// it a penalty.
         #[serde(skip_serializing_if = "is_default")]
         #[schemars(range(min = -1e9, max = 1e9))]
         pub order_penalty: f64 = 0.0 => Field::ours(Leaves(ShapingAndEndings)),
-        /// A soft reward for coming closer.
+        /// A shaping reward for coming closer.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub shaping: Option<Shaping> = None => Field::ours(Leaves(ShapingAndEndings)),
         /// Any of these ends the episode as a success.
@@ -45,11 +46,11 @@ fields! {
 fields! {
     /// Potential-based shaping: each step pays `discount × potential after − potential before`.
     ///
-    /// The potential is `−scale ×` the distance in metres to the nearest object that draws the agent; it is 0 where there is none,
-    /// and at the end of an episode that ends by itself. So the best policy of a learner with this discount stays the best (Ng, Harada
-    /// and Russell 1999): with discount 1, all episodes that end by themselves are paid the same in all, `scale ×` the first
-    /// distance. When the nearest object is taken away the potential falls to that of the next: the step that collects pays less by
-    /// that. Conditions on the return do not count what shaping pays.
+    /// The potential is `−scale ×` the distance in metres to the nearest attracting object; it is 0 if there is none, and at
+    /// the end of an episode that terminates. The optimal policy of a learner with this discount therefore stays optimal (Ng,
+    /// Harada and Russell 1999): with discount 1, shaping pays every episode that terminates the same total, `scale ×` the
+    /// first distance. When the nearest object is removed, the potential falls to that of the next one, and the step that
+    /// collects it pays that much less. Conditions on the return ignore shaping.
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
     #[serde(deny_unknown_fields)]
     #[schemars(extend("examples" = [
@@ -57,8 +58,8 @@ fields! {
         { "scale": 0.1, "discount": 0.99 },
     ]))]
     pub struct Shaping {
-        /// Tag of the objects that draw the agent; if absent, all objects that pay a positive reward
-        /// now, their turn in a sequence included.
+        /// Tag of the attracting objects; if absent, all objects that would pay a positive reward now, taking their turn in a
+        /// sequence into account.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(length(min = 1, max = 100))]
         pub toward: Option<String> => Field::ours(AsPart),
@@ -72,7 +73,7 @@ fields! {
     }
 }
 
-/// What ends an episode.
+/// A condition that ends an episode.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 #[schemars(extend("examples" = [
@@ -85,35 +86,35 @@ fields! {
 pub enum EndCondition {
     /// No object is left that pays a positive reward.
     AllCollected,
-    /// The agent touches, or interacts with, an object of this tag.
+    /// The agent touches, or interacts with, an object with this tag.
     Touch(#[schemars(length(min = 1, max = 100))] String),
-    /// The return of the episode, without shaping, reaches this.
+    /// The return of the episode, without shaping, reaches this number.
     ReturnAtLeast(f64),
-    /// The return of the episode, without shaping, falls to this.
+    /// The return of the episode, without shaping, falls to this number.
     ReturnAtMost(f64),
-    /// A door of this tag is open.
+    /// A door with this tag is open.
     Opened(#[schemars(length(min = 1, max = 100))] String),
-    /// The agent carries a thing of this tag.
+    /// The agent carries a thing with this tag.
     Carried(#[schemars(length(min = 1, max = 100))] String),
-    /// Every thing of a tag lies near an object of another.
+    /// Every thing with one tag lies near an object with another tag.
     Delivered(Delivery),
-    /// The agent's energy is used up; never where it has none to use.
+    /// The agent's energy is used up; never in worlds without energy.
     OutOfEnergy,
 }
 
 fields! {
-    /// Which things are to lie where.
+    /// Things to be delivered, and their destination.
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
     #[serde(deny_unknown_fields)]
     #[schemars(extend("examples" = [{ "tag": "ball", "to": "box", "within": 2 }]))]
     pub struct Delivery {
-        /// Tag of the things. All that are left must lie there, and one at least; what is carried does not lie.
+        /// Tag of the things. All of them that remain must lie there, and at least one; carried things do not count as lying.
         #[schemars(length(min = 1, max = 100))]
         pub tag: String => Field::ours(AsPart),
-        /// Tag of the objects that they are to lie near.
+        /// Tag of the destination objects.
         #[schemars(length(min = 1, max = 100))]
         pub to: String => Field::ours(AsPart),
-        /// How near in metres, from middle to middle.
+        /// Maximum distance in metres, between centres.
         #[serde(default = "two", skip_serializing_if = "is_two")]
         #[schemars(range(min = 0.0, max = 1000.0))]
         pub within: f64 => Field::ours(AsPart).unit("m"),

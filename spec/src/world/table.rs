@@ -9,7 +9,7 @@ use super::{Disc, EnvironmentParams, Looks, Object, Style, Surface, World, World
 use crate::Color;
 
 impl World {
-    /// All places of a world, in the order of the table; those of objects appear once.
+    /// All places of a world, in the order of the table; the places of objects appear once.
     ///
     /// # Example
     /// ```
@@ -44,7 +44,7 @@ impl LeafTexts {
         self.add(&world.rules);
         self.add_zones(&world.environment_params.zones);
         fields::write(
-            &Drawn::of(&world.environment_params),
+            &EffectiveLooks::of(&world.environment_params),
             &mut self.0[Comparison::CameraAndWeather as usize],
         );
     }
@@ -65,7 +65,7 @@ impl LeafTexts {
         }
     }
 
-    /// Adds the zones to each comparison that they belong to, reduced to the relevant properties.
+    /// Adds the zones to each comparison to which they belong, reduced to the relevant properties.
     fn add_zones(&mut self, zones: &[Zone]) {
         fn shape(zone: &Zone) -> Shape<'_> {
             let disc = zone.disc.as_ref();
@@ -94,7 +94,7 @@ impl LeafTexts {
             ends: zone.ends,
         });
         self.add_things(Comparison::ZonePay, paying);
-        let seen = zones.iter().filter(|zone| zone.visible).map(|zone| Seen {
+        let seen = zones.iter().filter(|zone| zone.visible).map(|zone| Visible {
             shape: shape(zone),
             color: zone.ground_color(),
         });
@@ -114,10 +114,9 @@ impl LeafTexts {
     }
 }
 
-/// How a world is rendered, reduced to what has an effect: a property that is written out but equal to the style's own
-/// counts as absent.
+/// The looks of a world, reduced to those that have an effect: a property that equals the style's default counts as absent.
 #[derive(Serialize)]
-struct Drawn {
+struct EffectiveLooks {
     style: Style,
     ground: Option<Surface>,
     ground_scale: f64,
@@ -129,27 +128,27 @@ struct Drawn {
     fog_in_depth: bool,
 }
 
-impl Drawn {
+impl EffectiveLooks {
     fn of(environment: &EnvironmentParams) -> Self {
         let (style, layout) = (environment.looks.style, environment.layout.as_ref());
         let own = Looks::of(Style::Natural);
-        // The plain style ignores them.
+        // The plain style ignores the other looks.
         let looks = match style {
             Style::Plain => &own,
             Style::Natural => &environment.looks,
         };
         let has_ceiling = looks.has_ceiling(layout);
         let (ground, walls) = (looks.ground(has_ceiling), looks.walls());
-        let other = |surface: Surface, own: Surface| (surface != own).then_some(surface);
+        let unless_default = |surface: Surface, own: Surface| (surface != own).then_some(surface);
         Self {
             style,
-            ground: other(ground.surface, own.ground(has_ceiling).surface),
+            ground: unless_default(ground.surface, own.ground(has_ceiling).surface),
             ground_scale: ground.scale_seen(),
-            walls: other(walls.surface, own.walls().surface),
+            walls: unless_default(walls.surface, own.walls().surface),
             wall_scale: walls.scale_seen(),
             ceiling: (has_ceiling != own.has_ceiling(layout)).then_some(has_ceiling),
             shadows: looks.has_shadows(),
-            // A ceiling hides them.
+            // A ceiling hides the clouds.
             clouds: has_ceiling || looks.has_clouds(),
             fog_in_depth: environment.looks.fog_in_depth && environment.fog_distance.is_some(),
         }
@@ -182,7 +181,7 @@ struct Paying<'a> {
 
 /// A visible zone.
 #[derive(Serialize)]
-struct Seen<'a> {
+struct Visible<'a> {
     shape: Shape<'a>,
     color: Color,
 }

@@ -1,4 +1,4 @@
-//! Remarks on the doors, switches and portable objects of a valid world that can never open, move or be carried.
+//! Remarks on doors, switches, portable objects and end conditions of a valid world that can never take effect.
 
 use super::{ActionModel, EndCondition, Object, Stimulus, World};
 
@@ -13,7 +13,7 @@ pub(super) fn thing_remarks(world: &World) -> Vec<(String, String)> {
                 let text = format!("no door has the tag {:?}; the switch moves nothing", switch.target);
                 found.push((at("switch/target"), text));
             }
-            found.extend(unheard(world, object, &switch.on).map(|text| (at("switch/on"), text)));
+            found.extend(impossible_stimuli(world, object, &switch.on).map(|text| (at("switch/on"), text)));
         }
         if let Some(portable) = &object.portable {
             if world.agent_params.carry_limit == 0 {
@@ -23,7 +23,7 @@ pub(super) fn thing_remarks(world: &World) -> Vec<(String, String)> {
                 );
                 found.push((at("portable"), text));
             }
-            found.extend(unheard(world, object, &portable.on).map(|text| (at("portable/on"), text)));
+            found.extend(impossible_stimuli(world, object, &portable.on).map(|text| (at("portable/on"), text)));
         }
     }
     for (key, conditions) in [("success", &world.rules.success), ("failure", &world.rules.failure)] {
@@ -51,19 +51,19 @@ fn door(world: &World, object: &Object) -> Option<(&'static str, String)> {
             "nothing opens the door: it has no stimulus in opens_on, no period, and no switch has its tag as target";
         return Some(("door/opens_on", text.to_owned()));
     }
-    unheard(world, object, &door.opens_on).map(|text| ("door/opens_on", text))
+    impossible_stimuli(world, object, &door.opens_on).map(|text| ("door/opens_on", text))
 }
 
 /// Why none of these stimuli can ever occur.
-fn unheard(world: &World, object: &Object, stimuli: &[Stimulus]) -> Option<String> {
+fn impossible_stimuli(world: &World, object: &Object, stimuli: &[Stimulus]) -> Option<String> {
     let agent = &world.agent_params;
     let interacts = agent.interact && agent.action_model != ActionModel::ByWaypoint;
-    let is_heard = |stimulus: &Stimulus| match stimulus {
+    let can_occur = |stimulus: &Stimulus| match stimulus {
         Stimulus::AgentCollide => true,
         Stimulus::AgentInteract => interacts,
         Stimulus::AgentInRange => object.range_stimulus_distance > 0.0,
     };
-    if stimuli.is_empty() || stimuli.iter().any(is_heard) {
+    if stimuli.is_empty() || stimuli.iter().any(can_occur) {
         return None;
     }
     Some(if stimuli.contains(&Stimulus::AgentInRange) {
@@ -88,9 +88,9 @@ fn ending(world: &World, condition: &EndCondition) -> Option<String> {
 }
 
 /// Whether some object with a tag meets a condition.
-fn has(world: &World, tag: &str, is_one: impl Fn(&Object) -> bool) -> bool {
+fn has(world: &World, tag: &str, meets: impl Fn(&Object) -> bool) -> bool {
     let mut tagged = world.objects.iter().filter(|object| object.tag.as_deref() == Some(tag));
-    tagged.any(is_one)
+    tagged.any(meets)
 }
 
 #[cfg(test)]
@@ -120,14 +120,14 @@ mod tests {
             ..WorldDraft::default()
         };
         change(&mut world);
-        let world = world.check().expect("what is odd is not wrong");
-        let said: Vec<String> = thing_remarks(&world)
+        let world = world.check().expect("the world is valid despite remarks");
+        let remarks: Vec<String> = thing_remarks(&world)
             .into_iter()
             .map(|(at, text)| format!("{at}: {text}"))
             .collect();
-        assert_eq!(said.len(), expected.len(), "{said:?}");
-        for (said, expected) in said.iter().zip(expected) {
-            assert!(said.contains(expected), "{said}");
+        assert_eq!(remarks.len(), expected.len(), "{remarks:?}");
+        for (remarks, expected) in remarks.iter().zip(expected) {
+            assert!(remarks.contains(expected), "{remarks}");
         }
     }
 

@@ -11,12 +11,12 @@ use crate::error::Problem;
 use crate::serde_defaults::{is_default, is_one, is_true};
 
 fields! {
-    /// A part of the ground, either a `disc` or a `polygon`. It acts on the agent while the agent's centre is in it, from the
-    /// first time step on: who starts in it has entered it. Nothing else notices it.
+    /// A part of the ground, either a `disc` or a `polygon`. It affects the agent while the agent's centre is in it, from the
+    /// first time step on: starting in a zone counts as entering it. It affects nothing else.
     ///
-    /// Zones may overlap: what they pay is added, their factors on the speed are multiplied. If several end the episode in one
-    /// time step, success comes before failure; an end comes before a teleport; of several teleports the first in the list counts.
-    /// No zone is jumped over: who crosses one within a time step has entered it.
+    /// Zones may overlap: their rewards are added, and their speed factors multiplied. If several end the episode in one time
+    /// step, success takes precedence over failure; an ending takes precedence over a teleport; of several teleports, the first
+    /// in the list counts. No zone is skipped: crossing one within a time step counts as entering it.
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
     #[serde(default, deny_unknown_fields)]
     #[schemars(extend("examples" = [
@@ -24,18 +24,18 @@ fields! {
         { "polygon": [[0, 0], [8, 0], [8, 4]], "reward_per_second": -1, "speed_factor": 0.5 },
     ]))]
     pub struct Zone {
-        /// Its ground, if that is a disc.
+        /// Its area, if it is a disc.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub disc: Option<Disc> = None => Field::ours(Measured(&[Zones, ZonePay, ZoneLooks])),
-        /// Its ground, if that is a polygon: corners in metres, in order; the last joins the first.
+        /// Its area, if it is a polygon: corners in metres, in order; the last corner connects to the first.
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(length(min = 3, max = 1000), inner(inner(range(min = -1e4, max = 1e4))))]
         pub polygon: Option<Vec<[f64; 2]>> = None => Field::ours(Measured(&[Zones, ZonePay, ZoneLooks])).unit("m"),
-        /// A free word that logs and people refer to.
+        /// A free-form name for logs and people.
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(length(min = 1, max = 100))]
         pub name: Option<String> = None => Field::ours(Not("it is a name")),
-        /// Paid for every second in it, in each time step at whose end the agent is in it.
+        /// Paid per second in it, for each time step that ends with the agent in it.
         #[serde(skip_serializing_if = "is_default")]
         #[schemars(range(min = -1e9, max = 1e9))]
         pub reward_per_second: f64 = 0.0 => Field::ours(Measured(&[ZonePay])),
@@ -43,23 +43,23 @@ fields! {
         #[serde(skip_serializing_if = "is_default")]
         #[schemars(range(min = -1e9, max = 1e9))]
         pub reward_on_entering: f64 = 0.0 => Field::ours(Measured(&[ZonePay])),
-        /// Factor on how fast the agent goes, by where it is at the beginning of a time step. Factors of zones that overlap multiply,
-        /// to at most 100.
+        /// Factor on the agent's speed, applied if the agent is in the zone at the beginning of a time step. The factors of
+        /// overlapping zones are multiplied, up to at most 100.
         #[serde(skip_serializing_if = "is_one")]
         #[schemars(range(min = 0.0, max = 100.0))]
         pub speed_factor: f64 = 1.0 => Field::ours(Measured(&[Zones])),
-        /// How the episode ends when the agent enters it; it goes on if absent.
+        /// How the episode ends when the agent enters it; the episode continues if absent.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub ends: Option<ZoneEnd> = None => Field::ours(Measured(&[ZonePay])),
-        /// Where the agent that enters it is put at the end of the time step, in metres; at rest, and beside what stands there.
-        /// What it enters by that neither moves it on nor back.
+        /// Position in metres to which the agent is moved at the end of the time step in which it enters; it arrives at rest,
+        /// and next to anything that stands there. Zones that it enters in this way do not teleport it again.
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(inner(inner(range(min = -300.0, max = 300.0))))]
         pub teleport: Option<[f64; 2]> = None => Field::ours(Measured(&[Zones])).unit("m"),
-        /// Colour of its ground; if absent, that of what it does, as `docs/worlds.md` lists them.
+        /// Colour of its ground; if absent, a colour for its effect, listed in `docs/worlds.md`.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub color: Option<Color> = None => Field::ours(Measured(&[ZoneLooks])),
-        /// Whether its ground has its colour.
+        /// Whether its ground is drawn in its colour.
         #[serde(skip_serializing_if = "is_true")]
         pub visible: bool = true => Field::ours(Measured(&[ZoneLooks])),
     }
@@ -71,7 +71,7 @@ fields! {
     #[serde(deny_unknown_fields)]
     #[schemars(extend("examples" = [{ "center": [5, 0], "radius": 3 }]))]
     pub struct Disc {
-        /// Its middle in metres.
+        /// Its centre in metres.
         #[schemars(inner(range(min = -1e4, max = 1e4)))]
         pub center: [f64; 2] => Field::ours(AsPart).unit("m"),
         /// Its radius in metres.
@@ -93,7 +93,7 @@ pub enum ZoneEnd {
 word!(ZoneEnd);
 
 /// Maximum factor on the agent's speed, of one zone or of several together.
-const MOST_SPEED_FACTOR: f64 = 100.0;
+const MAX_SPEED_FACTOR: f64 = 100.0;
 
 impl Zone {
     /// A round zone without effects, with everything else at its default.
@@ -110,7 +110,7 @@ impl Zone {
         let product = factors
             .into_iter()
             .fold(1.0, |product: f64, factor| (product * factor).min(1e300));
-        product.min(MOST_SPEED_FACTOR)
+        product.min(MAX_SPEED_FACTOR)
     }
 
     /// A zone with these corners and without effects, with everything else at its default.
@@ -151,8 +151,8 @@ impl Zone {
         pays && !self.is_costly()
     }
 
-    /// Its colour on the ground: its own, or that of its effect. Red for failing or costly, green for success or reward, violet
-    /// for a teleport, brown for slowing, blue for speeding up, grey for anything else.
+    /// Its colour on the ground: its own, or the colour for its effect. Red for failing or costly, green for success or reward,
+    /// violet for a teleport, brown for slowing, blue for speeding up, grey for anything else.
     pub fn ground_color(&self) -> Color {
         self.color.unwrap_or_else(|| {
             Color(if self.is_costly() {
@@ -195,12 +195,12 @@ impl Zone {
     }
 }
 
-/// Checks of a world's zones beyond single fields.
+/// Checks a world's zones beyond single fields.
 pub(super) fn problems(world: &WorldDraft) -> Vec<Problem> {
     let arena = &world.environment_params;
     let mut problems = Vec::new();
     let teleports = arena.zones.iter().any(|zone| zone.teleport.is_some());
-    let plan = teleports.then(|| world.sound_plan()).flatten();
+    let plan = teleports.then(|| world.valid_plan()).flatten();
     for (index, zone) in arena.zones.iter().enumerate() {
         let pointer = format!("/environment_params/zones/{index}");
         let found = match (&zone.disc, &zone.polygon) {
@@ -231,13 +231,13 @@ mod tests {
             r#"{{ "environment_params": {{ "map_size": [20, 20], "zones": [{zone}],
                "walls": [{{ "polygon": [[5, 5], [8, 5], [8, 8]] }}] }} }}"#
         );
-        let said = World::from_json("w.json", &text).map_or_else(
+        let output = World::from_json("w.json", &text).map_or_else(
             |error| error.to_string(),
             |world| world.remarks("w.json", &text).iter().map(ToString::to_string).collect(),
         );
         assert!(
-            said.contains(expected) && said.is_empty() == expected.is_empty(),
-            "{said}"
+            output.contains(expected) && output.is_empty() == expected.is_empty(),
+            "{output}"
         );
     }
 
@@ -259,10 +259,10 @@ mod tests {
             .trim()
             .lines()
         {
-            let (zone, said) = row.split_once(" => ").expect("a row has two parts");
+            let (zone, output) = row.split_once(" => ").expect("a row has two parts");
             check(
                 &zone.replace("DISC", disc),
-                &format!("(/environment_params/zones/0{said}"),
+                &format!("(/environment_params/zones/0{output}"),
             );
         }
     }

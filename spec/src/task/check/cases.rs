@@ -1,5 +1,4 @@
-//! Checks look-ups: the parameters that they read are known and have listable values, every value has a case, and there
-//! are no cycles.
+//! Checks look-ups: they read known parameters with values that can be listed, every value has a case, and there are no cycles.
 
 use std::collections::BTreeSet;
 
@@ -8,7 +7,7 @@ use super::super::scope::{Scope, Unsettled};
 use super::super::template::Source;
 use super::Check;
 use crate::describe::escape;
-use crate::distribution::{Case, Distribution, MOST_ATOMS, Number};
+use crate::distribution::{Case, Distribution, MAX_ATOMS, Number};
 use crate::error::{Problem, first_of};
 use crate::value::{ParameterType, Value};
 
@@ -24,22 +23,22 @@ impl Check<'_> {
         };
         let (mut cyclic, mut done) = (Vec::new(), BTreeSet::new());
         for start in parameters.keys() {
-            // A path of names, each with the names still to follow from it.
-            let mut way = vec![(start.clone(), reads(start))];
-            while let Some((_, next)) = way.last_mut() {
+            // A path of names, each with the names that remain to be followed from it.
+            let mut path = vec![(start.clone(), reads(start))];
+            while let Some((_, next)) = path.last_mut() {
                 let Some(name) = next.pop() else {
-                    done.extend(way.pop().map(|(name, _)| name));
+                    done.extend(path.pop().map(|(name, _)| name));
                     continue;
                 };
-                if let Some(first) = way.iter().position(|(known, _)| *known == name) {
-                    let names: Vec<String> = way[first..].iter().map(|(name, _)| name.clone()).collect();
+                if let Some(first) = path.iter().position(|(known, _)| *known == name) {
+                    let names: Vec<String> = path[first..].iter().map(|(name, _)| name.clone()).collect();
                     let shown = format!("a cycle: {} reads {name}", names.join(" reads "));
                     let pointer = format!("/parameters/{}/distribution", escape(&name));
                     let expected = "look-ups that do not read themselves";
                     cyclic.push((names, Problem::new("spec/case-cycle", pointer, shown, expected)));
                 } else if !done.contains(&name) {
-                    let further = reads(&name);
-                    way.push((name, further));
+                    let to_visit = reads(&name);
+                    path.push((name, to_visit));
                 }
             }
         }
@@ -51,8 +50,8 @@ impl Check<'_> {
             self.report(problem);
         }
         for _ in 0..parameters.len() {
-            let is_spoilt = |name: &&String| reads(name).iter().any(|read| self.unsound.parameters.contains(read));
-            let names: Vec<String> = parameters.keys().filter(is_spoilt).cloned().collect();
+            let reads_unsound = |name: &&String| reads(name).iter().any(|read| self.unsound.parameters.contains(read));
+            let names: Vec<String> = parameters.keys().filter(reads_unsound).cloned().collect();
             self.unsound.parameters.extend(names);
         }
     }
@@ -66,7 +65,7 @@ impl Check<'_> {
         self.problems.len() == before
     }
 
-    /// Whether the outcomes of a look-up over drawn values can be enumerated in every variant.
+    /// Whether the outcomes of a look-up over random values can be enumerated in every variant.
     pub(super) fn has_outcomes(&mut self, pointer: &str, source: &Source) -> bool {
         let fault = self.variants.iter().find_map(|(name, values)| {
             match Scope::new(self.parameters, values).outcomes(source) {
@@ -91,7 +90,7 @@ impl Check<'_> {
         }
     }
 
-    /// Whether none of these parameters is drawn for each world; reports the first that is.
+    /// Whether none of these parameters is randomized; reports the first that is.
     pub(super) fn reads_no_draw(&mut self, pointer: &str, names: &[impl AsRef<str>]) -> bool {
         let is_drawn = |name: &&str| {
             let parameter = self.parameters.get(*name);
@@ -110,8 +109,8 @@ impl Check<'_> {
         drawn.is_none()
     }
 
-    /// Checks a distribution that is the value of a parameter: its look-ups must not read drawn values.
-    pub(super) fn settled_distribution(&mut self, pointer: &str, distribution: &Distribution<Number>) {
+    /// Checks a distribution that is the value of a parameter: its look-ups must not read randomized parameters.
+    pub(super) fn parameter_distribution(&mut self, pointer: &str, distribution: &Distribution<Number>) {
         if self.distribution(pointer, distribution) {
             let numbers = distribution.numbers();
             let names: Vec<&str> = numbers.iter().flat_map(Number::names).collect();
@@ -136,12 +135,12 @@ impl Check<'_> {
             return self.report(Problem::new("spec/case", at, found, expected));
         }
         let words: Vec<String> = values.iter().flatten().map(|value| parameter.shown(value)).collect();
-        let mut met = Vec::new();
+        let mut covered = Vec::new();
         for key in case.of.keys() {
             let value = parameter.at_key(key);
             let is_known = |value: &Value| values.as_ref().is_none_or(|values| values.contains(value));
             if let Some(value) = value.filter(is_known) {
-                met.push(value);
+                covered.push(value);
             } else {
                 let expected = if words.is_empty() {
                     format!("a {}", parameter.kind.name())
@@ -156,7 +155,7 @@ impl Check<'_> {
             .iter()
             .flatten()
             .zip(&words)
-            .filter(|(value, _)| !met.contains(value))
+            .filter(|(value, _)| !covered.contains(value))
             .map(|(_, word)| word)
             .collect();
         if case.otherwise.is_none() && (values.is_none() || !missing.is_empty()) {
@@ -194,7 +193,7 @@ impl Check<'_> {
             }
             (Some(choices), _, _) => all.extend(choices.iter().cloned()),
             (None, Some([low, high]), _)
-                if parameter.kind == ParameterType::Integer && high - low < MOST_ATOMS as f64 =>
+                if parameter.kind == ParameterType::Integer && high - low < MAX_ATOMS as f64 =>
             {
                 all.extend((low as i64..=high as i64).map(Value::Integer));
             }

@@ -14,8 +14,8 @@ use crate::distribution::{Distribution, Number};
 use crate::error::{Problem, first_of};
 use crate::value::{ParameterType, Value};
 
-/// Maximum number of placements of a group to check for room: families have thousands of variants.
-const MOST_CASES: usize = 64;
+/// Maximum number of placements of a group to check for room, because families have thousands of variants.
+const MAX_CASES: usize = 64;
 
 impl Check<'_> {
     pub(super) fn group(&mut self, index: usize, groups: &[Group]) -> Option<PlacedGroup> {
@@ -104,7 +104,7 @@ impl Check<'_> {
         }
     }
 
-    /// Checks placements on layout cells: not mixed with other placements, in a world with a layout, without `around`.
+    /// Checks placements on layout cells: they must stand alone, in a world with a layout, without `around`.
     fn cells(&mut self, root: &str, group: &Group) {
         let all = self.distributions_of(&group.placement);
         if !all.iter().any(Distribution::draws_cells) {
@@ -132,40 +132,44 @@ impl Check<'_> {
         }
     }
 
-    /// Checks that places taken in turn suffice for the group's minimum number of objects on an empty field.
+    /// Checks that points taken in turn suffice for the group's minimum number of objects in an empty arena.
     fn room(&mut self, root: &str, group: &Group, count: Option<&Count>) {
         let Some(count) = count else { return };
         let mut seen: Vec<(Distribution, u64, f64)> = Vec::new();
         for (name, values) in &self.variants {
             let scope = Scope::new(self.parameters, values);
             let separation = scope.number(&group.separation).unwrap_or(0.0);
-            let (Ok(Resolved::Draw(placement)), Some(least)) =
-                (scope.resolve(&group.placement), self.least(count, scope))
+            let (Ok(Resolved::Draw(placement)), Some(min_count)) =
+                (scope.resolve(&group.placement), self.min_count(count, scope))
             else {
                 continue;
             };
-            let case = (placement, least, separation);
+            let case = (placement, min_count, separation);
             if seen.contains(&case) {
                 continue;
             }
-            if let Some(room) = case.0.room_in_turn(least, separation).filter(|room| *room < least) {
+            if let Some(room) = case
+                .0
+                .room_in_turn(min_count, separation)
+                .filter(|room| *room < min_count)
+            {
                 let places = case.0.num_turns().unwrap_or_default();
                 let found = format!(
                     "{places} places, of which {room} are free in turn {separation} m apart, in variant {name:?}"
                 );
-                let expected = format!("places for {least} objects {separation} m apart");
+                let expected = format!("places for {min_count} objects {separation} m apart");
                 let problem = Problem::new("spec/no-room", format!("{root}/placement"), found, expected);
                 return self.report(problem.advise("add places, or lower the count or the separation"));
             }
             seen.push(case);
-            if seen.len() > MOST_CASES {
+            if seen.len() > MAX_CASES {
                 return;
             }
         }
     }
 
     /// The minimum number of objects of a group in a variant, if known.
-    fn least(&self, count: &Count, scope: Scope) -> Option<u64> {
+    fn min_count(&self, count: &Count, scope: Scope) -> Option<u64> {
         let source = match count {
             Count::Fixed(count) => return Some(u64::from(*count)),
             Count::Drawn(source) => source,
@@ -179,14 +183,14 @@ impl Check<'_> {
             },
         };
         let numbers = law.support()?;
-        let least = numbers
+        let min_count = numbers
             .iter()
             .filter_map(Value::as_number)
             .fold(f64::INFINITY, f64::min);
-        least.is_finite().then_some(least.max(0.0) as u64)
+        min_count.is_finite().then_some(min_count.max(0.0) as u64)
     }
 
-    /// Index of an earlier group with this name; reports a missing one.
+    /// Index of an earlier group with this name; reports an unknown name.
     fn earlier(&mut self, pointer: &str, name: &str, earlier: &[Group]) -> Option<usize> {
         let found = earlier.iter().position(|group| group.name == name);
         if found.is_none() {
@@ -226,7 +230,7 @@ impl Check<'_> {
         None
     }
 
-    /// The margins, and the earlier groups to keep distance from.
+    /// Checks the margins; returns the earlier groups from which to keep a distance.
     fn keep_out(&mut self, root: &str, group: &Group, earlier: &[Group]) -> Vec<(usize, Number)> {
         self.number(&format!("{root}/separation"), &group.separation, [0.0, 300.0]);
         self.number(&format!("{root}/keep_out/walls"), &group.keep_out.walls, [0.0, 300.0]);
@@ -258,11 +262,13 @@ impl Check<'_> {
             }
             Number::Literal(_) => {}
         }
-        let settled = self
+        let values_in_variants = self
             .variants
             .iter()
             .filter_map(|(_, values)| Scope::new(self.parameters, values).number(number).ok());
-        let outside = settled.into_iter().find(|metres| !(low..=high).contains(metres));
+        let outside = values_in_variants
+            .into_iter()
+            .find(|metres| !(low..=high).contains(metres));
         if let (Some(metres), true) = (outside, self.problems.len() == before) {
             self.report(Problem::new(
                 "spec/range",

@@ -1,4 +1,4 @@
-//! Checks values that only the schema of their place can validate: parameters of type JSON, and draws from lists that
+//! Checks values that only the schema at their place of use can validate: parameters of type JSON, and draws from lists that
 //! contain objects, lists or `null`.
 
 use super::super::layouts;
@@ -9,7 +9,7 @@ use crate::distribution::{Distribution, Number};
 use crate::value::{ParameterType, Value};
 
 impl Check<'_> {
-    /// Whether only the schema of its place can validate a source's values.
+    /// Whether a source's values can be validated only by the schema where it is used.
     pub(super) fn is_json(&self, source: &Source, place: ParameterType) -> bool {
         match source {
             Source::Case(_) => source.leaves().iter().any(|(_, leaf)| self.is_json(leaf, place)),
@@ -30,7 +30,7 @@ impl Check<'_> {
         }
     }
 
-    /// Every value that such a source can give; reports those that its place does not allow.
+    /// Every value that such a source can produce; reports values that are not allowed where it is used.
     pub(super) fn json_candidates<T>(&mut self, place: &str, source: &Source, hole: &Hole<T>) -> Vec<Value> {
         let mut candidates = Vec::new();
         let problems = hole.checker();
@@ -64,7 +64,7 @@ impl Check<'_> {
         }
     }
 
-    /// The values that a source can give, with their places in the document.
+    /// The values that a source can produce, with their pointers in the document.
     fn json_values(&self, place: &str, source: &Source) -> Vec<(String, Value)> {
         let mut found = Vec::new();
         match source {
@@ -84,7 +84,7 @@ impl Check<'_> {
                     let pointer = format!("{pointer}/{key}");
                     let is_choice = key.starts_with("choices/");
                     match value {
-                        // Skips the name of a choice: the choice itself is listed.
+                        // Skips the name of a choice, because the choice itself is listed.
                         _ if !is_choice && parameter.choices.iter().any(|choices| choices.named(value).is_some()) => {}
                         Value::Distribution(own) if parameter.kind == ParameterType::Distribution => {
                             listed(own, &pointer, &mut found);
@@ -104,8 +104,8 @@ impl Check<'_> {
     }
 }
 
-/// Whether only the schema of a place can validate a distribution's draws: the distribution lists them, and either the
-/// place is of type JSON or some of them are not plain values.
+/// Whether a distribution's draws can be validated only by the schema where it is used: the distribution lists them, and either
+/// the key is of type JSON or some of them are not plain values.
 fn is_for_schema(distribution: &Distribution<Number>, place: ParameterType) -> bool {
     let mut values = Vec::new();
     listed(distribution, "", &mut values);
@@ -113,7 +113,7 @@ fn is_for_schema(distribution: &Distribution<Number>, place: ParameterType) -> b
         && (place == ParameterType::Json || values.iter().any(|(_, value)| value.is_json()))
 }
 
-/// The values that a distribution lists, with their places.
+/// The values that a distribution lists, with their pointers.
 fn listed(distribution: &Distribution<Number>, pointer: &str, found: &mut Vec<(String, Value)>) {
     match distribution {
         Distribution::Constant { value } => found.push((format!("{pointer}/constant/value"), value.clone())),

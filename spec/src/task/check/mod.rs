@@ -28,7 +28,7 @@ pub(super) use partial::Unsound;
 
 /// The checked task, or all problems; `classes` are the known classes of objects, if any are given.
 ///
-/// Continues after problems with everything that does not depend on them: `unsound` lists the parts that the schema has refused.
+/// After a problem, continues with everything that does not depend on it: `unsound` lists the parts that the schema rejected.
 pub(super) fn compile(
     document: TaskDocument,
     classes: Option<&Classes>,
@@ -79,7 +79,7 @@ pub(super) fn compile(
         groups.into_iter().collect(),
         unfolded,
     ) else {
-        // The task depends on a refused part, whose problem is reported instead.
+        // The task depends on a rejected part; the problem of that part is reported instead.
         return Err(Vec::new());
     };
     let task = TaskSpec {
@@ -92,7 +92,7 @@ pub(super) fn compile(
         read_conditions,
         readers: OnceLock::new(),
     };
-    fail_on(compared_by_draws(&task))?;
+    fail_on(unused_measures(&task))?;
     Ok(task)
 }
 
@@ -100,9 +100,9 @@ fn fail_on(problems: Vec<Problem>) -> Result<(), Vec<Problem>> {
     if problems.is_empty() { Ok(()) } else { Err(problems) }
 }
 
-/// Reports measures of parameters that only draws read: variants are compared by the drawn values, so the measure
-/// would not be used.
-fn compared_by_draws(task: &TaskSpec) -> Vec<Problem> {
+/// Reports measures of parameters that only draws read: variants are then compared by their distributions, so the measure would
+/// not be used.
+fn unused_measures(task: &TaskSpec) -> Vec<Problem> {
     let compared = task.parameters().iter().filter(|(_, own)| own.compare.is_some());
     let problem = |(name, parameter): (&String, &Parameter)| {
         let readers = task.readers(name);
@@ -117,7 +117,7 @@ fn compared_by_draws(task: &TaskSpec) -> Vec<Problem> {
     compared.filter_map(problem).collect()
 }
 
-/// Names that pass the schema but not the grammar; those of a family's variants are checked when it is unfolded.
+/// Reports names that pass the schema but not the grammar; names of a family's variants are checked when it is unfolded.
 fn names(document: &TaskDocument) -> impl Iterator<Item = Problem> {
     let variants = document
         .variants
@@ -178,7 +178,7 @@ struct Check<'a> {
 impl<'a> Check<'a> {
     fn new(document: &'a TaskDocument, variants: &Variants, classes: Option<&'a Classes>, unsound: Unsound) -> Self {
         let names = std::iter::once(DEFAULT_VARIANT).chain(variants.keys().map(String::as_str));
-        let settled = names
+        let checked_variants = names
             .filter(|name| !is_built_on(variants, name, &unsound.variants))
             .filter_map(|name| {
                 let mut values = variant_spec::values_of(&document.parameters, variants, name).ok()?;
@@ -188,7 +188,7 @@ impl<'a> Check<'a> {
             .collect();
         Self {
             parameters: &document.parameters,
-            variants: settled,
+            variants: checked_variants,
             classes,
             has_layout: document.world.pointer("/environment_params/layout").is_some(),
             unsound,
@@ -227,7 +227,7 @@ impl<'a> Check<'a> {
                 if let (ParameterType::Distribution, Value::Distribution(distribution)) = (parameter.kind, value)
                     && !self.has_unsound(distribution)
                 {
-                    self.settled_distribution(&format!("{pointer}/{key}"), distribution);
+                    self.parameter_distribution(&format!("{pointer}/{key}"), distribution);
                 }
             }
             if let Some(source) = &parameter.distribution {
@@ -263,12 +263,12 @@ impl<'a> Check<'a> {
             && self.source(pointer, source, parameter.kind)
             && matches!(source, Source::Param(_) | Source::Case(_))
         {
-            self.compared_by(&format!("{parameter_pointer}/compare/measure"), parameter, source);
+            self.measure_fits(&format!("{parameter_pointer}/compare/measure"), parameter, source);
         }
     }
 
     /// Checks that the measure of a parameter fits all distributions of the parameter from which it is drawn.
-    fn compared_by(&mut self, pointer: &str, parameter: &Parameter, source: &Source) {
+    fn measure_fits(&mut self, pointer: &str, parameter: &Parameter, source: &Source) {
         let Some(measure) = parameter.compare.as_ref().and_then(|compare| compare.measure) else {
             return;
         };
@@ -354,10 +354,10 @@ impl<'a> Check<'a> {
         true
     }
 
-    /// Checks that every declared variant meets the requirements on non-random parameters.
+    /// Checks that every declared variant meets the requirements on parameters that are not randomized.
     fn variants_meet(&mut self, requirements: &[Requirement], variants: &Variants) {
         for (name, values) in self.variants.iter().filter(|(name, _)| variants.contains_key(name)) {
-            if let Some((requirement, shown)) = variant::broken(requirements, values) {
+            if let Some((requirement, shown)) = variant::violated_requirement(requirements, values) {
                 let pointer = format!("/variants/{}", escape(&variants[name].origin));
                 let found = format!("{shown} in variant {name:?}");
                 let expected = format!("what \"require\" states: {requirement}");

@@ -1,5 +1,5 @@
-//! Checks the valid rest of a task document that the schema refuses, so that all problems are reported at once, without problems
-//! that merely follow from others.
+//! Checks the valid remainder of a task document that the schema rejects, so that all problems are reported at once, without
+//! problems that merely follow from others.
 
 use std::collections::BTreeSet;
 
@@ -20,37 +20,43 @@ pub(in crate::task) struct Unsound {
     pub(in crate::task) variants: BTreeSet<String>,
 }
 
-/// All problems of a document that the schema refuses: those of the schema, and those that the other checks find in the rest.
-pub(in crate::task) fn problems(document: &Json, refused: Vec<Problem>, classes: Option<&Classes>) -> Vec<Problem> {
-    let mut rest = Rest {
+/// All problems of a document that the schema rejects: the schema's, and those that the other checks find in the remainder.
+pub(in crate::task) fn problems(
+    document: &Json,
+    schema_problems: Vec<Problem>,
+    classes: Option<&Classes>,
+) -> Vec<Problem> {
+    let mut remainder = Remainder {
         json: document.clone(),
         unsound: Unsound::default(),
         silent: Vec::new(),
     };
-    let is_known = refused.iter().all(|problem| rest.leave_out(problem).is_some());
-    if !is_known || !TaskDocument::schema().allows(&rest.json) {
-        return refused;
+    let is_known = schema_problems
+        .iter()
+        .all(|problem| remainder.leave_out(problem).is_some());
+    if !is_known || !TaskDocument::schema().allows(&remainder.json) {
+        return schema_problems;
     }
-    let Ok(document) = serde_json::from_value::<TaskDocument>(rest.json) else {
-        return refused;
+    let Ok(document) = serde_json::from_value::<TaskDocument>(remainder.json) else {
+        return schema_problems;
     };
-    let more = compile(document, classes, rest.unsound).err().unwrap_or_default();
+    let more = compile(document, classes, remainder.unsound).err().unwrap_or_default();
     let lies_in = |pointer: &str, part: &String| pointer == part || pointer.starts_with(&format!("{part}/"));
     let more = more
         .into_iter()
-        .filter(|problem| !rest.silent.iter().any(|part| lies_in(&problem.pointer, part)));
-    refused.iter().cloned().chain(more).collect()
+        .filter(|problem| !remainder.silent.iter().any(|part| lies_in(&problem.pointer, part)));
+    schema_problems.iter().cloned().chain(more).collect()
 }
 
-/// The valid rest of a document.
-struct Rest {
+/// The valid remainder of a document.
+struct Remainder {
     json: Json,
     unsound: Unsound,
     /// Pointers below which nothing more is reported.
     silent: Vec<String>,
 }
 
-impl Rest {
+impl Remainder {
     /// Removes the subject of a problem; `None` if nothing useful would be left.
     fn leave_out(&mut self, problem: &Problem) -> Option<()> {
         let words: Vec<String> = problem.pointer.split('/').skip(1).map(plain).collect();
@@ -111,9 +117,9 @@ impl Rest {
         }
     }
 
-    /// Replaces a refused value with a valid one; nothing more is reported below its pointer.
-    fn replace(&mut self, pointer: String, sound: Json) -> Option<()> {
-        *self.json.pointer_mut(&pointer)? = sound;
+    /// Replaces a rejected value with a valid one; nothing more is reported below its pointer.
+    fn replace(&mut self, pointer: String, valid: Json) -> Option<()> {
+        *self.json.pointer_mut(&pointer)? = valid;
         self.silent.push(pointer);
         Some(())
     }

@@ -1,4 +1,4 @@
-//! Checks sources of values: references are known, yield the required type, and stay in range.
+//! Checks sources of values: references are known, have the required type, and stay in range.
 
 use super::super::parameter::{Domain, Parameter, Role};
 use super::super::scope::{Scope, Unsettled};
@@ -52,12 +52,12 @@ impl Check<'_> {
 
     /// Checks a colour in a distribution: a fixed or variant colour, or three numbers.
     fn color_reference(&mut self, pointer: &str, first_channel: &ParamRef) {
-        let odd = self.parameters.get(&first_channel.param).filter(|parameter| {
+        let unsuitable = self.parameters.get(&first_channel.param).filter(|parameter| {
             let is_color = parameter.kind == ParameterType::Color;
             let has_three = parameter.kind == ParameterType::Vector && parameter.vector_length() == Some(3);
             parameter.role != Role::Randomized && !is_color && !has_three
         });
-        let Some(parameter) = odd else {
+        let Some(parameter) = unsuitable else {
             return self.number_reference(pointer, first_channel);
         };
         let found = format!(
@@ -121,7 +121,7 @@ impl Check<'_> {
     }
 
     pub(super) fn unknown_parameter(&mut self, pointer: &str, name: &str) {
-        // A refused parameter still exists.
+        // A parameter that the schema rejected still counts as declared.
         let refused = self
             .unsound
             .parameters
@@ -142,7 +142,7 @@ impl Check<'_> {
         self.report(problem.suggest(name, known));
     }
 
-    /// Whether a source is known and yields the type of its place.
+    /// Whether a source is known and yields the required type.
     pub(super) fn source(&mut self, pointer: &str, source: &Source, kind: ParameterType) -> bool {
         match source {
             Source::Case(_) => {
@@ -180,12 +180,14 @@ impl Check<'_> {
     fn all_yield(&mut self, pointer: &str, source: &Source, kind: ParameterType) -> bool {
         let laws = self.distributions_of(source);
         match laws.iter().find(|law| !law.yields(kind)) {
-            Some(odd) => self.type_matches(pointer, false, format!("the distribution {}", odd.name()), kind),
+            Some(unsuitable) => {
+                self.type_matches(pointer, false, format!("the distribution {}", unsuitable.name()), kind)
+            }
             None => self.stands_alone(pointer, source),
         }
     }
 
-    /// Whether a source's draws are independent of earlier objects: places taken in turn or kept apart are for groups only.
+    /// Whether a source's draws are independent of earlier objects: points taken in turn or kept apart are for groups only.
     fn stands_alone(&mut self, pointer: &str, source: &Source) -> bool {
         let grouped = self
             .distributions_of(source)
@@ -234,7 +236,7 @@ impl Check<'_> {
         }
     }
 
-    /// All values that a source is known to give at a place of this type: ends of ranges and supports, choices, defaults.
+    /// All values of this type that a source is known to produce: ends of ranges and supports, choices, defaults.
     pub(super) fn candidates(&self, source: &Source, kind: ParameterType) -> Vec<Value> {
         let turned = |value: Value| {
             if kind == ParameterType::Heading {
@@ -248,13 +250,15 @@ impl Check<'_> {
                 let leaves = source.leaves().into_iter();
                 leaves.flat_map(|(_, leaf)| self.candidates(leaf, kind)).collect()
             }
-            Source::Distribution(_) | Source::Value(_) => self.drawn(source).into_iter().filter_map(turned).collect(),
+            Source::Distribution(_) | Source::Value(_) => {
+                self.extremes(source).into_iter().filter_map(turned).collect()
+            }
             Source::Param(reference) => {
                 let Some(parameter) = self.parameters.get(&reference.param) else {
                     return Vec::new();
                 };
                 if parameter.kind == ParameterType::Distribution {
-                    return self.drawn(source).into_iter().filter_map(turned).collect();
+                    return self.extremes(source).into_iter().filter_map(turned).collect();
                 }
                 let values = self.candidates_of_parameter(parameter).into_iter();
                 values.filter_map(|value| value.at(reference.index)).collect()
@@ -277,27 +281,27 @@ impl Check<'_> {
             None => {}
         }
         if let Some(source) = &parameter.distribution {
-            values.extend(self.drawn(source).iter().filter_map(typed));
+            values.extend(self.extremes(source).iter().filter_map(typed));
         }
         values
     }
 
-    /// The extreme values drawn from a source's distributions, over all variants.
-    fn drawn(&self, source: &Source) -> Vec<Value> {
+    /// The extreme values of a source's distributions, over all variants.
+    fn extremes(&self, source: &Source) -> Vec<Value> {
         let distributions = self.distributions_of(source);
         let sources = distributions.into_iter().map(|law| Source::Distribution(Box::new(law)));
-        let settled = sources.flat_map(|source| {
+        let outcomes_per_source = sources.flat_map(|source| {
             let outcomes = |(_, values): &(String, _)| Scope::new(self.parameters, values).outcomes(&source).ok();
             self.variants.iter().filter_map(outcomes).flatten().collect::<Vec<_>>()
         });
-        let values = settled.flat_map(|(distribution, _)| {
+        let values = outcomes_per_source.flat_map(|(distribution, _)| {
             let example = distribution.example();
             distribution.support().unwrap_or_default().into_iter().chain([example])
         });
         values.collect()
     }
 
-    /// Whether everything that a source can give is in the range of its place.
+    /// Whether everything that a source can produce is in the allowed range.
     pub(super) fn in_range(&mut self, pointer: &str, candidates: &[Value], [low, high]: [f64; 2]) -> bool {
         let numbers = candidates.iter().flat_map(|value| match value {
             Value::Point(_) | Value::Vector(_) => value.as_vector().unwrap_or_default().to_vec(),

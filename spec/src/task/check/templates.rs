@@ -1,4 +1,4 @@
-//! Checks templates of worlds and objects: each hole is allowed to vary, and accepts every value that it can be given.
+//! Checks templates of worlds and objects: each hole is allowed to vary, and accepts every value that it may receive.
 
 use indexmap::IndexMap;
 use serde_json::Value as Json;
@@ -18,7 +18,7 @@ fn texts(values: &[Value]) -> Vec<String> {
 }
 
 impl Check<'_> {
-    /// The templates of the world and of its objects.
+    /// Checks the templates of the world and of its objects.
     pub(super) fn world(&mut self, json: &Json) -> (Option<Template<WorldDraft>>, Vec<Option<Template<Object>>>) {
         let mut json = if json.is_null() {
             Json::Object(serde_json::Map::new())
@@ -80,31 +80,31 @@ impl Check<'_> {
                 found.extend(of_any(&all, &models));
                 continue;
             };
-            // Variants choose which models meet which classes, but each model must exist in at least one class.
-            let nobodys = |model: &&String| all.iter().all(|class| unknown(class, model).is_some());
-            let nobodys = models
+            // Variants decide which models are combined with which classes, but each model must exist in at least one class.
+            let unknown_everywhere = |model: &&String| all.iter().all(|class| unknown(class, model).is_some());
+            let unknown_everywhere = models
                 .iter()
-                .find(nobodys)
+                .find(unknown_everywhere)
                 .and_then(|model| unknown(all.first()?, model));
-            found.extend(nobodys.or_else(|| {
-                let mut met = self
+            found.extend(unknown_everywhere.or_else(|| {
+                let mut combinations = self
                     .variants
                     .iter()
                     .map(|(_, values)| [class, model].map(|hole| self.texts_in(values, &hole.source)));
-                met.find_map(|[classes, models]| of_any(&classes, &models))
+                combinations.find_map(|[classes, models]| of_any(&classes, &models))
             }));
         }
         self.problems.extend(found);
     }
 
-    /// The strings that a source can give in a variant with these values.
+    /// The strings that a source can produce in a variant with these values.
     fn texts_in(&self, values: &IndexMap<String, Value>, source: &Source) -> Vec<String> {
         let outcomes = Scope::new(self.parameters, values).outcomes(source).unwrap_or_default();
         let drawn = |(law, _): &(Distribution, f64)| law.support().unwrap_or_else(|| vec![law.example()]);
         texts(&outcomes.iter().flat_map(drawn).collect::<Vec<_>>())
     }
 
-    /// A template: checks each hole, and reads the rest with an example in each hole.
+    /// Builds a template: checks each hole, and reads the rest with an example in each hole.
     fn template<T: Place + Clone>(&mut self, root: &str, json: &Json, schema: &'static Json) -> Option<Template<T>> {
         let before = self.problems.len();
         let mut example = json.clone();
@@ -141,7 +141,7 @@ impl Check<'_> {
                 && (!is_case || self.has_outcomes(&pointer, &hole.source))
                 && let (Some(value), Some(place)) = (candidates.first(), example.pointer_mut(&opening.0))
             {
-                *place = hole.written(value);
+                *place = hole.to_json(value);
                 holes.push((hole, candidates));
             }
         }
@@ -151,7 +151,7 @@ impl Check<'_> {
         let base: T = match typed(&example) {
             Ok(base) => base,
             Err(mut problem) => {
-                // «invalid length 2, expected an array of length 3»: the first half says what was found.
+                // "invalid length 2, expected an array of length 3": the first half says what was found.
                 let expected = problem.expected.split_once(", expected ");
                 let expected = expected.map(|(_, expected)| expected.to_owned());
                 problem.expected = expected.unwrap_or(problem.expected);
@@ -166,7 +166,7 @@ impl Check<'_> {
         })
     }
 
-    /// Checks that each hole accepts every value that it may be given, such as strings that must name something.
+    /// Checks that each hole accepts every value that it may receive, such as strings that must name something.
     fn fillable<T: Clone>(&mut self, root: &str, base: &T, holes: &[(Hole<T>, Vec<Value>)]) {
         for (hole, candidates) in holes {
             let mut trial = base.clone();

@@ -1,4 +1,4 @@
-//! Tests which measures fit which parameters, and which tables of costs are distances.
+//! Tests which measures fit which parameters, and which tables of costs are accepted.
 
 use crate::TaskSpec;
 
@@ -6,9 +6,9 @@ fn check(compare: &str, parameter: &str, expected: &str) {
     let text = format!(
         r#"{{ "name": "t", "parameters": {{ "p": {{ "affects": ["O"], "compare": {compare}, {parameter} }} }} }}"#
     );
-    let said = TaskSpec::from_json("t.json", &text).map_or_else(|error| error.to_string(), |_| String::new());
-    let said = said.split_once(" (").map_or("", |(_, said)| said);
-    assert_eq!(said, expected);
+    let error = TaskSpec::from_json("t.json", &text).map_or_else(|error| error.to_string(), |_| String::new());
+    let error = error.split_once(" (").map_or("", |(_, error)| error);
+    assert_eq!(error, expected);
 }
 
 const NUMBER: &str = r#""role": "variant", "type": "number", "range": [0, 1], "default": 0"#;
@@ -37,16 +37,16 @@ fn measure_must_fit_its_parameter() {
         (drawn, "relative_difference", "MEASURES energy or same_or_not"),
     ] {
         let measures = "wasserstein_1, wasserstein_2, total_variation, hellinger, jensen_shannon,";
-        let mut said = format!("/parameters/p/compare/measure): found {measure}, expected {expected}");
+        let mut error = format!("/parameters/p/compare/measure): found {measure}, expected {expected}");
         for (word, meaning) in [
             ("NUMBER", number),
             ("COLORS", colors),
             ("LAWS", laws),
             ("MEASURES", measures),
         ] {
-            said = said.replace(word, meaning);
+            error = error.replace(word, meaning);
         }
-        check(&format!(r#"{{ "measure": "{measure}" }}"#), parameter, &said);
+        check(&format!(r#"{{ "measure": "{measure}" }}"#), parameter, &error);
     }
 }
 
@@ -59,12 +59,12 @@ fn drawn_colours_need_a_measure_with_distances() {
         for fits in "srgb cie76 ciede2000 oklab hyab wasserstein_1 wasserstein_2 same_or_not".split(' ') {
             check(&format!(r#"{{ "measure": "{fits}" }}"#), parameter, "");
         }
-        for odd in ["total_variation", "energy", "bures_wasserstein"] {
-            let said = format!(
-                "/parameters/p/compare/measure): found {odd}, expected wasserstein_1, wasserstein_2, oklab, srgb, cie76, ciede2000, hyab or \
+        for unfit in ["total_variation", "energy", "bures_wasserstein"] {
+            let error = format!(
+                "/parameters/p/compare/measure): found {unfit}, expected wasserstein_1, wasserstein_2, oklab, srgb, cie76, ciede2000, hyab or \
                  same_or_not, since colours out of a continuum are compared by how far they are apart"
             );
-            check(&format!(r#"{{ "measure": "{odd}" }}"#), parameter, &said);
+            check(&format!(r#"{{ "measure": "{unfit}" }}"#), parameter, &error);
         }
     }
     let words = r#""role": "randomized", "type": "color", "distribution": { "choice": { "values": ["red", "blue"] } }"#;
@@ -79,7 +79,7 @@ fn drawn_colours_need_a_measure_with_distances() {
 }
 
 #[test]
-fn unused_measure_is_refused() {
+fn measure_that_does_not_fit_the_draws_is_rejected() {
     let drawn = |kind: &str, distribution: &str| {
         format!(r#""role": "randomized", "type": "{kind}", "distribution": {{ {distribution} }}"#)
     };
@@ -103,9 +103,9 @@ fn unused_measure_is_refused() {
             let text = format!(
                 r#"{{ "name": "t", "parameters": {{ "p": {{ "affects": ["S"], "compare": {{ "measure": "{measure}" }}, {parameter} }} }} }}"#
             );
-            let said = TaskSpec::from_json("t", &text).map_or_else(|error| error.to_string(), |_| String::new());
-            assert_eq!(said.is_empty(), fits, "{measure} of {parameter}: {said}");
-            assert!(fits || said.contains("or same_or_not"), "{said}");
+            let error = TaskSpec::from_json("t", &text).map_or_else(|error| error.to_string(), |_| String::new());
+            assert_eq!(error.is_empty(), fits, "{measure} of {parameter}: {error}");
+            assert!(fits || error.contains("or same_or_not"), "{error}");
         }
     }
 }
@@ -116,10 +116,10 @@ fn measure_is_checked_against_the_distributions_of_another_parameter() {
         "law": { "role": "variant", "type": "distribution", "affects": ["O"], "choices": [{ "color_hsv": {} }], "default": { "color_hsv": {} } },
         "p": { "role": "randomized", "type": "color", "affects": ["O"], "distribution": { "param": "law" },
                "compare": { "measure": "hellinger" } } } }"#;
-    let said = TaskSpec::from_json("t.json", text).map_or_else(|error| error.to_string(), |_| String::new());
+    let error = TaskSpec::from_json("t.json", text).map_or_else(|error| error.to_string(), |_| String::new());
     assert!(
-        said.contains("(/parameters/p/compare/measure): found hellinger, expected wasserstein_1"),
-        "{said}"
+        error.contains("(/parameters/p/compare/measure): found hellinger, expected wasserstein_1"),
+        "{error}"
     );
 }
 
@@ -136,9 +136,9 @@ fn costs_must_be_distances_among_the_choices() {
         .trim()
         .lines()
     {
-        let (costs, said) = row.split_once(" => ").expect("a row has two parts");
-        let said = format!("/parameters/p/compare/costs{said}");
-        check(&format!(r#"{{ "costs": {costs} }}"#), WORDS, &said);
+        let (costs, error) = row.split_once(" => ").expect("a row has two parts");
+        let error = format!("/parameters/p/compare/costs{error}");
+        check(&format!(r#"{{ "costs": {costs} }}"#), WORDS, &error);
     }
     check(
         r#"{ "costs": [[0]] }"#,

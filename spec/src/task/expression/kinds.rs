@@ -1,6 +1,6 @@
-//! Checks the types of a condition's parts, without their values, and finds parts of incompatible types.
+//! Checks the types of a condition's parts without their values, and finds parts with incompatible types.
 
-use super::{Binary, Made, Node, Operator, Requirement, Term, Unary};
+use super::{Binary, FunctionKind, Node, Operator, Requirement, Term, Unary};
 use crate::Color;
 use crate::error::first_of;
 use crate::suggest::nearest;
@@ -47,7 +47,7 @@ impl Kind {
         }
     }
 
-    /// Whether it is a colour, or a string whose every possible value is a colour's name.
+    /// Whether it is a colour, or a string that can only be the name of a colour.
     fn is_color(&self) -> bool {
         match self {
             Self::Color => true,
@@ -61,8 +61,8 @@ impl Kind {
 pub(in crate::task) type Misfit = (String, String);
 
 impl Requirement {
-    /// The first part that cannot be compared, or the whole if it is not true or false. `kind_of` gives the type of a
-    /// name; names without a type are not checked.
+    /// The first part that cannot be compared, or the whole if it is not a condition. `kind_of` returns the type of a name;
+    /// names without a type are not checked.
     pub(in crate::task) fn misfit(&self, kind_of: impl Fn(&str) -> Option<Kind>) -> Option<Misfit> {
         let check = Check {
             names: &self.names,
@@ -107,11 +107,11 @@ impl<F: Fn(&str) -> Option<Kind>> Check<'_, F> {
             Node::Call((name, _, made), nodes) => {
                 let nodes: Vec<&Node> = nodes.iter().collect();
                 match made {
-                    Made::Distance => {
+                    FunctionKind::Distance => {
                         let expected = "two colours, such as distance(good, 'red')";
                         self.all(&nodes, name, expected, Kind::is_color)?;
                     }
-                    Made::OfNumbers(_) => {
+                    FunctionKind::OfNumbers(_) => {
                         self.all(&nodes, name, &format!("numbers in {name}"), |kind| {
                             *kind == Kind::Number
                         })?;
@@ -160,7 +160,7 @@ impl<F: Fn(&str) -> Option<Kind>> Check<'_, F> {
             Operator::Calculate(_) => return both_are(&Kind::Number, "numbers").map(|()| Kind::Number),
             Operator::Equal(_) => {
                 if let (Some(first), Some(second)) = (self.kind(a)?, self.kind(b)?) {
-                    self.alike((a, &first), (b, &second), symbol)?;
+                    self.comparable((a, &first), (b, &second), symbol)?;
                 }
             }
         }
@@ -168,7 +168,7 @@ impl<F: Fn(&str) -> Option<Kind>> Check<'_, F> {
     }
 
     /// Checks that two parts can be equal: of one type, a colour and a colour's name, or a string and one of its choices.
-    fn alike(&self, a: (&Node, &Kind), b: (&Node, &Kind), symbol: &str) -> Result<(), Misfit> {
+    fn comparable(&self, a: (&Node, &Kind), b: (&Node, &Kind), symbol: &str) -> Result<(), Misfit> {
         match (a.1, b.1) {
             (Kind::Text(Some(first)), Kind::Text(Some(second))) => {
                 self.is_choice(a.0, (b.0, second))?;
@@ -189,7 +189,7 @@ impl<F: Fn(&str) -> Option<Kind>> Check<'_, F> {
         }
     }
 
-    /// Refuses a quoted string that is not among a name's possible values.
+    /// Rejects a quoted string that is not among a name's possible values.
     fn is_choice(&self, text: &Node, (other, all): (&Node, &[String])) -> Result<(), Misfit> {
         let (Node::Constant(Term::Text(text)), Node::Name(name, _)) = (text, other) else {
             return Ok(());
@@ -198,14 +198,14 @@ impl<F: Fn(&str) -> Option<Kind>> Check<'_, F> {
             return Ok(());
         }
         let name = &self.names[*name];
-        let meant = nearest(text, all.iter());
-        let meant = meant.map_or_else(String::new, |near| format!(" (did you mean '{near}'?)"));
+        let suggestion = nearest(text, all.iter());
+        let suggestion = suggestion.map_or_else(String::new, |near| format!(" (did you mean '{near}'?)"));
         let quoted: Vec<String> = all.iter().map(|choice| format!("'{choice}'")).collect();
-        let expected = format!("one of the choices of {name}: {}{meant}", first_of(&quoted));
+        let expected = format!("one of the choices of {name}: {}{suggestion}", first_of(&quoted));
         Err((format!("'{text}' beside {name}"), expected))
     }
 
-    /// Succeeds if all parts fit; else the error names the first that does not.
+    /// Succeeds if all parts fit; otherwise the error names the first that does not.
     fn all(&self, nodes: &[&Node], symbol: &str, expected: &str, fits: impl Fn(&Kind) -> bool) -> Result<(), Misfit> {
         for node in nodes {
             let Some(kind) = self.kind(node)? else { continue };

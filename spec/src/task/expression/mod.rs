@@ -1,7 +1,7 @@
-//! [`Requirement`]: parses and evaluates a condition over parameters that a task states.
+//! [`Requirement`]: parses and evaluates a task's conditions over parameters.
 //!
-//! Written here because existing crates do not fit (docs/decisions/0005-requirements.md): this one needs memory
-//! only in proportion to the text, cannot loop, and reports the character at which a text is wrong.
+//! Implemented here because existing crates do not fit (docs/decisions/0005-requirements.md): this parser needs memory only in
+//! proportion to the text, cannot loop, and reports the character at which a text is wrong.
 
 mod kinds;
 mod token;
@@ -29,7 +29,7 @@ const MAX_DEPTH: usize = 32;
 #[derive(Clone, Debug)]
 pub struct Requirement {
     text: String,
-    /// Without duplicates, in the order of the text.
+    /// The parameters that it names, without duplicates, in the order of the text.
     names: Vec<String>,
     root: Node,
 }
@@ -105,33 +105,37 @@ static BINARY: [Binary; 13] = [
 
 /// The operation of a function.
 #[derive(Clone, Copy, Debug)]
-enum Made {
+enum FunctionKind {
     OfNumbers(fn(&[f64]) -> f64),
     /// The distance between two colours.
     Distance,
 }
 
-/// A function: its name, its number of arguments, as a number and in words (`None` for any number), and its operation.
-type Function = (&'static str, Option<(usize, &'static str)>, Made);
+/// A function: its name, its number of arguments, both as a number and in words (`None` for any number), and its operation.
+type Function = (&'static str, Option<(usize, &'static str)>, FunctionKind);
 
 /// The functions.
 static FUNCTIONS: [Function; 4] = [
     (
         "min",
         None,
-        Made::OfNumbers(|all| all.iter().copied().fold(f64::INFINITY, f64::min)),
+        FunctionKind::OfNumbers(|all| all.iter().copied().fold(f64::INFINITY, f64::min)),
     ),
     (
         "max",
         None,
-        Made::OfNumbers(|all| all.iter().copied().fold(f64::NEG_INFINITY, f64::max)),
+        FunctionKind::OfNumbers(|all| all.iter().copied().fold(f64::NEG_INFINITY, f64::max)),
     ),
     // The parser guarantees exactly one value.
-    ("abs", Some((1, "one value")), Made::OfNumbers(|all| all[0].abs())),
-    ("distance", Some((2, "two colours")), Made::Distance),
+    (
+        "abs",
+        Some((1, "one value")),
+        FunctionKind::OfNumbers(|all| all[0].abs()),
+    ),
+    ("distance", Some((2, "two colours")), FunctionKind::Distance),
 ];
 
-/// Precedence of `not`: lower than that of a comparison.
+/// Precedence of `not`: lower than the precedence of a comparison.
 const NOT: u8 = 3;
 /// Precedence of comparisons; they do not chain.
 const COMPARISON: u8 = 4;
@@ -223,12 +227,12 @@ impl Node {
                 _ => None,
             },
             Self::Binary((_, _, operator), a, b) => operator.apply(&a.evaluate(values)?, &b.evaluate(values)?),
-            Self::Call((_, _, Made::Distance), nodes) => {
+            Self::Call((_, _, FunctionKind::Distance), nodes) => {
                 let color = |node: &Self| node.evaluate(values)?.color();
                 let (a, b) = (color(nodes.first()?)?, color(nodes.get(1)?)?);
                 Some(Term::Number(a.distance(b)))
             }
-            Self::Call((_, _, Made::OfNumbers(of)), nodes) => {
+            Self::Call((_, _, FunctionKind::OfNumbers(of)), nodes) => {
                 let number = |node: &Self| match node.evaluate(values)? {
                     Term::Number(number) => Some(number),
                     _ => None,
@@ -275,7 +279,7 @@ struct Parser {
 
 impl Parser {
     fn peek(&self) -> (usize, &Token) {
-        // The last token is the end, beyond which the parser never reads.
+        // The last token is `End`, and the parser never reads beyond it.
         let (at, token) = &self.tokens[self.next];
         (*at, token)
     }
@@ -293,7 +297,7 @@ impl Parser {
         }
     }
 
-    /// An expression whose operators all bind tighter than `floor` (precedence climbing).
+    /// An expression with operators that all bind tighter than `floor` (precedence climbing).
     fn expression(&mut self, floor: u8, depth: usize) -> Result<Node, String> {
         if depth > MAX_DEPTH {
             return Err(format!("at most {MAX_DEPTH} brackets or signs inside each other"));
@@ -453,37 +457,37 @@ mod tests {
     }
 
     #[track_caller]
-    fn refused(text: &str, expected: &str) {
+    fn check_error(text: &str, expected: &str) {
         assert_eq!(Requirement::parse(text).unwrap_err(), expected, "{text}");
     }
 
     #[test]
     fn syntax_error_reports_its_character() {
-        refused("", "a number, a name or a bracket at character 1, found the end");
-        refused("a <", "a number, a name or a bracket at character 4, found the end");
-        refused("((a)", "\")\" at character 5, found the end");
-        refused("a ; b", "an operator or the end at character 3, found \";\"");
-        refused("a b", "an operator or the end at character 3, found \"b\"");
-        refused("'open", "a closing ' for the text that begins at character 1");
-        refused(
+        check_error("", "a number, a name or a bracket at character 1, found the end");
+        check_error("a <", "a number, a name or a bracket at character 4, found the end");
+        check_error("((a)", "\")\" at character 5, found the end");
+        check_error("a ; b", "an operator or the end at character 3, found \";\"");
+        check_error("a b", "an operator or the end at character 3, found \"b\"");
+        check_error("'open", "a closing ' for the text that begins at character 1");
+        check_error(
             "fact(3) > 1",
             "one of min, max, abs, distance at character 1, found the function \"fact\"",
         );
-        refused("abs(1, 2) > 1", "one value for abs at character 1, found 2");
-        refused("distance(a) > 1", "two colours for distance at character 1, found 1");
-        refused("a & b", "an operator or the end at character 3, found \"&\"");
-        refused(
+        check_error("abs(1, 2) > 1", "one value for abs at character 1, found 2");
+        check_error("distance(a) > 1", "two colours for distance at character 1, found 1");
+        check_error("a & b", "an operator or the end at character 3, found \"&\"");
+        check_error(
             "a < b < 3",
             "\"and\" or \"or\" between comparisons at character 7, found \"<\"",
         );
-        refused("a = 3", "\"==\" at character 3, found \"=\"");
+        check_error("a = 3", "\"==\" at character 3, found \"=\"");
     }
 
     #[test]
     fn hostile_text_is_refused() {
-        refused(&"(".repeat(400), "at most 32 brackets or signs inside each other");
-        refused(&"-".repeat(400), "at most 32 brackets or signs inside each other");
-        refused(&"not ".repeat(100), "at most 32 brackets or signs inside each other");
-        refused(&"a + ".repeat(10_000), "at most 500 characters");
+        check_error(&"(".repeat(400), "at most 32 brackets or signs inside each other");
+        check_error(&"-".repeat(400), "at most 32 brackets or signs inside each other");
+        check_error(&"not ".repeat(100), "at most 32 brackets or signs inside each other");
+        check_error(&"a + ".repeat(10_000), "at most 500 characters");
     }
 }

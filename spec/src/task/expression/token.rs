@@ -7,8 +7,8 @@ pub(super) enum Token {
     Text(String),
     Word(String),
     Symbol(&'static str),
-    /// A character without meaning in conditions.
-    Odd(char),
+    /// A character that has no meaning in conditions.
+    Unknown(char),
     End,
 }
 
@@ -20,13 +20,13 @@ impl Token {
             Self::Text(text) => format!("'{text}'"),
             Self::Word(word) => format!("{word:?}"),
             Self::Symbol(symbol) => format!("{symbol:?}"),
-            Self::Odd(character) => format!("\"{character}\""),
+            Self::Unknown(character) => format!("\"{character}\""),
             Self::End => "the end".to_owned(),
         }
     }
 }
 
-/// Symbols; each comes before those that are its prefixes.
+/// The symbols; each comes before its prefixes.
 const SYMBOLS: [&str; 17] = [
     "<=", ">=", "==", "!=", "<", ">", "=", "+", "-", "*", "/", "%", "(", ")", "[", "]", ",",
 ];
@@ -75,7 +75,7 @@ pub(super) fn tokens(text: &str) -> Result<Vec<(usize, Token)>, String> {
             let rest: String = characters[at..characters.len().min(at + 2)].iter().collect();
             let symbol = SYMBOLS.into_iter().find(|symbol| rest.starts_with(symbol));
             at += symbol.map_or(1, str::len);
-            symbol.map_or(Token::Odd(first), Token::Symbol)
+            symbol.map_or(Token::Unknown(first), Token::Symbol)
         };
         tokens.push((start + 1, token));
     }

@@ -13,7 +13,7 @@ macro_rules! comparisons {
         }
 
         impl Comparison {
-            /// All of them, in the order in which tables list them.
+            /// All parts, in the order in which tables list them.
             pub const ALL: &[Self] = &[$(Self::$part),+];
 
             /// Its name in tables.
@@ -41,7 +41,7 @@ macro_rules! comparisons {
 }
 
 comparisons! {
-    /// Places of matched objects.
+    /// Positions of matched objects.
     PlacesOfObjects: S, "places of objects", "10 m",
     /// Objects without a match.
     Unmatched: S, "objects without a match", "an object",
@@ -51,7 +51,7 @@ comparisons! {
     Start: S, "agent's start", "10 m",
     /// The agent's heading at the start.
     Heading: S, "agent's heading", "180 degrees",
-    /// What the numbers of an action mean.
+    /// The meaning of the numbers of an action.
     ModelOfActions: A, "action model", "another word",
     /// The action space, and whether the agent can interact and carry.
     SpaceOfActions: A, "action space", "another word",
@@ -75,11 +75,11 @@ comparisons! {
     Layouts: T, "layouts", "no wall in common, or ways of no likeness",
     /// The sides of the arena.
     ArenaSize: T, "sides of the arena", "the larger one",
-    /// Places and effects of zones that affect movement.
+    /// Positions and effects of zones that affect movement.
     Zones: T, "zones", "10 m, the larger one, or a zone",
     /// Rewards of objects.
     Rewards: R, "rewards of objects", "100 points",
-    /// Stimuli for which objects pay.
+    /// The stimuli that pay an object's reward.
     PaidFor: R, "what is paid for", "the larger one, or another word",
     /// Probability that an object pays.
     RewardProbabilities: R, "odds of reward", "from never to always",
@@ -87,13 +87,13 @@ comparisons! {
     StepReward: R, "step reward", "1 point a second",
     /// Shaping rewards, and the conditions that end an episode.
     ShapingAndEndings: R, "shaping and endings", "the larger one, or another word",
-    /// Places and effects of zones that pay or end an episode.
+    /// Positions and effects of zones that pay or end an episode.
     ZonePay: R, "pay and endings of zones", "10 m, the larger one, or a zone",
     /// The limit on the length of an episode.
     Limit: R, "limit of steps", "the larger one, or none",
     /// The colours of objects.
     ColorsOfObjects: O, "colours of objects", "black to white in Oklab",
-    /// The looks of objects without a match.
+    /// The appearance of objects without a match.
     UnmatchedLooks: O, "looks without a match", "an object",
     /// The models of objects.
     ModelsOfObjects: O, "models of objects", "another word",
@@ -103,7 +103,7 @@ comparisons! {
     Light: O, "light", "the larger one",
     /// The colours of walls, sky, ground and sunlight.
     ColorsOfSurroundings: O, "colours of surroundings", "black to white in Oklab",
-    /// Places and colours of visible zones.
+    /// Positions and colours of visible zones.
     ZoneLooks: O, "looks of zones", "10 m, the larger one, or a zone",
     /// Everything else that affects what the agent sees.
     CameraAndWeather: O, "camera and weather", "the larger one, or another word",

@@ -1,7 +1,7 @@
-//! The table of fields: [`fields!`] declares a part of a world once, in `world/` and `layout/`. Each field has its unit, whether
-//! the original has it, how it is compared, and whether it can be a parameter. The setters of templates, the keys of the
-//! L2Explorer dialect, the comparison of worlds and `docs/reference/` are derived from it. Types, ranges and defaults come from
-//! the schema of the same declaration.
+//! The table of fields: [`fields!`], used in `world/` and `layout/`, declares each part of a world once. Each field has its
+//! unit, whether the original has it, how it is compared, and whether it can be a parameter. The setters of templates, the keys
+//! of the L2Explorer dialect, the comparison of worlds and `docs/reference/` are derived from it. Types, ranges and defaults
+//! come from the schema of the same declaration.
 
 mod comparison;
 mod place;
@@ -28,7 +28,7 @@ pub struct Field {
     pub fixed: Option<&'static str>,
     /// Why no parameter can set the whole of it, although one can set its parts.
     pub in_parts: Option<&'static str>,
-    /// The type of parameter that sets the whole of it, if that differs from its Rust type's.
+    /// The type of parameter that sets the whole of it, if it differs from the one for its Rust type.
     typed: Option<ParameterType>,
     is_heading: bool,
 }
@@ -118,12 +118,12 @@ impl Field {
         if self.key.is_empty() { self.named(key) } else { self }
     }
 
-    /// The type of parameter for the whole of it, given that of its Rust type.
+    /// The type of parameter for the whole of it, given the type for its Rust type.
     fn whole_kind(&self, kind: ParameterType) -> ParameterType {
         self.typed.unwrap_or(self.kind(kind))
     }
 
-    /// The type of parameter for a place in the field, given that of its Rust type.
+    /// The type of parameter for a place in the field, given the type for its Rust type.
     fn kind(&self, kind: ParameterType) -> ParameterType {
         match kind {
             ParameterType::Number if self.is_heading => ParameterType::Heading,
@@ -157,12 +157,12 @@ pub(crate) struct Row<T> {
 
 /// A part of a world whose fields are in the table.
 pub(crate) trait Fields: DeserializeOwned + 'static {
-    /// In the order of the declaration.
+    /// The rows, in the order of the declaration.
     const ROWS: &'static [Row<Self>];
 }
 
 pub(crate) fn write(value: &impl Serialize, out: &mut Vec<u8>) {
-    serde_json::to_writer(out, value).expect("parts of a world always serialise, and memory takes them");
+    serde_json::to_writer(out, value).expect("parts of a world always serialise, and writing to memory does not fail");
 }
 
 /// Names used in the rows of the table.

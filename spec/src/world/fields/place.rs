@@ -13,10 +13,10 @@ pub(crate) type Setter<T> = fn(&mut T, &[usize], &Value) -> Option<()>;
 
 /// A place in a world that can be set from a parameter's value, as a whole or in parts.
 pub(crate) trait Place: DeserializeOwned {
-    /// The type of parameter for the whole of it; JSON, which fits every place, if it has no type of its own.
+    /// The type of parameter for the whole of it; JSON, which fits everywhere, if there is no more specific type.
     const KIND: ParameterType = ParameterType::Json;
 
-    /// Makes the whole of it from a value of that type. `None` if the value is not allowed here.
+    /// Builds the whole of it from a value of that type. `None` if the value is not allowed here.
     fn from_value(value: &Value) -> Option<Self> {
         match value.cast(ParameterType::Json)? {
             Value::Json(json) => Self::from_json(&json),
@@ -24,7 +24,7 @@ pub(crate) trait Place: DeserializeOwned {
         }
     }
 
-    /// Makes the whole of it from JSON that the schema of the place allows.
+    /// Builds the whole of it from JSON that is valid here.
     fn from_json(json: &Json) -> Option<Self> {
         Self::deserialize(json).ok()
     }
@@ -102,7 +102,7 @@ impl<T: Fields> Place for T {
     }
 
     fn setter(mut steps: Vec<usize>) -> (Setter<Self>, Vec<usize>) {
-        // There is always one: no value fills a whole world or object.
+        // There is always a first step, because no value fills a whole world or object.
         (T::ROWS[steps.remove(0)].set, steps)
     }
 
@@ -215,7 +215,7 @@ impl Place for [u32; 2] {
     number_by_number!(u32);
 }
 
-/// A type that is set as a whole, and how to read it.
+/// Implements `Place` for a type that is set as a whole, given a function that reads it.
 macro_rules! leaf {
     ($type:ty, $kind:ident, $read:expr) => {
         impl Place for $type {
