@@ -125,12 +125,12 @@ impl Condition {
     }
 }
 
-/// A condition that a position failed, with the actual and required distance in metres.
+/// A condition that a position failed, with the distance found and the minimum in metres.
 #[derive(Clone, Copy)]
 struct Miss {
     condition: Condition,
-    actual: f64,
-    required: f64,
+    found: f64,
+    min: f64,
 }
 
 impl<'a> PlacementContext<'a> {
@@ -193,11 +193,7 @@ impl<'a> PlacementContext<'a> {
         let is_mixture = request.placement.needs_group();
         for turn in 0..tries {
             // In a mixture, a list moves on from the object's own point once half of the tries have failed.
-            let offset = if is_mixture {
-                turn.saturating_sub(MAX_TRIES / 2)
-            } else {
-                0
-            };
+            let offset = turn.saturating_sub(MAX_TRIES / 2) * u32::from(is_mixture);
             if let Some(at) = self.try_at(request, request.number + u64::from(offset), rng, &mut tried) {
                 return Ok(at);
             }
@@ -219,18 +215,13 @@ impl<'a> PlacementContext<'a> {
 
     /// Whether a placement allows objects to block doorways: by its kind of cells, by letters, or because only cells in
     /// doorways are left. Placements outside cells are given by coordinates in metres, which allows it too.
-    pub(crate) fn allows_doorways(
-        &self,
-        placement: &Distribution,
-        cells: Option<&Cells>,
-        doorway_clearance: f64,
-    ) -> bool {
+    pub(crate) fn allows_doorways(&self, placement: &Distribution, cells: Option<&Cells>, clearance: f64) -> bool {
         match placement {
             Distribution::Cells {
                 kind, letter, of_group, ..
             } => {
                 let is_asked = *kind == CellKind::Doorway || letter.is_some() || *of_group;
-                let is_in_doorway = |middle| self.doorways.within(middle, doorway_clearance).is_some();
+                let is_in_doorway = |middle| self.doorways.within(middle, clearance).is_some();
                 is_asked || cells.is_none_or(|cells| cells.all_centers(is_in_doorway))
             }
             _ => true,
@@ -306,7 +297,7 @@ impl<'a> PlacementContext<'a> {
         tried.failed[miss.condition as usize] += 1;
         if tried
             .closest
-            .is_none_or(|closest| miss.required - miss.actual < closest.required - closest.actual)
+            .is_none_or(|closest| miss.min - miss.found < closest.min - closest.found)
         {
             tried.closest = Some(miss);
         }
@@ -316,30 +307,18 @@ impl<'a> PlacementContext<'a> {
     /// The first condition that a position fails.
     fn miss(&self, place: [f64; 2], own_distance: f64, request: &Request) -> Option<Miss> {
         let margins = request.margins;
-        let miss = |condition, required: f64, actual: Option<f64>| {
-            actual.map(|actual| Miss {
-                condition,
-                actual,
-                required,
-            })
-        };
+        let miss = |condition, min: f64, found: Option<f64>| found.map(|found| Miss { condition, found, min });
         let wall = self.free_space.clearance(place, margins.walls);
         let is_at_wall = wall.is_nan() || wall < margins.walls;
         let agent = || Some(distance(place, self.agent)).filter(|agent| *agent < margins.agent);
         let everything = || self.everything.within(place, margins.separation);
         let own = || self.groups[request.group].within(place, own_distance);
-        let of_group =
-            |group: usize, required: f64| miss(Condition::Group, required, self.groups[group].within(place, required));
+        let of_group = |group: usize, min: f64| miss(Condition::Group, min, self.groups[group].within(place, min));
         miss(Condition::Wall, margins.walls, is_at_wall.then_some(wall))
             .or_else(|| miss(Condition::Agent, margins.agent, agent()))
             .or_else(|| miss(Condition::Neighbour, margins.separation, everything()))
             .or_else(|| miss(Condition::Own, own_distance, own()))
-            .or_else(|| {
-                margins
-                    .groups
-                    .iter()
-                    .find_map(|(group, required)| of_group(*group, *required))
-            })
+            .or_else(|| margins.groups.iter().find_map(|(group, min)| of_group(*group, *min)))
             .or_else(|| {
                 miss(
                     Condition::Doorway,
@@ -390,18 +369,11 @@ fn reason(failed: [u32; Condition::VARIANTS.len()], closest: Option<Miss>) -> St
             format!("{} {were} {}", count(condition), condition.describe_failure())
         })
         .collect();
-    let miss = closest.map_or_else(
-        String::new,
-        |Miss {
-             condition,
-             actual,
-             required,
-         }| {
-            format!(
-                "; the best was {actual:.2} m from {}, expected {required} m",
-                condition.nearest()
-            )
-        },
-    );
+    let miss = closest.map_or_else(String::new, |Miss { condition, found, min }| {
+        format!(
+            "; the best was {found:.2} m from {}, expected {min} m",
+            condition.nearest()
+        )
+    });
     format!("{}{miss}; {}", counts.join(", "), worst.advice())
 }

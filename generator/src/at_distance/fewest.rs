@@ -53,7 +53,7 @@ fn of_size<'a, D: FnMut(&Variant) -> f64>(
     profiles: &mut Profiles,
     size: usize,
 ) -> Option<Found> {
-    let sets = reach.change_sets(search, size);
+    let sets = reach.sets(search, size);
     let mut best = None;
     let cut = straight(search, &sets, &mut best);
     if best.is_some() {
@@ -96,7 +96,7 @@ fn straight<'w, 'a, D: FnMut(&Variant) -> f64>(
         if search.num_measured >= until_better && best.is_some() {
             break;
         }
-        let rejected_before = search.num_rejected;
+        let rejected = search.num_rejected;
         search.nearest = None;
         let found = match &set.smooth[..] {
             [] => search
@@ -114,9 +114,7 @@ fn straight<'w, 'a, D: FnMut(&Variant) -> f64>(
                     } else {
                         search.straight_to_corners(&set.choices, smooth)
                     };
-                if !is_met
-                    && (set.sum.is_none() || search.num_rejected > rejected_before || search.num_measured >= until)
-                {
+                if !is_met && (set.sum.is_none() || search.num_rejected > rejected || search.num_measured >= until) {
                     cut.push(set);
                 }
                 search.nearest.take().filter(|_| is_met).into_iter().collect::<Vec<_>>()

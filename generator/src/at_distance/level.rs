@@ -20,7 +20,7 @@ const MAX_BISECTIONS: u32 = 40;
 
 /// Values of a parameter from end to end of its range, each with its distance.
 struct Profile {
-    points_of_profile: Vec<(Vec<f64>, f64)>,
+    samples: Vec<(Vec<f64>, f64)>,
 }
 
 /// The profiles measured so far, by parameter.
@@ -34,7 +34,7 @@ impl Profiles {
         }
         let space = Space::new(search.from, &[free]);
         let parts = if space.axes.len() == 1 { PARTS } else { PARTS_OF_VECTOR };
-        let mut points_of_profile = vec![Vec::new()];
+        let mut samples = vec![Vec::new()];
         for axis in &space.axes {
             let mut stops: Vec<f64> = (0..=parts).map(|part| axis.at(part, parts)).collect();
             stops.push(axis.here);
@@ -46,18 +46,14 @@ impl Profiles {
                     .map(move |stop| [&place[..], &[*stop]].concat())
                     .collect::<Vec<_>>()
             };
-            points_of_profile = points_of_profile
-                .into_iter()
-                .flat_map(longer)
-                .take(PARTS * PARTS)
-                .collect();
+            samples = samples.into_iter().flat_map(longer).take(PARTS * PARTS).collect();
         }
-        let measured = points_of_profile.into_iter().filter_map(|place| {
+        let measured = samples.into_iter().filter_map(|place| {
             let distance = search.measure_beyond(space.changes(&place))?;
             Some((place, distance))
         });
-        let points_of_profile = measured.collect();
-        self.0.insert(free.0.to_owned(), Profile { points_of_profile });
+        let samples = measured.collect();
+        self.0.insert(free.0.to_owned(), Profile { samples });
     }
 }
 
@@ -78,15 +74,15 @@ impl<'a, D: FnMut(&Variant) -> f64> Search<'a, D> {
             let mut anchors: Vec<(Changes, f64)> = vec![(set.choices.clone(), set.sum.unwrap_or(0.0))];
             for other in others {
                 let space = Space::new(self.from, &[other]);
-                let points_of_profile = &profiles.0[other.0].points_of_profile;
-                let step = (points_of_profile.len() as f64 / each.max(2) as f64).max(1.0);
+                let samples = &profiles.0[other.0].samples;
+                let step = (samples.len() as f64 / each.max(2) as f64).max(1.0);
                 let chosen = (0..)
                     .map(|k| (f64::from(k) * step) as usize)
-                    .take_while(|index| *index < points_of_profile.len() - 1);
-                let chosen: Vec<usize> = chosen.chain([points_of_profile.len() - 1]).collect();
+                    .take_while(|index| *index < samples.len() - 1);
+                let chosen: Vec<usize> = chosen.chain([samples.len() - 1]).collect();
                 let extend = |(changes, sum): &(Changes, f64)| {
                     let moved = chosen.iter().map(|index| {
-                        let (place, distance) = &points_of_profile[*index];
+                        let (place, distance) = &samples[*index];
                         (with(changes, &space.changes(place)), sum + distance)
                     });
                     let is_possible = |sum: f64| set.sum.is_none() || sum <= self.target + self.tolerance;
@@ -113,19 +109,15 @@ impl<'a, D: FnMut(&Variant) -> f64> Search<'a, D> {
     /// An allowed value of the last number that contributes the rest of the sum.
     fn complete_sum(&mut self, last: Free<'a>, profile: &Profile, changes: &Changes, sum: f64) -> Option<Found> {
         let space = Space::new(self.from, &[last]);
-        let missing = self.target - sum;
-        for part in profile.points_of_profile.windows(2) {
+        let rest = self.target - sum;
+        for part in profile.samples.windows(2) {
             let [(low, near), (high, far)] = part else { continue };
-            if (*near - missing) * (*far - missing) > 0.0 {
+            if (*near - rest) * (*far - rest) > 0.0 {
                 continue;
             }
             let (mut low, mut high) = (low[0], high[0]);
             let is_rising = near < far;
-            let mut share = if near == far {
-                0.0
-            } else {
-                (missing - near) / (far - near)
-            };
+            let mut share = if near == far { 0.0 } else { (rest - near) / (far - near) };
             for _ in 0..MAX_BISECTIONS {
                 let at = if share == 0.0 { low } else { low + (high - low) * share };
                 // If this value is not allowed, neighbouring values are assumed not to be either.

@@ -96,33 +96,30 @@ impl<'a> Reach<'a> {
     }
 
     /// All change sets of this size that may meet the target, up to a maximum number.
-    pub(super) fn change_sets<D: FnMut(&Variant) -> f64>(
+    pub(super) fn sets<D: FnMut(&Variant) -> f64>(
         &mut self,
         search: &mut Search<'a, D>,
         size: usize,
     ) -> Vec<ChangeSet<'a>> {
-        let (mut change_sets, mut num_sets) = (Vec::new(), 0);
+        let (mut sets, mut num_sets) = (Vec::new(), 0);
         let mut set: Vec<usize> = (0..size).collect();
         loop {
             num_sets += 1;
-            if num_sets > MAX_SETS || change_sets.len() >= MAX_COMBINATIONS {
+            if num_sets > MAX_SETS || sets.len() >= MAX_COMBINATIONS {
                 break;
             }
             let members: Vec<&Candidate> = set.iter().map(|index| &self.candidates[*index]).collect();
-            add_change_sets(&members, search, &mut self.spans, &mut change_sets);
+            add_change_sets(&members, search, &mut self.spans, &mut sets);
             // The next set of this size in lexical order.
-            let Some(position) = (0..size)
-                .rev()
-                .find(|position| set[*position] < self.len() - size + position)
-            else {
+            let Some(at) = (0..size).rev().find(|at| set[*at] < self.len() - size + at) else {
                 break;
             };
-            set[position] += 1;
-            for later in position + 1..size {
+            set[at] += 1;
+            for later in at + 1..size {
                 set[later] = set[later - 1] + 1;
             }
         }
-        change_sets
+        sets
     }
 }
 
@@ -135,19 +132,15 @@ fn add_change_sets<'a, D: FnMut(&Variant) -> f64>(
 ) {
     let (low, high) = (search.target - search.tolerance, search.target + search.tolerance);
     let is_smooth = |member: &&&Candidate| member.choices.is_empty();
-    let (tied, independent): (Vec<&Candidate>, Vec<&Candidate>) = members.iter().partition(|member| member.is_tied);
-    let reach: f64 = independent.iter().map(|member| member.max).sum();
-    let min: f64 = independent.iter().map(|member| member.min).sum();
+    let (tied, free): (Vec<&Candidate>, Vec<&Candidate>) = members.iter().partition(|member| member.is_tied);
+    let reach: f64 = free.iter().map(|member| member.max).sum();
+    let min: f64 = free.iter().map(|member| member.min).sum();
     if min > high || (tied.is_empty() && reach < low) {
         return;
     }
     let smooth: Vec<Free> = members.iter().filter(is_smooth).map(|member| member.free).collect();
-    let listed: Vec<&Candidate> = independent
-        .iter()
-        .filter(|member| !is_smooth(member))
-        .copied()
-        .collect();
-    let moving: f64 = independent.iter().filter(is_smooth).map(|member| member.max).sum();
+    let listed: Vec<&Candidate> = free.iter().filter(|member| !is_smooth(member)).copied().collect();
+    let moving: f64 = free.iter().filter(is_smooth).map(|member| member.max).sum();
     let tied_smooth: Vec<&Candidate> = tied.iter().filter(is_smooth).copied().collect();
     let tied_listed: Vec<&Candidate> = tied.iter().filter(|member| !is_smooth(member)).copied().collect();
     for together in products(&tied_listed, |_| true) {
@@ -207,9 +200,8 @@ fn reach_together<D: FnMut(&Variant) -> f64>(
         return Some((0.0, 0.0));
     }
     if smooth.is_empty() {
-        return search
-            .measure_beyond(choices.clone())
-            .map(|distance| (distance, distance));
+        let distance = search.measure_beyond(choices.clone());
+        return distance.map(|distance| (distance, distance));
     }
     let mut corners = vec![choices.clone()];
     let mut farther = 0.0;

@@ -46,7 +46,7 @@ fn directions(axes: usize) -> Vec<Vec<(usize, f64)>> {
 }
 
 /// An allowed point, and its distance.
-type MeasuredPoint = (Point, f64);
+type Measured = (Point, f64);
 
 impl<'a, D: FnMut(&Variant) -> f64> Search<'a, D> {
     /// Searches one combination of choices in every direction; true if the target was met.
@@ -71,7 +71,7 @@ pub(super) struct Scan<'s, 'a, D> {
 }
 
 /// Ends the search: the target distance was met, or the budget is used up.
-struct SearchEnd;
+struct Stop;
 
 impl<D: FnMut(&Variant) -> f64> Scan<'_, '_, D> {
     /// Scans the whole box; true if the target distance was met.
@@ -83,51 +83,51 @@ impl<D: FnMut(&Variant) -> f64> Scan<'_, '_, D> {
         is_met
     }
 
-    fn scan_all(&mut self) -> Result<(), SearchEnd> {
-        let mut measured: Vec<MeasuredPoint> = Vec::new();
+    fn scan_all(&mut self) -> Result<(), Stop> {
+        let mut points: Vec<Measured> = Vec::new();
         let here = self.space.here();
         if self.space.axes.is_empty() {
             return Ok(());
         }
-        measured.extend(self.look(&here)?.map(|distance| (here.clone(), distance)));
+        points.extend(self.look(&here)?.map(|distance| (here.clone(), distance)));
         if self.budget < SMALL_BUDGET && self.space.axes.len() > 1 {
             for along in 0..self.space.axes.len() {
                 for anchor in self.space.anchors(along, COARSE_PARTS) {
-                    self.line(&anchor, along, PARTS / 2, &mut measured)?;
+                    self.line(&anchor, along, PARTS / 2, &mut points)?;
                 }
             }
         }
         for along in 0..self.space.axes.len() {
-            self.line(&here, along, 4 * PARTS, &mut measured)?;
+            self.line(&here, along, 4 * PARTS, &mut points)?;
         }
         // First the neighbourhood, which usually suffices, then the whole box.
-        self.continue_from_nearest(&mut measured, 1)?;
+        self.continue_from_nearest(&mut points, 1)?;
         if self.space.axes.len() == 1 {
             return Ok(());
         }
         for along in 0..self.space.axes.len() {
             for anchor in self.space.anchors(along, PARTS) {
-                self.line(&anchor, along, PARTS, &mut measured)?;
+                self.line(&anchor, along, PARTS, &mut points)?;
             }
         }
-        self.continue_from_nearest(&mut measured, MAX_STARTS)
+        self.continue_from_nearest(&mut points, MAX_STARTS)
     }
 
     /// Continues from the nearest points.
-    fn continue_from_nearest(&mut self, measured: &mut [MeasuredPoint], starts: usize) -> Result<(), SearchEnd> {
-        self.pairs(measured)?;
+    fn continue_from_nearest(&mut self, points: &mut [Measured], starts: usize) -> Result<(), Stop> {
+        self.pairs(points)?;
         let target = self.search.target;
-        measured.sort_by(|a, b| (a.1 - target).abs().total_cmp(&(b.1 - target).abs()));
-        for start in spaced_out(measured, self.space, starts) {
+        points.sort_by(|a, b| (a.1 - target).abs().total_cmp(&(b.1 - target).abs()));
+        for start in spaced_out(points, self.space, starts) {
             self.refine(start)?;
         }
         Ok(())
     }
 
     /// The distance of a point; `None` if the task does not allow it.
-    fn look(&mut self, point: &[f64]) -> Result<Option<f64>, SearchEnd> {
+    fn look(&mut self, point: &[f64]) -> Result<Option<f64>, Stop> {
         if self.budget == 0 {
-            return Err(SearchEnd);
+            return Err(Stop);
         }
         self.budget -= 1;
         let changes = with(self.combination, &self.space.changes(point));
@@ -135,19 +135,13 @@ impl<D: FnMut(&Variant) -> f64> Scan<'_, '_, D> {
             return Ok(None);
         };
         if self.search.meets(&found) {
-            return Err(SearchEnd);
+            return Err(Stop);
         }
         Ok(Some(found.distance))
     }
 
     /// Walks along an axis through a point, from end to end.
-    fn line(
-        &mut self,
-        through: &[f64],
-        along: usize,
-        parts: usize,
-        measured: &mut Vec<MeasuredPoint>,
-    ) -> Result<(), SearchEnd> {
+    fn line(&mut self, through: &[f64], along: usize, parts: usize, points: &mut Vec<Measured>) -> Result<(), Stop> {
         let parts = self.space.parts(along, parts);
         let mut before: Option<(Point, Option<f64>)> = None;
         for part in 0..=parts {
@@ -156,26 +150,21 @@ impl<D: FnMut(&Variant) -> f64> Scan<'_, '_, D> {
             let distance = self.look(&point)?;
             match (&before, distance) {
                 (Some((last, Some(near))), Some(far)) => self.between((last, *near), (&point, far))?,
-                (Some((last, Some(inside))), None) => self.border((last, *inside), &point, measured)?,
+                (Some((last, Some(inside))), None) => self.border((last, *inside), &point, points)?,
                 (Some((last, None)), Some(inside)) => {
                     let last = last.clone();
-                    self.border((&point, inside), &last, measured)?;
+                    self.border((&point, inside), &last, points)?;
                 }
                 _ => {}
             }
-            measured.extend(distance.map(|distance| (point.clone(), distance)));
+            points.extend(distance.map(|distance| (point.clone(), distance)));
             before = Some((point, distance));
         }
         Ok(())
     }
 
     /// Moves from an allowed point towards one that is not, as far as possible.
-    fn border(
-        &mut self,
-        inside: (&[f64], f64),
-        outside: &[f64],
-        measured: &mut Vec<MeasuredPoint>,
-    ) -> Result<(), SearchEnd> {
+    fn border(&mut self, inside: (&[f64], f64), outside: &[f64], points: &mut Vec<Measured>) -> Result<(), Stop> {
         let (mut low, mut high) = (0.0, 1.0);
         let mut last = None;
         for _ in 0..MAX_BISECTIONS {
@@ -191,13 +180,13 @@ impl<D: FnMut(&Variant) -> f64> Scan<'_, '_, D> {
         }
         if let Some((point, distance)) = last {
             self.between(inside, (&point, distance))?;
-            measured.push((point, distance));
+            points.push((point, distance));
         }
         Ok(())
     }
 
     /// Bisects between two points on either side of the target distance.
-    fn between(&mut self, a: (&[f64], f64), b: (&[f64], f64)) -> Result<(), SearchEnd> {
+    fn between(&mut self, a: (&[f64], f64), b: (&[f64], f64)) -> Result<(), Stop> {
         let target = self.search.target;
         if (a.1 < target) == (b.1 < target) {
             return Ok(());
@@ -219,10 +208,10 @@ impl<D: FnMut(&Variant) -> f64> Scan<'_, '_, D> {
     }
 
     /// Tries straight lines between points continue_from_nearest and points farther than the target distance.
-    fn pairs(&mut self, measured: &[MeasuredPoint]) -> Result<(), SearchEnd> {
+    fn pairs(&mut self, points: &[Measured]) -> Result<(), Stop> {
         let target = self.search.target;
         let side = |far: bool| {
-            let mut side: Vec<&MeasuredPoint> = measured
+            let mut side: Vec<&Measured> = points
                 .iter()
                 .filter(|(_, distance)| (*distance >= target) == far)
                 .collect();
@@ -239,7 +228,7 @@ impl<D: FnMut(&Variant) -> f64> Scan<'_, '_, D> {
     }
 
     /// From a point, takes ever smaller steps in any direction that brings it continue_from_nearest to the target distance.
-    fn refine(&mut self, (start, distance): MeasuredPoint) -> Result<(), SearchEnd> {
+    fn refine(&mut self, (start, distance): Measured) -> Result<(), Stop> {
         let target = self.search.target;
         let directions = directions(self.space.axes.len());
         let (mut at, mut distance, mut step) = (start, distance, 0.25);
@@ -273,10 +262,10 @@ impl<D: FnMut(&Variant) -> f64> Scan<'_, '_, D> {
 }
 
 /// The nearest points, no two of them close together.
-fn spaced_out(sorted: &[MeasuredPoint], space: &Space, max: usize) -> Vec<MeasuredPoint> {
-    let mut kept: Vec<MeasuredPoint> = Vec::new();
+fn spaced_out(sorted: &[Measured], space: &Space, max: usize) -> Vec<Measured> {
+    let mut kept: Vec<Measured> = Vec::new();
     for (point, distance) in sorted {
-        let is_close = |(other, _): &MeasuredPoint| {
+        let is_close = |(other, _): &Measured| {
             let mut differences = space.axes.iter().zip(point.iter().zip(other));
             differences.all(|(axis, (a, b))| (a - b).abs() <= 0.1 * (axis.high - axis.low))
         };

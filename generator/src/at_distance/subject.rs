@@ -55,11 +55,10 @@ pub(super) fn parameters_of<'a>(from: &'a Variant, subject: &Subject) -> Result<
     if let Subject::Parameters(names) = subject {
         let known: Vec<&str> = declared(from).map(|(name, _)| name).collect();
         if let Some(unknown) = names.iter().find(|name| !known.contains(&name.as_str())) {
-            let suggestion =
-                nearest(unknown, known).map_or_else(String::new, |near| format!(" (did you mean {near:?}?)"));
+            let advice = nearest(unknown, known).map_or_else(String::new, |near| format!(" (did you mean {near:?}?)"));
             return Err(GeneratorError::NothingToVary {
                 variant: from.id(),
-                asked: format!("variant parameter named {unknown}{suggestion}"),
+                asked: format!("variant parameter named {unknown}{advice}"),
             });
         }
     }

@@ -18,8 +18,8 @@ const DOOR: &str = "door";
 const COLORS: [&str; 8] = ["red", "blue", "yellow", "lime", "magenta", "cyan", "orange", "white"];
 
 /// Minimum distances of a key, in metres: from walls, and from objects and the agent; smaller in small cells.
-const MIN_WALL_DISTANCE: f64 = 0.4;
-const MIN_OBJECT_DISTANCE: f64 = 0.8;
+const WALL_DISTANCE: f64 = 0.4;
+const OBJECT_DISTANCE: f64 = 0.8;
 
 /// Number of cells to try at random before going through them one by one.
 const RANDOM_TRIES: usize = 32;
@@ -170,11 +170,9 @@ impl Order {
             while let Some(&cell) = cells.get(next) {
                 next += 1;
                 near.extend(&doors_of_cell[cell]);
-                for next_cell in plan.neighbours(cell) {
-                    if !shut.contains(&[Some(cell), Some(next_cell)])
-                        && !std::mem::replace(&mut is_reached[next_cell], true)
-                    {
-                        cells.push(next_cell);
+                for other in plan.neighbours(cell) {
+                    if !shut.contains(&[Some(cell), Some(other)]) && !std::mem::replace(&mut is_reached[other], true) {
+                        cells.push(other);
                     }
                 }
             }
@@ -196,11 +194,8 @@ impl Order {
 
 /// A position in one of these cells that is clear of walls, objects and the agent: tries cells at random, then all in turn.
 fn free_place(plan: &Plan, cells: &[usize], draft: &Draft, rng: &mut Rng) -> Option<[f64; 2]> {
-    let shorter_side = plan.cell[0].min(plan.cell[1]);
-    let (walls, others) = (
-        MIN_WALL_DISTANCE.min(shorter_side / 4.0),
-        MIN_OBJECT_DISTANCE.min(shorter_side / 2.0),
-    );
+    let side = plan.cell[0].min(plan.cell[1]);
+    let (walls, others) = (WALL_DISTANCE.min(side / 4.0), OBJECT_DISTANCE.min(side / 2.0));
     let mut first = 0;
     (0..RANDOM_TRIES + cells.len()).find_map(|turn| {
         if turn < RANDOM_TRIES {

@@ -11,12 +11,12 @@ use crate::describe::plain_number;
 impl<N: Channel + Serialize> Display for Distribution<N> {
     fn fmt(&self, f: &mut Formatter) -> Result {
         let json = serde_json::to_value(self).unwrap_or_default();
-        f.write_str(&format_value(&json))
+        f.write_str(&text_of(&json))
     }
 }
 
 /// `name(key value, key value)` for a distribution, the plain value for anything else.
-fn format_value(json: &Json) -> String {
+fn text_of(json: &Json) -> String {
     match json {
         Json::Object(map) if map.contains_key("param") => {
             let index = map.get("index").map_or_else(String::new, |index| format!("[{index}]"));
@@ -27,14 +27,12 @@ fn format_value(json: &Json) -> String {
         Json::Object(map) => {
             let forms = map.iter().map(|(name, fields)| {
                 let fields = fields.as_object().into_iter().flatten();
-                let fields: Vec<String> = fields
-                    .map(|(key, value)| format!("{key} {}", format_value(value)))
-                    .collect();
+                let fields: Vec<String> = fields.map(|(key, value)| format!("{key} {}", text_of(value))).collect();
                 format!("{name}({})", fields.join(", "))
             });
             forms.collect::<Vec<_>>().join(", ")
         }
-        Json::Array(items) => format!("[{}]", items.iter().map(format_value).collect::<Vec<_>>().join(", ")),
+        Json::Array(items) => format!("[{}]", items.iter().map(text_of).collect::<Vec<_>>().join(", ")),
         Json::Number(number) => number.as_f64().map_or_else(|| number.to_string(), plain_number),
         Json::String(text) => text.clone(),
         other => other.to_string(),

@@ -74,12 +74,9 @@ impl Distribution<f64> {
             Self::VonMises { kappa, .. } => outside(0.0..=1e4, "kappa", *kappa, "a concentration in 0..10000"),
             Self::Bernoulli { p } => outside(0.0..=1.0, "p", *p, "a probability in 0..1"),
             Self::Binomial { n, p } => {
+                let found = format!("n {n} and p {p}");
                 let is_valid = (0.0..=1.0).contains(p) && n.fract() == 0.0 && (0.0..=100_000.0).contains(n);
-                unless(
-                    is_valid,
-                    format!("n {n} and p {p}"),
-                    "a whole n in 0..100000 and p in 0..1",
-                )
+                unless(is_valid, found, "a whole n in 0..100000 and p in 0..1")
             }
             Self::Poisson { mean } => outside(0.0..=1e5, "mean", *mean, "a mean in 0..100000"),
             Self::Geometric { p } => outside(1e-9..=1.0, "p", *p, "a probability in 0.000000001..1"),

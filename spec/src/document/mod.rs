@@ -36,11 +36,7 @@ impl<'a> Document<'a> {
 
     /// Parses a text as most programs do: the last of repeated keys in one object counts. Also returns pointers of repeated keys,
     /// up to a limit.
-    pub(crate) fn parse_leniently(
-        name: &'a str,
-        text: &'a str,
-        max_values: usize,
-    ) -> Result<(Self, Vec<String>), SpecError> {
+    pub(crate) fn parse_leniently(name: &'a str, text: &'a str, max: usize) -> Result<(Self, Vec<String>), SpecError> {
         let text = without_mark(text);
         if text.len() > MAX_BYTES {
             return Err(SpecError::TooLarge {
@@ -52,7 +48,7 @@ impl<'a> Document<'a> {
         let to_error = |(error, stop): (serde_json::Error, Option<Stop>)| match stop {
             Some(Stop::TooMany) => SpecError::TooManyValues {
                 name: name.to_owned(),
-                limit: max_values,
+                limit: max,
             },
             Some(Stop::LongKey) => SpecError::LongKey {
                 name: name.to_owned(),
@@ -63,10 +59,10 @@ impl<'a> Document<'a> {
             Some(Stop::Repeated) | None => syntax_error(name, text, &error),
         };
         // One pass builds the value and detects repeated keys; their places are looked up only if there are any.
-        let (value, repeated) = match json::parse(text, max_values, Repeats::Stop) {
+        let (value, repeated) = match json::parse(text, max, Repeats::Stop) {
             Ok(value) => (value, Vec::new()),
             Err((_, Some(Stop::Repeated))) => {
-                let value = json::parse(text, max_values, Repeats::LastCounts).map_err(to_error)?;
+                let value = json::parse(text, max, Repeats::LastCounts).map_err(to_error)?;
                 (value, json::repeated(text, MAX_PROBLEMS + 1))
             }
             Err(found) => return Err(to_error(found)),

@@ -58,8 +58,8 @@ impl World {
         let draft: WorldDraft = document.deserialize()?;
         document.fail_on(draft.problems().into_iter().map(original).collect::<Vec<_>>())?;
         let world = draft.check_in_range()?;
-        let has_map_regions = world.environment_params.map_regions.is_some();
-        let world = if has_map_regions {
+        let has_regions = world.environment_params.map_regions.is_some();
+        let world = if has_regions {
             world
         } else {
             world.with_maps(maps::of_l2explorer())
@@ -70,9 +70,7 @@ impl World {
                 continue;
             };
             // The regions are not in the file: they come from its map.
-            if let (false, Some(Enclosure::OwnRegion { index })) =
-                (has_map_regions, world.enclosure(object.coordinates))
-            {
+            if let (false, Some(Enclosure::OwnRegion { index })) = (has_regions, world.enclosure(object.coordinates)) {
                 let (map, count) = (world.environment_params.map(), world.environment_params.regions().len());
                 let name = maps.name(map).unwrap_or_else(|| maps::name(map));
                 let region = format!("region {} of {count} of map {map} ({name})", index + 1);

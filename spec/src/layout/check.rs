@@ -27,10 +27,7 @@ impl Layout {
             ("height", "text", self.height.is_some()),
             ("legend", "text", !self.legend.is_empty()),
         ];
-        for (key, ..) in keys
-            .into_iter()
-            .filter(|(_, owner, is_present)| *is_present && owner != kind)
-        {
+        for (key, ..) in keys.into_iter().filter(|(_, owner, is_here)| *is_here && owner != kind) {
             let expected = "no such key beside ".to_owned() + kind;
             let problem = Problem::new(
                 "spec/layout-kind",

@@ -78,20 +78,17 @@ impl Grid {
         stack.push(first);
         while let Some(&cell) = stack.last() {
             let mut unvisited = [(0, (0, 0)); 4];
-            let mut count_unvisited = 0;
+            let mut count = 0;
             for neighbour in self.neighbours(cell).filter(|(next, _)| !seen[*next]) {
-                unvisited[count_unvisited] = neighbour;
-                count_unvisited += 1;
+                unvisited[count] = neighbour;
+                count += 1;
             }
-            if count_unvisited == 0 {
+            if count == 0 {
                 stack.pop();
                 continue;
             }
-            let (next, (cell, axis)) = unvisited[if count_unvisited == 1 {
-                0
-            } else {
-                draws.below(count_unvisited)
-            }];
+            let index = if count == 1 { 0 } else { draws.below(count) };
+            let (next, (cell, axis)) = unvisited[index];
             self.sides[axis][cell] = opened;
             seen[next] = true;
             stack.push(next);

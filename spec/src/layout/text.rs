@@ -136,9 +136,8 @@ fn neighbours(position: usize, columns: usize, count: usize) -> [Option<usize>; 
 
 /// The open sides of a position.
 fn sides(squares: &[Square], columns: usize, position: usize) -> u8 {
-    let neighbours_here = neighbours(position, columns, squares.len());
-    neighbours_here
-        .into_iter()
+    let near = neighbours(position, columns, squares.len());
+    near.into_iter()
         .zip([EAST, NORTH, WEST, SOUTH])
         .filter(|(next, _)| next.is_some_and(|next| squares[next] != Square::Wall))
         .fold(0, |all, (_, side)| all | side)

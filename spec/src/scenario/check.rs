@@ -55,7 +55,7 @@ fn declared_variants<'a>(pointer: &str, regime: &'a Regime) -> impl Iterator<Ite
 }
 
 impl<'a> DeclaredVariant<'a> {
-    fn display_name(&self) -> &'a str {
+    fn label(&self) -> &'a str {
         self.name.unwrap_or(self.variant)
     }
 
@@ -91,7 +91,7 @@ pub(super) fn alone(scenario: &Scenario) -> Vec<Problem> {
     let mut problems = phases(scenario);
     problems.extend(budgets(scenario));
     problems.extend(names::problem("/name", &scenario.name));
-    let mut display_name: BTreeMap<(&str, &str), DeclaredVariant> = BTreeMap::new();
+    let mut named: BTreeMap<(&str, &str), DeclaredVariant> = BTreeMap::new();
     for (pointer, _, regime) in regimes(scenario) {
         // Other names refer to tasks, which follow the grammar; a world file has no task.
         if regime.world.is_some() {
@@ -131,28 +131,24 @@ pub(super) fn alone(scenario: &Scenario) -> Vec<Problem> {
             problems.push(problem.advise("between two tasks there is nothing: only whole variants can switch"));
             continue;
         }
-        let fault = declared_variants(&pointer, regime).find_map(|declared| {
-            let own = declared
+        let fault = declared_variants(&pointer, regime).find_map(|variant| {
+            let own = variant
                 .name
-                .and_then(|name| names::problem(declared.pointer_to_name(), name));
-            declared.naming_problem().or(own)
+                .and_then(|name| names::problem(variant.pointer_to_name(), name));
+            variant.naming_problem().or(own)
         });
         if let Some(fault) = fault {
             problems.push(fault);
             continue;
         }
-        for declared in declared_variants(&pointer, regime) {
-            let key = (declared.task, declared.display_name());
-            if let Some(first) = display_name.get(&key).filter(|first| !declared.is_same(first)) {
-                let found = format!(
-                    "{:?}, which is another variant at {}",
-                    declared.display_name(),
-                    first.pointer
-                );
+        for variant in declared_variants(&pointer, regime) {
+            let key = (variant.task, variant.label());
+            if let Some(first) = named.get(&key).filter(|first| !variant.is_same(first)) {
+                let found = format!("{:?}, which is another variant at {}", variant.label(), first.pointer);
                 let expected = "one variant of a task under each name";
-                problems.push(Problem::new("spec/value", declared.pointer_to_name(), found, expected));
+                problems.push(Problem::new("spec/value", variant.pointer_to_name(), found, expected));
             }
-            display_name.entry(key).or_insert(declared);
+            named.entry(key).or_insert(variant);
         }
     }
     problems

@@ -34,8 +34,7 @@ impl DocumentSchema {
 
     /// A schema given as JSON.
     pub(crate) fn new(json: Value) -> Self {
-        let validator =
-            jsonschema::validator_for(&json).expect("the schema is generated from our own types and tested");
+        let validator = jsonschema::validator_for(&json).expect("the schema of our own types is tested");
         Self {
             json,
             validator,
@@ -167,14 +166,13 @@ fn references(part: &Value) -> Vec<String> {
 fn describe_forms(part: &mut Value) {
     match part {
         Value::Object(map) => {
-            let description = map.get("description").cloned();
-            if let (Some(description), Some(properties)) =
-                (description, map.get_mut("properties").and_then(Value::as_object_mut))
+            let words = map.get("description").cloned();
+            if let (Some(words), Some(properties)) = (words, map.get_mut("properties").and_then(Value::as_object_mut))
                 && properties.len() == 1
             {
                 for (_, property) in properties {
                     if let Some(property) = property.as_object_mut() {
-                        property.entry("description").or_insert_with(|| description.clone());
+                        property.entry("description").or_insert_with(|| words.clone());
                     }
                 }
             }

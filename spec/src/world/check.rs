@@ -100,13 +100,8 @@ impl WorldDraft {
             return Err(SpecError::of_document("world", problems));
         }
         if cfg!(debug_assertions) {
-            check("world", &self, World::schema(), problems)
-                .expect("the caller guarantees that each value is in range");
-            assert_eq!(
-                plan,
-                self.plan(),
-                "the caller guarantees that the plan belongs to the layout"
-            );
+            check("world", &self, World::schema(), problems).expect("the caller checked the ranges of all values");
+            assert_eq!(plan, self.plan(), "the caller passes the plan of the layout");
         }
         Ok(World { draft: self, plan })
     }

@@ -81,10 +81,9 @@ fn locked_forever(world: &World) -> Vec<(String, String)> {
 }
 
 /// The part of the layout blocked by a door at this position.
-fn barrier(plan: &Plan, position: [f64; 2]) -> Option<Barrier> {
-    let own = plan.cell_at(position);
-    let stands_in =
-        |center: [f64; 2], width: f64| (0..2).all(|axis| (center[axis] - position[axis]).abs() < width / 2.0);
+fn barrier(plan: &Plan, at: [f64; 2]) -> Option<Barrier> {
+    let own = plan.cell_at(at);
+    let stands_in = |center: [f64; 2], width: f64| (0..2).all(|axis| (center[axis] - at[axis]).abs() < width / 2.0);
     let doorway = plan
         .doorways
         .iter()
@@ -100,9 +99,8 @@ fn barrier(plan: &Plan, position: [f64; 2]) -> Option<Barrier> {
         let is_between = plan.cell_at(doorway.center) != before && doorway.depth < plan.cell[axis];
         is_between.then_some((before?, beyond?))
     });
-    sides
-        .map(|(a, b)| Barrier::Side(a.min(b), a.max(b)))
-        .or(own.map(Barrier::Cell))
+    let side = sides.map(|(a, b)| Barrier::Side(a.min(b), a.max(b)));
+    side.or(own.map(Barrier::Cell))
 }
 
 /// For each cell, whether it can be reached from `start` without passing a barrier.

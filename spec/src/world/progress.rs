@@ -285,15 +285,9 @@ fn carried_problems(world: &WorldDraft, progress: &Progress) -> Vec<Problem> {
         is_portable && progress.objects.get(index).is_some_and(is_away)
     };
     let mut entries = carried.iter().enumerate();
-    if let Some((position, thing)) =
-        entries.find(|(position, thing)| !is_carried(**thing) || carried[..*position].contains(thing))
-    {
+    if let Some((at, thing)) = entries.find(|(at, thing)| !is_carried(**thing) || carried[..*at].contains(thing)) {
         let expected = "a portable object, once, that is not present and does not return";
-        problems.push(wrong(
-            &format!("carried/{position}"),
-            format!("object {thing}"),
-            expected,
-        ));
+        problems.push(wrong(&format!("carried/{at}"), format!("object {thing}"), expected));
     }
     let limit = world.agent_params.carry_limit;
     if carried.len() > limit as usize {

@@ -171,11 +171,10 @@ fn polygon_fault(corners: &[[f64; 2]], pairs_left: &mut usize) -> Option<&'stati
     }
     let sides: Vec<_> = corners.iter().zip(corners.iter().cycle().skip(1)).collect();
     *pairs_left = pairs_left.checked_sub(sides.len() * sides.len() / 2)?;
-    let have_opposite_signs = |p: f64, q: f64| (p > 0.0 && q < 0.0) || (p < 0.0 && q > 0.0);
+    let differ = |p: f64, q: f64| (p > 0.0 && q < 0.0) || (p < 0.0 && q > 0.0);
     let crosses = |(index, (a, b)): (usize, &(&[f64; 2], &[f64; 2]))| {
         sides[..index].iter().any(|(c, d)| {
-            have_opposite_signs(turn(**a, **b, **c), turn(**a, **b, **d))
-                && have_opposite_signs(turn(**c, **d, **a), turn(**c, **d, **b))
+            differ(turn(**a, **b, **c), turn(**a, **b, **d)) && differ(turn(**c, **d, **a), turn(**c, **d, **b))
         })
     };
     sides.iter().enumerate().any(crosses).then_some("crosses itself")

@@ -139,25 +139,21 @@ impl Check<'_> {
         for (name, values) in &self.variants {
             let scope = Scope::new(self.parameters, values);
             let separation = scope.number(&group.separation).unwrap_or(0.0);
-            let (Ok(Resolved::Draw(placement)), Some(min_count)) =
+            let (Ok(Resolved::Draw(placement)), Some(min)) =
                 (scope.resolve(&group.placement), self.min_count(count, scope))
             else {
                 continue;
             };
-            let case = (placement, min_count, separation);
+            let case = (placement, min, separation);
             if seen.contains(&case) {
                 continue;
             }
-            if let Some(room) = case
-                .0
-                .room_in_turn(min_count, separation)
-                .filter(|room| *room < min_count)
-            {
+            if let Some(room) = case.0.room_in_turn(min, separation).filter(|room| *room < min) {
                 let places = case.0.num_turns().unwrap_or_default();
                 let found = format!(
                     "{places} places, of which {room} are free in turn {separation} m apart, in variant {name:?}"
                 );
-                let expected = format!("places for {min_count} objects {separation} m apart");
+                let expected = format!("places for {min} objects {separation} m apart");
                 let problem = Problem::new("spec/no-room", format!("{root}/placement"), found, expected);
                 return self.report(problem.advise("add places, or lower the count or the separation"));
             }
@@ -262,13 +258,11 @@ impl Check<'_> {
             }
             Number::Literal(_) => {}
         }
-        let values_in_variants = self
+        let values = self
             .variants
             .iter()
             .filter_map(|(_, values)| Scope::new(self.parameters, values).number(number).ok());
-        let outside = values_in_variants
-            .into_iter()
-            .find(|metres| !(low..=high).contains(metres));
+        let outside = values.into_iter().find(|metres| !(low..=high).contains(metres));
         if let (Some(metres), true) = (outside, self.problems.len() == before) {
             self.report(Problem::new(
                 "spec/range",

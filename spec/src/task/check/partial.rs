@@ -21,31 +21,25 @@ pub(in crate::task) struct Unsound {
 }
 
 /// All problems of a document that the schema rejects: the schema's, and those that the other checks find in the remainder.
-pub(in crate::task) fn problems(
-    document: &Json,
-    schema_problems: Vec<Problem>,
-    classes: Option<&Classes>,
-) -> Vec<Problem> {
-    let mut remainder = Remainder {
+pub(in crate::task) fn problems(document: &Json, refused: Vec<Problem>, classes: Option<&Classes>) -> Vec<Problem> {
+    let mut rest = Remainder {
         json: document.clone(),
         unsound: Unsound::default(),
         silent: Vec::new(),
     };
-    let is_known = schema_problems
-        .iter()
-        .all(|problem| remainder.leave_out(problem).is_some());
-    if !is_known || !TaskDocument::schema().allows(&remainder.json) {
-        return schema_problems;
+    let is_known = refused.iter().all(|problem| rest.leave_out(problem).is_some());
+    if !is_known || !TaskDocument::schema().allows(&rest.json) {
+        return refused;
     }
-    let Ok(document) = serde_json::from_value::<TaskDocument>(remainder.json) else {
-        return schema_problems;
+    let Ok(document) = serde_json::from_value::<TaskDocument>(rest.json) else {
+        return refused;
     };
-    let more = compile(document, classes, remainder.unsound).err().unwrap_or_default();
+    let more = compile(document, classes, rest.unsound).err().unwrap_or_default();
     let lies_in = |pointer: &str, part: &String| pointer == part || pointer.starts_with(&format!("{part}/"));
     let more = more
         .into_iter()
-        .filter(|problem| !remainder.silent.iter().any(|part| lies_in(&problem.pointer, part)));
-    schema_problems.iter().cloned().chain(more).collect()
+        .filter(|problem| !rest.silent.iter().any(|part| lies_in(&problem.pointer, part)));
+    refused.iter().cloned().chain(more).collect()
 }
 
 /// The valid remainder of a document.

@@ -180,9 +180,7 @@ impl Check<'_> {
     fn all_yield(&mut self, pointer: &str, source: &Source, kind: ParameterType) -> bool {
         let laws = self.distributions_of(source);
         match laws.iter().find(|law| !law.yields(kind)) {
-            Some(unsuitable) => {
-                self.type_matches(pointer, false, format!("the distribution {}", unsuitable.name()), kind)
-            }
+            Some(other) => self.type_matches(pointer, false, format!("the distribution {}", other.name()), kind),
             None => self.stands_alone(pointer, source),
         }
     }
@@ -250,15 +248,13 @@ impl Check<'_> {
                 let leaves = source.leaves().into_iter();
                 leaves.flat_map(|(_, leaf)| self.candidates(leaf, kind)).collect()
             }
-            Source::Distribution(_) | Source::Value(_) => {
-                self.extremes(source).into_iter().filter_map(turned).collect()
-            }
+            Source::Distribution(_) | Source::Value(_) => self.ends(source).into_iter().filter_map(turned).collect(),
             Source::Param(reference) => {
                 let Some(parameter) = self.parameters.get(&reference.param) else {
                     return Vec::new();
                 };
                 if parameter.kind == ParameterType::Distribution {
-                    return self.extremes(source).into_iter().filter_map(turned).collect();
+                    return self.ends(source).into_iter().filter_map(turned).collect();
                 }
                 let values = self.candidates_of_parameter(parameter).into_iter();
                 values.filter_map(|value| value.at(reference.index)).collect()
@@ -281,13 +277,13 @@ impl Check<'_> {
             None => {}
         }
         if let Some(source) = &parameter.distribution {
-            values.extend(self.extremes(source).iter().filter_map(typed));
+            values.extend(self.ends(source).iter().filter_map(typed));
         }
         values
     }
 
     /// The extreme values of a source's distributions, over all variants.
-    fn extremes(&self, source: &Source) -> Vec<Value> {
+    fn ends(&self, source: &Source) -> Vec<Value> {
         let distributions = self.distributions_of(source);
         let sources = distributions.into_iter().map(|law| Source::Distribution(Box::new(law)));
         let outcomes_per_source = sources.flat_map(|source| {

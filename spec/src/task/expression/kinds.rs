@@ -1,6 +1,6 @@
 //! Checks the types of a condition's parts without their values, and finds parts with incompatible types.
 
-use super::{Binary, FunctionKind, Node, Operator, Requirement, Term, Unary};
+use super::{Binary, Body, Node, Operator, Requirement, Term, Unary};
 use crate::Color;
 use crate::error::first_of;
 use crate::suggest::nearest;
@@ -107,11 +107,11 @@ impl<F: Fn(&str) -> Option<Kind>> Check<'_, F> {
             Node::Call((name, _, made), nodes) => {
                 let nodes: Vec<&Node> = nodes.iter().collect();
                 match made {
-                    FunctionKind::Distance => {
+                    Body::Distance => {
                         let expected = "two colours, such as distance(good, 'red')";
                         self.all(&nodes, name, expected, Kind::is_color)?;
                     }
-                    FunctionKind::OfNumbers(_) => {
+                    Body::OfNumbers(_) => {
                         self.all(&nodes, name, &format!("numbers in {name}"), |kind| {
                             *kind == Kind::Number
                         })?;

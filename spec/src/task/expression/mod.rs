@@ -105,34 +105,30 @@ static BINARY: [Binary; 13] = [
 
 /// The operation of a function.
 #[derive(Clone, Copy, Debug)]
-enum FunctionKind {
+enum Body {
     OfNumbers(fn(&[f64]) -> f64),
     /// The distance between two colours.
     Distance,
 }
 
 /// A function: its name, its number of arguments, both as a number and in words (`None` for any number), and its operation.
-type Function = (&'static str, Option<(usize, &'static str)>, FunctionKind);
+type Function = (&'static str, Option<(usize, &'static str)>, Body);
 
 /// The functions.
 static FUNCTIONS: [Function; 4] = [
     (
         "min",
         None,
-        FunctionKind::OfNumbers(|all| all.iter().copied().fold(f64::INFINITY, f64::min)),
+        Body::OfNumbers(|all| all.iter().copied().fold(f64::INFINITY, f64::min)),
     ),
     (
         "max",
         None,
-        FunctionKind::OfNumbers(|all| all.iter().copied().fold(f64::NEG_INFINITY, f64::max)),
+        Body::OfNumbers(|all| all.iter().copied().fold(f64::NEG_INFINITY, f64::max)),
     ),
     // The parser guarantees exactly one value.
-    (
-        "abs",
-        Some((1, "one value")),
-        FunctionKind::OfNumbers(|all| all[0].abs()),
-    ),
-    ("distance", Some((2, "two colours")), FunctionKind::Distance),
+    ("abs", Some((1, "one value")), Body::OfNumbers(|all| all[0].abs())),
+    ("distance", Some((2, "two colours")), Body::Distance),
 ];
 
 /// Precedence of `not`: lower than the precedence of a comparison.
@@ -227,12 +223,12 @@ impl Node {
                 _ => None,
             },
             Self::Binary((_, _, operator), a, b) => operator.apply(&a.evaluate(values)?, &b.evaluate(values)?),
-            Self::Call((_, _, FunctionKind::Distance), nodes) => {
+            Self::Call((_, _, Body::Distance), nodes) => {
                 let color = |node: &Self| node.evaluate(values)?.color();
                 let (a, b) = (color(nodes.first()?)?, color(nodes.get(1)?)?);
                 Some(Term::Number(a.distance(b)))
             }
-            Self::Call((_, _, FunctionKind::OfNumbers(of)), nodes) => {
+            Self::Call((_, _, Body::OfNumbers(of)), nodes) => {
                 let number = |node: &Self| match node.evaluate(values)? {
                     Term::Number(number) => Some(number),
                     _ => None,
