@@ -12,7 +12,7 @@ use crate::permissions;
 use crate::unfinished::Unfinished;
 
 /// Maximum number of characters of the file's name at the start of the temporary name.
-const MOST_CHARACTERS: usize = 60;
+const MAX_CHARACTERS: usize = 60;
 
 /// A file that is being written. If it is dropped before [`commit`](Self::commit), it is removed, and a previous file
 /// of the same name stays as it was.
@@ -38,7 +38,7 @@ impl AtomicFile {
     /// written directly.
     ///
     /// # Errors
-    /// I/O errors; [`io::ErrorKind::IsADirectory`] for a folder.
+    /// I/O errors; [`io::ErrorKind::IsADirectory`] if the path is a folder.
     pub fn create(path: &Path) -> io::Result<Self> {
         match Destination::of(path)? {
             Destination::File(target) => Self::beside(target),
@@ -46,7 +46,7 @@ impl AtomicFile {
         }
     }
 
-    /// Like [`create`](Self::create), but does not follow links: a link of that name is replaced, and its target stays
+    /// Like [`create`](Self::create), but does not follow links: a link at this path is replaced, and its target stays
     /// unchanged.
     ///
     /// # Errors
@@ -62,7 +62,7 @@ impl AtomicFile {
         remove_leftovers_once(folder);
         let before = fs::symlink_metadata(&target).ok().filter(fs::Metadata::is_file);
         let name = target.file_name().unwrap_or_default().to_string_lossy();
-        let prefix: String = name.chars().take(MOST_CHARACTERS).collect();
+        let prefix: String = name.chars().take(MAX_CHARACTERS).collect();
         let prefix = format!(".{prefix}.");
         let mut builder = Builder::new();
         builder.prefix(&prefix).suffix(ENDING);
@@ -86,16 +86,16 @@ impl AtomicFile {
         }
     }
 
-    /// Whether output goes directly to a device, a pipe or an open descriptor, where something may be reading it
-    /// already.
+    /// Whether output goes directly to a device, a pipe or an open descriptor, whose reader may see it before
+    /// [`commit`](Self::commit).
     pub fn is_straight(&self) -> bool {
         matches!(self.0, Kind::Straight(_))
     }
 
-    /// Finishes the file: syncs it to disk, and gives it its final name.
+    /// Finishes the file: syncs it to disk, and renames it to its final name.
     ///
     /// # Errors
-    /// I/O errors: the previous file, if there was one, then stays as it was.
+    /// I/O errors. A previous file then stays as it was.
     pub fn commit(self) -> io::Result<()> {
         match self.0 {
             Kind::Beside {
@@ -129,7 +129,7 @@ impl Write for AtomicFile {
     }
 }
 
-/// Writes a file as [`AtomicFile`] does.
+/// Writes a whole file with [`AtomicFile`].
 ///
 /// # Errors
 /// As [`AtomicFile::create`] and [`AtomicFile::commit`].

@@ -6,12 +6,12 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 /// Maximum number of links followed in a row, as on Linux.
-const MOST_LINKS: usize = 40;
+const MAX_LINKS: usize = 40;
 
 /// Where output goes.
 #[derive(Debug)]
 pub(crate) enum Destination {
-    /// The path of a regular file, which need not exist yet; not a link.
+    /// The path of a regular file, which need not exist yet. It is never a link.
     File(PathBuf),
     /// A device, a pipe or an open descriptor of a process, opened for writing.
     Straight(File),
@@ -20,7 +20,7 @@ pub(crate) enum Destination {
 impl Destination {
     /// Follows links, so that their target is written and the links are kept.
     pub(crate) fn of(path: &Path) -> io::Result<Self> {
-        let (path, descriptor) = followed(path);
+        let (path, descriptor) = follow_links(path);
         if let Some(descriptor) = descriptor {
             return descriptor.open().map(Self::Straight);
         }
@@ -34,7 +34,7 @@ impl Destination {
 
 /// Whether a path, such as `/dev/stdout`, refers to this process's own standard output.
 pub fn is_own_stdout(path: &Path) -> bool {
-    followed(path)
+    follow_links(path)
         .1
         .is_some_and(|descriptor| descriptor.is_own && descriptor.number == Some(1))
 }
@@ -66,7 +66,7 @@ impl Descriptor {
         })
     }
 
-    /// Opens it to continue where its process is writing: on the same file description if possible, otherwise by
+    /// Opens it to continue where its process left off: on the same file description if possible, otherwise by
     /// appending.
     fn open(&self) -> io::Result<File> {
         #[cfg(unix)]
@@ -86,9 +86,9 @@ impl Descriptor {
 }
 
 /// The path after following all links, and the descriptor if they lead to one.
-fn followed(path: &Path) -> (PathBuf, Option<Descriptor>) {
+fn follow_links(path: &Path) -> (PathBuf, Option<Descriptor>) {
     let mut path = path.to_owned();
-    for _ in 0..MOST_LINKS {
+    for _ in 0..MAX_LINKS {
         if let Some(descriptor) = Descriptor::named(&path) {
             return (path, Some(descriptor));
         }

@@ -9,13 +9,13 @@ use std::sync::{Mutex, PoisonError};
 /// File name suffix of unfinished files.
 pub(crate) const ENDING: &str = ".driftworld-part";
 
-/// Attempts at creating a file or folder: another process may remove it as a leftover before it is locked.
+/// Attempts to create a file or folder: another process may remove it as a leftover before it is locked.
 pub(crate) const TRIES: u32 = 8;
 
 /// Maximum number of folders remembered as already searched.
-const MOST_FOLDERS: usize = 4096;
+const MAX_FOLDERS: usize = 4096;
 
-/// Whether this is the name of an unfinished file: one being written, or left by a killed process.
+/// Whether this is the name of an unfinished file: one being written, or one left by a killed process.
 pub fn is_unfinished(name: &str) -> bool {
     name.starts_with('.') && name.ends_with(ENDING)
 }
@@ -32,7 +32,7 @@ pub(crate) fn remove_leftovers_once(folder: &Path) {
     let Ok(folder) = folder.canonicalize() else { return };
     let is_new = {
         let mut searched = SEARCHED.lock().unwrap_or_else(PoisonError::into_inner);
-        if searched.len() == MOST_FOLDERS {
+        if searched.len() == MAX_FOLDERS {
             searched.clear();
         }
         searched.insert(folder.clone())
@@ -50,7 +50,7 @@ pub(crate) fn remove_in(folder: &Path, is_ours: impl Fn(&str) -> bool, remove: i
         if is_plain && is_ours(&entry.file_name().to_string_lossy()) {
             let path = entry.path();
             // Holds the lock while removing, so that no other process starts to use the file.
-            if let Ok(file) = opened(&path)
+            if let Ok(file) = open_to_lock(&path)
                 && file.try_lock().is_ok()
             {
                 let _ = remove(&path);
@@ -59,9 +59,9 @@ pub(crate) fn remove_in(folder: &Path, is_ours: impl Fn(&str) -> bool, remove: i
     }
 }
 
-/// Opens for writing where possible: some file systems can lock only files open for writing.
-fn opened(path: &Path) -> io::Result<File> {
-    let written = OpenOptions::new().read(true).write(true).open(path);
+/// Opens a file to lock it, for writing where possible: some file systems can lock only files open for writing.
+fn open_to_lock(path: &Path) -> io::Result<File> {
+    let for_writing = OpenOptions::new().read(true).write(true).open(path);
     // Opened here, not by driftworld-files: it is only locked, never read, and its name shows that it is ours.
-    written.or_else(|_| File::open(path))
+    for_writing.or_else(|_| File::open(path))
 }

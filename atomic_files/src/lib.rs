@@ -4,8 +4,8 @@
 //! removes it if writing fails. Devices and pipes cannot keep a partial file, and are written directly.
 //! [`ScratchFolder`] is a temporary folder for work with several files.
 //!
-//! A process that is stopped removes its own unfinished files with [`remove_unfinished`]. Those of a killed process are
-//! removed by the next process that writes into the same folder: writers hold locks, so unlocked files are leftovers.
+//! A process that is stopped removes its own unfinished files with [`remove_unfinished`]. The files of a killed process
+//! are removed by the next process that writes into the same folder: writers hold locks, so unlocked files are leftovers.
 //!
 //! ```
 //! use std::io::Write;

@@ -1,4 +1,4 @@
-//! [`ScratchFolder`]: a temporary folder that is removed when the work is over, however it ends.
+//! [`ScratchFolder`]: a temporary folder that is removed when the work ends, whether it succeeds or fails.
 
 use std::fs::{self, TryLockError};
 use std::io;
@@ -19,10 +19,10 @@ pub struct ScratchFolder {
 }
 
 impl ScratchFolder {
-    /// Creates a scratch folder in `parent`, after removing those that killed processes left there with the same prefix.
+    /// Creates a scratch folder in `parent`, after removing any that killed processes left there with the same prefix.
     ///
     /// # Errors
-    /// Those of the system.
+    /// I/O errors.
     pub fn new(prefix: &str, parent: &Path) -> io::Result<Self> {
         remove_in(parent, |name| name.starts_with(prefix), |path| fs::remove_dir_all(path));
         let mut tries = 0;
@@ -51,10 +51,10 @@ impl ScratchFolder {
         self.folder.path()
     }
 
-    /// Deletes the folder, and returns an error if that fails.
+    /// Deletes the folder, and reports a failure, which dropping would ignore.
     ///
     /// # Errors
-    /// Those of the system.
+    /// I/O errors.
     pub fn close(self) -> io::Result<()> {
         self.folder.close()
     }

@@ -9,7 +9,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 static UNFINISHED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
 fn paths() -> MutexGuard<'static, BTreeSet<PathBuf>> {
-    // A panic while the lock is held leaves no half-made change.
+    // The set is valid even if a thread panicked while holding the lock.
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
@@ -24,10 +24,10 @@ impl Unfinished {
         path: impl FnOnce(&T) -> &Path,
     ) -> io::Result<(T, Self)> {
         let mut paths = paths();
-        let made = make()?;
-        let path = path(&made).to_owned();
+        let created = make()?;
+        let path = path(&created).to_owned();
         paths.insert(path.clone());
-        Ok((made, Self(path)))
+        Ok((created, Self(path)))
     }
 }
 
@@ -42,7 +42,7 @@ impl Drop for Unfinished {
 pub fn remove_unfinished() {
     let paths = paths();
     for path in paths.iter() {
-        // Whatever cannot be removed is left to the next process that writes there.
+        // Anything that cannot be removed is left to the next process that writes there.
         let _ = fs::remove_file(path).or_else(|_| fs::remove_dir_all(path));
     }
     std::mem::forget(paths);

@@ -1,5 +1,5 @@
-//! A process that is stopped removes its unfinished files. In a test program of its own: afterwards no file can be
-//! started.
+//! A process that is stopped removes its unfinished files. This test has a program to itself, because afterwards no
+//! file can be started.
 
 use std::fs;
 use std::io::Write;
@@ -8,22 +8,22 @@ use driftworld_atomic_files::{AtomicFile, ScratchFolder, remove_unfinished, writ
 
 #[test]
 fn unfinished_files_are_removed_and_finished_ones_stay() {
-    let base = tempfile::tempdir().expect("the machine has a folder for temporary files");
+    let base = tempfile::tempdir().expect("a temporary folder can be created");
     let at = |name: &str| base.path().join(name);
-    write(&at("done"), b"whole").expect("there is room");
-    fs::write(at("before"), "before").expect("the folder is ours");
-    let folder = ScratchFolder::new(".work-", base.path()).expect("the folder is ours");
-    fs::write(folder.path().join("inside"), "half").expect("the folder is ours");
+    write(&at("done"), b"whole").expect("the file can be written");
+    fs::write(at("before"), "before").expect("the folder is writable");
+    let folder = ScratchFolder::new(".work-", base.path()).expect("the folder is writable");
+    fs::write(folder.path().join("inside"), "half").expect("the folder is writable");
     let files = ["before", "new"].map(|name| {
-        let mut file = AtomicFile::create(&at(name)).expect("the folder is ours");
-        file.write_all(b"half").expect("there is room");
+        let mut file = AtomicFile::create(&at(name)).expect("the folder is writable");
+        file.write_all(b"half").expect("the file can be written");
         file
     });
-    let dropped = AtomicFile::create(&at("dropped")).expect("the folder is ours");
+    let dropped = AtomicFile::create(&at("dropped")).expect("the folder is writable");
     drop(dropped);
     remove_unfinished();
     let mut names: Vec<String> = fs::read_dir(base.path())
-        .expect("the folder is there")
+        .expect("the folder exists")
         .flatten()
         .map(|entry| entry.file_name().to_string_lossy().into_owned())
         .collect();

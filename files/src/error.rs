@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use driftworld_text::ShownPath;
 
-/// Errors when opening or reading a file. Each message gives the path, what was found, what was expected, and what to do.
+/// Errors raised when opening or reading a file. Each message gives the path, what was found, what was expected, and what to do.
 #[derive(Debug, thiserror::Error, strum::IntoStaticStr, strum::VariantNames)]
 #[strum(prefix = "files/", serialize_all = "kebab-case")]
 #[non_exhaustive]
@@ -23,7 +23,7 @@ pub enum FileError {
     NotAFile {
         /// The file's path.
         path: PathBuf,
-        /// Kind of thing found: "a folder", "a named pipe", "a link that leads nowhere" and so on.
+        /// What the path is instead: "a folder", "a named pipe", "a link that leads nowhere" and so on.
         found: &'static str,
     },
     /// The file is too large.

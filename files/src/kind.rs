@@ -1,4 +1,4 @@
-//! Checks that a path is a regular file, and names what it is otherwise.
+//! Checks that a path is a regular file; the error names its actual kind.
 
 use std::fs::FileType;
 use std::path::Path;
@@ -8,7 +8,7 @@ use crate::FileError;
 /// Name of a broken link in messages.
 pub const LOST_LINK: &str = "a link that leads nowhere";
 
-/// Refuses anything but a regular file.
+/// Returns an error for anything but a regular file.
 pub(crate) fn check(path: &Path, kind: FileType) -> Result<(), FileError> {
     if kind.is_file() {
         Ok(())

@@ -26,16 +26,16 @@ pub struct Opened {
 /// Opens a regular file of at most `limit` bytes; follows links.
 ///
 /// # Errors
-/// [`FileError::Unreadable`], also if the file does not exist; [`FileError::NotAFile`] for a folder, a device, a named pipe, a
-/// socket or a broken link; [`FileError::TooLarge`].
+/// [`FileError::Unreadable`] if the file does not exist or the system refuses to open it; [`FileError::NotAFile`] for a folder, a
+/// device, a named pipe, a socket or a broken link; [`FileError::TooLarge`] for a file longer than `limit`.
 pub fn open(path: &Path, limit: u64) -> Result<Opened, FileError> {
     check(path)?;
-    let file = without_waiting(path).map_err(unreadable(path))?;
+    let file = open_without_blocking(path).map_err(unreadable(path))?;
     // Another file may have replaced it since the first check.
     let found = file.metadata().map_err(unreadable(path))?;
     kind::check(path, found.file_type())?;
     let length = found.len();
-    within(path, length, limit)?;
+    check_length(path, length, limit)?;
     Ok(Opened { file, length })
 }
 
@@ -46,7 +46,7 @@ fn unreadable(path: &Path) -> impl FnOnce(std::io::Error) -> FileError {
     }
 }
 
-fn within(path: &Path, found: u64, limit: u64) -> Result<(), FileError> {
+fn check_length(path: &Path, found: u64, limit: u64) -> Result<(), FileError> {
     if found <= limit {
         return Ok(());
     }
@@ -60,7 +60,7 @@ fn within(path: &Path, found: u64, limit: u64) -> Result<(), FileError> {
 /// Checks that a path is a regular file without opening it; follows links.
 ///
 /// # Errors
-/// [`FileError::Unreadable`], also if the file does not exist; [`FileError::NotAFile`].
+/// [`FileError::Unreadable`] if the path does not exist or cannot be inspected; [`FileError::NotAFile`] if it is not a regular file.
 pub fn check(path: &Path) -> Result<(), FileError> {
     let found = fs::metadata(path).map_err(|source| match source.kind() {
         ErrorKind::NotFound if path.is_symlink() => kind::error(path, LOST_LINK),
@@ -72,7 +72,7 @@ pub fn check(path: &Path) -> Result<(), FileError> {
 /// Reads a regular file of at most `limit` bytes.
 ///
 /// # Errors
-/// As [`open`]; [`FileError::TooLarge`] also for a file that grows beyond the limit while it is read.
+/// As [`open`]. [`FileError::TooLarge`] also if the file grows beyond the limit while it is read.
 ///
 /// # Example
 /// ```
@@ -87,15 +87,15 @@ pub fn check(path: &Path) -> Result<(), FileError> {
 pub fn read(path: &Path, limit: u64) -> Result<Vec<u8>, FileError> {
     let Opened { file, length } = open(path, limit)?;
     let mut bytes = Vec::new();
-    // One byte more than the length, so that reading the end needs no reallocation.
-    let room = usize::try_from(length).unwrap_or(usize::MAX).saturating_add(1);
+    // One byte more than the length, so that detecting the end of the file needs no reallocation.
+    let capacity = usize::try_from(length).unwrap_or(usize::MAX).saturating_add(1);
     bytes
-        .try_reserve_exact(room)
+        .try_reserve_exact(capacity)
         .map_err(|_| unreadable(path)(ErrorKind::OutOfMemory.into()))?;
     file.take(limit.saturating_add(1))
         .read_to_end(&mut bytes)
         .map_err(unreadable(path))?;
-    within(path, bytes.len() as u64, limit)?;
+    check_length(path, bytes.len() as u64, limit)?;
     Ok(bytes)
 }
 
@@ -138,7 +138,7 @@ pub fn append(path: &Path) -> std::io::Result<File> {
 /// Opens for reading without blocking, even if a named pipe has just replaced the file. A terminal does not become the
 /// controlling one.
 #[cfg(unix)]
-fn without_waiting(path: &Path) -> std::io::Result<File> {
+fn open_without_blocking(path: &Path) -> std::io::Result<File> {
     use std::os::unix::fs::OpenOptionsExt;
     OpenOptions::new()
         .read(true)
@@ -147,7 +147,7 @@ fn without_waiting(path: &Path) -> std::io::Result<File> {
 }
 
 #[cfg(not(unix))]
-fn without_waiting(path: &Path) -> std::io::Result<File> {
+fn open_without_blocking(path: &Path) -> std::io::Result<File> {
     OpenOptions::new().read(true).open(path)
 }
 
@@ -156,17 +156,20 @@ mod tests {
     use super::*;
 
     fn folder() -> tempfile::TempDir {
-        tempfile::tempdir().expect("a temporary folder can be made")
+        tempfile::tempdir().expect("a temporary folder can be created")
     }
 
     #[test]
     fn read_stops_at_the_limit() {
         let folder = folder();
         let path = folder.path().join("file");
-        fs::write(&path, [7; 1000]).expect("it can be written");
-        assert_eq!(read(&path, 1000).expect("it fits"), [7; 1000]);
-        assert_eq!(open(&path, u64::MAX).expect("it fits").length, 1000);
-        let error = read(&path, 999).expect_err("it is too large");
+        fs::write(&path, [7; 1000]).expect("the file can be written");
+        assert_eq!(read(&path, 1000).expect("the file is within the limit"), [7; 1000]);
+        assert_eq!(
+            open(&path, u64::MAX).expect("the file is within the limit").length,
+            1000
+        );
+        let error = read(&path, 999).expect_err("the file is too large");
         assert!(
             matches!(
                 error,
@@ -181,22 +184,25 @@ mod tests {
     }
 
     #[test]
-    fn text_reports_place_of_invalid_utf8_and_drops_bom() {
+    fn text_reports_position_of_invalid_utf8_and_drops_bom() {
         let folder = folder();
         let path = folder.path().join("file");
         let with = |bytes: &[u8]| {
-            fs::write(&path, bytes).expect("it can be written");
+            fs::write(&path, bytes).expect("the file can be written");
             text(&path, 100)
         };
-        assert_eq!(with("\u{feff}\u{feff}ä".as_bytes()).expect("it is text"), "\u{feff}ä");
-        let error = with(b"a\nb\n\xff\xfe").expect_err("it is no text");
+        assert_eq!(
+            with("\u{feff}\u{feff}ä".as_bytes()).expect("the bytes are UTF-8"),
+            "\u{feff}ä"
+        );
+        let error = with(b"a\nb\n\xff\xfe").expect_err("the bytes are not UTF-8");
         assert!(matches!(error, FileError::NotText { at: 4, line: 3, .. }), "{error}");
     }
 
     #[test]
     fn missing_file_gives_system_error() {
         let folder = folder();
-        let error = read(&folder.path().join("absent"), 9).expect_err("there is nothing");
+        let error = read(&folder.path().join("absent"), 9).expect_err("the file does not exist");
         assert_eq!(error.missing(), Some(folder.path().join("absent").as_path()));
     }
 
@@ -211,11 +217,11 @@ mod tests {
             Err(other) => panic!("{other}"),
             Ok(_) => None,
         };
-        fs::write(at("file"), "").expect("it can be written");
-        symlink("file", at("link")).expect("a link can be made");
-        symlink("nowhere", at("lost")).expect("a link can be made");
-        symlink("/dev/zero", at("zeros")).expect("a link can be made");
-        symlink("turn", at("turn")).expect("a link can be made");
+        fs::write(at("file"), "").expect("the file can be written");
+        symlink("file", at("link")).expect("links can be created");
+        symlink("nowhere", at("lost")).expect("links can be created");
+        symlink("/dev/zero", at("zeros")).expect("links can be created");
+        symlink("turn", at("turn")).expect("links can be created");
         let _socket = UnixListener::bind(at("socket")).expect("a socket can be bound");
         let made = std::process::Command::new("mkfifo").arg(at("pipe")).status();
         assert!(made.expect("every unix has mkfifo").success());
@@ -227,7 +233,7 @@ mod tests {
         assert_eq!(found(&at("pipe")), Some("a named pipe"));
         assert_eq!(found(&at("zeros")), Some("a device"));
         assert_eq!(found(Path::new("/dev/null")), Some("a device"));
-        let error = read(&at("turn"), 9).expect_err("it leads to itself");
+        let error = read(&at("turn"), 9).expect_err("the link points to itself");
         assert!(matches!(error, FileError::Unreadable { .. }), "{error}");
     }
 
@@ -239,11 +245,11 @@ mod tests {
         let pipe = folder.path().join("pipe");
         let made = std::process::Command::new("mkfifo").arg(&pipe).status();
         assert!(made.expect("every unix has mkfifo").success());
-        let opened = without_waiting(&pipe).expect("it can be opened");
-        let kind = opened.metadata().expect("it can be looked at").file_type();
+        let opened = open_without_blocking(&pipe).expect("the pipe can be opened");
+        let kind = opened.metadata().expect("metadata can be read").file_type();
         assert!(kind::check(&pipe, kind).is_err());
         drop(opened);
-        assert!(append(&pipe).is_err(), "nobody reads it");
+        assert!(append(&pipe).is_err(), "the pipe has no reader");
     }
 
     /// Files whose content the system generates on reading report length 0.
@@ -251,7 +257,7 @@ mod tests {
     #[cfg(target_os = "linux")]
     fn file_with_reported_length_0_is_read_up_to_the_limit() {
         let path = Path::new("/proc/self/status");
-        assert!(!read(path, 1 << 20).expect("it is short").is_empty());
+        assert!(!read(path, 1 << 20).expect("the file is short").is_empty());
         assert!(matches!(read(path, 10), Err(FileError::TooLarge { found: 11, .. })));
     }
 }

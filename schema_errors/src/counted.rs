@@ -13,7 +13,7 @@ pub(super) struct Counting;
 
 /// The counters.
 pub(super) struct Tally {
-    /// Errors in one list or object after which the rest of it is skipped.
+    /// Number of errors in one list or object after which the rest is skipped.
     limit: usize,
     errors: AtomicUsize,
     /// Number of times a value was accessed.
@@ -139,9 +139,8 @@ impl<'a> Node<'a, Counting> for Counted<'a> {
         jsonschema::json::cmp::equal(self.looked_at(), expected)
     }
 
-    /// Every error requests the value that it concerns, which is how errors are counted. It gets `null`, because some
-    /// errors keep a copy; readers find the value by its path. Property names have no counter and are returned
-    /// unchanged.
+    /// Counts errors: every error requests the value that it concerns. It gets `null`, because some errors keep a copy;
+    /// readers find the value by its path. Property names have no counter and are returned unchanged.
     fn to_value(&self) -> Cow<'a, Value> {
         match self.tally {
             Some(tally) => {
@@ -157,14 +156,15 @@ impl<'a> Node<'a, Counting> for Counted<'a> {
     }
 }
 
-/// Iterates over items or members until a few hundred errors are found in them. Members that were never accessed are
-/// unknown keys, which errors list by name: the iteration also stops after a few hundred of those in a row.
+/// Iterates over items or members until more errors than the limit are found in them. Members that were never accessed are
+/// unknown keys, which errors list by name: the iteration also stops after too many of those in a row.
 pub(super) struct UntilFull<'a, I> {
     inner: I,
     holder: Counted<'a>,
     before: usize,
-    /// The access count when the last member was returned, and the number of members in a row never accessed before it.
+    /// The access count when the last member was returned.
     looks: usize,
+    /// Number of members in a row that were never accessed.
     unseen: usize,
 }
 

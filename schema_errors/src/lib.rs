@@ -19,7 +19,7 @@ impl BoundedErrors {
     ///
     /// # Errors
     ///
-    /// If the schema is not a valid JSON Schema.
+    /// [`ValidationError`] if the schema is not a valid JSON Schema.
     pub fn new(schema: &Value, limit: usize) -> Result<Self, ValidationError<'static>> {
         let validator = jsonschema::options_for::<Counting>().build(schema)?;
         Ok(Self { validator, limit })
@@ -27,10 +27,10 @@ impl BoundedErrors {
 
     /// Passes the errors of a value to `read`. Returns the result of `read`, and whether there may be more errors.
     ///
-    /// Errors hold no copies of the value: they hold `null` instead, and their paths locate it.
+    /// Errors contain `null` instead of copies of the value; their paths locate it.
     pub fn list<T>(&self, value: &Value, read: impl FnOnce(ErrorIterator<'_>) -> T) -> (T, bool) {
         let tally = Tally::new(self.limit);
-        let made = read(self.validator.iter_errors(Counted::new(value, &tally)));
-        (made, tally.has_stopped())
+        let result = read(self.validator.iter_errors(Counted::new(value, &tally)));
+        (result, tally.has_stopped())
     }
 }

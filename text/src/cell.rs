@@ -1,4 +1,4 @@
-//! Guards cells of tables against spreadsheets, which run text that starts like a formula. The writer handles commas and quotes.
+//! Guards table cells against spreadsheets, which run text that starts like a formula. The CSV writer handles commas and quotes.
 
 use std::borrow::Cow;
 

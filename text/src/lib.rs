@@ -2,7 +2,8 @@
 //!
 //! One file per task: `printable.rs` escapes characters that a terminal obeys or hides, `cell.rs` guards against formulas in
 //! spreadsheets, `name.rs` checks names of variants, tasks and groups, `number.rs` rounds numbers for reading, `unbroken.rs`
-//! keeps words together on one line, `phrases.rs` counts and lists things, `removed.rs` lists removed words, `json/` reads JSON.
+//! keeps words together on one line, `phrases.rs` builds counts and lists, `plain.rs` rewords serde's errors, `removed.rs` lists
+//! removed words, `json/` reads JSON.
 
 mod cell;
 pub mod json;

@@ -28,7 +28,7 @@ pub const NAME_PATTERN: &str = concat!(
 /// The narrower form for tasks and parameters, which appear in expressions and in l2logger's `TASK_VARIANT`.
 pub const IDENTIFIER_PATTERN: &str = "^[a-z][a-z0-9_]*$";
 
-/// Names that Windows reserves for devices, with any extension and in any case.
+/// Names that Windows reserves for devices, with any extension and in upper or lower case.
 const DEVICES: [&str; 4] = ["con", "prn", "aux", "nul"];
 
 /// Why a name is invalid.
@@ -50,7 +50,7 @@ pub enum NameFault {
     Start(char),
     /// The name ends with a dot, which Windows drops.
     EndsWithDot,
-    /// The name is not in NFC: characters are decomposed, or their marks are in a different order, so that two different names
+    /// The name is not in NFC: characters are decomposed, or their marks are in a non-canonical order, so that two different names
     /// could look the same.
     NotNormalised,
     /// Windows reserves the name for a device.
@@ -62,8 +62,8 @@ impl fmt::Display for NameFault {
         match self {
             Self::Empty => f.write_str("no character"),
             Self::TooLong { characters, bytes } => write!(f, "{characters} characters, {bytes} bytes"),
-            Self::Character(letter) => write!(f, "the character {}", quoted(letter.encode_utf8(&mut [0; 4]))),
-            Self::Start(letter) => write!(f, "{} at its beginning", quoted(letter.encode_utf8(&mut [0; 4]))),
+            Self::Character(c) => write!(f, "the character {}", quoted(c.encode_utf8(&mut [0; 4]))),
+            Self::Start(c) => write!(f, "{} at its beginning", quoted(c.encode_utf8(&mut [0; 4]))),
             Self::EndsWithDot => f.write_str("a dot at its end"),
             Self::NotNormalised => f.write_str("characters that are not in Unicode's form NFC"),
             Self::Device => f.write_str("a word that Windows keeps for a device"),
@@ -111,8 +111,8 @@ pub fn check_name(name: &str) -> Result<(), NameFault> {
         let bytes = name.len();
         return Err(NameFault::TooLong { characters, bytes });
     }
-    if let Some(letter) = name.chars().find(|letter| !may_follow(*letter)) {
-        return Err(NameFault::Character(letter));
+    if let Some(c) = name.chars().find(|c| !may_follow(*c)) {
+        return Err(NameFault::Character(c));
     }
     if !may_begin(first) {
         return Err(NameFault::Start(first));
@@ -129,15 +129,15 @@ pub fn check_name(name: &str) -> Result<(), NameFault> {
     Ok(())
 }
 
-fn may_begin(letter: char) -> bool {
-    letter == '_' || (letter.is_alphanumeric() && !is_unprintable(letter) && !is_combining_mark(letter))
+fn may_begin(c: char) -> bool {
+    c == '_' || (c.is_alphanumeric() && !is_unprintable(c) && !is_combining_mark(c))
 }
 
-fn may_follow(letter: char) -> bool {
-    // Variation selectors are marks of zero width that choose a glyph for the letter before them.
-    let is_selector = matches!(letter, '\u{fe00}'..='\u{fe0f}' | '\u{e0100}'..='\u{e01ef}');
-    let is_mark = is_combining_mark(letter) && !is_unprintable(letter) && !is_selector;
-    may_begin(letter) || matches!(letter, '-' | '+' | '.') || is_mark
+fn may_follow(c: char) -> bool {
+    // Variation selectors are zero-width marks that choose a glyph for the character before them.
+    let is_selector = matches!(c, '\u{fe00}'..='\u{fe0f}' | '\u{e0100}'..='\u{e01ef}');
+    let is_mark = is_combining_mark(c) && !is_unprintable(c) && !is_selector;
+    may_begin(c) || matches!(c, '-' | '+' | '.') || is_mark
 }
 
 fn is_device(name: &str) -> bool {
@@ -178,10 +178,10 @@ mod tests {
     #[test]
     fn names_unsafe_for_terminals_files_or_spreadsheets_are_refused() {
         check("", &Err(NameFault::Empty));
-        for letter in
+        for c in
             "\0\t\n\r\x1b\x7f\u{9b}\u{202e}\u{200b}\u{feff} \u{a0}/\\:*?\"<>|#%,;=@&$'`~()[]{}!^→😀\u{fe0f}".chars()
         {
-            check(&format!("a{letter}b"), &Err(NameFault::Character(letter)));
+            check(&format!("a{c}b"), &Err(NameFault::Character(c)));
         }
         for start in ['.', '-', '+'] {
             check(&format!("{start}a"), &Err(NameFault::Start(start)));

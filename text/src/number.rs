@@ -1,13 +1,13 @@
-//! Formats numbers for people: without the digits that are rounding noise. Files keep every digit.
+//! Formats numbers for people, without digits that are rounding noise. Files keep every digit.
 
 /// Maximum number of decimal places.
-const PLACES: usize = 6;
+const MAX_PLACES: usize = 6;
 
-/// Maximum number of significant digits of a number with decimals, so that long sums show no noise.
-const DIGITS: usize = 13;
+/// Maximum number of significant digits of a number with decimals, so that long sums show no rounding noise.
+const MAX_DIGITS: usize = 13;
 
-/// A number without the noise of its last bits: at most six decimal places and, if it has any, thirteen significant digits; no
-/// trailing zeros, and no sign before zero. Numbers from 1e12 on have no decimals, and keep all other digits.
+/// A number without rounding noise: at most six decimal places and, if it has any, at most thirteen significant digits; no
+/// trailing zeros, and no sign before zero. Numbers of 1e12 or more have no decimals, and keep all other digits.
 ///
 /// ```
 /// # use driftworld_text::amount;
@@ -19,9 +19,9 @@ pub fn amount(number: f64) -> String {
         return number.to_string();
     }
     let size = number.abs();
-    let places = (0..=PLACES)
+    let places = (0..=MAX_PLACES)
         .rev()
-        .find(|places| size < 10_f64.powi((DIGITS - places) as i32));
+        .find(|places| size < 10_f64.powi((MAX_DIGITS - places) as i32));
     short(number, places.unwrap_or(0))
 }
 
@@ -38,8 +38,8 @@ pub fn short(number: f64, places: usize) -> String {
 /// A number with `places` decimals, without a sign if it rounds to zero.
 pub fn rounded(number: f64, places: usize) -> String {
     let text = format!("{number:.places$}");
-    let is_nothing = text.chars().all(|letter| matches!(letter, '-' | '0' | '.'));
-    text[usize::from(is_nothing && text.starts_with('-'))..].to_owned()
+    let is_zero = text.chars().all(|c| matches!(c, '-' | '0' | '.'));
+    text[usize::from(is_zero && text.starts_with('-'))..].to_owned()
 }
 
 #[cfg(test)]

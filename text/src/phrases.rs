@@ -20,7 +20,7 @@ pub fn joined_or<S: AsRef<str>>(parts: &[S], separator: &str, none: &str) -> Str
     }
 }
 
-/// The first `most` names, and how many more there are.
+/// The first `most` names, and the number of remaining ones.
 ///
 /// ```
 /// # use driftworld_text::first_of;
@@ -54,16 +54,16 @@ pub fn shortened(text: &str, most: usize) -> String {
 /// assert_eq!(capitalized("ärger over it"), "Ärger over it");
 /// ```
 pub fn capitalized(words: &str) -> String {
-    let mut letters = words.chars();
-    letters
+    let mut chars = words.chars();
+    chars
         .next()
         .into_iter()
         .flat_map(char::to_uppercase)
         .collect::<String>()
-        + letters.as_str()
+        + chars.as_str()
 }
 
 /// The words if a condition holds, otherwise an empty string.
-pub fn when(is_said: bool, words: impl FnOnce() -> String) -> String {
-    if is_said { words() } else { String::new() }
+pub fn when(condition: bool, words: impl FnOnce() -> String) -> String {
+    if condition { words() } else { String::new() }
 }

@@ -1,8 +1,8 @@
-//! Rewords serde's error messages without names of Rust types: `struct ScalesFile` is an object to the user.
+//! Rewords serde's error messages without names of Rust types: `struct ScalesFile` becomes "an object".
 
 use std::fmt::Display;
 
-/// Kinds of values in serde's words and in plain words.
+/// Kinds of values as serde names them, and in plain words.
 const KINDS: [(&str, &str); 12] = [
     ("u8", "a whole number"),
     ("u16", "a whole number"),
@@ -22,8 +22,8 @@ const KINDS: [(&str, &str); 12] = [
 ///
 /// # Example
 /// ```
-/// let said = "invalid type: string \"u64\", expected struct Scales at line 1 column 3";
-/// assert_eq!(driftworld_text::in_plain_words(said), "invalid type: string \"u64\", expected an object at line 1 column 3");
+/// let message = "invalid type: string \"u64\", expected struct Scales at line 1 column 3";
+/// assert_eq!(driftworld_text::in_plain_words(message), "invalid type: string \"u64\", expected an object at line 1 column 3");
 /// ```
 pub fn in_plain_words(message: impl Display) -> String {
     let message = message.to_string();
@@ -36,11 +36,11 @@ pub fn in_plain_words(message: impl Display) -> String {
         let mut words: Vec<&str> = part.split(' ').collect();
         // In `struct Name` and `internally tagged enum Name` the type's name follows.
         while let Some(at) = words.iter().position(|word| ["struct", "enum"].contains(word)) {
-            let of_tag = words[..at]
+            let qualifiers = words[..at]
                 .iter()
                 .rev()
                 .take_while(|word| ["tuple", "internally", "tagged", "unit"].contains(word));
-            let first = at - of_tag.count();
+            let first = at - qualifiers.count();
             let end = if words.get(at + 1).is_some_and(|name| name.ends_with(',')) {
                 "an object,"
             } else {
@@ -48,13 +48,13 @@ pub fn in_plain_words(message: impl Display) -> String {
             };
             words.splice(first..words.len().min(at + 2), [end]);
         }
-        let mut said = format!(" {} ", words.join(" "));
-        for (program, people) in KINDS {
+        let mut reworded = format!(" {} ", words.join(" "));
+        for (serde_name, plain_name) in KINDS {
             for end in [" ", ", "] {
-                said = said.replace(&format!(" {program}{end}"), &format!(" {people}{end}"));
+                reworded = reworded.replace(&format!(" {serde_name}{end}"), &format!(" {plain_name}{end}"));
             }
         }
-        plain.push_str(&said[1..said.len() - 1]);
+        plain.push_str(&reworded[1..reworded.len() - 1]);
     }
     plain
 }
@@ -65,7 +65,7 @@ mod tests {
 
     #[test]
     fn serde_kinds_become_plain_words() {
-        for (said, expected) in [
+        for (reworded, expected) in [
             (
                 "invalid type: map, expected u64 at line 2",
                 "invalid type: an object, expected a whole number at line 2",
@@ -85,7 +85,7 @@ mod tests {
             ),
             ("expected internally tagged enum Line", "expected an object"),
         ] {
-            assert_eq!(in_plain_words(said), expected);
+            assert_eq!(in_plain_words(reworded), expected);
         }
     }
 }

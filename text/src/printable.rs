@@ -39,18 +39,18 @@ const UNPRINTABLE: [(char, char); 27] = [
     ('\u{e0000}', '\u{e01ef}'),
 ];
 
-/// Whether a terminal obeys this character or does not show it. Includes line feed and tab.
-pub fn is_unprintable(letter: char) -> bool {
+/// Whether a terminal obeys this character or does not show it. True for line feed and tab.
+pub fn is_unprintable(c: char) -> bool {
     // Almost all text is ASCII.
-    if matches!(letter, ' '..='~') {
+    if matches!(c, ' '..='~') {
         return false;
     }
-    let behind = UNPRINTABLE.partition_point(|(first, _)| *first <= letter);
-    behind > 0 && letter <= UNPRINTABLE[behind - 1].1
+    let end = UNPRINTABLE.partition_point(|(first, _)| *first <= c);
+    end > 0 && c <= UNPRINTABLE[end - 1].1
 }
 
-/// The text in one line: every unprintable character in the notation of Rust and Swift, `\u{202e}`, except
-/// `\n`, `\r` and `\t`.
+/// The text on one line: every unprintable character is escaped in the notation of Rust and Swift, `\u{202e}`, except
+/// line feed, carriage return and tab, which become `\n`, `\r` and `\t`.
 ///
 /// For untrusted text inside a sentence: it cannot end the line and forge one of ours. Text that is already escaped
 /// stays as it is.
@@ -62,11 +62,11 @@ pub fn is_unprintable(letter: char) -> bool {
 /// assert_eq!(printable("a\nerror: \u{1b}[2Jb"), r"a\nerror: \u{1b}[2Jb");
 /// ```
 pub fn printable(text: &str) -> Cow<'_, str> {
-    escaped(text, is_unprintable, |out, letter| match letter {
+    escaped(text, is_unprintable, |out, c| match c {
         '\n' => out.push_str("\\n"),
         '\r' => out.push_str("\\r"),
         '\t' => out.push_str("\\t"),
-        _ => braces(out, letter),
+        _ => braces(out, c),
     })
 }
 
@@ -74,13 +74,13 @@ pub fn printable(text: &str) -> Cow<'_, str> {
 ///
 /// For whole messages, right before they are printed.
 pub fn printable_lines(text: &str) -> Cow<'_, str> {
-    let hostile = |letter: char| is_unprintable(letter) && !matches!(letter, '\n' | '\t');
+    let hostile = |c: char| is_unprintable(c) && !matches!(c, '\n' | '\t');
     escaped(text, hostile, braces)
 }
 
 /// A JSON text: like [`printable_lines`], but with JSON escapes, so that its meaning does not change.
 ///
-/// In valid JSON such characters occur only in strings, where an escape means the same character.
+/// In valid JSON such characters occur only in strings, where an escape stands for the same character.
 ///
 /// # Example
 /// ```
@@ -88,15 +88,15 @@ pub fn printable_lines(text: &str) -> Cow<'_, str> {
 /// ```
 pub fn printable_json(json: &str) -> Cow<'_, str> {
     // Between values a carriage return is white space, and an escape would be an error.
-    let hostile = |letter: char| is_unprintable(letter) && !matches!(letter, '\n' | '\t' | '\r');
-    escaped(json, hostile, |out, letter| {
-        for unit in letter.encode_utf16(&mut [0; 2]) {
+    let hostile = |c: char| is_unprintable(c) && !matches!(c, '\n' | '\t' | '\r');
+    escaped(json, hostile, |out, c| {
+        for unit in c.encode_utf16(&mut [0; 2]) {
             write!(out, "\\u{unit:04x}").expect("writing to a String does not fail");
         }
     })
 }
 
-/// Displays any value in one line like [`printable`], without a copy.
+/// Displays any value on one line like [`printable`], without a copy.
 ///
 /// # Example
 /// ```
@@ -108,7 +108,7 @@ pub fn one_line<T: Display>(shown: T) -> OneLine<T> {
 
 /// Paths for messages.
 pub trait ShownPath {
-    /// The path in one line. Use it instead of `Path::display`, which does not escape file names.
+    /// The path on one line. Use it instead of `Path::display`, which does not escape file names.
     ///
     /// # Example
     /// ```
@@ -124,7 +124,7 @@ impl ShownPath for Path {
     }
 }
 
-/// The text in double quotes and in one line, with backslashes and quotes escaped as in a Rust string.
+/// The text in double quotes and on one line, with backslashes and quotes escaped as in a Rust string.
 ///
 /// # Example
 /// ```
@@ -134,7 +134,7 @@ pub fn quoted(text: &str) -> String {
     printable(&format!("{text:?}")).into_owned()
 }
 
-/// Displays the inner value in one line, see [`one_line`].
+/// Displays the inner value on one line, see [`one_line`].
 #[derive(Clone, Copy, Debug)]
 pub struct OneLine<T>(T);
 
@@ -151,8 +151,8 @@ impl<T: Display> Display for OneLine<T> {
     }
 }
 
-fn braces(out: &mut String, letter: char) {
-    write!(out, "\\u{{{:x}}}", u32::from(letter)).expect("writing to a String does not fail");
+fn braces(out: &mut String, c: char) {
+    write!(out, "\\u{{{:x}}}", u32::from(c)).expect("writing to a String does not fail");
 }
 
 /// The text with hostile characters replaced; borrowed if there are none.
@@ -162,11 +162,11 @@ fn escaped(text: &str, is_hostile: impl Fn(char) -> bool, write: impl Fn(&mut St
     };
     let mut out = String::with_capacity(text.len() + 16);
     out.push_str(&text[..first]);
-    for letter in text[first..].chars() {
-        if is_hostile(letter) {
-            write(&mut out, letter);
+    for c in text[first..].chars() {
+        if is_hostile(c) {
+            write(&mut out, c);
         } else {
-            out.push(letter);
+            out.push(c);
         }
     }
     Cow::Owned(out)
@@ -183,10 +183,10 @@ mod tests {
         let hostile = (0..UNPRINTABLE.len(), any::<u8>()).prop_map(|(range, offset)| {
             let (first, last) = UNPRINTABLE[range];
             let span = u32::from(last) - u32::from(first) + 1;
-            char::from_u32(u32::from(first) + u32::from(offset) % span).expect("no range holds a surrogate")
+            char::from_u32(u32::from(first) + u32::from(offset) % span).expect("no range contains a surrogate")
         });
-        let letter = prop_oneof![hostile, any::<char>(), proptest::char::range(' ', '~')];
-        proptest::collection::vec(letter, 0..40).prop_map(String::from_iter)
+        let c = prop_oneof![hostile, any::<char>(), proptest::char::range(' ', '~')];
+        proptest::collection::vec(c, 0..40).prop_map(String::from_iter)
     }
 
     #[test]
@@ -208,9 +208,9 @@ mod tests {
         for plain in " ~aZ0é한語ש\u{5b0}ش₂→×°½▀…«”‰\u{2027}\u{202f}\u{fe0f}😀".chars() {
             assert!(!is_unprintable(plain), "{plain:?}");
         }
-        // Agrees with Unicode's own categories as far as the standard library has them.
-        for letter in '\0'..=char::MAX {
-            assert!(!letter.is_control() || is_unprintable(letter), "{letter:?}");
+        // Every control character according to the standard library is unprintable.
+        for c in '\0'..=char::MAX {
+            assert!(!c.is_control() || is_unprintable(c), "{c:?}");
         }
     }
 

@@ -69,8 +69,8 @@ const REMOVED: &[(WordKind, &str, &str)] = &[
 ///
 /// ```
 /// # use driftworld_text::{WordKind, removed};
-/// let said = removed(WordKind::Option, "run --logs");
-/// assert_eq!(said.as_deref(), Some("removed in 0.3; use --output"));
+/// let message = removed(WordKind::Option, "run --logs");
+/// assert_eq!(message.as_deref(), Some("removed in 0.3; use --output"));
 /// ```
 pub fn removed(kind: WordKind, word: &str) -> Option<String> {
     let mut rows = removed_words().filter(|(of, known, _)| *of == kind && *known == word);

@@ -1,9 +1,9 @@
-//! Keeps words together on one line, such as a number and its unit: their spaces are no-break spaces until the text is shown.
+//! Keeps words together on one line, such as a number and its unit: their spaces become no-break spaces until the text is shown.
 
-/// Replaces a space at which a line must not break.
+/// The no-break space, which replaces a space at which a line must not break.
 pub const NO_BREAK: char = '\u{a0}';
 
-/// The text with no-break spaces.
+/// The text with its spaces replaced by no-break spaces.
 ///
 /// # Example
 /// ```

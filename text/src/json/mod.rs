@@ -39,21 +39,17 @@ pub fn reason(text: &str, error: &serde_json::Error) -> String {
 pub fn lines_and_columns(text: &str, offsets: &[usize]) -> Vec<(usize, usize)> {
     let mut order: Vec<usize> = (0..offsets.len()).collect();
     order.sort_by_key(|index| offsets[*index]);
-    let mut places = vec![(1, 1); offsets.len()];
+    let mut positions = vec![(1, 1); offsets.len()];
     let (mut at, mut line, mut column) = (0, 1, 1);
     for index in order {
         let offset = text.floor_char_boundary(offsets[index]);
-        for letter in text[at..offset].chars() {
-            (line, column) = if letter == '\n' {
-                (line + 1, 1)
-            } else {
-                (line, column + 1)
-            };
+        for c in text[at..offset].chars() {
+            (line, column) = if c == '\n' { (line + 1, 1) } else { (line, column + 1) };
         }
         at = offset;
-        places[index] = (line, column);
+        positions[index] = (line, column);
     }
-    places
+    positions
 }
 
 #[cfg(test)]

@@ -28,23 +28,23 @@ pub struct Wanted<'p> {
     pub at_key: bool,
 }
 
-/// Offsets of the values at these pointers; for a missing value, of its nearest existing parent.
+/// Offsets of the values at these pointers. A missing value gets the offset of its nearest existing ancestor.
 pub fn offsets(text: &str, wanted: &[Wanted]) -> Vec<usize> {
     let mut tree = Tree::default();
-    let ways: Vec<Vec<usize>> = wanted.iter().map(|wanted| tree.way(wanted.pointer)).collect();
+    let paths: Vec<Vec<usize>> = wanted.iter().map(|wanted| tree.path(wanted.pointer)).collect();
     walk(text, |event| {
         tree.see(event);
         true
     });
-    let offset = |(wanted, way): (&Wanted, &Vec<usize>)| {
-        let there = way.iter().map_while(|node| tree.nodes[*node].place).last();
+    let offset = |(wanted, path): (&Wanted, &Vec<usize>)| {
+        let there = path.iter().map_while(|node| tree.nodes[*node].place).last();
         there.map_or(0, |place| if wanted.at_key { place.key } else { place.value })
     };
-    wanted.iter().zip(&ways).map(offset).collect()
+    wanted.iter().zip(&paths).map(offset).collect()
 }
 
-/// Pointers to keys that are repeated within an object, at most `most`, in the order of the text.
-pub fn repeated(text: &str, most: usize) -> Vec<String> {
+/// Pointers to keys that are repeated within an object, in the order of the text, up to `limit` of them.
+pub fn repeated(text: &str, limit: usize) -> Vec<String> {
     let mut open: Vec<Level> = Vec::new();
     let mut found = Vec::new();
     walk(text, |event| {
@@ -71,7 +71,7 @@ pub fn repeated(text: &str, most: usize) -> Vec<String> {
                 open.pop();
             }
         }
-        found.len() < most
+        found.len() < limit
     });
     found
 }
@@ -87,13 +87,15 @@ fn pointer(open: &[Level]) -> String {
         match level {
             Level::Object(_, key) => pointer.extend(["/", &escape(key)]),
             // Includes the item being read.
-            Level::List(items) => write!(pointer, "/{}", items.saturating_sub(1)).expect("a String takes any text"),
+            Level::List(items) => {
+                write!(pointer, "/{}", items.saturating_sub(1)).expect("writing to a String does not fail")
+            }
         }
         pointer
     })
 }
 
-/// An event of a walk.
+/// A step of [`walk`] through a text.
 enum Event<'t> {
     /// A key and its offset.
     Key(Cow<'t, str>, usize),
@@ -109,17 +111,17 @@ enum Kind {
     List,
 }
 
-/// Walks through a text that is valid JSON, until `tell` returns false.
-fn walk<'t>(text: &'t str, mut tell: impl FnMut(Event<'t>) -> bool) {
+/// Walks through a text that is valid JSON, until `handle` returns false.
+fn walk<'t>(text: &'t str, mut handle: impl FnMut(Event<'t>) -> bool) {
     let mut scanner = Scanner::new(text, &ScannerOptions::default());
     let mut open: Vec<Kind> = Vec::new();
     let mut key_is_next = false;
     while let Ok(Some(token)) = scanner.scan() {
         let start = scanner.token_start();
-        let goes_on = match token {
+        let is_wanted = match token {
             Token::String(key) if key_is_next => {
                 key_is_next = false;
-                tell(Event::Key(key, start))
+                handle(Event::Key(key, start))
             }
             Token::Colon => true,
             Token::Comma => {
@@ -129,20 +131,20 @@ fn walk<'t>(text: &'t str, mut tell: impl FnMut(Event<'t>) -> bool) {
             Token::CloseBrace | Token::CloseBracket => {
                 open.pop();
                 key_is_next = false;
-                tell(Event::Close)
+                handle(Event::Close)
             }
             Token::OpenBrace => {
                 open.push(Kind::Object);
                 key_is_next = true;
-                tell(Event::Value(start, Some(Kind::Object)))
+                handle(Event::Value(start, Some(Kind::Object)))
             }
             Token::OpenBracket => {
                 open.push(Kind::List);
-                tell(Event::Value(start, Some(Kind::List)))
+                handle(Event::Value(start, Some(Kind::List)))
             }
-            _ => tell(Event::Value(start, None)),
+            _ => handle(Event::Value(start, None)),
         };
-        if !goes_on {
+        if !is_wanted {
             return;
         }
     }
@@ -155,7 +157,7 @@ struct Place {
     value: usize,
 }
 
-/// The wanted pointers as a tree of their steps, and the position of the walk in it.
+/// The wanted pointers as a tree of their keys, and the position of the walk in it.
 struct Tree {
     nodes: Vec<Node>,
     open: Vec<Branch>,
@@ -191,8 +193,8 @@ impl Default for Tree {
 
 impl Tree {
     /// The nodes along a pointer; creates missing ones.
-    fn way(&mut self, pointer: &str) -> Vec<usize> {
-        let mut way = vec![0];
+    fn path(&mut self, pointer: &str) -> Vec<usize> {
+        let mut path = vec![0];
         let mut node = 0;
         for step in pointer.split('/').skip(1) {
             let step = step.replace("~1", "/").replace("~0", "~");
@@ -207,9 +209,9 @@ impl Tree {
                 self.nodes[node].keys.insert(step, child);
                 child
             };
-            way.push(node);
+            path.push(node);
         }
-        way
+        path
     }
 
     /// Handles an event.
@@ -247,7 +249,7 @@ impl Tree {
         }
     }
 
-    /// Forgets a value and everything below it: of repeated keys, the last one counts.
+    /// Forgets a value and everything below it: if a key is repeated, its last value counts.
     fn forget(&mut self, node: usize) {
         if self.nodes[node].place.take().is_some() {
             let below: Vec<usize> = self.nodes[node].keys.values().copied().collect();
@@ -280,7 +282,7 @@ mod tests {
         check("/a/1/d", true, "\"d\"");
         check("/e", false, "\"}\"");
         check("/f~0", false, "1}");
-        // A missing value is reported at its nearest parent.
+        // A missing value is reported at its nearest ancestor.
         check("/a/1/d/7", false, "[]}");
         check("/a/x", false, "[10");
         check("/nothing", false, "{\"a\"");

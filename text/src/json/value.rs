@@ -1,5 +1,5 @@
-//! Parses JSON within limits on the number of values, the length of keys and repeated keys. Reserves no more memory than it
-//! needs: otherwise nested lists would take ten times as much.
+//! Parses JSON within limits on the number of values and the length of keys, and can refuse repeated keys. Reserves no more
+//! memory than it needs: otherwise nested lists would take ten times as much.
 
 use std::cell::{Cell, RefCell};
 use std::fmt;
@@ -43,8 +43,8 @@ pub fn parse(text: &str, most: usize, repeats: Repeats) -> Result<Value, (serde_
     };
     let mut parser = serde_json::Deserializer::from_str(text);
     let built = (&mut parser).deserialize_any(AnyValue(&builder));
-    let ended = built.and_then(|value| parser.end().map(|()| value));
-    ended.map_err(|error| (error, builder.stop.get()))
+    let result = built.and_then(|value| parser.end().map(|()| value));
+    result.map_err(|error| (error, builder.stop.get()))
 }
 
 struct Builder {
@@ -164,7 +164,7 @@ impl<'de> Visitor<'de> for AnyValue<'_> {
         }
         drop(open);
         if is_long {
-            // Repeated entries of a long object are not stored twice.
+            // The rest of a long object goes straight into the map, so that repeated keys are not stored twice.
             while let Some(key) = entries.next_key::<String>()? {
                 if key.len() > MAX_KEY_BYTES {
                     return Err(builder.stop(Stop::LongKey));
