@@ -4,7 +4,7 @@ use driftworld_text::one_line;
 
 /// Errors raised while making a figure or a page.
 ///
-/// Every message names the place, what was found, what was expected, and what to do if that is not obvious.
+/// Every message states where the problem is, what was found, what was expected, and what to do if that is not obvious.
 #[derive(Debug, thiserror::Error, strum::IntoStaticStr, strum::VariantNames)]
 #[strum(prefix = "report/", serialize_all = "kebab-case")]
 #[non_exhaustive]

@@ -1,6 +1,6 @@
 //! Reports of lifetimes: figures as SVG and PNG, and one self-contained page. Also images of worlds, distances and curricula.
 //!
-//! A [`Chapter`] draws and writes one lifetime, a [`Report`] puts chapters on a page; [`Figures`] gives each figure as a file.
+//! A [`Chapter`] renders one lifetime, a [`Report`] puts chapters on a page, and [`Figures`] renders each figure as a file.
 //!
 //! ```
 //! use driftworld_metrics::{BlockType, Lifetime, LogWriter, LoggerInfo, Options, Record, ScenarioInfo, Scorer, Timestamp, read_log};
@@ -43,7 +43,7 @@ pub use page::{Chapter, ChapterOptions, Comparison, MAX_LIFETIMES, Report};
 
 use driftworld_metrics::Lifetime;
 
-/// The names of each pair of neighbouring learning blocks of a lifetime, in order, as required for distances.
+/// The task names of each pair of neighbouring learning blocks of a lifetime, in order, as [`FigureOptions::distances`] requires.
 pub fn neighbours(lifetime: &Lifetime) -> Vec<[&str; 2]> {
     let learned: Vec<&str> = (lifetime.regimes().iter())
         .filter(|regime| regime.is_wake_training())

@@ -3,32 +3,32 @@
 use driftworld_text::printable;
 
 /// Maximum number of characters shown of a name.
-const LONGEST: usize = 48;
+const MAX_NAME_CHARS: usize = 48;
 
 /// Maximum number of characters shown of a sentence.
-const LONGEST_SENTENCE: usize = 1000;
+const MAX_SENTENCE_CHARS: usize = 1000;
 
-/// A name for display: on one line, cut to a readable length, with characters escaped that break a page, are invisible or
-/// reverse the text direction.
+/// A name for display: on one line and cut to a readable length. Characters that would break a page, are invisible or reverse the
+/// text direction are escaped.
 pub(crate) fn shown(name: &str) -> String {
-    cut(name, LONGEST)
+    cut(name, MAX_NAME_CHARS)
 }
 
 /// Like [`shown`], for a sentence with names in it, which may be longer.
 pub(crate) fn note_shown(text: &str) -> String {
-    cut(text.trim_end_matches('.'), LONGEST_SENTENCE)
+    cut(text.trim_end_matches('.'), MAX_SENTENCE_CHARS)
 }
 
-fn cut(name: &str, longest: usize) -> String {
-    // Not allowed in XML.
-    let calm = |letter: char| match letter {
+fn cut(name: &str, limit: usize) -> String {
+    // These two characters are not allowed in XML.
+    let replace_invalid = |c: char| match c {
         '\u{fffe}' | '\u{ffff}' => '\u{fffd}',
-        letter => letter,
+        c => c,
     };
     let name = printable(name);
-    let mut letters = name.chars().map(calm);
-    let mut text: String = letters.by_ref().take(longest).collect();
-    if letters.next().is_some() {
+    let mut chars = name.chars().map(replace_invalid);
+    let mut text: String = chars.by_ref().take(limit).collect();
+    if chars.next().is_some() {
         text.push('…');
     }
     text

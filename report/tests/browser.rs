@@ -1,5 +1,5 @@
-//! Opens the page in a real browser: no console messages, nothing wider than the screen, even on a phone, and figures
-//! drawn in the light and in the dark colour scheme. The page's text is tested in `page.rs`.
+//! Opens the page in a real browser. It must log no console messages, fit the screen, even on a phone, and draw its figures in the
+//! light and in the dark colour scheme. `page.rs` tests the page's text.
 //!
 //! The browser is Chromium under one of its usual names, or the one that `DRIFTWORLD_BROWSER` names. Without a browser
 //! the tests print that they are skipped; with `DRIFTWORLD_REQUIRE_BROWSER=1` they fail.
@@ -41,7 +41,7 @@ enum Scheme {
     Light,
 }
 
-/// A page in a folder of its own, and the browser to look at it.
+/// A page in a folder of its own, and the browser that opens it.
 struct Desk {
     browser: PathBuf,
     folder: tempfile::TempDir,
@@ -93,8 +93,11 @@ impl Desk {
     /// The document after all its scripts have run, and the console messages that the browser logged.
     fn dom(&self, name: &str) -> (String, Vec<String>) {
         let output = self.open(name, [1200, 900], Scheme::Light, &["--dump-dom"]);
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        let console = said.lines().filter(|line| line.contains(":CONSOLE")).map(str::to_owned);
+        let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+        let console = stderr
+            .lines()
+            .filter(|line| line.contains(":CONSOLE"))
+            .map(str::to_owned);
         (String::from_utf8(output.stdout).unwrap(), console.collect())
     }
 
@@ -125,11 +128,11 @@ fn page_logs_no_console_messages() {
     };
     let (dom, console) = desk.dom("page.html");
     assert_eq!(console, Vec::<String>::new());
-    assert_eq!(dom.matches("<figure>").count(), 5, "the plots are there");
+    assert_eq!(dom.matches("<figure>").count(), 5, "all plots are on the page");
     assert!(dom.contains("<h1>first</h1>"));
     // Checks that a script error would be noticed at all.
     desk.put("bad.html", "<!DOCTYPE html><script>missing()</script>");
-    assert_eq!(desk.dom("bad.html").1.len(), 1, "a page with a fault is noticed");
+    assert_eq!(desk.dom("bad.html").1.len(), 1, "a script error is logged");
 }
 
 /// Opens the page in frames of several widths, from a phone's to a wide screen's, and records measurements of each.
@@ -210,8 +213,9 @@ fn page_fits_every_screen_width_and_its_text_is_legible() {
     check(&life.live().page(), "5", "1");
 }
 
-/// Heights in pixels: the band reserved for each figure, and the legend at the top of the figure.
+/// Height of the band reserved for each figure, in pixels.
 const BAND: u32 = 900;
+/// Height of the legend at the top of a figure, in pixels.
 const LEGEND: usize = 64;
 
 #[test]

@@ -12,7 +12,7 @@ fn tags(text: &str) -> Vec<(String, bool)> {
     let mut tags = Vec::new();
     let mut rest = text;
     while let Some(start) = rest.find('<') {
-        let end = start + rest[start..].find('>').expect("a tag that begins ends");
+        let end = start + rest[start..].find('>').expect("every tag is closed");
         let tag = &rest[start + 1..end];
         let name: String = tag
             .trim_start_matches('/')
@@ -25,7 +25,7 @@ fn tags(text: &str) -> Vec<(String, bool)> {
             "quotes are closed in <{tag}>"
         );
         if name == "style" && !tag.starts_with('/') {
-            rest = &rest[rest.find("</style").expect("the style ends")..];
+            rest = &rest[rest.find("</style").expect("the style element is closed")..];
         }
         if !NEVER_CLOSED.contains(&name.as_str()) && !tag.ends_with('/') {
             tags.push((name, tag.starts_with('/')));
@@ -67,10 +67,10 @@ fn page_is_well_formed_and_has_every_section() {
     ] {
         assert!(page.contains(&format!(">{title}</h")), "{title}");
     }
-    let place = |part: &str| page.find(part).unwrap_or_else(|| panic!("{part} is on the page"));
+    let position = |part: &str| page.find(part).unwrap_or_else(|| panic!("{part} is on the page"));
     assert!(
-        place(">Reached</h3>") < place("<dl class=\"facts\">"),
-        "what was reached comes first"
+        position(">Reached</h3>") < position("<dl class=\"facts\">"),
+        "the section Reached comes first"
     );
     assert!(
         page.contains("Average performance at the end (ACC): ")
@@ -82,12 +82,12 @@ fn page_is_well_formed_and_has_every_section() {
     assert_eq!(
         count(&page, "<svg"),
         count(&page, "</title>") - 1,
-        "every drawing says what it is, and so does the page"
+        "every drawing has a title, and so does the page"
     );
     assert!(page.contains("Warning: data-log.tsv:7: something &lt;odd&gt;"));
 }
 
-/// If a scenario names its tasks, the page uses these names in figures and tables, and shows each log name once beside them.
+/// If tasks have display names, figures and tables use these, and each log name appears once beside them.
 #[test]
 fn display_names_are_shown_with_the_log_names_beside_them() {
     let life = Life {
@@ -103,11 +103,11 @@ fn display_names_are_shown_with_the_log_names_beside_them() {
         ..Report::default()
     };
     let page = page.to_html().unwrap();
-    let places: Vec<&str> = page
+    let contexts: Vec<&str> = page
         .match_indices("find_red")
         .map(|(at, _)| &page[at - 60..at + 20])
         .collect();
-    assert_eq!(places.len(), 1, "the log's own name: {places:#?}");
+    assert_eq!(contexts.len(), 1, "the log's own name: {contexts:#?}");
     assert!(page.contains("find_objects#red<small>in the log find_red</small>"));
     let rows = count(&page, "<th scope=\"row\">find_objects#red");
     let columns = count(&page, "<th scope=\"col\">find_<wbr>objects#<wbr>red<wbr></th>");
@@ -132,7 +132,7 @@ fn headings_never_skip_a_level() {
 #[test]
 fn page_loads_nothing_and_runs_nothing() {
     let page = Life::default().live().page();
-    let calm = page.replace("xmlns=\"http://www.w3.org/2000/svg\"", "");
+    let without_namespace = page.replace("xmlns=\"http://www.w3.org/2000/svg\"", "");
     for part in [
         "http:",
         "https:",
@@ -144,7 +144,7 @@ fn page_loads_nothing_and_runs_nothing() {
         " onload",
         "javascript:",
     ] {
-        assert!(!calm.contains(part), "{part}");
+        assert!(!without_namespace.contains(part), "{part}");
     }
 }
 
@@ -164,7 +164,7 @@ fn hostile_names_are_escaped_on_the_page() {
     assert_well_formed(&page);
     assert!(!page.contains("<script") && !page.contains("<b>a"), "tags are escaped");
     assert!(page.contains("&lt;script&gt;alert(1)&lt;/script&gt;"));
-    assert!(page.chars().all(|letter| letter == '\n' || !letter.is_control()) && !page.contains('\u{202e}'));
+    assert!(page.chars().all(|c| c == '\n' || !c.is_control()) && !page.contains('\u{202e}'));
     let options = FigureOptions::default();
     let figures = Figures::of(&lived.lifetime, "reward", &options).unwrap();
     for figure in Figure::ALL {
@@ -179,7 +179,7 @@ fn same_lifetime_gives_the_same_bytes() {
 }
 
 #[test]
-fn several_lifetimes_have_an_index_a_chapter_each_and_joint_intervals() {
+fn page_of_several_lifetimes_has_an_index_chapters_and_joint_intervals() {
     let page = lifetimes::page_of_two();
     assert_well_formed(&page);
     for part in [
@@ -202,7 +202,7 @@ fn several_lifetimes_have_an_index_a_chapter_each_and_joint_intervals() {
         .map(|rest| rest.split('"').next().unwrap())
         .collect();
     for (index, id) in ids.iter().enumerate() {
-        assert!(!ids[..index].contains(id), "{id} is there twice");
+        assert!(!ids[..index].contains(id), "{id} occurs twice");
     }
 }
 
@@ -224,7 +224,7 @@ fn page_without_experts_says_so() {
 }
 
 #[test]
-fn figures_count_steps_if_the_log_has_them() {
+fn figures_in_steps_need_a_log_with_steps() {
     let options = FigureOptions {
         unit: Unit::Steps,
         ..FigureOptions::default()
@@ -234,7 +234,7 @@ fn figures_count_steps_if_the_log_has_them() {
         .unwrap()
         .svg(Figure::Learning)
         .unwrap();
-    assert!(svg.contains("step\n</text>"), "the axis says so");
+    assert!(svg.contains("step\n</text>"), "the axis is named step");
     let life = Life {
         steps: false,
         ..Life::default()
@@ -291,7 +291,7 @@ fn figures_contain_the_colours_of_the_tasks() {
     for figure in Figure::ALL {
         let blue = ink(&figures, figure, [0, 114, 178]);
         assert!(blue > 400, "{figure:?}: {blue} pixels of the first task");
-        assert_eq!(ink(&figures, figure, [1, 2, 3]), 0, "a colour that no figure has");
+        assert_eq!(ink(&figures, figure, [1, 2, 3]), 0, "no figure uses this colour");
     }
 }
 

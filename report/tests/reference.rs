@@ -1,6 +1,6 @@
-//! The example lifetime that l2metrics publishes, as a page: every figure is there, and the page is small.
+//! Renders the example lifetime that l2metrics publishes: the page has every figure, and is small.
 //!
-//! Without the logs the test is skipped, see `reference_data`.
+//! Without the logs the test is skipped; see `reference_data`.
 
 use driftworld_metrics::{Lifetime, Options, Scorer, SteLog, read_log, read_ste_log};
 use driftworld_report::{Chapter, ChapterOptions, Report};

@@ -1,4 +1,4 @@
-//! Rasterises polygons, lines and circles with antialiasing, by the covered share of each pixel.
+//! Rasterises polygons, lines and circles, antialiased by the covered share of each pixel.
 
 #![expect(clippy::disallowed_methods, reason = "corners of shapes, rounded to what is drawn")]
 
@@ -8,7 +8,7 @@ use super::{Picture, Rgb};
 const LINES: usize = 8;
 
 /// Maximum number of dashes in a line.
-const MOST_DASHES: usize = 20_000;
+const MAX_DASHES: usize = 20_000;
 
 /// Fills an upright rectangle: left, top, right, bottom.
 fn rectangle(picture: &mut Picture, [left, top, right, bottom]: [f32; 4], color: Rgb, alpha: f32) {
@@ -39,7 +39,7 @@ fn as_rectangle(points: &[[f32; 2]]) -> Option<[f32; 4]> {
         .then(|| [a[0].min(c[0]), a[1].min(c[1]), a[0].max(c[0]), a[1].max(c[1])])
 }
 
-/// Fills the union of the polygons once: overlaps are not darker.
+/// Fills the union of the polygons: overlaps are not darker.
 pub(super) fn fill(picture: &mut Picture, polygons: &[Vec<[f32; 2]>], color: Rgb, alpha: f32) {
     if let [polygon] = polygons
         && let Some(bounds) = as_rectangle(polygon)
@@ -63,17 +63,17 @@ pub(super) fn fill(picture: &mut Picture, polygons: &[Vec<[f32; 2]>], color: Rgb
     let height = |line: usize| top as f32 + (line as f32 + 0.5) / LINES as f32;
     for polygon in polygons {
         let twice_area: f32 = edges(polygon).map(|[a, b]| a[0] * b[1] - b[0] * a[1]).sum();
-        let way = if twice_area < 0.0 { -1 } else { 1 };
+        let winding = if twice_area < 0.0 { -1 } else { 1 };
         for [a, b] in edges(polygon) {
-            let (upper, lower, down) = if a[1] < b[1] { (a, b, way) } else { (b, a, -way) };
+            let (upper, lower, down) = if a[1] < b[1] { (a, b, winding) } else { (b, a, -winding) };
             let first = ((upper[1] - top as f32) * LINES as f32 - 0.5).ceil().max(0.0) as usize;
             let slope = (lower[0] - upper[0]) / (lower[1] - upper[1]);
-            for (line, met) in crossings.iter_mut().enumerate().skip(first) {
+            for (line, line_crossings) in crossings.iter_mut().enumerate().skip(first) {
                 let y = height(line);
                 if y >= lower[1] {
                     break;
                 }
-                met.push((upper[0] + (y - upper[1]) * slope, down));
+                line_crossings.push((upper[0] + (y - upper[1]) * slope, down));
             }
         }
     }
@@ -86,12 +86,12 @@ pub(super) fn fill(picture: &mut Picture, polygons: &[Vec<[f32; 2]>], color: Rgb
     let mut covered = vec![0.0_f32; last.saturating_sub(first)];
     for row in top..bottom {
         covered.fill(0.0);
-        for met in &mut crossings[(row - top) * LINES..][..LINES] {
-            met.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for line_crossings in &mut crossings[(row - top) * LINES..][..LINES] {
+            line_crossings.sort_by(|a, b| a.0.total_cmp(&b.0));
             let (mut depth, mut from) = (0, 0.0);
-            for (x, way) in met {
+            for (x, winding) in line_crossings {
                 let before = depth;
-                depth += *way;
+                depth += *winding;
                 if before == 0 {
                     from = *x;
                 } else if depth == 0 {
@@ -120,7 +120,7 @@ fn add_span(covered: &mut [f32], from: f32, to: f32) {
     }
 }
 
-/// The corners of a circle, enough of them that none is visible.
+/// Points along a circle, enough of them that no corner is visible.
 pub(super) fn circle([x, y]: [f32; 2], radius: f32) -> Vec<[f32; 2]> {
     let count = (8.0 + radius.max(0.0).sqrt() * 8.0).min(256.0) as usize;
     let corner = |k: usize| {
@@ -162,13 +162,13 @@ pub(super) fn dashes(points: &[[f32; 2]], dash: Option<f32>) -> Vec<Vec<[f32; 2]
         return vec![points.to_vec()];
     };
     let mut pieces = Vec::new();
-    let (mut drawn, mut left) = (true, dash);
+    let (mut is_dash, mut left) = (true, dash);
     let mut piece: Vec<[f32; 2]> = points.first().copied().into_iter().collect();
     for pair in points.windows(2) {
         let [mut a, b] = [pair[0], pair[1]];
         loop {
             let length = (b[0] - a[0]).hypot(b[1] - a[1]);
-            if length <= left || pieces.len() >= MOST_DASHES || !length.is_finite() {
+            if length <= left || pieces.len() >= MAX_DASHES || !length.is_finite() {
                 left -= length;
                 piece.push(b);
                 break;
@@ -177,13 +177,13 @@ pub(super) fn dashes(points: &[[f32; 2]], dash: Option<f32>) -> Vec<Vec<[f32; 2]
             a = [a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share];
             piece.push(a);
             let whole = std::mem::replace(&mut piece, vec![a]);
-            if drawn {
+            if is_dash {
                 pieces.push(whole);
             }
-            (drawn, left) = (!drawn, dash);
+            (is_dash, left) = (!is_dash, dash);
         }
     }
-    if drawn {
+    if is_dash {
         pieces.push(piece);
     }
     pieces
@@ -199,7 +199,7 @@ mod tests {
         pixels.map(|rgb| f32::from(255 - rgb[0]) / 255.0).sum()
     }
 
-    fn drawn(polygons: &[Vec<[f32; 2]>]) -> f32 {
+    fn ink_of(polygons: &[Vec<[f32; 2]>]) -> f32 {
         let mut picture = Picture::blank(60, 50);
         fill(&mut picture, polygons, [0, 0, 0], 1.0);
         ink(&picture)
@@ -212,20 +212,20 @@ mod tests {
             (vec![[5.0, 5.0], [45.0, 5.0], [5.0, 35.0]], 600.0),
             (circle([30.0, 25.0], 12.0), std::f32::consts::PI * 144.0),
         ] {
-            let found = drawn(&[polygon]);
+            let found = ink_of(&[polygon]);
             assert!((found - area).abs() < 0.015 * area, "{found} for {area}");
         }
         let line = stroke(&[[5.0, 5.0], [45.0, 35.0]], 3.0);
-        assert!((drawn(&line) - 150.0).abs() < 2.0);
+        assert!((ink_of(&line) - 150.0).abs() < 2.0);
     }
 
     #[test]
     fn overlaps_are_filled_once_and_outside_is_clipped() {
         let square = |x: f32| vec![[x, 10.0], [x + 10.0, 10.0], [x + 10.0, 20.0], [x, 20.0]];
         let turned: Vec<[f32; 2]> = square(15.0).into_iter().rev().collect();
-        assert!((drawn(&[square(10.0), turned]) - 150.0).abs() < 0.5);
-        assert!((drawn(&[square(-5.0)]) - 50.0).abs() < 0.5);
-        assert!(drawn(&[square(-50.0), square(1e9), vec![[f32::NAN, 0.0]; 3]]) < 1e-6);
+        assert!((ink_of(&[square(10.0), turned]) - 150.0).abs() < 0.5);
+        assert!((ink_of(&[square(-5.0)]) - 50.0).abs() < 0.5);
+        assert!(ink_of(&[square(-50.0), square(1e9), vec![[f32::NAN, 0.0]; 3]]) < 1e-6);
     }
 
     #[test]

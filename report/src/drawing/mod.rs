@@ -194,7 +194,7 @@ impl Drawing {
         self.tint(points, color, 1.0);
     }
 
-    /// Adds a polygon with this alpha.
+    /// Adds a filled polygon with this alpha.
     pub fn tint(&mut self, points: impl Into<Vec<[f32; 2]>>, color: Rgb, alpha: f32) {
         let points = points.into();
         self.shapes.push(Shape::Area { points, color, alpha });
@@ -222,7 +222,7 @@ impl Drawing {
         self.tint_disc(middle, radius, color, 1.0);
     }
 
-    /// Adds a circle with this alpha.
+    /// Adds a filled circle with this alpha.
     pub fn tint_disc(&mut self, middle: [f32; 2], radius: f32, color: Rgb, alpha: f32) {
         self.shapes.push(Shape::Disc {
             middle,
@@ -235,7 +235,7 @@ impl Drawing {
     /// Adds text, with unprintable characters escaped.
     #[expect(
         clippy::needless_pass_by_value,
-        reason = "a line of text is handed over, as every other shape"
+        reason = "a line of text is passed by value, like every other shape"
     )]
     pub fn write(&mut self, words: TextLine) {
         let text = driftworld_text::printable(&words.text).to_string();

@@ -76,7 +76,7 @@ impl Picture {
         }
     }
 
-    /// The image at half the size, averaging 2 × 2 pixels, which antialiases an image drawn at double size.
+    /// The image at half the size, averaging each 2 × 2 pixels. This antialiases an image drawn at double size.
     #[must_use]
     pub fn halved(&self) -> Self {
         let (width, height) = (self.width / 2, self.height / 2);

@@ -1,4 +1,4 @@
-//! A backend for the plotting library that records shapes of a [`Drawing`].
+//! A backend for the plotting library that records what it draws as shapes of a [`Drawing`].
 
 use std::convert::Infallible;
 
@@ -9,7 +9,7 @@ use plotters_backend::{
 
 use super::{Drawing, Level, Shape, Side, TextLine, corner, middle};
 
-/// The plotting library measures a font's size from its lowest to its highest line, more than the font size in CSS.
+/// The plotting library's font size divided by the font size in CSS: the library measures from a font's lowest to its highest line.
 const LIBRARY_SIZE: f64 = 1.24;
 
 /// The backend, which appends to a drawing.

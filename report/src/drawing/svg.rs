@@ -23,7 +23,7 @@ fn shapes(text: &mut String, drawing: &Drawing) -> Result<(), ReportError> {
         let element = match shape {
             Shape::Area { points, color, alpha } => format!(
                 "<polygon points=\"{}\" fill=\"{}\"{}/>\n",
-                places(points),
+                coordinates(points),
                 hex(*color),
                 opacity("fill", *alpha)
             ),
@@ -35,7 +35,7 @@ fn shapes(text: &mut String, drawing: &Drawing) -> Result<(), ReportError> {
                 dash,
             } => format!(
                 "<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" stroke-linejoin=\"round\"{}{}/>\n",
-                places(points),
+                coordinates(points),
                 hex(*color),
                 short(*width),
                 dash.map_or(String::new(), |dash| format!(" stroke-dasharray=\"{}\"", short(dash))),
@@ -73,7 +73,7 @@ fn shapes(text: &mut String, drawing: &Drawing) -> Result<(), ReportError> {
     Ok(())
 }
 
-/// A text element with its measured width, whatever the reader's font.
+/// A text element that keeps its measured width in any font.
 fn text_element(words: &TextLine) -> String {
     let width = words.width();
     if width <= 0.0 {
@@ -117,9 +117,9 @@ fn escaped(text: &str) -> String {
     safe.replace(['\u{fffe}', '\u{ffff}'], "\u{fffd}")
 }
 
-fn places(points: &[[f32; 2]]) -> String {
-    let place = |point: &[f32; 2]| format!("{},{}", short(point[0]), short(point[1]));
-    points.iter().map(place).collect::<Vec<_>>().join(" ")
+fn coordinates(points: &[[f32; 2]]) -> String {
+    let coordinate = |point: &[f32; 2]| format!("{},{}", short(point[0]), short(point[1]));
+    points.iter().map(coordinate).collect::<Vec<_>>().join(" ")
 }
 
 fn opacity(what: &str, alpha: f32) -> String {
@@ -145,7 +145,7 @@ mod tests {
         let mut drawing = Drawing::blank(90, 20);
         drawing.write(TextLine::new("a<b>&\u{0}\"c\"", [1.0, 2.0], 12.0, [1, 2, 3]));
         drawing.put(Picture::blank(2, 2), [3, 4]);
-        let svg = drawing.to_svg().expect("it can be written");
+        let svg = drawing.to_svg().expect("the file can be written");
         assert!(svg.contains(">a&lt;b&gt;&amp;"), "{svg}");
         assert!(!svg.contains('\u{0}') && !svg.contains("<b>"), "{svg}");
         assert!(svg.contains("<svg x=\"3\" y=\"4\" width=\"2\" height=\"2\">") && svg.contains("base64,iVBOR"));

@@ -1,4 +1,4 @@
-//! Renders text with subpixel glyph positions, according to the font.
+//! Renders text with the font's own subpixel glyph positions.
 //!
 //! The plotting library itself draws each glyph at a whole pixel and ignores its left side bearing, which makes words
 //! fall apart ("ob jects").
@@ -9,9 +9,8 @@ use ab_glyph::{Font, FontRef, Glyph, GlyphId, PxScale, ScaleFont, point};
 
 use super::{Picture, TextLine};
 
-static FONT: LazyLock<FontRef<'static>> = LazyLock::new(|| {
-    FontRef::try_from_slice(epaint_default_fonts::UBUNTU_LIGHT).expect("the embedded font is a valid one")
-});
+static FONT: LazyLock<FontRef<'static>> =
+    LazyLock::new(|| FontRef::try_from_slice(epaint_default_fonts::UBUNTU_LIGHT).expect("the embedded font is valid"));
 
 /// Width of the outline around glyphs, as a share of the font size.
 const RIM: f32 = 0.11;
@@ -23,40 +22,40 @@ fn scale(size: f32) -> PxScale {
 }
 
 /// The glyphs of a text, each with its position on a line that starts at 0, and the width of that line.
-fn letters(text: &str, size: f32) -> (Vec<(GlyphId, f32)>, f32) {
+fn layout(text: &str, size: f32) -> (Vec<(GlyphId, f32)>, f32) {
     let font = FONT.as_scaled(scale(size));
-    let (mut letters, mut x) = (Vec::new(), 0.0);
+    let (mut layout, mut x) = (Vec::new(), 0.0);
     let mut before: Option<GlyphId> = None;
-    for letter in text.chars() {
-        let glyph = font.glyph_id(letter);
+    for c in text.chars() {
+        let glyph = font.glyph_id(c);
         x += before.map_or(0.0, |before| font.kern(before, glyph));
-        letters.push((glyph, x));
+        layout.push((glyph, x));
         x += font.h_advance(glyph);
         before = Some(glyph);
     }
-    (letters, x)
+    (layout, x)
 }
 
 /// The width of a text in pixels at font size `size`, according to the font.
 pub fn text_width(text: &str, size: f32) -> f32 {
-    letters(text, size).1
+    layout(text, size).1
 }
 
 /// Draws a text, turned around its anchor.
 pub(super) fn draw(picture: &mut Picture, words: &TextLine) {
     if let Some(rim) = words.rim {
-        let off = RIM * words.size;
-        let slanted = off * 0.7;
+        let rim_width = RIM * words.size;
+        let slanted = rim_width * 0.7;
         let around = TextLine {
             color: rim,
             rim: None,
             ..words.clone()
         };
         for by in [
-            [off, 0.0],
-            [-off, 0.0],
-            [0.0, off],
-            [0.0, -off],
+            [rim_width, 0.0],
+            [-rim_width, 0.0],
+            [0.0, rim_width],
+            [0.0, -rim_width],
             [slanted, slanted],
             [-slanted, slanted],
             [slanted, -slanted],
@@ -72,9 +71,9 @@ pub(super) fn draw(picture: &mut Picture, words: &TextLine) {
 fn draw_once(picture: &mut Picture, words: &TextLine) {
     let [along, down] = words.offset();
     let turned = !words.turns.is_multiple_of(4);
-    // Turned text is drawn at 0, and its pixels are turned.
+    // Turned text is rendered at the origin, and its pixels are rotated.
     let origin = if turned { [0.0, 0.0] } else { words.at };
-    for (id, x) in letters(&words.text, words.size).0 {
+    for (id, x) in layout(&words.text, words.size).0 {
         let glyph: Glyph =
             id.with_scale_and_position(scale(words.size), point(origin[0] + along + x, origin[1] + down));
         let Some(outline) = FONT.outline_glyph(glyph) else {
@@ -123,16 +122,16 @@ mod tests {
 
     /// Each glyph's outline in the font, as left and right edge in pixels.
     fn outlines(text: &str, size: f32) -> Vec<[f32; 2]> {
-        let placed = letters(text, size).0.into_iter();
+        let placed = layout(text, size).0.into_iter();
         let outline = |(id, x): (GlyphId, f32)| {
             let bounds = FONT.outline(id)?.bounds;
-            let unit = size / FONT.units_per_em().expect("it has a unit");
+            let unit = size / FONT.units_per_em().expect("the font has units per em");
             Some([x + bounds.min.x * unit, x + bounds.max.x * unit])
         };
         placed.filter_map(outline).collect()
     }
 
-    /// No gap between letters is wider than the font's, except by a pixel on each side where ink may fall short.
+    /// Gaps between letters are at most two pixels wider than the font's: on each side, the ink may fall short by one.
     #[test]
     fn words_do_not_fall_apart() {
         for text in [
@@ -186,9 +185,9 @@ mod tests {
             };
             draw(&mut picture, &words);
             let inked = |index: &usize| picture.rgb[index * 3] < 128;
-            let all: Vec<usize> = (0..120 * 120).filter(inked).collect();
+            let dark: Vec<usize> = (0..120 * 120).filter(inked).collect();
             let mean =
-                |of: fn(usize) -> usize| all.iter().map(|index| of(*index) as f32).sum::<f32>() / all.len() as f32;
+                |of: fn(usize) -> usize| dark.iter().map(|index| of(*index) as f32).sum::<f32>() / dark.len() as f32;
             assert!(
                 (mean(|i| i % 120) - 60.0).abs() < 4.0 && (mean(|i| i / 120) - 60.0).abs() < 4.0,
                 "{turns}"

@@ -1,18 +1,19 @@
-//! The mean of each evaluation with its 95 % interval, one panel per task with all its variants, and when each was learned.
+//! The figure of evaluations: the mean of each with its 95 % interval, one panel per task with all its variants, and the blocks in
+//! which each was learned.
 
 use driftworld_metrics::student_reach;
 use indexmap::IndexMap;
 use plotters::prelude::*;
 
 use super::palette::{FAINT, INK, Look};
-use super::panels::{Grid, MOST_PANELS};
+use super::panels::{Grid, MAX_PANELS};
 use super::paper::{Area, Axes, Drawn, Entry, Paper, Sample, chart, draw_mark};
 use super::scene::{Scene, Stretch, joined, roomy, task_entry};
 
 /// Maximum number of variants that share a panel; with more, each gets its own, because they would hide each other.
-const MOST_VARIANTS: usize = 5;
+const MAX_VARIANTS: usize = 5;
 /// Maximum number of points in all panels together; with more, neighbouring points are merged.
-const MOST_POINTS: usize = 3000;
+const MAX_POINTS: usize = 3000;
 
 /// Tasks whose evaluations share a panel.
 struct Cluster {
@@ -37,7 +38,7 @@ fn clusters(scene: &Scene) -> Vec<Cluster> {
         tasks: vec![task],
     };
     let panels = |(name, tasks): (&str, Vec<usize>)| match tasks.len() {
-        2..=MOST_VARIANTS => vec![Cluster {
+        2..=MAX_VARIANTS => vec![Cluster {
             name: match scene.names[tasks[0]].split_once('#') {
                 Some((task, _)) => task.to_owned(),
                 None => crate::words::shown(name),
@@ -51,15 +52,15 @@ fn clusters(scene: &Scene) -> Vec<Cluster> {
 
 fn entries(scene: &Scene, clusters: &[Cluster]) -> Vec<Entry> {
     // A panel with a single task is already named.
-    let drawn = clusters.iter().take(MOST_PANELS);
+    let drawn = clusters.iter().take(MAX_PANELS);
     let drawn = drawn.filter(|cluster| cluster.tasks.len() > 1);
     let mut entries: Vec<Entry> = drawn
         .flat_map(|cluster| cluster.tasks.iter())
         .map(|task| task_entry((*task, &scene.names[*task])))
-        .take(super::scene::MOST_TASKS)
+        .take(super::scene::MAX_TASKS)
         .collect();
     entries.push(Entry::new("while it was learned", Sample::Tint(FAINT.light)));
-    entries.extend(Entry::rest(clusters.len(), MOST_PANELS, " tasks"));
+    entries.extend(Entry::rest(clusters.len(), MAX_PANELS, " tasks"));
     entries
 }
 
@@ -72,14 +73,14 @@ pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &P
     let clusters = clusters(scene);
     let below = paper.head(area, &entries(scene, &clusters))?;
     let grid = Grid::of(clusters.len(), paper);
-    let drawn = || clusters.iter().take(MOST_PANELS);
+    let drawn = || clusters.iter().take(MAX_PANELS);
     let num_tasks: usize = drawn().map(|cluster| cluster.tasks.len()).sum();
-    let columns = grid.pixel_columns(paper).min((MOST_POINTS / num_tasks.max(1)) as i32);
+    let columns = grid.pixel_columns(paper).min((MAX_POINTS / num_tasks.max(1)) as i32);
     let points: Vec<Vec<Point>> = drawn().map(|cluster| points(scene, cluster, columns)).collect();
     let ends = points
         .iter()
         .flatten()
-        .flat_map(|point| [point.mean - point.reach, point.mean + point.reach]);
+        .flat_map(|point| [point.mean - point.half_width, point.mean + point.half_width]);
     let y = roomy(ends);
     for ((cluster, points), panel) in clusters.iter().zip(&points).zip(grid.areas(&below)) {
         let axes = Axes {
@@ -107,16 +108,19 @@ pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &P
                 line.collect::<Vec<_>>(),
                 look.color.mix(0.55).stroke_width(2),
             )])?;
-            let bars = of_task().filter(|point| point.reach > 0.0).map(|point| {
-                let ends = [(point.x, point.mean - point.reach), (point.x, point.mean + point.reach)];
+            let bars = of_task().filter(|point| point.half_width > 0.0).map(|point| {
+                let ends = [
+                    (point.x, point.mean - point.half_width),
+                    (point.x, point.mean + point.half_width),
+                ];
                 PathElement::new(ends.to_vec(), Paper::stroke(look.color, 1.5))
             });
             chart.draw_series(bars)?;
-            let places: Vec<(i32, i32)> = of_task()
+            let positions: Vec<(i32, i32)> = of_task()
                 .map(|point| chart.backend_coord(&(point.x, point.mean)))
                 .collect();
             let (left, top) = panel.get_base_pixel();
-            for (x, y) in places {
+            for (x, y) in positions {
                 draw_mark(&panel, look, (x - left, y - top), Paper::dots(3))?;
             }
         }
@@ -129,11 +133,11 @@ struct Point {
     task: usize,
     x: f64,
     mean: f64,
-    reach: f64,
+    half_width: f64,
 }
 
 /// Mean, and half-width of Student's 95 % interval: 0 for a single sample, which has no interval.
-fn mean_and_reach(samples: &[f64]) -> (f64, f64) {
+fn mean_and_half_width(samples: &[f64]) -> (f64, f64) {
     let n = samples.len() as f64;
     let mean = samples.iter().sum::<f64>() / n;
     if samples.len() < 2 {
@@ -159,9 +163,14 @@ fn points(scene: &Scene, cluster: &Cluster, columns: i32) -> Vec<Point> {
                     .iter()
                     .flat_map(|stretch| stretch.regime.performance.iter().copied())
                     .collect();
-                let (mean, reach) = mean_and_reach(&samples);
+                let (mean, half_width) = mean_and_half_width(&samples);
                 let x = group.iter().map(|stretch| stretch.middle()).sum::<f64>() / group.len() as f64;
-                Point { task, x, mean, reach }
+                Point {
+                    task,
+                    x,
+                    mean,
+                    half_width,
+                }
             })
             .collect()
     };
@@ -175,7 +184,7 @@ mod tests {
     #[test]
     fn intervals_match_student() {
         let check = |samples: &[f64], expected: (f64, f64)| {
-            let found = mean_and_reach(samples);
+            let found = mean_and_half_width(samples);
             assert!((found.0 - expected.0).abs() < 1e-12, "{samples:?}");
             assert!((found.1 - expected.1).abs() < 1e-3, "{samples:?}: {}", found.1);
         };

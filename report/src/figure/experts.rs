@@ -1,19 +1,19 @@
-//! Learning curves of each task, its blocks joined end to end, compared with each run of its single-task expert.
+//! The figure of experts: each task's learning blocks joined end to end, compared with the runs of its single-task expert.
 
 use plotters::prelude::*;
 
 use super::palette::{FAINT, INK, Look, RIM};
-use super::panels::{Grid, MOST_PANELS};
+use super::panels::{Grid, MAX_PANELS};
 use super::paper::{Area, Axes, Drawn, Entry, Paper, Sample, chart, curve};
 use super::scene::{Scene, roomy};
 use super::thinning;
 
 /// Maximum number of runs drawn per expert.
-const MOST_RUNS: usize = 12;
-/// Pixel columns of all curves together; with more curves, each has fewer.
-const MOST_COLUMNS: usize = 16_000;
+const MAX_RUNS: usize = 12;
+/// Maximum number of pixel columns of all curves together: the more curves, the fewer columns each has.
+const MAX_COLUMNS: usize = 16_000;
 /// Maximum number of borders drawn between blocks.
-const MOST_BORDERS: usize = 60;
+const MAX_BORDERS: usize = 60;
 
 /// One task with its curves.
 struct Panel {
@@ -33,7 +33,7 @@ pub(super) fn any(scene: &Scene) -> bool {
 fn panels(scene: &Scene) -> Vec<Panel> {
     let tasks = scene.lifetime.tasks().iter().enumerate();
     let panel = |(task, name): (usize, &String)| {
-        let runs: Vec<Vec<f64>> = scene.lifetime.expert_curves(name).take(MOST_RUNS).collect();
+        let runs: Vec<Vec<f64>> = scene.lifetime.expert_curves(name).take(MAX_RUNS).collect();
         let learned: Vec<&[f64]> = (scene.lifetime.regimes_of(name))
             .filter(|regime| regime.is_wake_training())
             .map(|regime| regime.performance.as_slice())
@@ -44,7 +44,7 @@ fn panels(scene: &Scene) -> Vec<Panel> {
         });
         (!runs.is_empty() && !learned.is_empty()).then(|| Panel {
             task,
-            borders: ends.take(learned.len() - 1).take(MOST_BORDERS).collect(),
+            borders: ends.take(learned.len() - 1).take(MAX_BORDERS).collect(),
             own: learned.concat(),
             runs,
         })
@@ -58,7 +58,7 @@ fn entries(panels: &[Panel]) -> Vec<Entry> {
         Entry::new("this agent, in the task's colour", Sample::Line(Look::of(first).color)),
         Entry::new("an expert's run", Sample::Line(FAINT.light)),
     ];
-    entries.extend(Entry::rest(panels.len(), MOST_PANELS, " tasks"));
+    entries.extend(Entry::rest(panels.len(), MAX_PANELS, " tasks"));
     entries
 }
 
@@ -75,9 +75,9 @@ pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &P
         .iter()
         .flat_map(|panel| panel.own.iter().chain(panel.runs.iter().flatten()).copied());
     let y = roomy(values);
-    let num_curves: usize = panels.iter().take(MOST_PANELS).map(|panel| panel.runs.len() + 1).sum();
-    let columns = f64::from(grid.pixel_columns(paper).min((MOST_COLUMNS / num_curves.max(1)) as i32));
-    for (panel, place) in panels.iter().zip(grid.areas(&below)) {
+    let num_curves: usize = panels.iter().take(MAX_PANELS).map(|panel| panel.runs.len() + 1).sum();
+    let columns = f64::from(grid.pixel_columns(paper).min((MAX_COLUMNS / num_curves.max(1)) as i32));
+    for (panel, panel_area) in panels.iter().zip(grid.areas(&below)) {
         let lengths = panel.runs.iter().map(Vec::len).chain([panel.own.len()]);
         let longest = lengths.fold(2, usize::max) as f64;
         let axes = Axes {
@@ -87,7 +87,7 @@ pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &P
             y_name: (&scene.names[panel.task], INK.light),
             labels: grid.labels(),
         };
-        let mut chart = chart(&place, &axes)?;
+        let mut chart = chart(&panel_area, &axes)?;
         let border = |x: &f64| PathElement::new(vec![(*x, y.start), (*x, y.end)], Paper::stroke(RIM.light, 1.0));
         chart.draw_series(panel.borders.iter().map(border))?;
         let thin = |curve: &[f64]| {

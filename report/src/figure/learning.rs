@@ -1,4 +1,5 @@
-//! Learning curves over the lifetime, with shaded evaluations and dotted lines between the means of each task's evaluations.
+//! The figure of learning curves over the lifetime, with evaluations shaded and dotted lines between the means of each task's
+//! evaluations.
 
 use std::ops::Range;
 
@@ -7,13 +8,13 @@ use plotters::prelude::*;
 
 use super::palette::{FAINT, Look, SHADE};
 use super::paper::{Area, Axes, Chart, Drawn, Paper, chart, curve, draw_mark};
-use super::scene::{MOST_TASKS, Scene, Stretch, joined, roomy};
+use super::scene::{MAX_TASKS, Scene, Stretch, joined, roomy};
 use super::thinning;
 
 /// Pixel columns between the axes, on wide and on narrow paper.
 pub(super) const COLUMNS: [i32; 2] = [900, 300];
-/// Maximum number of evaluations joined by dotted lines, each a line of its own; more are joined by thin solid lines.
-const MOST_DOTTED: usize = 90;
+/// Maximum number of evaluations joined by dotted lines; if there are more, thin solid lines join them.
+const MAX_DOTTED: usize = 90;
 
 pub(super) fn height(scene: &Scene, paper: &Paper) -> i32 {
     paper.head_height(&scene.entries()) + if paper.is_narrow() { 260 } else { 340 }
@@ -58,10 +59,10 @@ pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &P
     let mut chart = chart(&below, &axes)?;
     shade(scene, &mut chart, &axes.y, columns)?;
     if scene.options.show_eval_lines {
-        for task in 0..scene.names.len().min(MOST_TASKS) {
+        for task in 0..scene.names.len().min(MAX_TASKS) {
             let of_task = evaluated.iter().filter(|stretch| stretch.task == task);
             let means: Vec<(f64, f64)> = of_task.map(|stretch| (stretch.middle(), stretch.mean())).collect();
-            join(&mut chart, Look::of(task), means, evaluated.len() <= MOST_DOTTED)?;
+            join(&mut chart, Look::of(task), means, evaluated.len() <= MAX_DOTTED)?;
         }
     }
     let column = scene.column(columns);
@@ -71,14 +72,14 @@ pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &P
     }
     let marked = |stretch: &&&Stretch| !stretch.learns() || scene.names.len() > super::palette::TASKS.len();
     let radius = Paper::dots(if evaluated.len() > 240 { 2 } else { 3 });
-    let places: Vec<((i32, i32), Look)> = (evaluated.iter().chain(&learned).filter(marked))
+    let positions: Vec<((i32, i32), Look)> = (evaluated.iter().chain(&learned).filter(marked))
         .map(|stretch| {
             let at = chart.backend_coord(&(stretch.middle(), stretch.mean()));
             (at, Look::of(stretch.task))
         })
         .collect();
     let (left, top) = area.get_base_pixel();
-    for ((x, y), look) in places {
+    for ((x, y), look) in positions {
         draw_mark(area, look, (x - left, y - top), radius)?;
     }
     Ok(())

@@ -32,14 +32,14 @@ use scene::Scene;
 pub enum Figure {
     /// Raw values as points, with the smoothed curve.
     Raw,
-    /// Learning curves, evaluations shaded, their means joined.
+    /// Learning curves, with evaluations shaded and their means joined.
     Learning,
-    /// Means of evaluations with 95 % intervals, a panel per task.
+    /// Means of evaluations with 95 % intervals, one panel per task.
     Evaluation,
     /// The learning of each task, end to end, compared with its single-task expert.
     #[strum(serialize = "ste")]
     Experts,
-    /// The blocks of the lifetime, a row per task, and the distances between neighbours.
+    /// The blocks of the lifetime, one row per task, and the distances between neighbours.
     Timeline,
 }
 
@@ -61,7 +61,7 @@ impl Figure {
     /// The figures for a word of the reference's option: `all`, or one of `raw`, `lb`, `eb`, `ste`; `timeline` is an addition.
     ///
     /// # Errors
-    /// [`ReportError::UnknownFigure`].
+    /// [`ReportError::UnknownFigure`] for any other word.
     pub fn asked_for(word: &str) -> Result<Vec<Self>, ReportError> {
         Ok(vec![match word {
             "all" => return Ok(Self::ALL.to_vec()),
@@ -86,15 +86,15 @@ impl<'a> Figures<'a> {
     /// Prepares a lifetime's figures. `column` is the name of its performance column.
     ///
     /// # Errors
-    /// [`ReportError::NoSteps`] if the unit is steps and the log has none, [`ReportError::Distances`] if their number differs
-    /// from that of [`neighbours`](crate::neighbours).
+    /// [`ReportError::NoSteps`] if the unit is steps and the log has none, [`ReportError::Distances`] if there is not one distance
+    /// for each pair of [`neighbours`](crate::neighbours).
     pub fn of(lifetime: &'a Lifetime, column: &'a str, options: &'a FigureOptions) -> Result<Self, ReportError> {
         Ok(Self {
             scene: Scene::new(lifetime, column, options)?,
         })
     }
 
-    /// Whether there is anything to show: a lifetime without experts has no comparison with them.
+    /// Whether the figure has anything to show; a lifetime without experts, for example, has no comparison with them.
     pub fn has(&self, figure: Figure) -> bool {
         let has = |learns: bool| self.scene.stretches.iter().any(|stretch| stretch.learns() == learns);
         match figure {
@@ -108,7 +108,7 @@ impl<'a> Figures<'a> {
     /// The figure as an SVG file on white, with a title.
     ///
     /// # Errors
-    /// [`ReportError::Drawing`].
+    /// [`ReportError::Drawing`] if the plotting library fails.
     pub fn svg(&self, figure: Figure) -> Result<String, ReportError> {
         let paper = self.titled(figure);
         vectors(figure.name(), (paper.width(), self.height(figure, &paper)), |area| {
@@ -120,7 +120,7 @@ impl<'a> Figures<'a> {
     /// The figure as a PNG file on white, with a title, at two dots per SVG pixel.
     ///
     /// # Errors
-    /// [`ReportError::Drawing`].
+    /// [`ReportError::Drawing`] if the plotting library fails.
     pub fn png(&self, figure: Figure) -> Result<Vec<u8>, ReportError> {
         let paper = self.titled(figure);
         let size = (paper.width(), self.height(figure, &paper));
@@ -172,7 +172,7 @@ impl<'a> Figures<'a> {
     }
 }
 
-/// Draws as vectors, in pixels of the layout.
+/// Draws a figure as SVG; the size is in layout pixels.
 fn vectors(
     figure: &'static str,
     (width, height): (i32, i32),
@@ -180,7 +180,7 @@ fn vectors(
 ) -> Result<String, ReportError> {
     let mut text = String::new();
     let dots = (Paper::dots(width) as u32, Paper::dots(height) as u32);
-    drawn(figure, SVGBackend::with_string(&mut text, dots), draw)?;
+    draw_with(figure, SVGBackend::with_string(&mut text, dots), draw)?;
     Ok(compact(text).replacen(
         &format!("width=\"{}\" height=\"{}\"", dots.0, dots.1),
         &format!("width=\"{width}\" height=\"{height}\""),
@@ -188,33 +188,33 @@ fn vectors(
     ))
 }
 
-/// Draws as pixels, two per layout pixel along each side.
+/// Draws a figure as PNG, with two pixels per layout pixel along each side.
 fn pixels(
     figure: &'static str,
     (width, height): (i32, i32),
     draw: impl for<'b> FnOnce(&Area<Recorder<'b>>) -> Drawn<Recorder<'b>>,
 ) -> Result<Vec<u8>, ReportError> {
     let mut drawing = Drawing::blank(Paper::dots(width) as u32, Paper::dots(height) as u32);
-    drawn(figure, Recorder::onto(&mut drawing), draw)?;
+    draw_with(figure, Recorder::onto(&mut drawing), draw)?;
     drawing.to_png()
 }
 
-/// Draws with a backend, which is consumed.
-fn drawn<DB: DrawingBackend<ErrorType: 'static>>(
+/// Draws a figure with a backend, and finishes the output.
+fn draw_with<DB: DrawingBackend<ErrorType: 'static>>(
     figure: &'static str,
     backend: DB,
     draw: impl FnOnce(&Area<DB>) -> Drawn<DB>,
 ) -> Result<(), ReportError> {
     paper::load_font();
     let area = backend.into_drawing_area();
-    let drawn = draw(&area).and_then(|()| area.present());
-    drawn.map_err(|error| ReportError::Drawing {
+    let draw_with = draw(&area).and_then(|()| area.present());
+    draw_with.map_err(|error| ReportError::Drawing {
         figure,
         source: Box::new(error),
     })
 }
 
-/// Removes the library's redundant output; text contains no quotation marks, so it cannot be affected.
+/// Removes attributes that the library writes needlessly. Text is never affected, because its quotation marks are escaped.
 fn compact(svg: String) -> String {
     [
         (" opacity=\"1\"", ""),

@@ -1,4 +1,4 @@
-//! [`FigureOptions`]: what figures show, in which unit, and how wide.
+//! [`FigureOptions`]: what figures show and in which unit; [`Layout`]: how wide they are.
 
 use std::collections::BTreeMap;
 use std::str::FromStr;
@@ -28,7 +28,7 @@ pub enum Unit {
 impl FromStr for Unit {
     type Err = ReportError;
 
-    /// Parses the reference's names: `exp_num` or `steps`.
+    /// Parses the names used by the reference implementation: `exp_num` or `steps`.
     fn from_str(word: &str) -> Result<Self, ReportError> {
         match word {
             "exp_num" => Ok(Self::Experiences),
@@ -41,15 +41,14 @@ impl FromStr for Unit {
 /// Options of figures.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FigureOptions {
-    /// The unit of the horizontal axis; by default experiences.
+    /// The unit of the horizontal axis; default experiences.
     pub unit: Unit,
-    /// Whether the means of evaluations are joined across learning; default yes.
+    /// Whether the means of evaluations are joined across learning blocks; default `true`.
     pub show_eval_lines: bool,
-    /// Distances between neighbouring learning blocks, in the order of [`neighbours`](crate::neighbours); `None` in the list for
-    /// an unknown distance. Default none: the timeline has no distances.
+    /// Distances between neighbouring learning blocks, in the order of [`neighbours`](crate::neighbours); an unknown distance is
+    /// `None` in the list. By default the timeline shows no distances.
     pub distances: Option<Vec<Option<f64>>>,
-    /// Display names of tasks in legends and tables, by their log names, which contain only letters and digits; other tasks keep
-    /// their log names.
+    /// Display names of tasks in legends and tables, keyed by their log names. Other tasks are shown by their log names.
     pub names: BTreeMap<String, String>,
 }
 

@@ -1,4 +1,4 @@
-//! The colours of figures, including each task's, and their replacements on dark pages.
+//! The colours of figures and tasks, and their replacements on dark pages.
 
 use std::fmt::Write;
 
@@ -6,7 +6,7 @@ use plotters::style::RGBColor;
 
 use crate::drawing::Rgb;
 
-/// A colour of figures: as drawn, and as shown on a page in dark mode.
+/// A colour of figures, as drawn and as shown on a page in dark mode.
 pub(super) struct Tone {
     pub(super) light: RGBColor,
     dark: &'static str,
@@ -29,8 +29,8 @@ pub(super) const SHADE: Tone = Tone::new(RGBColor(238, 240, 243), "#262b31");
 /// Evaluations on the timeline.
 pub(super) const FROZEN: Tone = Tone::new(RGBColor(150, 154, 160), "#7c838c");
 
-/// Distinguishable for most colour-blind readers (Okabe and Ito); their black is used as ink, and their yellow is too faint on
-/// white.
+/// The colours of tasks, which most colour-blind readers can distinguish (Okabe and Ito). Their black is used as ink, and their
+/// yellow, too faint on white, is darkened.
 pub(super) const TASKS: [Tone; 7] = [
     Tone::new(RGBColor(0, 114, 178), "#4a9fe0"),
     Tone::new(RGBColor(230, 159, 0), "#f0b429"),
@@ -103,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn every_colour_changes_in_the_dark() {
+    fn every_colour_changes_in_dark_mode() {
         let rules = dark_rules();
         assert!(rules.contains("svg [fill=\"#0072B2\"]{fill:#4a9fe0}"));
         assert_eq!(rules.matches("stroke=").count(), 12);

@@ -5,7 +5,7 @@ use plotters::prelude::*;
 use super::paper::{Area, Paper};
 
 /// Maximum number of panels drawn in a figure.
-pub(super) const MOST_PANELS: usize = 24;
+pub(super) const MAX_PANELS: usize = 24;
 
 /// A grid of panels.
 pub(super) struct Grid {
@@ -15,9 +15,9 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    /// A grid for this many panels, of which at most [`MOST_PANELS`] are drawn.
+    /// A grid for this many panels, of which at most [`MAX_PANELS`] are drawn.
     pub(super) fn of(panels: usize, paper: &Paper) -> Self {
-        let panels = panels.clamp(1, MOST_PANELS);
+        let panels = panels.clamp(1, MAX_PANELS);
         let columns = match panels {
             _ if paper.is_narrow() => 1,
             1 => 1,
@@ -29,7 +29,7 @@ impl Grid {
             rows: panels.div_ceil(columns),
             height: match panels {
                 1 if !paper.is_narrow() => 280,
-                // Many panels only give an overview.
+                // With many panels, each gives only an overview.
                 10.. => 170,
                 _ => 210,
             },
@@ -63,7 +63,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_panel_has_a_place() {
+    fn grid_has_a_cell_for_every_panel() {
         let check = |layout: Layout, panels: usize, expected: (usize, usize)| {
             let grid = Grid::of(panels, &Paper { layout, title: None });
             assert_eq!((grid.rows, grid.columns), expected, "{panels} panels");

@@ -1,4 +1,4 @@
-//! The paper of a figure: its sizes, text, axes, and legend.
+//! The paper that a figure is drawn on: its sizes, text, axes and legend.
 
 #![expect(
     clippy::disallowed_methods,
@@ -22,7 +22,7 @@ pub(super) type Area<DB> = DrawingArea<DB, Shift>;
 pub(super) type Chart<'a, DB> = ChartContext<'a, DB, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 pub(super) type Drawn<DB, T = ()> = Result<T, DrawingAreaErrorKind<<DB as DrawingBackend>::ErrorType>>;
 
-/// Dots of the drawing per layout pixel along one side: the library only draws at whole coordinates.
+/// Dots of the drawing per layout pixel along one side: the library only draws at integer coordinates.
 const DOTS: i32 = 2;
 /// Heights, in pixels of the layout.
 const TITLE: i32 = 34;
@@ -48,10 +48,10 @@ impl Entry {
         Self { name, sample }
     }
 
-    /// The entry for those of `all` that are not drawn, if any; `what` follows their number.
-    pub(super) fn rest(all: usize, drawn: usize, what: &str) -> Option<Self> {
-        let rest = || Self::new(format!("and {}{what} more, not drawn", all - drawn), Sample::Nothing);
-        (all > drawn).then(rest)
+    /// The entry that counts what is not drawn, if anything; `noun` follows the number.
+    pub(super) fn rest(total: usize, drawn: usize, noun: &str) -> Option<Self> {
+        let rest = || Self::new(format!("and {}{noun} more, not drawn", total - drawn), Sample::Nothing);
+        (total > drawn).then(rest)
     }
 }
 
@@ -79,12 +79,12 @@ impl Paper {
         self.layout == Layout::Narrow
     }
 
-    /// A length in dots.
+    /// Converts a length in layout pixels to dots.
     pub(super) fn dots(length: i32) -> i32 {
         length * DOTS
     }
 
-    /// A stroke, in pixels of the layout.
+    /// A stroke of this width in layout pixels.
     pub(super) fn stroke(color: RGBColor, width: f64) -> ShapeStyle {
         color.stroke_width((width * f64::from(DOTS)).round() as u32)
     }
@@ -98,24 +98,24 @@ impl Paper {
     }
 
     /// Positions of the legend's names, as left edge and line, and the number of lines.
-    fn places(&self, entries: &[Entry]) -> (Vec<(i32, i32)>, i32) {
+    fn legend_positions(&self, entries: &[Entry]) -> (Vec<(i32, i32)>, i32) {
         let (mut left, mut line) = (0, 0);
-        let mut places = Vec::new();
+        let mut legend_positions = Vec::new();
         for entry in entries {
-            let wide = text_width(&entry.name, 12) + 40;
-            if left > 0 && left + wide > self.width() - 16 {
+            let width = text_width(&entry.name, 12) + 40;
+            if left > 0 && left + width > self.width() - 16 {
                 (left, line) = (0, line + 1);
             }
-            places.push((left, line));
-            left += wide;
+            legend_positions.push((left, line));
+            left += width;
         }
-        (places, if entries.is_empty() { 0 } else { line + 1 })
+        (legend_positions, if entries.is_empty() { 0 } else { line + 1 })
     }
 
     /// Height of the title and the legend together.
     pub(super) fn head_height(&self, entries: &[Entry]) -> i32 {
         let title = if self.title.is_some() { TITLE } else { 0 };
-        title + self.places(entries).1 * ENTRY + 6
+        title + self.legend_positions(entries).1 * ENTRY + 6
     }
 
     /// Draws the title and the legend; returns the area below.
@@ -126,7 +126,7 @@ impl Paper {
             area.draw_text(title, &style, (Self::dots(8), Self::dots(TITLE / 2 + 2)))?;
             top = TITLE;
         }
-        for (entry, (left, line)) in entries.iter().zip(self.places(entries).0) {
+        for (entry, (left, line)) in entries.iter().zip(self.legend_positions(entries).0) {
             let (x, y) = (Self::dots(left + 8), Self::dots(top + line * ENTRY + ENTRY / 2 + 2));
             let after = sample(area, entry.sample, (x, y))?;
             let style = Self::words(12, INK.light, HPos::Left, VPos::Center);
@@ -152,12 +152,12 @@ fn sample<DB: DrawingBackend>(area: &Area<DB>, sample: Sample, (x, y): (i32, i32
     Ok(d(22))
 }
 
-/// A straight line in pixels of the area.
+/// Draws a straight line, in pixels of the area.
 pub(super) fn line<DB: DrawingBackend>(area: &Area<DB>, ends: [(i32, i32); 2], style: ShapeStyle) -> Drawn<DB> {
     area.draw(&PathElement::new(ends, style))
 }
 
-/// A task's mark in pixels of the area.
+/// Draws a task's mark, in pixels of the area.
 pub(super) fn draw_mark<DB: DrawingBackend>(area: &Area<DB>, look: Look, (x, y): (i32, i32), r: i32) -> Drawn<DB> {
     let (style, far) = (look.color.filled(), r * 4 / 3);
     match look.mark {
@@ -190,7 +190,7 @@ pub(super) struct Axes<'a> {
     pub(super) labels: [usize; 2],
 }
 
-/// A pair of axes with a faint grid and no border.
+/// Draws a pair of axes with a faint grid and no border.
 pub(super) fn chart<'a, DB: DrawingBackend + 'a>(area: &'a Area<DB>, axes: &Axes) -> Drawn<DB, Chart<'a, DB>> {
     let d = Paper::dots;
     let name = Paper::words(12, axes.y_name.1, HPos::Left, VPos::Center);
@@ -225,7 +225,7 @@ pub(super) fn chart<'a, DB: DrawingBackend + 'a>(area: &'a Area<DB>, axes: &Axes
     Ok(chart)
 }
 
-/// A curve through points; a single point is drawn as a dot, because its line would be invisible.
+/// Draws a curve through points; a single point becomes a dot, because a line would be invisible.
 pub(super) fn curve<DB: DrawingBackend>(chart: &mut Chart<DB>, points: Vec<(f64, f64)>, color: RGBColor) -> Drawn<DB> {
     if let [only] = points[..] {
         chart.draw_series([Circle::new(only, Paper::dots(2), color.filled())])?;
@@ -238,14 +238,14 @@ pub(super) fn curve<DB: DrawingBackend>(chart: &mut Chart<DB>, points: Vec<(f64,
 /// A label on an axis of this range, with enough digits to differ from its neighbours.
 pub(super) fn label(value: f64, range: &Range<f64>) -> String {
     let (largest, span) = (range.start.abs().max(range.end.abs()), range.end - range.start);
-    // Keeps the short form as long as it resolves a twentieth of the axis.
+    // Keep the short form as long as it resolves a twentieth of the axis.
     let seen = match largest {
         size if size >= 1e9 => 1e7,
         size if size >= 1e6 => 1e4,
         size if size >= 1e4 => 100.0,
         _ => 1e-4,
     };
-    // Removes the rounding error of a sum that should be 0.
+    // Remove the rounding error of a sum that should be 0.
     let value = if value.abs() < span * 1e-9 { 0.0 } else { value };
     if span / 20.0 >= seen || span.is_nan() || span <= 0.0 {
         return number(value);
@@ -257,7 +257,7 @@ pub(super) fn label(value: f64, range: &Range<f64>) -> String {
     } else if span < 1e-8 && largest < 1e-7 {
         format!("{value:.1e}")
     } else if span < 1e-8 {
-        // The digits of an f64.
+        // As many digits as an f64 has.
         short(value, 15)
     } else {
         format!("{value:.digits$}")
@@ -265,7 +265,7 @@ pub(super) fn label(value: f64, range: &Range<f64>) -> String {
     text.replace('-', "−")
 }
 
-/// A number on its own: round numbers stay short.
+/// A number without an axis: round numbers stay short.
 pub(crate) fn number(value: f64) -> String {
     let trimmed = |value: f64, digits: usize| short(value, digits).replace('-', "−");
     match value.abs() {
@@ -278,26 +278,26 @@ pub(crate) fn number(value: f64) -> String {
     }
 }
 
-/// The library measures a font's size from its lowest to its highest line, more than the font size in CSS.
+/// The font size in the library's units: it measures from a font's lowest to its highest line, which exceeds the CSS font size.
 fn font_size(pixels: i32) -> f64 {
     f64::from(pixels * DOTS) * 1.24
 }
 
-/// Approximate width of a text in pixels of the layout: readers may have a different font.
+/// Approximate width of a text in layout pixels; it leaves room for readers with a different font.
 pub(super) fn text_width(text: &str, size: i32) -> i32 {
     load_font();
     let font = ("sans-serif", f64::from(size) * 1.24).into_font();
-    let wide = font.box_size(text).map_or(0, |(wide, _)| wide as i32);
-    // Characters missing from the font have no width there.
-    wide.max(text.chars().count() as i32 * size * 2 / 5) * 11 / 10
+    let width = font.box_size(text).map_or(0, |(width, _)| width as i32);
+    // Characters missing from the font are measured as 0 wide.
+    width.max(text.chars().count() as i32 * size * 2 / 5) * 11 / 10
 }
 
-/// The font is embedded in the program, so figures look the same on machines with and without fonts.
+/// Registers the embedded font, so that figures look the same on machines with and without fonts.
 pub(super) fn load_font() {
     static LOADED: Once = Once::new();
     LOADED.call_once(|| {
         let loaded = register_font("sans-serif", FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT);
-        debug_assert!(loaded.is_ok(), "the embedded font is a valid one");
+        debug_assert!(loaded.is_ok(), "the embedded font is valid");
     });
 }
 
@@ -343,10 +343,13 @@ mod tests {
             name: name.to_owned(),
             sample: Sample::Nothing,
         };
-        let (places, lines) = paper.places(&["a", "b", &"long ".repeat(9)].map(entry));
+        let (legend_positions, lines) = paper.legend_positions(&["a", "b", &"long ".repeat(9)].map(entry));
         assert_eq!(lines, 2);
-        assert_eq!((places[0].1, places[1].1, places[2]), (0, 0, (0, 1)));
-        assert!(places[1].0 > places[0].0);
-        assert_eq!(paper.places(&[]).1, 0);
+        assert_eq!(
+            (legend_positions[0].1, legend_positions[1].1, legend_positions[2]),
+            (0, 0, (0, 1))
+        );
+        assert!(legend_positions[1].0 > legend_positions[0].0);
+        assert_eq!(paper.legend_positions(&[]).1, 0);
     }
 }

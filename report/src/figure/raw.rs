@@ -1,4 +1,5 @@
-//! Raw values over the lifetime with the smoothed curve: as points if there is room, otherwise as the area that they cover.
+//! The figure of raw values over the lifetime, with the smoothed curve: as points if there is room, otherwise as the area that
+//! they cover.
 
 use driftworld_metrics::Lifetime;
 use plotters::prelude::*;
@@ -11,7 +12,7 @@ use super::thinning;
 use crate::words::shown;
 
 /// Maximum number of points drawn individually, on wide and on narrow paper.
-const MOST_POINTS: [usize; 2] = [2400, 700];
+const MAX_POINTS: [usize; 2] = [2400, 700];
 
 pub(super) fn height(scene: &Scene, paper: &Paper) -> i32 {
     paper.head_height(&scene.entries()) + if paper.is_narrow() { 240 } else { 320 }
@@ -29,10 +30,10 @@ pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &P
     let mut chart = chart(&below, &axes)?;
     shade(scene, &mut chart, &axes.y, columns)?;
     let num_points: usize = scene.stretches.iter().map(|stretch| stretch.regime.len()).sum();
-    let as_points = num_points <= MOST_POINTS[usize::from(paper.is_narrow())];
+    let as_points = num_points <= MAX_POINTS[usize::from(paper.is_narrow())];
     let column = scene.column(columns);
-    // About one and a half pixels in each direction: anything smaller is invisible.
-    let least = (
+    // About one and a half pixels in each direction; anything smaller is invisible.
+    let min_size = (
         (axes.x.end - axes.x.start) / f64::from(columns) * 1.5,
         (axes.y.end - axes.y.start) / 120.0,
     );
@@ -44,7 +45,7 @@ pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &P
                 let size = if paper.is_narrow() { 2 } else { 3 };
                 chart.draw_series(raw.iter().map(|at| Circle::new(*at, size, color.mix(0.35).filled())))?;
             } else {
-                let outline = thinning::outline(&raw, &column, least);
+                let outline = thinning::outline(&raw, &column, min_size);
                 chart.draw_series([Polygon::new(outline, color.mix(0.3).filled())])?;
             }
         }

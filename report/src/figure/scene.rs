@@ -1,4 +1,5 @@
-//! A lifetime prepared for figures: stretches of rows with positions on the horizontal axis, and tasks with their looks.
+//! A lifetime prepared for figures: one stretch of rows per regime, with positions on the horizontal axis, and tasks with their
+//! display names.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
@@ -11,10 +12,10 @@ use super::paper::{Entry, Sample};
 use crate::words::shown;
 use crate::{ReportError, extent};
 
-/// Maximum number of tasks with curves, because more cannot be told apart.
-pub(super) const MOST_TASKS: usize = 28;
-/// With more stretches than this, they are thinned out: each is a line of its own.
-const MOST_STRETCHES: usize = 1200;
+/// Maximum number of tasks with curves; more could not be told apart.
+pub(super) const MAX_TASKS: usize = 28;
+/// Maximum number of stretches drawn, each as a line of its own; if there are more, they are thinned out.
+const MAX_STRETCHES: usize = 1200;
 
 /// A lifetime, ready to be drawn.
 pub(super) struct Scene<'a> {
@@ -28,7 +29,7 @@ pub(super) struct Scene<'a> {
     pub(super) span: Range<f64>,
 }
 
-/// One regime.
+/// The rows of one regime.
 pub(super) struct Stretch<'a> {
     pub(super) regime: &'a Regime,
     pub(super) task: usize,
@@ -67,12 +68,12 @@ impl<'a> Scene<'a> {
         column: &'a str,
         options: &'a FigureOptions,
     ) -> Result<Self, ReportError> {
-        let places: BTreeMap<&str, usize> = lifetime.tasks().iter().map(String::as_str).zip(0..).collect();
+        let task_indices: BTreeMap<&str, usize> = lifetime.tasks().iter().map(String::as_str).zip(0..).collect();
         let mut stretches = Vec::with_capacity(lifetime.regimes().len());
         for regime in lifetime.regimes() {
             stretches.push(Stretch {
                 regime,
-                task: places.get(regime.task_name.as_str()).copied().unwrap_or(0),
+                task: task_indices.get(regime.task_name.as_str()).copied().unwrap_or(0),
                 xs: positions(lifetime, regime, options.unit)?,
             });
         }
@@ -119,8 +120,8 @@ impl<'a> Scene<'a> {
 
     /// Legend entries: the drawn tasks, the number of others, and the shade of evaluations if there are any.
     pub(super) fn entries(&self) -> Vec<Entry> {
-        let mut entries: Vec<Entry> = self.names.iter().take(MOST_TASKS).enumerate().map(task_entry).collect();
-        entries.extend(Entry::rest(self.names.len(), MOST_TASKS, ""));
+        let mut entries: Vec<Entry> = self.names.iter().take(MAX_TASKS).enumerate().map(task_entry).collect();
+        entries.extend(Entry::rest(self.names.len(), MAX_TASKS, ""));
         if self.stretches.iter().any(|stretch| !stretch.learns()) {
             entries.push(Entry::new("evaluation", Sample::Area(SHADE.light)));
         }
@@ -133,19 +134,19 @@ impl<'a> Scene<'a> {
         move |x| ((x - self.span.start) * per_x).floor() as i64
     }
 
-    /// The stretches of a kind, for the drawn tasks; if there are too many, those that the pixels can show.
+    /// The learning or evaluation stretches of the drawn tasks. If there are too many, at most one per task and pixel column.
     pub(super) fn drawn(&self, learning: bool, columns: i32) -> Vec<&Stretch<'a>> {
-        let all = || {
+        let matching = || {
             self.stretches
                 .iter()
-                .filter(move |stretch| stretch.learns() == learning && stretch.task < MOST_TASKS)
+                .filter(move |stretch| stretch.learns() == learning && stretch.task < MAX_TASKS)
         };
-        let mut kept: Vec<&Stretch> = all().collect();
+        let mut kept: Vec<&Stretch> = matching().collect();
         let mut columns = columns;
-        while kept.len() > MOST_STRETCHES && columns > 1 {
+        while kept.len() > MAX_STRETCHES && columns > 1 {
             let column = self.column(columns);
             let mut seen = BTreeSet::new();
-            kept = all()
+            kept = matching()
                 .filter(|stretch| seen.insert((stretch.task, column(stretch.range().start))))
                 .collect();
             columns /= 2;
@@ -153,7 +154,7 @@ impl<'a> Scene<'a> {
         kept
     }
 
-    /// Width of a column on the horizontal axis, at least 0.5, so that adjacent blocks are joined.
+    /// Width of a column in units of the horizontal axis: at least 0.5, so that adjacent blocks are joined.
     pub(super) fn gap(&self, columns: i32) -> f64 {
         ((self.span.end - self.span.start) / f64::from(columns)).max(0.5)
     }
@@ -164,7 +165,7 @@ pub(super) fn task_entry((task, name): (usize, &String)) -> Entry {
     Entry::new(name, Sample::Task(Look::of(task)))
 }
 
-/// The ranges of ordered stretches, joining those within the gap.
+/// The ranges of ordered stretches; ranges at most `gap` apart are joined.
 pub(super) fn joined<'a, 'b: 'a>(stretches: impl Iterator<Item = &'a Stretch<'b>>, gap: f64) -> Vec<Range<f64>> {
     let mut ranges: Vec<Range<f64>> = Vec::new();
     for range in stretches.map(Stretch::range) {
@@ -190,7 +191,7 @@ fn positions(lifetime: &Lifetime, regime: &Regime, unit: Unit) -> Result<Vec<f64
 pub(super) fn roomy(values: impl Iterator<Item = f64>) -> Range<f64> {
     let (low, high) = extent(values);
     match high - low {
-        room if room > 0.0 => low - room * 0.04..high + room * 0.04,
+        span if span > 0.0 => low - span * 0.04..high + span * 0.04,
         0.0 => low - low.abs().max(1.0) * 0.5..high + high.abs().max(1.0) * 0.5,
         _ => 0.0..1.0,
     }

@@ -1,4 +1,4 @@
-//! The values of a metric as one mark per task on a line, with the lifetime's value and the value of no effect.
+//! Draws a metric as one mark per task on a line, with the lifetime's value and the value of no effect.
 
 use plotters::prelude::*;
 
@@ -9,20 +9,21 @@ use crate::{ReportError, extent};
 
 const SIZE: (i32, i32) = (220, 30);
 /// Maximum number of marks; more are thinned out evenly.
-const MOST_MARKS: usize = 60;
+const MAX_MARKS: usize = 60;
 
-/// Indices of the marks to draw: all, or an even selection that includes the first and the last.
-fn drawn(marks: usize) -> impl Iterator<Item = usize> {
-    let kept = marks.min(MOST_MARKS);
+/// Indices of the marks to draw: all of them, or an even selection that includes the first and the last.
+fn drawn_indices(marks: usize) -> impl Iterator<Item = usize> {
+    let kept = marks.min(MAX_MARKS);
     (0..kept).map(move |index| index * marks.saturating_sub(1) / kept.saturating_sub(1).max(1))
 }
 
 /// The number of marks drawn, if not all are.
 pub(crate) fn thinned_count(marks: usize) -> Option<String> {
-    (marks > MOST_MARKS).then(|| format!("{MOST_MARKS} of {marks}"))
+    (marks > MAX_MARKS).then(|| format!("{MAX_MARKS} of {marks}"))
 }
 
-/// Marks for `tasks` (index in the lifetime's list, value), a stroke for the lifetime's value, a dashed one for no effect.
+/// Draws a mark for each of `tasks` (index in the lifetime's list, value), a stroke for the lifetime's value, and a dashed one for
+/// no effect.
 pub(crate) fn strip(tasks: &[(usize, f64)], value: Option<f64>, neutral: Option<f64>) -> Result<String, ReportError> {
     let all = || tasks.iter().map(|task| task.1).chain(value).chain(neutral);
     let (low, high) = extent(all());
@@ -44,21 +45,21 @@ pub(crate) fn strip(tasks: &[(usize, f64)], value: Option<f64>, neutral: Option<
                 line(area, [(at, y), (at, y + d(3))], FAINT.light.stroke_width(2))?;
             }
         }
-        let mut placed: Vec<(i32, i32)> = Vec::new();
-        for (task, value) in drawn(tasks.len()).map(|index| &tasks[index]) {
+        let mut occupied: Vec<(i32, i32)> = Vec::new();
+        for (task, value) in drawn_indices(tasks.len()).map(|index| &tasks[index]) {
             let at = (x(*value), middle);
-            let free = |place: &(i32, i32)| {
-                placed
+            let free = |position: &(i32, i32)| {
+                occupied
                     .iter()
-                    .all(|other| other.1 != place.1 || (other.0 - place.0).abs() >= d(9))
+                    .all(|other| other.1 != position.1 || (other.0 - position.0).abs() >= d(9))
             };
             // Equal values are drawn above and below each other, so that none is hidden.
-            let place = [0, -d(9), d(9)]
-                .map(|aside| (at.0, at.1 + aside))
+            let position = [0, -d(9), d(9)]
+                .map(|offset| (at.0, at.1 + offset))
                 .into_iter()
                 .find(free);
-            placed.push(place.unwrap_or(at));
-            draw_mark(area, Look::of(*task), place.unwrap_or(at), d(4))?;
+            occupied.push(position.unwrap_or(at));
+            draw_mark(area, Look::of(*task), position.unwrap_or(at), d(4))?;
         }
         if let Some(value) = value {
             let at = x(value);
@@ -75,14 +76,16 @@ mod tests {
     #[test]
     fn marks_are_thinned_out_evenly_and_counted() {
         let check = |marks: usize, expected: Option<&str>| {
-            let places: Vec<usize> = drawn(marks).collect();
-            assert_eq!(places.len(), marks.min(MOST_MARKS));
-            assert_eq!(places.first().copied(), (marks > 0).then_some(0));
-            assert_eq!(places.last().copied(), marks.checked_sub(1));
-            let steps: Vec<usize> = places.windows(2).map(|pair| pair[1] - pair[0]).collect();
-            let (most, least) = (steps.iter().max(), steps.iter().min());
+            let indices: Vec<usize> = drawn_indices(marks).collect();
+            assert_eq!(indices.len(), marks.min(MAX_MARKS));
+            assert_eq!(indices.first().copied(), (marks > 0).then_some(0));
+            assert_eq!(indices.last().copied(), marks.checked_sub(1));
+            let steps: Vec<usize> = indices.windows(2).map(|pair| pair[1] - pair[0]).collect();
+            let (longest, shortest) = (steps.iter().max(), steps.iter().min());
             assert!(
-                most.zip(least).is_none_or(|(most, least)| most - least <= 1),
+                longest
+                    .zip(shortest)
+                    .is_none_or(|(longest, shortest)| longest - shortest <= 1),
                 "{steps:?}"
             );
             assert_eq!(thinned_count(marks).as_deref(), expected);

@@ -2,9 +2,9 @@
 
 use crate::extent;
 
-/// The first, lowest, highest and last point of each column, in order: a line through them looks like the whole line.
+/// The first, lowest, highest and last point of each column, in order. A line through them looks like the original line.
 pub(super) fn line(points: &[(f64, f64)], column: impl Fn(f64) -> i64) -> Vec<(f64, f64)> {
-    let mut thin = Vec::new();
+    let mut thinned = Vec::new();
     for group in points.chunk_by(|a, b| column(a.0) == column(b.0)) {
         let by_height = |a: &usize, b: &usize| group[*a].1.total_cmp(&group[*b].1).then(a.cmp(b));
         let ends = [0, group.len() - 1];
@@ -12,9 +12,9 @@ pub(super) fn line(points: &[(f64, f64)], column: impl Fn(f64) -> i64) -> Vec<(f
         let mut kept: Vec<usize> = ends.into_iter().chain(heights.into_iter().flatten()).collect();
         kept.sort_unstable();
         kept.dedup();
-        thin.extend(kept.into_iter().map(|index| group[index]));
+        thinned.extend(kept.into_iter().map(|index| group[index]));
     }
-    thin
+    thinned
 }
 
 /// The outline of a point cloud: along the highest point of each column, and back along the lowest. It is at least `least` high
@@ -22,20 +22,20 @@ pub(super) fn line(points: &[(f64, f64)], column: impl Fn(f64) -> i64) -> Vec<(f
 pub(super) fn outline(
     points: &[(f64, f64)],
     column: impl Fn(f64) -> i64,
-    (least_width, least_height): (f64, f64),
+    (min_width, min_height): (f64, f64),
 ) -> Vec<(f64, f64)> {
     let mut upper = Vec::new();
     let mut lower = Vec::new();
     for group in points.chunk_by(|a, b| column(a.0) == column(b.0)) {
         let (low, high) = extent(group.iter().map(|point| point.1));
-        let more = ((least_height - (high - low)) / 2.0).max(0.0);
-        upper.push((group[0].0, high + more));
-        lower.push((group[0].0, low - more));
+        let padding = ((min_height - (high - low)) / 2.0).max(0.0);
+        upper.push((group[0].0, high + padding));
+        lower.push((group[0].0, low - padding));
     }
     if let ([(first, _), ..], [.., (last, high)], [.., (_, low)]) = (points, &upper[..], &lower[..])
-        && last - first < least_width
+        && last - first < min_width
     {
-        let (end, high, low) = (first + least_width, *high, *low);
+        let (end, high, low) = (first + min_width, *high, *low);
         upper.push((end, high));
         lower.push((end, low));
     }
@@ -82,9 +82,12 @@ mod tests {
         let points: Vec<(f64, f64)> = (0..1_000_000)
             .map(|x| (f64::from(x), f64::from(x % 1009 * 7 % 1000)))
             .collect();
-        let thin = line(&points, |x| (x / 10_000.0) as i64);
-        assert!(thin.len() <= 400, "{}", thin.len());
-        assert!(thin.windows(2).all(|pair| pair[0].0 < pair[1].0), "their order is kept");
+        let thinned = line(&points, |x| (x / 10_000.0) as i64);
+        assert!(thinned.len() <= 400, "{}", thinned.len());
+        assert!(
+            thinned.windows(2).all(|pair| pair[0].0 < pair[1].0),
+            "points stay in order"
+        );
         assert_eq!(outline(&points, |x| (x / 10_000.0) as i64, (1.0, 1.0)).len(), 200);
     }
 }

@@ -1,4 +1,4 @@
-//! The lifetime's blocks, a row per task, with the distances between neighbouring learning blocks above.
+//! The timeline: the lifetime's blocks, one row per task, with the distances between neighbouring learning blocks above.
 
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
@@ -7,8 +7,8 @@ use super::palette::{FAINT, FROZEN, INK, Look, RIM, TASKS};
 use super::paper::{Area, Drawn, Entry, Paper, Sample, draw_mark, line, number, text_width};
 use super::scene::{Scene, Stretch};
 
-/// Maximum number of rows; further rows are left out.
-const MOST_ROWS: usize = super::scene::MOST_TASKS;
+/// Maximum number of rows; further tasks are left out.
+const MAX_ROWS: usize = super::scene::MAX_TASKS;
 /// Heights, in pixels of the layout: the strip of distances, a learning bar, the axis.
 const STRIP: i32 = 76;
 const BAR: i32 = 18;
@@ -25,7 +25,7 @@ struct Plan {
 
 impl Plan {
     fn of(scene: &Scene, paper: &Paper) -> Self {
-        let rows = scene.names.len().min(MOST_ROWS);
+        let rows = scene.names.len().min(MAX_ROWS);
         let longest = scene
             .names
             .iter()
@@ -37,7 +37,7 @@ impl Plan {
             left: if paper.is_narrow() { 12 } else { (longest + 32).min(300) },
             right: paper.width() - 16,
             strip: if scene.options.distances.is_some() { STRIP } else { 0 },
-            // Narrow paper has no room beside the bars, so names are above them.
+            // Narrow paper has no room beside the bars, so names go above them.
             row: if paper.is_narrow() { 42 } else { 30 },
             rows,
         }
@@ -52,7 +52,7 @@ impl Plan {
         self.strip + row as i32 * self.row + above
     }
 
-    /// A line from side to side, in dots.
+    /// The ends of a line across the chart, in dots.
     fn across(&self, y: i32) -> [(i32, i32); 2] {
         [self.left, self.right].map(|x| (Paper::dots(x), y))
     }
@@ -67,7 +67,7 @@ fn entries(scene: &Scene) -> Vec<Entry> {
         Entry::new("learning, in the task's colour", Sample::Area(TASKS[0].light)),
         Entry::new("evaluation, frozen", Sample::Line(FROZEN.light)),
     ];
-    entries.extend(Entry::rest(scene.names.len(), MOST_ROWS, " tasks"));
+    entries.extend(Entry::rest(scene.names.len(), MAX_ROWS, " tasks"));
     entries
 }
 
@@ -103,7 +103,7 @@ pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &P
     draw_distances(&below, scene, &plan, &x)
 }
 
-/// A task's name with its mark, beside or above its row.
+/// Draws a task's name with its mark, beside or above its row.
 fn name_row<DB: DrawingBackend>(area: &Area<DB>, plan: &Plan, paper: &Paper, row: usize, name: &str) -> Drawn<DB> {
     let d = Paper::dots;
     let (mark, x, side, above) = if paper.is_narrow() {
@@ -127,8 +127,8 @@ fn axis<DB: DrawingBackend>(
     let y = d(plan.bottom());
     line(area, plan.across(y), FAINT.light.stroke_width(2))?;
     let marks = plotters::coord::types::RangedCoordf64::from(scene.span.clone());
-    let most = if paper.is_narrow() { 5 } else { 10 };
-    for value in plotters::coord::ranged1d::Ranged::key_points(&marks, most) {
+    let max_marks = if paper.is_narrow() { 5 } else { 10 };
+    for value in plotters::coord::ranged1d::Ranged::key_points(&marks, max_marks) {
         let at = x(value);
         line(area, [(at, y), (at, y + d(4))], FAINT.light.stroke_width(2))?;
         let style = Paper::words(11, FAINT.light, HPos::Center, VPos::Top);
@@ -142,7 +142,7 @@ fn axis<DB: DrawingBackend>(
     )
 }
 
-/// A stem at each change between learning blocks, as high as their distance, with the number if it fits.
+/// Draws a stem at each change between learning blocks, as high as their distance, with the number if it fits.
 fn draw_distances<DB: DrawingBackend>(
     area: &Area<DB>,
     scene: &Scene,

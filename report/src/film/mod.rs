@@ -12,9 +12,9 @@ use crate::picture::Picture;
 /// The kinds of films.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FilmKind {
-    /// At most 256 colours in the changes from one image to the next; times in hundredths of a second. Works everywhere.
+    /// At most 255 colours in the changes from one image to the next; times in hundredths of a second. Works everywhere.
     Gif,
-    /// Animated PNG: exact colours, times in milliseconds. Works in browsers; larger.
+    /// Animated PNG: exact colours, times in milliseconds. Works in browsers; files are larger.
     Apng,
 }
 
@@ -111,7 +111,7 @@ impl<W: Write> Film<W> {
     }
 }
 
-/// Refuses an image whose size differs from the film's.
+/// Returns an error for an image whose size differs from the film's.
 fn expect_size(picture: &Picture, [width, height]: [u32; 2]) -> Result<(), ReportError> {
     let pixels = width as usize * height as usize;
     if [picture.width, picture.height] == [width, height] && picture.rgb.len() == 3 * pixels {
@@ -123,12 +123,13 @@ fn expect_size(picture: &Picture, [width, height]: [u32; 2]) -> Result<(), Repor
     })
 }
 
-/// Display times in whole units, without accumulating rounding errors.
+/// Converts display times to whole units without accumulating rounding errors.
 #[derive(Debug)]
 struct Delays {
     units_per_second: f64,
-    /// Total seconds, and units used so far.
+    /// Total seconds so far.
     seconds: f64,
+    /// Total units so far.
     units: u64,
 }
 
@@ -141,7 +142,7 @@ impl Delays {
         }
     }
 
-    /// The units of the next image.
+    /// The display time of the next image, in units.
     fn next(&mut self, seconds: f64) -> u16 {
         self.seconds += seconds.max(0.0);
         let units = (self.seconds * self.units_per_second).round() as u64;
@@ -158,7 +159,7 @@ mod tests {
 
     const SIZE: [u32; 2] = [12, 9];
 
-    /// Images that each change some pixels of the one before, with display times.
+    /// Images that each change some pixels of the previous one, with display times.
     fn film() -> impl Strategy<Value = Vec<(Picture, f64)>> {
         let pixels = (SIZE[0] * SIZE[1]) as usize;
         let change = (0..pixels, 1..pixels, prop::array::uniform3(any::<u8>()), 1u8..9);
@@ -181,7 +182,7 @@ mod tests {
         })
     }
 
-    fn written(kind: FilmKind, pictures: &[(Picture, f64)]) -> Vec<u8> {
+    fn encoded(kind: FilmKind, pictures: &[(Picture, f64)]) -> Vec<u8> {
         let mut bytes = Vec::new();
         let mut film = Film::new(kind, &mut bytes, SIZE, pictures.len() as u32).unwrap();
         for (picture, seconds) in pictures {
@@ -202,10 +203,10 @@ mod tests {
         let mut seen = Vec::new();
         while let Some(frame) = decoder.read_next_frame().unwrap() {
             let across = usize::from(frame.width);
-            for (place, pixel) in frame.buffer.chunks_exact(4).enumerate() {
+            for (index, pixel) in frame.buffer.chunks_exact(4).enumerate() {
                 let (x, y) = (
-                    usize::from(frame.left) + place % across,
-                    usize::from(frame.top) + place / across,
+                    usize::from(frame.left) + index % across,
+                    usize::from(frame.top) + index / across,
                 );
                 if pixel[3] != 0 {
                     canvas[3 * (y * width + x)..][..3].copy_from_slice(&pixel[..3]);
@@ -216,7 +217,7 @@ mod tests {
         seen
     }
 
-    /// The same for an animated PNG, in milliseconds.
+    /// Like `seen_in_gif`, for an animated PNG, with milliseconds.
     fn seen_in_apng(bytes: &[u8]) -> Vec<(Vec<u8>, u16)> {
         let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().unwrap();
         let frames = reader
@@ -243,20 +244,20 @@ mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig { cases: crate::tier::quick_or_full(24, 48), ..ProptestConfig::default() })]
-        /// The number of images is unchanged, and no cumulative time is off by more than half a unit.
+        /// The number of images and their pixels are unchanged, and no cumulative time is off by more than half a unit.
         #[test]
         fn films_show_the_images_that_were_added(pictures in film()) {
             for kind in [FilmKind::Gif, FilmKind::Apng] {
-                let bytes = written(kind, &pictures);
+                let bytes = encoded(kind, &pictures);
                 let (seen, unit) = match kind {
                     FilmKind::Gif => (seen_in_gif(&bytes), 0.01),
                     FilmKind::Apng => (seen_in_apng(&bytes), 0.001),
                 };
                 prop_assert_eq!(seen.len(), pictures.len());
                 let (mut shown, mut wanted) = (0.0, 0.0);
-                for (place, ((rgb, delay), (picture, seconds))) in seen.iter().zip(&pictures).enumerate() {
-                    // So few pixels have no more colours than a palette.
-                    prop_assert_eq!(error(rgb, &picture.rgb), 0, "{:?}, picture {}", kind, place);
+                for (index, ((rgb, delay), (picture, seconds))) in seen.iter().zip(&pictures).enumerate() {
+                    // These images are so small that the palette has room for every colour.
+                    prop_assert_eq!(error(rgb, &picture.rgb), 0, "{:?}, picture {}", kind, index);
                     shown += f64::from(*delay) * unit;
                     wanted += seconds;
                     if seen.len() > 1 {
@@ -281,7 +282,7 @@ mod tests {
                 .collect(),
         };
         let pictures = [picture(0), picture(9)];
-        for (kind, most) in [(FilmKind::Gif, 24), (FilmKind::Apng, 0)] {
+        for (kind, tolerance) in [(FilmKind::Gif, 24), (FilmKind::Apng, 0)] {
             let mut bytes = Vec::new();
             let mut film = Film::new(kind, &mut bytes, [width, height], 2).unwrap();
             for picture in &pictures {
@@ -294,7 +295,7 @@ mod tests {
             };
             for ((rgb, _), picture) in seen.iter().zip(&pictures) {
                 let found = error(rgb, &picture.rgb);
-                assert!(found <= most, "{kind:?}: a channel is off by {found}");
+                assert!(found <= tolerance, "{kind:?}: a channel is off by {found}");
             }
         }
     }

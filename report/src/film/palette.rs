@@ -8,7 +8,7 @@
 pub(super) struct Palette {
     colors: Vec<[u8; 3]>,
     /// Every colour with its palette index, sorted.
-    places: Vec<([u8; 3], u8)>,
+    indices: Vec<([u8; 3], u8)>,
 }
 
 /// A range of a list of colours, which one palette colour will represent.
@@ -16,18 +16,20 @@ pub(super) struct Palette {
 struct Cell {
     start: usize,
     end: usize,
-    /// The channel with the largest variation, where it is cut, and its sum of squared differences from the mean.
+    /// The channel with the largest variation.
     channel: usize,
+    /// The channel's mean, at which the cell is cut.
     mean: f64,
+    /// The channel's sum of squared differences from the mean.
     error: f64,
 }
 
-/// A colour, and its number of pixels.
+/// A colour and its number of pixels.
 type Counted = ([u8; 3], u32);
 
 impl Palette {
-    /// At most `most` colours, 1 to 256, for these pixels; the exact colours if there are no more.
-    pub(super) fn new(pixels: impl Iterator<Item = [u8; 3]>, most: usize) -> Self {
+    /// Chooses at most `limit` colours, 1 to 256, for these pixels: their exact colours if these are few enough.
+    pub(super) fn new(pixels: impl Iterator<Item = [u8; 3]>, limit: usize) -> Self {
         let mut sorted: Vec<[u8; 3]> = pixels.collect();
         sorted.sort_unstable();
         let mut counted: Vec<Counted> = Vec::new();
@@ -41,7 +43,7 @@ impl Palette {
             return Self::default();
         }
         let mut cells = vec![Cell::of(&counted, 0, counted.len())];
-        while cells.len() < most {
+        while cells.len() < limit {
             let worst = (0..cells.len()).max_by(|a, b| cells[*a].error.total_cmp(&cells[*b].error));
             // There is at least one cell.
             let Some(worst) = worst.filter(|worst| cells[*worst].error > 0.0) else {
@@ -54,41 +56,41 @@ impl Palette {
                 mean,
                 ..
             } = cells[worst];
-            let within = &mut counted[start..end];
-            within.sort_by_key(|(color, _)| (color[channel], *color));
+            let colors_in_cell = &mut counted[start..end];
+            colors_in_cell.sort_by_key(|(color, _)| (color[channel], *color));
             // The colours differ, so some lie above the mean and some below.
-            let middle = start + within.partition_point(|(color, _)| f64::from(color[channel]) <= mean);
+            let middle = start + colors_in_cell.partition_point(|(color, _)| f64::from(color[channel]) <= mean);
             cells[worst] = Cell::of(&counted, start, middle);
             cells.push(Cell::of(&counted, middle, end));
         }
         let colors: Vec<[u8; 3]> = cells.iter().map(|cell| mean(&counted[cell.start..cell.end])).collect();
-        let mut places: Vec<([u8; 3], u8)> = (0..=u8::MAX)
+        let mut indices: Vec<([u8; 3], u8)> = (0..=u8::MAX)
             .zip(&cells)
-            .flat_map(|(place, cell)| {
+            .flat_map(|(index, cell)| {
                 counted[cell.start..cell.end]
                     .iter()
-                    .map(move |(color, _)| (*color, place))
+                    .map(move |(color, _)| (*color, index))
             })
             .collect();
-        places.sort_unstable();
-        Self { colors, places }
+        indices.sort_unstable();
+        Self { colors, indices }
     }
 
     pub(super) fn colors(&self) -> &[[u8; 3]] {
         &self.colors
     }
 
-    /// The palette index for one of the colours that the palette was made for.
-    pub(super) fn place(&self, color: [u8; 3]) -> u8 {
-        let found = self.places.binary_search_by_key(&color, |(known, _)| *known);
-        found.map_or(0, |place| self.places[place].1)
+    /// The palette index of one of the original colours.
+    pub(super) fn index_of(&self, color: [u8; 3]) -> u8 {
+        let found = self.indices.binary_search_by_key(&color, |(known, _)| *known);
+        found.map_or(0, |index| self.indices[index].1)
     }
 }
 
 impl Cell {
     fn of(counted: &[Counted], start: usize, end: usize) -> Self {
-        let within = &counted[start..end];
-        let weight: f64 = within.iter().map(|(_, count)| f64::from(*count)).sum();
+        let colors_in_cell = &counted[start..end];
+        let weight: f64 = colors_in_cell.iter().map(|(_, count)| f64::from(*count)).sum();
         let mut cell = Self {
             start,
             end,
@@ -99,12 +101,18 @@ impl Cell {
         for channel in 0..3 {
             let moment = |power: i32| -> f64 {
                 let value = |(color, count): &Counted| f64::from(*count) * f64::from(color[channel]).powi(power);
-                within.iter().map(value).sum()
+                colors_in_cell.iter().map(value).sum()
             };
             let mean = moment(1) / weight;
             // If all values are equal, rounding may still leave a small remainder.
-            let is_one = within.iter().all(|(color, _)| color[channel] == within[0].0[channel]);
-            let error = if is_one { 0.0 } else { moment(2) - mean * mean * weight };
+            let is_constant = colors_in_cell
+                .iter()
+                .all(|(color, _)| color[channel] == colors_in_cell[0].0[channel]);
+            let error = if is_constant {
+                0.0
+            } else {
+                moment(2) - mean * mean * weight
+            };
             if error > cell.error {
                 (cell.channel, cell.mean, cell.error) = (channel, mean, error);
             }
@@ -113,10 +121,10 @@ impl Cell {
     }
 }
 
-fn mean(within: &[Counted]) -> [u8; 3] {
-    let weight: f64 = within.iter().map(|(_, count)| f64::from(*count)).sum();
+fn mean(colors_in_cell: &[Counted]) -> [u8; 3] {
+    let weight: f64 = colors_in_cell.iter().map(|(_, count)| f64::from(*count)).sum();
     [0, 1, 2].map(|channel| {
-        let sum: f64 = within
+        let sum: f64 = colors_in_cell
             .iter()
             .map(|(color, count)| f64::from(*count) * f64::from(color[channel]))
             .sum();
@@ -132,30 +140,30 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
 
-        /// There are no more colours than wanted; they are exact if that is enough; and in total, colours are closer to their
-        /// palette colours than to the overall mean.
+        /// There are no more colours than the limit; they are exact if the limit allows; and in total, colours are closer to
+        /// their palette colours than to the overall mean.
         #[test]
         fn few_colors_represent_many(
             pixels in prop::collection::vec(prop::array::uniform3(any::<u8>()), 0..300),
-            most in 1usize..256,
+            limit in 1usize..256,
         ) {
-            let palette = Palette::new(pixels.iter().copied(), most);
+            let palette = Palette::new(pixels.iter().copied(), limit);
             let mut distinct = pixels.clone();
             distinct.sort_unstable();
             distinct.dedup();
-            prop_assert!(palette.colors().len() <= most);
-            let shown = |color: [u8; 3]| palette.colors()[usize::from(palette.place(color))];
-            if distinct.len() <= most {
+            prop_assert!(palette.colors().len() <= limit);
+            let shown = |color: [u8; 3]| palette.colors()[usize::from(palette.index_of(color))];
+            if distinct.len() <= limit {
                 for color in distinct {
                     prop_assert_eq!(shown(color), color);
                 }
             } else {
-                let all = Palette::new(pixels.iter().copied(), 1);
-                let far = |a: [u8; 3], b: [u8; 3]| (0..3).map(|k| f64::from(a[k].abs_diff(b[k])).powi(2)).sum::<f64>();
-                let own: f64 = pixels.iter().map(|color| far(*color, shown(*color))).sum();
-                let one: f64 = pixels.iter().map(|color| far(*color, all.colors()[0])).sum();
+                let one_color = Palette::new(pixels.iter().copied(), 1);
+                let squared_distance = |a: [u8; 3], b: [u8; 3]| (0..3).map(|k| f64::from(a[k].abs_diff(b[k])).powi(2)).sum::<f64>();
+                let error: f64 = pixels.iter().map(|color| squared_distance(*color, shown(*color))).sum();
+                let error_of_one: f64 = pixels.iter().map(|color| squared_distance(*color, one_color.colors()[0])).sum();
                 // Rounding means to whole numbers costs at most a quarter in each channel.
-                prop_assert!(own <= one + 0.75 * pixels.len() as f64, "{} > {}", own, one);
+                prop_assert!(error <= error_of_one + 0.75 * pixels.len() as f64, "{} > {}", error, error_of_one);
             }
         }
     }

@@ -1,4 +1,4 @@
-//! One lifetime on the page: facts, metrics, the curriculum, its figures, its tasks.
+//! One lifetime on the page: the facts, metrics, curriculum, figures and tasks.
 
 use base64::prelude::{BASE64_STANDARD, Engine as _};
 use driftworld_metrics::{BlockSubtype, BlockType, Lifetime, LifetimeMetrics};
@@ -25,13 +25,13 @@ pub struct ChapterOptions {
     pub figures: FigureOptions,
     /// The figures on the page; default all.
     pub shown: Vec<Figure>,
-    /// Whether learning was smoothed before scoring; default yes.
+    /// Whether learning was smoothed before scoring; default `true`.
     pub smoothed: bool,
     /// Further entries of the log, by name: agent, scenario, policy.
     pub facts: Vec<(String, String)>,
-    /// Pictures of worlds in which it learned, or a sentence that says why there are none.
+    /// Pictures of worlds in which the agent learned, or a sentence that explains why there are none.
     pub worlds: Result<Vec<SheetRow>, String>,
-    /// Links for playing worlds in which it failed: text and address of each.
+    /// Links for playing worlds in which the agent failed: text and address of each.
     pub failed: Vec<(String, String)>,
     /// Warnings, such as those of the log's reader.
     pub warnings: Vec<String>,
@@ -58,7 +58,7 @@ impl Chapter {
     /// Renders a lifetime with its metrics.
     ///
     /// # Errors
-    /// Those of [`Figures::of`], and [`ReportError::Drawing`].
+    /// Those of [`Figures::of`], and [`ReportError::Drawing`] if the plotting library fails.
     pub fn write(
         lifetime: &Lifetime,
         metrics: &LifetimeMetrics,
@@ -66,37 +66,37 @@ impl Chapter {
     ) -> Result<Self, ReportError> {
         let figures = Figures::of(lifetime, &metrics.metrics_column, &options.figures)?;
         let table = metric_table::table(lifetime, metrics)?;
-        let figure = |which: Figure, title: &str, says: &str| -> Result<Markup, ReportError> {
-            if !options.shown.contains(&which) {
+        let figure = |figure_kind: Figure, title: &str, caption: &str| -> Result<Markup, ReportError> {
+            if !options.shown.contains(&figure_kind) {
                 return Ok(Markup::default());
             }
-            if !figures.has(which) {
-                return Ok(html! { h3 { (title) } p.note { (absent(which)) } });
+            if !figures.has(figure_kind) {
+                return Ok(html! { h3 { (title) } p.note { (missing_reason(figure_kind)) } });
             }
             let alt = format!(
                 "{title} of {}: {}",
                 shown(lifetime.run_id()),
-                alternative(lifetime, which)
+                alternative(lifetime, figure_kind)
             );
-            let wide = described(&figures.inline(which, Layout::Wide)?, Some("wide"), &alt);
-            let narrow = described(&figures.inline(which, Layout::Narrow)?, Some("narrow"), &alt);
+            let wide = described(&figures.inline(figure_kind, Layout::Wide)?, Some("wide"), &alt);
+            let narrow = described(&figures.inline(figure_kind, Layout::Narrow)?, Some("narrow"), &alt);
             Ok(html! {
                 h3 { (title) }
-                figure { (wide) (narrow) figcaption { (says) } }
+                figure { (wide) (narrow) figcaption { (caption) } }
             })
         };
-        let asleep_blocks = asleep_blocks(lifetime);
+        let sleep_note = sleep_note(lifetime);
         let blocks = format!(
-            "Each block of the lifetime from left to right.{asleep_blocks} {}",
+            "Each block of the lifetime from left to right.{sleep_note} {}",
             super::calm(&options.distance_note)
         );
         let lines = when(options.figures.show_eval_lines, || ", joined by lines".to_owned());
-        let lines_are = if options.smoothed {
+        let line_note = if options.smoothed {
             "after smoothing"
         } else {
             "as logged, joined"
         };
-        let asleep = when(!asleep_blocks.is_empty(), || {
+        let asleep = when(!sleep_note.is_empty(), || {
             " This lifetime has sleep phases: evaluations while awake are drawn, but do not count for maintenance, \
              transfer and evaluation performance."
                 .to_owned()
@@ -130,7 +130,7 @@ impl Chapter {
                  same amount of learning.")?)
             (figure(Figure::Raw, "Raw values",
                 &format!("As logged: points where there is room, the area they fill where there is none. Lines: \
-                     learning {lines_are}."))?)
+                     learning {line_note}."))?)
             h3 { "Tasks" }
             (task_table::table(lifetime, metrics, &options.figures.names))
         };
@@ -166,7 +166,7 @@ fn worlds(rows: &Result<Vec<SheetRow>, String>) -> Result<Markup, ReportError> {
     })
 }
 
-/// Links to worlds in which it failed.
+/// Links to worlds in which the agent failed.
 fn failed(links: &[(String, String)]) -> Markup {
     html! {
         @if !links.is_empty() {
@@ -181,7 +181,7 @@ fn failed(links: &[(String, String)]) -> Markup {
     }
 }
 
-/// Numbers of blocks of a kind: all, and sleep blocks.
+/// The number of blocks of a kind, and how many of them are sleep blocks.
 fn blocks_of(lifetime: &Lifetime, kind: BlockType) -> (usize, usize) {
     let regimes = lifetime.regimes().iter();
     let of_kind = regimes.filter(|regime| regime.block_type == kind);
@@ -194,7 +194,7 @@ fn blocks_of(lifetime: &Lifetime, kind: BlockType) -> (usize, usize) {
 }
 
 /// A sentence on the number of sleep blocks in the figures, if there are any.
-fn asleep_blocks(lifetime: &Lifetime) -> String {
+fn sleep_note(lifetime: &Lifetime) -> String {
     let [learning, evaluation] = [BlockType::Train, BlockType::Test].map(|kind| blocks_of(lifetime, kind).1);
     when(learning + evaluation > 0, || {
         let (learning, evaluation) = (count(learning), count(evaluation));
@@ -203,7 +203,7 @@ fn asleep_blocks(lifetime: &Lifetime) -> String {
 }
 
 /// The reason why a figure is missing.
-fn absent(figure: Figure) -> &'static str {
+fn missing_reason(figure: Figure) -> &'static str {
     match figure {
         Figure::Experts => "No single-task expert was given for any task learned, so there is nothing to compare with.",
         Figure::Evaluation => "The log has no evaluations.",
@@ -224,13 +224,16 @@ fn alternative(lifetime: &Lifetime, figure: Figure) -> String {
     }
 }
 
-/// The extent of the lifetime, and the basis of its scores.
-fn facts(lifetime: &Lifetime, metrics: &LifetimeMetrics, said: &[(String, String)]) -> Markup {
+/// The size of the lifetime, and the column by which it was scored.
+fn facts(lifetime: &Lifetime, metrics: &LifetimeMetrics, given_facts: &[(String, String)]) -> Markup {
     let blocks = match blocks_of(lifetime, BlockType::Train) {
         (all, 0) => count(all),
         (all, asleep) => format!("{} ({} asleep)", count(all), count(asleep)),
     };
-    let mut facts: Vec<(String, String)> = said.iter().map(|(name, value)| (shown(name), shown(value))).collect();
+    let mut facts: Vec<(String, String)> = given_facts
+        .iter()
+        .map(|(name, value)| (shown(name), shown(value)))
+        .collect();
     // The agent's performance comes first: the metrics, scaled by the lifetime's own range, do not show it.
     for (column, means) in &metrics.as_logged {
         for (mean, when) in [(means.learning, "learning"), (means.evaluation, "evaluations")] {

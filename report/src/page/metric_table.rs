@@ -1,4 +1,4 @@
-//! The table of metrics: each value, its meaning, whether it is good, and its spread over tasks.
+//! The table of metrics: each value, its meaning, its reading, and its spread over tasks.
 
 use std::collections::BTreeMap;
 
@@ -17,14 +17,14 @@ pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics) -> Result<Ma
     let mut reached = metrics.reached.values();
     let has_anchors = reached.any(|task| task.scaled_by == ScaledBy::Anchors);
     let mut rows = Vec::new();
-    let mut absent = Vec::new();
+    let mut missing = Vec::new();
     let summary = metrics.summary();
     let valued = summary.iter().filter(|row| row.value.is_some());
-    let known: Vec<&str> = valued.map(|row| &*row.name).collect();
+    let computed: Vec<&str> = valued.map(|row| &*row.name).collect();
     for row in &summary {
         let name: &str = &row.name;
         let Some(value) = row.value else {
-            absent.push(verdict::title(name));
+            missing.push(verdict::title(name));
             continue;
         };
         let marks = per_task(lifetime, metrics, name);
@@ -40,7 +40,7 @@ pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics) -> Result<Ma
                 td.number { span.value { (number(value)) @if let Some(error) = standard_error(row.null_band) { span.from { "±\u{a0}" (error) } } } }
                 td {
                     @if let Some(reading) = row.reading { (verdict::pill(Verdict::of(reading, name))) }
-                    @if let Some(contrast) = contrast_of(name).filter(|contrast| known.contains(contrast)) {
+                    @if let Some(contrast) = contrast_of(name).filter(|contrast| computed.contains(contrast)) {
                         span.from { "read the " (verdict::title(contrast)) ": a mean of ratios is above 1 even if nothing is transferred" }
                     }
                     span.from { (verdict::good_from(name, row.good)) }
@@ -85,7 +85,7 @@ pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics) -> Result<Ma
         }
         p.note {
             "Coloured marks: each task, for transfer each pair in the colour of the task learned. Vertical line: the lifetime's value. Dashes: no effect."
-            @if !absent.is_empty() { " Not computed: " (absent.join("; ")) "." }
+            @if !missing.is_empty() { " Not computed: " (missing.join("; ")) "." }
         }
     })
 }
@@ -114,7 +114,7 @@ fn standard_error(band: Option<NullBand>) -> Option<String> {
     Some(number(band?.standard_error?))
 }
 
-/// Explains to readers how the words are chosen.
+/// The sentence that explains how the words are chosen.
 fn reading_rule() -> String {
     format!(
         "Words like “helps” need a value outside its null band, with p at most {LARGEST_P}, that differs from no effect by at \
@@ -124,11 +124,11 @@ fn reading_rule() -> String {
     )
 }
 
-/// A metric's values for each task, by the task's index; for pairs, the first value of each, by the learned task's index.
+/// A metric's values, each with the index of its task; for pairs, the first value of each, with the index of the learned task.
 fn per_task(lifetime: &Lifetime, metrics: &LifetimeMetrics, name: &str) -> Vec<(usize, f64)> {
-    let places: BTreeMap<&str, usize> = lifetime.tasks().iter().map(String::as_str).zip(0..).collect();
+    let task_indices: BTreeMap<&str, usize> = lifetime.tasks().iter().map(String::as_str).zip(0..).collect();
     let parts = metrics.parts(name).into_iter();
     parts
-        .filter_map(|part| Some((*places.get(part.task)?, part.value)))
+        .filter_map(|part| Some((*task_indices.get(part.task)?, part.value)))
         .collect()
 }

@@ -47,9 +47,9 @@ pub struct Report {
     pub warnings: Vec<String>,
     /// The command that made the page; default none.
     pub command: Option<String>,
-    /// The options used, as a JSON object, such as `serde_json::to_value(&options)` gives.
+    /// The options used, as a JSON object, such as the result of `serde_json::to_value(&options)`.
     pub options: Value,
-    /// The report's date as text; left out by default, so that the same lifetimes give the same bytes.
+    /// The report's date as text; default none, so that the same lifetimes give the same bytes.
     pub date: Option<String>,
 }
 
@@ -140,17 +140,17 @@ impl Report {
     }
 }
 
-/// Things that a reader should know before believing the numbers.
+/// The list of warnings, which a reader should see before the numbers.
 fn warnings(warnings: &[String]) -> Markup {
     /// Maximum number of warnings shown.
-    const MOST: usize = 50;
+    const MAX_WARNINGS: usize = 50;
     html! {
         @if !warnings.is_empty() {
             ul.warnings aria-label="Warnings" {
-                @for warning in warnings.iter().take(MOST) {
+                @for warning in warnings.iter().take(MAX_WARNINGS) {
                     li { "⚠ Warning: " (calm(warning)) }
                 }
-                @if warnings.len() > MOST { li { "⚠ and " (warnings.len() - MOST) " more warnings" } }
+                @if warnings.len() > MAX_WARNINGS { li { "⚠ and " (warnings.len() - MAX_WARNINGS) " more warnings" } }
             }
         }
     }
@@ -170,8 +170,8 @@ fn described(svg: &str, class: Option<&str>, alt: &str) -> Markup {
 /// The table of options, with notes on how the metrics were computed.
 fn options_table(options: &Value, command: Option<&str>) -> Markup {
     let rows = options.as_object().into_iter().flatten();
-    let does = |name: &str| options.get(name).is_none_or(|method| method != "none");
-    let prepared = match (does("smoothing_method"), does("normalization_method")) {
+    let is_used = |name: &str| options.get(name).is_none_or(|method| method != "none");
+    let prepared = match (is_used("smoothing_method"), is_used("normalization_method")) {
         (true, true) => "Learning is smoothed, performances are scaled to 1…101, and each",
         (true, false) => "Learning is smoothed, performances stay in the log's unit, and each",
         (false, true) => "Performances are scaled to 1…101, and each",
@@ -218,17 +218,17 @@ fn breakable(name: &str) -> Markup {
     html! { @for part in name.split_inclusive(['_', '#', '-']) { (part) wbr; } }
 }
 
-/// Sanitises a sentence from outside: control characters become spaces, and what exceeds a limit is cut. The limit is
-/// larger than that for names.
+/// Sanitises a sentence from outside: control characters become spaces, and long text is cut. The limit is larger than the one
+/// for names.
 fn calm(text: &str) -> String {
     /// Maximum number of characters shown.
-    const LONGEST: usize = 600;
+    const MAX_CHARS: usize = 600;
     let mut calm: String = text
         .chars()
-        .take(LONGEST)
-        .map(|letter| if letter.is_control() { ' ' } else { letter })
+        .take(MAX_CHARS)
+        .map(|c| if c.is_control() { ' ' } else { c })
         .collect();
-    if text.chars().nth(LONGEST).is_some() {
+    if text.chars().nth(MAX_CHARS).is_some() {
         calm.push('…');
     }
     calm

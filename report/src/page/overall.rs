@@ -13,7 +13,7 @@ use super::verdict::{self, Verdict, pill};
 use super::{calm, count, metric_table, number, reached};
 use crate::words::shown;
 
-/// The probabilities that one agent is better than another.
+/// The comparison of an agent with another one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Comparison {
     /// The agent that may be better.
@@ -22,9 +22,9 @@ pub struct Comparison {
     pub other: String,
     /// The comparison of each metric.
     pub metrics: Vec<ComparedMetric>,
-    /// The other agent's lifetime, if it is a single one.
+    /// The other agent's lifetime, if there is only one.
     pub others_lifetime: Option<LifetimeMetrics>,
-    /// Display names of tasks, by their names in logs.
+    /// Display names of tasks, keyed by their log names.
     pub names: BTreeMap<String, String>,
 }
 
@@ -89,7 +89,7 @@ fn values(rows: &[RepeatedMetric], percent: &str) -> Markup {
     }
 }
 
-/// Each caution once, with its metrics, in the order of the table.
+/// Each caution once, with the metrics that it concerns, in the order of the table.
 fn cautions(rows: &[RepeatedMetric]) -> Vec<(&str, Vec<String>)> {
     let mut found: IndexMap<&str, Vec<String>> = IndexMap::new();
     for row in rows {
@@ -181,9 +181,9 @@ fn is_tested(comparison: &Comparison) -> bool {
     comparison.metrics.iter().any(|row| row.improvement.p_value.is_some())
 }
 
-/// Whether two agents differ, with a chance of at most `alpha` that equal ones appear to.
+/// Whether two agents differ, at significance level `alpha`.
 fn better(improvement: &Improvement, alpha: f64) -> Verdict {
-    // The rounding error of 1 - 0.95 must not matter.
+    // Allows for the rounding error of 1 - 0.95.
     let alpha = alpha + 1e-12;
     let (class, sign, word) = match improvement.p_value {
         Some(p) if p <= alpha && improvement.probability.value > 0.5 => ("good", "▲", "better"),

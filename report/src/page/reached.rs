@@ -9,22 +9,22 @@ use super::number;
 use super::verdict::{Verdict, pill};
 use crate::words::shown;
 
-/// Standard errors by which an evaluation after learning must exceed the first one to count as a gain.
-const CLEAR: f64 = 2.0;
+/// Number of standard errors by which an evaluation after learning must exceed the first one to count as a gain.
+const MIN_STANDARD_ERRORS: f64 = 2.0;
 
 /// Maximum number of rows shown; the metrics files have all tasks.
-const MOST_ROWS: usize = 200;
+const MAX_ROWS: usize = 200;
 
-/// `called` maps a task's log name to its display name.
-pub(super) fn section(title: &str, metrics: &LifetimeMetrics, called: &BTreeMap<String, String>) -> Markup {
+/// The section with this title. `display_names` maps a task's log name to its display name.
+pub(super) fn section(title: &str, metrics: &LifetimeMetrics, display_names: &BTreeMap<String, String>) -> Markup {
     let tasks = || metrics.reached.iter().filter(|(_, task)| !task.evaluations.is_empty());
     let verdicts: Vec<Verdict> = tasks().filter_map(|(_, task)| verdict(task)).collect();
-    let is_nothing = !verdicts.is_empty() && verdicts.iter().all(|verdict| verdict.class != "good");
+    let nothing_learned = !verdicts.is_empty() && verdicts.iter().all(|verdict| verdict.class != "good");
     let scaled = metrics.reached.values().any(Reached::is_scaled);
     html! {
         @if tasks().next().is_some() {
             h3 { (title) }
-            @if is_nothing {
+            @if nothing_learned {
                 ul.warnings aria-label="Nothing was learned" {
                     li { "⚠ Nothing was learned: no task is better after it was learned than before. What is said of its \
                           maintenance and transfer says nothing." }
@@ -43,9 +43,9 @@ pub(super) fn section(title: &str, metrics: &LifetimeMetrics, called: &BTreeMap<
                         }
                     }
                     tbody {
-                        @for (name, task) in tasks().take(MOST_ROWS) {
+                        @for (name, task) in tasks().take(MAX_ROWS) {
                             tr {
-                                th scope="row" { (shown(called.get(name).unwrap_or(name))) }
+                                th scope="row" { (shown(display_names.get(name).unwrap_or(name))) }
                                 td.number data-name="First evaluation" { (level(task.evaluations.first())) }
                                 td.number data-name="Best after learning" { (level(task.best())) }
                                 td.number data-name="Last evaluation" { (level(task.last())) }
@@ -85,7 +85,7 @@ fn averages(metrics: &LifetimeMetrics) -> Markup {
     }
 }
 
-/// The best evaluation of a task less its last.
+/// The best evaluation of a task minus its last.
 fn forgetting(curve: Option<&EvaluationCurve>) -> String {
     curve.map_or("–".to_owned(), |curve| amount(curve.forgetting, curve.is_scaled))
 }
@@ -102,7 +102,7 @@ fn amount(value: f64, is_scaled: bool) -> String {
 fn verdict(task: &Reached) -> Option<Verdict> {
     let (first, best) = (task.evaluations.first()?, task.best()?);
     let [before, after] = [first, best].map(|cell| cell.standard_error.unwrap_or(0.0));
-    let is_clear = best.mean - first.mean > CLEAR * (before * before + after * after).sqrt();
+    let is_clear = best.mean - first.mean > MIN_STANDARD_ERRORS * (before * before + after * after).sqrt();
     let (class, sign, word) = match (task.is_never_learned(), is_clear) {
         (Some(true), _) => ("bad", "▼", "never learned"),
         (Some(false), _) => ("good", "▲", "learned"),

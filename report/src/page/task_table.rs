@@ -1,4 +1,4 @@
-//! The table of tasks: how much each was learned and evaluated, and its scalar metrics.
+//! The table of tasks: how many experiences each was learned and evaluated for, and its scalar metrics.
 
 use std::collections::BTreeMap;
 
@@ -9,10 +9,14 @@ use super::{count, number, verdict};
 use crate::words::shown;
 
 /// Maximum number of rows shown; the metrics files have all tasks.
-const MOST_ROWS: usize = 200;
+const MAX_ROWS: usize = 200;
 
-/// `called` maps a task's log name to its display name.
-pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics, called: &BTreeMap<String, String>) -> Markup {
+/// The whole table. `display_names` maps a task's log name to its display name.
+pub(super) fn table(
+    lifetime: &Lifetime,
+    metrics: &LifetimeMetrics,
+    display_names: &BTreeMap<String, String>,
+) -> Markup {
     let names: Vec<String> = metrics.summary().iter().map(|row| row.name.to_string()).collect();
     let value = |task: &str, name: &str| metrics.task_metrics.get(task).and_then(|values| values.number(name));
     let has = |name: &String| lifetime.tasks().iter().any(|task| value(task, name).is_some());
@@ -36,9 +40,9 @@ pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics, called: &BTr
                     }
                 }
                 tbody {
-                    @for task in lifetime.tasks().iter().take(MOST_ROWS) {
+                    @for task in lifetime.tasks().iter().take(MAX_ROWS) {
                         tr {
-                            th scope="row" { (heading_of_row(task, called)) }
+                            th scope="row" { (row_heading(task, display_names)) }
                             td.number { (count(rows(task, BlockType::Train).0)) }
                             td.number { (count(rows(task, BlockType::Train).1)) }
                             td.number { (count(rows(task, BlockType::Test).1)) }
@@ -50,23 +54,23 @@ pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics, called: &BTr
                 }
             }
         }
-        @if lifetime.tasks().len() > MOST_ROWS {
-            p.note { "and " (count(lifetime.tasks().len() - MOST_ROWS)) " more tasks: see the metrics file." }
+        @if lifetime.tasks().len() > MAX_ROWS {
+            p.note { "and " (count(lifetime.tasks().len() - MAX_ROWS)) " more tasks: see the metrics file." }
         }
     }
 }
 
 /// The task's display name, with its log name below if they differ.
-fn heading_of_row(task: &str, called: &BTreeMap<String, String>) -> Markup {
+fn row_heading(task: &str, display_names: &BTreeMap<String, String>) -> Markup {
     html! {
-        @match called.get(task).filter(|name| *name != task) {
+        @match display_names.get(task).filter(|name| *name != task) {
             Some(name) => { (shown(name)) small { "in the log " (shown(task)) } },
             None => (shown(task)),
         }
     }
 }
 
-/// Heading of a metric's narrow column, in two lines.
+/// Heading of a metric's narrow column, on up to two lines.
 fn heading(name: &str) -> Markup {
     let lines: [&str; 2] = match name {
         "perf_recovery" => ["Recovery", ""],

@@ -1,4 +1,4 @@
-//! Display of readings, and names of metrics. Colour and sign only repeat the word, which comes from the metrics.
+//! Displays readings and the names of metrics. Colour and sign only repeat the word, which comes from the metrics.
 
 use driftworld_metrics::{Direction, Reading};
 use maud::{Markup, html};
@@ -30,23 +30,23 @@ pub(super) fn pill(verdict: Verdict) -> Markup {
     html! { span class={ "verdict " (verdict.class) } { span aria-hidden="true" { (verdict.sign) " " } (verdict.word) } }
 }
 
-/// The smallest difference from no effect that is tinted in the table of pairs.
-const LEAST_OF_PAIRS: f64 = 0.05;
+/// Minimum difference from no effect that is tinted in the table of pairs.
+const MIN_PAIR_EFFECT: f64 = 0.05;
 
 /// The side of no effect on which a pair of tasks lies, if the metric over all pairs has an effect.
 pub(super) fn of_pair(value: f64, good: Direction, whole: Option<Reading>) -> Reading {
-    let is_named = matches!(whole, Some(Reading::Good | Reading::Bad | Reading::Mixed));
-    let is_far = good
+    let has_effect = matches!(whole, Some(Reading::Good | Reading::Bad | Reading::Mixed));
+    let is_large_enough = good
         .neutral()
-        .is_some_and(|neutral| (value - neutral).abs() >= LEAST_OF_PAIRS);
-    if is_named && is_far {
+        .is_some_and(|neutral| (value - neutral).abs() >= MIN_PAIR_EFFECT);
+    if has_effect && is_large_enough {
         good.side(value)
     } else {
         Reading::Unclear
     }
 }
 
-/// The good direction, in a few words.
+/// Explains which values are good, in a few words.
 pub(super) fn good_from(name: &str, direction: Direction) -> String {
     let neutral_is = if name.starts_with("ste_rel_perf") || name.starts_with("sample_efficiency") {
         "equal to the expert"

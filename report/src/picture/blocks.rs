@@ -1,4 +1,4 @@
-//! The image of a curriculum: a row for each variant, a bar for each stretch of experiences.
+//! The image of a curriculum: one row per variant, one bar per stretch of experiences.
 
 use super::{Drawing, FAINT, INK, Level, Rgb, Side, WHITE, corner, middle, round_step, text_width, words};
 use crate::figure::task_color;
@@ -8,18 +8,18 @@ const ROW: i32 = 40;
 const BAR: i32 = 24;
 const TOP: i32 = 84;
 const WIDTH: i32 = 1200;
-/// Size of the row names; see `letters`.
+/// Height of the font of row names, see `font_size`.
 const NAME: f32 = 17.5;
 /// Opacity of a bar before deployment.
 const EARLY: f32 = 0.3;
 const EVALUATION: Rgb = [150, 154, 160];
 /// Maximum number of rows; further variants share the last.
-const MOST_ROWS: usize = 60;
+const MAX_ROWS: usize = 60;
 
 /// One stretch of experiences of a variant.
 struct Stretch {
     row: usize,
-    /// The row of its drift's target, and the progress at its ends.
+    /// The row of its drift's target, and the drift's progress at both ends of the stretch.
     drift: Option<(usize, [f64; 2])>,
     from: f64,
     to: f64,
@@ -27,7 +27,7 @@ struct Stretch {
     phase: Phase,
 }
 
-/// The blocks over the experiences: filled in learning, grey in evaluation, outlined before deployment, slanted in a drift.
+/// Draws the blocks of a scenario: learning filled, evaluation grey, blocks before deployment outlined, drifts slanted.
 pub fn blocks(scenario: &Scenario) -> Drawing {
     let (rows, stretches) = stretches(scenario);
     let total = scenario.num_experiences().max(1) as f64;
@@ -95,7 +95,7 @@ fn fill(picture: &mut Drawing, corners: &[(i32, i32)], color: Rgb, alpha: f32) {
     picture.tint(points, color, alpha);
 }
 
-/// The kinds of bars in a scenario: name, colour, alpha, height. Samples are shown under the title.
+/// The legend: name, colour, alpha and height of each kind of bar in a scenario.
 fn kinds(scenario: &Scenario) -> Vec<(&'static str, Rgb, f32, i32)> {
     let has = |kind: BlockKind, phase: Option<Phase>| {
         let is = |block: &Block| block.kind == kind && phase.is_none_or(|phase| block.phase == phase);
@@ -120,10 +120,10 @@ fn stretches(scenario: &Scenario) -> (Vec<String>, Vec<Stretch>) {
     let mut row_of = |name: String| {
         let known = rows.iter().position(|row| *row == name);
         known.unwrap_or_else(|| {
-            if rows.len() < MOST_ROWS {
+            if rows.len() < MAX_ROWS {
                 rows.push(name);
             } else {
-                "others".clone_into(&mut rows[MOST_ROWS - 1]);
+                "others".clone_into(&mut rows[MAX_ROWS - 1]);
             }
             rows.len() - 1
         })

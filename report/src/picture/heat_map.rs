@@ -1,12 +1,12 @@
-//! Heat maps: distances as coloured cells with their numbers.
+//! Heat maps: distances as coloured, numbered cells.
 
-use super::{Drawing, INK, Level, Rgb, Side, TextLine, WHITE, corner, letters, text_width};
+use super::{Drawing, INK, Level, Rgb, Side, TextLine, WHITE, corner, font_size, text_width};
 
 /// Font sizes of names and title, in pixels.
 const LABEL: f32 = 14.0;
 const TITLE: f32 = 20.0;
 
-/// A square table of distances as coloured cells with their numbers; `labels` name rows and columns.
+/// Draws a square table of distances as coloured cells, numbered if there is room. `labels` name rows and columns.
 pub fn heat_map(title: &str, labels: &[String], value: impl Fn(usize, usize) -> f64) -> Drawing {
     let n = labels.len() as i32;
     let longest = labels
@@ -31,7 +31,7 @@ pub fn heat_map(title: &str, labels: &[String], value: impl Fn(usize, usize) -> 
         if cell >= 36 {
             let color = if share > 0.55 { WHITE } else { INK };
             let middle = at.map(|place| place + (cell / 2) as f32);
-            let words = TextLine::new(format!("{number:.2}"), middle, letters(17.0), color);
+            let words = TextLine::new(format!("{number:.2}"), middle, font_size(17.0), color);
             picture.write(words.anchored(Side::Middle, Level::Middle));
         }
     }
@@ -53,7 +53,7 @@ pub fn heat_map(title: &str, labels: &[String], value: impl Fn(usize, usize) -> 
     picture
 }
 
-/// From nearly white at 0 to deep blue at 1.
+/// Interpolates from nearly white at 0 to deep blue at 1.
 fn shade(share: f64) -> Rgb {
     let mix = |from: f64, to: f64| (from + (to - from) * share.clamp(0.0, 1.0)) as u8;
     [mix(240.0, 22.0), mix(245.0, 72.0), mix(250.0, 130.0)]

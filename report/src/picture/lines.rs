@@ -32,46 +32,46 @@ pub fn text_lines(text: &str, size: f32, width: f32) -> Vec<String> {
 /// The pieces of a text between which lines may break.
 fn pieces(text: &str, fits: &dyn Fn(&str) -> bool) -> Vec<String> {
     let mut pieces = vec![text.to_owned()];
-    // From the best break to the worst.
-    let ways: [fn(&str, char, &str) -> bool; 4] = [
+    // Rules for where a line may break, from the best to the worst.
+    let rules: [fn(&str, char, &str) -> bool; 4] = [
         |_, blank, _| blank == ' ',
-        |before, _, behind| before.ends_with([',', ';', ':']) || behind.starts_with('('),
-        |before, _, behind| !before.ends_with(is_of_number) && !behind.starts_with(is_of_number),
+        |before, _, end| before.ends_with([',', ';', ':']) || end.starts_with('('),
+        |before, _, end| !before.ends_with(is_of_number) && !end.starts_with(is_of_number),
         |_, _, _| true,
     ];
-    for (number, may) in ways.into_iter().enumerate() {
-        let broken = pieces.into_iter().flat_map(|piece| {
-            if number > 0 && fits(&piece) {
+    for (rule_index, may_break) in rules.into_iter().enumerate() {
+        let split = pieces.into_iter().flat_map(|piece| {
+            if rule_index > 0 && fits(&piece) {
                 vec![piece]
             } else {
-                broken(&piece, may)
+                split(&piece, may_break)
             }
         });
-        pieces = broken.collect();
+        pieces = split.collect();
     }
     let pieces = pieces.into_iter().map(|piece| with_blanks(&piece));
     pieces.filter(|piece| !piece.is_empty()).collect()
 }
 
-/// Splits a text at the spaces and no-break spaces where `may` allows it.
-fn broken(text: &str, may: fn(&str, char, &str) -> bool) -> Vec<String> {
+/// Splits a text at the spaces and no-break spaces where `may_break` allows it.
+fn split(text: &str, may_break: fn(&str, char, &str) -> bool) -> Vec<String> {
     let mut pieces = Vec::new();
-    let mut begin = 0;
-    for (place, blank) in text.match_indices([' ', NO_BREAK]) {
-        let behind = place + blank.len();
-        let letter = if blank == " " { ' ' } else { NO_BREAK };
-        if may(&text[begin..place], letter, &text[behind..]) {
-            pieces.push(text[begin..place].to_owned());
-            begin = behind;
+    let mut piece_start = 0;
+    for (start, blank) in text.match_indices([' ', NO_BREAK]) {
+        let end = start + blank.len();
+        let c = if blank == " " { ' ' } else { NO_BREAK };
+        if may_break(&text[piece_start..start], c, &text[end..]) {
+            pieces.push(text[piece_start..start].to_owned());
+            piece_start = end;
         }
     }
-    pieces.push(text[begin..].to_owned());
+    pieces.push(text[piece_start..].to_owned());
     pieces
 }
 
 /// Whether a character at the edge of a word belongs to a number or its unit.
-fn is_of_number(letter: char) -> bool {
-    letter.is_ascii_digit() || "×%−-+".contains(letter)
+fn is_of_number(c: char) -> bool {
+    c.is_ascii_digit() || "×%−-+".contains(c)
 }
 
 /// A text, cut off if it is too wide.
@@ -79,9 +79,9 @@ pub(super) fn cut(text: &str, size: f32, width: f32) -> String {
     if text_width(text, size) <= width {
         return text.to_owned();
     }
-    let mut kept: String = text.to_owned();
-    while kept.pop().is_some() {
-        let shorter = format!("{}…", kept.trim_end());
+    let mut shortened: String = text.to_owned();
+    while shortened.pop().is_some() {
+        let shorter = format!("{}…", shortened.trim_end());
         if text_width(&shorter, size) <= width {
             return shorter;
         }
@@ -98,7 +98,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
 
-        /// Every word is there, in order; no line is too wide; and whole parts that fit into a line are not broken.
+        /// No word is lost or moved; no line is too wide; and whole parts that fit into a line are not broken.
         #[test]
         fn whole_parts_stay_together(
             facts in prop::collection::vec("[a-z_]{1,12} [0-9]{1,4} (m|s|× [0-9]{1,2} m)( \\([0-9]{1,3}\\))?", 1..8),

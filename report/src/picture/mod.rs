@@ -1,5 +1,5 @@
-//! Images with text: sheets of views, heat maps, maps of paths, blocks of curricula, scatter plots. Each is a [`Drawing`], which
-//! becomes PNG or SVG.
+//! Images with text: sheets of views, heat maps, path maps, blocks of curricula, scatter plots. Each is a [`Drawing`], which is
+//! written as PNG or SVG.
 
 mod blocks;
 mod caption;
@@ -25,13 +25,13 @@ const INK: Rgb = [38, 42, 48];
 const FAINT: Rgb = [110, 116, 124];
 const WHITE: Rgb = [255; 3];
 
-/// Text anchored at a pixel's corner, in a font with this height from its lowest to its highest line.
+/// Text anchored at a pixel's corner, in a font of this height from its lowest to its highest line.
 fn words(text: impl Into<String>, at: (i32, i32), height: f64, color: Rgb) -> TextLine {
-    TextLine::new(text, corner(at), letters(height), color)
+    TextLine::new(text, corner(at), font_size(height), color)
 }
 
-/// The size of a font with this height from its lowest to its highest line.
-fn letters(height: f64) -> f32 {
+/// The CSS size of a font of this height from its lowest to its highest line.
+fn font_size(height: f64) -> f32 {
     (height / 1.24) as f32
 }
 

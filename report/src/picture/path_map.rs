@@ -12,33 +12,34 @@ use crate::extent;
 
 /// Twice the size of the image, so that positions are rounded to half a pixel.
 const SIZE: (i32, i32) = (2000, 1600);
-/// Margins without items: left and right, above, and below.
+/// Margins without items: left and right, top, and bottom.
 const MARGINS: [i32; 3] = [220, 240, 120];
-/// The font size of the items' names, and the height at the top that they leave free, in pixels of the image.
-const TEXT: f32 = 13.0;
-const TITLES: f32 = 66.0;
+/// Font size of the items' names, in pixels of the image.
+const TEXT_SIZE: f32 = 13.0;
+/// Height of the titles at the top, which names keep clear of, in pixels of the image.
+const TITLE_HEIGHT: f32 = 66.0;
 /// With more items, only the ends are named.
 const MAX_NAMED: usize = 60;
 
-/// Draws an order of items as a path on a map of their distances, by classical scaling.
+/// Draws an order of items as a path on a map of their distances, made by classical scaling.
 pub fn path_map(matrix: &DistanceMatrix, method: Method, ordering: &Ordering) -> Drawing {
     let map = classical_map(matrix);
-    let places = on_paper(&map.points);
-    let path: Vec<(i32, i32)> = ordering.indices.iter().map(|index| places[*index]).collect();
+    let positions = on_paper(&map.points);
+    let path: Vec<(i32, i32)> = ordering.indices.iter().map(|index| positions[*index]).collect();
     let mut picture = Drawing::blank(SIZE.0 as u32 / 2, SIZE.1 as u32 / 2);
     let last = path.len().saturating_sub(1);
     let many = path.len() > MAX_NAMED;
     let (width, radius) = if many { (3, 7) } else { (5, 13) };
     for (step, pair) in path.windows(2).enumerate() {
-        let color = along(step, last.saturating_sub(1));
+        let color = color_at(step, last.saturating_sub(1));
         picture.line([middle(pair[0]), middle(pair[1])], width as f32 / 2.0, color);
         if let Some(head) = arrow(pair[0], pair[1], 3 * width + 4) {
             picture.area(head.map(halved), color);
         }
     }
-    for (place, at) in path.iter().enumerate() {
+    for (index, at) in path.iter().enumerate() {
         picture.disc(middle(*at), radius as f32 / 2.0, WHITE);
-        picture.disc(middle(*at), (radius - 3) as f32 / 2.0, along(place, last));
+        picture.disc(middle(*at), (radius - 3) as f32 / 2.0, color_at(index, last));
     }
     let of_task = match common_task(matrix.labels()) {
         "" => String::new(),
@@ -65,8 +66,8 @@ pub fn path_map(matrix: &DistanceMatrix, method: Method, ordering: &Ordering) ->
         if let Some(leader) = name.leader {
             picture.line(leader, 1.0, FAINT);
         }
-        let [left, top, _, bottom] = name.place;
-        let words = TextLine::new(name.text, [left + 2.0, f32::midpoint(top, bottom)], TEXT, INK);
+        let [left, top, _, bottom] = name.bounds;
+        let words = TextLine::new(name.text, [left + 2.0, f32::midpoint(top, bottom)], TEXT_SIZE, INK);
         picture.write(words.anchored(Side::Left, Level::Middle));
     }
     picture
@@ -94,7 +95,7 @@ fn common_task(labels: &[String]) -> &str {
     }
 }
 
-/// The map's points as pixels: as large as possible, undistorted, with the second axis upwards.
+/// Converts the map's points to pixels: as large as possible, undistorted, with the second axis upwards.
 fn on_paper(points: &[[f64; 2]]) -> Vec<(i32, i32)> {
     let bounds = |axis: usize| extent(points.iter().map(|point| point[axis]));
     let [x, y] = [bounds(0), bounds(1)];
@@ -116,8 +117,8 @@ fn on_paper(points: &[[f64; 2]]) -> Vec<(i32, i32)> {
 }
 
 /// Interpolates from orange at the first item to blue at the last.
-fn along(place: usize, last: usize) -> Rgb {
-    let share = if last == 0 { 0.0 } else { place as f64 / last as f64 };
+fn color_at(index: usize, last: usize) -> Rgb {
+    let share = if last == 0 { 0.0 } else { index as f64 / last as f64 };
     let mix = |from: f64, to: f64| (from + (to - from) * share) as u8;
     [mix(236.0, 22.0), mix(140.0, 82.0), mix(44.0, 170.0)]
 }
@@ -139,15 +140,15 @@ fn arrow(from: (i32, i32), to: (i32, i32), size: i32) -> Option<[(i32, i32); 3]>
     Some([at(1.0, 0.0), at(-0.7, 0.8), at(-0.7, -0.8)])
 }
 
-/// A name in the image: its box (left, top, right, bottom), and the line to its point if it is far away.
+/// A name in the image, with its box (left, top, right, bottom), and the line to its point if that is far away.
 struct Name {
     text: String,
-    place: [f32; 4],
+    bounds: [f32; 4],
     leader: Option<[[f32; 2]; 2]>,
 }
 
-/// Places each item's label (its position in the order, and its name), for all items or only the two ends: beside its
-/// point if nothing is covered there, otherwise farther away, with a line to the point.
+/// Places the labels of all items, or only of the two ends. A label (the item's position in the order, and its name) goes beside
+/// its point if it covers nothing there, otherwise farther away, with a line to the point.
 fn names(matrix: &DistanceMatrix, ordering: &Ordering, path: &[[f32; 2]], ends_only: bool) -> Vec<Name> {
     let last = path.len().saturating_sub(1);
     let task = common_task(matrix.labels());
@@ -157,54 +158,57 @@ fn names(matrix: &DistanceMatrix, ordering: &Ordering, path: &[[f32; 2]], ends_o
         .flat_map(|pair| along_line(pair[0], pair[1], 2.0))
         .collect();
     let mut names: Vec<Name> = Vec::new();
-    for (place, point) in path.iter().enumerate() {
-        if ends_only && place != 0 && place != last {
+    for (index, point) in path.iter().enumerate() {
+        if ends_only && index != 0 && index != last {
             continue;
         }
-        let label = &matrix.labels()[ordering.indices[place]];
-        let text = format!("{} {}", place + 1, &label[task.len()..]);
-        let size = [text_width(&text, TEXT) + 4.0, TEXT * 1.25];
+        let label = &matrix.labels()[ordering.indices[index]];
+        let text = format!("{} {}", index + 1, &label[task.len()..]);
+        let size = [text_width(&text, TEXT_SIZE) + 4.0, TEXT_SIZE * 1.25];
         let cost = |name: &Name| {
-            let [left, top, right, bottom] = name.place;
+            let [left, top, right, bottom] = name.bounds;
             let paper = [
                 left,
-                top - TITLES,
+                top - TITLE_HEIGHT,
                 SIZE.0 as f32 / 2.0 - right,
                 SIZE.1 as f32 / 2.0 - bottom,
             ];
             let outside: f32 = paper.map(|room| (-room).max(0.0)).iter().sum();
             let line: Vec<[f32; 4]> = name.leader.iter().flat_map(|[a, b]| along_line(*a, *b, 1.0)).collect();
-            let covered = |others: &[[f32; 4]]| others.iter().map(|other| overlap(&name.place, other)).sum::<f32>();
+            let covered = |others: &[[f32; 4]]| others.iter().map(|other| overlap(&name.bounds, other)).sum::<f32>();
             let crossed: f32 = names
                 .iter()
                 .map(|other| {
-                    let met = line.iter().map(|square| overlap(square, &other.place)).sum::<f32>();
-                    let theirs = other.leader.iter().flat_map(|[a, b]| along_line(*a, *b, 1.0));
-                    overlap(&name.place, &other.place)
-                        + met
-                        + theirs.map(|square| overlap(&name.place, &square)).sum::<f32>()
+                    let line_overlap = line.iter().map(|square| overlap(square, &other.bounds)).sum::<f32>();
+                    let other_line = other.leader.iter().flat_map(|[a, b]| along_line(*a, *b, 1.0));
+                    overlap(&name.bounds, &other.bounds)
+                        + line_overlap
+                        + other_line.map(|square| overlap(&name.bounds, &square)).sum::<f32>()
                 })
                 .sum();
-            let away = name
+            let leader_cost = name
                 .leader
                 .map_or(0.0, |[a, b]| 40.0 + (b[0] - a[0]).hypot(b[1] - a[1]));
-            1000.0 * (outside + crossed) + 20.0 * covered(&dots) + covered(&steps) + away
+            1000.0 * (outside + crossed) + 20.0 * covered(&dots) + covered(&steps) + leader_cost
         };
-        let spots = spots(*point, size).map(|(place, leader)| Name {
+        let candidate_boxes = candidate_boxes(*point, size).map(|(bounds, leader)| Name {
             text: text.clone(),
-            place,
+            bounds,
             leader,
         });
-        let priced = spots.map(|name| (cost(&name), name));
-        if let Some((_, best)) = priced.min_by(|a, b| a.0.total_cmp(&b.0)) {
+        let candidates = candidate_boxes.map(|name| (cost(&name), name));
+        if let Some((_, best)) = candidates.min_by(|a, b| a.0.total_cmp(&b.0)) {
             names.push(best);
         }
     }
     names
 }
 
-/// Candidate positions for a name of this size: in rings around its point, the outer ones with a line to the point.
-fn spots([x, y]: [f32; 2], [wide, high]: [f32; 2]) -> impl Iterator<Item = ([f32; 4], Option<[[f32; 2]; 2]>)> {
+/// Candidate positions for a name of this size, in rings around its point; those in the outer rings have a line to the point.
+fn candidate_boxes(
+    [x, y]: [f32; 2],
+    [wide, high]: [f32; 2],
+) -> impl Iterator<Item = ([f32; 4], Option<[[f32; 2]; 2]>)> {
     const DIRECTIONS: u16 = 24;
     let ring = move |number: u16| {
         let off = 10.0 + 9.0 * f32::from(number);
@@ -263,11 +267,11 @@ mod tests {
         assert!(shared([10.0, 0.0, 20.0, 10.0]) < 1e-6);
     }
 
-    /// Twenty items, most of them in one place: no name covers another, and all are inside the image.
+    /// Twenty items, most of them at one point: no name covers another, and all are inside the image.
     #[test]
     fn names_of_a_crowd_do_not_overlap() {
         let labels: Vec<String> = (0..20).map(|index| format!("task#a_variant_{index}")).collect();
-        let far = |a: usize, b: usize| {
+        let distance = |a: usize, b: usize| {
             if a == b {
                 0.0
             } else if a.max(b) > 17 {
@@ -277,7 +281,7 @@ mod tests {
             }
         };
         let matrix = DistanceMatrix::measure(labels, |a, b| {
-            Ok::<_, driftworld_similarity::SimilarityError>(far(a, b))
+            Ok::<_, driftworld_similarity::SimilarityError>(distance(a, b))
         })
         .expect("they are distances");
 
@@ -287,12 +291,12 @@ mod tests {
             &driftworld_similarity::OrderOptions::default(),
         )
         .expect("it can be ordered");
-        let places = on_paper(&classical_map(&matrix).points);
-        let path: Vec<[f32; 2]> = ordering.indices.iter().map(|index| halved(places[*index])).collect();
+        let positions = on_paper(&classical_map(&matrix).points);
+        let path: Vec<[f32; 2]> = ordering.indices.iter().map(|index| halved(positions[*index])).collect();
         let names = names(&matrix, &ordering, &path, false);
         assert_eq!(names.len(), 20);
         for (index, name) in names.iter().enumerate() {
-            let [left, top, right, bottom] = name.place;
+            let [left, top, right, bottom] = name.bounds;
             assert!(
                 left >= 0.0 && top >= 0.0 && right <= 1000.0 && bottom <= 800.0,
                 "{}",
@@ -300,7 +304,7 @@ mod tests {
             );
             for other in &names[..index] {
                 assert!(
-                    overlap(&name.place, &other.place) < 1e-3,
+                    overlap(&name.bounds, &other.bounds) < 1e-3,
                     "{} and {}",
                     name.text,
                     other.text

@@ -5,7 +5,7 @@
     reason = "the logarithm only counts the digits of tick labels"
 )]
 
-use super::{Drawing, FAINT, INK, Level, Rgb, Side, corner, letters, middle, round_step, text_width, words};
+use super::{Drawing, FAINT, INK, Level, Rgb, Side, corner, font_size, middle, round_step, text_width, words};
 use crate::extent;
 
 /// A named point.
@@ -44,7 +44,7 @@ const LABEL: f64 = 16.0;
 const DOT: Rgb = [22, 72, 130];
 const RIM: Rgb = [205, 209, 214];
 
-/// Panels side by side, each with its points. Names without room are left out and counted.
+/// Draws panels side by side, each with its points. Names for which there is no room are left out and counted.
 pub fn scatter(panels: &[Panel]) -> Drawing {
     let mut picture = Drawing::blank(WIDTH * panels.len().max(1) as u32, HEIGHT);
     for (index, panel) in panels.iter().enumerate() {
@@ -64,17 +64,17 @@ struct Axis {
 }
 
 impl Axis {
-    /// A range that includes the values, with a mark at every round number.
+    /// A range that includes the values, with about five round tick marks.
     fn around(values: impl Iterator<Item = f64>) -> Self {
-        let (least, most) = extent(values);
-        let (least, most) = if most > least {
-            (least, most)
+        let (low, high) = extent(values);
+        let (low, high) = if high > low {
+            (low, high)
         } else {
-            (least - 0.5, least + 0.5)
+            (low - 0.5, low + 0.5)
         };
-        let step = round_step((most - least) / 5.0);
-        let from = (least / step).floor() * step;
-        let ticks = (((most - from) / step).ceil() as usize).max(1);
+        let step = round_step((high - low) / 5.0);
+        let from = (low / step).floor() * step;
+        let ticks = (((high - from) / step).ceil() as usize).max(1);
         Self { from, step, ticks }
     }
 
@@ -82,7 +82,7 @@ impl Axis {
         (value - self.from) / (self.step * self.ticks as f64)
     }
 
-    /// The marks with their labels.
+    /// The tick marks with their labels.
     fn marks(&self) -> impl Iterator<Item = (f64, String)> + '_ {
         let digits = (-self.step.log10().floor()).max(0.0) as usize;
         (0..=self.ticks).map(move |tick| {
@@ -130,18 +130,18 @@ impl Panel {
         }
     }
 
-    /// Writes each name at the first free place around its dot, off the line; returns the number of names left out.
+    /// Writes each name in the first free box around its dot, clear of the line; returns the number of names left out.
     fn name(&self, picture: &mut Drawing, dots: &[(i32, i32)], line: Box4, rim: Box4) -> usize {
         let boxes = dots.iter().map(|(x, y)| [x - 5, y - 5, x + 5, y + 5]);
         let mut taken: Vec<Box4> = boxes.chain([line]).collect();
         let mut unnamed = 0;
         for (point, dot) in self.points.iter().zip(dots) {
-            let size = letters(LABEL);
+            let size = font_size(LABEL);
             let wide = text_width(&point.label, size).ceil() as i32;
-            match free_place(*dot, [wide + 2, size as i32], &taken, rim) {
-                Some(place) => {
-                    picture.write(words(&point.label, (place[0], place[1]), LABEL, INK));
-                    taken.push(place);
+            match free_box(*dot, [wide + 2, size as i32], &taken, rim) {
+                Some(candidate) => {
+                    picture.write(words(&point.label, (candidate[0], candidate[1]), LABEL, INK));
+                    taken.push(candidate);
                 }
                 None => unnamed += 1,
             }
@@ -150,8 +150,8 @@ impl Panel {
     }
 }
 
-/// The first place around a dot, starting at the right, that overlaps nothing and lies inside the border.
-fn free_place((x, y): (i32, i32), [wide, high]: [i32; 2], taken: &[Box4], rim: Box4) -> Option<Box4> {
+/// The first box around a dot, starting at the right, that overlaps nothing and lies inside the border.
+fn free_box((x, y): (i32, i32), [wide, high]: [i32; 2], taken: &[Box4], rim: Box4) -> Option<Box4> {
     let (right, left, middle) = (x + 7, x - 7 - wide, x - wide / 2);
     let (level, above, below) = (y - high / 2, y - high - 6, y + 7);
     let corners = [
@@ -164,12 +164,14 @@ fn free_place((x, y): (i32, i32), [wide, high]: [i32; 2], taken: &[Box4], rim: B
         (left, above),
         (left, below),
     ];
-    let places = corners.map(|(left, top)| [left, top, left + wide, top + high]);
-    let apart = |a: &Box4, b: &Box4| a[2] <= b[0] || b[2] <= a[0] || a[3] <= b[1] || b[3] <= a[1];
-    let inside = |place: &Box4| place[0] >= rim[0] && place[1] >= rim[1] && place[2] <= rim[2] && place[3] <= rim[3];
-    places
+    let boxes = corners.map(|(left, top)| [left, top, left + wide, top + high]);
+    let disjoint = |a: &Box4, b: &Box4| a[2] <= b[0] || b[2] <= a[0] || a[3] <= b[1] || b[3] <= a[1];
+    let inside = |candidate: &Box4| {
+        candidate[0] >= rim[0] && candidate[1] >= rim[1] && candidate[2] <= rim[2] && candidate[3] <= rim[3]
+    };
+    boxes
         .into_iter()
-        .find(|place| inside(place) && taken.iter().all(|other| apart(place, other)))
+        .find(|candidate| inside(candidate) && taken.iter().all(|other| disjoint(candidate, other)))
 }
 
 #[cfg(test)]
@@ -177,7 +179,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn marks_are_round_and_include_every_number() {
+    fn tick_marks_are_round_and_span_all_values() {
         for (values, words) in [
             (vec![0.0, 1.0], vec!["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]),
             (vec![0.03, 0.11], vec!["0.02", "0.04", "0.06", "0.08", "0.10", "0.12"]),
@@ -193,9 +195,9 @@ mod tests {
     #[test]
     fn names_never_overlap() {
         let rim = [0, 0, 200, 200];
-        let first = free_place((100, 100), [40, 12], &[], rim).expect("there is room");
-        let second = free_place((100, 100), [40, 12], &[first], rim).expect("there is room on the left");
+        let first = free_box((100, 100), [40, 12], &[], rim).expect("the file can be written");
+        let second = free_box((100, 100), [40, 12], &[first], rim).expect("there is room on the left");
         assert!(first[0] > 100 && second[2] < 100);
-        assert_eq!(free_place((100, 100), [40, 12], &[rim], rim), None);
+        assert_eq!(free_box((100, 100), [40, 12], &[rim], rim), None);
     }
 }

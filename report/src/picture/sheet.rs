@@ -28,11 +28,11 @@ const GAP: u32 = 12;
 const TITLE: (f32, u32) = (19.0, 26);
 const WORDS: (f32, u32) = (13.0, 17);
 /// Maximum number of lines below a title.
-const MOST_LINES: usize = 5;
-/// The border of an image, so that white ones have visible edges.
+const MAX_LINES: usize = 5;
+/// Colour of the border of images, which gives white ones visible edges.
 const RIM: Rgb = [150, 154, 160];
 
-/// Rows of images, each under its title, with `columns` rows side by side.
+/// Draws rows of images, each under its title, with `columns` rows side by side.
 pub fn sheet(rows: &[SheetRow], columns: usize) -> Drawing {
     let width_of = |row: &SheetRow| row.pictures.iter().map(|picture| picture.width + GAP).sum::<u32>();
     let cell_width = rows.iter().map(width_of).max().unwrap_or(0);
@@ -69,7 +69,7 @@ impl<'a> Cell<'a> {
         let width = width as f32;
         let title = match title.split_once(": ") {
             Some((first, rest)) if text_width(&title, TITLE.0) > width => {
-                // Lines break after the dot.
+                // The no-break space keeps the dot at the end of a line.
                 words = [rest, words.as_str()].map(str::trim).join("\u{a0}· ");
                 first
             }
@@ -109,14 +109,14 @@ impl<'a> Cell<'a> {
     }
 }
 
-/// Breaks a text into at most `MOST_LINES` lines of at most this width. A separator never ends a line.
+/// Breaks a text into at most `MAX_LINES` lines of at most this width. A separator never ends a line.
 fn lines(text: &str, size: f32, width: f32) -> Vec<String> {
     let mut lines = text_lines(text, size, width);
     for line in &mut lines {
         line.truncate(line.trim_end_matches(" ·").len());
     }
-    if lines.len() > MOST_LINES {
-        let rest = lines.split_off(MOST_LINES - 1).join(" ");
+    if lines.len() > MAX_LINES {
+        let rest = lines.split_off(MAX_LINES - 1).join(" ");
         lines.push(cut(&rest, size, width));
     }
     lines
@@ -133,7 +133,7 @@ mod tests {
             .repeat(4);
         for width in [40.0, 120.0, 333.0] {
             let lines = lines(&text, 13.0, width);
-            assert!(lines.len() <= MOST_LINES && lines.iter().all(|line| text_width(line, 13.0) <= width));
+            assert!(lines.len() <= MAX_LINES && lines.iter().all(|line| text_width(line, 13.0) <= width));
             assert!(lines.last().is_some_and(|line| line.ends_with('…')));
         }
         assert_eq!(lines("a few words", 13.0, 300.0), ["a few words"]);

@@ -1,4 +1,4 @@
-//! Synthetic lifetimes for the tests in the files beside this folder.
+//! Synthetic lifetimes for the tests of this crate.
 
 use std::collections::BTreeMap;
 
@@ -8,10 +8,10 @@ use driftworld_metrics::{
 };
 use driftworld_report::{Chapter, ChapterOptions, Comparison, Report, neighbours};
 
-/// A lifetime in which tasks take turns, each evaluated before and after every learning block.
+/// Settings of a synthetic lifetime in which the tasks take turns; all tasks are evaluated before every learning block.
 #[expect(
     clippy::struct_excessive_bools,
-    reason = "each turns one thing on that a test is about"
+    reason = "each turns on one feature that a test is about"
 )]
 pub(crate) struct Life<'a> {
     pub(crate) name: &'a str,
@@ -52,7 +52,7 @@ pub(crate) struct Lived {
 
 impl Life<'_> {
     pub(crate) fn live(&self) -> Lived {
-        let base = tempfile::tempdir().expect("a temporary folder can be made");
+        let base = tempfile::tempdir().expect("a temporary folder can be created");
         let dir = base.path().join(self.name);
         self.write(&dir, &self.tasks, self.rounds);
         let log = read_log(&dir).expect("the log was just written");
@@ -111,7 +111,7 @@ impl Life<'_> {
                     if self.steps {
                         record = record.with_metric("episode_step_count", 50.0 + noise.round());
                     }
-                    writer.write(&record).expect("the record is sound");
+                    writer.write(&record).expect("the record is valid");
                     experience += 1;
                 }
                 if kind == BlockType::Train || task + 1 == tasks.len() {
@@ -119,7 +119,7 @@ impl Life<'_> {
                 }
             }
         }
-        writer.finish().expect("the disk has room");
+        writer.finish().expect("the file can be written");
     }
 }
 
@@ -162,11 +162,11 @@ pub(crate) fn page_of_two() -> String {
     let report = Report {
         title: Some("Two <lives>".to_owned()),
         chapters: (lives.iter().map(chapter).collect::<Result<_, _>>()).expect("they can be drawn"),
-        overall: over_repeats(&scores, &options).expect("both were scored alike"),
+        overall: over_repeats(&scores, &options).expect("both were scored with the same options"),
         comparisons: vec![Comparison {
             agent: "mine".to_owned(),
             other: "theirs".to_owned(),
-            metrics: compare_agents(&scores, &scores, &options).expect("both were scored alike"),
+            metrics: compare_agents(&scores, &scores, &options).expect("both were scored with the same options"),
             others_lifetime: None,
             names: BTreeMap::new(),
         }],
