@@ -1,8 +1,8 @@
-"""Steps a second through mlagents-envs, and where the time goes. What one step costs without a client is measured in `session.rs`.
+"""Measures steps per second through mlagents-envs, and where the time goes. `session.rs` measures a step without a client.
 
     python unity/benches/client.py target/release/driftworld-unity [--steps 2000] [--size 84] [--raw] [--world FILE] [--profile]
 
-Client and executable share one core. Any version of mlagents-envs from 0.16 on will do (docs/l2explorer.md says how to install one).
+Client and executable share one core. Any version of mlagents-envs since 0.16 works (docs/l2explorer.md explains how to install one).
 """
 
 from __future__ import annotations
@@ -32,13 +32,13 @@ RADIUS_M = 12.0
 
 
 class ResetChannel(SideChannel):
-    """Sends worlds, and ignores answers."""
+    """Sends worlds and ignores answers."""
 
     def __init__(self) -> None:
         super().__init__(RESET_CHANNEL)
 
     def on_message_received(self, msg: Any) -> None:
-        """Ignores the answer, JSON that says `ok`."""
+        """Ignores the answer, which is JSON."""
 
     def send(self, world: dict[str, Any]) -> None:
         """Queues a reset to a world."""
@@ -62,13 +62,13 @@ def ring(size: int) -> dict[str, Any]:
 
 
 def cpu_seconds(pid: int) -> float:
-    """Processor time of a process so far."""
+    """CPU time that a process has used so far."""
     fields = pathlib.Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
 def actor(env: Any, name: str) -> Any:
-    """A function that sets an action of three numbers with this version of the client."""
+    """Returns a function that sets an action of three numbers in this version of the client."""
     numbers = np.array([[5.0, 15.0, 0.0]], dtype=np.float32)
     try:
         from mlagents_envs.base_env import ActionTuple
@@ -78,7 +78,7 @@ def actor(env: Any, name: str) -> Any:
 
 
 def main() -> None:
-    """Measures, and prints the result."""
+    """Runs the measurement and prints the result."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("executable", type=pathlib.Path)
     parser.add_argument("--steps", type=int, default=2000)

@@ -11,7 +11,7 @@ use driftworld_unity::protocol::{
 };
 use driftworld_unity::{BEHAVIOR, PictureForm, Screenshots, Session, Setup};
 
-/// Twenty objects in a ring, around which the agent drives.
+/// Twenty objects in a ring, in which the agent drives in a circle.
 fn ring() -> World {
     let kinds = ["tree", "barrel", "chair", "rock", "geometric"];
     let object = |number: u32| {
@@ -22,7 +22,7 @@ fn ring() -> World {
         )
     };
     let world = WorldDraft::with_objects((0..20).map(object).collect());
-    world.check().expect("the world is sound")
+    world.check().expect("the world is valid")
 }
 
 fn session(pictures: PictureForm) -> Session {
@@ -62,7 +62,7 @@ fn commands(c: &mut Criterion) {
     }
     let mut session = session(PictureForm::Png);
     c.bench_function("a reset of 20 objects with three pictures as PNG", |bench| {
-        bench.iter(|| black_box(session.answer(&reset).expect("a world can always begin anew")));
+        bench.iter(|| black_box(session.answer(&reset).expect("a world can always be reset")));
     });
 }
 

@@ -1,4 +1,4 @@
-//! Parses the arguments: our own, and those that clients pass to any Unity executable, which are ignored.
+//! Parses the arguments: our own options, and Unity's, which clients pass to any executable and which are ignored here.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -93,7 +93,7 @@ impl Default for Options {
 }
 
 /// Our own options.
-const OURS: [&str; 11] = [
+const OUR_OPTIONS: [&str; 11] = [
     "--assets",
     "--mlagents-port",
     "--host",
@@ -107,8 +107,8 @@ const OURS: [&str; 11] = [
     "--version",
 ];
 
-/// Unity options that clients are known to use, in lower case, without effect here.
-const UNITYS: [&str; 9] = [
+/// Unity options that clients are known to use, in lower case. They have no effect here.
+const UNITY_OPTIONS: [&str; 9] = [
     "-nographics",
     "-batchmode",
     "-quit",
@@ -120,19 +120,20 @@ const UNITYS: [&str; 9] = [
     "-force-vulkan",
 ];
 
-/// The shortest wait, long enough to reach a running client, and the longest: a day.
-const SHORTEST_WAIT_SECS: f64 = 0.1;
-const LONGEST_WAIT_SECS: f64 = 86_400.0;
+/// Minimum wait, long enough to reach a running client.
+const MIN_WAIT_SECS: f64 = 0.1;
+/// Maximum wait: a day.
+const MAX_WAIT_SECS: f64 = 86_400.0;
 
 impl Request {
-    /// Parses the arguments, without the program's name; returns remarks on those without effect.
+    /// Parses the arguments, without the program's name. Also returns remarks on arguments that have no effect.
     ///
     /// # Errors
     /// [`UnityError::Arguments`] if one of our options has no value, or an invalid one.
     pub fn parse(arguments: &[String]) -> Result<(Self, Vec<String>), UnityError> {
         let mut options = Options::default();
         let mut remarks = Vec::new();
-        // A word after an unknown option may be its value.
+        // A word after one of Unity's options or an unknown option may be its value.
         let mut after_foreign = false;
         let mut rest = arguments.iter().peekable();
         while let Some(argument) = rest.next() {
@@ -181,9 +182,10 @@ impl Request {
                 }
                 other if other.starts_with('-') => {
                     is_foreign = true;
-                    if !UNITYS.contains(&other.to_lowercase().as_str()) {
-                        let near = meant(other).map_or_else(String::new, |near| format!("; did you mean {near}?"));
-                        remarks.push(format!("{other:?} is not known here and ignored{near}"));
+                    if !UNITY_OPTIONS.contains(&other.to_lowercase().as_str()) {
+                        let advice =
+                            suggestion(other).map_or_else(String::new, |near| format!("; did you mean {near}?"));
+                        remarks.push(format!("{other:?} is not known here and ignored{advice}"));
                     }
                 }
                 other if !after_foreign => remarks.push(format!("{other:?} belongs to no option and is ignored")),
@@ -200,13 +202,13 @@ fn is_option(word: &str) -> bool {
     word.len() > 1 && word.starts_with('-') && word.parse::<f64>().is_err()
 }
 
-/// The one of our options that an unknown word probably means.
-fn meant(word: &str) -> Option<String> {
-    // Most programs use this name.
+/// The option of ours that an unknown word probably means.
+fn suggestion(word: &str) -> Option<String> {
+    // Most programs call it --port.
     if word.trim_start_matches('-').eq_ignore_ascii_case("port") {
         return Some("--mlagents-port".to_owned());
     }
-    nearest(word, OURS)
+    nearest(word, OUR_OPTIONS)
 }
 
 fn port(text: &str) -> Result<u16, UnityError> {
@@ -220,10 +222,10 @@ fn port(text: &str) -> Result<u16, UnityError> {
 
 fn wait(text: &str) -> Result<Duration, UnityError> {
     let seconds: Option<f64> = text.parse().ok();
-    let seconds = seconds.filter(|seconds| (SHORTEST_WAIT_SECS..=LONGEST_WAIT_SECS).contains(seconds));
+    let seconds = seconds.filter(|seconds| (MIN_WAIT_SECS..=MAX_WAIT_SECS).contains(seconds));
     seconds.map(Duration::from_secs_f64).ok_or_else(|| {
         UnityError::Arguments(format!(
-            "--wait: found {text:?}, expected seconds from {SHORTEST_WAIT_SECS} to {LONGEST_WAIT_SECS}"
+            "--wait: found {text:?}, expected seconds from {MIN_WAIT_SECS} to {MAX_WAIT_SECS}"
         ))
     })
 }
@@ -238,7 +240,7 @@ mod tests {
     }
 
     fn options(text: &str) -> (Options, Vec<String>) {
-        match parse(text).expect("the arguments are sound") {
+        match parse(text).expect("the arguments are valid") {
             (Request::Run(options), remarks) => (options, remarks),
             (other, _) => panic!("{other:?}"),
         }
@@ -266,8 +268,8 @@ mod tests {
             assert!(remarks.is_empty(), "{remarks:?}");
         }
         let (found, _) = options("-logFile --mlagents-port 5007");
-        assert_eq!((found.log, found.port), (None, 5007), "the option behind it counts");
-        let (empty, _) = Request::parse(&["-logFile".to_owned(), String::new()]).expect("nothing is no file");
+        assert_eq!((found.log, found.port), (None, 5007), "the next option is not a file");
+        let (empty, _) = Request::parse(&["-logFile".to_owned(), String::new()]).expect("an empty name is accepted");
         assert_eq!(empty, Request::Run(Options::default()));
     }
 
@@ -338,9 +340,9 @@ mod tests {
 
     #[test]
     fn help_names_every_option() {
-        for option in OURS {
+        for option in OUR_OPTIONS {
             assert!(HELP.contains(option), "{option}");
         }
-        assert_eq!(parse("--wait 1 -h").expect("help is always there").0, Request::Help);
+        assert_eq!(parse("--wait 1 -h").expect("help is always available").0, Request::Help);
     }
 }

@@ -1,4 +1,5 @@
-//! The behaviour of a world's agent, as each generation of clients expects it: three continuous numbers or one discrete one.
+//! Describes the action space of a world's agent (in ML-Agents, its behaviour) as each generation of clients expects it: three
+//! continuous numbers or one discrete one.
 
 use driftworld_spec::{ActionModel, ActionSpace, AgentParams};
 
@@ -11,10 +12,10 @@ pub const BEHAVIOR: &str = "L2Explorer?team=0";
 /// Number of continuous numbers in an action.
 pub(crate) const ACTION_LENGTH: usize = 3;
 
-/// Description of an action in worlds with an action table.
+/// Description of the action in worlds with an action table.
 const ROW: &str = "a row of the world's table of actions";
 
-/// The behaviour for a client: three continuous numbers, or one discrete one, the row of the world's action table.
+/// The behaviour for a client: three continuous numbers, or one discrete number, the row of the world's action table.
 pub(crate) fn behavior(agent: &AgentParams, client: Client) -> BrainParametersProto {
     let num_rows = agent.num_actions().map(|rows| rows as i32);
     let (words, kind) = match num_rows {

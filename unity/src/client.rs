@@ -6,10 +6,10 @@ use crate::protocol::UnityRlInitializationInputProto;
 /// The protocol features that a client understands.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Client {
-    /// Continuous numbers have their own list, and behaviours an `action_spec` (since 1.3 of the protocol).
+    /// Continuous numbers have their own list, and behaviours have an `action_spec` (since protocol version 1.3).
     pub(crate) hybrid_actions: bool,
-    /// Images are (channels, height, width) instead of (height, width, channels). The protocol has no flag for this: packages
-    /// from 1.0 on expect it.
+    /// Images are (channels, height, width) instead of (height, width, channels). The protocol has no flag for this; packages
+    /// since 1.0 expect it.
     pub(crate) channels_first: bool,
 }
 
@@ -18,15 +18,15 @@ impl Client {
     ///
     /// # Errors
     /// [`UnityError::ClientVersion`] unless it speaks version 1 of the protocol.
-    pub(crate) fn new(said: &UnityRlInitializationInputProto) -> Result<Self, UnityError> {
-        if major(&said.communication_version) != Some(1) {
-            let found = said.communication_version.chars().take(40).collect();
+    pub(crate) fn new(first_message: &UnityRlInitializationInputProto) -> Result<Self, UnityError> {
+        if major(&first_message.communication_version) != Some(1) {
+            let found = first_message.communication_version.chars().take(40).collect();
             return Err(UnityError::ClientVersion(found));
         }
-        let capabilities = said.capabilities.unwrap_or_default();
+        let capabilities = first_message.capabilities.unwrap_or_default();
         Ok(Self {
             hybrid_actions: capabilities.hybrid_actions,
-            channels_first: major(&said.package_version).is_some_and(|major| major >= 1),
+            channels_first: major(&first_message.package_version).is_some_and(|major| major >= 1),
         })
     }
 }
@@ -41,7 +41,7 @@ mod tests {
     use super::*;
     use crate::protocol::UnityRlCapabilitiesProto;
 
-    fn said(communication: &str, package: &str, hybrid: bool) -> UnityRlInitializationInputProto {
+    fn first_message(communication: &str, package: &str, hybrid: bool) -> UnityRlInitializationInputProto {
         UnityRlInitializationInputProto {
             seed: 0,
             communication_version: communication.to_owned(),
@@ -56,7 +56,8 @@ mod tests {
     #[test]
     fn capabilities_follow_the_clients_generation() {
         let check = |communication: &str, package: &str, hybrid: bool, expected: (bool, bool)| {
-            let client = Client::new(&said(communication, package, hybrid)).expect("the client is of version 1");
+            let client =
+                Client::new(&first_message(communication, package, hybrid)).expect("the client uses version 1");
             assert_eq!((client.hybrid_actions, client.channels_first), expected, "{package}");
         };
         check("1.0.0", "0.16.0", false, (false, false));
@@ -69,7 +70,7 @@ mod tests {
     #[test]
     fn other_major_versions_are_refused() {
         for version in ["0.15.0", "2.0.0", "", "API-12"] {
-            let error = Client::new(&said(version, "0.15.0", false)).expect_err("the version is another");
+            let error = Client::new(&first_message(version, "0.15.0", false)).expect_err("the version is another");
             assert_eq!(error.code(), "unity/client-version");
         }
     }

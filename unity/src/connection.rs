@@ -12,17 +12,17 @@ use tonic_prost::ProstCodec;
 use crate::error::UnityError;
 use crate::protocol::UnityMessageProto;
 
-/// Maximum length of an incoming message, in bytes: far more than the limits on strings and values allow.
+/// Maximum length of an incoming message, in bytes: far more than any message within the limits on strings and values needs.
 pub const MAX_INCOMING_BYTES: usize = 48 << 20;
 
 /// Time of silence after which TCP checks whether the other side is still there.
 const KEEPALIVE: Duration = Duration::from_secs(30);
 
-/// Time between attempts to reach a client.
-const BETWEEN_LOOKS: Duration = Duration::from_millis(50);
+/// Interval between attempts to reach a client.
+const RETRY_INTERVAL: Duration = Duration::from_millis(50);
 
-/// The protocol's only call: Python is the server, the world the client. Each call carries the world's output, and the response
-/// is the next input.
+/// The protocol's only call. Python is the server, and the world is the client: each call carries the world's output, and the
+/// response is the next input.
 const CALL: &str = "/communicator_objects.UnityToExternalProto/Exchange";
 
 /// A connection to a client.
@@ -35,12 +35,12 @@ pub(crate) struct Connection {
 pub(crate) enum Reply {
     /// The client's next message.
     Message(Box<UnityMessageProto>),
-    /// The client is gone, with the network's message.
+    /// The client is gone; the network's message says why.
     Gone(String),
 }
 
 impl Connection {
-    /// Tries to connect to a client until `wait` is over.
+    /// Tries to connect to a client for at most `wait`.
     pub(crate) async fn open(host: &str, port: u16, wait: Duration) -> Result<Self, UnityError> {
         let deadline = Instant::now() + wait;
         let host = if host.contains(':') {
@@ -53,7 +53,7 @@ impl Connection {
         let endpoint = Endpoint::from_shared(format!("http://{address}"))
             .map_err(no_address)?
             .tcp_nodelay(true)
-            // Another machine may lose power silently.
+            // Detects a machine that has lost power.
             .tcp_keepalive(Some(KEEPALIVE));
         loop {
             match timeout_at(deadline, endpoint.connect()).await {
@@ -61,7 +61,7 @@ impl Connection {
                     let client = Grpc::new(channel).max_decoding_message_size(MAX_INCOMING_BYTES);
                     return Ok(Self { client, address });
                 }
-                Ok(Err(_)) if Instant::now() + BETWEEN_LOOKS < deadline => sleep(BETWEEN_LOOKS).await,
+                Ok(Err(_)) if Instant::now() + RETRY_INTERVAL < deadline => sleep(RETRY_INTERVAL).await,
                 _ => {
                     let seconds = wait.as_secs_f64();
                     return Err(UnityError::NoClient { address, seconds });
@@ -75,7 +75,7 @@ impl Connection {
         &self.address
     }
 
-    /// The first call, which detects servers that are not clients: a client has to answer within `wait`.
+    /// Makes the first call, which detects servers that are not clients: a client has to answer within `wait`.
     pub(crate) async fn greet(&mut self, greeting: UnityMessageProto, wait: Duration) -> Result<Reply, UnityError> {
         let address = self.address.clone();
         match timeout(wait, self.call(greeting)).await {
@@ -108,25 +108,25 @@ impl Connection {
 fn reply(answer: Result<UnityMessageProto, Status>) -> Result<Reply, UnityError> {
     match answer {
         Ok(message) => Ok(Reply::Message(Box::new(message))),
-        // We could not decode a message: it is too long, or not valid protobuf.
+        // The message could not be decoded: it is too long, or not valid protobuf.
         Err(status)
             if matches!(status.code(), Code::OutOfRange | Code::Internal | Code::DataLoss)
                 && !is_transport(&status) =>
         {
             Err(UnityError::Unreadable(status.message().to_owned()))
         }
-        // A client that closes cancels the call, a client that is killed breaks the connection, and one that exits within its
-        // handler reports a failure: all of them are gone.
+        // A client that closes cancels the call, one that is killed breaks the connection, and one that exits within its handler
+        // reports a failure. In each case the client is gone.
         Err(status) => Ok(Reply::Gone(reason(&status))),
     }
 }
 
-/// Whether the network failed, rather than the server returned an error.
+/// Whether the network failed, rather than the server returning an error.
 fn is_transport(status: &Status) -> bool {
     std::error::Error::source(status).is_some()
 }
 
-/// A status as text: its innermost cause, if there is one.
+/// A status as text: its innermost cause if there is one, otherwise its code and message.
 fn reason(status: &Status) -> String {
     let mut cause: &dyn std::error::Error = status;
     while let Some(inner) = cause.source() {

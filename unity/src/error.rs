@@ -1,4 +1,4 @@
-//! [`UnityError`]: errors that end a session. Refused messages are answered, and are not errors here.
+//! [`UnityError`]: errors that end a session. Refused messages are answered instead, and do not end it.
 
 use std::path::PathBuf;
 
@@ -74,16 +74,16 @@ pub enum UnityError {
         /// What it did.
         reason: String,
     },
-    /// The client uses this unsupported version of the protocol.
+    /// The client uses an unsupported version of the protocol.
     #[error("client: found version {0:?} of the protocol, expected 1.x, which mlagents-envs 0.16 to 1.1 speak")]
     ClientVersion(String),
-    /// A message is invalid, or too long: the reason, with the limit if it is too long.
+    /// A message is invalid or too long: the reason, with the limit if it is too long.
     #[error("client: a message cannot be read: {}", one_line(.0))]
     Unreadable(String),
     /// A message lacks this required part.
     #[error("client: found a message without {0}")]
     Incomplete(&'static str),
-    /// The command has an unknown number.
+    /// The command's number is unknown.
     #[error("client: found command {0}, expected 0 (step), 1 (reset) or 2 (quit)")]
     UnknownCommand(i32),
     /// The client reports a failure.

@@ -1,7 +1,7 @@
 //! Replaces L2Explorer's Unity executable: runs worlds for clients that speak the ML-Agents protocol.
 //!
-//! A [`Session`] turns a client's messages into a world's answers, without network or clock; [`run`] connects it over gRPC.
-//! L2Explorer's messages are implemented in `driftworld-env`.
+//! A [`Session`] answers a client's messages, without using the network or the clock; [`run`] connects it over gRPC.
+//! `driftworld-env` implements L2Explorer's messages.
 
 mod arguments;
 mod behavior;

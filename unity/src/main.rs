@@ -1,4 +1,4 @@
-//! The executable: parses its arguments, runs a session, sets the exit status.
+//! The executable: parses its arguments, runs a session and sets the exit status.
 
 use std::fmt::Display;
 use std::io::{Write, stderr, stdout};

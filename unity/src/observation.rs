@@ -1,4 +1,4 @@
-//! Converts observations to the protocol's form: depth, colours, segmentation, then a list of numbers.
+//! Converts observations to the protocol's form: images of depth, colours and segmentation, then the state vector.
 
 use driftworld_env::{Frame, category_color, depth_to_gray};
 
@@ -16,17 +16,17 @@ pub enum PictureForm {
     Floats,
 }
 
-/// Properties of a dimension, for clients from 1.5 of the protocol on.
+/// Properties of a dimension, for clients using protocol version 1.5 or later.
 const NO_NEIGHBOURS: i32 = 1;
 const NEIGHBOURS: i32 = 2;
 
 /// The channels of an image: red, green, blue.
 const CHANNELS: usize = 3;
 
-/// Distance in metres at which depth is white, as in [`depth_to_gray`]: much nearer than the sky's.
+/// Distance in metres at which depth is white, as in [`depth_to_gray`]: much nearer than the sky.
 const WHITE_DEPTH: f32 = 100.0;
 
-/// The observations of a frame and a state, in the original's order.
+/// The observations of a frame and a state, in the order used by the original environment.
 ///
 /// `state` begins with the number of the collected or photographed object.
 pub(crate) fn observations(
@@ -108,7 +108,7 @@ fn vector(state: Vec<f32>) -> ObservationProto {
     }
 }
 
-/// Encodes 8-bit RGB as PNG with fast compression, because the file exists only for a millisecond.
+/// Encodes 8-bit RGB as PNG with fast compression, because the file is decoded a millisecond later.
 pub(crate) fn png([width, height]: [u32; 2], rgb: &[u8]) -> Result<Vec<u8>, UnityError> {
     let failed = |error: png::EncodingError| UnityError::Picture(error.to_string());
     let mut bytes = Vec::new();
@@ -133,7 +133,7 @@ mod tests {
         let observations =
             observations(&frame, Vec::new(), PictureForm::Floats, Client::default()).expect("floats need no file");
         let Some(ObservationData::FloatData(FloatData { data })) = &observations[0].observation_data else {
-            panic!("floats were asked for: {:?}", observations[0]);
+            panic!("expected floats: {:?}", observations[0]);
         };
         assert_eq!(data[..9], [0.0, 0.0, 0.0, 0.001, 0.001, 0.001, 0.333, 0.333, 0.333]);
         for (float, gray) in data.iter().step_by(CHANNELS).zip(depth_to_gray(&metres)) {

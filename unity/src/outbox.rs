@@ -1,4 +1,4 @@
-//! [`Outbox`]: queued messages, sent in batches no larger than a client accepts.
+//! [`Outbox`]: queues messages and releases them in batches no larger than a client accepts.
 
 use std::collections::VecDeque;
 
@@ -10,46 +10,46 @@ use crate::side_channel::{RECORD_HEAD, write_record};
 pub(crate) const MAX_OUTGOING_BYTES: usize = 4 << 20;
 
 /// Maximum number of queued messages: if a client requests more than it accepts, later ones are dropped.
-const MOST_WAITING: usize = 10_000;
+const MAX_QUEUED: usize = 10_000;
 
 /// Messages to the client, in sending order.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Outbox {
-    waiting: VecDeque<(Uuid, Vec<u8>)>,
-    /// Number of dropped messages since the last query.
-    left_out: usize,
+    queue: VecDeque<(Uuid, Vec<u8>)>,
+    /// Number of messages dropped since the last query.
+    num_dropped: usize,
 }
 
 impl Outbox {
     /// Appends a message.
     pub(crate) fn push(&mut self, channel: Uuid, payload: Vec<u8>) {
-        if self.waiting.len() < MOST_WAITING {
-            self.waiting.push_back((channel, payload));
+        if self.queue.len() < MAX_QUEUED {
+            self.queue.push_back((channel, payload));
         } else {
-            self.left_out += 1;
+            self.num_dropped += 1;
         }
     }
 
-    /// Takes messages that fit into `room` bytes; the rest stays queued. Drops messages too long to fit on their own.
-    pub(crate) fn take(&mut self, room: usize) -> Vec<u8> {
+    /// Takes messages that fit into `limit` bytes; the rest stays queued. Drops messages too long to fit on their own.
+    pub(crate) fn take(&mut self, limit: usize) -> Vec<u8> {
         let mut bytes = Vec::new();
-        while let Some((channel, payload)) = self.waiting.front() {
+        while let Some((channel, payload)) = self.queue.front() {
             let length = payload.len() + RECORD_HEAD;
-            if length > room {
-                self.left_out += 1;
-            } else if bytes.len() + length > room {
+            if length > limit {
+                self.num_dropped += 1;
+            } else if bytes.len() + length > limit {
                 break;
             } else {
                 write_record(&mut bytes, *channel, payload);
             }
-            self.waiting.pop_front();
+            self.queue.pop_front();
         }
         bytes
     }
 
     /// The number of messages dropped since the last call.
-    pub(crate) fn take_left_out(&mut self) -> usize {
-        std::mem::take(&mut self.left_out)
+    pub(crate) fn take_num_dropped(&mut self) -> usize {
+        std::mem::take(&mut self.num_dropped)
     }
 }
 
@@ -71,20 +71,20 @@ mod tests {
             outbox.push(Uuid::nil(), vec![0; length]);
         }
         assert_eq!(lengths(&outbox.take(75)), [10]);
-        assert_eq!(outbox.take_left_out(), 1, "the one of 200");
+        assert_eq!(outbox.take_num_dropped(), 1, "the message of 200 bytes was dropped");
         assert_eq!(lengths(&outbox.take(100)), [30]);
         assert_eq!(lengths(&outbox.take(100)), [40]);
         assert!(outbox.take(100).is_empty());
-        assert_eq!(outbox.take_left_out(), 0);
+        assert_eq!(outbox.take_num_dropped(), 0);
     }
 
     #[test]
     fn queue_length_is_limited() {
         let mut outbox = Outbox::default();
-        for _ in 0..MOST_WAITING + 5 {
+        for _ in 0..MAX_QUEUED + 5 {
             outbox.push(Uuid::nil(), Vec::new());
         }
-        assert_eq!(outbox.take_left_out(), 5);
-        assert_eq!(lengths(&outbox.take(usize::MAX)).len(), MOST_WAITING);
+        assert_eq!(outbox.take_num_dropped(), 5);
+        assert_eq!(lengths(&outbox.take(usize::MAX)).len(), MAX_QUEUED);
     }
 }

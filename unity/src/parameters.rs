@@ -1,4 +1,4 @@
-//! [`Parameters`]: numbers that clients set by name and that override each world at its reset.
+//! [`Parameters`]: numbers that clients set by name. They override the settings of each world when it is reset.
 
 use std::collections::BTreeMap;
 
@@ -19,24 +19,24 @@ const KNOWN: [&str; 8] = [
 ];
 
 /// The integer parameters, with the minimum of each.
-const WHOLE: [(&str, u32); 3] = [("frame_skip", 1), ("max_steps", 0), ("supersampling", 1)];
+const INTEGERS: [(&str, u32); 3] = [("frame_skip", 1), ("max_steps", 0), ("supersampling", 1)];
 
 /// The parameters that are set.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Parameters(BTreeMap<&'static str, f64>);
 
 impl Parameters {
-    /// Sets a parameter, from the next reset on.
+    /// Sets a parameter, with effect from the next reset.
     ///
     /// # Errors
-    /// The reason why it is unknown or invalid; previous values stay.
+    /// The reason why it is unknown or invalid; the previous value stays.
     pub(crate) fn set(&mut self, setting: &Setting) -> Result<(), String> {
         let Setting { key, value } = setting;
         let Some(known) = KNOWN.into_iter().find(|known| known.eq_ignore_ascii_case(key)) else {
             let near = nearest(key, KNOWN).map_or_else(String::new, |near| format!("; did you mean {near:?}?"));
             return Err(format!("{key:?} = {value}: ignored, it has no meaning here{near}"));
         };
-        // Converts through decimal digits, so that 0.1 is exactly 0.1.
+        // Converts through decimal digits, so that the f32 0.1 becomes the f64 0.1.
         let number = value.to_string().parse().unwrap_or(f64::NAN);
         check(known, number).map_err(|expected| format!("{known} = {value}: ignored, expected {expected}"))?;
         self.0.insert(known, number);
@@ -71,7 +71,7 @@ impl Parameters {
         self.0.is_empty()
     }
 
-    /// The world with the parameters applied and checked; otherwise the problem.
+    /// Applies the parameters to a world; returns the problem if the result is invalid.
     pub(crate) fn try_world(&self, world: World) -> Result<World, String> {
         world.edit(|world| self.apply(world)).map_err(|error| {
             let first = error.problems().first();
@@ -83,14 +83,14 @@ impl Parameters {
     }
 }
 
-/// Checks a number as in a document; the error is what was expected.
+/// Checks a number as in a document; the error states what was expected.
 fn check(known: &'static str, number: f64) -> Result<(), String> {
-    let least = WHOLE.iter().find(|(key, _)| *key == known).map(|(_, least)| *least);
-    match least {
+    let min = INTEGERS.iter().find(|(key, _)| *key == known).map(|(_, min)| *min);
+    match min {
         None if !number.is_finite() => return Err("a number".to_owned()),
-        // Checked before conversion to an integer, which would round it.
-        Some(least) if number.fract() != 0.0 || number < f64::from(least) => {
-            return Err(format!("a whole number from {least}"));
+        // Checked before the conversion to an integer, which would truncate the number.
+        Some(min) if number.fract() != 0.0 || number < f64::from(min) => {
+            return Err(format!("a whole number from {min}"));
         }
         _ => {}
     }
@@ -120,7 +120,7 @@ mod tests {
             let mut world = WorldDraft::default();
             parameters.apply(&mut world);
             assert_ne!(world, WorldDraft::default(), "{key}");
-            let changed = world.check().expect("the world is sound").to_json();
+            let changed = world.check().expect("the world is valid").to_json();
             assert!(changed.contains(&format!("\"{key}\":{value}")), "{key}: {changed}");
         }
     }
@@ -137,7 +137,7 @@ mod tests {
     #[test]
     fn invalid_values_are_ignored_with_a_reason() {
         let mut parameters = Parameters::default();
-        set(&mut parameters, "frame_skip", 4.0).expect("4 is sound");
+        set(&mut parameters, "frame_skip", 4.0).expect("4 is valid");
         let before = parameters.clone();
         for row in r#"
 frame_skip 0 => frame_skip = 0: ignored, expected a whole number from 1

@@ -1,5 +1,5 @@
-//! The messages of the ML-Agents protocol: field numbers and names of mlagents-envs 0.16 to 1.1. Fields that no client sends
-//! and that are not written here are omitted, and skipped when received.
+//! The messages of the ML-Agents protocol, with the field numbers and names of mlagents-envs 0.16 to 1.1. Fields that neither
+//! side needs are omitted, and skipped when received.
 
 use std::collections::BTreeMap;
 
@@ -28,7 +28,7 @@ pub struct HeaderProto {
     pub message: String,
 }
 
-/// Capabilities beyond the first version of the protocol, with a flag each.
+/// Capabilities beyond the first version of the protocol, one flag each.
 #[expect(
     clippy::struct_excessive_bools,
     reason = "the protocol has a flag for each capability"
@@ -112,7 +112,7 @@ pub struct ListAgentActionProto {
 #[expect(clippy::struct_field_names, reason = "the names are the protocol's")]
 #[derive(Clone, PartialEq, prost::Message)]
 pub struct AgentActionProto {
-    /// Continuous or discrete numbers; the only form of clients before 1.3 of the protocol.
+    /// Continuous or discrete numbers; the only form before protocol version 1.3.
     #[prost(float, repeated, tag = "1")]
     pub vector_actions: Vec<f32>,
     /// Continuous numbers.
@@ -129,7 +129,7 @@ pub struct AgentActionProto {
 pub enum CommandProto {
     /// Take one step.
     Step = 0,
-    /// Begin an episode.
+    /// Start an episode.
     Reset = 1,
     /// Quit.
     Quit = 2,
@@ -184,10 +184,10 @@ pub enum CompressionTypeProto {
     Png = 1,
 }
 
-/// The world's output: what happened, and for a new world its description.
+/// The world's output: the results of a command, and the description of a new world.
 #[derive(Clone, PartialEq, prost::Message)]
 pub struct UnityOutputProto {
-    /// What happened.
+    /// The results of a command.
     #[prost(message, optional, tag = "1")]
     pub rl_output: Option<UnityRlOutputProto>,
     /// The world's description.
@@ -218,7 +218,7 @@ pub struct UnityRlInitializationOutputProto {
 /// The action space of a behaviour.
 #[derive(Clone, PartialEq, Eq, Hash, prost::Message)]
 pub struct BrainParametersProto {
-    /// Number of continuous numbers, or of choices of each discrete one; for clients before 1.3 of the protocol.
+    /// Number of continuous numbers, or of choices of each discrete one; for clients before protocol version 1.3.
     #[prost(int32, repeated, tag = "3")]
     pub vector_action_size: Vec<i32>,
     /// Descriptions of the numbers.
@@ -233,12 +233,12 @@ pub struct BrainParametersProto {
     /// Whether Python controls its agents.
     #[prost(bool, tag = "8")]
     pub is_training: bool,
-    /// The action space for clients from 1.3 of the protocol on.
+    /// The action space for clients using protocol version 1.3 or later.
     #[prost(message, optional, tag = "9")]
     pub action_spec: Option<ActionSpecProto>,
 }
 
-/// An action space for clients from 1.3 of the protocol on.
+/// An action space for clients using protocol version 1.3 or later.
 #[derive(Clone, PartialEq, Eq, Hash, prost::Message)]
 pub struct ActionSpecProto {
     /// Number of continuous numbers.
@@ -255,7 +255,7 @@ pub struct ActionSpecProto {
     pub action_descriptions: Vec<String>,
 }
 
-/// Results of a step.
+/// The results of a command.
 #[derive(Clone, PartialEq, prost::Message)]
 pub struct UnityRlOutputProto {
     /// Agents by name of behaviour.

@@ -19,11 +19,11 @@ pub struct RecordingFile {
 }
 
 impl RecordingFile {
-    /// Opens a new file, or an existing one after its last complete episode.
+    /// Creates a file, or opens an existing one to continue after its last complete episode.
     ///
     /// # Errors
-    /// [`UnityError::Writing`] if it cannot be written, or another process is writing it; [`UnityError::Recording`] if it has
-    /// other contents, or is damaged.
+    /// [`UnityError::Writing`] if it cannot be written or another process is writing it; [`UnityError::Recording`] if it has
+    /// other contents or is damaged.
     pub fn open(path: &Path) -> Result<Self, UnityError> {
         let failed = |source: std::io::Error| UnityError::Writing {
             option: "--record",
@@ -47,12 +47,12 @@ impl RecordingFile {
                     "another driftworld-unity writes it; name another file",
                 )));
             }
-            // Without file locks on this system, continue without one.
+            // If the file system has no locks, continue without one.
             Ok(()) | Err(TryLockError::Error(_)) => {}
         }
         let length = file.metadata().map_err(failed)?.len();
-        let (mut kept, mut lines, mut next) = (0, RecordingLines::default(), 0);
-        // A shorter file has at most a part of the first line.
+        let (mut kept_bytes, mut lines, mut next) = (0, RecordingLines::default(), 0);
+        // A shorter file contains at most a part of the first line.
         if length >= RecordingLines::header().len() as u64 {
             let damaged = |source| UnityError::Recording {
                 path: path.to_owned(),
@@ -60,11 +60,11 @@ impl RecordingFile {
             };
             let read = BufReader::new(file.try_clone().map_err(failed)?);
             let reader = RecordingReader::new(read).map_err(damaged)?;
-            (kept, lines, next) = reader.into_lines_before(u64::MAX).map_err(damaged)?;
+            (kept_bytes, lines, next) = reader.into_lines_before(u64::MAX).map_err(damaged)?;
         }
-        file.set_len(kept).map_err(failed)?;
+        file.set_len(kept_bytes).map_err(failed)?;
         file.rewind().map_err(failed)?;
-        if kept == 0 {
+        if kept_bytes == 0 {
             file.write_all(RecordingLines::header().as_bytes()).map_err(failed)?;
         }
         Ok(Self {
@@ -78,7 +78,7 @@ impl RecordingFile {
     /// Appends an episode, with the next index.
     ///
     /// # Errors
-    /// [`UnityError::Writing`].
+    /// [`UnityError::Writing`] if it cannot be written.
     pub fn write(&mut self, mut recording: Recording) -> Result<(), UnityError> {
         recording.origin.experience = self.next;
         let lines = self.lines.lines(&recording);

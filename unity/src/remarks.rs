@@ -1,4 +1,4 @@
-//! [`Remarks`]: remarks for the user of the executable, each only once.
+//! [`Remarks`]: collects remarks for the user of the executable, each only once.
 
 use std::collections::BTreeSet;
 
@@ -16,9 +16,9 @@ pub(crate) enum About {
 }
 
 /// Maximum number of remarks of a kind per session: a client that sends garbage in every step must not fill the disk.
-const MOST: usize = 100;
+const MAX_REMARKS: usize = 100;
 
-/// Remarks not yet taken, and the set of all that were made.
+/// Remarks not yet taken, and the set of all remarks made so far.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Remarks {
     made: BTreeSet<(About, String)>,
@@ -35,11 +35,11 @@ impl Remarks {
     pub(crate) fn make_once(&mut self, about: About, thing: &str, remark: &str) {
         let key = (about, thing.to_owned());
         let count = self.made.iter().filter(|(kind, _)| *kind == about).count();
-        if count > MOST || self.made.contains(&key) {
+        if count > MAX_REMARKS || self.made.contains(&key) {
             return;
         }
         self.made.insert(key);
-        self.waiting.push(if count < MOST {
+        self.waiting.push(if count < MAX_REMARKS {
             // It may contain text from a client.
             printable_lines(remark).into_owned()
         } else {
@@ -73,13 +73,13 @@ mod tests {
             remarks.make(About::Worlds, &number.to_string());
         }
         let taken = remarks.take();
-        assert_eq!(taken.len(), MOST);
+        assert_eq!(taken.len(), MAX_REMARKS);
         assert_eq!(
             taken.last().map(String::as_str),
             Some("further remarks on worlds are left out")
         );
         remarks.make(About::Worlds, "c");
         remarks.make(About::Refusals, "c");
-        assert_eq!(remarks.take(), ["c"], "refusals have room of their own");
+        assert_eq!(remarks.take(), ["c"], "refusals have their own limit");
     }
 }

@@ -8,27 +8,27 @@ use driftworld_atomic_files::AtomicFile;
 use driftworld_text::ShownPath;
 
 /// Maximum length of a file name, in bytes.
-const LONGEST_NAME: usize = 200;
+const MAX_NAME_BYTES: usize = 200;
 
 /// The first bytes of every PNG file.
 const SIGNATURE: [u8; 8] = *b"\x89PNG\r\n\x1a\n";
 
-/// A folder for images with names from messages.
+/// A folder for images whose names come from messages.
 #[derive(Clone, Debug)]
 pub struct Screenshots {
     folder: PathBuf,
 }
 
 impl Screenshots {
-    /// Uses this folder, which is created for the first image.
+    /// Uses this folder, which is created when the first image is written.
     pub fn new(folder: impl Into<PathBuf>) -> Self {
         Self { folder: folder.into() }
     }
 
     /// Writes a PNG file inside the folder, whatever path the name contains, and returns its path.
     ///
-    /// Subfolders in the name are kept if they lead further into the folder; of any other path only the last part is used.
-    /// Replaces an existing image of that name; replaces a link itself, not the file that it points to.
+    /// Subfolders in the name are kept if they stay inside the folder; of any other path only the last part is used. An existing
+    /// image of that name is replaced; of a link, the link itself and not the file that it points to.
     ///
     /// # Errors
     /// The reason why the file could not be written: an invalid name, a folder of that name, or the system's error.
@@ -85,20 +85,24 @@ fn inside(name: &str) -> Result<PathBuf, String> {
     // Clients on Windows use Windows paths.
     let slashed = name.replace('\\', "/");
     let path = Path::new(&slashed);
-    let leads_in = path.components().all(|part| matches!(part, Component::Normal(_))) && !slashed.contains(':');
+    let stays_inside = path.components().all(|part| matches!(part, Component::Normal(_))) && !slashed.contains(':');
     let last = slashed.rsplit(['/', ':']).next().unwrap_or_default();
-    let mut path = if leads_in { path.to_owned() } else { PathBuf::from(last) };
+    let mut path = if stays_inside {
+        path.to_owned()
+    } else {
+        PathBuf::from(last)
+    };
     let is_name = |part: Component| match part {
         Component::Normal(part) => {
             let text = part.to_string_lossy();
-            part.len() <= LONGEST_NAME && !text.starts_with('.') && !text.contains(char::is_control)
+            part.len() <= MAX_NAME_BYTES && !text.starts_with('.') && !text.contains(char::is_control)
         }
         _ => false,
     };
-    if last.is_empty() || name.len() > 4 * LONGEST_NAME || !path.components().all(is_name) {
+    if last.is_empty() || name.len() > 4 * MAX_NAME_BYTES || !path.components().all(is_name) {
         return refuse();
     }
-    // As in the original: other extensions are kept, although the contents are PNG.
+    // As in the original, other extensions are kept, although the contents are PNG.
     if path.extension().is_none() {
         path.set_extension("png");
     }
@@ -141,26 +145,26 @@ mod tests {
 
     #[test]
     fn screenshots_replace_only_images() {
-        let root = tempfile::tempdir().expect("the machine has a folder for temporary files");
+        let root = tempfile::tempdir().expect("a temporary folder can be created");
         let screenshots = Screenshots::new(root.path().join("deep/out"));
         let path = screenshots
             .write("/tmp/a.png", &[&SIGNATURE[..], b"one"].concat())
-            .expect("the name is one");
+            .expect("the name is valid");
         assert_eq!(path, root.path().join("deep/out/a.png"));
         screenshots.write("a", b"two").expect("pictures are replaced");
         assert_eq!(fs::read(&path).expect("it was written"), b"two");
-        screenshots.write("b/c.png", b"x").expect("folders are made");
+        screenshots.write("b/c.png", b"x").expect("missing folders are created");
         let mine = root.path().join("deep/out/train.py");
         fs::write(&mine, "mine").expect("the folder can be written");
         let error = screenshots
             .write("train.py", b"x")
-            .expect_err("a program is no picture");
+            .expect_err("a program is not a picture");
         assert!(error.contains("no picture"), "{error}");
-        assert_eq!(fs::read_to_string(&mine).expect("it is there still"), "mine");
+        assert_eq!(fs::read_to_string(&mine).expect("it still exists"), "mine");
         fs::create_dir(root.path().join("deep/out/d.png")).expect("the folder can be written");
-        let error = screenshots.write("d.png", b"x").expect_err("a folder is no picture");
+        let error = screenshots.write("d.png", b"x").expect_err("a folder is not a picture");
         assert!(error.contains("which is a folder"), "{error}");
-        let left = fs::read_dir(root.path().join("deep/out")).expect("the folder is there");
+        let left = fs::read_dir(root.path().join("deep/out")).expect("the folder exists");
         assert_eq!(left.count(), 4, "no temporary file is left");
     }
 
@@ -168,12 +172,16 @@ mod tests {
     #[test]
     fn replaced_screenshot_keeps_its_file_mode() {
         use std::os::unix::fs::PermissionsExt;
-        let root = tempfile::tempdir().expect("the machine has a folder for temporary files");
+        let root = tempfile::tempdir().expect("a temporary folder can be created");
         let screenshots = Screenshots::new(root.path());
         let mode = |path: &Path| fs::metadata(path).expect("it is there").permissions().mode() & 0o777;
-        let path = screenshots.write("a", &SIGNATURE).expect("the name is one");
+        let path = screenshots.write("a", &SIGNATURE).expect("the name is valid");
         fs::write(root.path().join("plain"), "").expect("the folder can be written");
-        assert_eq!(mode(&path), mode(&root.path().join("plain")), "as the umask has it");
+        assert_eq!(
+            mode(&path),
+            mode(&root.path().join("plain")),
+            "a new file follows the umask"
+        );
         fs::set_permissions(&path, fs::Permissions::from_mode(0o600)).expect("it is ours");
         screenshots.write("a", &SIGNATURE).expect("pictures are replaced");
         assert_eq!(mode(&path), 0o600);
@@ -182,17 +190,17 @@ mod tests {
     #[cfg(unix)]
     #[test]
     fn links_are_not_followed() {
-        let root = tempfile::tempdir().expect("the machine has a folder for temporary files");
+        let root = tempfile::tempdir().expect("a temporary folder can be created");
         let out = root.path().join("out");
-        fs::create_dir(&out).expect("the folder can be made");
+        fs::create_dir(&out).expect("the folder can be created");
         let outside = root.path().join("outside.png");
         fs::write(&outside, "mine").expect("the folder can be written");
-        std::os::unix::fs::symlink(&outside, out.join("a.png")).expect("links can be made");
-        std::os::unix::fs::symlink(root.path(), out.join("up")).expect("links can be made");
+        std::os::unix::fs::symlink(&outside, out.join("a.png")).expect("links can be created");
+        std::os::unix::fs::symlink(root.path(), out.join("up")).expect("links can be created");
         let screenshots = Screenshots::new(&out);
         screenshots.write("a.png", b"x").expect("the link itself is replaced");
         assert!(screenshots.write("up/b.png", b"x").is_err());
-        assert_eq!(fs::read_to_string(&outside).expect("it is there still"), "mine");
+        assert_eq!(fs::read_to_string(&outside).expect("it still exists"), "mine");
         assert!(!root.path().join("b.png").exists());
     }
 }

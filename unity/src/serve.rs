@@ -23,22 +23,22 @@ use crate::recordings::RecordingFile;
 use crate::screenshots::Screenshots;
 use crate::session::{Session, Setup, Turn};
 
-/// Status codes of a sender.
-const WELL: i32 = 200;
+/// Status codes in message headers.
+const OK: i32 = 200;
 const END: i32 = 400;
-const FAILED: i32 = 500;
+const ERROR: i32 = 500;
 
-/// Largest asset library that is read, in bytes, as in the `driftworld` command.
+/// Maximum size of an asset library, in bytes, as in the `driftworld` command.
 const MAX_LIBRARY_BYTES: u64 = 1 << 30;
 
-/// Time that a client has to receive the reason for the end.
+/// Time that a client has to receive the reason why the session ends.
 const FAREWELL: Duration = Duration::from_millis(500);
 
-/// Connects to a client, and follows its commands until it ends.
+/// Connects to a client, and follows its commands until it quits or disconnects, neither of which is an error.
 ///
 /// # Errors
-/// [`UnityError`] for unusable files, for a missing client, and for a client that violates the protocol, which is sent
-/// the error first. A client that quits or disconnects is not an error.
+/// [`UnityError`] for unusable files, for a missing client, and for a client that violates the protocol; that client is sent the
+/// error before the session ends.
 pub fn run(options: &Options, journal: &mut Journal) -> Result<(), UnityError> {
     let maps = match &options.maps {
         Some(path) => MapLibrary::from_json(&path.display().to_string(), &read("--maps", path)?)?,
@@ -53,7 +53,7 @@ pub fn run(options: &Options, journal: &mut Journal) -> Result<(), UnityError> {
         catalogue: catalogue(&options.assets)?,
         pictures: options.pictures,
     };
-    // Always with milliseconds: parsers with a fixed format require them.
+    // Always includes milliseconds, which parsers with a fixed format require.
     let clock = || format!("{:.3}", jiff::Timestamp::now());
     let mut session = Session::new(setup, Screenshots::new(&options.screenshots), clock);
     let mut recordings = options.record.as_deref().map(RecordingFile::open).transpose()?;
@@ -67,13 +67,13 @@ pub fn run(options: &Options, journal: &mut Journal) -> Result<(), UnityError> {
         .enable_all()
         .build()
         .map_err(UnityError::Network)?;
-    let ended = runtime.block_on(serve(&mut session, options, journal, recordings.as_mut()));
-    // However it ended, the current episode is kept as well.
+    let outcome = runtime.block_on(serve(&mut session, options, journal, recordings.as_mut()));
+    // The current episode is stored in any case.
     session.end_recording();
-    let kept = write(&mut session, recordings.as_mut());
-    // Does not wait for remaining network work for a client that is gone.
+    let stored = write(&mut session, recordings.as_mut());
+    // Does not wait for network operations with a client that is gone.
     runtime.shutdown_background();
-    ended.and(kept)
+    outcome.and(stored)
 }
 
 /// Writes finished episodes.
@@ -85,8 +85,8 @@ fn write(session: &mut Session, recordings: Option<&mut RecordingFile>) -> Resul
         .try_for_each(|recording| recordings.write(recording))
 }
 
-/// Reads a world file, in our format or the original's. Notes the warnings of the original's reader, because that
-/// reader only warns about misspelt keys.
+/// Reads a world file in our format or the original's. Passes on the warnings of the original format's reader, which only warns
+/// about misspelt keys.
 fn world(path: &Path, maps: &MapLibrary, journal: &mut Journal) -> Result<World, UnityError> {
     let text = read("--world", path)?;
     let name = path.display().to_string();
@@ -94,8 +94,8 @@ fn world(path: &Path, maps: &MapLibrary, journal: &mut Journal) -> Result<World,
         Ok(world) => return Ok(world),
         Err(error) => error,
     };
-    // Only our format has a version. If neither format fits, reports the errors of our reader, which is stricter.
-    let is_ours = serde_json::from_str::<Ours>(&text).is_ok_and(|ours| ours.version.is_some());
+    // Only our format has a version. If neither format fits, report the errors of our reader, which is stricter.
+    let is_ours = serde_json::from_str::<VersionKey>(&text).is_ok_and(|key| key.version.is_some());
     match World::from_l2explorer_with(&name, &text, maps) {
         Ok((world, warnings)) if !is_ours => {
             journal.note(&format!("{}: read as a reset file of L2Explorer", path.shown()));
@@ -108,9 +108,9 @@ fn world(path: &Path, maps: &MapLibrary, journal: &mut Journal) -> Result<World,
     }
 }
 
-/// The key that only our format has; ignores everything else, of any size.
+/// The key that only our format has. All other keys are ignored, however large their values are.
 #[derive(Deserialize)]
-struct Ours {
+struct VersionKey {
     version: Option<IgnoredAny>,
 }
 
@@ -145,28 +145,28 @@ async fn serve(
     let mut connection = Connection::open(&options.host, options.port, options.wait).await?;
     let greeting = message(Session::greeting());
     let first = connection.greet(greeting, options.wait).await?;
-    let Some(who) = input(first, journal)? else {
+    let Some(first_input) = input(first, journal)? else {
         return Ok(());
     };
-    let Some(said) = who.rl_initialization_input else {
+    let Some(identity) = first_input.rl_initialization_input else {
         return Err(UnityError::Incomplete("an rl_initialization_input"));
     };
     journal.note(&format!(
         "a client at {}: package {:?}, protocol {:?}",
         connection.address(),
-        said.package_version,
-        said.communication_version
+        identity.package_version,
+        identity.communication_version
     ));
-    let mut next = session.begin(&said).map(|()| UnityOutputProto::default());
+    let mut next = session.begin(&identity).map(|()| UnityOutputProto::default());
     if next.is_err() {
-        // Clients ignore the answer to their first message, so an error before their first command would be lost.
+        // Clients ignore the answer to their first message, so an error sent before their first command would be lost.
         let reply = connection.exchange(message(UnityOutputProto::default())).await?;
         if matches!(reply, Reply::Gone(_)) {
             return next.map(drop);
         }
     }
     loop {
-        let message = match next.and_then(fitting) {
+        let message = match next.and_then(message_within_limit) {
             Ok(message) => message,
             Err(error) => {
                 farewell(&mut connection, &error).await;
@@ -194,7 +194,7 @@ async fn serve(
     }
 }
 
-/// The client's input, or `None` at its end.
+/// The client's input, or `None` if the client has ended the session.
 fn input(reply: Reply, journal: &mut Journal) -> Result<Option<UnityInputProto>, UnityError> {
     let message = match reply {
         Reply::Message(message) => message,
@@ -204,7 +204,7 @@ fn input(reply: Reply, journal: &mut Journal) -> Result<Option<UnityInputProto>,
         }
     };
     match message.header {
-        Some(HeaderProto { status: WELL, .. }) => {
+        Some(HeaderProto { status: OK, .. }) => {
             let missing = UnityError::Incomplete("a unity_input");
             message.unity_input.map(Some).ok_or(missing)
         }
@@ -218,7 +218,7 @@ fn input(reply: Reply, journal: &mut Journal) -> Result<Option<UnityInputProto>,
 }
 
 /// Wraps an output in a message, and checks that clients accept its size.
-fn fitting(output: UnityOutputProto) -> Result<UnityMessageProto, UnityError> {
+fn message_within_limit(output: UnityOutputProto) -> Result<UnityMessageProto, UnityError> {
     let message = message(output);
     let found = message.encoded_len();
     if found > MAX_OUTGOING_BYTES {
@@ -230,7 +230,7 @@ fn fitting(output: UnityOutputProto) -> Result<UnityMessageProto, UnityError> {
 fn message(output: UnityOutputProto) -> UnityMessageProto {
     UnityMessageProto {
         header: Some(HeaderProto {
-            status: WELL,
+            status: OK,
             message: String::new(),
         }),
         unity_output: Some(output),
@@ -238,11 +238,11 @@ fn message(output: UnityOutputProto) -> UnityMessageProto {
     }
 }
 
-/// Sends the client the reason for the end; its answer does not matter.
+/// Sends the client the reason why the session ends; its answer does not matter.
 async fn farewell(connection: &mut Connection, error: &UnityError) {
     let last = UnityMessageProto {
         header: Some(HeaderProto {
-            status: FAILED,
+            status: ERROR,
             message: error.to_string(),
         }),
         ..UnityMessageProto::default()

@@ -1,4 +1,4 @@
-//! All integration tests of this crate in one binary, to link once.
+//! All integration tests of this crate, in one program, so that it is linked only once.
 
 mod conversation;
 mod error_messages;

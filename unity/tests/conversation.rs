@@ -1,7 +1,7 @@
-//! Recorded conversations: the messages of clients of three releases, and every answer, down to pixels and wording.
+//! Replays the recorded messages of clients of three releases, and compares every answer, down to pixels and wording.
 //!
-//! `golden/record.py` records the clients; `INSTA_UPDATE=always` rewrites the answers. Images are compared by a checksum of
-//! their pixels, because the bytes of a PNG file depend on the encoder.
+//! `golden/record.py` records the clients; `INSTA_UPDATE=always` rewrites the expected answers. Images are compared by a checksum
+//! of their pixels, because the bytes of a PNG file depend on the encoder.
 
 use std::fmt::Write;
 
@@ -74,17 +74,19 @@ fn agent(text: &mut String, agent: &AgentInfoProto) -> std::fmt::Result {
     Ok(())
 }
 
-fn behavior(text: &mut String, known: &BrainParametersProto) -> std::fmt::Result {
+fn behavior(text: &mut String, parameters: &BrainParametersProto) -> std::fmt::Result {
     writeln!(
         text,
         "  behaviour {:?}: type {}, {:?} numbers, training {}, {:?}",
-        known.brain_name,
-        known.vector_action_space_type,
-        known.vector_action_size,
-        known.is_training,
-        known.vector_action_descriptions
+        parameters.brain_name,
+        parameters.vector_action_space_type,
+        parameters.vector_action_size,
+        parameters.is_training,
+        parameters.vector_action_descriptions
     )?;
-    let Some(spec) = &known.action_spec else { return Ok(()) };
+    let Some(spec) = &parameters.action_spec else {
+        return Ok(());
+    };
     writeln!(
         text,
         "    continuous {}, discrete {} {:?}, {:?}",
@@ -93,14 +95,14 @@ fn behavior(text: &mut String, known: &BrainParametersProto) -> std::fmt::Result
 }
 
 /// The side channel messages, with their channels.
-fn beside(mut bytes: &[u8]) -> Vec<(&'static str, Value)> {
+fn side_channel_messages(mut bytes: &[u8]) -> Vec<(&'static str, Value)> {
     let number = |bytes: &[u8]| i32::from_le_bytes(bytes.try_into().expect("four bytes")) as usize;
     let mut found = Vec::new();
     while !bytes.is_empty() {
         let (head, rest) = bytes.split_at(20);
         let (payload, rest) = rest.split_at(number(&head[16..]));
         let (length, text) = payload.split_at(4);
-        assert_eq!(number(length), text.len(), "a text says its length");
+        assert_eq!(number(length), text.len(), "the length field matches the text");
         assert!(text.is_ascii(), "old clients decode ASCII only");
         let channel = CHANNELS.iter().find(|(start, _)| head.starts_with(start));
         let json = serde_json::from_slice(text).expect("every message is JSON");
@@ -111,19 +113,19 @@ fn beside(mut bytes: &[u8]) -> Vec<(&'static str, Value)> {
 }
 
 fn output(text: &mut String, output: &UnityOutputProto) -> std::fmt::Result {
-    for known in output
+    for parameters in output
         .rl_initialization_output
         .iter()
         .flat_map(|news| &news.brain_parameters)
     {
-        behavior(text, known)?;
+        behavior(text, parameters)?;
     }
-    let happened = output.rl_output.as_ref().expect("something happened");
-    assert_eq!(happened.agent_infos.len(), 1, "there is one behaviour");
-    for info in &happened.agent_infos[BEHAVIOR].value {
+    let results = output.rl_output.as_ref().expect("something happened");
+    assert_eq!(results.agent_infos.len(), 1, "there is one behaviour");
+    for info in &results.agent_infos[BEHAVIOR].value {
         agent(text, info)?;
     }
-    for (channel, message) in beside(&happened.side_channel) {
+    for (channel, message) in side_channel_messages(&results.side_channel) {
         writeln!(text, "  {channel}: {message}")?;
     }
     Ok(())
@@ -131,22 +133,24 @@ fn output(text: &mut String, output: &UnityOutputProto) -> std::fmt::Result {
 
 /// All answers to the client of a release.
 fn answers(release: &str) -> Result<String, std::fmt::Error> {
-    let folder = tempfile::tempdir().expect("the machine has a folder for temporary files");
+    let folder = tempfile::tempdir().expect("a temporary folder can be created");
     let mut session = session(folder.path());
     let mut text = String::new();
-    let said = messages(release);
-    let ((_, first), rest) = said.split_first().expect("the client says who it is");
+    let recorded = messages(release);
+    let ((_, first), rest) = recorded.split_first().expect("the client says who it is");
     let ((_, last), rest) = rest.split_last().expect("the client ends");
-    let who = input(first)
+    let identity = input(first)
         .rl_initialization_input
         .expect("the first message says who");
-    session.begin(&who).expect("the client is of a version that is known");
+    session
+        .begin(&identity)
+        .expect("the client is of a version that is known");
     for (about, bytes) in rest {
         writeln!(text, "{about}")?;
         let command = input(bytes).rl_input.expect("the client says what to do");
         match session.answer(&command).expect("the client says nothing wrong") {
             Turn::Output(answer) => output(&mut text, &answer)?,
-            Turn::Quit => panic!("nobody said so"),
+            Turn::Quit => panic!("unexpected quit"),
         }
         for remark in session.take_remarks() {
             let remark = remark.replace(&folder.path().display().to_string(), "FOLDER");
@@ -176,11 +180,11 @@ fn same_conversation_gives_the_same_answers() {
     assert_eq!(answers("0.16"), answers("0.16"));
 }
 
-/// Field by field: decoding a message loses nothing.
+/// Decoding loses no other field: encoding a decoded message restores its bytes.
 #[test]
 fn only_the_number_of_areas_is_skipped_in_clients_messages() {
-    // The number of copies of its scene that Unity should build, which does not apply here. It is the last field of a client's
-    // first message.
+    // The last field of a client's first message: the number of copies of its scene that Unity should build, which does not apply
+    // here.
     let areas = [5 << 3, 1];
     for release in RELEASES {
         for (about, mut bytes) in messages(release) {
@@ -200,18 +204,18 @@ fn only_the_number_of_areas_is_skipped_in_clients_messages() {
 
 #[test]
 fn quit_handles_its_messages_and_ends_the_session() {
-    let folder = tempfile::tempdir().expect("the machine has a folder for temporary files");
+    let folder = tempfile::tempdir().expect("a temporary folder can be created");
     let mut session = session(folder.path());
-    let asks = |(about, _): &(String, Vec<u8>)| about.contains("screenshot");
+    let wants_screenshot = |(about, _): &(String, Vec<u8>)| about.contains("screenshot");
     let (_, bytes) = messages("1.1")
         .into_iter()
-        .find(asks)
+        .find(wants_screenshot)
         .expect("one asks for a screenshot");
-    let asked = input(&bytes).rl_input.expect("it is a command");
+    let request = input(&bytes).rl_input.expect("it is a command");
     let quit = UnityRlInputProto {
         command: CommandProto::Quit.into(),
-        ..asked
+        ..request
     };
-    assert_eq!(session.answer(&quit).expect("anybody may quit"), Turn::Quit);
+    assert_eq!(session.answer(&quit).expect("quitting is always allowed"), Turn::Quit);
     assert!(folder.path().join("view.png").exists());
 }

@@ -1,5 +1,5 @@
-//! Every error of this crate with its code, exit status and exact message. The tests in `executable` check that the advice in
-//! them helps.
+//! Checks the code, exit status and exact message of every error of this crate. The tests in `executable` check that following
+//! the advice in them helps.
 
 use std::collections::BTreeSet;
 use std::io;
@@ -77,10 +77,10 @@ fn errors() -> Vec<UnityError> {
 fn every_error_has_its_message() {
     let errors = errors();
     let line = |error: &UnityError| format!("{} (exit {}): {error}", error.code(), error.exit_code());
-    let said: Vec<String> = errors.iter().map(line).collect();
-    insta::assert_snapshot!(said.join("\n"));
+    let lines: Vec<String> = errors.iter().map(line).collect();
+    insta::assert_snapshot!(lines.join("\n"));
     let covered: BTreeSet<&str> = errors.iter().map(UnityError::code).collect();
-    let all: BTreeSet<&str> = UnityError::VARIANTS.iter().copied().collect();
-    assert_eq!(covered, all, "every code has a case here");
-    assert_eq!(covered.len(), errors.len(), "no code stands for two");
+    let expected: BTreeSet<&str> = UnityError::VARIANTS.iter().copied().collect();
+    assert_eq!(covered, expected, "every code has a case here");
+    assert_eq!(covered.len(), errors.len(), "every case has its own code");
 }

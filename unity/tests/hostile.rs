@@ -1,4 +1,4 @@
-//! Malicious or broken messages to a session are refused within limits, and the session continues.
+//! A session refuses malicious or broken messages within limits, and continues.
 
 use driftworld_spec::World;
 use driftworld_unity::protocol::{
@@ -16,11 +16,11 @@ const RESET: [u8; 16] = [
 ];
 
 /// The default limit of gRPC servers.
-const MOST_ANSWERED: usize = 4 << 20;
+const MAX_ANSWER_BYTES: usize = 4 << 20;
 
 /// A session in a small world, with screenshots in a temporary folder.
 fn session() -> (Session, tempfile::TempDir) {
-    let folder = tempfile::tempdir().expect("the machine has a folder for temporary files");
+    let folder = tempfile::tempdir().expect("a temporary folder can be created");
     let world = World::default().edit(|world| world.agent_params.observation_size = 8);
     let setup = Setup {
         world: world.expect("pictures may be that small"),
@@ -36,7 +36,7 @@ fn record(guid: [u8; 16], length: i32, payload: &[u8]) -> Vec<u8> {
 }
 
 /// A message on the Reset channel with correct lengths.
-fn told(text: &str) -> Vec<u8> {
+fn reset_message(text: &str) -> Vec<u8> {
     let payload = [&(text.len() as i32).to_le_bytes(), text.as_bytes()].concat();
     record(RESET, payload.len() as i32, &payload)
 }
@@ -51,7 +51,11 @@ fn step_with(side_channel: Vec<u8>) -> UnityRlInputProto {
 fn answer(session: &mut Session, input: &UnityRlInputProto) -> Result<UnityOutputProto, UnityError> {
     match session.answer(input)? {
         Turn::Output(output) => {
-            assert!(output.encoded_len() < MOST_ANSWERED, "{} bytes", output.encoded_len());
+            assert!(
+                output.encoded_len() < MAX_ANSWER_BYTES,
+                "{} bytes",
+                output.encoded_len()
+            );
             Ok(*output)
         }
         Turn::Quit => Ok(UnityOutputProto::default()),
@@ -74,25 +78,25 @@ fn actions(lists: &[(&str, &[&[f32]])]) -> UnityRlInputProto {
 }
 
 /// Checks that the session still answers a reset and a step.
-fn assert_well(session: &mut Session) {
+fn assert_session_works(session: &mut Session) {
     let reset = UnityRlInputProto {
         command: CommandProto::Reset.into(),
         ..UnityRlInputProto::default()
     };
     for command in [reset, actions(&[(BEHAVIOR, &[&[1.0, 0.0, 0.0]])])] {
-        let output = answer(session, &command).expect("the session goes on");
+        let output = answer(session, &command).expect("the session continues");
         let agents = &output.rl_output.expect("there is an agent").agent_infos[BEHAVIOR].value;
         assert_eq!(agents.last().map(|agent| agent.observations.len()), Some(4));
     }
 }
 
-/// The session's answer to a message sent with a step, and its remarks; the session must continue.
+/// Sends a message with a step; returns the session's answer and its remarks. The session must continue.
 fn check(bytes: Vec<u8>) -> (String, Vec<String>) {
     let (mut session, _folder) = session();
     let output = answer(&mut session, &step_with(bytes)).expect("a message does not end a session");
     let remarks = session.take_remarks();
     let sent = output.rl_output.expect("there is an agent").side_channel;
-    assert_well(&mut session);
+    assert_session_works(&mut session);
     (String::from_utf8_lossy(&sent).into_owned(), remarks)
 }
 
@@ -106,7 +110,7 @@ proptest! {
 
     #[test]
     fn arbitrary_text_on_a_channel_is_answered(text in ".{0,200}") {
-        let (sent, _) = check(told(&text));
+        let (sent, _) = check(reset_message(&text));
         prop_assert!(sent.contains("\"action\":\"error\""), "{sent}");
     }
 
@@ -118,11 +122,11 @@ proptest! {
         changes in proptest::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
         cut in proptest::option::of(any::<prop::sample::Index>()),
     ) {
-        let said = messages(RELEASES[release]);
-        let mut bytes = said[number % said.len()].1.clone();
-        for (place, byte) in changes {
-            let place = place.index(bytes.len());
-            bytes[place] = byte;
+        let recorded = messages(RELEASES[release]);
+        let mut bytes = recorded[number % recorded.len()].1.clone();
+        for (position, byte) in changes {
+            let position = position.index(bytes.len());
+            bytes[position] = byte;
         }
         if let Some(cut) = cut {
             bytes.truncate(cut.index(bytes.len()) + 1);
@@ -133,7 +137,7 @@ proptest! {
             let (mut session, _folder) = session();
             // Any answer is fine.
             let _ = answer(&mut session, &input);
-            assert_well(&mut session);
+            assert_session_works(&mut session);
         }
     }
 }
@@ -155,7 +159,7 @@ fn wrong_lengths_are_refused_at_both_levels() {
     }
 }
 
-/// Longer messages do not arrive: the transport refuses more than 48 MiB.
+/// Messages of more than 48 MiB never reach the session: the transport refuses them.
 #[test]
 fn text_of_40_megabytes_gets_a_short_answer() {
     let long = "x".repeat(40_000_000);
@@ -166,7 +170,7 @@ fn text_of_40_megabytes_gets_a_short_answer() {
         format!("{{\"action\":\"reset_environment\",\"payload\":\"{long}\"}}"),
         format!("{{\"action\":\"object_create\",\"payload\":{{\"class\":\"{long}\",\"coordinates\":[0,0]}}}}"),
     ] {
-        let (sent, remarks) = check(told(&text));
+        let (sent, remarks) = check(reset_message(&text));
         assert!(
             sent.contains("\"action\":\"error\"") && sent.len() < 2000,
             "{} bytes",
@@ -190,7 +194,7 @@ fn json_bombs_are_refused_before_parsing() {
             format!("{{\"action\":\"reset_environment\",\"payload\":{bomb}}}"),
             format!("{{\"action\":\"reset_environment\",\"payload\":{{\"objects\":{bomb}}}}}"),
         ] {
-            let (sent, _) = check(told(&text));
+            let (sent, _) = check(reset_message(&text));
             assert!(
                 sent.contains(" values, expected at most 400000 of the 400000 in one go"),
                 "{sent}"
@@ -199,25 +203,25 @@ fn json_bombs_are_refused_before_parsing() {
     }
 }
 
-/// As many mistakes as a message may have; each gets a remark or a refusal, in one pass over the text.
+/// Texts with tens of thousands of mistakes are read in one pass; each mistake gets a remark or a refusal.
 #[test]
 fn texts_with_many_mistakes_are_read_once() {
     let keys: Vec<String> = (0..50_000).map(|key| format!("\"k{key}\":1")).collect();
-    let (sent, _) = check(told(&format!(
+    let (sent, _) = check(reset_message(&format!(
         "{{\"action\":\"reset_environment\",\"payload\":{{{}}}}}",
         keys.join(",")
     )));
-    assert!(sent.contains("\"action\":\"ok\""), "unknown keys do no harm: {sent}");
+    assert!(sent.contains("\"action\":\"ok\""), "unknown keys are ignored: {sent}");
     let objects = format!("[{}1]", "1,".repeat(20_000));
-    let (sent, _) = check(told(&format!(
+    let (sent, _) = check(reset_message(&format!(
         "{{\"action\":\"reset_environment\",\"payload\":{{\"objects\":{objects}}}}}"
     )));
     assert!(
         sent.contains("\"action\":\"ok\""),
-        "what is no object is skipped: {sent}"
+        "list items that are not objects are skipped: {sent}"
     );
     let objects = "{\"class\":\"tree\",\"coordinates\":[1e9,0]},".repeat(20_000);
-    let (sent, _) = check(told(&format!(
+    let (sent, _) = check(reset_message(&format!(
         "{{\"action\":\"reset_environment\",\"payload\":{{\"objects\":[{objects}1]}}}}"
     )));
     assert!(
@@ -239,34 +243,35 @@ fn odd_json_is_refused_with_a_message() {
         "\u{0}".to_owned(),
         "{\"action\":\"\\ud800\"}".to_owned(),
     ] {
-        let (sent, _) = check(told(&text));
+        let (sent, _) = check(reset_message(&text));
         assert!(sent.contains("\"action\":\"error\""), "{text:.100}: {sent}");
     }
 }
 
 #[test]
 fn surplus_messages_are_refused_with_a_message() {
-    let (sent, remarks) = check(told("{}").repeat(5000));
+    let (sent, remarks) = check(reset_message("{}").repeat(5000));
     assert_eq!(sent.matches("\"action\":\"error\"").count(), 5000);
     assert_eq!(sent.matches("found more than 1000 in one go").count(), 4000);
-    let cut = "messages: found more than 1000 in one go; the others are refused";
-    assert!(remarks.iter().any(|remark| remark == cut), "{remarks:?}");
+    let expected = "messages: found more than 1000 in one go; the others are refused";
+    assert!(remarks.iter().any(|remark| remark == expected), "{remarks:?}");
 }
 
-/// While texts are being read, a disconnected client is not noticed, so all texts of a batch share the limit of a single one.
+/// While texts are being parsed, a disconnected client is not noticed, so all texts of a batch share one limit.
 #[test]
 fn texts_of_one_batch_are_limited() {
     let zeros = vec!["0"; 150_000].join(",");
     let text = format!(r#"{{"action":"reset_environment","payload":{{}},"beside":[{zeros}]}}"#);
-    let (sent, _) = check(told(&text).repeat(4));
+    let (sent, _) = check(reset_message(&text).repeat(4));
     assert_eq!(sent.matches("\"action\":\"ok\"").count(), 2, "{sent}");
     assert_eq!(sent.matches("of the 400000 in one go").count(), 2, "{sent}");
 }
 
-/// The encoded identifiers of the Debug channel and of environment parameters.
+/// The Debug channel's encoded identifier.
 const DEBUG: [u8; 16] = [
     0xb5, 0xa0, 0xfb, 0xc5, 0x92, 0x63, 0x33, 0x44, 0xa9, 0x5f, 0xcd, 0xec, 0x6b, 0x00, 0x61, 0xe1,
 ];
+/// The encoded identifier of the channel for environment parameters.
 const PARAMETERS: [u8; 16] = [
     0x1e, 0x89, 0x4c, 0x53, 0x0f, 0x81, 0xea, 0x11, 0xa9, 0xd0, 0x82, 0x24, 0x85, 0x86, 0x04, 0x00,
 ];
@@ -278,7 +283,7 @@ fn parameter(name: &str, value: f32) -> Vec<u8> {
     record(PARAMETERS, payload.len() as i32, &payload)
 }
 
-/// While images are drawn, a disconnected client is not noticed, so their number per batch is limited.
+/// While images are rendered, a disconnected client is not noticed, so their number per batch is limited.
 #[test]
 fn large_screenshots_per_batch_are_limited() {
     let text = r#"{"action":"save_screenshot","payload":{"filename":"a.png","upscale_factor":512}}"#;
@@ -298,9 +303,13 @@ fn remarks_on_settings_leave_room_for_those_on_refusals() {
     let settings = (0..900_u16).flat_map(|number| parameter(&format!("difficulty {}", number % 300), number.into()));
     answer(&mut session, &step_with(settings.collect())).expect("settings do not end a session");
     let remarks = session.take_remarks();
-    assert_eq!(remarks.len(), 101, "one for each name, up to the last: {remarks:?}");
-    let refused = told(r#"{"action":"reset_environment","payload":7}"#);
-    answer(&mut session, &step_with(refused)).expect("the session goes on");
+    assert_eq!(
+        remarks.len(),
+        101,
+        "one per name up to the limit, and a closing one: {remarks:?}"
+    );
+    let refused = reset_message(r#"{"action":"reset_environment","payload":7}"#);
+    answer(&mut session, &step_with(refused)).expect("the session continues");
     let remarks = session.take_remarks();
     assert!(
         remarks.iter().any(|remark| remark.contains("was refused")),
@@ -311,7 +320,7 @@ fn remarks_on_settings_leave_room_for_those_on_refusals() {
 #[test]
 fn parameters_invalid_in_a_world_are_skipped_for_it() {
     let (mut session, _folder) = session();
-    let large = told(r#"{"action":"reset_environment","payload":{"agent_params":{"observation_size":2100}}}"#);
+    let large = reset_message(r#"{"action":"reset_environment","payload":{"agent_params":{"observation_size":2100}}}"#);
     let input = UnityRlInputProto {
         side_channel: [parameter("supersampling", 4.0), large].concat(),
         command: CommandProto::Reset.into(),
@@ -346,50 +355,50 @@ fn surplus_answers_wait_for_the_next_turn_up_to_a_limit() {
     ];
     let (mut session, _folder) = session();
     let listen = "{\"action\":\"set_debug_categories\",\"payload\":[{\"category\":\"worldmaker\",\"active\":true}]}";
-    let mut listen = told(listen);
+    let mut listen = reset_message(listen);
     listen[..16].copy_from_slice(&debug);
     answer(&mut session, &step_with(listen)).expect("messages do not end a session");
     // Each key causes a remark: more bytes than a client accepts at a time, and more messages than may be queued.
     let keys: Vec<String> = (0..12_000).map(|key| format!("\"{key:0>200}\":1")).collect();
     // Each message reports its first 300 keys.
-    let wide = keys.chunks(300).flat_map(|keys| {
-        told(&format!(
+    let many_keys = keys.chunks(300).flat_map(|keys| {
+        reset_message(&format!(
             "{{\"action\":\"reset_environment\",\"payload\":{{{}}}}}",
             keys.join(",")
         ))
     });
-    let wide: Vec<u8> = wide.collect();
-    let output = answer(&mut session, &step_with(wide)).expect("messages do not end a session");
+    let many_keys: Vec<u8> = many_keys.collect();
+    let output = answer(&mut session, &step_with(many_keys)).expect("messages do not end a session");
     let first = output.rl_output.expect("there is an agent").side_channel.len();
-    assert!(first > MOST_ANSWERED / 2, "{first} bytes");
+    assert!(first > MAX_ANSWER_BYTES / 2, "{first} bytes");
     let remarks = session.take_remarks();
     assert!(
         remarks.iter().any(|remark| remark.contains("messages were left out")),
         "{remarks:?}"
     );
-    let output = answer(&mut session, &step_with(Vec::new())).expect("the session goes on");
+    let output = answer(&mut session, &step_with(Vec::new())).expect("the session continues");
     assert!(
         !output.rl_output.expect("there is an agent").side_channel.is_empty(),
-        "the rest follows"
+        "the next output carries the rest"
     );
-    assert_well(&mut session);
+    assert_session_works(&mut session);
 }
 
 #[test]
 fn invalid_commands_and_actions_change_nothing() {
-    let sound: &[f32] = &[0.0, 0.0, 0.0];
+    let valid: &[f32] = &[0.0, 0.0, 0.0];
     let unknown = UnityRlInputProto {
         command: -1,
         ..UnityRlInputProto::default()
     };
     for (input, code) in [
         (unknown, "unity/unknown-command"),
-        (actions(&[("", &[sound])]), "unity/wrong-agent"),
+        (actions(&[("", &[valid])]), "unity/wrong-agent"),
         (
-            actions(&[(BEHAVIOR, &[sound]), ("Walker", &[sound])]),
+            actions(&[(BEHAVIOR, &[valid]), ("Walker", &[valid])]),
             "unity/wrong-agent",
         ),
-        (actions(&[(BEHAVIOR, &[sound, sound])]), "unity/wrong-agent"),
+        (actions(&[(BEHAVIOR, &[valid, valid])]), "unity/wrong-agent"),
         (actions(&[(BEHAVIOR, &[])]), "unity/wrong-agent"),
         (actions(&[(BEHAVIOR, &[&[]])]), "unity/action-length"),
         (actions(&[(BEHAVIOR, &[&[1.0, 2.0]])]), "unity/action-length"),
@@ -400,6 +409,6 @@ fn invalid_commands_and_actions_change_nothing() {
         let (mut session, _folder) = session();
         let error = answer(&mut session, &input).expect_err("it cannot be");
         assert_eq!(error.code(), code, "{error}");
-        assert_well(&mut session);
+        assert_session_works(&mut session);
     }
 }

@@ -29,22 +29,22 @@ fn session() -> Session {
     world.max_steps = 12;
     world.objects.push(cube(0.0, 30.0));
     let setup = Setup {
-        world: world.check().expect("the world is sound"),
+        world: world.check().expect("the world is valid"),
         ..Setup::default()
     };
     let mut session = Session::new(setup, Screenshots::new("none"), || "2026-01-01T00:00:00Z".to_owned());
-    let said = UnityRlInitializationInputProto {
+    let identity = UnityRlInitializationInputProto {
         communication_version: "1.0.0".to_owned(),
         package_version: "0.16.0".to_owned(),
         ..UnityRlInitializationInputProto::default()
     };
-    session.begin(&said).expect("the client is of version 1");
+    session.begin(&identity).expect("the client uses version 1");
     session.record();
     session
 }
 
 /// A message on the Reset channel.
-fn told(text: &str) -> Vec<u8> {
+fn reset_message(text: &str) -> Vec<u8> {
     let payload = [&(text.len() as i32).to_le_bytes(), text.as_bytes()].concat();
     [&RESET[..], &(payload.len() as i32).to_le_bytes(), &payload].concat()
 }
@@ -67,8 +67,8 @@ fn act() -> impl Strategy<Value = Act> {
     ]
 }
 
-/// Carries out an act; returns rewards, each with whether it ends an episode. If a new episode begins, the last reward of the
-/// old one comes first.
+/// Carries out an act; returns each agent's reward, and whether it ends an episode. If a step ends an episode, the first agent
+/// has its last reward, and the second starts the next episode.
 fn carry_out(session: &mut Session, act: &Act) -> Vec<(f32, bool)> {
     let (command, action, side_channel) = match act {
         Act::Step(action) => (CommandProto::Step, Some(action), Vec::new()),
@@ -77,7 +77,7 @@ fn carry_out(session: &mut Session, act: &Act) -> Vec<(f32, bool)> {
                 r#"{{ "token": "t", "action": "object_create", "payload": {{ "class": "cube", "coordinates": [{x}, {y}],
                     "reward": 2, "reward_stimulus": ["AgentCollide"] }} }}"#
             );
-            (CommandProto::Step, Some(action), told(&payload))
+            (CommandProto::Step, Some(action), reset_message(&payload))
         }
         Act::Reset => (CommandProto::Reset, None, Vec::new()),
     };
@@ -93,8 +93,8 @@ fn carry_out(session: &mut Session, act: &Act) -> Vec<(f32, bool)> {
         agent_actions: agent_actions.into_iter().collect::<BTreeMap<_, _>>(),
         side_channel,
     };
-    let Turn::Output(output) = session.answer(&input).expect("the command is sound") else {
-        panic!("nobody quits")
+    let Turn::Output(output) = session.answer(&input).expect("the command is valid") else {
+        panic!("unexpected quit")
     };
     let output = output.rl_output.expect("there is an agent");
     let agents = &output.agent_infos[BEHAVIOR].value;
@@ -111,15 +111,15 @@ fn read(path: &std::path::Path) -> Vec<Recording> {
     found
 }
 
-/// The rewards of each step when a recording is replayed.
-fn paid(recording: &Recording) -> Vec<f32> {
+/// Replays a recording, and returns the reward of each step.
+fn replayed_rewards(recording: &Recording) -> Vec<f32> {
     let mut replay = Replay::new(recording, &Catalogue::default());
-    let mut paid = Vec::new();
-    while let Some(step) = replay.step().expect("it goes as it went") {
-        paid.push(step.reward as f32);
+    let mut replayed_rewards = Vec::new();
+    while let Some(step) = replay.step().expect("a replay matches its recording") {
+        replayed_rewards.push(step.reward as f32);
     }
-    replay.check().expect("it comes out as it was recorded");
-    paid
+    replay.check().expect("a replay matches its recording");
+    replayed_rewards
 }
 
 proptest! {
@@ -147,7 +147,7 @@ proptest! {
         // Episodes without a step are not recorded.
         episodes.retain(|rewards| !rewards.is_empty());
 
-        let folder = tempfile::tempdir().expect("the machine has a folder for temporary files");
+        let folder = tempfile::tempdir().expect("a temporary folder can be created");
         let path = folder.path().join("episodes.jsonl");
         let recordings = session.take_recordings();
         let mut half = recordings.len() / 2;
@@ -157,18 +157,18 @@ proptest! {
             if half == 0 {
                 drop(file);
                 let torn = std::fs::OpenOptions::new().append(true).open(&path).expect("it is there");
-                std::io::Write::write_all(&mut &torn, b"{\"experi").expect("it can be written");
+                std::io::Write::write_all(&mut &torn, b"{\"experi").expect("the file can be written");
                 file = RecordingFile::open(&path).expect("it goes on");
             }
             half = half.wrapping_sub(1);
-            file.write(recording).expect("it can be written");
+            file.write(recording).expect("the file can be written");
         }
         drop(file);
         let back = read(&path);
         prop_assert_eq!(back.len(), episodes.len());
         for (number, (recording, expected)) in (0..).zip(back.iter().zip(&episodes)) {
             prop_assert_eq!(recording.origin.experience, number);
-            prop_assert_eq!(&paid(recording), expected);
+            prop_assert_eq!(&replayed_rewards(recording), expected);
         }
         prop_assert!(back.iter().map(|recording| recording.edits.len()).sum::<usize>() <= edits);
     }
@@ -176,7 +176,7 @@ proptest! {
 
 #[test]
 fn file_is_locked_against_a_second_program() {
-    let folder = tempfile::tempdir().expect("the machine has a folder for temporary files");
+    let folder = tempfile::tempdir().expect("a temporary folder can be created");
     let path = folder.path().join("episodes.jsonl");
     let first = RecordingFile::open(&path).expect("it can be made");
     let error = RecordingFile::open(&path).expect_err("it is written already");
@@ -185,7 +185,7 @@ fn file_is_locked_against_a_second_program() {
         "{error}"
     );
     drop(first);
-    std::fs::write(&path, World::default().to_json_pretty()).expect("it can be written");
+    std::fs::write(&path, World::default().to_json_pretty()).expect("the file can be written");
     assert_eq!(
         RecordingFile::open(&path).expect_err("it is a world").code(),
         "unity/recording"

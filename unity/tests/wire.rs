@@ -1,4 +1,4 @@
-//! Encodings of the protocol compared with bytes written by hand: each field's number and type, as in published clients.
+//! Compares the protocol's encodings with bytes written by hand: each field has the number and type that published clients use.
 
 use driftworld_unity::Session;
 use driftworld_unity::protocol::{
@@ -9,7 +9,7 @@ use driftworld_unity::protocol::{
 };
 use prost::Message;
 
-/// An integer below 128, or true.
+/// A field with an integer below 128, or true.
 fn number(field: u8, value: u8) -> Vec<u8> {
     varint(field, &[value])
 }
@@ -18,15 +18,15 @@ fn varint(field: u8, bytes: &[u8]) -> Vec<u8> {
     [&[field << 3], bytes].concat()
 }
 
-/// A number of four bytes.
+/// A field with a 32-bit float.
 fn float(field: u8, value: f32) -> Vec<u8> {
     [&[field << 3 | 5], value.to_le_bytes().as_slice()].concat()
 }
 
-/// A string, bytes, a message or a packed list, of fewer than 128 bytes.
+/// A field with a string, bytes, a message or a packed list, of fewer than 128 bytes.
 fn block(field: u8, bytes: impl AsRef<[u8]>) -> Vec<u8> {
     let bytes = bytes.as_ref();
-    assert!(bytes.len() < 128, "longer ones take two bytes for their length");
+    assert!(bytes.len() < 128, "the length of longer fields takes two bytes");
     [&[field << 3 | 2, bytes.len() as u8], bytes].concat()
 }
 
@@ -38,12 +38,8 @@ fn floats(field: u8, values: &[f32]) -> Vec<u8> {
 /// Checks that the value encodes to these bytes and decodes from them.
 fn check<M: Message + Default + PartialEq + std::fmt::Debug>(message: &M, parts: &[Vec<u8>]) {
     let bytes = parts.concat();
-    assert_eq!(message.encode_to_vec(), bytes, "{message:?} is written so");
-    assert_eq!(
-        &M::decode(bytes.as_slice()).expect("it is sound"),
-        message,
-        "it is read so"
-    );
+    assert_eq!(message.encode_to_vec(), bytes, "encoding {message:?}");
+    assert_eq!(&M::decode(bytes.as_slice()).expect("it is valid"), message, "decoding");
 }
 
 #[test]
@@ -53,7 +49,7 @@ fn envelope_has_the_published_field_numbers() {
         message: "m".to_owned(),
     };
     check(&header, &[varint(1, &[0xc8, 0x01]), block(2, "m")]);
-    let whole = UnityMessageProto {
+    let message = UnityMessageProto {
         header: Some(HeaderProto::default()),
         unity_output: Some(UnityOutputProto {
             rl_output: Some(UnityRlOutputProto::default()),
@@ -65,7 +61,7 @@ fn envelope_has_the_published_field_numbers() {
         }),
     };
     let both = [block(1, []), block(2, [])].concat();
-    check(&whole, &[block(1, []), block(2, &both), block(3, &both)]);
+    check(&message, &[block(1, []), block(2, &both), block(3, &both)]);
 }
 
 #[test]
@@ -97,9 +93,9 @@ fn inputs_have_the_published_field_numbers() {
     check(&command, &[block(1, entry), number(4, 2), block(5, [9, 8])]);
     let numbers = [CommandProto::Step, CommandProto::Reset, CommandProto::Quit].map(i32::from);
     assert_eq!(numbers, [0, 1, 2]);
-    // The trainer's value function, which is ignored.
-    let known = AgentActionProto::decode([floats(1, &[1.0]), float(4, 3.0)].concat().as_slice());
-    assert_eq!(known.expect("it is sound").vector_actions, [1.0]);
+    // Field 4 is the trainer's value estimate, which is ignored.
+    let parameters = AgentActionProto::decode([floats(1, &[1.0]), float(4, 3.0)].concat().as_slice());
+    assert_eq!(parameters.expect("it is valid").vector_actions, [1.0]);
 }
 
 fn capabilities() -> UnityRlCapabilitiesProto {
@@ -166,7 +162,7 @@ fn behaviours_have_the_published_field_numbers() {
         discrete_branch_sizes: vec![2],
         action_descriptions: vec!["d".to_owned()],
     };
-    let known = BrainParametersProto {
+    let parameters = BrainParametersProto {
         vector_action_size: vec![3],
         vector_action_descriptions: vec!["d".to_owned()],
         vector_action_space_type: SpaceTypeProto::Continuous.into(),
@@ -183,7 +179,7 @@ fn behaviours_have_the_published_field_numbers() {
         number(8, 1),
         block(9, spec),
     ];
-    check(&known, &parts);
+    check(&parameters, &parts);
     assert_eq!(i32::from(SpaceTypeProto::Discrete), 0);
 }
 

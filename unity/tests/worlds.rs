@@ -1,4 +1,4 @@
-//! Worlds with special demands on a session: action tables, photographs, custom models and unknown objects.
+//! Sessions in unusual worlds: with action tables, photographs, custom models or unknown objects.
 
 use std::collections::BTreeMap;
 
@@ -18,14 +18,14 @@ use proptest::prelude::*;
 /// A session with a client of the first generation, or of the latest.
 fn session(world: WorldDraft, catalogue: Catalogue, is_new: bool) -> Session {
     let setup = Setup {
-        world: world.check().expect("the world is sound"),
+        world: world.check().expect("the world is valid"),
         catalogue,
         pictures: PictureForm::Floats,
         ..Setup::default()
     };
     let clock = || "2026-01-01T00:00:00Z".to_owned();
     let mut session = Session::new(setup, Screenshots::new("none"), clock);
-    let said = UnityRlInitializationInputProto {
+    let identity = UnityRlInitializationInputProto {
         communication_version: "1.0.0".to_owned(),
         package_version: if is_new { "1.1.0" } else { "0.16.0" }.to_owned(),
         capabilities: Some(UnityRlCapabilitiesProto {
@@ -34,7 +34,7 @@ fn session(world: WorldDraft, catalogue: Catalogue, is_new: bool) -> Session {
         }),
         ..UnityRlInitializationInputProto::default()
     };
-    session.begin(&said).expect("the client is of version 1");
+    session.begin(&identity).expect("the client uses version 1");
     session
 }
 
@@ -45,9 +45,9 @@ fn answer(session: &mut Session, command: CommandProto, action: Option<AgentActi
         agent_actions: agent_actions.into_iter().collect::<BTreeMap<_, _>>(),
         ..UnityRlInputProto::default()
     };
-    match session.answer(&input).expect("the command is sound") {
+    match session.answer(&input).expect("the command is valid") {
         Turn::Output(output) => *output,
-        Turn::Quit => panic!("nobody quits"),
+        Turn::Quit => panic!("unexpected quit"),
     }
 }
 
@@ -55,14 +55,14 @@ fn agents(output: &UnityOutputProto) -> &[AgentInfoProto] {
     &output.rl_output.as_ref().expect("there is an agent").agent_infos[BEHAVIOR].value
 }
 
-fn floats(agent: &AgentInfoProto, place: usize) -> &[f32] {
-    match &agent.observations[place].observation_data {
+fn floats(agent: &AgentInfoProto, index: usize) -> &[f32] {
+    match &agent.observations[index].observation_data {
         Some(ObservationData::FloatData(floats)) => &floats.data,
-        other => panic!("floats were asked for: {other:?}"),
+        other => panic!("expected floats: {other:?}"),
     }
 }
 
-/// A row as clients of either generation send it.
+/// An action that chooses a row, as clients of either generation send it.
 fn row(number: usize, is_new: bool) -> AgentActionProto {
     let (vector_actions, discrete_actions) = if is_new {
         (Vec::new(), vec![number as i32])
@@ -89,14 +89,14 @@ proptest! {
         world.agent_params.observation_size = 4;
         world.agent_params.actions = table.map_or(ActionSpace::DefaultDiscrete, ActionSpace::Discrete);
         let count = world.agent_params.num_actions().expect("there is a table");
-        let mut environment = Environment::new(world.clone().check().expect("the world is sound"));
+        let mut environment = Environment::new(world.clone().check().expect("the world is valid"));
         let mut session = session(world, Catalogue::default(), is_new);
         let first = answer(&mut session, CommandProto::Reset, None);
-        let known = &first.rl_initialization_output.expect("the behaviour is told").brain_parameters[0];
-        prop_assert_eq!(known.vector_action_space_type, i32::from(SpaceTypeProto::Discrete));
-        prop_assert_eq!(&known.vector_action_size, &vec![count as i32]);
-        prop_assert_eq!(known.action_spec.is_some(), is_new);
-        if let Some(spec) = &known.action_spec {
+        let behavior = &first.rl_initialization_output.expect("the behaviour is told").brain_parameters[0];
+        prop_assert_eq!(behavior.vector_action_space_type, i32::from(SpaceTypeProto::Discrete));
+        prop_assert_eq!(&behavior.vector_action_size, &vec![count as i32]);
+        prop_assert_eq!(behavior.action_spec.is_some(), is_new);
+        if let Some(spec) = &behavior.action_spec {
             prop_assert_eq!((spec.num_continuous_actions, spec.num_discrete_actions), (0, 1));
             prop_assert_eq!(&spec.discrete_branch_sizes, &vec![count as i32]);
         }
@@ -122,14 +122,14 @@ fn unknown_rows_and_wrong_lengths_are_refused() {
         };
         session.answer(&input).expect_err("there is no such action").to_string()
     };
-    let none = "expected the number of a row of the world's table of actions, 0 to 6";
-    assert_eq!(refused(row(7, true)), format!("action: found 7, {none}"));
-    for (number, said) in [(-1.0, "-1"), (0.5, "0.5"), (f32::NAN, "NaN")] {
+    let expected = "expected the number of a row of the world's table of actions, 0 to 6";
+    assert_eq!(refused(row(7, true)), format!("action: found 7, {expected}"));
+    for (number, identity) in [(-1.0, "-1"), (0.5, "0.5"), (f32::NAN, "NaN")] {
         let action = AgentActionProto {
             vector_actions: vec![number],
             ..AgentActionProto::default()
         };
-        assert_eq!(refused(action), format!("action: found {said}, {none}"));
+        assert_eq!(refused(action), format!("action: found {identity}, {expected}"));
     }
     let three = AgentActionProto {
         continuous_actions: vec![0.0; 3],
@@ -154,7 +154,7 @@ fn photographs_are_shown_one_per_step_until_the_last() {
     };
     world.agent_params.observation_size = 12;
     let mut studio =
-        Studio::new(&world.clone().check().expect("the world is sound")).expect("there are twelve photographs");
+        Studio::new(&world.clone().check().expect("the world is valid")).expect("there are twelve photographs");
     let views = studio.photographs();
     let mut session = session(world, Catalogue::default(), true);
     let mut output = answer(&mut session, CommandProto::Reset, None);
@@ -189,14 +189,14 @@ fn photographs_are_shown_one_per_step_until_the_last() {
     assert_eq!(
         (floats(last, 3)[0], floats(next, 3)[0]),
         (2.0, 1.0),
-        "then it begins anew"
+        "after the last photograph comes the first"
     );
-    // The first photograph of the barrel, which faces east: the camera is east of it and looks west.
-    let mut again = answer(&mut session, CommandProto::Reset, None);
+    // The barrel faces east, so the camera of its first photograph is east of it and looks west.
+    let mut output_again = answer(&mut session, CommandProto::Reset, None);
     for _ in 0..6 {
-        again = answer(&mut session, CommandProto::Step, None);
+        output_again = answer(&mut session, CommandProto::Step, None);
     }
-    let state = floats(&agents(&again)[0], 3);
+    let state = floats(&agents(&output_again)[0], 3);
     assert!(
         state[1] > 3.5 && (state[2] - 4.0).abs() < 1e-3 && (state[3] - 270.0).abs() < 1e-3,
         "{state:?}"
@@ -231,9 +231,9 @@ fn library_models_are_drawn_and_unknown_ones_give_a_remark() {
         main: None,
     };
     let imported = LibraryModel::from_gltf(&bytes, &options, &mut |_| unreachable!("the file names no other"))
-        .expect("the example is a sound model");
+        .expect("the example is a valid model");
     let mut library = Library::default();
-    library.insert(imported.model).expect("there is room");
+    library.insert(imported.model).expect("the file can be written");
     let mut world = WorldDraft::with_objects(vec![
         Object::new("lighthouse", [0.0, 12.0]),
         Object::new("dragon", [5.0, 9.0]),
@@ -245,12 +245,12 @@ fn library_models_are_drawn_and_unknown_ones_give_a_remark() {
         let output = answer(&mut session, CommandProto::Reset, None);
         (floats(&agents(&output)[0], 1).to_vec(), remarks)
     };
-    let (placeholder, both) = seen(Catalogue::default());
-    let (drawn, one) = seen(Catalogue::default().with_library(&library));
-    assert_ne!(placeholder, drawn);
+    let (placeholder, remarks_for_both) = seen(Catalogue::default());
+    let (model, remarks_for_one) = seen(Catalogue::default().with_library(&library));
+    assert_ne!(placeholder, model);
     assert_eq!(
-        one,
+        remarks_for_one,
         ["world: /objects/1: class \"dragon\" model \"1\" is not known; a placeholder stands there"]
     );
-    assert_eq!(both.len(), 2, "{both:?}");
+    assert_eq!(remarks_for_both.len(), 2, "{remarks_for_both:?}");
 }

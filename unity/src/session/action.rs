@@ -1,4 +1,4 @@
-//! Extracts the action from a client's message: three numbers, or a row of the world's table.
+//! Extracts the action from a client's message: three numbers, or a row of the world's action table.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use crate::behavior::{ACTION_LENGTH, BEHAVIOR};
 use crate::error::UnityError;
 use crate::protocol::{AgentActionProto, ListAgentActionProto};
 
-/// The action of the only agent; three zeros if the message has none.
+/// The action of the only agent; three zeros if the message contains none.
 pub(super) fn action(
     actions: &BTreeMap<String, ListAgentActionProto>,
     agent: &AgentParams,
@@ -42,10 +42,10 @@ fn numbers(action: &AgentActionProto) -> Result<[f64; ACTION_LENGTH], UnityError
             expected: ACTION_LENGTH,
         });
     }
-    Ok(std::array::from_fn(|place| f64::from(found[place])))
+    Ok(std::array::from_fn(|index| f64::from(found[index])))
 }
 
-/// The requested row of a table. Old clients send its number as a float.
+/// The chosen row of the action table. Old clients send its number as a float.
 fn row(action: &AgentActionProto, rows: usize) -> Result<usize, UnityError> {
     let found: Vec<f64> = if action.discrete_actions.is_empty() {
         action.vector_actions.iter().copied().map(f64::from).collect()

@@ -1,4 +1,4 @@
-//! [`Album`]: shows the photographs of a world's objects, one per step, for worlds that are meant for photographs.
+//! [`Album`]: shows photographs of a world's objects, one per step, in worlds made for photographs.
 
 use driftworld_env::{Catalogue, Frame, Photograph, Studio};
 use driftworld_spec::World;
@@ -12,7 +12,7 @@ pub(super) struct Album {
     /// Never empty.
     photographs: Vec<Photograph>,
     /// Index of the current photograph.
-    now: usize,
+    current: usize,
     frame: Frame,
 }
 
@@ -20,7 +20,7 @@ impl Album {
     /// Opens an album at its first photograph.
     ///
     /// # Errors
-    /// The reason why there is none: no objects, or too many views of them.
+    /// The reason why there are no photographs: no objects, or too many views of them.
     pub(super) fn open(world: &World, catalogue: &Catalogue) -> Result<Self, String> {
         let studio = Studio::with_catalogue(world, catalogue).map_err(|error| error.to_string())?;
         let photographs = studio.photographs();
@@ -31,16 +31,16 @@ impl Album {
         Ok(Self {
             studio,
             photographs,
-            now: 0,
+            current: 0,
             frame: Frame::new(width, height),
         })
     }
 
-    /// Turns to the next photograph; returns whether there is one.
-    pub(super) fn turn(&mut self) -> bool {
-        let is_there = self.now + 1 < self.photographs.len();
-        self.now += usize::from(is_there);
-        is_there
+    /// Moves on to the next photograph; returns whether there is one.
+    pub(super) fn advance(&mut self) -> bool {
+        let has_next = self.current + 1 < self.photographs.len();
+        self.current += usize::from(has_next);
+        has_next
     }
 
     /// The current photograph.
@@ -48,14 +48,13 @@ impl Album {
         let supersampling = self.studio.supersampling();
         let mut target = self.frame.target();
         target.supersampling = supersampling;
-        self.studio.take(&self.photographs[self.now], &mut target)?;
+        self.studio.take(&self.photographs[self.current], &mut target)?;
         Ok(&self.frame)
     }
 
-    /// The state vector: the object's number, from 1, then the camera's position in the world in metres, and its heading in
-    /// degrees.
+    /// The state vector: the object's number, from 1, the camera's position in the world in metres, and its heading in degrees.
     pub(super) fn state(&self, world: &World) -> Vec<f32> {
-        let photograph = &self.photographs[self.now];
+        let photograph = &self.photographs[self.current];
         let object = &world.objects[photograph.object];
         let yaw = (photograph.yaw_deg + object.heading as f32).rem_euclid(360.0);
         let level = photograph.distance * libm::cosf(photograph.elevation_deg.to_radians());

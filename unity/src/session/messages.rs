@@ -12,35 +12,35 @@ use crate::side_channel::{
     Payload, Setting, SideChannel, engine_setting, environment_parameter, float_property, id_of, records, text_payload,
 };
 
-/// Maximum number of messages handled at a time.
-const MOST_MESSAGES: usize = 1000;
+/// Maximum number of messages handled per batch.
+const MAX_MESSAGES: usize = 1000;
 
-/// Maximum number of values in the JSON texts of one batch of messages, enough for a world of about twenty thousand
-/// objects. Parsing that many brackets takes half a gigabyte of memory before they are refused; 4 MB of brackets took 2.8.
-/// While texts are being read, a disconnected client is not noticed.
-const MOST_VALUES: usize = 400_000;
+/// Maximum number of values in the JSON texts of one batch of messages, enough for a world of about twenty thousand objects.
+/// Parsing that many brackets takes half a gigabyte of memory; without the limit, 4 MB of brackets took 2.8 GB. While texts are
+/// being parsed, a disconnected client is not noticed.
+const MAX_VALUES: usize = 400_000;
 
-/// Maximum number of messages that are parsed, so that those beyond [`MOST_MESSAGES`] can be refused one by one.
-const MOST_LOOKED_AT: usize = 10_000;
+/// Maximum number of messages that are examined per batch, so that those beyond [`MAX_MESSAGES`] can be refused one by one.
+const MAX_EXAMINED: usize = 10_000;
 
-/// Maximum number of screenshot pixels per batch, enough for two of the largest: while they are drawn, a disconnected client is
-/// not noticed.
-const MOST_POINTS: u64 = 2 << 24;
+/// Maximum number of screenshot pixels per batch, enough for two of the largest screenshots. While they are rendered, a
+/// disconnected client is not noticed.
+const MAX_SCREENSHOT_PIXELS: u64 = 2 << 24;
 
-/// An L2Explorer message: its channel, and its text or the reason why there is none.
-pub(super) type Told<'a> = (Channel, Result<&'a str, String>);
+/// An L2Explorer message: its channel, and its text or the reason why the text was refused.
+pub(super) type ReceivedText<'a> = (Channel, Result<&'a str, String>);
 
 impl Session {
     /// Applies the settings among the messages, and returns the others.
-    pub(super) fn take_settings<'a>(&mut self, bytes: &'a [u8]) -> Vec<Told<'a>> {
+    pub(super) fn take_settings<'a>(&mut self, bytes: &'a [u8]) -> Vec<ReceivedText<'a>> {
         let mut responses = Vec::new();
-        let mut values = MOST_VALUES;
+        let mut values = MAX_VALUES;
         for (number, record) in records(bytes).enumerate() {
-            if number == MOST_MESSAGES {
-                let remark = format!("messages: found more than {MOST_MESSAGES} in one go; the others are refused");
+            if number == MAX_MESSAGES {
+                let remark = format!("messages: found more than {MAX_MESSAGES} in one go; the others are refused");
                 self.remarks.make(About::Refusals, &remark);
             }
-            if number == MOST_LOOKED_AT {
+            if number == MAX_EXAMINED {
                 break;
             }
             let record = match record {
@@ -52,10 +52,10 @@ impl Session {
                 }
             };
             let side_channel = SideChannel::from_id(record.id);
-            if number >= MOST_MESSAGES {
+            if number >= MAX_MESSAGES {
                 if let Some(SideChannel::L2Explorer(channel)) = side_channel {
                     let reason =
-                        format!("found more than {MOST_MESSAGES} in one go, expected the others with later steps");
+                        format!("found more than {MAX_MESSAGES} in one go, expected the others with later steps");
                     responses.push((channel, Err(reason)));
                 }
                 continue;
@@ -90,28 +90,28 @@ impl Session {
         }
     }
 
-    fn take_setting(&mut self, what: &str, setting: Result<Setting, String>) {
+    fn take_setting(&mut self, kind: &str, setting: Result<Setting, String>) {
         match setting {
             Ok(setting) => {
                 if let Err(reason) = self.parameters.set(&setting) {
-                    let remark = format!("{what}: {reason}");
-                    // For an unknown name, a different value is nothing new.
-                    let thing = if Parameters::knows(&setting.key) {
+                    let remark = format!("{kind}: {reason}");
+                    // For an unknown name, one remark is enough, whatever the values.
+                    let key = if Parameters::knows(&setting.key) {
                         remark.clone()
                     } else {
-                        format!("{what} {}", setting.key)
+                        format!("{kind} {}", setting.key)
                     };
-                    self.remarks.make_once(About::Settings, &thing, &remark);
+                    self.remarks.make_once(About::Settings, &key, &remark);
                 }
             }
-            Err(reason) => self.remarks.make(About::Settings, &format!("{what}: {reason}")),
+            Err(reason) => self.remarks.make(About::Settings, &format!("{kind}: {reason}")),
         }
     }
 
     /// Handles the requests in messages; returns whether one of them reset the world.
-    pub(super) fn receive(&mut self, messages: &[Told]) -> bool {
-        let mut is_renewed = false;
-        let mut points = 0;
+    pub(super) fn receive(&mut self, messages: &[ReceivedText]) -> bool {
+        let mut was_reset = false;
+        let mut pixels = 0;
         for (channel, text) in messages {
             let time = (self.clock)();
             let received = match text {
@@ -126,15 +126,15 @@ impl Session {
                     .make(About::Worlds, &format!("{} channel: {remark}", channel.name()));
             }
             if received.reset {
-                self.renew();
-                is_renewed = true;
+                self.adopt_world();
+                was_reset = true;
             }
             for message in &received.messages {
                 self.send(message);
             }
             if let Some(screenshot) = received.screenshot {
-                points += u64::from(screenshot.width) * u64::from(screenshot.height);
-                let written = if points <= MOST_POINTS {
+                pixels += u64::from(screenshot.width) * u64::from(screenshot.height);
+                let written = if pixels <= MAX_SCREENSHOT_PIXELS {
                     self.draw(&screenshot)
                 } else {
                     Err("found more pictures than are drawn in one go, expected the others with later steps".to_owned())
@@ -146,11 +146,11 @@ impl Session {
                 self.send(&answer);
             }
         }
-        is_renewed
+        was_reset
     }
 
     /// Adopts the world of a reset message, with the current parameters.
-    fn renew(&mut self) {
+    fn adopt_world(&mut self) {
         self.start = self.environment.world().clone().with_maps(&self.maps);
         if !self.parameters.is_empty() || self.start != *self.environment.world() {
             self.restart();
@@ -162,12 +162,12 @@ impl Session {
     /// Renders and writes a screenshot; returns its path.
     fn draw(&mut self, screenshot: &Screenshot) -> Result<String, String> {
         let size = [screenshot.width, screenshot.height];
-        // At the observations' size it is an observation, with the same antialiasing.
+        // At the observations' size the screenshot is an observation, with the same antialiasing.
         let png = if size == self.environment.world().agent_params.picture_size() {
             png(size, &self.environment.observe().rgb)
         } else {
-            let drawn = self.environment.observe_at(size[0], size[1]);
-            png(size, &drawn.map_err(|error| error.to_string())?.rgb)
+            let frame = self.environment.observe_at(size[0], size[1]);
+            png(size, &frame.map_err(|error| error.to_string())?.rgb)
         };
         let png = png.map_err(|error| error.to_string())?;
         let path = self.screenshots.write(&screenshot.filename, &png)?;
@@ -186,12 +186,12 @@ impl Session {
     }
 }
 
-/// The text, unless it has more values than are left. Commas and brackets in strings count as well.
+/// The text, unless it has more values than `left`. Commas and brackets in strings count as well.
 fn bounded<'a>(text: &'a str, left: &mut usize) -> Result<&'a str, String> {
     let found = text.bytes().filter(|byte| matches!(byte, b',' | b'[' | b'{')).count();
     let Some(rest) = left.checked_sub(found) else {
         return Err(format!(
-            "found about {found} values, expected at most {left} of the {MOST_VALUES} in one go; larger worlds are for --world"
+            "found about {found} values, expected at most {left} of the {MAX_VALUES} in one go; larger worlds are for --world"
         ));
     };
     *left = rest;
@@ -201,12 +201,12 @@ fn bounded<'a>(text: &'a str, left: &mut usize) -> Result<&'a str, String> {
 /// Escapes non-ASCII characters of a JSON text, which old clients cannot decode.
 fn ascii(json: &str) -> String {
     let mut text = String::with_capacity(json.len());
-    for letter in json.chars() {
-        if letter.is_ascii() {
-            text.push(letter);
+    for c in json.chars() {
+        if c.is_ascii() {
+            text.push(c);
         } else {
             let mut units = [0; 2];
-            for unit in letter.encode_utf16(&mut units) {
+            for unit in c.encode_utf16(&mut units) {
                 write!(text, "\\u{unit:04x}").expect("writing to a String does not fail");
             }
         }
@@ -223,7 +223,7 @@ mod tests {
         let json = r#"{"a":"20° – 𝄞\n"}"#;
         let text = ascii(json);
         assert!(text.is_ascii(), "{text}");
-        let read = |text: &str| serde_json::from_str::<serde_json::Value>(text).expect("it is JSON still");
+        let read = |text: &str| serde_json::from_str::<serde_json::Value>(text).expect("it is still JSON");
         assert_eq!(read(&text), read(json));
     }
 }

@@ -1,4 +1,4 @@
-//! [`Session`]: a world's answers to a client's messages.
+//! [`Session`]: runs a world and answers a client's messages.
 
 mod action;
 mod album;
@@ -27,10 +27,10 @@ use crate::protocol::{
 use crate::remarks::{About, Remarks};
 use crate::screenshots::Screenshots;
 
-/// The version of the protocol: every client of version 1 accepts the first one; newer features are announced as capabilities.
+/// The version of the protocol. Every client of version 1 accepts 1.0.0; newer features are announced as capabilities.
 const COMMUNICATION_VERSION: &str = "1.0.0";
 
-/// Bytes of a message besides observations and side channel messages.
+/// Maximum number of bytes of a message besides observations and side channel messages.
 const ENVELOPE: usize = 4096;
 
 /// Initial settings of a session.
@@ -55,8 +55,7 @@ pub enum Turn {
     Quit,
 }
 
-/// The parts of the behaviour that are announced to a client once, and again when they change: descriptions of the
-/// numbers of an action, and the size of observations.
+/// The description of actions and observations that a client receives at the start, and again whenever it changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Announced {
     words: [&'static str; ACTION_LENGTH],
@@ -85,7 +84,7 @@ struct Announced {
 /// ```
 pub struct Session {
     environment: Environment,
-    /// The photographs of the world's objects, if the world is meant for them.
+    /// The photographs of the world's objects, if the world is made for photographs.
     album: Option<Album>,
     channels: Channels,
     /// The world that a reset starts.
@@ -108,9 +107,9 @@ pub struct Session {
 }
 
 impl Session {
-    /// A session with its world at its start. `clock` returns the time in ISO 8601, for messages.
+    /// Creates a session with the world at its start. `clock` returns the time in ISO 8601, for messages.
     pub fn new(setup: Setup, screenshots: Screenshots, clock: impl Fn() -> String + 'static) -> Self {
-        // A world that was saved while running is taken back to its start: clients begin episodes.
+        // A world that was saved while running is reset to its start, because clients start episodes.
         let start = Environment::new(setup.world).world().clone().with_maps(&setup.maps);
         let mut session = Self {
             environment: Environment::with_catalogue(start.clone(), setup.catalogue),
@@ -130,7 +129,7 @@ impl Session {
             recorder: None,
             recordings: Vec::new(),
         };
-        // The channels give their own warnings about worlds that messages reset to.
+        // Worlds that messages reset to get their warnings from the channels.
         for warning in session.environment.warnings() {
             if warning != Warning::ForPhotographs {
                 session.remarks.make(About::Worlds, &format!("world: {warning}"));
@@ -162,12 +161,12 @@ impl Session {
     ///
     /// # Errors
     /// [`UnityError::ClientVersion`] for a client with a different major version of the protocol.
-    pub fn begin(&mut self, said: &UnityRlInitializationInputProto) -> Result<(), UnityError> {
-        self.client = Client::new(said)?;
-        if said.seed != 0 {
+    pub fn begin(&mut self, identity: &UnityRlInitializationInputProto) -> Result<(), UnityError> {
+        self.client = Client::new(identity)?;
+        if identity.seed != 0 {
             let remark = format!(
                 "seed {}: not used, the chance of a world is its own: the same world and actions give the same episode",
-                said.seed
+                identity.seed
             );
             self.remarks.make(About::Settings, &remark);
         }
@@ -176,9 +175,9 @@ impl Session {
 
     /// Carries out a client's command.
     ///
-    /// The order is settings, the command RESET, messages, the command STEP: settings apply to the reset in the same input, and
-    /// objects are created in the new world. A STEP whose messages reset to another world shows the new world's start, because
-    /// the action was meant for the old one.
+    /// Settings are applied first, then the command RESET, messages, and the command STEP. So settings apply to a reset in the same
+    /// input, and objects are created in the new world. A STEP whose messages reset to another world returns the new world's start,
+    /// because the action was meant for the old one.
     ///
     /// # Errors
     /// [`UnityError`] for unknown commands and actions, and for actions that cannot be carried out. Messages that cannot be
@@ -193,14 +192,14 @@ impl Session {
         }
         let before = self.recorder.as_ref().filter(|_| !messages.is_empty());
         let before = before.map(|recorder| (recorder.recording(&self.environment, None), self.environment.state()));
-        let is_renewed = self.receive(&messages);
+        let was_reset = self.receive(&messages);
         if let Some((recording, state)) = before {
-            self.note_change(recording, &state, is_renewed);
+            self.note_change(recording, &state, was_reset);
         }
         let agent_params = &self.environment.world().agent_params;
         let agents = match command {
             CommandProto::Quit => return Ok(Turn::Quit),
-            CommandProto::Step if !is_renewed => {
+            CommandProto::Step if !was_reset => {
                 let action = action(&input.agent_actions, agent_params)?;
                 self.step(action)?
             }
@@ -214,7 +213,7 @@ impl Session {
         Ok(Turn::Output(Box::new(self.output(agents))))
     }
 
-    /// Starts recording, for [`Session::take_recordings`]. Photographs are not episodes.
+    /// Starts recording, for [`Session::take_recordings`]. Photographs are not recorded.
     pub fn record(&mut self) {
         self.recorder = Some(Recorder::from_now(&self.environment));
     }
@@ -224,14 +223,14 @@ impl Session {
         std::mem::take(&mut self.recordings)
     }
 
-    /// Ends the recording of the current episode, for use when no step follows.
+    /// Ends the recording of the current episode. Call it when no step follows.
     pub fn end_recording(&mut self) {
         self.keep_recording(None);
     }
 
-    /// Records what messages did to the world: nothing, a change during the episode, or a new world.
-    fn note_change(&mut self, recording: Recording, before: &World, is_renewed: bool) {
-        if is_renewed {
+    /// Records how messages changed the world: not at all, during the episode, or by a new world.
+    fn note_change(&mut self, recording: Recording, before: &World, was_reset: bool) {
+        if was_reset {
             if !recording.actions.is_empty() {
                 self.recordings.push(recording);
             }
@@ -243,7 +242,7 @@ impl Session {
         }
     }
 
-    /// Stores the current episode if it has a step, and begins the next one in the current world.
+    /// Stores the current episode if it has any steps, and starts the next one in the current world.
     fn keep_recording(&mut self, ended_by: Option<EndedBy>) {
         let Some(recorder) = &self.recorder else { return };
         if recorder.num_steps() > 0 {
@@ -280,7 +279,7 @@ impl Session {
         self.open_album();
     }
 
-    /// Starts with the first photograph, if the world is meant for photographs.
+    /// Opens the album at the first photograph, if the world is made for photographs.
     pub(super) fn open_album(&mut self) {
         let world = self.environment.world();
         self.album = None;
@@ -296,11 +295,11 @@ impl Session {
         }
     }
 
-    /// Carries out an action; if it ends the episode, the start of the next one follows, as in Unity.
+    /// Carries out an action. If it ends the episode, the start of the next one follows in the same output, as in Unity.
     fn step(&mut self, action: Action) -> Result<Vec<AgentInfoProto>, UnityError> {
         let mut agent;
         if let Some(album) = &mut self.album {
-            let is_over = !album.turn();
+            let is_over = !album.advance();
             agent = self.decision(0.0, 0)?;
             (agent.done, agent.max_step_reached) = (is_over, is_over);
         } else {
@@ -326,8 +325,8 @@ impl Session {
         Ok(vec![agent, self.decision(0.0, 0)?])
     }
 
-    /// Checks that the end of an episode and the start of the next fit into one message. Images as floats always have
-    /// the same size, so the error is raised at the start and not during training.
+    /// Checks that the end of an episode and the start of the next fit into one message. As images sent as floats always have the
+    /// same size, this raises the error at the start and not during training.
     fn check_end_fits(&self, agent: &AgentInfoProto) -> Result<(), UnityError> {
         let world = self.environment.world();
         let can_end = self.album.is_some()
@@ -346,7 +345,7 @@ impl Session {
         let (pictures, client) = (self.pictures, self.client);
         let observations = if let Some(album) = &mut self.album {
             let mut state = album.state(self.environment.world());
-            // This is the announced length.
+            // The announced length.
             state.resize(1 + self.environment.world().agent_params.state_len(), 0.0);
             observations(album.picture()?, state, pictures, client)?
         } else {
@@ -366,36 +365,36 @@ impl Session {
 
     fn output(&mut self, agents: Vec<AgentInfoProto>) -> UnityOutputProto {
         let agent = &self.environment.world().agent_params;
-        let now = Announced {
+        let announced_now = Announced {
             words: words(agent),
             num_rows: agent.num_actions(),
             picture_size: agent.picture_size(),
             state_len: agent.state_len(),
         };
-        let news = (self.announced != Some(now)).then(|| UnityRlInitializationOutputProto {
+        let description = (self.announced != Some(announced_now)).then(|| UnityRlInitializationOutputProto {
             brain_parameters: vec![behavior(agent, self.client)],
             ..UnityRlInitializationOutputProto::default()
         });
-        self.announced = Some(now);
+        self.announced = Some(announced_now);
         let mut rl_output = UnityRlOutputProto {
             agent_infos: BTreeMap::from([(BEHAVIOR.to_owned(), ListAgentInfoProto { value: agents })]),
             side_channel: Vec::new(),
         };
         let room = MAX_OUTGOING_BYTES.saturating_sub(rl_output.encoded_len() + ENVELOPE);
         rl_output.side_channel = self.outbox.take(room);
-        let left_out = self.outbox.take_left_out();
-        if left_out > 0 {
-            let remark = format!("{left_out} messages were left out: they do not fit beside the observations");
+        let num_dropped = self.outbox.take_num_dropped();
+        if num_dropped > 0 {
+            let remark = format!("{num_dropped} messages were left out: they do not fit beside the observations");
             self.remarks.make_once(About::Refusals, "left out", &remark);
         }
         UnityOutputProto {
             rl_output: Some(rl_output),
-            rl_initialization_output: news,
+            rl_initialization_output: description,
         }
     }
 }
 
-/// The object that a step collected, by its number from 1: the last one that paid or was destroyed; 0 for none.
+/// The number, from 1, of the object that a step collected: the last one that paid or was destroyed; 0 for none.
 fn collected(step: &Step) -> usize {
     let is_collected = |event: &&Event| event.destroyed || event.reward != 0.0;
     let last = step.events.iter().rfind(is_collected);

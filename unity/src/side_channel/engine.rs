@@ -1,5 +1,5 @@
-//! Reads messages about the engine's configuration. None of them has an effect: there is no window, and simulation is always as
-//! fast as possible.
+//! Reads messages about the engine's configuration. None of them has an effect: there is no window, and the simulation always runs
+//! as fast as possible.
 
 use super::Payload;
 

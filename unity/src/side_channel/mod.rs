@@ -11,7 +11,7 @@ pub(crate) use settings::{Setting, environment_parameter, float_property};
 use driftworld_env::Channel;
 use uuid::{Uuid, uuid};
 
-/// Bytes of a record before its payload: identifier and length.
+/// Number of bytes of a record before its payload: identifier and length.
 pub(crate) const RECORD_HEAD: usize = 20;
 
 /// The known channels.
@@ -58,7 +58,7 @@ pub(crate) struct Record<'a> {
     pub(crate) payload: &'a [u8],
 }
 
-/// The records in a sequence of bytes, up to the first malformed one: what follows it cannot be located.
+/// The records in a sequence of bytes, up to the first malformed one, after which no record can be located.
 pub(crate) fn records(mut bytes: &[u8]) -> impl Iterator<Item = Result<Record<'_>, String>> {
     std::iter::from_fn(move || {
         if bytes.is_empty() {
@@ -69,10 +69,10 @@ pub(crate) fn records(mut bytes: &[u8]) -> impl Iterator<Item = Result<Record<'_
             bytes = &[];
             return Some(Err(format!("found {found} bytes, expected at least {RECORD_HEAD}")));
         };
-        // The head is 16 bytes of identifier, with its first groups in little-endian order, and 4 of length.
+        // The head consists of a 16-byte identifier, with its first groups in little-endian order, and a 4-byte length.
         let (id, length) = head.split_at(16);
-        let id = Uuid::from_bytes_le(std::array::from_fn(|place| id[place]));
-        let length = i32::from_le_bytes(std::array::from_fn(|place| length[place]));
+        let id = Uuid::from_bytes_le(std::array::from_fn(|index| id[index]));
+        let length = i32::from_le_bytes(std::array::from_fn(|index| length[index]));
         let payload = usize::try_from(length)
             .ok()
             .and_then(|length| rest.split_at_checked(length));
@@ -132,7 +132,7 @@ mod tests {
         write_record(&mut bytes, Uuid::from_bytes([8; 16]), b"");
         let found: Vec<_> = records(&bytes)
             .collect::<Result<_, _>>()
-            .expect("the records are sound");
+            .expect("the records are valid");
         let expected = [
             Record {
                 id: Uuid::from_bytes([7; 16]),

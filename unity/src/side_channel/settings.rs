@@ -9,8 +9,8 @@ pub(crate) struct Setting {
     pub(crate) value: f32,
 }
 
-/// Maximum length of a name, in bytes.
-const LONGEST_KEY: usize = 200;
+/// Maximum length of a parameter's name, in bytes.
+const MAX_KEY_BYTES: usize = 200;
 
 /// Reads an environment parameter; samplers are refused.
 pub(crate) fn environment_parameter(bytes: &[u8]) -> Result<Setting, String> {
@@ -37,9 +37,9 @@ pub(crate) fn float_property(bytes: &[u8]) -> Result<Setting, String> {
 
 fn key(payload: &mut Payload) -> Result<String, String> {
     let key = payload.text()?;
-    if key.len() > LONGEST_KEY {
+    if key.len() > MAX_KEY_BYTES {
         return Err(format!(
-            "found a name of {} bytes, expected at most {LONGEST_KEY}",
+            "found a name of {} bytes, expected at most {MAX_KEY_BYTES}",
             key.len()
         ));
     }
@@ -71,7 +71,7 @@ mod tests {
     #[test]
     fn samplers_and_broken_messages_are_refused() {
         let check = |bytes: &[u8], expected: &str| {
-            let error = environment_parameter(bytes).expect_err("the message is not sound");
+            let error = environment_parameter(bytes).expect_err("the message is invalid");
             assert!(error.contains(expected), "{error}");
         };
         check(&bytes("light", &[1_i32.to_le_bytes()]), "\"light\": found a sampler");

@@ -1,4 +1,4 @@
-"""L2Explorer's three side channels on the client's side: they send and receive JSON, and keep every answer."""
+"""The client's side of L2Explorer's three side channels: sends and receives JSON, and keeps every answer."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ GUIDS = {
 
 
 class RawChannel(SideChannel):
-    """A channel of bytes."""
+    """A channel that sends and receives bytes."""
 
     def __init__(self, guid: str) -> None:
         super().__init__(uuid.UUID(guid))
@@ -38,10 +38,10 @@ class JsonChannel(RawChannel):
     def __init__(self, name: str) -> None:
         super().__init__(GUIDS[name])
 
-    def say(self, action: str, payload: Any = None, **beside: Any) -> str:
+    def say(self, action: str, payload: Any = None, **extra: Any) -> str:
         """Queues a message for the next reset or step; returns its token."""
         token = str(uuid.uuid4())
-        message = {"token": token, "msg_time": "2026-01-02T03:04:05", "action": action, **beside}
+        message = {"token": token, "msg_time": "2026-01-02T03:04:05", "action": action, **extra}
         if payload is not None:
             message["payload"] = payload
         self.send_text(json.dumps(message))
@@ -53,13 +53,13 @@ class JsonChannel(RawChannel):
         self.send_bytes(len(data).to_bytes(4, "little") + data)
 
     def take(self) -> list[dict[str, Any]]:
-        """The messages received since the last call; old clients read only ASCII."""
+        """The messages received since the last call, which must be ASCII for old clients."""
         texts = [data[4:].decode("ascii") for data in self.received]
         self.received = []
         return [json.loads(text) for text in texts]
 
     def answer(self, token: str) -> dict[str, Any]:
-        """The only answer to a message, among those received since the last call."""
+        """The answer to a message, which must be the only one received since the last call."""
         (answer,) = (message for message in self.take() if message["req_token"] == token)
         return dict(answer)
 

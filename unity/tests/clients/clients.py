@@ -1,4 +1,4 @@
-"""A common interface to clients of every generation, which also starts their executable."""
+"""A common interface to clients of every generation, and a launcher for them and their executables."""
 
 from __future__ import annotations
 
@@ -34,18 +34,18 @@ Floats = npt.NDArray[np.float32]
 
 @dataclass(frozen=True)
 class Seen:
-    """One agent at one moment."""
+    """What a client observes of the agent at one moment."""
 
     agent_id: int
     reward: float
     #: The observations, as the client returns them.
     arrays: list[Floats]
-    #: Whether a limit of steps ended the episode; only set at an end.
+    #: Whether the step limit ended the episode; only set at the end of an episode.
     truncated: bool = False
 
     @property
     def pictures(self) -> list[Floats]:
-        """Depth, colour and segmentation as (height, width, channels), whatever the client's order of axes."""
+        """Depth, colour and segmentation as (height, width, channels), for any client's order of axes."""
         axes = (1, 2, 0) if GENERATION >= (1, 0) else (0, 1, 2)
         return [array.transpose(axes) for array in self.arrays if array.ndim == 3]
 
@@ -63,7 +63,7 @@ class Seen:
 
     @property
     def vector(self) -> Floats:
-        """The number of the object that was collected, x, y, heading, velocity x, velocity y."""
+        """The number of the collected object, x, y, heading, velocity x, velocity y."""
         return self.arrays[3]
 
     def equals(self, other: Seen) -> bool:
@@ -85,11 +85,11 @@ class Moment:
 
 
 class Client:
-    """A client of the installed generation, and its executable."""
+    """A client of the installed generation, with its executable."""
 
     def __init__(self, env: UnityEnvironment, process: subprocess.Popen[Any] | None) -> None:
         self.env = env
-        #: The executable, whoever started it.
+        #: The process of the executable, which the client or the launcher started.
         self.process: subprocess.Popen[Any] = process or (env.proc1 if GENERATION < (0, 17) else env._process)
 
     def reset(self) -> Moment:
@@ -137,15 +137,15 @@ class Client:
 
     @staticmethod
     def _seen(steps: Any) -> list[Seen]:
-        cut = getattr(steps, "interrupted", getattr(steps, "max_step", [False] * len(steps)))
+        truncated = getattr(steps, "interrupted", getattr(steps, "max_step", [False] * len(steps)))
         return [
             Seen(
-                int(steps.agent_id[place]),
-                float(steps.reward[place]),
-                [array[place].copy() for array in steps.obs],
-                bool(cut[place]),
+                int(steps.agent_id[index]),
+                float(steps.reward[index]),
+                [array[index].copy() for array in steps.obs],
+                bool(truncated[index]),
             )
-            for place in range(len(steps))
+            for index in range(len(steps))
         ]
 
     def behaviors(self) -> list[str]:
@@ -155,7 +155,7 @@ class Client:
         return self.env.get_behavior_spec(BEHAVIOR) if GENERATION < (0, 17) else self.env.behavior_specs[BEHAVIOR]
 
     def shapes(self) -> list[tuple[int, ...]]:
-        """The observation shapes that the client was given, pictures as (height, width, channels)."""
+        """The observation shapes that the client received, pictures as (height, width, channels)."""
         spec = self.spec()
         if GENERATION < (0, 17):
             return list(spec.observation_shapes)
@@ -173,7 +173,7 @@ class Client:
 
 
 class Launcher:
-    """Starts clients and executables, and leaves none behind."""
+    """Starts clients and executables, and stops all of them at the end."""
 
     def __init__(self, executable: Path, folder: Path) -> None:
         #: The executable under its own name.
@@ -192,7 +192,7 @@ class Launcher:
         worker: int = 0,
         **options: Any,
     ) -> Client:
-        """A client that starts the executable itself, as clients do."""
+        """Starts a client that starts the executable itself, as clients do."""
         options[ARGS] = list(args)
         env = UnityEnvironment(
             str(self.file_name),
@@ -206,7 +206,7 @@ class Launcher:
         return self._clients[-1]
 
     def run(self, *args: str) -> subprocess.Popen[str]:
-        """Starts the executable alone; its output can be read."""
+        """Starts the executable alone, with its output piped."""
         process = subprocess.Popen(
             [str(self.executable), *args], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
         )
@@ -214,7 +214,7 @@ class Launcher:
         return process
 
     def meet(self, *args: str, channels: Sequence[SideChannel] = ()) -> Client:
-        """A client that starts nothing (Unity's editor mode), with an executable that is started separately."""
+        """Starts a client in Unity's editor mode, which starts no executable, and an executable for it."""
         port = free_port()
         process = self.run("--mlagents-port", str(port), *args)
         self._clients.append(Client(self.await_executable(port, channels), process))
@@ -222,7 +222,7 @@ class Launcher:
 
     @staticmethod
     def await_executable(port: int, channels: Sequence[SideChannel] = ()) -> UnityEnvironment:
-        """A client in editor mode."""
+        """Starts a client in editor mode, which waits for an executable."""
         return UnityEnvironment(None, base_port=port, timeout_wait=PATIENCE_SECS, side_channels=list(channels))
 
     def end(self) -> None:
@@ -255,14 +255,14 @@ def free_port(count: int = 1) -> int:
         return port
 
 
-def said(process: subprocess.Popen[str]) -> tuple[int, str]:
+def code_and_errors(process: subprocess.Popen[str]) -> tuple[int, str]:
     """The exit code and the error output of an executable that ends by itself."""
     _, errors = process.communicate(timeout=PATIENCE_SECS)
     return process.returncode, errors
 
 
 @contextmanager
-def told_version(version: str, monkeypatch: Any) -> Iterator[None]:
+def announcing_version(version: str, monkeypatch: Any) -> Iterator[None]:
     """Makes clients announce this version of the protocol."""
     with monkeypatch.context() as patch:
         patch.setattr(UnityEnvironment, "API_VERSION", version)

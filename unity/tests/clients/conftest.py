@@ -1,4 +1,4 @@
-"""Fixtures of the tests with the Python clients: the executable, and a launcher that leaves no process behind."""
+"""Fixtures for the tests with Python clients: the executable, a launcher, and the side channels."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import pytest
 from channels import Channels
 from clients import Launcher
 
-# The default folder of the original's files, beside the checkout.
+# The default folder of the original's example files, next to the checkout.
 BESIDE = Path(__file__).parents[4] / "shared" / "reference"
 
 

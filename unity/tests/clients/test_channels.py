@@ -1,4 +1,4 @@
-"""L2Explorer's three channels: worlds and objects sent mid-session, reports on the world, and rejected messages."""
+"""L2Explorer's three channels: worlds and objects sent mid-session, reports on the world, and refused messages."""
 
 from __future__ import annotations
 
@@ -33,12 +33,12 @@ def test_a_reset_by_message_is_answered_ok(launcher: Launcher, channels: Channel
     token = channels.reset.say("reset_environment", world())
     client.reset()
     answer = channels.reset.answer(token)
-    assert sorted(answer) == ["action", "msg_time", "payload", "req_token", "token"], "every key is there"
+    assert sorted(answer) == ["action", "msg_time", "payload", "req_token", "token"], "all keys are present"
     assert (answer["action"], answer["payload"]) == ("ok", None)
     assert str(uuid.UUID(answer["token"])) == answer["token"] != token
 
 
-def test_a_reset_by_message_works_with_a_step_too(client: Client, channels: Channels) -> None:
+def test_a_reset_by_message_also_works_with_a_step(client: Client, channels: Channels) -> None:
     before = client.step(AHEAD).now
     token = channels.reset.say("reset_environment", world(agent={"coordinates": [5, 6]}))
     moment = client.step(AHEAD)
@@ -54,11 +54,11 @@ def test_object_created_mid_episode_is_visible_and_pays_when_touched(client: Cli
     token = channels.reset.say("object_create", thing(0, 5, 3.5, reward_stimulus=["AgentCollide"]))
     moment = client.step(AHEAD).now
     assert [answer["action"] for answer in channels.reset.take() if answer["req_token"] == token] == ["ok"]
-    assert (moment.segmentation == NEUTRAL).all(axis=2).any(), "the onlooker is seen at once"
+    assert (moment.segmentation == NEUTRAL).all(axis=2).any(), "the onlooker is visible at once"
     moments = [moment, *(client.step(AHEAD).now for _ in range(8))]
     paid = [(each.reward, each.vector[0]) for each in moments]
     assert sorted(paid, reverse=True) == [(3.5, 2)] + [(0, 0)] * 8, "number 2 is the second object"
-    assert moments[-1].agent_id == empty.agent_id, "the episode goes on"
+    assert moments[-1].agent_id == empty.agent_id, "the episode continues"
 
 
 def test_object_created_mid_episode_is_gone_in_the_next(client: Client, channels: Channels) -> None:
@@ -92,14 +92,14 @@ def test_invalid_request_is_answered_by_an_error_and_changes_nothing(
     client: Client, channels: Channels, channel: str, action: str, payload: Any, expected: str
 ) -> None:
     before = client.step().now
-    spoken = getattr(channels, channel)
-    token = spoken.say(action, payload)
+    used = getattr(channels, channel)
+    token = used.say(action, payload)
     after = client.step().now
-    answer = spoken.answer(token)
+    answer = used.answer(token)
     assert answer["action"] == "error" and expected in " ".join(answer["payload"])
     assert after.equals(before) and after.agent_id == before.agent_id
     assert client.close() == 0
-    assert expected in Path("remarks.log").read_text(encoding="utf-8"), "the original client does not look at answers"
+    assert expected in Path("remarks.log").read_text(encoding="utf-8"), "logged because the original client ignores answers"
 
 
 @pytest.mark.parametrize("text", ["", "{", "[]", "null", "\0", '{"action": 3}', "[" * 5000])
@@ -137,7 +137,7 @@ def test_a_thousand_messages_per_step_are_accepted_and_all_are_answered(client: 
     assert len(channels.state.take()[-1]["payload"]["objects"]) == 1000
 
 
-def test_answers_are_ascii_whatever_the_message_has(client: Client, channels: Channels) -> None:
+def test_answers_are_ascii_even_if_the_message_is_not(client: Client, channels: Channels) -> None:
     channels.reset.send_text(json.dumps({"action": "öffne_𝄞", "token": "schlüssel"}, ensure_ascii=False))
     spawn = {"action": "object_create", "unique_name": "Bäume", "payload": thing(0, 5)}
     channels.reset.send_text(json.dumps(spawn, ensure_ascii=False))
@@ -147,8 +147,8 @@ def test_answers_are_ascii_whatever_the_message_has(client: Client, channels: Ch
     refused, accepted = channels.reset.take()
     assert refused["req_token"] == "schlüssel" and "öffne_𝄞" in refused["payload"][0]
     assert accepted["action"] == "ok"
-    told = channels.state.take()[-1]
-    assert told["payload"]["objects"][0]["unique_name"] == "Bäume"
+    report = channels.state.take()[-1]
+    assert report["payload"]["objects"][0]["unique_name"] == "Bäume"
 
 
 def test_observers_are_listed(client: Client, channels: Channels) -> None:
@@ -173,12 +173,12 @@ def test_active_observers_report_the_world_after_each_step(client: Client, chann
     assert sorted(first["payload"]) == sorted(parts) and first["payload"]["objects"][0]["unique_name"] == "cube"
     for speed, turn in [(5.0, 0.0), (0.0, 30.0), (10.0, -90.0)]:
         seen = client.step((speed, turn, 0.0)).now.vector
-        (told,) = channels.state.take()
-        agent = told["payload"]["agent_params"]
+        (report,) = channels.state.take()
+        agent = report["payload"]["agent_params"]
         assert [*agent["coordinates"], agent["heading"]] == seen[1:4].tolist(), "to the last bit"
     channels.state.say("set_active_observers", {"state": []})
     client.step()
-    assert [message["action"] for message in channels.state.take()] == ["ok"], "nobody watches any more"
+    assert [message["action"] for message in channels.state.take()] == ["ok"], "reports have stopped"
 
 
 def test_debug_categories_are_listed_and_enable_debug_messages(client: Client, channels: Channels) -> None:
@@ -221,8 +221,8 @@ def test_the_originals_example_messages_are_understood(client: Client, channels:
         assert channel.answer("mine")["action"] == answers[message["action"]], message["action"]
     assert [path.name for path in Path("screenshots").iterdir()] == ["l2explorer_screenshot.png"]
     client.step()
-    (told,) = channels.state.take()
-    assert list(told["payload"]) == ["agent_params"]
+    (report,) = channels.state.take()
+    assert list(report["payload"]) == ["agent_params"]
 
 
 def test_messages_on_unknown_channels_are_ignored_and_logged_once(launcher: Launcher) -> None:

@@ -1,4 +1,4 @@
-"""How sessions end: the client closes, quits, dies, pauses, loses its connection, or sends invalid data."""
+"""How sessions end: the client closes, quits, is killed or paused, loses its connection, or sends invalid data."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from mlagents_envs.exception import (
 from mlagents_envs.rpc_communicator import RpcCommunicator
 
 from channels import Channels
-from clients import GENERATION, PATIENCE_SECS, Client, Launcher, free_port, said, told_version
+from clients import GENERATION, PATIENCE_SECS, Client, Launcher, announcing_version, code_and_errors, free_port
 from worlds import AHEAD, thing, world
 
 
@@ -38,7 +38,7 @@ def test_a_client_that_closes_ends_the_executable_with_0(launcher: Launcher, ste
     assert client.close() == 0
 
 
-def test_closing_twice_is_refused_by_the_client_and_does_no_harm(launcher: Launcher) -> None:
+def test_closing_twice_is_refused_by_the_client(launcher: Launcher) -> None:
     client = launcher.start()
     client.reset()
     assert client.close() == 0
@@ -52,7 +52,7 @@ def test_a_client_in_editor_mode_closes_like_any_other(launcher: Launcher) -> No
     client.reset()
     client.step(AHEAD)
     client.env.close()
-    code, errors = said(client.process)
+    code, errors = code_and_errors(client.process)
     assert code == 0 and "a client at 127.0.0.1:" in errors
 
 
@@ -73,7 +73,7 @@ def test_the_command_quit_ends_the_executable_with_0(launcher: Launcher) -> None
     message.header.status = 200
     message.unity_input.rl_input.command = QUIT
     client.communicator().unity_to_external.parent_conn.send(message)
-    assert said(client.process)[0] == 0
+    assert code_and_errors(client.process)[0] == 0
 
 
 @pytest.mark.parametrize("number", [float("nan"), float("inf"), float("-inf")])
@@ -82,7 +82,7 @@ def test_an_action_that_is_not_finite_ends_both_at_once_and_is_explained(launche
     client.reset()
     with pytest.raises(UnityCommunicatorStoppedException):
         client.step((number, 0.0, 0.0))
-    code, errors = said(client.process)
+    code, errors = code_and_errors(client.process)
     assert code == 1 and "action" in errors, errors
 
 
@@ -93,16 +93,16 @@ def test_a_client_of_a_different_major_version_is_refused_on_both_sides(
     port = free_port()
     process = launcher.run("--mlagents-port", str(port))
     with (
-        told_version(version, monkeypatch),
+        announcing_version(version, monkeypatch),
         pytest.raises(UnityEnvironmentException, match="version is not compatible"),
     ):
         launcher.await_executable(port)
-    code, errors = said(process)
+    code, errors = code_and_errors(process)
     assert code == 1 and f'found version "{version}" of the protocol, expected 1.x' in errors
 
 
-#: A client in a separate process: starts the named executable, prints its process id, and takes a step for each line
-#: that it reads.
+#: Code of a client in a separate process: starts the named executable, prints its process id, and takes a step for each
+#: line that it reads.
 CLIENT = """
 import sys
 sys.path.insert(0, {folder!r})
@@ -130,11 +130,11 @@ class Other:
             text=True,
         )
 
-    def ask(self) -> None:
+    def request_step(self) -> None:
         assert self.process.stdin is not None
         print("step", file=self.process.stdin, flush=True)
 
-    def told(self) -> float:
+    def read_line(self) -> float:
         assert self.process.stdout is not None
         return float(self.process.stdout.readline())
 
@@ -146,13 +146,13 @@ class Other:
 
 @pytest.fixture
 def other(launcher: Launcher) -> Iterator[tuple[Other, subprocess.Popen[str]]]:
-    """Such a client in editor mode after one step, and the executable."""
+    """A client of a separate process, in editor mode, after one step; and the executable."""
     port = free_port()
     process = launcher.run("--mlagents-port", str(port))
     client = Other("", port)
-    client.told()
-    client.ask()
-    assert client.told() > 0
+    client.read_line()
+    client.request_step()
+    assert client.read_line() > 0
     yield client, process
     client.end()
 
@@ -163,17 +163,17 @@ def test_a_client_that_is_killed_ends_the_executable_with_0(
 ) -> None:
     client, process = other
     client.process.send_signal(sign)
-    code, errors = said(process)
+    code, errors = code_and_errors(process)
     assert code == 0 and "the client is gone" in errors
 
 
 def test_a_client_that_is_killed_leaves_no_process_behind(launcher: Launcher) -> None:
     client = Other(str(launcher.file_name), free_port())
-    handle = os.pidfd_open(int(client.told()))
+    handle = os.pidfd_open(int(client.read_line()))
     try:
         client.process.kill()
         ended, _, _ = select.select([handle], [], [], PATIENCE_SECS)
-        assert ended == [handle], "the executable that it started has ended, too"
+        assert ended == [handle], "the executable that it started has ended as well"
     finally:
         os.close(handle)
         client.end()
@@ -182,16 +182,16 @@ def test_a_client_that_is_killed_leaves_no_process_behind(launcher: Launcher) ->
 def test_a_client_that_is_stopped_is_waited_for(other: tuple[Other, subprocess.Popen[str]]) -> None:
     client, process = other
     client.process.send_signal(signal.SIGSTOP)
-    client.ask()
+    client.request_step()
     with pytest.raises(subprocess.TimeoutExpired):
         process.wait(1.5)
     client.process.send_signal(signal.SIGCONT)
-    assert client.told() > 0
+    assert client.read_line() > 0
     assert client.process.stdin is not None
     client.process.stdin.close()
     client.process.stdin = None
     assert client.process.wait(PATIENCE_SECS) == 0
-    assert said(process)[0] == 0
+    assert code_and_errors(process)[0] == 0
 
 
 def test_an_executable_that_is_killed_does_not_hang_the_next_one(launcher: Launcher) -> None:
@@ -247,7 +247,7 @@ def test_a_connection_that_is_lost_ends_the_executable_with_0(
     initialize = RpcCommunicator.initialize
 
     def start_the_other_end(*args: Any) -> Any:
-        # The client already listens, but does not wait for the executable yet.
+        # The client is already listening, but not yet waiting for the executable.
         processes.append(launcher.run("--mlagents-port", str(cable.port)))
         return initialize(*args)
 
@@ -257,12 +257,12 @@ def test_a_connection_that_is_lost_ends_the_executable_with_0(
     client.reset()
     client.step(AHEAD)
     cable.cut()
-    code, errors = said(client.process)
+    code, errors = code_and_errors(client.process)
     assert code == 0 and "the client is gone" in errors
     env.close()
 
 
-def test_log_file_has_all_messages_and_unitys_options_do_no_harm(launcher: Launcher, channels: Channels) -> None:
+def test_log_file_has_all_messages_and_unity_options_are_ignored(launcher: Launcher, channels: Channels) -> None:
     Path("remarks.log").write_text("before\n", encoding="utf-8")
     client = launcher.start(
         "-logFile",
@@ -303,7 +303,7 @@ def test_newer_clients_have_the_log_file_in_their_own_folder(launcher: Launcher,
 
 
 def test_a_log_file_that_cannot_be_written_is_an_error(launcher: Launcher) -> None:
-    code, errors = said(launcher.run("-logFile", "missing/folder/a.log"))
+    code, errors = code_and_errors(launcher.run("-logFile", "missing/folder/a.log"))
     assert code == 1 and errors.startswith("driftworld-unity: -logFile missing/folder/a.log: cannot be written: "), (
         errors
     )
@@ -324,7 +324,7 @@ def test_an_invalid_world_file_is_an_error_before_a_client_connects(
 ) -> None:
     if text is not None:
         Path("own.json").write_text(text, encoding="utf-8")
-    code, errors = said(launcher.run("--world", "own.json"))
+    code, errors = code_and_errors(launcher.run("--world", "own.json"))
     assert code == 1 and expected in errors
 
 

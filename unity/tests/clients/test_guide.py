@@ -1,4 +1,4 @@
-"""The Python in docs/l2explorer.md runs unchanged."""
+"""Runs the Python example in docs/l2explorer.md unchanged."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ BLOCK = re.compile(r"^```python(?: by-hand)?\n(.*?)^```", re.DOTALL | re.MULTILI
 
 @pytest.mark.skipif(
     not importlib.metadata.version("mlagents-envs").startswith("0.16."),
-    reason="the guide is written for 0.16, and says in comments what differs",
+    reason="the guide is written for 0.16; its comments say what differs in other versions",
 )
 def test_the_guides_example_runs(tmp_path: Path) -> None:
-    """As its reader runs it, with the two variables that the guide exports."""
+    """Runs the example as a reader would, with the two variables that the guide exports."""
     link = tmp_path / "l2explorer.x86_64"
     link.symlink_to(Path(os.environ["DRIFTWORLD_UNITY"]).resolve())
     with socket.socket() as free:

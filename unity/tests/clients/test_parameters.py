@@ -1,4 +1,4 @@
-"""The channels of ordinary clients: environment parameters, float properties, the engine's configuration."""
+"""The side channels of mlagents-envs itself: environment parameters, float properties, engine configuration."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def client(launcher: Launcher, channels: Channels, parameters: EnvironmentParame
 
 
 def sampler(name: str) -> OutgoingMessage:
-    """A parameter that is to be drawn from a uniform distribution, as newer clients send it."""
+    """A parameter to be sampled from a uniform distribution, as newer clients send it."""
     message = OutgoingMessage()
     message.write_string(name)
     for number in (1, 7, 0):
@@ -67,7 +67,7 @@ def test_a_parameter_overrides_worlds_sent_by_messages(
     assert [client.step().end is not None for _ in range(4)] == [False, True, False, True]
     channels.reset.say("reset_environment", world(max_steps=0))
     client.reset()
-    assert [client.step().end is not None for _ in range(4)] == [False, True, False, True], "and stays"
+    assert [client.step().end is not None for _ in range(4)] == [False, True, False, True], "the parameter persists"
 
 
 def test_speed_limits_are_parameters(client: Client, parameters: EnvironmentParametersChannel) -> None:
@@ -79,7 +79,7 @@ def test_speed_limits_are_parameters(client: Client, parameters: EnvironmentPara
 
 
 @pytest.mark.parametrize(("name", "value"), [("field_of_view", 100), ("light_intensity", 0.2), ("supersampling", 3)])
-def test_a_parameter_changes_what_is_seen(
+def test_a_parameter_changes_the_picture(
     client: Client, parameters: EnvironmentParametersChannel, name: str, value: float
 ) -> None:
     before = client.reset().now

@@ -1,4 +1,4 @@
-"""Pictures are sent as PNG files or as floats, and may change their size."""
+"""Pictures as PNG files and as floats, and changes of their size."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pytest
 from mlagents_envs.exception import UnityCommunicatorStoppedException
 
 from channels import Channels
-from clients import Launcher, said
+from clients import Launcher, code_and_errors
 from worlds import AHEAD, thing, world
 
 THINGS = (thing(0, 6, 1.0), thing(2, 8), thing(-2, 5, -1.0))
@@ -30,7 +30,7 @@ def test_floats_equal_the_png_files_except_for_finer_depth(launcher: Launcher) -
         assert (floats.vector == png.vector).all()
         assert floats.depth.shape == png.depth.shape and 0 <= floats.depth.min() < floats.depth.max() <= 1
         assert abs(floats.depth - png.depth).max() <= 1 / 510 + 1e-6, "half a level of grey"
-        assert len(np.unique(floats.depth)) > len(np.unique(png.depth)), "there is more in it"
+        assert len(np.unique(floats.depth)) > len(np.unique(png.depth)), "floats have more levels"
 
 
 def test_size_change_mid_session_changes_shapes_and_pictures(launcher: Launcher, channels: Channels) -> None:
@@ -58,7 +58,7 @@ def test_pictures_too_large_for_a_message_end_the_session_with_advice(launcher: 
     channels.reset.say("reset_environment", world(agent={"observation_size": 400}))
     with pytest.raises(UnityCommunicatorStoppedException):
         client.reset()
-    code, errors = said(client.process)
+    code, errors = code_and_errors(client.process)
     assert code == 1 and "leave out --raw-observations" in errors
 
 
@@ -67,11 +67,11 @@ def test_pictures_that_would_not_fit_at_the_end_of_an_episode_are_refused_at_its
 ) -> None:
     client = launcher.meet("--raw-observations", channels=channels.all)
     channels.reset.say("reset_environment", world(agent={"observation_size": 250}))
-    assert client.reset().now.rgb.shape == (250, 250, 3), "an episode without an end has one picture at a time"
+    assert client.reset().now.rgb.shape == (250, 250, 3), "one set of pictures fits"
     channels.reset.say("reset_environment", world(max_steps=2, agent={"observation_size": 250}))
     with pytest.raises(UnityCommunicatorStoppedException):
         client.reset()
-    code, errors = said(client.process)
+    code, errors = code_and_errors(client.process)
     assert code == 1 and "reset to a smaller observation_size" in errors
 
 

@@ -1,4 +1,4 @@
-"""The client sees the same as our Gymnasium environment, bit for bit, with the same actions in the same worlds.
+"""Compares clients with our Gymnasium environment: the same actions in the same worlds give the same bits.
 
 These tests are skipped if the Python package is not installed.
 """
@@ -31,7 +31,7 @@ COLORS = np.array(
 
 STIMULI = {"reward_stimulus": ["AgentCollide"], "destroy_stimulus": ["AgentInteract"]}
 
-#: Objects of all kinds, with many in the agent's way.
+#: A world with objects of all kinds, many of them in the agent's path.
 OWN = world(
     *(thing(x, y, reward, **STIMULI) for x, y, reward in [(0, 4, 1.5), (3, 3, -2.0), (-3, 2, 0.0), (2, -5, 4.0)]),
     *(thing(x, y, x / 4, **STIMULI) for x in range(-16, 17, 8) for y in range(-15, 16, 6) if abs(x) + abs(y) > 6),
@@ -45,7 +45,7 @@ OWN = world(
 
 
 def actions() -> Iterator[Floats]:
-    """Five hundred actions: forwards in curves, sometimes backwards or out of range, so that much is met."""
+    """Five hundred actions: forwards in curves, sometimes backwards or out of range, to meet many objects."""
     chance = np.random.default_rng(7)
     for step in range(500):
         action = chance.uniform([-3, -20, 0], [14, 20, 1])
@@ -54,7 +54,7 @@ def actions() -> Iterator[Floats]:
 
 
 def converted(original: Path) -> str:
-    """A file of L2Explorer's, converted to our format by our command."""
+    """A reset file of L2Explorer, converted to our format by our command."""
     command = [sys.executable, "-m", "driftworld", "convert", str(original), "--l2explorer"]
     return subprocess.run(command, check=True, capture_output=True, encoding="utf-8").stdout
 
@@ -65,14 +65,14 @@ def shares(levels: npt.NDArray[np.uint8]) -> Floats:
 
 
 def check(seen: Seen, observation: dict[str, Any]) -> None:
-    """Expects all four observations to be equal, bit for bit."""
+    """Asserts that all four observations are equal, bit for bit."""
     assert (seen.depth == shares(observation["depth"].repeat(3, axis=2))).all()
     assert (seen.rgb == shares(observation["rgb"])).all()
     assert (seen.segmentation == shares(COLORS[observation["segmentation"][..., 0]])).all()
     assert seen.vector.dtype == np.float32 and (seen.vector[1:] == observation["state"]).all()
 
 
-def live(client: Client, environment: Any) -> tuple[int, list[float]]:
+def compare(client: Client, environment: Any) -> tuple[int, list[float]]:
     """Takes the same actions in both; returns the number of finished episodes, and the rewards other than 0."""
     observation, _ = environment.reset(seed=0)
     check(client.reset().now, observation)
@@ -105,8 +105,8 @@ def test_in_an_example_world_of_the_original(launcher: Launcher, channels: Chann
     original = reference / "map_findobjects_0.json"
     client = launcher.start(channels=channels.all)
     channels.reset.say("reset_environment", json.loads(original.read_text(encoding="utf-8")))
-    episodes, _ = live(client, environment(converted(original)))
-    assert episodes == 1, "it has 300 steps"
+    episodes, _ = compare(client, environment(converted(original)))
+    assert episodes == 1, "an episode has 300 steps"
 
 
 def test_in_a_world_where_much_happens(launcher: Launcher, channels: Channels) -> None:
@@ -114,9 +114,9 @@ def test_in_a_world_where_much_happens(launcher: Launcher, channels: Channels) -
     path.write_text(json.dumps(OWN), encoding="utf-8")
     client = launcher.start(channels=channels.all)
     channels.reset.say("reset_environment", OWN)
-    episodes, rewards = live(client, environment(converted(path)))
+    episodes, rewards = compare(client, environment(converted(path)))
     assert episodes == 4
-    assert len(rewards) >= 8 and len(set(rewards)) >= 4, "a world where nothing happens compares nothing"
+    assert len(rewards) >= 8 and len(set(rewards)) >= 4, "a comparison needs a world where much happens"
 
 
 @pytest.mark.parametrize("task", ["find_objects#red", "moving_object", "scavenger_hunt"])
@@ -124,7 +124,7 @@ def test_in_a_world_of_a_built_in_task(launcher: Launcher, task: str) -> None:
     sample = driftworld.variant(task).sample_json(5, 0) if "#" in task else None
     text = sample or driftworld.TaskSpec.load(task).variant().sample_json(5, 0)
     Path("own.json").write_text(text, encoding="utf-8")
-    live(launcher.start("--world", "own.json"), environment(text))
+    compare(launcher.start("--world", "own.json"), environment(text))
 
 
 def test_with_an_object_created_by_a_message(launcher: Launcher, channels: Channels) -> None:
@@ -144,7 +144,7 @@ def test_with_an_object_created_by_a_message(launcher: Launcher, channels: Chann
     twin.close()
 
 
-def test_in_floats_depth_is_that_of_the_environment_in_metres(launcher: Launcher, channels: Channels) -> None:
+def test_float_depth_equals_the_environments_depth_in_metres(launcher: Launcher, channels: Channels) -> None:
     path = Path("own.json")
     path.write_text(json.dumps(OWN), encoding="utf-8")
     client = launcher.start("--raw-observations", channels=channels.all)

@@ -1,4 +1,4 @@
-"""Screenshots: their contents, and that no file name leads outside their folder."""
+"""Screenshots: their contents, and file names that must not lead outside their folder."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def client(launcher: Launcher, channels: Channels, tmp_path: Path) -> Client:
     return client
 
 
-def written(folder: Path) -> set[str]:
+def files_in(folder: Path) -> set[str]:
     """All files below a folder, except the executable."""
     names = {str(path.relative_to(folder)) for path in folder.rglob("*") if not path.is_dir()}
     return names - {"application/l2explorer.x86_64"}
@@ -65,7 +65,7 @@ def test_a_screenshot_is_upscaled_by_the_requested_factor(
     if factor == 5:
         differences = abs(picture[2::5, 2::5].astype(int) - seen_pixels(now))
         assert (differences[:16] == 0).all(), (
-            "each pixel's middle is where it was: the sky, the walls, what stands there"
+            "pixel centres stay in place: the sky, the walls and the objects"
         )
         assert differences.max() <= 8, "the ground's pattern is smoothed over the size of a pixel"
 
@@ -76,7 +76,7 @@ def test_invalid_upscale_factors_fail(client: Client, channels: Channels, tmp_pa
     client.step()
     answer = channels.debug.answer(token)
     assert answer["action"] == "error" and "expected a whole number from 1 to 128" in answer["payload"][0]
-    assert written(tmp_path) == set()
+    assert files_in(tmp_path) == set()
 
 
 @pytest.mark.parametrize(
@@ -99,13 +99,13 @@ def test_invalid_upscale_factors_fail(client: Client, channels: Channels, tmp_pa
         ("bäume.png", "bäume.png"),
     ],
 )
-def test_whatever_its_name_a_screenshot_is_written_inside_the_folder(
+def test_a_screenshot_of_any_name_is_written_inside_the_folder(
     client: Client, channels: Channels, tmp_path: Path, name: str, expected: str
 ) -> None:
     token = channels.debug.say("save_screenshot", {"filename": name})
     client.step()
     assert channels.debug.answer(token)["action"] == "ok"
-    assert written(tmp_path) == {f"a/b/pictures/{expected}"}
+    assert files_in(tmp_path) == {f"a/b/pictures/{expected}"}
 
 
 def test_an_absolute_path_is_written_inside_the_folder(
@@ -115,7 +115,7 @@ def test_an_absolute_path_is_written_inside_the_folder(
     channels.debug.say("save_screenshot", {"filename": str(tmp_path / "mine.png")})
     client.step()
     assert (tmp_path / "mine.png").read_text(encoding="utf-8") == "mine"
-    assert written(tmp_path) == {"mine.png", "a/b/pictures/mine.png"}
+    assert files_in(tmp_path) == {"mine.png", "a/b/pictures/mine.png"}
 
 
 @pytest.mark.parametrize(
@@ -126,7 +126,7 @@ def test_an_invalid_name_is_refused(client: Client, channels: Channels, tmp_path
     client.step()
     answer = channels.debug.answer(token)
     assert answer["action"] == "error" and "filename" in answer["payload"][0]
-    assert written(tmp_path) == set()
+    assert files_in(tmp_path) == set()
 
 
 def test_links_are_not_followed(client: Client, channels: Channels, tmp_path: Path) -> None:
@@ -145,7 +145,7 @@ def test_links_are_not_followed(client: Client, channels: Channels, tmp_path: Pa
     answers = {message["req_token"]: message["action"] for message in channels.debug.take()}
     assert [answers[token] for token in tokens] == ["error", "ok", "ok", "error"]
     assert (outside / "mine.png").read_text(encoding="utf-8") == "mine"
-    assert written(outside) == {"mine.png"}
+    assert files_in(outside) == {"mine.png"}
     assert not (pictures / "mine.png").is_symlink() and not (pictures / "dangling.png").is_symlink()
 
 
@@ -156,18 +156,18 @@ def test_a_folder_is_not_replaced(client: Client, channels: Channels, tmp_path: 
     assert "is a folder" in channels.debug.answer(token)["payload"][0]
 
 
-def test_without_an_option_they_go_into_screenshots_of_the_working_directory(
+def test_default_folder_is_screenshots_in_the_working_directory(
     launcher: Launcher, channels: Channels, tmp_path: Path
 ) -> None:
     client = launcher.start(channels=channels.all)
     client.reset()
-    assert not (tmp_path / "screenshots").exists(), "it is made when there is something to put into it"
+    assert not (tmp_path / "screenshots").exists(), "the folder is created for the first screenshot"
     channels.debug.say("save_screenshot", {"filename": "a.png"})
     client.step()
-    assert written(tmp_path) == {"screenshots/a.png"}
+    assert files_in(tmp_path) == {"screenshots/a.png"}
 
 
-def test_an_unwritable_folder_is_answered_by_an_error_and_ends_nothing(launcher: Launcher, channels: Channels) -> None:
+def test_an_unwritable_folder_is_answered_by_an_error_and_the_session_continues(launcher: Launcher, channels: Channels) -> None:
     Path("taken").write_text("a file", encoding="utf-8")
     client = launcher.start("--screenshots", "taken", channels=channels.all)
     client.reset()

@@ -1,4 +1,4 @@
-"""Episodes from a client's side: the behaviour's spec, observations, rewards, and the end of an episode."""
+"""Episodes as a client experiences them: the behaviour's spec, observations, rewards, and the end of an episode."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def test_a_client_gets_one_behaviour_with_three_continuous_actions(launcher: Lau
         assert [each.name for each in spec.observation_specs] == ["depth", "rgb", "segmentation", "state"]
 
 
-@pytest.mark.skipif(GENERATION < (0, 28), reason="older clients are told no properties of dimensions")
+@pytest.mark.skipif(GENERATION < (0, 28), reason="older clients receive no properties of dimensions")
 def test_newer_clients_get_the_dimension_properties_of_pictures(launcher: Launcher) -> None:
     from mlagents_envs.base_env import DimensionProperty as Property
     from mlagents_envs.base_env import ObservationType
@@ -54,7 +54,7 @@ def test_depth_is_grey_and_the_sky_is_far_and_black(launcher: Launcher) -> None:
     now = launcher.start().reset().now
     assert (now.depth[..., 0] == now.depth[..., 1]).all() and (now.depth[..., 0] == now.depth[..., 2]).all()
     assert now.depth[0, 0, 0] == 1 and now.segmentation[0, 0].tolist() == [0, 0, 0], "row 0 is on top"
-    assert now.depth[-1, 0, 0] < 0.1 and now.segmentation[-1, 0].tolist() == [1, 1, 1], "the ground is near, of the map"
+    assert now.depth[-1, 0, 0] < 0.1 and now.segmentation[-1, 0].tolist() == [1, 1, 1], "the ground is near, and belongs to the map"
 
 
 def test_the_agent_stays_the_same_for_five_hundred_steps(launcher: Launcher, channels: Channels) -> None:
@@ -108,13 +108,13 @@ def test_an_object_that_is_interacted_with_pays_and_disappears(launcher: Launche
     start = client.reset()
     moments = [client.step(AHEAD).now for _ in range(10)]
     assert {(moment.reward, moment.vector[0]) for moment in moments} == {(0, 0)}, "walking into it is not enough"
-    assert moments[-1].vector[2] < 4, "it is in the way"
+    assert moments[-1].vector[2] < 4, "the object blocks the way"
     taken = client.step(GRAB).now
     assert (taken.reward, taken.vector[0]) == (100, 1)
     assert client.step(GRAB).now.reward == 0
     cyan = np.array([0, 1, 1], dtype=np.float32)
-    assert (start.now.segmentation == cyan).all(axis=2).any(), "what pays is seen so"
-    assert not (taken.segmentation == cyan).all(axis=2).any(), "and is gone"
+    assert (start.now.segmentation == cyan).all(axis=2).any(), "the object is visible as one that pays"
+    assert not (taken.segmentation == cyan).all(axis=2).any(), "the object is gone"
 
 
 def test_an_object_with_a_negative_reward_costs(launcher: Launcher, channels: Channels) -> None:
@@ -132,7 +132,7 @@ def test_the_last_step_brings_the_end_and_the_start_of_the_next_episode(launcher
     last = client.step(AHEAD)
     assert last.end is not None and last.end.truncated
     assert last.end.agent_id == start.agent_id and last.end.vector[2] == pytest.approx(3, abs=1e-4)
-    assert last.now.agent_id == start.agent_id + 1 and last.now.equals(start), "the same world, begun again"
+    assert last.now.agent_id == start.agent_id + 1 and last.now.equals(start), "the same world, reset"
     assert last.now.reward == 0
     ends = [client.step(REST).end for _ in range(6)]
     assert [each and each.agent_id for each in ends] == [None, None, 2, None, None, 3]
@@ -154,7 +154,7 @@ def test_an_end_by_the_worlds_own_rules_is_not_a_truncation(launcher: Launcher) 
     assert (ends[0].agent_id, ends[0].reward, ends[0].vector[0]) == (start.agent_id, 7, 1)
 
 
-def test_the_reward_of_the_last_step_is_in_its_end(launcher: Launcher, channels: Channels) -> None:
+def test_the_reward_of_the_last_step_is_in_its_terminal_step(launcher: Launcher, channels: Channels) -> None:
     client = launcher.start(channels=channels.all)
     target = thing(0, 1.8, 7.0, reward_stimulus=["AgentCollide"])
     channels.reset.say("reset_environment", world(target, max_steps=1))
@@ -169,8 +169,8 @@ def test_a_reset_mid_episode_gives_a_new_agent_in_the_same_world(launcher: Launc
     channels.reset.say("reset_environment", world(thing(0, 4)))
     start = client.reset().now
     client.step(AHEAD)
-    again = client.reset()
-    assert again.end is None and again.now.equals(start) and again.now.agent_id == start.agent_id + 1
+    restarted = client.reset()
+    assert restarted.end is None and restarted.now.equals(start) and restarted.now.agent_id == start.agent_id + 1
 
 
 def test_the_world_of_an_option_is_used_until_a_message_sends_another(launcher: Launcher, channels: Channels) -> None:
@@ -182,7 +182,7 @@ def test_the_world_of_an_option_is_used_until_a_message_sends_another(launcher: 
     assert client.reset().now.vector[1:3].tolist() == [0, 0]
 
 
-def test_the_agent_goes_to_waypoints_or_on_rails_as_the_world_says(launcher: Launcher, channels: Channels) -> None:
+def test_the_agent_moves_by_waypoint_or_on_rails_as_the_world_says(launcher: Launcher, channels: Channels) -> None:
     client = launcher.start(channels=channels.all)
     channels.reset.say("reset_environment", world(agent={"action_model": "bywaypoint"}))
     client.reset()
@@ -192,7 +192,7 @@ def test_the_agent_goes_to_waypoints_or_on_rails_as_the_world_says(launcher: Lau
     target = thing(6, 6, 5.0, reward_stimulus=["AgentInteract"], destroy_stimulus=["AgentInteract"])
     channels.reset.say("reset_environment", world(target, agent={"action_model": "onrails"}))
     client.reset()
-    assert sum(client.step(REST).now.reward for _ in range(60)) == 5, "it tours by itself"
+    assert sum(client.step(REST).now.reward for _ in range(60)) == 5, "an agent on rails tours by itself"
     channels.reset.say("reset_environment", world(agent={"action_model": "none"}))
     start = client.reset().now
     assert client.step(AHEAD).now.equals(start)

@@ -1,4 +1,4 @@
-"""Errors if nothing listens at the port, or something that is not a client; invalid arguments, help and version."""
+"""Ports where nothing or something other than a client listens; invalid arguments, help and version."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 import grpc
 import pytest
 
-from clients import Launcher, free_port, said
+from clients import Launcher, code_and_errors, free_port
 
 
 def test_without_a_client_the_exit_code_is_3_and_the_advice_names_the_port(launcher: Launcher) -> None:
     port = free_port()
-    code, errors = said(launcher.run("--mlagents-port", str(port), "--wait", "0.5"))
+    code, errors = code_and_errors(launcher.run("--mlagents-port", str(port), "--wait", "0.5"))
     assert code == 3
     assert f"127.0.0.1:{port}: no client within 0.5 s; start it first" in errors and "--mlagents-port" in errors
 
 
-def test_the_default_port_is_that_of_the_editor_mode(launcher: Launcher) -> None:
-    code, errors = said(launcher.run("--wait", "0.1"))
-    # Something on this machine may be listening there: then the error names the same port.
+def test_the_default_port_is_the_editor_modes_port(launcher: Launcher) -> None:
+    code, errors = code_and_errors(launcher.run("--wait", "0.1"))
+    # Something on this machine may be listening there; then the error names the same port.
     assert code in (1, 3) and "127.0.0.1:5004" in errors
 
 
@@ -101,7 +101,7 @@ def other_grpc() -> Iterator[int]:
 )
 def test_a_server_that_is_not_a_client_is_reported(launcher: Launcher, stranger: object, expected: str) -> None:
     with stranger() as port:  # type: ignore[operator]
-        code, errors = said(launcher.run("--mlagents-port", str(port), "--wait", "1"))
+        code, errors = code_and_errors(launcher.run("--mlagents-port", str(port), "--wait", "1"))
     assert code == 1, errors
     assert f"127.0.0.1:{port}: what listens there does not answer as an ML-Agents client does: " in errors
     assert expected in errors and errors.count("\n") == 1
@@ -118,7 +118,7 @@ def test_a_server_that_is_not_a_client_is_reported(launcher: Launcher, stranger:
     ],
 )
 def test_invalid_arguments_end_with_2_and_name_the_help(launcher: Launcher, arguments: list[str]) -> None:
-    code, errors = said(launcher.run(*arguments))
+    code, errors = code_and_errors(launcher.run(*arguments))
     assert code == 2 and errors.startswith(f"driftworld-unity: {arguments[0]}: found ")
     assert errors.endswith("\n`driftworld-unity --help` lists the options\n") and errors.count("\n") == 2
 

@@ -1,4 +1,4 @@
-"""Worlds with a table of actions, and worlds whose objects are photographed, one photograph a step."""
+"""Worlds with an action table, and worlds for photographs, which show one photograph per step."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from channels import Channels
 from clients import Launcher
 from worlds import thing, world
 
-#: Ahead at 10 m/s, to the right at 90 degrees a second, nothing.
+#: Ahead at 10 m/s; turn right at 90 degrees per second; do nothing.
 TABLE = [[10, 0, 0], [0, 90, 0], [0, 0, 0]]
 
 
@@ -39,7 +39,7 @@ def test_a_table_is_one_choice_among_its_rows(
     assert client.close() == 0
 
 
-def test_photographs_come_one_a_step_and_the_episode_ends_with_the_last(launcher: Launcher, channels: Channels) -> None:
+def test_each_step_shows_a_photograph_and_the_last_one_ends_the_episode(launcher: Launcher, channels: Channels) -> None:
     own = world(
         thing(3, 4),
         thing(-5, 6),

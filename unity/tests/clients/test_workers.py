@@ -1,4 +1,4 @@
-"""Several sessions at the same time, and long ones."""
+"""Simultaneous sessions, and long ones."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def test_two_workers_at_once_give_the_same_results_as_alone(launcher: Launcher) 
         _, alone = start(number, free_port(2))
         alone += [clients[-1].step(action(number, step)).now for step in range(60)]
         assert all(one.equals(other) for one, other in zip(lives[number], alone))
-        assert {seen.agent_id for seen in lives[number]} == {1}, "episodes are counted by each worker for itself"
+        assert {seen.agent_id for seen in lives[number]} == {1}, "each worker counts its own episodes"
     assert not lives[0][0].equals(lives[1][0])
 
 

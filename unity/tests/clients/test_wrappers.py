@@ -1,4 +1,4 @@
-"""ML-Agents' own Gym wrapper, which knows nothing about L2Explorer, works with the executable."""
+"""Runs the executable with ML-Agents' own Gym wrapper, which knows nothing about L2Explorer."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ pytest.importorskip("gym", reason="the wrapper needs gym")
 
 @pytest.fixture
 def wrapper(monkeypatch: pytest.MonkeyPatch) -> Any:
-    """The wrapper's module, in clients from 1.0 on, without its package, which accesses the network on import."""
+    """The wrapper's module (since client 1.0), without its package, which accesses the network on import."""
     folder = Path(mlagents_envs.__file__).parent / "envs"
     if not (folder / "unity_gym_env.py").is_file():
         pytest.skip("older clients have no wrapper")

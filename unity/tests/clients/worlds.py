@@ -1,4 +1,4 @@
-"""Worlds for the tests, as L2Explorer's clients write them."""
+"""Worlds for the tests, in the format of L2Explorer's clients."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Any
 
 #: Straight ahead at full speed.
 AHEAD = (10.0, 0.0, 0.0)
-#: The same, while interacting with the object in front.
+#: Straight ahead while interacting with the object in front.
 GRAB = (10.0, 0.0, 1.0)
 
 

@@ -1,4 +1,4 @@
-//! The executable's arguments, and its output about them.
+//! The executable's arguments: their effects, and its messages about them.
 
 use std::fs;
 use std::path::Path;
@@ -16,7 +16,7 @@ use super::process::{Ended, Executable};
 use super::start;
 
 fn folder() -> tempfile::TempDir {
-    tempfile::tempdir().expect("the machine has a folder for temporary files")
+    tempfile::tempdir().expect("a temporary folder can be created")
 }
 
 fn run(arguments: &[&str]) -> Ended {
@@ -25,14 +25,14 @@ fn run(arguments: &[&str]) -> Ended {
 
 /// A client's view of a world at its start.
 #[derive(Debug, PartialEq)]
-struct Seen {
+struct Observed {
     shape: Vec<i32>,
     picture: Vec<u8>,
     state: Vec<f32>,
 }
 
 /// Runs a client that observes a world once and quits.
-fn look(arguments: &[&str], folder: &Path) -> (Ended, Option<Seen>) {
+fn observe_once(arguments: &[&str], folder: &Path) -> (Ended, Option<Observed>) {
     let client = Client::new([who("1.0.0"), command(CommandProto::Reset), command(CommandProto::Quit)]);
     let ended = start(&client, arguments, folder).ended();
     let output = client.calls().pop().and_then(|call| call.unity_output?.rl_output);
@@ -45,7 +45,7 @@ fn look(arguments: &[&str], folder: &Path) -> (Ended, Option<Seen>) {
         let Some(ObservationData::FloatData(state)) = &seen[3].observation_data else {
             panic!("the state is a list of numbers")
         };
-        Seen {
+        Observed {
             shape: seen[1].shape.clone(),
             picture: seen[1].observation_data.as_ref().map(bytes).unwrap_or_default(),
             state: state.data.clone(),
@@ -104,9 +104,9 @@ fn unity_options_are_ignored_and_unknown_ones_give_a_remark() {
     let folder = folder();
     let arguments = "-nographics -batchmode -screen-width 84 -adapter 1 --raw-observation";
     let arguments: Vec<&str> = arguments.split(' ').collect();
-    let (ended, seen) = look(&arguments, folder.path());
+    let (ended, seen) = observe_once(&arguments, folder.path());
     assert_eq!(ended.code, Some(0), "{ended:?}");
-    assert_eq!(seen.expect("there is a world").shape, [84, 84, 3]);
+    assert_eq!(seen.expect("a world is loaded").shape, [84, 84, 3]);
     let lines: Vec<&str> = ended.stderr.lines().collect();
     assert_eq!(
         lines[..2],
@@ -116,7 +116,7 @@ fn unity_options_are_ignored_and_unknown_ones_give_a_remark() {
         ]
     );
     // Follows the advice.
-    let (ended, _) = look(&["--raw-observations"], folder.path());
+    let (ended, _) = observe_once(&["--raw-observations"], folder.path());
     assert!(!ended.stderr.contains("not known"), "{ended:?}");
 }
 
@@ -127,7 +127,7 @@ fn world_file_of_either_format_is_the_initial_world() {
         world.agent_params.observation_size = 16;
         world.agent_params.coordinates = [3.0, 4.0];
     });
-    let ours = ours.expect("the world is sound");
+    let ours = ours.expect("the world is valid");
     fs::write(folder.path().join("ours.json"), ours.to_json()).expect("the folder can be written");
     let theirs = r#"{
         "game_mode": "Learn", "max_steps": "100",
@@ -136,13 +136,13 @@ fn world_file_of_either_format_is_the_initial_world() {
     }"#;
     assert!(
         World::from_json("theirs", theirs).is_err(),
-        "it is in the original's form only"
+        "this world is valid only in the original's format"
     );
     fs::write(folder.path().join("theirs.json"), theirs).expect("the folder can be written");
     for file in ["ours.json", "theirs.json"] {
-        let (ended, seen) = look(&["--world", file], folder.path());
+        let (ended, seen) = observe_once(&["--world", file], folder.path());
         assert_eq!(ended.code, Some(0), "{ended:?}");
-        let seen = seen.expect("there is a world");
+        let seen = seen.expect("a world is loaded");
         assert_eq!(
             (seen.shape, seen.state),
             (vec![16, 16, 3], vec![0.0, 3.0, 4.0, 0.0, 0.0, 0.0]),
@@ -183,10 +183,10 @@ fn unusable_files_are_reported_before_connecting() {
 fn devices_and_pipes_are_reported_without_blocking() {
     let folder = folder();
     std::os::unix::fs::symlink("/dev/zero", folder.path().join("zeros")).expect("the folder can be written");
-    let made = std::process::Command::new("mkfifo")
+    let mkfifo = std::process::Command::new("mkfifo")
         .arg(folder.path().join("pipe"))
         .status();
-    assert!(made.expect("every unix has mkfifo").success());
+    assert!(mkfifo.expect("every unix has mkfifo").success());
     for option in ["--world", "--maps", "--assets"] {
         for (file, found) in [("zeros", "a device"), ("pipe", "a named pipe")] {
             let ended = Executable::start(&[option, file], folder.path()).ended();
@@ -206,7 +206,7 @@ fn key_that_only_the_original_accepts_gives_a_remark() {
     let folder = folder();
     let broken = "{\n  \"max_stepz\": 3\n}";
     fs::write(folder.path().join("world.json"), broken).expect("the folder can be written");
-    let (ended, _) = look(&["--world", "world.json"], folder.path());
+    let (ended, _) = observe_once(&["--world", "world.json"], folder.path());
     assert_eq!(ended.code, Some(0), "{ended:?}");
     let lines: Vec<&str> = ended.stderr.lines().collect();
     assert_eq!(
@@ -217,7 +217,7 @@ fn key_that_only_the_original_accepts_gives_a_remark() {
         ]
     );
     fs::write(folder.path().join("world.json"), broken.replace("stepz", "steps")).expect("the folder can be written");
-    let (ended, _) = look(&["--world", "world.json"], folder.path());
+    let (ended, _) = observe_once(&["--world", "world.json"], folder.path());
     assert!(!ended.stderr.contains("world.json"), "{ended:?}");
 }
 
@@ -229,11 +229,11 @@ fn untrusted_text_does_not_control_the_terminal() {
     fs::write(folder.path().join("broken.json"), &json).expect("the folder can be written");
     let lenient = serde_json::json!({ HOSTILE: 1, "max_steps": 3 }).to_string();
     fs::write(folder.path().join("lenient.json"), &lenient).expect("the folder can be written");
-    let mut said = vec![look(&["--world", "lenient.json"], folder.path()).0];
+    let mut output = vec![observe_once(&["--world", "lenient.json"], folder.path()).0];
     // Such names are not allowed on Windows.
     if cfg!(unix) {
         fs::write(folder.path().join(HOSTILE), json).expect("the folder can be written");
-        said.push(look(&["--world", HOSTILE], folder.path()).0);
+        output.push(observe_once(&["--world", HOSTILE], folder.path()).0);
     }
     for arguments in [
         ["--world", "broken.json"],
@@ -244,10 +244,10 @@ fn untrusted_text_does_not_control_the_terminal() {
         ["--mlagents-port", HOSTILE],
         [HOSTILE, HOSTILE],
     ] {
-        said.push(Executable::start(&[&["--wait", "1"], &arguments[..]].concat(), folder.path()).ended());
+        output.push(Executable::start(&[&["--wait", "1"], &arguments[..]].concat(), folder.path()).ended());
     }
-    for ended in said {
-        let hostile = |letter: char| driftworld_text::is_unprintable(letter) && letter != '\n';
+    for ended in output {
+        let hostile = |c: char| driftworld_text::is_unprintable(c) && c != '\n';
         assert!(!ended.stderr.contains(hostile), "{ended:?}");
         assert!(ended.stderr.contains("owned"), "{ended:?}");
         assert!(
@@ -270,9 +270,9 @@ fn maps_file_replaces_the_built_in_layouts() {
     let maps = r#"{ "maps": [{ "id": 1, "name": "block", "x_limits": [-100, 100], "y_limits": [-100, 100],
         "excluded_regions": [[[-9, 5], [9, 5], [9, 8], [-9, 8]]] }] }"#;
     fs::write(folder.path().join("maps.json"), maps).expect("the folder can be written");
-    let (ended, built_in) = look(&["--world", "world.json"], folder.path());
+    let (ended, built_in) = observe_once(&["--world", "world.json"], folder.path());
     assert_eq!(ended.code, Some(0), "{ended:?}");
-    let (ended, own) = look(&["--world=world.json", "--maps=maps.json"], folder.path());
+    let (ended, own) = observe_once(&["--world=world.json", "--maps=maps.json"], folder.path());
     assert_eq!(ended.code, Some(0), "{ended:?}");
     let (built_in, own) = (built_in.expect("it is seen"), own.expect("it is seen"));
     assert_eq!(built_in.state, own.state);
@@ -284,25 +284,26 @@ fn remarks_are_appended_to_the_log_file() {
     let folder = folder();
     let log = folder.path().join("run.log");
     fs::write(&log, "before\n").expect("the folder can be written");
-    let (ended, _) = look(&["-logFile", "run.log", "-adapter"], folder.path());
+    let (ended, _) = observe_once(&["-logFile", "run.log", "-adapter"], folder.path());
     assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
-    let said = fs::read_to_string(&log).expect("it is there");
-    let lines: Vec<&str> = said.lines().collect();
+    let output = fs::read_to_string(&log).expect("it is there");
+    let lines: Vec<&str> = output.lines().collect();
     assert_eq!(
         lines[..2],
         ["before", "driftworld-unity: \"-adapter\" is not known here and ignored"]
     );
     assert!(
         lines[2].starts_with("driftworld-unity: a client at 127.0.0.1:"),
-        "{said}"
+        "{output}"
     );
-    // Errors go there as well.
+    // Errors go to the log file as well.
     let ended = Executable::start(&["-logFile", "run.log", "--world", "none.json"], folder.path()).ended();
     assert_eq!((ended.code, ended.stderr.as_str()), (Some(1), ""));
-    let said = fs::read_to_string(&log).expect("it is there");
+    let output = fs::read_to_string(&log).expect("it is there");
     assert!(
-        said.ends_with("driftworld-unity: --world none.json: cannot be read: No such file or directory (os error 2)\n"),
-        "{said}"
+        output
+            .ends_with("driftworld-unity: --world none.json: cannot be read: No such file or directory (os error 2)\n"),
+        "{output}"
     );
 }
 
@@ -318,7 +319,7 @@ fn log_file_in_a_missing_folder_is_an_error() {
 
 #[test]
 fn log_file_without_a_name_is_the_terminal() {
-    let (ended, seen) = look(&["-logFile", "-nographics"], folder().path());
+    let (ended, seen) = observe_once(&["-logFile", "-nographics"], folder().path());
     assert_eq!(ended.code, Some(0), "{ended:?}");
     assert!(seen.is_some());
     assert!(
@@ -342,8 +343,8 @@ fn broken_terminal_does_not_change_the_exit_status() {
             .stdout(full())
             .stderr(full())
             .spawn()
-            .expect("the executable is built");
-        let status = child.wait().expect("the process is ours");
+            .expect("the executable has been built");
+        let status = child.wait().expect("our own process can be stopped");
         assert_eq!(status.code(), Some(expected), "{argument}");
     }
 }
@@ -351,7 +352,7 @@ fn broken_terminal_does_not_change_the_exit_status() {
 #[cfg(target_os = "linux")]
 #[test]
 fn full_disk_redirects_remarks_to_the_terminal() {
-    let (ended, seen) = look(&["-logFile", "/dev/full"], folder().path());
+    let (ended, seen) = observe_once(&["-logFile", "/dev/full"], folder().path());
     assert_eq!(ended.code, Some(0), "{ended:?}");
     assert!(seen.is_some());
     assert!(

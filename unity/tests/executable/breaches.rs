@@ -1,4 +1,4 @@
-//! Clients that violate the protocol: before the end, the reason is sent to them and written to the terminal.
+//! Clients that violate the protocol: the executable sends them the reason, writes it to the terminal, and ends.
 
 use driftworld_spec::World;
 use driftworld_unity::protocol::ListAgentActionProto;
@@ -10,18 +10,18 @@ use driftworld_unity::{BEHAVIOR, MAX_INCOMING_BYTES};
 use super::played::{Answer, command, says, status, who};
 use super::session;
 
-/// Checks that a client whose last answers are invalid gets this message, and that the terminal shows it as well.
+/// Checks that a client that sends invalid answers gets this message, and that the terminal shows it as well.
 fn check(last: Vec<Answer>, expected: &str) {
     let (ended, client) = session([vec![who("1.0.0")], last].concat(), &[]);
     assert_eq!(ended.code, Some(1), "{ended:?}");
-    let said = ended.stderr.lines().last().unwrap_or_default();
-    assert_eq!(said, format!("driftworld-unity: {expected}"));
-    let told = client.calls().pop().expect("there was a call").header;
+    let last_line = ended.stderr.lines().last().unwrap_or_default();
+    assert_eq!(last_line, format!("driftworld-unity: {expected}"));
+    let reply = client.calls().pop().expect("a client connected").header;
     let header = HeaderProto {
         status: 500,
         message: expected.to_owned(),
     };
-    assert_eq!(told, Some(header));
+    assert_eq!(reply, Some(header));
 }
 
 fn step(actions: &[(&str, &[&[f32]])]) -> Answer {
@@ -94,7 +94,7 @@ fn too_long_messages_are_refused_before_reading() {
 fn client_with_a_different_version_gets_the_reason_if_it_listens() {
     let expected =
         "client: found version \"2.0.0\" of the protocol, expected 1.x, which mlagents-envs 0.16 to 1.1 speak";
-    // A client that quits before its first command does not listen; the terminal gets the reason.
+    // A client that quits before its first command does not listen: only the terminal gets the reason.
     for (first_command, is_told) in [
         (command(CommandProto::Reset), true),
         (status(400), true),
@@ -106,9 +106,9 @@ fn client_with_a_different_version_gets_the_reason_if_it_listens() {
             ended.stderr.ends_with(&format!("driftworld-unity: {expected}\n")),
             "{ended:?}"
         );
-        let told = client.calls().pop().and_then(|call| call.header);
+        let reply = client.calls().pop().and_then(|call| call.header);
         assert_eq!(
-            told.is_some_and(|told| told.status == 500 && told.message == expected),
+            reply.is_some_and(|reply| reply.status == 500 && reply.message == expected),
             is_told
         );
     }
@@ -124,13 +124,13 @@ fn unknown_commands_and_actions_are_refused() {
         vec![unknown],
         "client: found command 7, expected 0 (step), 1 (reset) or 2 (quit)",
     );
-    let sound: &[f32] = &[0.0, 0.0, 0.0];
+    let valid: &[f32] = &[0.0, 0.0, 0.0];
     check(
-        vec![step(&[("Walker?team=0", &[sound])])],
+        vec![step(&[("Walker?team=0", &[valid])])],
         "actions: found 1 for behaviour \"Walker?team=0\", expected exactly one, for \"L2Explorer?team=0\"",
     );
     check(
-        vec![step(&[(BEHAVIOR, &[sound, sound])])],
+        vec![step(&[(BEHAVIOR, &[valid, valid])])],
         "actions: found 2 for behaviour \"L2Explorer?team=0\", expected exactly one, for \"L2Explorer?team=0\"",
     );
     check(
@@ -156,10 +156,10 @@ fn non_finite_actions_are_refused() {
 
 /// A folder with a world of this observation size.
 fn world(observation_size: u32) -> (tempfile::TempDir, String) {
-    let folder = tempfile::tempdir().expect("the machine has a folder for temporary files");
+    let folder = tempfile::tempdir().expect("a temporary folder can be created");
     let file = folder.path().join("world.json");
     let world = World::default().edit(|world| world.agent_params.observation_size = observation_size);
-    let world = world.expect("the size is sound");
+    let world = world.expect("the size is valid");
     std::fs::write(&file, world.to_json()).expect("the folder can be written");
     let file = file.display().to_string();
     (folder, file)
@@ -168,21 +168,21 @@ fn world(observation_size: u32) -> (tempfile::TempDir, String) {
 #[test]
 fn too_large_observations_are_refused_with_helpful_advice() {
     let (_folder, large) = world(512);
-    let asks = || vec![who("1.0.0"), command(CommandProto::Reset), command(CommandProto::Quit)];
-    let (ended, client) = session(asks(), &["--raw-observations", "--world", &large]);
+    let answers = || vec![who("1.0.0"), command(CommandProto::Reset), command(CommandProto::Quit)];
+    let (ended, client) = session(answers(), &["--raw-observations", "--world", &large]);
     assert_eq!(ended.code, Some(1), "{ended:?}");
-    let said = ended.stderr.lines().last().unwrap_or_default();
-    let text = said.strip_prefix("driftworld-unity: ").unwrap_or_default();
+    let last_line = ended.stderr.lines().last().unwrap_or_default();
+    let text = last_line.strip_prefix("driftworld-unity: ").unwrap_or_default();
     assert!(text.starts_with("observation: 94") && text.contains(" bytes in a message, of which clients accept 4194304; reset to a smaller observation_size, or leave out --raw-observations"), "{ended:?}");
-    let told = client.calls().pop().and_then(|call| call.header);
-    assert_eq!(told.expect("it was told").message, text);
+    let reply = client.calls().pop().and_then(|call| call.header);
+    assert_eq!(reply.expect("it was told").message, text);
 
     let (_folder, small) = world(256);
     for arguments in [
         ["--raw-observations", "--world", &small].as_slice(),
         &["--world", &large],
     ] {
-        let (ended, client) = session(asks(), arguments);
+        let (ended, client) = session(answers(), arguments);
         assert_eq!(ended.code, Some(0), "{ended:?}");
         assert_eq!(client.calls().len(), 3);
     }

@@ -14,14 +14,14 @@ fn input(bytes: &[u8]) -> UnityInputProto {
     message.unity_input.expect("clients say something")
 }
 
-/// The message's bytes, with every time reset.
+/// The message's bytes, with every time replaced by a fixed one.
 fn timeless(message: &UnityMessageProto) -> Vec<u8> {
     let mut bytes = message.encode_to_vec();
     let key = br#""msg_time":""#;
     let start = b"2026-01-01T00:00:00.000Z\"";
-    for place in 0..bytes.len().saturating_sub(key.len() + start.len()) {
-        if bytes[place..].starts_with(key) {
-            bytes[place + key.len()..][..start.len()].copy_from_slice(start);
+    for index in 0..bytes.len().saturating_sub(key.len() + start.len()) {
+        if bytes[index..].starts_with(key) {
+            bytes[index + key.len()..][..start.len()].copy_from_slice(start);
         }
     }
     bytes
@@ -30,35 +30,37 @@ fn timeless(message: &UnityMessageProto) -> Vec<u8> {
 #[test]
 fn executable_sends_the_sessions_answers() {
     for release in RELEASES {
-        let said = messages(release);
-        let client = Client::new(said.iter().map(|(_, bytes)| Answer::Bytes(bytes.clone())));
-        let folder = tempfile::tempdir().expect("the machine has a folder for temporary files");
+        let recorded = messages(release);
+        let client = Client::new(recorded.iter().map(|(_, bytes)| Answer::Bytes(bytes.clone())));
+        let folder = tempfile::tempdir().expect("a temporary folder can be created");
         let executable = start(&client, &[], folder.path());
 
-        let twin_folder = tempfile::tempdir().expect("the machine has a folder for temporary files");
+        let twin_folder = tempfile::tempdir().expect("a temporary folder can be created");
         let clock = || "2026-01-01T00:00:00.000Z".to_owned();
         let mut twin = Session::new(Setup::default(), Screenshots::new(twin_folder.path()), clock);
         let greeting = client.call();
-        let well = HeaderProto {
+        let ok = HeaderProto {
             status: 200,
             message: String::new(),
         };
-        assert_eq!(greeting.header, Some(well.clone()), "{release}");
+        assert_eq!(greeting.header, Some(ok.clone()), "{release}");
         assert_eq!(greeting.unity_output, Some(Session::greeting()), "{release}");
-        let who = input(&said[0].1).rl_initialization_input.expect("it says who it is");
+        let who = input(&recorded[0].1)
+            .rl_initialization_input
+            .expect("it says who it is");
         twin.begin(&who).expect("the client is known");
         assert_eq!(
             client.call().unity_output,
             Some(UnityOutputProto::default()),
             "{release}"
         );
-        for (about, bytes) in &said[1..said.len() - 1] {
+        for (about, bytes) in &recorded[1..recorded.len() - 1] {
             let command = input(bytes).rl_input.expect("it says what to do");
             let Ok(Turn::Output(expected)) = twin.answer(&command) else {
                 panic!("{release}: {about}")
             };
             let expected = UnityMessageProto {
-                header: Some(well.clone()),
+                header: Some(ok.clone()),
                 unity_output: Some(*expected),
                 unity_input: None,
             };
@@ -72,7 +74,7 @@ fn executable_sends_the_sessions_answers() {
             "{ended:?}"
         );
         assert!(folder.path().join("screenshots/view.png").exists());
-        assert!(client.calls().is_empty(), "nothing is said after the end");
+        assert!(client.calls().is_empty(), "no call follows the end");
     }
 }
 
@@ -99,7 +101,7 @@ fn killed_client_gives_a_remark_and_no_error() {
     for calls in 2..5 {
         let before = [who("1.0.0"), command(CommandProto::Reset), command(CommandProto::Step)];
         let mut client = Client::new(before.into_iter().take(calls - 1));
-        let folder = tempfile::tempdir().expect("the machine has a folder for temporary files");
+        let folder = tempfile::tempdir().expect("a temporary folder can be created");
         let executable = start(&client, &[], folder.path());
         for _ in 0..calls {
             client.call();
@@ -112,16 +114,16 @@ fn killed_client_gives_a_remark_and_no_error() {
     }
 }
 
-/// As Python's servers answer while they are being closed, or on an interrupt.
+/// Python's servers answer like this while they are being closed, or on an interrupt.
 #[test]
 fn call_cancelled_by_the_client_ends_the_session() {
-    for given_up in [
+    for failure in [
         Status::cancelled("CANCELLED"),
         Status::unknown("Exception calling application: handle is closed"),
     ] {
-        let words = given_up.message().to_owned();
+        let words = failure.message().to_owned();
         let (ended, _) = session(
-            vec![who("1.0.0"), command(CommandProto::Reset), Answer::Fail(given_up)],
+            vec![who("1.0.0"), command(CommandProto::Reset), Answer::Fail(failure)],
             &[],
         );
         assert_eq!(ended.code, Some(0), "{ended:?}");

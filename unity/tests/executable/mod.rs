@@ -1,4 +1,4 @@
-//! The built executable against simulated clients: how sessions begin and end. `cargo xtask unity` tests real clients.
+//! Runs the built executable against simulated clients: how sessions begin and end. `cargo xtask unity` tests real clients.
 
 mod arguments;
 mod breaches;
@@ -15,13 +15,13 @@ use process::{Ended, Executable};
 /// Starts the executable for a client.
 fn start(client: &Client, arguments: &[&str], folder: &Path) -> Executable {
     let port = client.port.to_string();
-    let all = [&["--mlagents-port", &port], arguments].concat();
-    Executable::start(&all, folder)
+    let arguments_with_port = [&["--mlagents-port", &port], arguments].concat();
+    Executable::start(&arguments_with_port, folder)
 }
 
-/// A whole session with a client that gives these answers in order; returns how it ended, and the client.
+/// Runs a whole session with a client that gives these answers in order; returns the executable's result and the client.
 fn session(answers: Vec<Answer>, arguments: &[&str]) -> (Ended, Client) {
-    let folder = tempfile::tempdir().expect("the machine has a folder for temporary files");
+    let folder = tempfile::tempdir().expect("a temporary folder can be created");
     let client = Client::new(answers);
     let ended = start(&client, arguments, folder.path()).ended();
     (ended, client)

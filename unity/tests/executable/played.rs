@@ -1,4 +1,4 @@
-//! [`Client`]: simulates a Python client, a gRPC server, at the byte level, so that it can also send invalid messages.
+//! [`Client`]: simulates a Python client, which is a gRPC server, at the byte level, so that it can also send invalid messages.
 
 use std::convert::Infallible;
 use std::net::TcpListener;
@@ -34,7 +34,7 @@ impl From<UnityMessageProto> for Answer {
     }
 }
 
-/// A client that answers calls in order, and stays silent once it has no more answers.
+/// A client that answers calls in order, and stays silent when it has no answers left.
 pub(crate) struct Client {
     pub(crate) port: u16,
     calls: Receiver<Vec<u8>>,
@@ -73,9 +73,9 @@ impl Client {
         S::Future: Send + 'static,
     {
         let port = listener.local_addr().expect("it is bound").port();
-        let (told, calls) = channel();
+        let (sender, calls) = channel();
         let (leave, left) = oneshot::channel();
-        let service = service(answers.into_iter().collect(), told);
+        let service = service(answers.into_iter().collect(), sender);
         let thread = std::thread::spawn(move || {
             let runtime = tokio::runtime::Builder::new_current_thread()
                 .enable_all()
@@ -92,7 +92,7 @@ impl Client {
                     _ = left => {}
                 }
             });
-            // Dropping the runtime closes connections, whatever their state.
+            // Dropping the runtime closes all connections.
         });
         Self {
             port,
@@ -104,7 +104,10 @@ impl Client {
 
     /// Waits for the next call.
     pub(crate) fn call(&self) -> UnityMessageProto {
-        let bytes = self.calls.recv_timeout(Duration::from_mins(1)).expect("a call comes");
+        let bytes = self
+            .calls
+            .recv_timeout(Duration::from_mins(1))
+            .expect("a client connects");
         UnityMessageProto::decode(bytes.as_slice()).expect("what is said is a message")
     }
 
@@ -153,19 +156,19 @@ pub(crate) fn who(communication_version: &str) -> Answer {
         package_version: "0.16.0".to_owned(),
         ..UnityRlInitializationInputProto::default()
     };
-    let said = UnityInputProto {
+    let input_message = UnityInputProto {
         rl_initialization_input: Some(who),
         rl_input: None,
     };
-    input(200, Some(said)).into()
+    input(200, Some(input_message)).into()
 }
 
 pub(crate) fn says(rl_input: UnityRlInputProto) -> Answer {
-    let said = UnityInputProto {
+    let input_message = UnityInputProto {
         rl_input: Some(rl_input),
         rl_initialization_input: None,
     };
-    input(200, Some(said)).into()
+    input(200, Some(input_message)).into()
 }
 
 pub(crate) fn command(command: CommandProto) -> Answer {

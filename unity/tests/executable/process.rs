@@ -6,7 +6,7 @@ use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 
-/// Maximum time to wait for a process to end.
+/// Maximum time to wait for a process to exit.
 const PATIENCE: Duration = Duration::from_mins(1);
 
 /// A running process.
@@ -34,31 +34,31 @@ impl Executable {
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
             .spawn()
-            .expect("the executable is built");
-        let stdout = reading(child.stdout.take().expect("it is piped"));
-        let stderr = reading(child.stderr.take().expect("it is piped"));
+            .expect("the executable has been built");
+        let stdout = read_in_thread(child.stdout.take().expect("it is piped"));
+        let stderr = read_in_thread(child.stderr.take().expect("it is piped"));
         Self { child, stdout, stderr }
     }
 
-    /// Waits for its end.
+    /// Waits until it exits.
     pub(crate) fn ended(mut self) -> Ended {
-        let stderr = self.stderr.recv_timeout(PATIENCE).expect("the process ends");
-        let stdout = self.stdout.recv_timeout(PATIENCE).expect("the process ends");
-        let code = self.child.wait().expect("the process is ours").code();
+        let stderr = self.stderr.recv_timeout(PATIENCE).expect("the process exits");
+        let stdout = self.stdout.recv_timeout(PATIENCE).expect("the process exits");
+        let code = self.child.wait().expect("our own process can be stopped").code();
         Ended { code, stdout, stderr }
     }
 }
 
 impl Drop for Executable {
     fn drop(&mut self) {
-        // Killing a process that has ended fails harmlessly.
+        // Killing a process that has exited fails harmlessly.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
 }
 
-/// Reads to the end, which comes when the process ends.
-fn reading(mut pipe: impl Read + Send + 'static) -> Receiver<String> {
+/// Reads a pipe in a thread until the process ends.
+fn read_in_thread(mut pipe: impl Read + Send + 'static) -> Receiver<String> {
     let (done, text) = channel();
     std::thread::spawn(move || {
         let mut bytes = Vec::new();

@@ -1,4 +1,4 @@
-//! Servers at the client's address that are not clients, and no server at all.
+//! Servers at the client's address that are not clients, and addresses without a server.
 
 use std::io::{Read, Write};
 use std::net::TcpListener;
@@ -43,7 +43,7 @@ fn client_that_starts_later_is_found() {
     let port = listener.local_addr().expect("it is bound").port();
     drop(listener);
     let executable = Executable::start(&["--mlagents-port", &port.to_string()], &std::env::temp_dir());
-    let listener = TcpListener::bind(("127.0.0.1", port)).expect("the port is free still");
+    let listener = TcpListener::bind(("127.0.0.1", port)).expect("the port is still free");
     let client = Client::listening(listener, [who("1.0.0"), command(CommandProto::Quit)]);
     let ended = executable.ended();
     assert_eq!(ended.code, Some(0), "{ended:?}");
@@ -61,7 +61,7 @@ fn silent_listener_is_not_a_client() {
 fn client_without_a_first_answer_is_not_a_client() {
     let (ended, client) = session(vec![], &["--wait", "0.5"]);
     assert_no_client(&ended, "silence for 0.5 s");
-    assert_eq!(client.calls().len(), 1, "it was asked");
+    assert_eq!(client.calls().len(), 1, "the client was called once");
 }
 
 #[test]
@@ -75,7 +75,7 @@ fn server_with_a_different_service_is_not_a_client() {
 fn web_server_is_not_a_client() {
     let listener = free_port();
     let executable = run(&listener, &[]);
-    let (mut stream, _) = listener.accept().expect("somebody calls");
+    let (mut stream, _) = listener.accept().expect("a client connects");
     stream.read_exact(&mut [0; 24]).expect("HTTP/2 has a preface");
     stream
         .write_all(b"HTTP/1.1 400 Bad Request\r\nConnection: close\r\n\r\n")
@@ -89,7 +89,7 @@ fn web_server_is_not_a_client() {
 fn listener_that_hangs_up_is_not_a_client() {
     let listener = free_port();
     let executable = run(&listener, &[]);
-    let (mut stream, _) = listener.accept().expect("somebody calls");
+    let (mut stream, _) = listener.accept().expect("a client connects");
     // The call has begun.
     stream.read_exact(&mut [0; 24]).expect("HTTP/2 has a preface");
     drop(stream);

@@ -1,9 +1,9 @@
-"""Records the messages that a published Python client sends: the bytes of each, in order.
+"""Records the messages that a published Python client sends, byte for byte and in order.
 
     python record.py EXECUTABLE > client_0.16.json
 
-runs the executable with that Python's mlagents-envs, and writes a line for each message: a description, and its bytes
-on the wire, in hexadecimal. `conversation.rs` replays them to a session. Each file names the versions that made it.
+runs the executable with that Python's mlagents-envs, and writes one line per message: a description, and its bytes on
+the wire, in hexadecimal. `conversation.rs` replays them to a session. Each file names the versions that recorded it.
 """
 
 import json
@@ -83,14 +83,14 @@ class Json(SideChannel):
     def say(self, number, **fields):
         message = OutgoingMessage()
         token = f"00000000-0000-4000-8000-{number:012}"
-        # The original's client sends the time without a time zone.
+        # The original client sends the time without a time zone.
         fields = {"token": token, "msg_time": "2026-01-01T12:00:00.000001", **fields}
         message.write_string(json.dumps(fields))
         super().queue_message_to_send(message)
 
 
 def main(executable):
-    """Runs the conversation."""
+    """Runs the conversation and prints the messages."""
     global about
     rpc.UnityToExternalServicerImplementation = Recorder
     worlds, states, debug = Json(RESET), Json(STATE), Json(DEBUG)

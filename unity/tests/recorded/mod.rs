@@ -1,11 +1,11 @@
-//! Reads the recorded conversations in `golden/`: encoded messages of published clients.
+//! Reads the recorded conversations in `golden/`: the encoded messages of published clients.
 
 use serde_json::Value;
 
 /// The releases of mlagents-envs whose clients were recorded.
 pub(crate) const RELEASES: [&str; 3] = ["0.16", "0.28", "1.1"];
 
-/// The messages of a release's client: a description, and the bytes.
+/// The messages of a release's client, each with a description and its bytes.
 pub(crate) fn messages(release: &str) -> Vec<(String, Vec<u8>)> {
     let path = format!("{}/tests/golden/client_{release}.json", env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(&path).expect("the conversation is committed");
