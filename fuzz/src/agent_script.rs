@@ -5,7 +5,7 @@ use driftworld_spec::World;
 
 use crate::{refusal, world};
 
-/// Steps to play.
+/// Number of steps to play.
 const STEPS: usize = 8;
 
 const WORLD: &str = r#"{ "environment_params": { "map_size": [20, 20], "walls": [{ "polygon": [[2, 2], [4, 2], [4, 4]] }] },
@@ -13,7 +13,7 @@ const WORLD: &str = r#"{ "environment_params": { "map_size": [20, 20], "walls": 
     "objects": [{ "class": "ball", "coordinates": [0, 5], "tag": "a", "unique_name": "one" },
                 { "class": "cube", "coordinates": [-5, 0], "tag": "b", "unique_name": "two", "pushable": { "mass": 1 } }] }"#;
 
-/// An accepted script gives an action for every step.
+/// An accepted script chooses an action in every step; the environment accepts or refuses it with a message.
 pub(crate) fn check(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
     let mut agent = match ScriptedAgent::parse("a.txt", &text) {
@@ -33,7 +33,7 @@ pub(crate) fn check(bytes: &[u8]) {
             Err(error) => refusal::message(&error.to_string()),
         }
     }
-    world::written_and_read(&environment.state());
+    world::check_round_trip(&environment.state());
 }
 
 fn small() -> World {

@@ -1,5 +1,5 @@
-//! Turns fuzzer bytes into JSON: either the bytes as they are, or a known document with the edits that the bytes describe,
-//! because random bytes seldom get past a parser.
+//! Turns fuzzer bytes into JSON: the bytes themselves, or a known document with the edits that the bytes describe, because random
+//! bytes seldom get past a parser.
 
 use std::collections::BTreeSet;
 
@@ -10,7 +10,7 @@ use serde_json::{Map, Number, Value};
 pub(crate) const MARK: u8 = b'~';
 
 /// Maximum number of edits to one document.
-const MOST_CHANGES: usize = 12;
+const MAX_EDITS: usize = 12;
 
 /// Seed documents, and the words that edits may insert.
 pub(crate) struct Known {
@@ -19,7 +19,7 @@ pub(crate) struct Known {
 }
 
 impl Known {
-    /// Takes the documents; keys and words come from them and from the JSON Schema.
+    /// Uses these documents. Keys and words come from them and from the JSON Schema.
     pub(crate) fn new(documents: Vec<Value>, schema: &str) -> Self {
         let mut words = BTreeSet::new();
         for document in &documents {
@@ -45,7 +45,7 @@ impl Known {
     /// A known document with edits.
     pub(crate) fn edited(&self, bytes: &mut Unstructured) -> Value {
         let mut document = self.any_document(bytes).clone();
-        for _ in 0..MOST_CHANGES {
+        for _ in 0..MAX_EDITS {
             if bytes.is_empty() {
                 break;
             }
@@ -55,12 +55,12 @@ impl Known {
     }
 
     fn any_document(&self, bytes: &mut Unstructured) -> &Value {
-        // Once the bytes are used up, takes the first document.
+        // When the bytes are used up, chooses the first document.
         let at = bytes.choose_index(self.documents.len()).unwrap_or_default();
         &self.documents[at]
     }
 
-    /// Walks to a random place and changes the value there.
+    /// Walks to a random position in the document and changes the value there.
     fn change(&self, value: &mut Value, bytes: &mut Unstructured) {
         let stop = byte(bytes).is_multiple_of(4);
         match value {
@@ -98,8 +98,8 @@ impl Known {
                 items.remove(usize::from(byte(bytes)) % items.len());
             }
             (2, Value::Array(items)) if !items.is_empty() => {
-                let twice = items[usize::from(byte(bytes)) % items.len()].clone();
-                items.extend(std::iter::repeat_n(twice, usize::from(byte(bytes) % 8)));
+                let copied = items[usize::from(byte(bytes)) % items.len()].clone();
+                items.extend(std::iter::repeat_n(copied, usize::from(byte(bytes) % 8)));
             }
             (3, value) => *value = Value::Array(vec![value.take()]),
             (4, value) => {
@@ -158,7 +158,7 @@ impl Known {
     }
 }
 
-/// The next byte, or 0 once they are used up.
+/// The next byte, or 0 when the bytes are used up.
 pub(crate) fn byte(bytes: &mut Unstructured) -> u8 {
     bytes.arbitrary().unwrap_or_default()
 }

@@ -7,11 +7,11 @@ use driftworld_spec::World;
 use crate::edited::byte;
 use crate::{refusal, world};
 
-/// Maximum number of objects in a world that is run; larger worlds are covered by other tests.
-const MOST_OBJECTS: usize = 32;
+/// Maximum number of objects in a world that is run; other tests cover larger worlds.
+const MAX_OBJECTS: usize = 32;
 
 /// Maximum number of steps in an episode.
-const MOST_STEPS: usize = 16;
+const MAX_STEPS: usize = 16;
 
 /// The same world and actions give the same episode, and all its numbers are finite. A world that is saved and loaded continues
 /// in the same way.
@@ -26,7 +26,7 @@ pub(crate) fn check(bytes: &[u8]) {
         Err(error) => return refusal::check(&error, &text),
     };
     let start = start.edit(|world| {
-        world.objects.truncate(MOST_OBJECTS);
+        world.objects.truncate(MAX_OBJECTS);
         world.agent_params.observation_size = 8;
     });
     // The truncated world may be invalid.
@@ -35,19 +35,23 @@ pub(crate) fn check(bytes: &[u8]) {
     };
     let (mut first, mut second) = (Environment::new(start.clone()), Environment::new(start));
     let mut actions = Unstructured::new(actions);
-    for _ in 0..MOST_STEPS {
+    for _ in 0..MAX_STEPS {
         if actions.is_empty() || first.ended() {
             break;
         }
         let action = action(&mut actions, &first);
-        let stepped = step(&mut first, action);
-        assert_eq!(stepped, step(&mut second, action), "the same world and actions");
+        let outcome = step(&mut first, action);
+        assert_eq!(outcome, step(&mut second, action), "the same world and actions");
         assert_eq!(moment(&first), moment(&second), "the same world and actions");
         if byte(&mut actions).is_multiple_of(8) {
-            let written = second.state();
-            world::written_and_read(&written);
-            second = Environment::new(written);
-            assert_eq!(moment(&first), moment(&second), "what was written down goes on");
+            let saved = second.state();
+            world::check_round_trip(&saved);
+            second = Environment::new(saved);
+            assert_eq!(
+                moment(&first),
+                moment(&second),
+                "a saved world continues in the same way"
+            );
         }
     }
     let picture = first.observe().rgb.clone();
@@ -74,7 +78,7 @@ fn step(environment: &mut Environment, action: Action) -> Option<Step> {
     }
 }
 
-/// The position of everything and the reward so far, as text.
+/// The state of the agent and the objects, and the return so far, as text.
 fn moment(environment: &Environment) -> String {
     let agent = format!("{:?}", environment.agent());
     assert!(!agent.contains("NaN") && !agent.contains("inf"), "{agent}");

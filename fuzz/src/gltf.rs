@@ -53,7 +53,7 @@ fn tetrahedron() -> Value {
 
 /// An imported model is valid in a library, and its bytes round-trip.
 pub(crate) fn check(bytes: &[u8]) {
-    let mut beside = buffer();
+    let mut buffer_bytes = buffer();
     let mut file = bytes.to_vec();
     if let Some((&MARK, rest)) = bytes.split_first() {
         let (length, rest) = rest
@@ -63,8 +63,8 @@ pub(crate) fn check(bytes: &[u8]) {
         file = known().edited(&mut Unstructured::new(changes)).to_string().into_bytes();
         let mut numbers = Unstructured::new(numbers);
         while !numbers.is_empty() {
-            let at = usize::from(byte(&mut numbers)) % beside.len();
-            beside[at] = byte(&mut numbers);
+            let at = usize::from(byte(&mut numbers)) % buffer_bytes.len();
+            buffer_bytes[at] = byte(&mut numbers);
         }
     }
     let options = ImportOptions {
@@ -75,8 +75,8 @@ pub(crate) fn check(bytes: &[u8]) {
         main: None,
     };
     let read = LibraryModel::from_gltf(&file, &options, &mut |path| {
-        assert!(!path.contains("..") && !path.starts_with('/'), "{path:?} was asked for");
-        Ok(beside.clone())
+        assert!(!path.contains("..") && !path.starts_with('/'), "{path:?} was requested");
+        Ok(buffer_bytes.clone())
     });
     let imported = match read {
         Ok(imported) => imported,
@@ -85,6 +85,6 @@ pub(crate) fn check(bytes: &[u8]) {
     refusal::messages(imported.warnings);
     let mut library = Library::default();
     library.insert(imported.model).expect("one model fits");
-    let again = Library::from_bytes(&library.to_bytes()).expect("what we wrote is sound");
-    assert!(again == library, "what is written of a model is the model");
+    let reread = Library::from_bytes(&library.to_bytes()).expect("our own output is valid");
+    assert!(reread == library, "a model round-trips");
 }

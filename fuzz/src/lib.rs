@@ -1,4 +1,4 @@
-//! Laws that hold for everything that Driftworld reads, whatever its bytes: one law per kind of document, file and message.
+//! Laws that hold for any bytes that Driftworld reads: one law per kind of document, file and message.
 //!
 //! `tests/replay.rs` checks the laws on the seeds and on small changes to them; `scripts/fuzz.sh` lets libFuzzer search for bytes
 //! that break them.

@@ -1,5 +1,4 @@
-//! Law of asset libraries. Input that starts with [`SEALED`] gets a valid header in front, so that the checksum does not
-//! stop the fuzzer.
+//! Law of asset libraries. Input that starts with [`SEALED`] gets a valid header, so that the checksum does not stop the fuzzer.
 
 use driftworld_env::Library;
 use sha2::{Digest, Sha256};
@@ -9,7 +8,7 @@ use crate::refusal;
 /// First byte of an input that gets a valid header.
 pub(crate) const SEALED: u8 = b'S';
 
-/// A library that can be read can be written, and gives the same bytes.
+/// A library that can be read is written as the same bytes.
 pub(crate) fn check(bytes: &[u8]) {
     let sealed;
     let bytes = match bytes.split_first() {
@@ -20,7 +19,7 @@ pub(crate) fn check(bytes: &[u8]) {
         _ => bytes,
     };
     match Library::from_bytes(bytes) {
-        Ok(library) => assert!(library.to_bytes() == bytes, "what was read is written as it was"),
+        Ok(library) => assert!(library.to_bytes() == bytes, "the library is written as the same bytes"),
         Err(error) => refusal::message(&error.to_string()),
     }
 }

@@ -1,4 +1,4 @@
-//! Laws of logs, whatever their files contain: writing, reading, scoring and resuming.
+//! Laws of logs with any contents: writing, reading, scoring and resuming.
 
 use std::fs;
 use std::path::Path;
@@ -10,7 +10,7 @@ use driftworld_metrics::{
 };
 
 /// Separates the files of a log in the input.
-const BETWEEN: &[u8] = b"\n%%\n";
+const SEPARATOR: &[u8] = b"\n%%\n";
 
 /// The files in the order of the input; `%` marks a missing one.
 const FILES: [&str; 4] = [
@@ -22,45 +22,45 @@ const FILES: [&str; 4] = [
 
 /// Writes the log that the bytes describe, and checks every law.
 pub(crate) fn check(bytes: &[u8]) {
-    let base = tempfile::tempdir().expect("there is room for a small log");
+    let base = tempfile::tempdir().expect("the log can be written");
     let dir = base.path().join("log");
-    lay_out(&dir, bytes);
+    write_files(&dir, bytes);
     let valid = validate_log(&dir).is_valid();
     let log = match read_log(&dir) {
         Ok(log) => {
-            reads_alike_with_texts(&dir, &log);
-            scores_without_nan(&log);
-            writes_back(&base.path().join("copy"), &log);
+            check_reading_with_texts(&dir, &log);
+            check_scores(&log);
+            check_writing(&base.path().join("copy"), &log);
             Some(log)
         }
         Err(error) => {
-            assert!(!valid, "what is valid can be read: {error}");
+            assert!(!valid, "a valid log can be read: {error}");
             assert!(!error.to_string().is_empty());
             None
         }
     };
-    resumes(&dir, log.as_ref());
+    check_resuming(&dir, log.as_ref());
 }
 
-pub(crate) fn lay_out(dir: &Path, bytes: &[u8]) {
+pub(crate) fn write_files(dir: &Path, bytes: &[u8]) {
     let mut rest = bytes;
     for name in FILES {
-        let end = rest.windows(BETWEEN.len()).position(|part| part == BETWEEN);
+        let end = rest.windows(SEPARATOR.len()).position(|part| part == SEPARATOR);
         let (text, after) = match end {
-            Some(end) => (&rest[..end], &rest[end + BETWEEN.len()..]),
+            Some(end) => (&rest[..end], &rest[end + SEPARATOR.len()..]),
             None => (rest, &b"%"[..]),
         };
         rest = after;
         let path = dir.join(name);
-        fs::create_dir_all(path.parent().expect("a file lies in a folder")).expect("there is room for a folder");
+        fs::create_dir_all(path.parent().expect("a file lies in a folder")).expect("the folder can be created");
         if text != b"%" {
-            fs::write(path, text).expect("there is room for a small file");
+            fs::write(path, text).expect("the file can be written");
         }
     }
 }
 
-fn reads_alike_with_texts(dir: &Path, log: &Log) {
-    let whole = read_log_with_texts(dir).expect("texts are no fault");
+fn check_reading_with_texts(dir: &Path, log: &Log) {
+    let whole = read_log_with_texts(dir).expect("texts cause no error");
     assert!(
         whole.rows.iter().map(shown).eq(log.rows.iter().map(shown)),
         "texts change nothing else"
@@ -93,7 +93,7 @@ fn sorted_rows(log: &Log) -> Vec<String> {
 }
 
 /// Scores are finite or missing; a missing score comes with a reason.
-fn scores_without_nan(log: &Log) {
+fn check_scores(log: &Log) {
     let experts: Vec<SteLog> = SteLog::new(log.clone()).into_iter().collect();
     let mut choices = vec![Options::default(); 3];
     choices[1].variant_mode = VariantMode::Agnostic;
@@ -120,24 +120,24 @@ fn scores_without_nan(log: &Log) {
     }
 }
 
-/// The text without its quoted parts.
+/// The text with its quoted parts removed.
 fn without_quoted(text: &str) -> String {
     let mut found = String::new();
     let (mut quoted, mut escaped) = (false, false);
-    for letter in text.chars() {
-        match letter {
+    for c in text.chars() {
+        match c {
             _ if escaped => escaped = false,
             '\\' if quoted => escaped = true,
             '"' => quoted = !quoted,
-            _ if !quoted => found.push(letter),
+            _ if !quoted => found.push(c),
             _ => {}
         }
     }
     found
 }
 
-/// A log that was read can be written if its rows follow the writer's rules, and reads back the same.
-fn writes_back(dir: &Path, log: &Log) {
+/// A log whose rows follow the writer's rules can be written, and reads back the same.
+fn check_writing(dir: &Path, log: &Log) {
     let info = LoggerInfo::new(log.logger_info.metrics_columns()).expect("they were taken before");
     let mut writer = LogWriter::create(dir, &info, &log.scenario_info).expect("the folder is new");
     for row in log.rows.iter() {
@@ -145,7 +145,7 @@ fn writes_back(dir: &Path, log: &Log) {
             return;
         }
     }
-    writer.finish().expect("there is room for a small log");
+    writer.finish().expect("the log can be written");
     if log.rows.is_empty() {
         return;
     }
@@ -155,14 +155,14 @@ fn writes_back(dir: &Path, log: &Log) {
         assert_eq!(
             problem.code(),
             "metrics/not-completed",
-            "what is written is valid: {problem}"
+            "a written log is valid: {problem}"
         );
     }
     LogWriter::resume(dir).expect("what is written can be continued");
 }
 
 /// A resumed log can be read, and keeps everything that could be read before.
-fn resumes(dir: &Path, log: Option<&Log>) {
+fn check_resuming(dir: &Path, log: Option<&Log>) {
     if LogWriter::resume(dir).is_err() {
         return;
     }
@@ -172,7 +172,7 @@ fn resumes(dir: &Path, log: Option<&Log>) {
             error.code() == "metrics/no-data-files"
                 || error.code() == "metrics/json"
                 || error.code() == "metrics/block-order",
-            "what was repaired can be read: {error}"
+            "a repaired log can be read: {error}"
         ),
     }
 }

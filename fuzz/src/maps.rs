@@ -30,8 +30,8 @@ pub(crate) fn check(bytes: &[u8]) {
         Err(error) => return refusal::check(&error, &text),
     };
     for layout in library.layouts() {
-        let made = World::default().edit(|world| world.environment_params.predefined_map = layout.id);
-        let made = made.expect("layouts have numbers that worlds may have");
-        world::written_and_read(&made.with_maps(&library));
+        let world = World::default().edit(|world| world.environment_params.predefined_map = layout.id);
+        let world = world.expect("layouts have numbers that worlds may have");
+        world::check_round_trip(&world.with_maps(&library));
     }
 }

@@ -4,8 +4,8 @@ use driftworld_similarity::DistanceMatrix;
 
 use crate::refusal;
 
-/// Maximum number of items in a matrix that is written again.
-const MOST_ITEMS: usize = 64;
+/// Maximum number of items in a matrix that is checked and written.
+const MAX_ITEMS: usize = 64;
 
 /// A matrix that can be read can be written in each format, and reads back the same.
 pub(crate) fn check(bytes: &[u8]) {
@@ -21,7 +21,7 @@ pub(crate) fn check(bytes: &[u8]) {
         Ok(matrix) => matrix,
         Err(error) => return refusal::message(&error.to_string()),
     };
-    if matrix.len() > MOST_ITEMS {
+    if matrix.len() > MAX_ITEMS {
         return;
     }
     for a in 0..matrix.len() {
@@ -30,9 +30,9 @@ pub(crate) fn check(bytes: &[u8]) {
             assert!(distance.is_finite() && distance >= 0.0 && distance == matrix.get(b, a));
         }
     }
-    let same = |again: Result<DistanceMatrix, _>| {
-        let again = again.unwrap_or_else(|error| panic!("what we wrote is sound: {error}"));
-        assert_eq!((again.labels(), again.values()), (matrix.labels(), matrix.values()));
+    let same = |reread: Result<DistanceMatrix, _>| {
+        let reread = reread.unwrap_or_else(|error| panic!("our own output is valid: {error}"));
+        assert_eq!((reread.labels(), reread.values()), (matrix.labels(), matrix.values()));
     };
     same(DistanceMatrix::from_csv(&matrix.to_csv()));
     same(DistanceMatrix::from_json(&matrix.to_json()));

@@ -5,7 +5,7 @@ use driftworld_spec::World;
 
 use crate::refusal;
 
-/// Steps to play.
+/// Number of steps to play.
 const STEPS: usize = 2;
 
 /// An accepted network chooses valid actions.

@@ -1,5 +1,5 @@
-//! Law of ML-Agents messages. Input: raw messages, or after [`MARK`](crate::edited::MARK) a step with text on the Reset channel:
-//! an edited world or anything else.
+//! Law of ML-Agents messages. Input: a raw message, or after [`MARK`](crate::edited::MARK) a command with text on the Reset channel,
+//! such as an edited world.
 
 use arbitrary::Unstructured;
 use driftworld_spec::World;
@@ -19,10 +19,10 @@ const RESET: [u8; 16] = [
 ];
 
 /// gRPC's default limit on the size of a message, in bytes.
-const LONGEST_ANSWER: usize = 4 << 20;
+const MAX_ANSWER_BYTES: usize = 4 << 20;
 
-/// Maximum length of a message on the Reset channel, in bytes; larger worlds are run by other tests.
-const LONGEST_TEXT: usize = 16_000;
+/// Maximum length of a message on the Reset channel, in bytes; other tests run larger worlds.
+const MAX_TEXT_BYTES: usize = 16_000;
 
 /// A session in a small world. Its screenshots go to a temporary folder.
 fn session() -> (Session, tempfile::TempDir) {
@@ -40,7 +40,7 @@ fn session() -> (Session, tempfile::TempDir) {
 /// A session answers or refuses each message within the limits of its transport, and continues.
 pub(crate) fn check(bytes: &[u8]) {
     let input = match bytes.split_first() {
-        Some((&MARK, rest)) => made(rest),
+        Some((&MARK, rest)) => command_from(rest),
         _ => match UnityMessageProto::decode(bytes) {
             Ok(message) => message.unity_input.and_then(|input| input.rl_input).unwrap_or_default(),
             Err(_) => return,
@@ -53,14 +53,18 @@ pub(crate) fn check(bytes: &[u8]) {
         command: CommandProto::Reset.into(),
         ..UnityRlInputProto::default()
     };
-    assert!(answer(&mut session, &reset), "the session goes on");
+    assert!(answer(&mut session, &reset), "the session continues");
 }
 
 /// Whether the session answered.
 fn answer(session: &mut Session, input: &UnityRlInputProto) -> bool {
     match session.answer(input) {
         Ok(Turn::Output(output)) => {
-            assert!(output.encoded_len() < LONGEST_ANSWER, "{} bytes", output.encoded_len());
+            assert!(
+                output.encoded_len() < MAX_ANSWER_BYTES,
+                "{} bytes",
+                output.encoded_len()
+            );
             true
         }
         Ok(Turn::Quit) => false,
@@ -71,7 +75,7 @@ fn answer(session: &mut Session, input: &UnityRlInputProto) -> bool {
     }
 }
 
-fn made(bytes: &[u8]) -> UnityRlInputProto {
+fn command_from(bytes: &[u8]) -> UnityRlInputProto {
     let mut bytes = Unstructured::new(bytes);
     let command = byte(&mut bytes) % 3;
     let numbers: Vec<f32> = (0..byte(&mut bytes) % 5)
@@ -94,7 +98,7 @@ fn made(bytes: &[u8]) -> UnityRlInputProto {
             json!({ "token": "t", "action": "reset_environment", "payload": payload }).to_string()
         }
     };
-    let text = &text[..text.floor_char_boundary(LONGEST_TEXT)];
+    let text = &text[..text.floor_char_boundary(MAX_TEXT_BYTES)];
     let payload = [&(text.len() as i32).to_le_bytes(), text.as_bytes()].concat();
     let record = [&RESET[..], &(payload.len() as i32).to_le_bytes(), &payload].concat();
     UnityRlInputProto {

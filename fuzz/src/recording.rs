@@ -1,5 +1,5 @@
-//! Law of files of recorded episodes. Input: raw bytes, or edits to the lines of a known file, which are then packed and get
-//! valid checksums, because random bytes seldom get past these.
+//! Law of files of recorded episodes. Input: raw bytes, or edits to the lines of a known file. Edited lines are packed and get valid
+//! checksums, because random bytes seldom have them.
 
 use std::fs;
 use std::io::Write;
@@ -20,12 +20,13 @@ use serde_json::{Value, json};
 use crate::edited::Known;
 use crate::{refusal, world};
 
-/// Maximum numbers of objects in a world that is run, and of steps.
-const MOST_OBJECTS: usize = 32;
-const MOST_STEPS: usize = 16;
+/// Maximum number of objects in a world that is run.
+const MAX_OBJECTS: usize = 32;
+/// Maximum number of steps of a recording that is run.
+const MAX_STEPS: usize = 16;
 
-/// Maximum number of bytes to pack per value of an edited file: repeated copies grow quickly.
-const MOST_PACKED: usize = 1 << 20;
+/// Maximum number of bytes packed per value of an edited file, because repeated copies grow quickly.
+const MAX_PACKED_BYTES: usize = 1 << 20;
 
 /// Known files, each as a list of lines. Packed parts are unpacked: a world is JSON, and actions are lists of bytes.
 fn known() -> &'static Known {
@@ -61,26 +62,26 @@ fn known() -> &'static Known {
     })
 }
 
-/// Deflates an object's text or a list of bytes into base64; leaves other values as they are.
-fn packed(value: Value) -> Value {
+/// Packs an object's text or a list of bytes: deflated and in base64. Other values stay unchanged.
+fn pack(value: Value) -> Value {
     let bytes = match &value {
         Value::Object(_) => value.to_string().into_bytes(),
         Value::Array(items) => items.iter().map(|item| item.as_u64().unwrap_or(0) as u8).collect(),
         _ => return value,
     };
     let mut deflater = ZlibEncoder::new(Vec::new(), Compression::fast());
-    let kept = &bytes[..bytes.len().min(MOST_PACKED)];
+    let kept = &bytes[..bytes.len().min(MAX_PACKED_BYTES)];
     let deflated = deflater.write_all(kept).and_then(|()| deflater.finish());
     Value::from(STANDARD.encode(deflated.expect("writing into memory cannot fail")))
 }
 
 /// A line in the file's format, with its checksum.
-fn sealed(mut line: Value) -> String {
+fn sealed_line(mut line: Value) -> String {
     if let Some(world) = line.get_mut("world") {
-        *world = packed(world.take());
+        *world = pack(world.take());
     }
     if let Some(actions) = line.get_mut("actions").and_then(Value::as_object_mut) {
-        actions.values_mut().for_each(|bytes| *bytes = packed(bytes.take()));
+        actions.values_mut().for_each(|bytes| *bytes = pack(bytes.take()));
     }
     let mut text = line.to_string();
     if text.pop() != Some('}') {
@@ -98,7 +99,7 @@ fn file(bytes: &[u8]) -> Vec<u8> {
                 Value::Array(lines) => lines,
                 other => vec![other],
             };
-            lines.into_iter().map(sealed).collect::<String>().into_bytes()
+            lines.into_iter().map(sealed_line).collect::<String>().into_bytes()
         }
         _ => bytes.to_vec(),
     }
@@ -110,10 +111,10 @@ pub(crate) fn check(bytes: &[u8]) {
     let file = file(bytes);
     let recordings = read(&file);
     for recording in &recordings {
-        comes_back(recording);
-        runs(recording);
+        check_round_trip(recording);
+        check_replay(recording);
     }
-    on_disk(&file);
+    check_in_log(&file);
 }
 
 /// All episodes that can be recovered.
@@ -144,34 +145,34 @@ fn read(file: &[u8]) -> Vec<Recording> {
     panic!("found more episodes and errors than the {lines} lines of the file");
 }
 
-fn comes_back(recording: &Recording) {
+fn check_round_trip(recording: &Recording) {
     let text = RecordingLines::header() + &RecordingLines::default().lines(recording);
-    let [again] = &read(text.as_bytes())[..] else {
-        panic!("what we wrote holds one episode:\n{text}")
+    let [reread] = &read(text.as_bytes())[..] else {
+        panic!("our own output has one episode:\n{text}")
     };
-    assert_eq!(format!("{again:?}"), format!("{recording:?}"));
+    assert_eq!(format!("{reread:?}"), format!("{recording:?}"));
 }
 
 /// Runs the recording twice and compares the results.
-fn runs(recording: &Recording) {
+fn check_replay(recording: &Recording) {
     let worlds = recording.edits.iter().map(|edit| &edit.world);
     if worlds
         .chain([&recording.world])
-        .any(|world| world.objects.len() > MOST_OBJECTS)
+        .any(|world| world.objects.len() > MAX_OBJECTS)
     {
         return;
     }
     let mut small = recording.clone();
-    small.actions.truncate(MOST_STEPS);
+    small.actions.truncate(MAX_STEPS);
     let end = || {
         let mut replay = Replay::new(&small, &Catalogue::default());
         loop {
             match replay.step() {
                 Ok(Some(Step { reward, .. })) => assert!(reward.is_finite()),
                 Ok(None) => {
-                    let said = replay.check().err().map(|error| error.to_string());
-                    refusal::messages(&said);
-                    return format!("{said:?} {:?}", replay.environment().agent());
+                    let difference = replay.check().err().map(|error| error.to_string());
+                    refusal::messages(&difference);
+                    return format!("{difference:?} {:?}", replay.environment().agent());
                 }
                 Err(error) => {
                     refusal::message(&error.to_string());
@@ -184,12 +185,12 @@ fn runs(recording: &Recording) {
 }
 
 /// Reads and appends to the file in a log's folder.
-fn on_disk(file: &[u8]) {
+fn check_in_log(file: &[u8]) {
     const WORKER: &str = "w";
-    let log = tempfile::tempdir().expect("there is room for a small log");
+    let log = tempfile::tempdir().expect("the log can be written");
     let path = log.path().join(WORKER).join("0-train").join(RECORDINGS_FILE);
-    fs::create_dir_all(path.parent().expect("it is in a folder")).expect("there is room for a folder");
-    fs::write(&path, file).expect("there is room for a small file");
+    fs::create_dir_all(path.parent().expect("it is in a folder")).expect("the folder can be created");
+    fs::write(&path, file).expect("the file can be written");
     let numbers = |file: &RecordingsFile| {
         file.episodes()
             .iter()
@@ -213,20 +214,20 @@ fn on_disk(file: &[u8]) {
         Ok(()) => {
             let file = RecordingsFile::open(&path).expect("it is a file of recordings");
             let mut file = file.expect("it is there");
-            let back = file.recording(next).expect("what was written last can be read");
-            assert_eq!(back.as_ref(), Some(&added));
-            let kept = numbers(&file);
-            assert!(kept.contains(&next));
+            let reread_recording = file.recording(next).expect("what was written last can be read");
+            assert_eq!(reread_recording.as_ref(), Some(&added));
+            let numbers_after = numbers(&file);
+            assert!(numbers_after.contains(&next));
             assert!(
-                kept.starts_with(&before) || before.is_empty(),
-                "found {kept:?} after {before:?}"
+                numbers_after.starts_with(&before) || before.is_empty(),
+                "found {numbers_after:?} after {before:?}"
             );
         }
         Err(error) => {
             refusal::message(&error.to_string());
             // The test's own file, not by driftworld-files: no user names it.
             let left = fs::read(&path).expect("it is there");
-            assert_eq!(left, file, "what is refused is left alone");
+            assert_eq!(left, file, "a refused file stays unchanged");
         }
     }
 }

@@ -5,7 +5,7 @@ use driftworld_spec::SpecError;
 use driftworld_text::is_unprintable;
 
 /// Maximum length of a message in bytes: fifty problems of a few hundred characters.
-const LONGEST: usize = 100_000;
+const MAX_MESSAGE_BYTES: usize = 100_000;
 
 /// Law of a [`SpecError`] about a document.
 pub(crate) fn check(error: &SpecError, text: &str) {
@@ -19,15 +19,15 @@ pub(crate) fn check(error: &SpecError, text: &str) {
 
 /// Law of any message.
 pub(crate) fn message(text: &str) {
-    assert!(!text.trim().is_empty(), "an error says something");
-    assert!(text.len() <= LONGEST, "{} bytes", text.len());
-    let raw = |letter: &char| *letter != '\n' && is_unprintable(*letter);
-    assert!(!text.chars().any(|letter| raw(&letter)), "{text:?}");
+    assert!(!text.trim().is_empty(), "a message is not empty");
+    assert!(text.len() <= MAX_MESSAGE_BYTES, "{} bytes", text.len());
+    let raw = |c: &char| *c != '\n' && is_unprintable(*c);
+    assert!(!text.chars().any(|c| raw(&c)), "{text:?}");
 }
 
 /// Law of several messages.
-pub(crate) fn messages<T: std::fmt::Display>(shown: impl IntoIterator<Item = T>) {
-    for one in shown {
-        message(&one.to_string());
+pub(crate) fn messages<T: std::fmt::Display>(texts: impl IntoIterator<Item = T>) {
+    for text in texts {
+        message(&text.to_string());
     }
 }

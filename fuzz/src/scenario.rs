@@ -38,7 +38,7 @@ const EXAMPLES: [&str; 11] = [
 fn tasks() -> &'static [Arc<TaskSpec>] {
     static TASKS: OnceLock<Vec<Arc<TaskSpec>>> = OnceLock::new();
     TASKS.get_or_init(|| {
-        let read = |text| TaskSpec::from_json("example", text).expect("an example is sound");
+        let read = |text| TaskSpec::from_json("example", text).expect("the example is valid");
         task::EXAMPLES.map(read).to_vec()
     })
 }
@@ -47,34 +47,34 @@ fn task_named(name: &str) -> Option<Arc<TaskSpec>> {
     tasks().iter().find(|task| task.name() == name).cloned()
 }
 
-/// A scenario that can be read can be written, and reads back the same. Its plan has the same number of experiences; the
-/// first, the middle and the last can be requested.
+/// A scenario that can be read can be written, and reads back the same. Its plan has the same number of experiences; the first,
+/// middle and last one can be requested.
 pub(crate) fn check(bytes: &[u8]) {
     let text = known().text(bytes);
     match Scenario::from_json_with("s.json", &text, task_named) {
         Ok(scenario) => {
-            written_and_read(&scenario);
-            planned(&scenario);
+            check_round_trip(&scenario);
+            check_plan(&scenario);
         }
         Err(error) => refusal::check(&error, &text),
     }
     match Scenario::from_l2explorer("s.json", &text) {
         Ok((scenario, warnings)) => {
             refusal::messages(warnings);
-            written_and_read(&scenario);
+            check_round_trip(&scenario);
         }
         Err(error) => refusal::check(&error, &text),
     }
 }
 
-fn written_and_read(scenario: &Scenario) {
+fn check_round_trip(scenario: &Scenario) {
     let text = scenario.to_json_pretty();
-    let again =
-        Scenario::from_json("again", &text).unwrap_or_else(|error| panic!("what we wrote is sound: {error}\n{text}"));
-    assert_eq!(again.to_json_pretty(), text);
+    let reread =
+        Scenario::from_json("again", &text).unwrap_or_else(|error| panic!("our own output is valid: {error}\n{text}"));
+    assert_eq!(reread.to_json_pretty(), text);
 }
 
-fn planned(scenario: &Scenario) {
+fn check_plan(scenario: &Scenario) {
     let mut sources = Sources {
         task: &mut |name| task_named(name).ok_or_else(|| "there is no such task".to_owned()),
         world: &mut |_| {

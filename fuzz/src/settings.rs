@@ -27,10 +27,10 @@ fn known() -> &'static Known {
 fn lifetime() -> &'static Log {
     static LIFETIME: OnceLock<Log> = OnceLock::new();
     LIFETIME.get_or_init(|| {
-        let base = tempfile::tempdir().expect("there is room for a small log");
+        let base = tempfile::tempdir().expect("the log can be written");
         let dir = base.path().join("log");
-        log::lay_out(&dir, include_bytes!("../seeds/log/two_workers"));
-        read_log(&dir).expect("the seed is sound")
+        log::write_files(&dir, include_bytes!("../seeds/log/two_workers"));
+        read_log(&dir).expect("the seed is valid")
     })
 }
 
@@ -43,8 +43,8 @@ pub(crate) fn check(bytes: &[u8]) {
         Err(error) => return refusal::message(&printable(&error.to_string())),
     };
     let written = serde_json::to_value(&options).expect("options serialise");
-    let again: Options = serde_json::from_value(written.clone()).expect("what we wrote is sound");
-    assert_eq!(serde_json::to_value(again).ok(), Some(written));
+    let reread: Options = serde_json::from_value(written.clone()).expect("our own output is valid");
+    assert_eq!(serde_json::to_value(reread).ok(), Some(written));
     match score(lifetime(), &[], &options) {
         Ok(metrics) => {
             let metrics: Value = serde_json::to_value(&metrics).expect("metrics serialise");

@@ -1,4 +1,4 @@
-//! Law of task specs, their variants and first worlds.
+//! Law of task specs, their variants and the worlds sampled from these.
 
 use std::sync::OnceLock;
 
@@ -19,8 +19,8 @@ pub(crate) const EXAMPLES: [&str; 7] = [
     include_str!("../../examples/tasks/settlement.json"),
 ];
 
-/// Maximum number of variants per task from which worlds are drawn.
-const MOST_VARIANTS: usize = 2;
+/// Maximum number of variants per task from which worlds are sampled.
+const MAX_VARIANTS: usize = 2;
 
 fn known() -> &'static Known {
     static KNOWN: OnceLock<Known> = OnceLock::new();
@@ -30,7 +30,7 @@ fn known() -> &'static Known {
     })
 }
 
-/// A task that can be read can be written, and reads back the same. Its worlds are valid, and the same when drawn again.
+/// A task that can be read can be written, and reads back the same. Its worlds are valid, and sampling them again gives the same.
 pub(crate) fn check(bytes: &[u8]) {
     let text = known().text(bytes);
     let task = match TaskSpec::from_json("t.json", &text) {
@@ -38,14 +38,14 @@ pub(crate) fn check(bytes: &[u8]) {
         Err(error) => return refusal::check(&error, &text),
     };
     let written = task.to_json();
-    let again = TaskSpec::from_json("again", &written)
-        .unwrap_or_else(|error| panic!("what we wrote is sound: {error}\n{written}\nread from {text}"));
-    assert!(task.is_same_as(&again), "{written}");
-    for variant in task.all_variants().iter().take(MOST_VARIANTS) {
+    let reread = TaskSpec::from_json("again", &written)
+        .unwrap_or_else(|error| panic!("our own output is valid: {error}\n{written}\nread from {text}"));
+    assert!(task.is_same_as(&reread), "{written}");
+    for variant in task.all_variants().iter().take(MAX_VARIANTS) {
         match sample(variant, 7, 1) {
-            Ok(drawn) => {
-                world::written_and_read(&drawn);
-                assert_eq!(sample(variant, 7, 1).map(|world| world.hash()).ok(), Some(drawn.hash()));
+            Ok(world) => {
+                world::check_round_trip(&world);
+                assert_eq!(sample(variant, 7, 1).map(|world| world.hash()).ok(), Some(world.hash()));
             }
             Err(error) => refusal::message(&error.to_string()),
         }

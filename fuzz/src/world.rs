@@ -14,13 +14,13 @@ pub(crate) fn known() -> &'static Known {
     KNOWN.get_or_init(|| {
         let mut documents = vec![json(include_str!("../../examples/assets/harbour.json"))];
         for text in task::EXAMPLES {
-            let task = driftworld_spec::TaskSpec::from_json("example", text).expect("an example is sound");
+            let task = driftworld_spec::TaskSpec::from_json("example", text).expect("the example is valid");
             for variant in task.all_variants().iter().take(2) {
                 let world = driftworld_generator::sample(variant, 1, 0).expect("an example can be drawn");
                 documents.push(json(&world.to_json()));
             }
         }
-        // Small ones first: they are read often.
+        // Small documents come first, because the first is chosen most often.
         documents.sort_by_key(|document| document.to_string().len());
         Known::new(documents, include_str!("../../schemas/world.schema.json"))
     })
@@ -30,27 +30,27 @@ pub(crate) fn json(text: &str) -> Value {
     serde_json::from_str(text).expect("a document of ours is JSON")
 }
 
-/// A world that can be read can be written, and reads back the same, also if it was converted from L2Explorer's format.
+/// A world that can be read can be written, and reads back the same, even if it was converted from L2Explorer's format.
 pub(crate) fn check(bytes: &[u8]) {
     let text = known().text(bytes);
     match World::from_json("w.json", &text) {
-        Ok(world) => written_and_read(&world),
+        Ok(world) => check_round_trip(&world),
         Err(error) => refusal::check(&error, &text),
     }
     match World::from_l2explorer("w.json", &text) {
         Ok((world, warnings)) => {
             refusal::messages(warnings);
-            written_and_read(&world);
+            check_round_trip(&world);
         }
         Err(error) => refusal::check(&error, &text),
     }
 }
 
 /// A world round-trips through its own JSON.
-pub(crate) fn written_and_read(world: &World) {
+pub(crate) fn check_round_trip(world: &World) {
     let text = world.to_json();
-    let again =
-        World::from_json("again", &text).unwrap_or_else(|error| panic!("what we wrote is sound: {error}\n{text}"));
-    assert_eq!(again.to_json(), text);
-    assert_eq!(again.hash(), world.hash());
+    let reread =
+        World::from_json("again", &text).unwrap_or_else(|error| panic!("our own output is valid: {error}\n{text}"));
+    assert_eq!(reread.to_json(), text);
+    assert_eq!(reread.hash(), world.hash());
 }

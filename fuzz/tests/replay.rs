@@ -11,11 +11,13 @@ use proptest::test_runner::{Config, TestRunner};
 fn seeds(target: &Target) -> Vec<Vec<u8>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("seeds").join(target.name);
     let entries = fs::read_dir(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
-    let mut paths: Vec<_> = entries.map(|entry| entry.expect("the folder is ours").path()).collect();
+    let mut paths: Vec<_> = entries
+        .map(|entry| entry.expect("the seeds are readable").path())
+        .collect();
     paths.sort();
     paths
         .iter()
-        .map(|path| fs::read(path).expect("the folder is ours"))
+        .map(|path| fs::read(path).expect("the seeds are readable"))
         .collect()
 }
 
@@ -42,9 +44,9 @@ fn change() -> impl Strategy<Value = Change> {
     ]
 }
 
-fn changed(mut text: Vec<u8>, changes: &[Change]) -> Vec<u8> {
+fn apply_changes(mut text: Vec<u8>, changes: &[Change]) -> Vec<u8> {
     for change in changes {
-        // One position more than there are bytes: the end counts too.
+        // The end is a position as well, so there is one more than there are bytes.
         let at = |index: &prop::sample::Index| index.index(text.len() + 1);
         match change {
             Change::Flip(index, byte) => {
@@ -89,11 +91,11 @@ fn check(name: &str, cases: u32) {
         ..Config::default()
     };
     let inputs = (prop::sample::select(seeds), prop::collection::vec(change(), 1..5));
-    let held = TestRunner::new(config).run(&inputs, |(seed, changes)| {
-        (target.law)(&changed(seed, &changes));
+    let result = TestRunner::new(config).run(&inputs, |(seed, changes)| {
+        (target.law)(&apply_changes(seed, &changes));
         Ok(())
     });
-    held.unwrap_or_else(|broken| panic!("{name}: {broken}"));
+    result.unwrap_or_else(|broken| panic!("{name}: {broken}"));
 }
 
 macro_rules! targets {

@@ -1,5 +1,5 @@
-//! The stage `examples`: builds and runs every program in `examples/`, each in an empty folder. Shows their output only if they
-//! fail.
+//! The stage `examples`: builds and runs every program in `examples/`, each in an empty folder. Shows a program's output only if it
+//! fails.
 
 use std::fs;
 use std::time::Instant;
@@ -7,7 +7,7 @@ use std::time::Instant;
 use crate::process::{Result, Workspace, about, ended, run};
 use crate::stage::Outcome;
 
-/// Runs all examples; the note is their number.
+/// Runs all examples; the outcome's note is their number.
 pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome> {
     let folder = workspace.root.join("examples");
     let entries = fs::read_dir(&folder).map_err(about(&folder))?;

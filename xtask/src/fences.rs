@@ -4,23 +4,23 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use crate::process::{Result, Workspace};
-use crate::sources::{Sources, extension, is_of_name, is_test_file, shipped_lines};
+use crate::sources::{Sources, extension, is_name_char, is_test_file, shipped_lines};
 use crate::stage::Outcome;
 use crate::{metadata, rooms, unreached};
 
 const MAP: &str = "ARCHITECTURE.md";
 const UNSAFE: &str = "docs/unsafe.md";
-// In two pieces, because this file is checked, too.
+// In two pieces, because this file is checked as well.
 const TO_DO: &str = concat!("TO", "DO");
 
-/// Developer tools, which read only files of the developers who run them.
-const TOOLS: [&str; 1] = ["xtask/"];
+/// Developer tools, which only read files of the developers who run them.
+const TOOL_FOLDERS: [&str; 1] = ["xtask/"];
 
-/// Pages whose paths in backticks all belong to this repository. Other pages also name their readers' files.
-const MAPS: [&str; 3] = ["ARCHITECTURE.md", "CONTRIBUTING.md", "README.md"];
+/// Pages on which every path in backticks belongs to this repository. Other pages also name their readers' files.
+const CHECKED_PAGES: [&str; 3] = ["ARCHITECTURE.md", "CONTRIBUTING.md", "README.md"];
 
-/// Calls reserved for one crate: exceptions need a comment `not by CRATE:` above with the reason.
-const ONE_WAY: [(&str, &str, &str); 4] = [
+/// Calls that only one crate may make. An exception needs a comment `not by CRATE:` above it, with the reason.
+const RESERVED_CALLS: [(&str, &str, &str); 4] = [
     (
         "fs::read(",
         "files",
@@ -43,7 +43,7 @@ const ONE_WAY: [(&str, &str, &str); 4] = [
     ),
 ];
 
-/// Checks the checkout.
+/// Checks the whole checkout.
 pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome> {
     let sources = Sources::read(&workspace.root)?;
     let metadata = metadata()?;
@@ -80,7 +80,7 @@ pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome> {
     }
 }
 
-/// The violations in the text of files.
+/// Violations in the text of files.
 fn check(sources: &Sources) -> Vec<String> {
     let mut findings = Vec::new();
     for (path, text) in sources.with_extensions(&["rs"]) {
@@ -89,8 +89,8 @@ fn check(sources: &Sources) -> Vec<String> {
                 "{path}:1: found no `//! `, expected a file to open with its purpose"
             ));
         }
-        if !is_test_file(path) && !TOOLS.iter().any(|folder| path.starts_with(folder)) {
-            findings.extend(other_ways(path, text));
+        if !is_test_file(path) && !TOOL_FOLDERS.iter().any(|folder| path.starts_with(folder)) {
+            findings.extend(reserved_calls(path, text));
         }
     }
     for (path, text) in sources.with_extensions(&["rs", "py", "toml", "sh", ""]) {
@@ -101,28 +101,28 @@ fn check(sources: &Sources) -> Vec<String> {
     }
     for (path, text) in sources.with_extensions(&["md"]) {
         for (line, span) in prose(text).flat_map(|(number, line)| code_spans(line).map(move |span| (number, span))) {
-            if dangles(sources, path, span) {
+            if is_dangling(sources, path, span) {
                 findings.push(format!(
                     "{path}:{line}: found `{span}`, expected a path of this repository"
                 ));
             }
         }
     }
-    findings.extend(unsafety(sources));
+    findings.extend(unsafe_mismatches(sources));
     findings
 }
 
-/// Reserved calls from other crates, without a reason above.
-fn other_ways(path: &str, text: &str) -> Vec<String> {
+/// Reserved calls in other crates that have no reason above them.
+fn reserved_calls(path: &str, text: &str) -> Vec<String> {
     let raw: Vec<&str> = text.lines().collect();
     let mut findings = Vec::new();
     for (number, line) in shipped_lines(text).into_iter().enumerate() {
-        for (call, home, instead) in ONE_WAY {
+        for (call, home, instead) in RESERVED_CALLS {
             let mut places = line
                 .match_indices(call)
                 .map(|(at, _)| (&line[..at], &line[at + call.len()..]));
             let is_call = |(before, after): (&str, &str)| {
-                !after.starts_with(".to_string()") && (call.starts_with('.') || !before.ends_with(is_of_name))
+                !after.starts_with(".to_string()") && (call.starts_with('.') || !before.ends_with(is_name_char))
             };
             let mut comment = raw[..number]
                 .iter()
@@ -143,17 +143,17 @@ fn other_ways(path: &str, text: &str) -> Vec<String> {
     findings
 }
 
-/// Whether a line has a to-do that names no issue.
+/// Whether a line contains a to-do that names no issue.
 fn is_bare_to_do(line: &str) -> bool {
     line.match_indices(TO_DO).any(|(at, _)| {
         let rest = &line[at + TO_DO.len()..];
-        !line[..at].ends_with(is_of_name) && !rest.starts_with("(#") && !rest.starts_with(is_of_name)
+        !line[..at].ends_with(is_name_char) && !rest.starts_with("(#") && !rest.starts_with(is_name_char)
     })
 }
 
-/// Differences between the table in `docs/unsafe.md` and the number of unsafe blocks, functions and implementations in each
-/// Rust file.
-fn unsafety(sources: &Sources) -> Vec<String> {
+/// Differences between the table in `docs/unsafe.md` and the number of unsafe blocks, functions, implementations, traits and
+/// extern blocks in each Rust file.
+fn unsafe_mismatches(sources: &Sources) -> Vec<String> {
     let in_line = |line: &str| {
         let code = line.split("//").next().unwrap_or_default();
         let follows = [" {", " fn ", " impl ", " extern ", " trait "].map(|next| format!("unsafe{next}"));
@@ -163,16 +163,21 @@ fn unsafety(sources: &Sources) -> Vec<String> {
         .with_extensions(&["rs"])
         .map(|(path, text)| (path, text.lines().map(in_line).sum()));
     let found: BTreeMap<&str, usize> = counted.filter(|(_, count)| *count > 0).collect();
-    let listed = |row: &'_ str| {
+    let entry = |row: &'_ str| {
         let mut cells = row.split('|').map(str::trim).skip(1);
         let file = cells.next()?.strip_prefix('`')?.strip_suffix('`')?;
         Some((file.to_owned(), cells.next()?.parse().ok()?))
     };
-    let listed: BTreeMap<String, usize> = sources.text(UNSAFE).lines().filter_map(listed).collect();
-    let files: BTreeSet<&str> = found.keys().copied().chain(listed.keys().map(String::as_str)).collect();
+    let in_table: BTreeMap<String, usize> = sources.text(UNSAFE).lines().filter_map(entry).collect();
+    let files: BTreeSet<&str> = found
+        .keys()
+        .copied()
+        .chain(in_table.keys().map(String::as_str))
+        .collect();
     let difference = |file| {
-        let (found, listed) = (found.get(file).unwrap_or(&0), listed.get(file).unwrap_or(&0));
-        (found != listed).then(|| format!("{UNSAFE}: found {listed} unsafe places listed for {file}, expected {found}"))
+        let (found, in_table) = (found.get(file).unwrap_or(&0), in_table.get(file).unwrap_or(&0));
+        (found != in_table)
+            .then(|| format!("{UNSAFE}: found {in_table} unsafe places listed for {file}, expected {found}"))
     };
     files.into_iter().filter_map(difference).collect()
 }
@@ -201,14 +206,14 @@ fn code_spans(line: &str) -> impl Iterator<Item = &str> {
 }
 
 /// Whether a text in backticks on a page looks like a path of this repository but does not exist.
-fn dangles(sources: &Sources, page: &str, span: &str) -> bool {
-    let is_one_word = !span.is_empty() && !span.contains(|letter: char| letter.is_whitespace() || letter == '<');
+fn is_dangling(sources: &Sources, page: &str, span: &str) -> bool {
+    let is_one_word = !span.is_empty() && !span.contains(|c: char| c.is_whitespace() || c == '<');
     let is_file = ["rs", "md", "toml", "json"].contains(&extension(span));
-    let elsewhere = ["/", "-", "../", "target/", "fuzz/corpus/"]
+    let is_outside_path = ["/", "-", "../", "target/", "fuzz/corpus/"]
         .iter()
         .any(|start| span.starts_with(start))
         || span.contains("://");
-    if !is_one_word || elsewhere || !(span.contains('/') || is_file) {
+    if !is_one_word || is_outside_path || !(span.contains('/') || is_file) {
         return false;
     }
     let (first, last) = (
@@ -216,7 +221,7 @@ fn dangles(sources: &Sources, page: &str, span: &str) -> bool {
         span.rsplit('/').next().unwrap_or(span),
     );
     let names_one_of_ours = first.is_some_and(|first| sources.has(first)) && (last.is_empty() || last.contains('.'));
-    if !MAPS.contains(&page) && extension(span) != "rs" && !names_one_of_ours {
+    if !CHECKED_PAGES.contains(&page) && extension(span) != "rs" && !names_one_of_ours {
         return false;
     }
     let folder = page.rsplit_once('/').map_or("", |(folder, _)| folder);
@@ -252,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn files_open_with_their_purpose_and_to_dos_name_an_issue() {
+    fn files_start_with_their_purpose_and_to_dos_name_an_issue() {
         check_files(
             &[
                 ("a.rs", "//! Purpose.\n"),
@@ -276,8 +281,8 @@ mod tests {
 
     #[test]
     fn paths_in_backticks_exist() {
-        let fine = "`spec/src/lib.rs:12` `lib.rs` `spec/` `spec/src/*.rs` `spec/{a,b}` `near.md` `World` `a b/c` `../gone` `target/gone` `bad/<kind>/`\n";
-        check_page("ARCHITECTURE.md", fine, &[]);
+        let valid = "`spec/src/lib.rs:12` `lib.rs` `spec/` `spec/src/*.rs` `spec/{a,b}` `near.md` `World` `a b/c` `../gone` `target/gone` `bad/<kind>/`\n";
+        check_page("ARCHITECTURE.md", valid, &[]);
         check_page(
             "ARCHITECTURE.md",
             "`spec/gone.rs`\n`gone.json` `gone/*.rs`\n",
@@ -304,7 +309,7 @@ mod tests {
             "safe fn g() {}\n"
         );
         let check_list = |list: &str, expected: &[&str]| {
-            let found = unsafety(&Sources::of(&[(UNSAFE, list), ("env/src/x.rs", code)]));
+            let found = unsafe_mismatches(&Sources::of(&[(UNSAFE, list), ("env/src/x.rs", code)]));
             assert_eq!(found, expected);
         };
         check_list("| `env/src/x.rs` | 2 | why |\n", &[]);

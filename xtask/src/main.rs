@@ -1,8 +1,8 @@
-//! The developer commands: `cargo xtask test`, each of its stages alone, and the generators of committed files.
+//! The developer commands: `cargo xtask test`, its individual stages, and the generators of committed files.
 #![expect(
     clippy::print_stdout,
     clippy::print_stderr,
-    reason = "a command line speaks through its terminal"
+    reason = "a command prints to its terminal"
 )]
 
 mod examples;
@@ -58,7 +58,7 @@ fn main() -> ExitCode {
         ["size"] => workspace(false).and_then(|workspace| size::rewrite(&workspace)),
         ["studio"] => workspace(false).and_then(|workspace| {
             studio::build(&workspace)?;
-            studio::tell(&workspace);
+            studio::print_location(&workspace);
             Ok(())
         }),
         _ => match parse(&words) {

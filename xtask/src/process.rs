@@ -1,19 +1,19 @@
-//! Runs other programs. An error is a sentence with the command and how it ended.
+//! Runs other programs. Errors are sentences that name the command and how it ended.
 
 use std::env;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};
 
-/// Errors are only printed, and end the command.
+/// A result with a message as its error, because errors are only printed and end the command.
 pub(crate) type Result<T = ()> = std::result::Result<T, String>;
 
-/// The checkout in which xtask was called.
+/// The checkout that xtask runs in.
 pub(crate) struct Workspace {
     /// The folder of the root `Cargo.toml`.
     pub(crate) root: PathBuf,
     /// Cargo's build folder.
     pub(crate) target: PathBuf,
-    /// Whether everything is checked, with all features and at full size, as with `--all`.
+    /// Whether `--all` is given: everything is checked, with all features and at full size.
     pub(crate) is_full: bool,
 }
 
@@ -22,15 +22,15 @@ impl Workspace {
     pub(crate) fn cargo(&self, arguments: &[&str]) -> Command {
         let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
         let mut command = self.program(cargo.as_ref(), arguments);
-        // A stage builds once: incremental files would only cost time and disk space.
+        // A stage builds only once, so incremental files would cost time and disk space for nothing.
         if env::var_os("CARGO_INCREMENTAL").is_none() {
             command.env("CARGO_INCREMENTAL", "0");
         }
         command
     }
 
-    /// `cargo` for all crates with one set of features, so that stages share their builds. Without `--all`, excludes the Unity
-    /// protocol and the fuzz targets: nothing depends on them, and they need fifty further crates.
+    /// `cargo` for all crates with one set of features, so that stages share their builds. Without `--all`, excludes
+    /// `driftworld-unity` and the fuzz targets: nothing depends on them, and they need fifty further crates.
     pub(crate) fn cargo_everywhere(&self, arguments: &[&str]) -> Command {
         let mut command = self.cargo(arguments);
         command.arg("--workspace");
@@ -63,7 +63,7 @@ pub(crate) fn works(mut command: Command) -> bool {
     quiet.status().is_ok_and(|status| status.success())
 }
 
-/// The command's output; its errors are passed through.
+/// The command's standard output; standard error is passed through.
 pub(crate) fn output(mut command: Command) -> Result<String> {
     let done = command.stderr(Stdio::inherit()).output();
     let text = done.as_ref().map_or_else(
@@ -73,7 +73,7 @@ pub(crate) fn output(mut command: Command) -> Result<String> {
     ended(&command, done.map(|done| done.status)).map(|()| text)
 }
 
-/// `Ok` for exit status 0.
+/// An error unless the command started and exited with status 0.
 pub(crate) fn ended(command: &Command, status: std::io::Result<ExitStatus>) -> Result {
     match status {
         Ok(status) if status.success() => Ok(()),
@@ -82,7 +82,7 @@ pub(crate) fn ended(command: &Command, status: std::io::Result<ExitStatus>) -> R
     }
 }
 
-/// The command as a user would type it: variables, program, arguments.
+/// The command as a user would type it: variables, program and arguments.
 fn shown(command: &Command) -> String {
     let variables = command.get_envs().filter_map(|(name, value)| Some((name, value?)));
     let variables = variables.map(|(name, value)| format!("{}='{}'", name.display(), value.display()));

@@ -1,4 +1,4 @@
-//! The stages that need Python, with their virtual environments below Cargo's build folder.
+//! The stages that need Python. Their virtual environments are in Cargo's build folder.
 
 use std::env;
 use std::fs;
@@ -13,9 +13,9 @@ pub(crate) const NO_INTERPRETER: &str =
     "no Python from 3.10 on with venv and pip (Debian: apt install python3-venv), or name one in DRIFTWORLD_PYTHON";
 
 /// Any Python version that the package supports.
-pub(crate) const ANY: &str = "(3, 10) <= sys.version_info";
+pub(crate) const ANY_VERSION: &str = "(3, 10) <= sys.version_info";
 
-/// Tests that pass with every version of Gymnasium: repeated with the oldest.
+/// Tests that pass with every supported version of Gymnasium; they are repeated with the oldest.
 const ANY_GYMNASIUM: [&str; 4] = [
     "tests/test_gymnasium.py",
     "tests/test_vector.py",
@@ -26,7 +26,7 @@ const ANY_GYMNASIUM: [&str; 4] = [
 /// The requirements of the package's quick tests.
 const PACKAGE_LIST: &str = "python/tests/requirements.txt";
 
-/// What the environment of the learners takes while it is installed (10 GiB), and what is built beside it.
+/// Disk space needed to install the learners' environment (10 GiB), and for the builds that run at the same time.
 const LEARNERS_GIB: u64 = 20;
 
 /// A virtual environment.
@@ -34,7 +34,7 @@ pub(crate) struct Environment {
     interpreter: PathBuf,
 }
 
-/// The interpreter in `DRIFTWORLD_PYTHON`, else the first of the usual names, with a suitable version, venv and pip.
+/// The first interpreter with a suitable version, venv and pip: the one in `DRIFTWORLD_PYTHON`, or one of the usual names.
 pub(crate) fn interpreter(version: &str) -> Option<PathBuf> {
     let usual = "python3 python python3.13 python3.12 python3.11 python3.10".split(' ');
     let names = env::var_os("DRIFTWORLD_PYTHON")
@@ -46,7 +46,7 @@ pub(crate) fn interpreter(version: &str) -> Option<PathBuf> {
         .find(|name| works(python(name, &["-c", &program])))
 }
 
-/// The interpreter with these arguments, without the variables of a user's own environment.
+/// A command that runs the interpreter with these arguments, without the variables of the user's own environment.
 fn python(interpreter: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(interpreter);
     command
@@ -58,9 +58,9 @@ fn python(interpreter: &Path, arguments: &[&str]) -> Command {
 }
 
 impl Environment {
-    /// The environment of this name with the packages of all these lists; created if it does not work.
+    /// The environment of this name, with the packages of all these lists installed. It is created anew if it does not work.
     pub(crate) fn with(workspace: &Workspace, interpreter: &Path, name: &str, lists: &[&str]) -> Result<Self> {
-        // With `--all`, the environment of the learners is made while other stages run.
+        // With `--all`, the learners' environment is created while other stages run.
         static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
         let _turn = ONE_AT_A_TIME.lock();
         let folder = workspace.target.join("python").join(name);
@@ -73,13 +73,13 @@ impl Environment {
             run(make)?;
         }
         for list in lists {
-            // Modules are compiled when they are imported, and most are never imported.
+            // Modules are compiled when they are first imported, and most never are.
             environment.pip(workspace, "install --quiet --no-compile --requirement", &[list])?;
         }
         Ok(environment)
     }
 
-    /// Its interpreter with these arguments, in the root.
+    /// A command that runs its interpreter with these arguments, in the root.
     pub(crate) fn python(&self, workspace: &Workspace, arguments: &[&str]) -> Command {
         let mut command = python(&self.interpreter, arguments);
         command.current_dir(&workspace.root);
@@ -89,25 +89,30 @@ impl Environment {
     /// Runs its pip in the root, with `words` split at spaces, followed by arguments that may contain spaces.
     pub(crate) fn pip(&self, workspace: &Workspace, words: &str, rest: &[&str]) -> Result {
         let mut pip = self.python(workspace, &["-m", "pip", "--disable-pip-version-check"]);
-        // Downloads may be larger than what a system keeps in memory for temporary files.
+        // Downloads may be larger than a temporary folder that is kept in memory.
         pip.args(words.split(' '))
             .args(rest)
             .env("TMPDIR", workspace.target.join("python"));
         run(pip)
     }
 
-    /// Installs the wheel without dependencies, which already exist. One interpreter builds it for all environments, so that
-    /// Cargo has nothing to rebuild.
+    /// Installs the wheel without its dependencies, which are already installed. One interpreter builds the wheel for all
+    /// environments, so that Cargo has nothing to rebuild.
     pub(crate) fn install_driftworld(&self, workspace: &Workspace) -> Result {
-        let builder = Self::with(workspace, &interpreter(ANY).ok_or(NO_INTERPRETER)?, "newcomer", &[])?;
+        let builder = Self::with(
+            workspace,
+            &interpreter(ANY_VERSION).ok_or(NO_INTERPRETER)?,
+            "newcomer",
+            &[],
+        )?;
         let wheels = workspace.target.join("python/wheels");
         let wheels = wheels.to_str().ok_or("the build folder's path is not UTF-8")?;
         builder.pip(workspace, "wheel --quiet --no-deps ./python --wheel-dir", &[wheels])?;
-        let anew = "install --quiet --no-deps --force-reinstall --no-index --find-links";
-        self.pip(workspace, anew, &[wheels, "driftworld"])
+        let reinstall = "install --quiet --no-deps --force-reinstall --no-index --find-links";
+        self.pip(workspace, reinstall, &[wheels, "driftworld"])
     }
 
-    /// Runs tests of the package on the installed wheel, one file per core, without a display.
+    /// Runs tests of the package on the installed wheel, in parallel by file and without a display.
     fn pytest(&self, workspace: &Workspace, arguments: &[&str]) -> Result {
         let mut pytest = self.python(workspace, &["-m", "pytest", "--quiet"]);
         pytest
@@ -119,9 +124,9 @@ impl Environment {
     }
 }
 
-/// Follows a newcomer's steps: an empty environment, the README's command, its examples, the console command.
+/// Follows a newcomer's steps: creates an empty environment, and runs the README's command, its examples and the console command.
 pub(crate) fn wheel(workspace: &Workspace) -> Result<Outcome> {
-    let Some(interpreter) = interpreter(ANY) else {
+    let Some(interpreter) = interpreter(ANY_VERSION) else {
         return missing("PYTHON", NO_INTERPRETER.into());
     };
     let folder = workspace.target.join("python/newcomer");
@@ -149,7 +154,7 @@ pub(crate) fn documents(workspace: &Workspace) -> Result<Outcome> {
     }
 }
 
-/// Checks and tests the package with the libraries that are quick to install, then with the oldest Gymnasium instead.
+/// Lints, type-checks and tests the package with the libraries that are quick to install, then tests it with the oldest Gymnasium.
 pub(crate) fn package(workspace: &Workspace) -> Result<Outcome> {
     let tests = match quick_environment(workspace, PACKAGE_LIST) {
         Ok(tests) => tests,
@@ -162,17 +167,17 @@ pub(crate) fn package(workspace: &Workspace) -> Result<Outcome> {
         run(check)?;
     }
     tests.install_driftworld(workspace)?;
-    let quick = ["-m", "not learners"];
-    tests.pytest(workspace, &quick)?;
+    let not_learners = ["-m", "not learners"];
+    tests.pytest(workspace, &not_learners)?;
     let oldest = ["python/tests/requirements-oldest.txt"];
     tests.pip(workspace, "install --quiet --requirement", &oldest)?;
-    tests.pytest(workspace, &[&quick, &ANY_GYMNASIUM[..]].concat())?;
+    tests.pytest(workspace, &[&not_learners, &ANY_GYMNASIUM[..]].concat())?;
     Ok(Outcome::Passed("with the newest and the oldest Gymnasium".into()))
 }
 
 /// The environment with torch, Stable-Baselines3, Minari and Ray, which take gigabytes.
 pub(crate) fn learners_environment(workspace: &Workspace) -> Result<Environment> {
-    let interpreter = interpreter(ANY).ok_or(NO_INTERPRETER)?;
+    let interpreter = interpreter(ANY_VERSION).ok_or(NO_INTERPRETER)?;
     let folder = workspace.target.join("python/learners");
     if !folder.exists()
         && let Some(free) = free_gib(&workspace.target)
@@ -184,12 +189,12 @@ pub(crate) fn learners_environment(workspace: &Workspace) -> Result<Environment>
     }
     let list = ["python/tests/requirements-learners.txt"];
     Environment::with(workspace, &interpreter, "learners", &list).inspect_err(|_| {
-        // Half of it would take room from the other stages.
+        // Half an environment would only take disk space from other stages.
         let _ = fs::remove_dir_all(&folder);
     })
 }
 
-/// Free space where a folder is, in GiB, if `df` says it.
+/// Free disk space for a folder, in GiB; `None` if `df` fails.
 fn free_gib(folder: &Path) -> Option<u64> {
     let mut df = Command::new("df");
     df.arg("-Pk").arg(folder);
@@ -197,7 +202,7 @@ fn free_gib(folder: &Path) -> Option<u64> {
     free.ok().map(|kib: u64| kib >> 20)
 }
 
-/// Tests with the libraries that people train with.
+/// Tests the package with the libraries that people train with.
 pub(crate) fn learners(workspace: &Workspace) -> Result<Outcome> {
     match learners_environment(workspace) {
         Ok(learners) => {
@@ -218,7 +223,7 @@ pub(crate) fn with_package(workspace: &Workspace) -> Result<PathBuf> {
 
 /// The environment of the quick tests, with the packages of a list.
 fn quick_environment(workspace: &Workspace, list: &str) -> Result<Environment> {
-    let interpreter = interpreter(ANY).ok_or(NO_INTERPRETER)?;
+    let interpreter = interpreter(ANY_VERSION).ok_or(NO_INTERPRETER)?;
     Environment::with(workspace, &interpreter, "tests", &[list])
 }
 

@@ -1,9 +1,9 @@
-//! Checks which of our crates import which, and where versions of dependencies are given. `[bans]` in `deny.toml` restricts
-//! third-party crates.
+//! Checks which of our crates import which others, and that versions of dependencies are in the root manifest. `[bans]` in
+//! `deny.toml` restricts third-party crates.
 
 use serde_json::Value;
 
-/// Each crate with our crates that it may import, directly or indirectly, without the prefix `driftworld-`.
+/// Each of our crates with those that it may import, directly or indirectly; all without the prefix `driftworld-`.
 const ROOMS: [(&str, &str); 18] = [
     ("features", ""),
     ("text", ""),
@@ -74,8 +74,8 @@ pub(crate) fn check(metadata: &Value) -> Vec<String> {
     findings
 }
 
-/// Dependencies of a manifest with their own version or path. `features/` may have them: it names third-party crates that none
-/// of our crates imports.
+/// Dependencies of a manifest that have their own version or path. Only `features/` may have such ones: it names third-party
+/// crates that none of our crates imports.
 pub(crate) fn versions(path: &str, manifest: &str) -> Vec<String> {
     let mut is_dependency = false;
     let mut findings = Vec::new();

@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 use crate::process::{Result, Workspace, ended, run, works};
 use crate::stage::Outcome;
 
-/// Runs the workspace's tests; the note is the runner's summary.
+/// Runs the workspace's tests; the outcome's note is the runner's summary.
 pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome> {
     let mut command = if works(workspace.cargo(&["nextest", "--version"])) {
         workspace.cargo_everywhere(&["nextest", "run"])
@@ -16,7 +16,7 @@ pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome> {
         workspace.cargo_everywhere(&["test", "--lib", "--bins", "--tests"])
     };
     if workspace.is_full {
-        // Commands on documentation pages run with the release build, as most readers have it.
+        // Commands on documentation pages run with the release build, which most readers use.
         run(workspace.cargo(&["build", "--release"]))?;
         let built = workspace.target.join("release/driftworld");
         command.env("DRIFTWORLD_FULL", "1").env("DRIFTWORLD_COMMAND", built);
@@ -24,14 +24,14 @@ pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome> {
     relay(command).map(|closing| Outcome::Passed(summary(&closing)))
 }
 
-/// Runs the command, passes its output on line by line, and returns the closing lines of test runs: nextest's single `Summary`,
-/// or `test result` of each program.
+/// Runs the command, passes its output on line by line, and returns the closing lines of test runs: nextest's `Summary` line, or
+/// one `test result` line per program.
 fn relay(mut command: Command) -> Result<Vec<String>> {
     let (reader, writer) = io::pipe().map_err(|error| error.to_string())?;
     let other = writer.try_clone().map_err(|error| error.to_string())?;
     command.stdout(writer).stderr(other);
     let child = command.spawn();
-    // Our ends of the pipe are closed, so that reading ends with the child.
+    // Closes our write ends of the pipe, so that reading ends when the child exits.
     command.stdout(Stdio::inherit()).stderr(Stdio::inherit());
     let mut closing = Vec::new();
     for line in BufReader::new(reader).split(b'\n').map_while(std::result::Result::ok) {
@@ -45,7 +45,7 @@ fn relay(mut command: Command) -> Result<Vec<String>> {
     ended(&command, child.and_then(|mut child| child.wait())).map(|()| closing)
 }
 
-/// nextest's own line, or the sum of all `cargo test` lines.
+/// nextest's own line, or the totals of all `cargo test` lines.
 fn summary(closing: &[String]) -> String {
     if let Some(line) = closing.iter().find(|line| line.starts_with("Summary")) {
         return line.clone();

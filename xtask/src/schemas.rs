@@ -1,5 +1,5 @@
-//! The stage `schemas` and `cargo xtask schemas`: checks or writes the committed schema files and reference pages, with the
-//! command `driftworld schema`.
+//! The stage `schemas` and `cargo xtask schemas`: run `driftworld schema` to check or write the committed schema files and reference
+//! pages.
 
 use crate::process::{Result, Workspace, run};
 use crate::stage::Outcome;
@@ -17,7 +17,7 @@ pub(crate) fn rewrite(workspace: &Workspace) -> Result {
 }
 
 fn driftworld_schema(workspace: &Workspace, option: &str) -> Result {
-    // The same build as in the stage `examples`.
+    // The stage `examples` uses the same build.
     run(workspace.cargo_everywhere(&["build", "--quiet", "--bins", "--examples"]))?;
     let program = workspace.target.join("debug/driftworld");
     run(workspace.program(&program, &["schema", option, "schemas"]))?;

@@ -1,4 +1,4 @@
-//! The stage `size` and `cargo xtask size`: `SIZE.md` lists the lines of code of each room with a limit.
+//! The stage `size` and `cargo xtask size`: check or update `SIZE.md`, which lists the lines of code of each room with a limit.
 
 use std::fs;
 
@@ -71,8 +71,8 @@ struct Row {
 /// Fails if a room exceeds its limit or the counts in the file are out of date.
 pub(crate) fn check(workspace: &Workspace) -> Result<Outcome> {
     let counts = count(&Sources::read(&workspace.root)?);
-    let written = fs::read_to_string(workspace.root.join(FILE)).unwrap_or_default();
-    report(&complaints(&counts, &rows(&written), true))?;
+    let old_rows = fs::read_to_string(workspace.root.join(FILE)).unwrap_or_default();
+    report(&complaints(&counts, &rows(&old_rows), true))?;
     Ok(Outcome::Passed(summary(&counts)))
 }
 
@@ -80,13 +80,13 @@ pub(crate) fn check(workspace: &Workspace) -> Result<Outcome> {
 pub(crate) fn rewrite(workspace: &Workspace) -> Result {
     let counts = count(&Sources::read(&workspace.root)?);
     let path = workspace.root.join(FILE);
-    let written = rows(&fs::read_to_string(&path).unwrap_or_default());
-    fs::write(&path, table(&counts, &written)).map_err(about(&path))?;
+    let old_rows = rows(&fs::read_to_string(&path).unwrap_or_default());
+    fs::write(&path, table(&counts, &old_rows)).map_err(about(&path))?;
     println!("wrote {FILE}: {}", summary(&counts));
-    report(&complaints(&counts, &written, false))
+    report(&complaints(&counts, &old_rows, false))
 }
 
-/// Lines of code by room, without empty rooms.
+/// Lines of code per room, without empty rooms.
 fn count(sources: &Sources) -> Vec<(&'static str, usize)> {
     let mut counts: Vec<(&str, usize)> = ROOMS.iter().map(|(room, _)| (*room, 0)).collect();
     let (mut tests, mut total) = (0, 0);
@@ -141,10 +141,10 @@ fn rows(text: &str) -> Vec<Row> {
 }
 
 /// The contents of the file. A new room gets a limit a little above its count.
-fn table(counts: &[(&str, usize)], written: &[Row]) -> String {
+fn table(counts: &[(&str, usize)], old_rows: &[Row]) -> String {
     let mut text = OPENING.to_owned();
     for (room, lines) in counts {
-        let old = written.iter().find(|row| row.room == *room);
+        let old = old_rows.iter().find(|row| row.room == *room);
         let limit = old.map_or(lines.next_multiple_of(50), |row| row.limit);
         let reason = old.map_or("", |row| row.reason.as_str());
         text += &format!("| {room} | {lines} | {limit} | {reason} |\n").replace("  ", " ");
@@ -152,11 +152,11 @@ fn table(counts: &[(&str, usize)], written: &[Row]) -> String {
     text
 }
 
-/// Problems of the written rows. Counts that differ by at most 20 lines are never out of date.
-fn complaints(counts: &[(&str, usize)], written: &[Row], are_counts_compared: bool) -> Vec<String> {
+/// Problems of the written rows. Counts that differ by at most 20 lines never count as out of date.
+fn complaints(counts: &[(&str, usize)], old_rows: &[Row], are_counts_compared: bool) -> Vec<String> {
     let mut complaints = Vec::new();
     for &(room, lines) in counts {
-        let Some(row) = written.iter().find(|row| row.room == room) else {
+        let Some(row) = old_rows.iter().find(|row| row.room == room) else {
             if are_counts_compared {
                 complaints.push(format!("found no row for `{room}`; run: cargo xtask size"));
             }
@@ -232,8 +232,8 @@ mod tests {
 
     #[test]
     fn table_round_trips() {
-        let written = [row("spec", 90, 120, "a new law"), row("gone", 1, 1, "")];
-        let text = table(&[("spec", 100), ("generator", 30)], &written);
+        let old_rows = [row("spec", 90, 120, "a new law"), row("gone", 1, 1, "")];
+        let text = table(&[("spec", 100), ("generator", 30)], &old_rows);
         assert!(text.starts_with(OPENING));
         assert_eq!(
             rows(&text),
@@ -243,17 +243,17 @@ mod tests {
 
     #[test]
     fn only_limits_and_old_counts_are_problems() {
-        let found = |lines, written: &[Row]| complaints(&[("spec", lines)], written, true).join("\n");
-        let written = [row("spec", 10_000, 10_100, "")];
-        assert_eq!(found(10_100, &written), "");
-        assert!(found(10_101, &written).starts_with("found 10101 lines of code in `spec`, expected at most 10100; "));
-        assert_eq!(found(9_810, &written), "");
+        let found = |lines, old_rows: &[Row]| complaints(&[("spec", lines)], old_rows, true).join("\n");
+        let old_rows = [row("spec", 10_000, 10_100, "")];
+        assert_eq!(found(10_100, &old_rows), "");
+        assert!(found(10_101, &old_rows).starts_with("found 10101 lines of code in `spec`, expected at most 10100; "));
+        assert_eq!(found(9_810, &old_rows), "");
         assert_eq!(
-            found(9_700, &written),
+            found(9_700, &old_rows),
             "found 10000 lines written for `spec`, expected 9700; run: cargo xtask size"
         );
         assert_eq!(found(80, &[row("spec", 100, 100, "")]), "");
         assert_eq!(found(1, &[]), "found no row for `spec`; run: cargo xtask size");
-        assert_eq!(complaints(&[("spec", 9_000)], &written, false), [""; 0]);
+        assert_eq!(complaints(&[("spec", 9_000)], &old_rows, false), [""; 0]);
     }
 }

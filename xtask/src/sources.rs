@@ -1,4 +1,4 @@
-//! The files of the checkout as listed by git, and the code of Rust and Python files without blank lines, comments and tests.
+//! Reads the files of the checkout that git lists, and tells code from blank lines, comments and tests.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -7,13 +7,13 @@ use std::process::Command;
 
 use crate::process::{Result, output};
 
-/// Paths relative to the root, with `/` between folders, each with its text; files that are not UTF-8 have an empty text.
+/// The text of each file, by its path relative to the root, with `/` between folders. Files that are not UTF-8 have an empty text.
 pub(crate) struct Sources {
     files: BTreeMap<String, String>,
 }
 
 impl Sources {
-    /// Reads tracked files, and new ones that git does not ignore.
+    /// Reads tracked files, and new files that git does not ignore.
     pub(crate) fn read(root: &Path) -> Result<Self> {
         let mut list = Command::new("git");
         // Also reads a checkout owned by another user, as in a container.
@@ -71,7 +71,7 @@ pub(crate) fn extension(path: &str) -> &str {
     name.rsplit_once('.').map_or("", |(_, extension)| extension)
 }
 
-/// Whether a whole file is for tests, benches, examples or fuzzing.
+/// Whether a whole file belongs to tests, benches, examples or fuzzing.
 pub(crate) fn is_test_file(path: &str) -> bool {
     let (folders, name) = path.rsplit_once('/').unwrap_or(("", path));
     let is_test_folder = |folder: &str| ["tests", "test", "benches", "examples", "fuzz"].contains(&folder);
@@ -139,15 +139,15 @@ pub(crate) fn shipped_lines(text: &str) -> Vec<&str> {
         if lines[start].trim_start().starts_with("#[cfg(test)]") {
             let is_attribute = |line: &&str| line.trim_start().starts_with('#') || line.is_empty();
             let first = start + lines[start..].iter().take_while(|line| is_attribute(line)).count();
-            let end = end(&lines, first);
+            let end = end_of_item(&lines, first);
             lines[start..=end].fill("");
         }
     }
     lines
 }
 
-/// The last line of the item, field or statement that starts at a line; files are formatted.
-pub(crate) fn end(lines: &[&str], start: usize) -> usize {
+/// The last line of the item, field or statement that starts at a line of a formatted file.
+pub(crate) fn end_of_item(lines: &[&str], start: usize) -> usize {
     let indent = |line: &str| line.len() - line.trim_start().len();
     let Some(first) = lines.get(start) else {
         return lines.len() - 1;
@@ -163,8 +163,8 @@ pub(crate) fn end(lines: &[&str], start: usize) -> usize {
 }
 
 /// Whether a character may occur in a name.
-pub(crate) fn is_of_name(letter: char) -> bool {
-    letter.is_alphanumeric() || letter == '_'
+pub(crate) fn is_name_char(c: char) -> bool {
+    c.is_alphanumeric() || c == '_'
 }
 
 #[cfg(test)]
@@ -196,7 +196,7 @@ mod tests {
         for path in "spec/tests/a.rs spec/src/tests.rs env/benches/a.rs examples/a.rs fuzz/src/a.rs".split(' ') {
             assert_eq!(lines_of_code(path, "fn f() {}\n"), [Test], "{path}");
         }
-        // A test module in its own file has no block here to skip.
+        // The declaration of a test module in its own file has no block to skip.
         assert_eq!(
             lines_of_code("spec/src/a.rs", "#[cfg(test)]\nmod tests;\nfn f() {}\n"),
             [Code, Code, Code]

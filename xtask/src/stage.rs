@@ -1,4 +1,4 @@
-//! [`Stage`]: one step of `cargo xtask test`, and how it can end.
+//! [`Stage`]: one step of `cargo xtask test`, and its possible outcomes.
 
 use std::env;
 
@@ -6,11 +6,11 @@ use crate::process::{Result, Workspace};
 
 /// The outcome of a stage that did not fail.
 pub(crate) enum Outcome {
-    /// With a note for the summary, possibly empty.
+    /// All checks passed; the note for the summary may be empty.
     Passed(String),
-    /// With the checks that were skipped.
+    /// Some checks were skipped; the note says which.
     Partly(String),
-    /// With what is missing.
+    /// The stage was skipped; the note says what is missing.
     Skipped(String),
 }
 

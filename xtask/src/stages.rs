@@ -1,4 +1,4 @@
-//! The stages of `cargo xtask test`: names, order, and execution.
+//! The stages of `cargo xtask test`: their names, order and execution.
 
 use std::process::Command;
 use std::thread;
@@ -111,7 +111,7 @@ fn fmt(workspace: &Workspace) -> Result<Outcome> {
 }
 
 fn clippy(workspace: &Workspace) -> Result<Outcome> {
-    // Benches need further crates.
+    // Benches need additional crates.
     let targets: &[&str] = if workspace.is_full {
         &["clippy", "--all-targets"]
     } else {
@@ -137,7 +137,7 @@ fn docs(workspace: &Workspace) -> Result<Outcome> {
         command.env("RUSTDOCFLAGS", "-D warnings");
         run(command)?;
     }
-    let Some(python) = python::interpreter(python::ANY) else {
+    let Some(python) = python::interpreter(python::ANY_VERSION) else {
         return Ok(Outcome::Partly(
             "no link was checked, for want of Python 3.10 or later".into(),
         ));
@@ -165,7 +165,7 @@ fn deny(workspace: &Workspace) -> Result<Outcome> {
     }
     let deny = |arguments: &[&str]| {
         let mut command = workspace.cargo(&["deny", "--workspace", "--all-features"]);
-        // Nobody is there to enter a password.
+        // Fail instead of waiting for a password.
         command.args(arguments).env("GIT_TERMINAL_PROMPT", "0");
         command
     };
@@ -178,7 +178,7 @@ fn deny(workspace: &Workspace) -> Result<Outcome> {
     passed(deny(&["check", "advisories"]))
 }
 
-/// A reused build folder may hold old builds, so duplicates fail only if `DRIFTWORLD_REQUIRE_NO_REBUILDS` is set.
+/// A reused build folder may contain old builds, so duplicates are a failure only if `DRIFTWORLD_REQUIRE_NO_REBUILDS` is set.
 fn rebuilds(workspace: &Workspace) -> Result<Outcome> {
     let mut search = workspace.program("sh".as_ref(), &["scripts/rebuilds.sh"]);
     search.arg(&workspace.target);
@@ -197,7 +197,7 @@ pub(crate) fn list() {
 pub(crate) fn run_all(workspace: &Workspace, stages: &[&Stage]) -> Result {
     thread::scope(|scope| {
         if stages.len() == STAGES.len() {
-            // Fetched while the tests are built; the stage `learners` reports any failure.
+            // Installed while other stages run; the stage `learners` reports any failure.
             scope.spawn(|| python::learners_environment(workspace));
         }
         run_in_order(workspace, stages)
@@ -272,7 +272,8 @@ mod tests {
         let deps = folder.join("debug/deps");
         std::fs::create_dir_all(&deps).expect("the temporary folder is writable");
         let registry = "x.d: /home/user/.cargo/registry/src/index-0a1b";
-        let write = |name: &str, text: &str| std::fs::write(deps.join(name), text).expect("its folder was made above");
+        let write =
+            |name: &str, text: &str| std::fs::write(deps.join(name), text).expect("its folder was created above");
         let search = || {
             let script = concat!(env!("CARGO_MANIFEST_DIR"), "/../scripts/rebuilds.sh");
             Command::new("sh")
@@ -281,7 +282,7 @@ mod tests {
                 .output()
                 .expect("every Unix has a shell")
         };
-        // The third was only checked, the fourth and the fifth are ours.
+        // The third library was only checked; the fourth and fifth are our own.
         for (library, list, sources) in [
             ("liba-1.rlib", "a-1.d", format!("{registry}/a-1.0.0/src/lib.rs\n")),
             ("liba-3.so", "a-3.d", format!("{registry}/a-2.0.0/src/lib.rs\n")),
@@ -296,12 +297,12 @@ mod tests {
         write("liba-2.rlib", "");
         write("a-2.d", &format!("{registry}/a-1.0.0/src/lib.rs\n"));
         let found = search();
-        std::fs::remove_dir_all(&folder).expect("it was made here");
+        std::fs::remove_dir_all(&folder).expect("it was created here");
         assert!(!found.status.success());
-        let said = String::from_utf8_lossy(&found.stderr);
+        let stderr = String::from_utf8_lossy(&found.stderr);
         assert!(
-            said.contains("found a-1.0.0 more than once") && !said.contains("a-2.0.0") && !said.contains("ours"),
-            "{said}"
+            stderr.contains("found a-1.0.0 more than once") && !stderr.contains("a-2.0.0") && !stderr.contains("ours"),
+            "{stderr}"
         );
     }
 

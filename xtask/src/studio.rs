@@ -1,5 +1,5 @@
-//! `cargo xtask studio`, which builds the page of the workbench into `target/studio`, and the stage `studio`, which
-//! tests it. `studio/build.mjs` bundles the page.
+//! `cargo xtask studio` builds the page of the workbench into `target/studio`, and the stage `studio` tests it.
+//! `studio/build.mjs` bundles the page.
 
 use std::env;
 use std::fs;
@@ -13,25 +13,30 @@ use crate::stage::{Outcome, missing};
 
 const TARGET: &str = "wasm32-unknown-unknown";
 
-/// Builds the page: the simulator, the packages of the page, and the bundle of both.
+/// Builds the page: compiles the simulator, installs the page's packages, and bundles both.
 pub(crate) fn build(workspace: &Workspace) -> Result {
-    tools(workspace).map_err(|lack| lack.join("; "))?;
+    tools(workspace).map_err(|missing_tools| missing_tools.join("; "))?;
     bundle(workspace)
 }
 
 /// Checks for the tools that build the page; the error lists the missing ones, each with advice.
 fn tools(workspace: &Workspace) -> std::result::Result<(), Vec<String>> {
-    let mut lack = Vec::new();
+    let mut missing_tools = Vec::new();
     let version = "process.exit(Number(process.versions.node.split('.')[0]) >= 20 ? 0 : 1)";
     if !works(workspace.program("node".as_ref(), &["-e", version])) || !works(npm(workspace, &["--version"])) {
-        lack.push("found no Node.js 20 or later with npm, expected both (Debian: apt install nodejs npm)".to_owned());
+        missing_tools
+            .push("found no Node.js 20 or later with npm, expected both (Debian: apt install nodejs npm)".to_owned());
     }
     if !has_target(workspace) && !works(workspace.program("rustup".as_ref(), &["target", "add", TARGET])) {
-        lack.push(format!(
+        missing_tools.push(format!(
             "found no standard library for {TARGET}, expected one (rustup target add {TARGET})"
         ));
     }
-    if lack.is_empty() { Ok(()) } else { Err(lack) }
+    if missing_tools.is_empty() {
+        Ok(())
+    } else {
+        Err(missing_tools)
+    }
 }
 
 fn has_target(workspace: &Workspace) -> bool {
@@ -63,8 +68,8 @@ fn install(workspace: &Workspace) -> Result {
         let changed = workspace.root.join("studio").join(path).metadata();
         changed.and_then(|it| it.modified()).ok()
     };
-    let (installed, wanted) = (time("node_modules/.package-lock.json"), time("package-lock.json"));
-    if installed.is_some() && installed >= wanted {
+    let (installed, locked) = (time("node_modules/.package-lock.json"), time("package-lock.json"));
+    if installed.is_some() && installed >= locked {
         return Ok(());
     }
     run(npm(workspace, &["ci", "--no-audit", "--no-fund"]))
@@ -78,8 +83,8 @@ fn npm(workspace: &Workspace, arguments: &[&str]) -> Command {
 
 /// Builds the page, checks its types, and compares its simulator with the native one, in Node.js and, if installed, Chromium.
 pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome> {
-    if let Err(lack) = tools(workspace) {
-        return missing("STUDIO", lack.join("; "));
+    if let Err(missing_tools) = tools(workspace) {
+        return missing("STUDIO", missing_tools.join("; "));
     }
     if let Err(reason) = install(workspace) {
         return missing(
@@ -88,16 +93,16 @@ pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome> {
         );
     }
     thread::scope(|scope| {
-        // Linking the simulator as one unit uses only one core.
+        // Linking the simulator uses only one core, so other work runs at the same time.
         let page = scope.spawn(|| bundle(workspace));
-        // The native tests have already built most of this.
+        // The native tests have already built most of these.
         run(workspace.cargo_everywhere(&["build", "--example", "answers", "--bin", "driftworld"]))?;
         run(npm(workspace, &["run", "--silent", "check"]))?;
-        page.join().expect("bundling returns its errors, and does not panic")
+        page.join().expect("bundling returns errors and does not panic")
     })?;
     let command = workspace.target.join("debug/driftworld");
     let page = workspace.target.join("studio");
-    // The same export that the page's own documentation describes.
+    // The same export as the page's own documentation describes.
     let mut export = workspace.program(&command, &["studio", "--export"]);
     export.arg(workspace.target.join("studio-export"));
     run(export)?;
@@ -128,7 +133,7 @@ pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome> {
     )))
 }
 
-/// The test files: not every version of Node.js finds them in a folder.
+/// The test files, listed here because not every version of Node.js finds them in a folder.
 fn test_files(workspace: &Workspace) -> Result<Vec<PathBuf>> {
     let folder = workspace.root.join("studio/test");
     let entries = fs::read_dir(&folder).map_err(about(&folder))?;
@@ -139,7 +144,7 @@ fn test_files(workspace: &Workspace) -> Result<Vec<PathBuf>> {
 }
 
 /// Prints how to serve the page and how to embed it in a program.
-pub(crate) fn tell(workspace: &Workspace) {
+pub(crate) fn print_location(workspace: &Workspace) {
     let folder = workspace.target.join("studio");
     let shown = folder.display();
     println!("the page is {shown}; `driftworld studio` of this build folder serves it");

@@ -1,14 +1,14 @@
-//! Finds public items of the libraries that nothing uses: neither their own crate, nor another, nor a program.
+//! Finds public items of the libraries that no library or program uses, not even their own crate.
 //!
-//! Code is compared by names, so an item counts as used if another item of the same name is. Tests, benches, the fuzzer
-//! and developer tools do not count.
+//! Uses are found by name, so an item counts as used if another item of the same name is. Uses in tests, benches, the fuzzer and
+//! developer tools do not count.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::sources::{Sources, end, is_of_name, is_test_file, shipped_lines};
+use crate::sources::{Sources, end_of_item, is_name_char, is_test_file, shipped_lines};
 
 /// Unused items that are kept, each with the reason.
-const KEPT: [(&str, &str); 4] = [
+const EXCEPTIONS: [(&str, &str); 4] = [
     ("differs_in", "tests say in which elements worlds differ"),
     ("ShownPath", "a trait whose method `shown` is called"),
     (
@@ -19,9 +19,9 @@ const KEPT: [(&str, &str); 4] = [
 ];
 
 /// Folders whose code is ignored: developer tools.
-const LEFT_OUT: [&str; 2] = ["xtask/", "fuzz/"];
+const IGNORED: [&str; 2] = ["xtask/", "fuzz/"];
 
-/// Folders of programs. Their uses count, and their own items need no use.
+/// Folders of programs. The items that they use count as used; their own items are not checked.
 const PROGRAMS: [&str; 4] = ["src/commands/", "src/console/", "python/", "examples/"];
 
 /// A public item.
@@ -60,7 +60,7 @@ type File<'a> = (&'a str, Vec<&'a str>);
 pub(crate) fn find(sources: &Sources) -> Vec<Item<'_>> {
     let rust = sources.with_extensions(&["rs"]);
     let shipped = rust.filter(|(path, _)| !is_test_file(path) || path.starts_with("examples/"));
-    let shipped = shipped.filter(|(path, _)| !LEFT_OUT.iter().any(|folder| path.starts_with(folder)));
+    let shipped = shipped.filter(|(path, _)| !IGNORED.iter().any(|folder| path.starts_with(folder)));
     let files: Vec<File<'_>> = shipped.map(|(path, text)| (path, shipped_lines(text))).collect();
     let uses = uses(&files);
     let mut items: Vec<(Item<'_>, BTreeSet<(usize, usize)>)> = Vec::new();
@@ -69,12 +69,12 @@ pub(crate) fn find(sources: &Sources) -> Vec<Item<'_>> {
             continue;
         }
         let found = (0..lines.len()).filter_map(|line| item(path, lines, line));
-        let found = found.filter(|item| !KEPT.iter().any(|(name, _)| *name == item.name));
+        let found = found.filter(|item| !EXCEPTIONS.iter().any(|(name, _)| *name == item.name));
         items.extend(found.map(|item| (item, own_lines(&files, file, &item, &uses))));
     }
     let mut dead_lines = BTreeSet::new();
     let mut unreached = Vec::new();
-    // Items used only by unused items are unused, too.
+    // Items used only by unused items are unused as well.
     loop {
         let is_reached = |(item, own): &(Item<'_>, BTreeSet<_>)| {
             uses[item.name].iter().any(|place| {
@@ -97,14 +97,14 @@ pub(crate) fn find(sources: &Sources) -> Vec<Item<'_>> {
 }
 
 impl Kind {
-    /// Whether a name after this text can be an item of this kind.
+    /// Whether a name that follows this text can refer to an item of this kind.
     fn is_used(self, before: &str) -> bool {
-        let behind_dot = before.ends_with('.') && !before.ends_with("..");
-        let behind_colons = before.ends_with("::");
+        let after_dot = before.ends_with('.') && !before.ends_with("..");
+        let after_colons = before.ends_with("::");
         match self {
-            Self::Function => !behind_dot,
-            Self::Method => behind_dot || behind_colons,
-            Self::Associated => behind_colons,
+            Self::Function => !after_dot,
+            Self::Method => after_dot || after_colons,
+            Self::Associated => after_colons,
             Self::Other => true,
         }
     }
@@ -137,9 +137,9 @@ fn item<'a>(path: &'a str, lines: &[&'a str], at: usize) -> Option<Item<'a>> {
         "const" | "static" | "struct" | "enum" | "trait" | "type" => Kind::Other,
         _ => return None,
     };
-    let name = words.next()?.split(|letter| !is_of_name(letter)).next()?;
-    // In a macro, something other than a name may stand there.
-    let is_name = name.starts_with(is_of_name);
+    let name = words.next()?.split(|c| !is_name_char(c)).next()?;
+    // In a macro, something other than a name may follow.
+    let is_name = name.starts_with(is_name_char);
     is_name.then_some(Item {
         path,
         line: at + 1,
@@ -165,7 +165,7 @@ fn own_lines(
         .map(|place| (place.file, place.line));
     let starts = impls.chain([(file, item.line - 1)]);
     starts
-        .flat_map(|(file, start)| (start..=end(&files[file].1, start)).map(move |line| (file, line)))
+        .flat_map(|(file, start)| (start..=end_of_item(&files[file].1, start)).map(move |line| (file, line)))
         .collect()
 }
 
@@ -200,9 +200,9 @@ fn is_use(line: &str) -> bool {
 fn names(line: &str) -> Vec<(usize, &str)> {
     let mut found = Vec::new();
     let mut rest = line;
-    while let Some(start) = rest.find(is_of_name) {
+    while let Some(start) = rest.find(is_name_char) {
         let word = &rest[start..];
-        let length = word.find(|letter| !is_of_name(letter)).unwrap_or(word.len());
+        let length = word.find(|c| !is_name_char(c)).unwrap_or(word.len());
         found.push((line.len() - word.len(), &word[..length]));
         rest = &word[length..];
     }
