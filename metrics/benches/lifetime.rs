@@ -10,13 +10,13 @@ use driftworld_metrics::{
 };
 
 const NUM_ROWS: u64 = 10_000;
-const ROWS_OF_BLOCK: u64 = 500;
+const ROWS_PER_BLOCK: u64 = 500;
 
-/// Two alternating tasks, each evaluated after every block.
+/// Writes a log of two alternating tasks, each evaluated after its learning blocks.
 fn write(dir: &Path) -> Result<(), MetricsError> {
     let mut writer = LogWriter::create(dir, &LoggerInfo::new(["reward"])?, &ScenarioInfo::default())?;
     for exp_num in 0..NUM_ROWS {
-        let block = exp_num / ROWS_OF_BLOCK;
+        let block = exp_num / ROWS_PER_BLOCK;
         let block_type = [BlockType::Train, BlockType::Test][block as usize % 2];
         let task = ["find_red", "find_blue"][(block / 2) as usize % 2];
         let when = Timestamp::from_unix_micros(exp_num as i64 * 1_234_567)?;
@@ -28,7 +28,7 @@ fn write(dir: &Path) -> Result<(), MetricsError> {
 }
 
 fn lifetime(c: &mut Criterion) {
-    let base = tempfile::tempdir().expect("the machine has a folder for temporary files");
+    let base = tempfile::tempdir().expect("a temporary folder can be created");
     let dir = base.path().join("log");
     c.bench_function("write a log of 10,000 rows", |bench| {
         bench.iter(|| {
@@ -37,12 +37,12 @@ fn lifetime(c: &mut Criterion) {
         });
     });
     c.bench_function("read a log of 10,000 rows", |bench| {
-        bench.iter(|| read_log(black_box(&dir)).expect("it is sound"));
+        bench.iter(|| read_log(black_box(&dir)).expect("it is valid"));
     });
     c.bench_function("validate a log of 10,000 rows", |bench| {
         bench.iter(|| validate_log(black_box(&dir)));
     });
-    let log = read_log(&dir).expect("it is sound");
+    let log = read_log(&dir).expect("it is valid");
     c.bench_function("score a lifetime of 10,000 rows", |bench| {
         bench.iter(|| score(black_box(&log), &[], &Options::default()).expect("it has rewards"));
     });

@@ -1,4 +1,4 @@
-//! Benchmarks of statistics over repeats, from given scores.
+//! Benchmarks of statistics over repeated runs, from synthetic scores.
 
 use std::hint::black_box;
 
@@ -23,11 +23,11 @@ fn repeats(c: &mut Criterion) {
     let mut group = c.benchmark_group("50,000 resamples of 10 runs of 10 tasks");
     group.sample_size(10);
     group.bench_function("interquartile mean", |bench| {
-        bench.iter(|| black_box(estimate(&a, [Aggregate::Iqm], &options).expect("the options are sound")));
+        bench.iter(|| black_box(estimate(&a, [Aggregate::Iqm], &options).expect("the options are valid")));
     });
     group.bench_function("mean, median and interquartile mean", |bench| {
         let all = [Aggregate::Mean, Aggregate::Median, Aggregate::Iqm];
-        bench.iter(|| black_box(estimate(&a, all, &options).expect("the options are sound")));
+        bench.iter(|| black_box(estimate(&a, all, &options).expect("the options are valid")));
     });
     group.bench_function("probability of improvement", |bench| {
         bench.iter(|| black_box(probability_of_improvement(&a, &b, &options).expect("the tasks are the same")));

@@ -1,6 +1,6 @@
-//! A macro for enums whose values are words in files and on command lines: it adds names, a list and a parser.
+//! A macro for enums that are written as words in files and on command lines: it adds names, a list and a parser.
 
-/// Declares a `Copy` enum with one word per variant, and its `ALL`, `name()`, `Display`, `FromStr` and serde traits.
+/// Declares a `Copy` enum with one word per variant, with `ALL`, `name()`, `Display`, `FromStr` and the serde traits.
 macro_rules! choice {
     ($(#[$meta:meta])* $name:ident, $what:literal { $($(#[$variant_meta:meta])* $variant:ident = $word:literal),+ $(,)? }) => {
         $(#[$meta])*
@@ -20,7 +20,7 @@ macro_rules! choice {
                 }
             }
 
-            /// All words, comma separated, for messages.
+            /// All words for messages, separated by commas.
             pub(crate) fn expected() -> String {
                 Self::ALL.iter().map(|value| value.name()).collect::<Vec<_>>().join(", ")
             }

@@ -1,8 +1,8 @@
 //! Experience logs in the l2logger format and the lifelong-learning metrics computed from them.
 //!
 //! A *lifetime* is a sequence of learning blocks (`train`) and evaluation blocks (`test`) over several tasks. While it
-//! runs, [`LogWriter`] writes one row per experience; afterwards [`read_log`] reads the rows back, ours or those of
-//! any agent that logs with l2logger, and [`score`] measures what the agent retained, transferred and recovered.
+//! runs, [`LogWriter`] writes one row per experience. Afterwards [`read_log`] reads the rows of this or any other agent that
+//! logs in the l2logger format, and [`score`] measures what the agent retained, transferred and recovered.
 //!
 //! ```
 //! use driftworld_metrics::{BlockType, LogWriter, LoggerInfo, Options, Record, ScenarioInfo, Timestamp, read_log, score};
@@ -21,10 +21,10 @@
 //! # }
 //! ```
 //!
-//! The definitions are those of New et al. 2022, "Lifelong Learning Metrics"; the numbers match the public package l2metrics
-//! 3.1 to 1e-9. Where that package departs from its documentation, the file that reproduces it says so under the word QUIRK,
-//! and [`Definitions::Published`] does not reproduce it. Repeated lifetimes are aggregated by [`over_repeats`] and compared by
-//! [`compare_agents`]; a [`Scorer`] computes user-defined [`Metric`]s. The caller passes in time stamps.
+//! The definitions follow New et al. 2022, "Lifelong Learning Metrics"; the numbers match the public package l2metrics 3.1 to
+//! 1e-9. Where that package departs from its documentation, a comment marked QUIRK explains it in the file that reproduces it;
+//! [`Definitions::Published`] does not reproduce it. [`over_repeats`] aggregates repeated lifetimes, [`compare_agents`] compares
+//! them, and a [`Scorer`] computes user-defined [`Metric`]s. The caller passes in time stamps.
 
 mod choice;
 mod error;

@@ -9,7 +9,7 @@ use crate::choice::choice;
 /// Maximum length of the smoothing window, in experiences.
 pub const MAX_WINDOW_LENGTH: usize = 10_000;
 
-/// Performances must be below this magnitude, so that no sum or quotient of them overflows.
+/// Exclusive limit on the magnitude of performances, so that no sum or quotient of them overflows.
 const MAX_PERFORMANCE: f64 = 1e100;
 
 /// Whether a number is below [`MAX_PERFORMANCE`] in magnitude; false for NaN.
@@ -22,7 +22,7 @@ choice! {
     VariantMode, "variant mode" {
         /// Every variant is a separate task (default).
         Aware = "aware",
-        /// Names are cut at their first underscore, so all variants are one task.
+        /// Names are cut at their first underscore, so that all variants are one task.
         Agnostic = "agnostic",
     }
 }
@@ -43,7 +43,7 @@ choice! {
     SteAveragingMethod, "STE averaging" {
         /// Compare with each run and average the results (default).
         Metrics = "metrics",
-        /// Truncate the runs to the shortest, average them step by step and compare with that.
+        /// Truncate the runs to the shortest, average them step by step, and compare with the average.
         Time = "time",
     }
 }
@@ -153,8 +153,8 @@ choice! {
 }
 
 impl Definitions {
-    /// Whether these are the reference program's.
-    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands fields over by reference")]
+    /// Whether these are the definitions of the reference program.
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes fields by reference")]
     pub(crate) const fn is_reference(&self) -> bool {
         matches!(self, Self::Reference)
     }
@@ -194,7 +194,7 @@ impl DataRange {
 /// Ranges by task, lower-case names.
 pub type DataRanges = IndexMap<String, DataRange>;
 
-/// Rewards in a task, in the log's unit, of agents that know nothing about it and of an expert.
+/// Rewards in a task, in the log's unit, of agents without knowledge of the task and of an expert.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Anchors {
@@ -227,7 +227,7 @@ pub type Scales = IndexMap<String, Anchors>;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Options {
-    /// Column of the log that holds the performance; default `reward`.
+    /// Column of the log with the performance; default `reward`.
     pub perf_measure: String,
     /// Whether variants count as separate tasks; default aware.
     pub variant_mode: VariantMode,
@@ -243,7 +243,7 @@ pub struct Options {
     pub normalization_method: NormalizationMethod,
     /// Window shape; default flat.
     pub smoothing_method: SmoothingMethod,
-    /// Whether evaluation regimes are smoothed too; default no.
+    /// Whether evaluation regimes are smoothed as well; default no.
     pub smooth_eval_data: bool,
     /// Window length in experiences, at most [`MAX_WINDOW_LENGTH`]; by default a fifth of the data, at most 100.
     pub window_length: Option<usize>,
@@ -337,7 +337,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn words_round_trip_and_an_unknown_word_is_refused_with_the_known_words() {
+    fn words_round_trip_and_unknown_word_is_refused_with_known_words() {
         for &method in SmoothingMethod::ALL {
             assert_eq!(method.name().parse::<SmoothingMethod>().unwrap(), method);
         }

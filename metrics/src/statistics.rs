@@ -1,6 +1,6 @@
 //! Basic statistics for the metrics: mean, variance, quantile, median, Theil–Sen slope, and whether a least-squares line falls.
 
-/// Arithmetic mean; `None` without values.
+/// Arithmetic mean; `None` if there are no values.
 pub(crate) fn mean(values: &[f64]) -> Option<f64> {
     (!values.is_empty()).then(|| sum(values) / values.len() as f64)
 }
@@ -16,14 +16,14 @@ pub(crate) fn sum(values: &[f64]) -> f64 {
         let half = num / 2 - (num / 2) % 8;
         return sum(&values[..half]) + sum(&values[half..]);
     }
-    let (eights, rest) = values.as_chunks::<8>();
-    let mut side = [0.0; 8];
-    for (index, chunk) in eights.iter().enumerate() {
-        for (sum, value) in side.iter_mut().zip(chunk) {
+    let (chunks, rest) = values.as_chunks::<8>();
+    let mut lanes = [0.0; 8];
+    for (index, chunk) in chunks.iter().enumerate() {
+        for (sum, value) in lanes.iter_mut().zip(chunk) {
             *sum = if index == 0 { *value } else { *sum + value };
         }
     }
-    let [a, b, c, d, e, f, g, h] = side;
+    let [a, b, c, d, e, f, g, h] = lanes;
     rest.iter()
         .fold(((a + b) + (c + d)) + ((e + f) + (g + h)), |sum, value| sum + value)
 }
@@ -35,13 +35,13 @@ pub(crate) fn variance(values: &[f64]) -> Option<f64> {
     (values.len() > 1).then(|| squares / (values.len() - 1) as f64)
 }
 
-/// The mean of the values that are not NaN, infinite if one is; `None` without any.
+/// The mean of the values that are not NaN; infinite if one of them is infinite, `None` if there are none.
 pub(crate) fn mean_of_known(values: &[f64]) -> Option<f64> {
     let known: Vec<f64> = values.iter().copied().filter(|value| !value.is_nan()).collect();
     mean(&known)
 }
 
-/// Quantile with linear interpolation between the two nearest values; `q` in `0..=1`. `None` without values.
+/// Quantile with linear interpolation between the two nearest values; `q` in `0..=1`. `None` if there are no values.
 pub(crate) fn quantile(values: &[f64], q: f64) -> Option<f64> {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -58,8 +58,8 @@ pub(crate) fn quantile(values: &[f64], q: f64) -> Option<f64> {
     })
 }
 
-/// Middle value, or the mean of the two middle ones; `None` without values. Sorts in place, because a long lifetime has many
-/// slopes.
+/// Middle value, or the mean of the two middle ones; `None` if there are no values. Takes a `Vec` to sort it in place, because a
+/// long lifetime has many slopes.
 pub(crate) fn median(mut values: Vec<f64>) -> Option<f64> {
     values.sort_unstable_by(f64::total_cmp);
     let middle = values.len() / 2;

@@ -7,7 +7,7 @@ use driftworld_metrics::{
 
 const PAGE: &str = include_str!("../../docs/metrics.md");
 
-/// The scores of a lifetime of one experience: only their names matter here.
+/// The scores of a lifetime of one experience; only their names matter here.
 fn scores() -> LifetimeMetrics {
     let base = tempfile::tempdir().unwrap();
     let dir = base.path().join("life");

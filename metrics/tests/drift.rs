@@ -90,12 +90,12 @@ fn forgetting() -> Vec<Stretch> {
             evaluation("c", &[c, c]),
         ]
     };
-    let mut life = evaluate(0.0, 0.0, 0.0).to_vec();
-    life.push(learning("c", Some("a"), &[10.0, 20.0, 60.0, 90.0]));
-    life.extend(evaluate(90.0, 0.0, 20.0));
-    life.push(learning("a", Some("b"), &[90.0, 40.0, 50.0, 90.0]));
-    life.extend(evaluate(5.0, 90.0, 0.0));
-    life
+    let mut lifetime = evaluate(0.0, 0.0, 0.0).to_vec();
+    lifetime.push(learning("c", Some("a"), &[10.0, 20.0, 60.0, 90.0]));
+    lifetime.extend(evaluate(90.0, 0.0, 20.0));
+    lifetime.push(learning("a", Some("b"), &[90.0, 40.0, 50.0, 90.0]));
+    lifetime.extend(evaluate(5.0, 90.0, 0.0));
+    lifetime
 }
 
 fn pairs(scores: &LifetimeMetrics, task: &str, name: &str) -> PairValues {
@@ -110,7 +110,7 @@ fn drift_away_counts_as_forgetting_and_never_as_forward_transfer() {
             ..options()
         };
         let scores = score(&log_of(&forgetting(), has_progress), &[], &plain).unwrap();
-        // The first drift taught a: from 90 to 5. It changed c, too: from 20 to 0.
+        // The first drift taught a, which then fell from 90 to 5; it also taught c, which fell from 20 to 0.
         let maintenance = |task: &str| scores.task_metrics[task].number("perf_maintenance_mrlep");
         assert_eq!(
             (maintenance("f_a"), maintenance("f_b"), maintenance("f_c")),
@@ -128,7 +128,7 @@ fn drift_away_counts_as_forgetting_and_never_as_forward_transfer() {
             }
         }
         assert!(scores.null_bands["perf_maintenance_mrlep"].value < 0.0);
-        // The end of a drift is on the drift's own scale: nothing is compared with it.
+        // The end of a drift is on the drift's own scale, so that nothing is compared with it.
         assert_eq!(scores.lifetime.number("perf_maintenance_mrtlp"), None);
     }
 }
@@ -136,16 +136,16 @@ fn drift_away_counts_as_forgetting_and_never_as_forward_transfer() {
 #[test]
 fn drift_between_tasks_counts_as_learning_both() {
     let evaluate = |a: f64, x: f64| [evaluation("a", &[a, a]), evaluation("g#x", &[x, x])];
-    let mut life = evaluate(0.0, 0.0).to_vec();
-    life.push(learning("a", Some("g#x"), &[10.0, 20.0, 60.0, 90.0]));
-    life.extend(evaluate(30.0, 90.0));
-    life.push(learning("a", None, &[50.0, 60.0, 70.0, 80.0]));
-    life.extend(evaluate(80.0, 10.0));
+    let mut lifetime = evaluate(0.0, 0.0).to_vec();
+    lifetime.push(learning("a", Some("g#x"), &[10.0, 20.0, 60.0, 90.0]));
+    lifetime.extend(evaluate(30.0, 90.0));
+    lifetime.push(learning("a", None, &[50.0, 60.0, 70.0, 80.0]));
+    lifetime.extend(evaluate(80.0, 10.0));
     let plain = Options {
         normalization_method: NormalizationMethod::Off,
         ..options()
     };
-    let scores = score(&log_of(&life, true), &[], &plain).unwrap();
+    let scores = score(&log_of(&lifetime, true), &[], &plain).unwrap();
     let maintenance = |task: &str| scores.task_metrics[task].number("perf_maintenance_mrlep");
     assert_eq!(maintenance("g_x"), Some(-80.0));
     let backward = pairs(&scores, "f_a", "backward_transfer_contrast");
@@ -164,12 +164,12 @@ fn drift_is_ignored_if_variants_do_not_count() {
 
 #[test]
 fn drift_between_unevaluated_variants_counts_as_learning_itself() {
-    let life = [
+    let lifetime = [
         evaluation("b", &[1.0, 1.0]),
         learning("c", Some("a"), &[1.0, 2.0]),
         evaluation("b", &[3.0, 3.0]),
     ];
-    let scores = score(&log_of(&life, true), &[], &options()).unwrap();
+    let scores = score(&log_of(&lifetime, true), &[], &options()).unwrap();
     assert_eq!(
         pairs(&scores, "f_ctoa", "forward_transfer_contrast")
             .get("f_b")
@@ -189,9 +189,9 @@ fn lifetimes() -> impl Strategy<Value = Vec<Stretch>> {
 }
 
 /// The evaluations of a variant as (learning experiences before, mean), with distinct positions.
-fn points_of(life: &[Stretch], variant: &str) -> Vec<(f64, f64)> {
+fn points_of(lifetime: &[Stretch], variant: &str) -> Vec<(f64, f64)> {
     let (mut learned, mut found) = (0, Vec::<(f64, Vec<f64>)>::new());
-    for stretch in life {
+    for stretch in lifetime {
         let mean = stretch.rewards.iter().sum::<f64>() / stretch.rewards.len() as f64;
         match stretch.block_type {
             Train => learned += stretch.rewards.len(),
@@ -206,7 +206,7 @@ fn points_of(life: &[Stretch], variant: &str) -> Vec<(f64, f64)> {
     found.into_iter().map(|(at, means)| (at, mean(&means))).collect()
 }
 
-/// Height of a curve, by checking every pair of neighbours.
+/// Height of a curve, found by checking every pair of neighbours.
 fn height(points: &[(f64, f64)], at: f64) -> f64 {
     for pair in points.windows(2) {
         if pair[0].0 <= at && at <= pair[1].0 {
@@ -221,9 +221,9 @@ fn height(points: &[(f64, f64)], at: f64) -> f64 {
     }
 }
 
-/// The variant that is learned in each learning experience: in a drift the nearer one.
-fn present(life: &[Stretch]) -> Vec<&'static str> {
-    let learned = life.iter().filter(|stretch| stretch.block_type == Train);
+/// The variant that is learned in each learning experience; in a drift, the nearer one.
+fn learned_variants(lifetime: &[Stretch]) -> Vec<&'static str> {
+    let learned = lifetime.iter().filter(|stretch| stretch.block_type == Train);
     let rows = learned.flat_map(|stretch| {
         let num = stretch.rewards.len();
         (0..num).map(move |place| match stretch.to {
@@ -238,8 +238,8 @@ fn close(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-9 * a.abs().max(b.abs()).max(1.0)
 }
 
-fn check_curve(life: &[Stretch], variant: &'static str, curve: &EvaluationCurve, expert: f64) {
-    let points = points_of(life, variant);
+fn check_curve(lifetime: &[Stretch], variant: &'static str, curve: &EvaluationCurve, expert: f64) {
+    let points = points_of(lifetime, variant);
     let heights: Vec<f64> = points.iter().map(|point| point.1).collect();
     let (low, high) = (
         heights.iter().copied().fold(f64::INFINITY, f64::min),
@@ -257,15 +257,15 @@ fn check_curve(life: &[Stretch], variant: &'static str, curve: &EvaluationCurve,
     };
     assert!(close(curve.area, area), "{} {area}", curve.area);
     assert!(low - 1e-9 <= curve.area && curve.area <= high + 1e-9);
-    // Forgetting: the largest difference to the last.
+    // Forgetting is the largest difference to the last height.
     let losses = heights.iter().map(|height| height - heights[heights.len() - 1]);
     assert!(close(curve.forgetting, losses.fold(0.0, f64::max)));
     assert!(curve.forgetting >= 0.0);
     if heights.is_sorted() {
         assert_eq!(curve.forgetting, 0.0);
     }
-    // Regret: experience by experience.
-    let rows = present(life);
+    // Regret is summed experience by experience.
+    let rows = learned_variants(lifetime);
     let regrets: Vec<f64> = (0..rows.len())
         .filter(|row| rows[*row] == variant)
         .map(|row| expert - height(&points, row as f64 + 0.5))
@@ -276,39 +276,39 @@ fn check_curve(life: &[Stretch], variant: &'static str, curve: &EvaluationCurve,
         None => assert!(regrets.is_empty()),
     }
     if let Some(lag) = curve.lag {
-        assert!(0.0 <= lag && lag <= present(life).len() as f64, "{lag}");
+        assert!(0.0 <= lag && lag <= learned_variants(lifetime).len() as f64, "{lag}");
     }
 }
 
-fn with_experts(life: &[Stretch], expert: f64) -> LifetimeMetrics {
+fn with_experts(lifetime: &[Stretch], expert: f64) -> LifetimeMetrics {
     let of = |variant| SteLog::new(log_of(&[learning(variant, None, &[expert; 3])], true)).unwrap();
     let experts = ["a", "b", "c"].map(of);
     let plain = Options {
         normalization_method: NormalizationMethod::Off,
         ..options()
     };
-    score(&log_of(life, true), &experts, &plain).unwrap()
+    score(&log_of(lifetime, true), &experts, &plain).unwrap()
 }
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 60)))]
 
     #[test]
-    fn curves_match_their_definitions(life in lifetimes(), expert in -20.0..120.0_f64) {
-        let scores = with_experts(&life, expert);
+    fn curves_match_their_definitions(lifetime in lifetimes(), expert in -20.0..120.0_f64) {
+        let scores = with_experts(&lifetime, expert);
         for variant in ["a", "b", "c"] {
             match scores.curves.get(&format!("f_{variant}")) {
-                Some(curve) => check_curve(&life, variant, curve, expert),
-                None => prop_assert!(points_of(&life, variant).is_empty()),
+                Some(curve) => check_curve(&lifetime, variant, curve, expert),
+                None => prop_assert!(points_of(&lifetime, variant).is_empty()),
             }
         }
     }
 
-    /// Other tasks do not matter: without their evaluations, a curve is the same.
+    /// A curve does not depend on other tasks: without their evaluations, it is the same.
     #[test]
-    fn curve_depends_on_its_own_task_alone(life in lifetimes(), expert in -20.0..120.0_f64) {
-        let all = with_experts(&life, expert);
-        let only: Vec<Stretch> = (life.iter())
+    fn curve_depends_on_its_own_task_alone(lifetime in lifetimes(), expert in -20.0..120.0_f64) {
+        let all = with_experts(&lifetime, expert);
+        let only: Vec<Stretch> = (lifetime.iter())
             .filter(|stretch| stretch.block_type == Train || stretch.variant == "a")
             .cloned()
             .collect();
@@ -317,16 +317,16 @@ proptest! {
         prop_assert_eq!(all.curves.get("f_a"), alone.curves.get("f_a"));
     }
 
-    /// Floor and ceiling are a change of units: positions between them.
+    /// Scaling by floor and ceiling is a change of units.
     #[test]
-    fn scaled_curves_are_unscaled_curves_in_other_units(life in lifetimes(), floor in -60.0..40.0_f64, width in 10.0..200.0_f64) {
-        let plain = with_experts(&life, floor + width);
+    fn scaled_curves_are_unscaled_curves_in_other_units(lifetime in lifetimes(), floor in -60.0..40.0_f64, width in 10.0..200.0_f64) {
+        let plain = with_experts(&lifetime, floor + width);
         let anchors = Anchors { floor, ceiling: floor + width, unlabelled: Vec::new() };
         let scaled = Options {
             scales: Some([("f_a".to_owned(), anchors)].into()),
             ..options()
         };
-        let scaled = score(&log_of(&life, true), &[], &scaled).unwrap();
+        let scaled = score(&log_of(&lifetime, true), &[], &scaled).unwrap();
         let reached = scaled.reached.get("f_a").map(|reached| reached.scaled_by);
         prop_assert!(reached.is_none_or(|by| by == ScaledBy::Anchors));
         if let (Some(a), Some(b)) = (plain.curves.get("f_a"), scaled.curves.get("f_a")) {
@@ -348,7 +348,7 @@ proptest! {
 
 #[test]
 fn lag_is_the_time_to_half_of_the_gain() {
-    let life = [
+    let lifetime = [
         evaluation("a", &[10.0]),
         learning("b", None, &[0.0; 5]),
         evaluation("a", &[20.0]),
@@ -357,11 +357,11 @@ fn lag_is_the_time_to_half_of_the_gain() {
         learning("a", None, &[0.0; 10]),
         evaluation("a", &[100.0]),
     ];
-    // Learning begins after 5 experiences at 20; half-way to 100 is 60, a third of the way from 40 to 100.
-    let scores = with_experts(&life, 100.0);
+    // Learning begins after 5 experiences, at 20. Half-way to 100 is 60, which is a third of the way from 40 to 100.
+    let scores = with_experts(&lifetime, 100.0);
     let lag = scores.curves["f_a"].lag.unwrap();
     assert!((lag - (10.0 + 10.0 / 3.0)).abs() < 1e-9, "{lag}");
-    // Level or falling: there is no lag.
+    // A curve that does not rise has no lag.
     let level = [
         evaluation("a", &[5.0]),
         learning("a", None, &[0.0; 4]),
@@ -372,7 +372,7 @@ fn lag_is_the_time_to_half_of_the_gain() {
 
 #[test]
 fn evaluations_after_each_learning_block_show_lost_plasticity() {
-    let life = [
+    let lifetime = [
         learning("a", None, &[0.0; 4]),
         evaluation("a", &[80.0]),
         learning("b", None, &[0.0; 4]),
@@ -380,7 +380,7 @@ fn evaluations_after_each_learning_block_show_lost_plasticity() {
         learning("a", None, &[0.0; 4]),
         evaluation("a", &[30.0]),
     ];
-    let scores = with_experts(&life, 100.0);
+    let scores = with_experts(&lifetime, 100.0);
     let a = &scores.reached["f_a"];
     assert_eq!(a.shares, [0.8, 0.3]);
     assert!((a.plasticity_loss().unwrap() - 0.5).abs() < 1e-12);

@@ -14,7 +14,7 @@ fn at(line: u64) -> LogLine {
     LogLine { path: path(), line }
 }
 
-/// One of each, in declaration order.
+/// One error of each variant, in declaration order.
 #[expect(clippy::too_many_lines, reason = "a flat table")]
 fn all() -> Vec<MetricsError> {
     use MetricsError as E;

@@ -17,7 +17,7 @@ fn cells(tsv: &[u8]) -> Vec<Vec<String>> {
     rows.collect()
 }
 
-/// The same text, or numbers that differ at most by the error of pandas' fast parser: the last bit or two.
+/// Whether the texts are equal, or numbers that differ at most by the error of pandas' fast parser, one or two last bits.
 fn same(found: &str, expected: &str) -> bool {
     match (found.parse::<f64>(), expected.parse::<f64>()) {
         (Ok(a), Ok(b)) => (a - b).abs() <= 4.0 * f64::EPSILON * b.abs(),

@@ -1,4 +1,4 @@
-//! Whether experts are like for like: budgets, worlds and agents compared with the lifetime's.
+//! Whether experts are comparable with the lifetime, by budgets, worlds and agents.
 
 use std::collections::BTreeSet;
 
@@ -11,7 +11,7 @@ use proptest::prelude::*;
 /// A block: its type, its task, the seed and first index of its worlds, its length, and whether it is before deployment.
 #[derive(Debug, Clone)]
 struct Block {
-    kind: BlockType,
+    block_type: BlockType,
     task: &'static str,
     seed: u64,
     first: u32,
@@ -21,7 +21,7 @@ struct Block {
 
 fn learning(task: &'static str, seed: u64, first: u32, count: u32) -> Block {
     Block {
-        kind: Train,
+        block_type: Train,
         task,
         seed,
         first,
@@ -45,7 +45,7 @@ fn log_of(blocks: &[Block], agent: Option<&str>) -> Log {
         }
         for index in block.first..block.first + block.count {
             let when = Timestamp::from_unix_micros(number as i64).unwrap();
-            let record = Record::new(place, number, block.kind, block.task, when)
+            let record = Record::new(place, number, block.block_type, block.task, when)
                 .with_metric("reward", f64::from(index % 7))
                 .with_metric("world_index", f64::from(index))
                 .with_task_params(params.clone());
@@ -93,7 +93,7 @@ fn differences_are_listed() {
         learning("f_b", 1, 0, 12),
         learning("f_a", 1, 12, 12),
     ];
-    // The same block before deployment is like for like, whatever its task.
+    // The same block before deployment is comparable, whatever its task.
     let same = [before.clone(), learning("f_a", 1, 0, 24)];
     assert!(fit(&life, None, &same, None).0.differences.is_empty());
     let expert_before = Block {
@@ -113,9 +113,9 @@ fn differences_are_listed() {
             "its agent is \"ppo\", the lifetime's \"replay\"",
         ]
     );
-    let told: Vec<&String> = notes.iter().filter(|note| note.contains("like for like")).collect();
+    let found_notes: Vec<&String> = notes.iter().filter(|note| note.contains("like for like")).collect();
     assert!(
-        told.len() == 1 && told[0].starts_with("the expert life of f_a is not like for like: it had 12"),
+        found_notes.len() == 1 && found_notes[0].starts_with("the expert life of f_a is not like for like: it had 12"),
         "{notes:?}"
     );
     // The same index with another seed is a different world.
@@ -126,7 +126,7 @@ fn differences_are_listed() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 40)))]
 
-    /// Compared with sets of pairs computed directly from the blocks.
+    /// Compares the counts with sets of pairs computed directly from the blocks.
     #[test]
     fn worlds_and_budgets_are_counted(
         life in prop::collection::vec((prop::bool::ANY, prop::bool::ANY, 0_u64..3, 0_u32..20, 1_u32..15), 1..6),
@@ -134,7 +134,7 @@ proptest! {
     ) {
         let mut life: Vec<Block> = (life.into_iter())
             .map(|(is_a, is_test, seed, first, count)| Block {
-                kind: if is_test { Test } else { Train },
+                block_type: if is_test { Test } else { Train },
                 ..learning(if is_a { "f_a" } else { "f_b" }, seed, first, count)
             })
             .collect();
@@ -144,7 +144,7 @@ proptest! {
             .collect();
         let (found, _) = fit(&life, None, &expert, None);
         let rows = |blocks: &[Block]| -> Vec<(u64, u32)> {
-            let learned = blocks.iter().filter(|block| block.kind == Train && block.task == "f_a");
+            let learned = blocks.iter().filter(|block| block.block_type == Train && block.task == "f_a");
             learned.flat_map(|block| (block.first..block.first + block.count).map(|index| (block.seed, index))).collect()
         };
         let (own, other) = (rows(&life), rows(&expert));

@@ -66,7 +66,7 @@ const MISHAPS: [Mishap; 10] = [
 
 impl Mishap {
     /// Applies the damage to a folder or to a file in it.
-    fn happen(self, dir: &Path, file: &Path) {
+    fn apply(self, dir: &Path, file: &Path) {
         let aside = dir.with_extension("aside");
         let cut = |length: u64| {
             OpenOptions::new()
@@ -105,7 +105,7 @@ impl Mishap {
         }
     }
 
-    fn is_of_the_folder(self) -> bool {
+    fn is_of_folder(self) -> bool {
         matches!(
             self,
             M::FolderDeleted | M::FolderRenamed | M::FolderSwapped | M::FolderReplacedByAFile
@@ -125,7 +125,7 @@ fn listed(path: &Path) -> Vec<(PathBuf, Option<Vec<u8>>)> {
     found
 }
 
-/// Writes rows `from..to`, and ends the log.
+/// Writes these rows and finishes the log.
 fn write(mut writer: LogWriter, rows: std::ops::Range<u64>, workers: usize) -> Result<(), MetricsError> {
     for number in rows {
         writer.write(&record(number, workers))?;
@@ -156,15 +156,15 @@ proptest! {
             writer.write(&record(number, workers)).unwrap();
         }
         let file = file_of(&dir, hit.index(written as usize) as u64, workers);
-        mishap.happen(&dir, &file);
+        mishap.apply(&dir, &file);
         let left = listed(base.path());
         let error = write(writer, written..written + after, workers).unwrap_err();
-        let expected = if mishap.is_of_the_folder() { "metrics/folder-lost" } else { "metrics/file-lost" };
+        let expected = if mishap.is_of_folder() { "metrics/folder-lost" } else { "metrics/file-lost" };
         prop_assert_eq!(error.code(), expected, "{}", error);
         let message = error.to_string();
         prop_assert!(message.starts_with(dir.to_str().unwrap()), "{}", message);
         // Rows may have been written to intact files, but nothing to the damaged ones, and no folder was recreated.
-        if mishap.is_of_the_folder() {
+        if mishap.is_of_folder() {
             prop_assert_eq!(listed(base.path()), left);
             prop_assert!(message.contains(&format!("and with it {written} row")), "{}", message);
         } else {
@@ -210,12 +210,12 @@ fn lost_rows_and_bytes_are_counted() {
     let first = whole.lines().take(2).map(|line| line.len() + 1).sum::<usize>();
     fs::write(&file, &whole[..first]).unwrap();
     let message = writer.finish().unwrap_err().to_string();
-    let said = format!(
+    let expected_start = format!(
         "{}: found 1 row in {first} bytes, expected the 3 rows in {} bytes that were written",
         file.display(),
         whole.len()
     );
-    assert!(message.starts_with(&said), "{message}");
+    assert!(message.starts_with(&expected_start), "{message}");
 }
 
 #[test]
@@ -224,7 +224,7 @@ fn identical_copy_of_a_finished_file_is_not_a_loss() {
     let dir = base.path().join("log");
     let mut writer = create(&dir);
     (0..6).for_each(|number| writer.write(&record(number, 1)).unwrap());
-    // The first block is finished: some file systems give its file a different id now.
+    // The first block is finished; some file systems now give its file a different id.
     let file = file_of(&dir, 0, 1);
     fs::copy(&file, file.with_extension("new")).unwrap();
     fs::rename(file.with_extension("new"), &file).unwrap();
@@ -243,7 +243,7 @@ fn missing_info_file_is_detected() {
     assert!(error.to_string().contains("logger_info.json"), "{error}");
 }
 
-/// The new folder belongs to another writer, as when a run is started again after `rm -r`.
+/// The new folder belongs to another writer, as when a run is restarted after `rm -r`.
 #[test]
 fn two_writers_never_share_a_folder() {
     let base = tempfile::tempdir().unwrap();

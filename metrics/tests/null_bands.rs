@@ -129,12 +129,12 @@ fn check_calibration(lifetimes: &[LifetimeMetrics], exchanged: Exchanged) {
             called_good += usize::from(band.reading(good) == Reading::Good);
             called_bad += usize::from(band.reading(good) == Reading::Bad);
         }
-        let said = |reading| lifetimes.iter().filter(|life| life.readings[name] == reading).count();
-        let (said_good, said_bad) = (said(Reading::Good), said(Reading::Bad));
-        // The reading depends on the parts, too.
+        let num_readings = |reading| lifetimes.iter().filter(|life| life.readings[name] == reading).count();
+        let (num_good_readings, num_bad_readings) = (num_readings(Reading::Good), num_readings(Reading::Bad));
+        // The reading also depends on the parts.
         assert!(
-            said_good <= called_good && said_bad <= called_bad,
-            "{name}: {said_good}, {said_bad}"
+            num_good_readings <= called_good && num_bad_readings <= called_bad,
+            "{name}: {num_good_readings}, {num_bad_readings}"
         );
         let counts = format!(
             "{name}: {inside} inside, {called_good} good, {called_bad} bad of {}",
@@ -148,7 +148,7 @@ fn check_calibration(lifetimes: &[LifetimeMetrics], exchanged: Exchanged) {
 }
 
 /// Aggregates over groups of lifetimes.
-fn together(lifetimes: &[LifetimeMetrics], size: usize) -> Vec<Vec<RepeatedMetric>> {
+fn aggregate_groups(lifetimes: &[LifetimeMetrics], size: usize) -> Vec<Vec<RepeatedMetric>> {
     let options = BootstrapOptions {
         resamples: 40,
         ..BootstrapOptions::default()
@@ -159,9 +159,9 @@ fn together(lifetimes: &[LifetimeMetrics], size: usize) -> Vec<Vec<RepeatedMetri
 
 #[test]
 fn several_lifetimes_of_an_unchanging_agent_are_rarely_called_good() {
-    // 2.5 of 100 good ones are expected: six of 50, or five of 20, come in fewer than 1 of 1,000 tries.
-    let (number, most) = crate::tier::quick_or_full((20, 5), (50, 6));
-    let groups = together(&random_lifetimes(5 * number, |row| row), 5);
+    // 2.5 of 100 are expected to be called good; six of 50, or five of 20, occur with a probability below 1 in 1,000.
+    let (number, limit) = crate::tier::quick_or_full((20, 5), (50, 6));
+    let groups = aggregate_groups(&random_lifetimes(5 * number, |row| row), 5);
     for (name, good) in directions() {
         let bands: Vec<NullBand> = (groups.iter())
             .filter_map(|group| group.iter().find(|row| row.headline.name == name)?.null)
@@ -173,7 +173,7 @@ fn several_lifetimes_of_an_unchanging_agent_are_rarely_called_good() {
             count(Reading::Good),
             count(Reading::Bad)
         );
-        assert!(count(Reading::Good) < most && count(Reading::Bad) < most, "{counts}");
+        assert!(count(Reading::Good) < limit && count(Reading::Bad) < limit, "{counts}");
     }
 }
 
@@ -306,7 +306,7 @@ fn each_band_holds_the_lifetimes_value_and_contrast_comes_first() {
         let (found, expected) = (scores.null_bands[name].value, scores.lifetime.number(name).unwrap());
         assert!((found - expected).abs() <= 1e-12 * expected.abs().max(1.0), "{name}");
     }
-    // Only ratios were requested: the contrasts still come before them, and are not in any file.
+    // Only ratios were requested; the contrasts still come before them, but are not in any file.
     let scores = score(&log_of(&rows), &[], &Options::default()).unwrap();
     let names: Vec<String> = scores.summary().into_iter().map(|row| row.name.into_owned()).collect();
     let place = |name: &str| names.iter().position(|found| found == name).unwrap();
@@ -322,7 +322,7 @@ fn each_band_holds_the_lifetimes_value_and_contrast_comes_first() {
     for ours in ["readings", "null", "contrasts", "reached", "forward_transfer_contrast"] {
         assert_eq!(json.get(ours), None, "{ours}");
     }
-    // These depend on learning, too.
+    // These have no band, because they depend on learning.
     let band = |name: &str| {
         scores
             .summary()
@@ -421,7 +421,8 @@ fn all_permutations_of_a_small_lifetime_give_the_band() {
         }
     }
     let band = scored(&rows).null_bands["perf_maintenance_mrlep"];
-    // From 0..10 to 1..101: ten points each. Maintenance is the last evaluation minus the one right after learning.
+    // Normalisation maps 0..10 to 1..101, which is a factor of ten. Maintenance is the last evaluation minus the one right after
+    // learning.
     let maintenance = |orders: [[usize; 3]; 4]| {
         let mean = |evaluation: usize| {
             let earned = (0..4).map(|world| EVALUATIONS[orders[world][evaluation]][world]);
@@ -442,10 +443,10 @@ fn all_permutations_of_a_small_lifetime_give_the_band() {
     assert!((band.value - value).abs() < 1e-9, "{band:?} {value}");
     let share = |is: &dyn Fn(f64) -> bool| all.iter().filter(|drawn| is(**drawn)).count() as f64 / all.len() as f64;
     let extreme = share(&|drawn| drawn <= value + 1e-9).min(share(&|drawn| drawn >= value - 1e-9));
-    // Four standard errors of twice a share of a thousand draws.
+    // Four standard errors of twice a share that is estimated from a thousand draws.
     let error = 8.0 * (extreme * (1.0 - extreme) / 1000.0).sqrt() + 0.004;
     assert!((band.p - 2.0 * extreme).abs() < error, "{band:?} {extreme}");
-    // About 2.5 % of all permutations lie beyond each end: fewer than 5 % beyond it, more than 1 % at or beyond it.
+    // About 2.5 % of all permutations lie beyond each end; fewer than 5 % must lie beyond it, and more than 1 % at or beyond it.
     for beyond in [
         share(&|drawn| drawn < band.low - 1e-9),
         share(&|drawn| drawn > band.high + 1e-9),
@@ -460,7 +461,7 @@ fn all_permutations_of_a_small_lifetime_give_the_band() {
     }
 }
 
-/// An expert's log: it learns one task at this level, and is evaluated at another, if at all.
+/// An expert's log; the expert learns one task at one level, and is evaluated at another, if at all.
 fn expert(task: &'static str, learning: f64, evaluation: Option<f64>) -> SteLog {
     let mut rows: Vec<Lived> = (0..10)
         .map(|world| (0, Train, task, f64::from(world), learning))
@@ -471,7 +472,7 @@ fn expert(task: &'static str, learning: f64, evaluation: Option<f64>) -> SteLog 
 
 #[test]
 fn task_below_a_fifth_of_the_expert_counts_as_never_learned() {
-    // The second task is never learned; the first is, and then forgotten.
+    // The second task is never learned; the first is learned and then forgotten.
     let rows = lifetime(4, |learned, block_type, task, world| {
         match (task, block_type, learned) {
             (0, Test, 1) => 60.0 + 10.0 * f64::from(world),
@@ -493,7 +494,7 @@ fn task_below_a_fifth_of_the_expert_counts_as_never_learned() {
         .collect();
     let red = reached["find_red"];
     assert_eq!(red.evaluations.len(), 4);
-    // 60, 70, 80, 90: variance 500 / 3.
+    // The variance of 60, 70, 80, 90 is 500 / 3.
     let best = red.best().unwrap();
     assert_eq!((best.block, best.mean, best.num_worlds), (2, 75.0, 4));
     assert!((best.standard_error.unwrap() - (500.0_f64 / 12.0).sqrt()).abs() < 1e-12);

@@ -10,7 +10,8 @@ use rand_chacha::rand_core::SeedableRng;
 
 #[test]
 fn needed_lifetimes_match_simulations() {
-    // Standard deviations of actual learners; simulated independently, with an error of one or two lifetimes in a hundred.
+    // Standard deviations of actual learners. The expected numbers come from independent simulations, with an error of one or two
+    // lifetimes in a hundred.
     let check = |deviations: [f64; 2], needed: [usize; 3], at_5_and_10: [f64; 2]| {
         for (effect, expected) in [10.0, 20.0, 30.0].into_iter().zip(needed) {
             let found = lifetimes_for(deviations, effect).unwrap();
@@ -56,7 +57,7 @@ fn welch(samples: [&[f64]; 2]) -> (f64, f64) {
 /// The chance beyond ±t, by integrating the density of Student's t.
 fn p_value(t: f64, freedom: f64) -> f64 {
     let density = |x: f64| (1.0 + x * x / freedom).powf(-f64::midpoint(freedom, 1.0));
-    // With x = tan(angle), so that the interval is finite.
+    // Substitutes x = tan(angle), so that the interval is finite.
     let area = |from: f64, to: f64| {
         let width = (to - from) / 400.0;
         (0..400)
@@ -89,7 +90,7 @@ fn simulated_tests_detect_as_often_as_predicted() {
         });
         let share = told.count() as f64 / f64::from(drawn);
         let found = welch_power(nums, deviations, effect).unwrap();
-        // Four standard errors.
+        // The tolerance is four standard errors.
         let slack = 4.0 * (found * (1.0 - found) / f64::from(drawn)).sqrt();
         assert!(
             (found - share).abs() < slack,

@@ -32,7 +32,7 @@ fn scores(dir: &Path, expert: Option<&Path>, options: &Options) -> Value {
     scores
 }
 
-/// Where two JSON values differ by more than rounding: 1e-9 of the number.
+/// Where two JSON values differ by more than rounding, which is 1e-9 of the number.
 fn difference(a: &Value, b: &Value, place: &str) -> Option<String> {
     match (a, b) {
         (Value::Object(a), Value::Object(b)) if a.keys().eq(b.keys()) => a
@@ -196,7 +196,7 @@ proptest! {
             let found = score(&read_log(&dir).unwrap(), &experts, &options(NormalizationMethod::Off, smoothing)).unwrap();
             (serde_json::to_value(&found).unwrap(), found.cautions.concat())
         };
-        // From whole numbers, or from others very close to them.
+        // Computes scores from whole numbers, or from numbers very close to them.
         let (before, after) = (scored("before", if clean { &[0] } else { &[1, 0, -1] }), scored("after", &moved));
         let ((before, cautions), (after, cautions_after)) = (before, after);
         let mut tasks = before["task_metrics"].as_object().unwrap().iter();

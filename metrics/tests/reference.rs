@@ -8,7 +8,7 @@ use serde_json::Value;
 use crate::agreement::compare_above;
 use crate::reference_data::reference;
 
-/// The reference adds in a different order; its published lifetime values have ten decimals.
+/// The reference sums in a different order; its published lifetime values have ten decimals.
 const TOLERANCE: f64 = 1e-9;
 
 fn experts(dir: &std::path::Path, runs: &[&str]) -> Vec<SteLog> {
@@ -38,7 +38,7 @@ fn scored(dir: &std::path::Path, options: &Options) -> LifetimeMetrics {
 
 /// Compares two documents with equal fields, numbers by relative tolerance; returns how many numbers were compared.
 fn compare(place: &str, found: &Value, expected: &Value) -> usize {
-    // Swapped, it finds fields that only the reference has.
+    // The comparison with swapped arguments finds fields that only the reference has.
     compare_above(f64::MIN_POSITIVE, place, expected, found);
     compare_above(f64::MIN_POSITIVE, place, found, expected)
 }
@@ -49,7 +49,7 @@ fn every_published_number_is_reproduced() {
     let expected = std::fs::read(dir.join("expected/multi_task_metrics.json")).unwrap();
     let expected: Value = serde_json::from_slice(&expected).unwrap();
     let mut found = serde_json::to_value(scored(&dir, &options())).unwrap();
-    // Only our results have this: the means of the log's columns before scaling.
+    // Only our results contain this, the means of the log's columns before scaling.
     found.as_object_mut().unwrap().shift_remove("as_logged").unwrap();
     let num_numbers = compare("", &found, &expected);
     assert!(num_numbers > 150, "only {num_numbers} numbers were compared");

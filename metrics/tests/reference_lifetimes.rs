@@ -42,7 +42,7 @@ fn log_of(rows: &Value) -> Log {
 fn scored(case: &Value) -> LifetimeMetrics {
     let mut options: Options = serde_json::from_value(case["options"].clone()).unwrap();
     "score".clone_into(&mut options.perf_measure);
-    // The reference lists the most recently stored run first.
+    // Reverses the experts, because the reference lists the most recently stored run first.
     let experts = case["experts"]
         .as_array()
         .unwrap()

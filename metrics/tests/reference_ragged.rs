@@ -12,7 +12,7 @@ use serde_json::Value;
 
 use crate::agreement::{compare, compare_regimes};
 
-/// Lists with one value per expert: the reference takes experts in file system order.
+/// Lists with one value per expert, whose order is unspecified because the reference takes experts in file system order.
 const PER_EXPERT: [&str; 6] = [
     "ste_rel_perf_vals",
     "ste_saturation_vals",

@@ -38,12 +38,12 @@ fn options(resampling: Resampling, resamples: u32) -> BootstrapOptions {
     }
 }
 
-/// Five standard deviations of a share over `num_studies` studies, if it is truly `share`.
+/// Five standard deviations of a share measured in `num_studies` studies, if the true share is `share`.
 fn tolerance(share: f64, num_studies: u32) -> f64 {
     5.0 * (share * (1.0 - share) / f64::from(num_studies)).sqrt()
 }
 
-/// Share of studies whose intervals of mean and interquartile mean contain the true mean, 0: the bootstrap's, then Student's.
+/// Share of studies whose intervals contain the true mean, 0, for mean and interquartile mean: bootstrap intervals, then Student's t.
 fn coverage(shape: (usize, usize), resampling: Resampling, num_studies: u32) -> [[f64; 2]; 2] {
     let mut chance = ChaCha8Rng::seed_from_u64(16);
     let mut held = [[0.0; 2]; 2];

@@ -48,7 +48,7 @@ fn resampling() -> impl Strategy<Value = Resampling> {
     prop::sample::select(Resampling::ALL)
 }
 
-/// Value and ends.
+/// The value and the ends of the interval.
 fn numbers(estimate: &Estimate) -> Vec<f64> {
     let ends = estimate
         .interval
@@ -93,7 +93,7 @@ proptest! {
     fn run_order_changes_no_value_and_no_stratum_interval(
         (rows, shuffled) in rows().prop_flat_map(|rows| (Just(rows.clone()), Just(rows).prop_shuffle())),
     ) {
-        // If a stratum's first score moved, it would come later: a fixed order of strata needs a run that has all.
+        // A run that has all strata fixes their order; otherwise a stratum whose first score moved would come later.
         let strata = rows[0].len();
         let full = vec![Some(0.5); strata];
         let with_full = |rows: &[Vec<Option<f64>>]| table_of(std::iter::once(&full).chain(rows));

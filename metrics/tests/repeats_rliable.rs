@@ -67,7 +67,7 @@ fn allowed_share(theirs: u32, seeds: u32) -> f64 {
     5.0 * (of_one(RESAMPLES) + of_one(theirs * seeds)).sqrt()
 }
 
-/// Intervals that leave out more and less at either end, by the allowed share: narrow, wide.
+/// Options for a narrow and a wide interval, which leave out more and less at either end, by the allowed share.
 fn options(theirs: u32, seeds: u32) -> [BootstrapOptions; 2] {
     [-2.0, 2.0].map(|sides| BootstrapOptions {
         confidence: 0.95 + sides * allowed_share(theirs, seeds),

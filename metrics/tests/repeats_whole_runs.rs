@@ -15,9 +15,9 @@ struct Comparison {
     name: String,
     a: Vec<Vec<Option<f64>>>,
     b: Vec<Vec<Option<f64>>>,
-    /// Of the strata, then of all.
+    /// The values of the strata, then of all.
     values: Vec<f64>,
-    /// Low and high, of the strata, then of all.
+    /// The low and high ends, of the strata, then of all.
     ends: Vec<[f64; 2]>,
     /// In how many resamples each stratum had a pair.
     resamples_of_strata: Vec<u32>,

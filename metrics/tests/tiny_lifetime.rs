@@ -440,7 +440,7 @@ fn given_ranges_replace_those_of_the_data() {
     let both = [("a_1", range(0.0, 10.0)), ("a_2", range(0.0, 10.0))];
     let maximum = |clamped| score_with(VariantMode::Aware, &both, clamped).unwrap().max;
     assert_eq!((maximum(false), maximum(true)), (121.0, 101.0));
-    // If variants do not count, the ranges 0..=5 and 5..=20 are one: 12 of 0..=20 is 61.
+    // If variants do not count, the ranges 0..=5 and 5..=20 are merged; 12 of 0..=20 is 61.
     let apart = [("a_1", range(0.0, 5.0)), ("a_2", range(5.0, 20.0))];
     assert_eq!(score_with(VariantMode::Agnostic, &apart, false).unwrap().max, 61.0);
     assert_eq!(

@@ -11,10 +11,10 @@ use driftworld_metrics::{
 use crate::files_below::files_below;
 use crate::tier::quick_or_full;
 
-/// Bytes of every file by its path within the log.
+/// Bytes of every file, by its path within the log.
 type Files = BTreeMap<String, Vec<u8>>;
 
-/// Records whose cells hold everything that is hard for tables: line breaks, tabs and quotes within quotes, multi-byte characters.
+/// Records whose cells are hard for tables: line breaks, tabs and quotes within quotes, multi-byte characters.
 fn records() -> Vec<Record> {
     let record = |index: u64, block_num: u64, exp_num: u64, worker: &str, task: &str| {
         let stamp = Timestamp::from_unix_micros(1_600_000_000_000_000 + index as i64).unwrap();
@@ -67,8 +67,8 @@ fn stages(records: &[Record]) -> Vec<Files> {
 /// Distance between cuts in the quick tier, in bytes.
 const QUICK_STEP: usize = 7;
 
-/// The states of the disk between one stage and the next: the one file that grew, cut at every byte, or fewer in the quick tier.
-/// The file may be empty.
+/// The states of the disk between one stage and the next: the one file that grew is cut at every byte, or at fewer bytes in the
+/// quick tier. The file may be empty.
 fn cuts<'a>(before: &'a Files, after: &'a Files) -> impl Iterator<Item = Files> + 'a {
     let mut grown = after.iter().filter(|(path, bytes)| before.get(*path) != Some(bytes));
     let (path, bytes) = grown.next().unwrap();

@@ -11,7 +11,7 @@ use driftworld_metrics::{
 const HEADER: &str =
     "block_num\texp_num\tworker_id\tblock_type\tblock_subtype\ttask_name\ttask_params\texp_status\ttimestamp\treward\n";
 
-/// A row with these numbers and this status.
+/// A row with this block number, experience number and status.
 fn row(block_num: u64, exp_num: u64, status: &str) -> String {
     format!("{block_num}\t{exp_num}\tw\ttrain\twake\ta_b\t{{}}\t{status}\t20200913T122640.{exp_num:06}\t1\n")
 }

@@ -1,4 +1,4 @@
-//! The stable code of an error for programs, and the line of the file that it concerns.
+//! The stable code of an error, for programs, and the line of the file that the error concerns.
 
 use super::MetricsError;
 

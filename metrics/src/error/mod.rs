@@ -1,6 +1,6 @@
 //! The error type of this crate: everything that can be wrong with a log, a record or the options.
 //!
-//! Over 400 lines, because it is one enum: a message and its fields for each mistake.
+//! Longer than 400 lines, because it is one enum, with a message and fields for each mistake.
 
 mod code;
 
@@ -27,7 +27,7 @@ impl fmt::Display for LogLine {
 
 /// Everything that can stop a log from being written or read, or metrics from being computed.
 ///
-/// Every message says where, what was found, what was expected, and what to do unless that is obvious.
+/// Every message states where the problem is, what was found, what was expected, and what to do if that is not obvious.
 #[derive(Debug, thiserror::Error, strum::IntoStaticStr, strum::VariantNames)]
 #[strum(prefix = "metrics/", serialize_all = "kebab-case")]
 #[non_exhaustive]
@@ -43,7 +43,7 @@ pub enum MetricsError {
         source: io::Error,
     },
 
-    /// A new log was to be created in a directory that is not empty.
+    /// The directory for a new log is not empty.
     #[error(
         "{}: found a directory that is not empty, expected a new or an empty one; choose another name, or continue \
          its log with LogWriter::resume",
@@ -121,7 +121,7 @@ pub enum MetricsError {
         found: &'static str,
     },
 
-    /// A log directory without a single data file.
+    /// A log directory has no data file.
     #[error(
         "{}: found no data-log.tsv, expected at least one as WORKER/BLOCKNUM-BLOCKTYPE/data-log.tsv; \
          is this the directory of one log, and has its run begun?",
@@ -146,7 +146,7 @@ pub enum MetricsError {
     NotAFile {
         /// The path.
         path: PathBuf,
-        /// "a directory", "a named pipe", "a link that leads nowhere" and the like.
+        /// What the path is instead: "a directory", "a named pipe", "a link that leads nowhere" and so on.
         found: &'static str,
     },
 
@@ -481,7 +481,7 @@ pub enum MetricsError {
     )]
     StePickle(PathBuf),
 
-    /// Too many regimes in one lifetime.
+    /// A lifetime has too many regimes.
     #[error("log {run_id}: found more than {limit} regimes, expected at most that; do tasks alternate row by \
          row?", run_id = one_line(run_id))]
     TooManyRegimes {
@@ -491,7 +491,7 @@ pub enum MetricsError {
         limit: usize,
     },
 
-    /// Performances too large: sums of them would overflow.
+    /// A performance is so large that sums would overflow.
     #[error(
         "log {run_id}, task {task}: found a performance of {found:e} {after}, expected less than 1e100 in magnitude",
         run_id = one_line(run_id),
@@ -530,7 +530,7 @@ pub enum MetricsError {
         expected: String,
     },
 
-    /// An option has an invalid value.
+    /// The value of an option is invalid.
     #[error("option {option}: found {found}, expected {expected}", found = one_line(found), expected = one_line(expected))]
     BadOption {
         /// The option.

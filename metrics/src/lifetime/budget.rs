@@ -1,4 +1,4 @@
-//! The training budget of a task: the number of experiences, including those before deployment, and their worlds.
+//! The training budget of a task: the number of learning experiences, including those before deployment, and their worlds.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -50,14 +50,14 @@ fn complete_learning(log: &Log) -> impl Iterator<Item = usize> {
         .filter(|row| rows.exp_statuses()[*row] == ExpStatus::Complete && rows.block_types()[*row] == BlockType::Train)
 }
 
-/// The training budget of each task of a lifetime; `lifetime` must have been prepared from this log with these options. Rows of
-/// a drift count for the nearer end.
+/// The training budget of each task of a lifetime, which must have been prepared from this log with these options. Rows of a drift
+/// count for its nearer end.
 pub(crate) fn budgets(log: &Log, lifetime: &Lifetime, options: &Options) -> BTreeMap<String, Budget> {
     let mut learned: BTreeMap<&str, (Vec<usize>, usize)> = BTreeMap::new();
     let regimes = lifetime.regimes().iter();
     for regime in regimes.filter(|regime| regime.block_type == BlockType::Train) {
-        for (place, row) in regime.rows.iter().enumerate() {
-            learned.entry(present(regime, place)).or_default().0.push(*row);
+        for (index, row) in regime.rows.iter().enumerate() {
+            learned.entry(task_learned(regime, index)).or_default().0.push(*row);
         }
     }
     let names = log.rows.task_names();
@@ -72,8 +72,8 @@ pub(crate) fn budgets(log: &Log, lifetime: &Lifetime, options: &Options) -> BTre
     learned.into_iter().map(budget).collect()
 }
 
-/// The task that is learned in a row of a regime: in a drift the nearer end.
-pub(crate) fn present(regime: &Regime, row: usize) -> &str {
+/// The task that is learned in a row of a regime. In a drift, this is the nearer end.
+pub(crate) fn task_learned(regime: &Regime, row: usize) -> &str {
     regime
         .drift
         .as_ref()

@@ -1,4 +1,4 @@
-//! Drifts: regimes in which the variant changes gradually, and the tasks that they pass.
+//! Drifts: regimes in which the variant changes gradually, and the tasks that they count for.
 
 use indexmap::IndexSet;
 
@@ -19,15 +19,15 @@ pub struct Drift {
     pub from: String,
     /// Its last task, under the name used for scoring.
     pub to: String,
-    /// For each row, whether the second end is nearer: the column `progress` is at least 0.5, or, without such a column, the row
-    /// is in the second half of the regime.
+    /// For each row, whether the last task is nearer: the column `progress` is at least 0.5, or, without such a column, the row is
+    /// in the second half of the regime.
     pub is_nearer_to: Vec<bool>,
 }
 
 impl Drift {
-    /// Detects a drift in a stretch of rows of one task. A drift gives its ends in the parameters `variant` and `to`, and its
-    /// task is called `TASK_VARIANTtoOTHER`, or `TASK_VARIANTtoTASKOTHER` between tasks. `None` for anything else, and if both
-    /// ends are scored as one task.
+    /// Detects a drift in a stretch of rows of one task. The parameters `variant` and `to` of a drift give its ends, and its task
+    /// is called `TASK_VARIANTtoOTHER`, or `TASK_VARIANTtoTASKOTHER` between tasks. `None` if there is no drift, or if both ends
+    /// are scored as one task.
     pub(super) fn of(rows: &Rows, stretch: &[usize], params: &TaskParams, options: &Options) -> Option<Self> {
         let first = *stretch.first()?;
         let name = rows.task_names().of(first).to_lowercase();
@@ -45,9 +45,9 @@ impl Drift {
             return None;
         }
         let progress = rows.metric(PROGRESS);
-        let is_nearer_to = |(place, row): (usize, &usize)| match progress {
+        let is_nearer_to = |(index, row): (usize, &usize)| match progress {
             Some(progress) => progress[*row] >= 0.5,
-            None => 2 * place >= stretch.len(),
+            None => 2 * index >= stretch.len(),
         };
         Some(Self {
             from: ends.0,
@@ -61,7 +61,7 @@ impl Drift {
         if self.is_nearer_to[row] { &self.to } else { &self.from }
     }
 
-    /// Whether it comes near its first end, near its second, and ends nearer to the second.
+    /// Whether the drift has rows nearer to its first task, rows nearer to its last, and ends nearer to its last.
     fn passes(&self) -> [bool; 3] {
         [
             self.is_nearer_to.contains(&false),
@@ -81,9 +81,9 @@ pub fn logged_word(name: &str) -> String {
     }
 }
 
-/// Sets the tasks that each learning regime counts for: its own; for a drift, those of its ends that it comes near and
-/// that also occur elsewhere in the lifetime. A drift from an already learned task to another counts only as learning
-/// the other: its effect on the first task is an effect of learning the other.
+/// Sets the tasks that each learning regime counts for: its own task, or for a drift the ends that it comes near and that also
+/// occur elsewhere in the lifetime. A drift from an already learned task to another counts only as learning the other, so that
+/// its effect on the first task is an effect of learning the other.
 pub(super) fn set_learned(regimes: &mut [Regime], tasks: &[String]) {
     let tasks: IndexSet<&str> = tasks.iter().map(String::as_str).collect();
     let mut known: IndexSet<String> = IndexSet::new();
@@ -94,8 +94,8 @@ pub(super) fn set_learned(regimes: &mut [Regime], tasks: &[String]) {
         if let Some(drift) = &regime.drift {
             let [near_from, near_to, ends_near_to] = drift.passes();
             let only_to = near_to && ends_near_to && tasks.contains(drift.to.as_str()) && known.contains(&drift.from);
-            let passed = [(near_from && !only_to, &drift.from), (near_to, &drift.to)];
-            regime.learns = (passed.into_iter())
+            let near_ends = [(near_from && !only_to, &drift.from), (near_to, &drift.to)];
+            regime.learns = (near_ends.into_iter())
                 .filter(|(is_near, task)| *is_near && tasks.contains(task.as_str()))
                 .map(|(_, task)| task.clone())
                 .collect();

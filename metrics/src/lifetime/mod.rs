@@ -1,4 +1,4 @@
-//! A lifetime prepared for the metrics: its tasks, its regimes in order, and its single-task experts.
+//! A lifetime prepared for scoring: its tasks, its regimes in order, and its single-task experts.
 
 mod budget;
 mod drift;
@@ -10,7 +10,7 @@ mod worlds;
 
 use indexmap::IndexMap;
 
-pub(crate) use budget::{Budget, budgets, present};
+pub(crate) use budget::{Budget, budgets, task_learned};
 pub use drift::{Drift, logged_word};
 pub(crate) use regime::mean_per_experience;
 pub use regime::{MAX_REGIMES, Regime};
@@ -39,7 +39,7 @@ impl Lifetime {
         &self.run_id
     }
 
-    /// All tasks, lower-case: by first learning block, then those never trained by first evaluation block.
+    /// All tasks in lower case: those that were trained, by first learning block, then the others, by first evaluation block.
     pub fn tasks(&self) -> &[String] {
         &self.tasks
     }
@@ -77,13 +77,13 @@ impl Lifetime {
         self.normalization_data_range.as_ref()
     }
 
-    /// Seconds between the first and the last time stamp of the rows in use.
+    /// Seconds between the first and the last time stamp of the rows that count.
     pub fn runtime_secs(&self) -> f64 {
         self.runtime_secs
     }
 
-    /// Whether a regime counts for maintenance, transfer and average performance: all do, except wake evaluations in lifetimes
-    /// with sleep blocks, because the agent is judged by what it retains after sleeping.
+    /// Whether a regime counts for maintenance, transfer and average performance: all do, except wake evaluations in lifetimes with
+    /// sleep blocks, because the agent is assessed by what it retains after sleeping.
     pub(crate) fn is_assessed(&self, regime: &Regime) -> bool {
         !(self.sleeps && regime.block_type == BlockType::Test && regime.block_subtype == BlockSubtype::Wake)
     }
@@ -104,13 +104,13 @@ impl Lifetime {
         &mut self.regimes
     }
 
-    /// All regimes with performances: the lifetime's, then the experts'.
+    /// All regimes: the lifetime's own, then the experts'.
     pub(crate) fn all_regimes_mut(&mut self) -> impl Iterator<Item = &mut Regime> {
         let experts = self.experts.values_mut().flatten().flat_map(|run| &mut run.regimes);
         self.regimes.iter_mut().chain(experts)
     }
 
-    /// Performances of a task in the lifetime, and those of its experts' training.
+    /// Performances in a task: the lifetime's, then those of the task's experts in training.
     pub(crate) fn performances_of(&self, task: &str) -> impl Iterator<Item = f64> {
         let expert = self
             .experts_of(task)

@@ -10,14 +10,14 @@ use crate::preprocess;
 use crate::{BlockSubtype, MetricsError, Options};
 
 impl Lifetime {
-    /// Takes the complete rows that have a number in the performance column, forms regimes, and preprocesses them:
-    /// smoothing, clamping, normalisation and noise, in that order. [`experts_serving`](crate::experts_serving) decides
-    /// which experts a task is compared with; others are ignored. Several logs of one task count as several runs of its
-    /// expert.
+    /// Takes the complete rows that have a number in the performance column, forms regimes, and preprocesses them by smoothing,
+    /// clamping, normalisation and noise, in that order. [`experts_serving`](crate::experts_serving) decides which experts a task
+    /// is compared with; others are ignored. Several logs of one task count as several runs of its expert.
     ///
     /// # Errors
-    /// [`MetricsError::UnknownColumn`], [`MetricsError::NoUsableRows`], [`MetricsError::TooManyRegimes`],
-    /// [`MetricsError::PerformanceOutOfRange`], [`MetricsError::BadOption`].
+    /// [`MetricsError::UnknownColumn`] if the log does not declare the performance column; [`MetricsError::NoUsableRows`] if no row
+    /// counts; [`MetricsError::TooManyRegimes`]; [`MetricsError::PerformanceOutOfRange`] for performances so large that sums would
+    /// overflow; [`MetricsError::BadOption`] for an invalid option.
     pub fn prepare(log: &Log, experts: &[SteLog], options: &Options) -> Result<Self, MetricsError> {
         options.check()?;
         let rows = usable_rows(log, &log.run_id, &options.perf_measure)?;

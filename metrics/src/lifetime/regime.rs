@@ -9,13 +9,13 @@ use super::usable::Usable;
 use crate::log::TaskParams;
 use crate::{BlockSubtype, BlockType, Definitions, MetricsError, Options};
 
-/// Maximum number of regimes in a lifetime; the Theil–Sen slope compares every pair of regimes of a task.
+/// Maximum number of regimes in a lifetime, because the Theil–Sen slope compares every pair of regimes of a task.
 pub const MAX_REGIMES: usize = 10_000;
 
 /// A maximal run of rows with the same block number, block type, subtype and task.
 ///
-/// QUIRK: task parameters do not split regimes. A block that changes only a task's parameters is one regime, and is listed in
-/// tables with the parameters of its first row. Under the published definitions they do split.
+/// QUIRK: task parameters do not split regimes. A block that changes only a task's parameters is one regime, and tables list it
+/// with the parameters of its first row. Under the published definitions, they do split regimes.
 ///
 /// Rows with the parameter `"mix": "shuffled"` belong to a block in which tasks are interleaved: the rows of one task form one
 /// regime there, while the reference counts many.
@@ -25,7 +25,7 @@ pub const MAX_REGIMES: usize = 10_000;
     reason = "`regime_num` is the name of the column in tables"
 )]
 pub struct Regime {
-    /// Position among the regimes of the lifetime, from 0.
+    /// Index among the regimes of the lifetime.
     pub regime_num: usize,
     /// Number of the block, as logged.
     pub block_num: u64,
@@ -37,12 +37,12 @@ pub struct Regime {
     pub task_name: String,
     /// Parameters of its first row.
     pub task_params: TaskParams,
-    /// Its ends, if the variant changes gradually.
+    /// The ends of the drift, if the variant changes gradually.
     pub drift: Option<Drift>,
     /// The tasks that it counts as learning, for maintenance and transfer: its own, or for a drift the ends that it
     /// counts for. Empty for an evaluation.
     pub learns: Vec<String>,
-    /// Its rows in the log that it was formed from; those of a shuffled block need not ascend.
+    /// Indices of its rows in the log; those of a shuffled block need not ascend.
     pub(crate) rows: Vec<usize>,
     /// Experience number of each row, ascending.
     pub exp_nums: Vec<u64>,
@@ -71,22 +71,22 @@ impl Regime {
         self.block_type == BlockType::Train && self.block_subtype == BlockSubtype::Wake
     }
 
-    /// Drops the rows without a number.
+    /// Drops rows without a number in the performance column.
     pub(super) fn keep_numbers(&mut self) {
-        fn keep<T>(list: &mut Vec<T>, has: &[bool]) {
-            let mut has = has.iter();
-            list.retain(|_| has.next().is_some_and(|has| *has));
+        fn keep<T>(list: &mut Vec<T>, is_kept: &[bool]) {
+            let mut is_kept = is_kept.iter();
+            list.retain(|_| is_kept.next().is_some_and(|is_kept| *is_kept));
         }
-        let has: Vec<bool> = self.raw.iter().map(|value| !value.is_nan()).collect();
-        keep(&mut self.rows, &has);
-        keep(&mut self.exp_nums, &has);
-        keep(&mut self.raw, &has);
-        keep(&mut self.performance, &has);
+        let is_kept: Vec<bool> = self.raw.iter().map(|value| !value.is_nan()).collect();
+        keep(&mut self.rows, &is_kept);
+        keep(&mut self.exp_nums, &is_kept);
+        keep(&mut self.raw, &is_kept);
+        keep(&mut self.performance, &is_kept);
         if let Some(steps) = &mut self.steps {
-            keep(steps, &has);
+            keep(steps, &is_kept);
         }
         if let Some(drift) = &mut self.drift {
-            keep(&mut drift.is_nearer_to, &has);
+            keep(&mut drift.is_nearer_to, &is_kept);
         }
     }
 
@@ -113,7 +113,7 @@ pub(crate) fn mean_per_experience(exp_nums: &[u64], performance: &[f64]) -> Vec<
 /// Splits rows, sorted by experience, into regimes.
 pub(crate) fn form(run_id: &str, usable: &Usable<'_>, options: &Options) -> Result<Vec<Regime>, MetricsError> {
     let rows = usable.rows;
-    // The names under which tasks are scored, and for each logged name its index among them.
+    // The names under which tasks are scored, and the index among them for each logged name.
     let mut names = IndexSet::new();
     let number = |name: &String| names.insert_full(options.variant_mode.scored_name(name)).0;
     let scored: Vec<usize> = rows.task_names().values().iter().map(number).collect();
@@ -133,7 +133,7 @@ pub(crate) fn form(run_id: &str, usable: &Usable<'_>, options: &Options) -> Resu
         }
     };
     let stretches = usable.indices.chunk_by(|&a, &b| key(a) == key(b) && same_params(a, b));
-    let mut steps = cumulated_steps(usable).map(Vec::into_iter);
+    let mut steps = cumulative_steps(usable).map(Vec::into_iter);
     let mut regimes = Vec::new();
     for (regime_num, stretch) in stretches.enumerate() {
         if regime_num == MAX_REGIMES {
@@ -165,27 +165,27 @@ pub(crate) fn form(run_id: &str, usable: &Usable<'_>, options: &Options) -> Resu
     Ok(regimes)
 }
 
-/// Environment steps up to the end of each usable row, in the order of `usable.indices`. Steps accumulate in the order
-/// of the log, which differs in shuffled blocks.
-fn cumulated_steps(usable: &Usable<'_>) -> Option<Vec<f64>> {
+/// Environment steps up to the end of each usable row, in the order of `usable.indices`. Steps accumulate in the order of the log,
+/// which differs from that order in shuffled blocks.
+fn cumulative_steps(usable: &Usable<'_>) -> Option<Vec<f64>> {
     let steps = usable.rows.metric("episode_step_count")?;
-    let mut places: Vec<usize> = (0..usable.indices.len()).collect();
-    places.sort_unstable_by_key(|&place| usable.indices[place]);
-    let (mut sum, mut sums) = (0.0, vec![0.0; places.len()]);
-    for place in places {
-        let own = steps[usable.indices[place]];
-        if !(own.is_finite() && own >= 0.0) {
+    let mut indices: Vec<usize> = (0..usable.indices.len()).collect();
+    indices.sort_unstable_by_key(|&index| usable.indices[index]);
+    let (mut sum, mut cumulated) = (0.0, vec![0.0; indices.len()]);
+    for index in indices {
+        let steps_of_row = steps[usable.indices[index]];
+        if !(steps_of_row.is_finite() && steps_of_row >= 0.0) {
             return None;
         }
-        sum += own;
-        sums[place] = sum;
+        sum += steps_of_row;
+        cumulated[index] = sum;
     }
-    Some(sums)
+    Some(cumulated)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::usable::unshuffled;
+    use super::super::usable::grouped_by_task;
     use super::*;
     use crate::{Record, Rows, VariantMode};
 
@@ -218,14 +218,14 @@ mod tests {
         let rows = Rows::from_records(&records);
         let usable = Usable {
             rows: &rows,
-            indices: unshuffled(&rows, (0..records.len()).collect()),
+            indices: grouped_by_task(&rows, (0..records.len()).collect()),
             performance: &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0],
         };
         let regimes = form("run", &usable, &Options::default()).unwrap();
         let numbers: Vec<&[u64]> = regimes.iter().map(|regime| regime.exp_nums.as_slice()).collect();
         assert_eq!(numbers, [&[0, 2][..], &[1], &[3], &[4], &[5], &[6]]);
         let steps = regimes[0].steps.as_deref().unwrap();
-        assert_eq!(steps, [1.0, 111.0], "steps are counted over all rows before");
+        assert_eq!(steps, [1.0, 111.0], "steps include those of all earlier rows");
     }
 
     #[test]

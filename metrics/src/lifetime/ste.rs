@@ -1,4 +1,4 @@
-//! Single-task experts: agents trained on one task alone, the reference for a lifetime.
+//! Single-task experts: agents trained on one task alone, with which a lifetime is compared.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -12,7 +12,7 @@ use crate::log::{Log, read_log};
 use crate::results::agent_of;
 use crate::{BlockType, MetricsError, Options, VariantMode};
 
-/// The log of a single-task expert: it trains exactly one task, apart from training before deployment. Clones share the log.
+/// The log of a single-task expert, which trains exactly one task, apart from training before deployment. Clones share the log.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SteLog {
     log: Arc<Log>,
@@ -52,8 +52,8 @@ impl SteLog {
         Err(MetricsError::NotSingleTask { run_id, found })
     }
 
-    /// The log's name in messages: experts' logs often share a name, and are distinguished by their folders.
-    fn place(&self) -> String {
+    /// The log's name in messages: its folder if known, because experts' logs often share a name.
+    fn shown_name(&self) -> String {
         (self.dir.as_ref()).map_or_else(|| self.log.run_id.clone(), |dir| dir.display().to_string())
     }
 
@@ -109,14 +109,14 @@ impl SteRun {
     }
 }
 
-/// The experts that a task is compared with, as positions in `trained`: the experts' tasks, with their variants.
+/// The experts that a task is compared with, as indices into `trained`, the tasks of the experts with their variants.
 ///
-/// Experts with the task's own name; if there are none, those of its variants: `ferry_red` and `ferry_blue` serve `ferry`. This
-/// applies to a task that was logged without a variant, and to one that lost it because variants do not count. A variant is
+/// Experts of the task itself are used; if there are none, experts of its variants: `ferry_red` and `ferry_blue` serve `ferry`.
+/// This applies to a task that was logged without a variant, and to one that lost it because variants do not count. A variant is
 /// served only by its own experts. Names are compared in lower case.
 ///
-/// QUIRK: the reference finds files of variants by the prefix of their names, so an expert of `ferryman_red` serves `ferry`,
-/// too, if one of `ferry`'s variants does; that is not reproduced.
+/// QUIRK: the reference finds files of variants by the prefix of their names, so an expert of `ferryman_red` also serves `ferry`
+/// if an expert of one of `ferry`'s variants does. That is not reproduced.
 ///
 /// ```
 /// use driftworld_metrics::experts_serving;
@@ -127,7 +127,7 @@ impl SteRun {
 /// ```
 pub fn experts_serving(task: &str, trained: &[&str]) -> Vec<usize> {
     let task = task.to_lowercase();
-    let serving = |mode| {
+    let indices_in_mode = |mode| {
         let is_named = |name: &&str| VariantMode::scored_name(mode, name) == task;
         (0..)
             .zip(trained)
@@ -135,9 +135,9 @@ pub fn experts_serving(task: &str, trained: &[&str]) -> Vec<usize> {
             .map(|(index, _)| index)
             .collect::<Vec<usize>>()
     };
-    let own = serving(VariantMode::Aware);
+    let own = indices_in_mode(VariantMode::Aware);
     if own.is_empty() {
-        serving(VariantMode::Agnostic)
+        indices_in_mode(VariantMode::Agnostic)
     } else {
         own
     }
@@ -151,15 +151,15 @@ pub(super) fn gather(
 ) -> Result<IndexMap<String, Vec<SteRun>>, MetricsError> {
     let trained: Vec<&str> = experts.iter().map(SteLog::task_name).collect();
     let mut runs: IndexMap<String, Vec<SteRun>> = IndexMap::new();
-    let mut taken = vec![false; experts.len()];
+    let mut used = vec![false; experts.len()];
     for task in tasks {
         for index in experts_serving(task, &trained) {
-            taken[index] = true;
+            used[index] = true;
             let run = run_of(&experts[index], task, options)?;
             runs.entry(task.clone()).or_default().push(run);
         }
     }
-    for (expert, _) in experts.iter().zip(taken).filter(|(_, taken)| !taken) {
+    for (expert, _) in experts.iter().zip(used).filter(|(_, used)| !used) {
         tracing::warn!(
             run_id = expert.log.run_id,
             task = expert.task_name,
@@ -171,15 +171,15 @@ pub(super) fn gather(
 
 /// Forms an expert's regimes under the name of the task that it serves.
 ///
-/// They are formed with variants, and, as the reference does when it stores an expert, before rows without a number are
-/// dropped: such rows separate stretches that are smoothed independently.
+/// Variants count, and as in the reference, which does this when it stores an expert, regimes are formed before rows without a
+/// number are dropped: such rows separate stretches that are smoothed independently.
 fn run_of(expert: &SteLog, task: &str, options: &Options) -> Result<SteRun, MetricsError> {
-    let rows = complete_rows(&expert.log, &expert.place(), &options.perf_measure)?;
+    let rows = complete_rows(&expert.log, &expert.shown_name(), &options.perf_measure)?;
     let with_variants = Options {
         variant_mode: VariantMode::Aware,
         ..options.clone()
     };
-    let mut regimes = regime::form(&expert.place(), &rows, &with_variants)?;
+    let mut regimes = regime::form(&expert.shown_name(), &rows, &with_variants)?;
     for regime in &mut regimes {
         regime.keep_numbers();
         if regime.task_name == expert.task_name {

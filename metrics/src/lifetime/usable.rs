@@ -5,24 +5,23 @@ use indexmap::IndexSet;
 use crate::MetricsError;
 use crate::log::{ExpStatus, Log, Rows, TaskParams};
 
-/// Task parameter with a row's phase of life, and the phase that is not scored.
+/// Task parameter with a row's phase, and the phase that is not scored.
 const PHASE: (&str, &str) = ("phase", "pre_deployment");
 
 /// Task parameter and value that mark a shuffled block.
 const MIX: (&str, &str) = ("mix", "shuffled");
 
-/// The rows of a log that count, and their performance column.
+/// The rows of a log that count, with the performance column.
 pub(crate) struct Usable<'a> {
     pub(crate) rows: &'a Rows,
-    /// Indices of the rows that count, in order; those of a shuffled block task by task.
+    /// Indices of the rows that count, in order. Rows of a shuffled block are grouped by task.
     pub(crate) indices: Vec<usize>,
     /// Performance of every row of the log.
     pub(crate) performance: &'a [f64],
 }
 
-/// The rows that count: complete, with a number in the performance column, and not from before deployment, which prepares a
-/// lifetime and is not part of it. Rows from before deployment have the task parameter `phase` with the value `pre_deployment`.
-/// `name` is the log's name in messages.
+/// The rows that count: complete ones with a number in the performance column. Rows from before deployment, whose task parameter
+/// `phase` is `pre_deployment`, prepare a lifetime but are not part of it. `name` is the log's name in messages.
 pub(crate) fn usable_rows<'a>(log: &'a Log, name: &str, column: &str) -> Result<Usable<'a>, MetricsError> {
     let mut usable = complete_rows(log, name, column)?;
     let performance = usable.performance;
@@ -30,7 +29,7 @@ pub(crate) fn usable_rows<'a>(log: &'a Log, name: &str, column: &str) -> Result<
     Ok(usable)
 }
 
-/// Whether rows with these parameters belong to the lifetime, and not to the time before deployment.
+/// Whether rows with these parameters belong to the lifetime itself, not to the time before deployment.
 pub(super) fn is_deployed(params: &TaskParams) -> bool {
     params.get(PHASE.0).is_none_or(|phase| phase != PHASE.1)
 }
@@ -49,8 +48,9 @@ pub(crate) fn complete_rows<'a>(log: &'a Log, name: &str, column: &str) -> Resul
     let rows = &log.rows;
     let params = rows.task_params();
     let deployed: Vec<bool> = params.values().iter().map(is_deployed).collect();
-    let counts = |&row: &usize| rows.exp_statuses()[row] == ExpStatus::Complete && deployed[params.ids()[row] as usize];
-    let indices: Vec<usize> = (0..rows.len()).filter(counts).collect();
+    let is_counted =
+        |&row: &usize| rows.exp_statuses()[row] == ExpStatus::Complete && deployed[params.ids()[row] as usize];
+    let indices: Vec<usize> = (0..rows.len()).filter(is_counted).collect();
     if indices.iter().all(|&row| performance[row].is_nan()) {
         return Err(MetricsError::NoUsableRows {
             run_id: name.to_owned(),
@@ -59,13 +59,13 @@ pub(crate) fn complete_rows<'a>(log: &'a Log, name: &str, column: &str) -> Resul
     }
     Ok(Usable {
         rows,
-        indices: unshuffled(rows, indices),
+        indices: grouped_by_task(rows, indices),
         performance,
     })
 }
 
 /// Reorders rows so that those of one task are adjacent within each shuffled block, in the order of the tasks' first rows.
-pub(super) fn unshuffled(rows: &Rows, indices: Vec<usize>) -> Vec<usize> {
+pub(super) fn grouped_by_task(rows: &Rows, indices: Vec<usize>) -> Vec<usize> {
     let (params, names) = (rows.task_params(), rows.task_names());
     let is_shuffled = |params: &TaskParams| params.get(MIX.0).is_some_and(|mix| mix == MIX.1);
     let shuffled: Vec<bool> = params.values().iter().map(is_shuffled).collect();

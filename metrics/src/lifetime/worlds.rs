@@ -16,7 +16,7 @@ const SEED: &str = "seed";
 /// The world of a row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) struct World {
-    /// Id of the task's logged name, with its variant: equal numbers in two variants are different worlds.
+    /// Id of the task's logged name, with its variant: worlds of two variants differ even if their numbers are equal.
     pub(crate) task: u32,
     /// Id of the pair of seed and index, shared by all tasks.
     pub(crate) number: u32,
@@ -27,8 +27,7 @@ pub(super) fn seed_of(params: &TaskParams) -> String {
     params.get(SEED).map(ToString::to_string).unwrap_or_default()
 }
 
-/// The world of each row of each regime, in order; `None` if not logged. `log` must be the one that the lifetime was prepared
-/// from.
+/// The world of each row of each regime, in order; `None` if it is not logged. The lifetime must have been prepared from this log.
 pub(crate) fn worlds(log: &Log, lifetime: &Lifetime) -> Vec<Vec<Option<World>>> {
     let rows = &log.rows;
     let params = rows.task_params();

@@ -20,7 +20,7 @@ const ADDED: [&str; 2] = ["run_id", "regime_num"];
 /// The rows of a log that a table includes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum KeptRows {
-    /// Those that close an experience, as in l2logger.
+    /// Rows that close an experience, as in l2logger.
     #[default]
     Complete,
     /// All rows.
@@ -40,11 +40,11 @@ pub enum Delimiter {
 
 /// Rows of logs as one table, log after log, each in scoring order.
 ///
-/// Corresponds to `python -m l2logger.aggregate`: `block_num`, `regime_num`, `exp_num`, the other standard columns, then the
-/// log's own in alphabetical order; task names in lower case; `regime_num` counts stretches of one block, subtype and task from
-/// 0. Unlike l2logger, it puts the `block_subtype` of a log of format 1.0 in its usual place and not last, writes task
-/// parameters uniformly (one space after `:` and `,`, `{}` for none), writes whole numbers in metrics with `.0`, and combines
-/// several logs in one table, with the log's name in the first column, `run_id`.
+/// Corresponds to `python -m l2logger.aggregate`: the columns are `block_num`, `regime_num`, `exp_num`, the other standard columns,
+/// then the log's own in alphabetical order. Task names are in lower case, and `regime_num` counts stretches of one block, type,
+/// subtype and task from 0. Unlike l2logger, it puts the `block_subtype` of a log of format 1.0 in its usual position and not
+/// last, writes task parameters uniformly (one space after `:` and `,`, `{}` for none), writes whole numbers in metrics with `.0`,
+/// and combines several logs in one table, with the log's name in the first column, `run_id`.
 ///
 /// At most [`MAX_RECORDS`] rows and [`MAX_CELLS`] cells of logs' own columns, over all logs.
 #[derive(Debug, Clone, Default)]
@@ -89,11 +89,11 @@ impl LogTable {
         self.num_rows == 0
     }
 
-    /// Writes the table as text with a header line; lines end with `\n`, cells are quoted if necessary, and text that looks like
-    /// a formula is escaped unless raw cells are requested.
+    /// Writes the table as text with a header line. Lines end with `\n`, cells are quoted if necessary, and text that looks like a
+    /// formula is guarded unless raw cells are requested.
     ///
     /// # Errors
-    /// Those of the writer.
+    /// I/O errors of the writer.
     pub fn write(&self, mut out: impl Write, delimiter: Delimiter, cells: Cells) -> io::Result<()> {
         let delimiter = match delimiter {
             Delimiter::Tab => b'\t',
@@ -187,7 +187,7 @@ fn own_columns(log: &Log) -> impl Iterator<Item = &str> {
     log.rows.metric_names().chain(log.rows.text_names())
 }
 
-/// A cell of a non-standard column: a number as the shortest string that reads back exactly; empty for a missing number.
+/// A cell of a non-standard column: a text, or a number as the shortest string that reads back exactly; empty if missing.
 fn own_cell(row: Row, name: &str) -> String {
     match row.metric(name) {
         Some(number) if number.is_nan() => String::new(),

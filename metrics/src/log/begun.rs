@@ -1,4 +1,4 @@
-//! Checks the state of a log directory: free, interrupted while being created, or holding a log.
+//! Checks the state of a log directory: it is free, contains the leftovers of an interrupted creation, or contains a log.
 
 use std::fs;
 use std::path::Path;
@@ -13,12 +13,13 @@ use crate::MetricsError;
 
 /// Reads the two info files of the log in `dir`; `None` if no log was started.
 ///
-/// No log was started if the directory does not exist, is empty, or holds only the leftovers of a log interrupted while
-/// it was created: [`LogWriter::create`](crate::LogWriter::create) accepts such a directory.
+/// No log was started if the directory does not exist, is empty, or contains only the leftovers of a log whose creation was
+/// interrupted: [`LogWriter::create`](crate::LogWriter::create) accepts such a directory.
 ///
 /// # Errors
-/// [`MetricsError::MissingFile`] and [`MetricsError::Json`] if there are rows but an info file is missing or torn,
-/// [`MetricsError::LoggerInfo`], [`MetricsError::NotADirectory`] for a file, [`MetricsError::Io`].
+/// [`MetricsError::MissingFile`] and [`MetricsError::Json`] if an info file is missing or torn although the directory contains other
+/// files, [`MetricsError::LoggerInfo`] if a field of it is wrong, [`MetricsError::NotADirectory`] for a file,
+/// [`MetricsError::Io`].
 pub fn begun_log(dir: impl AsRef<Path>) -> Result<Option<(LoggerInfo, ScenarioInfo)>, MetricsError> {
     let dir = dir.as_ref();
     if !dir.exists() || (dir.is_dir() && is_free(dir)?) {
@@ -37,9 +38,9 @@ pub fn begun_log(dir: impl AsRef<Path>) -> Result<Option<(LoggerInfo, ScenarioIn
     Ok(Some((logger_info, scenario_info)))
 }
 
-/// Whether a directory is empty, or holds only the leftovers of an interrupted creation.
+/// Whether a directory is empty, or contains only the leftovers of an interrupted creation.
 ///
-/// The info files are written before anything else, `logger_info.json` last: if both are whole, a log was started.
+/// The info files are written before anything else: if both are whole, a log was started.
 pub(super) fn is_free(dir: &Path) -> Result<bool, MetricsError> {
     let list = |error| MetricsError::io(dir, "list this directory")(error);
     let names = [scenario_info::FILE_NAME, logger_info::FILE_NAME];
@@ -84,8 +85,8 @@ mod tests {
     use super::*;
     use crate::LogWriter;
 
-    /// A log directory whose creation stopped after these files.
-    fn made(files: &[(&str, &str)]) -> tempfile::TempDir {
+    /// A log directory whose creation stopped after writing these files.
+    fn interrupted_creation(files: &[(&str, &str)]) -> tempfile::TempDir {
         let dir = tempfile::tempdir().unwrap();
         for (name, text) in files {
             fs::write(dir.path().join(name), text).unwrap();
@@ -97,7 +98,7 @@ mod tests {
     fn interrupted_creation_is_started_again() {
         let scenario = ("scenario_info.json", "{}");
         let check = |files: &[(&str, &str)]| {
-            let dir = made(files);
+            let dir = interrupted_creation(files);
             assert!(begun_log(dir.path()).unwrap().is_none(), "{files:?}");
             let info = LoggerInfo::new(["reward"]).unwrap();
             LogWriter::create(dir.path(), &info, &ScenarioInfo::default()).unwrap();
@@ -135,7 +136,7 @@ mod tests {
     #[test]
     fn files_that_are_not_leftovers_of_a_log_are_never_overwritten() {
         let check = |files: &[(&str, &str)], code: &str| {
-            let dir = made(files);
+            let dir = interrupted_creation(files);
             assert_eq!(begun_log(dir.path()).unwrap_err().code(), code);
             let info = LoggerInfo::new(["reward"]).unwrap();
             let error = LogWriter::create(dir.path(), &info, &ScenarioInfo::default()).unwrap_err();

@@ -1,4 +1,4 @@
-//! [`BlockFile`]: appends rows to a data file, and detects whether it was truncated, removed or replaced in the meantime.
+//! [`BlockFile`]: appends rows to a data file, and detects if the file was truncated, removed or replaced in the meantime.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{ErrorKind, Read, Write};
@@ -21,7 +21,7 @@ pub(super) struct Written {
 }
 
 impl Written {
-    /// A file of an earlier writer, with this number of rows and bytes.
+    /// The state of an earlier writer's file, with this number of rows and bytes.
     pub(super) fn found(path: &Path, rows: u64, bytes: u64) -> Result<Self, MetricsError> {
         let found = fs::metadata(path).map_err(MetricsError::io(path, "look at this file"))?;
         Ok(Self {
@@ -32,7 +32,7 @@ impl Written {
         })
     }
 
-    const NOTHING: Self = Self {
+    const NEW_FILE: Self = Self {
         rows: 0,
         bytes: 0,
         identity: None,
@@ -41,15 +41,15 @@ impl Written {
 
     /// Fails if the file at this path is missing, is a different file, or differs in length.
     ///
-    /// Some file systems change the id of a file while nobody has it open: with a different id, it counts as the same
-    /// file if its bytes are the same.
+    /// Some file systems change the id of a file while no process has it open, so a file with a different id counts as the same if
+    /// its bytes are equal.
     pub(super) fn check(&self, folder: &LogFolder, inside: &Path) -> Result<(), MetricsError> {
-        let path = folder.place(inside);
+        let path = folder.absolute(inside);
         let found = match fs::metadata(&path) {
-            // A link may lead to something that stores nothing, such as a pipe.
+            // A link may lead to a file that stores nothing, such as a pipe.
             Ok(found) if !found.is_file() && !found.is_dir() => return Ok(()),
             Ok(found) if found.is_dir() => "a directory".to_owned(),
-            Ok(found) if found.len() != self.bytes => counted(&path, found.len()),
+            Ok(found) if found.len() != self.bytes => rows_and_bytes(&path, found.len()),
             Ok(found) => {
                 let is_known = self.identity.is_none_or(|known| known == Identity::of(&found));
                 let is_equal = || self.digest.is_none_or(|digest| Digest::of(&path) == Some(digest));
@@ -61,10 +61,10 @@ impl Written {
             Err(error) if error.kind() == ErrorKind::NotFound => "no file".to_owned(),
             Err(error) => return Err(MetricsError::io(folder.shown_inside(inside), "find this file")(error)),
         };
-        Err(self.lost(folder, inside, found))
+        Err(self.lost_error(folder, inside, found))
     }
 
-    fn lost(&self, folder: &LogFolder, inside: &Path, found: String) -> MetricsError {
+    fn lost_error(&self, folder: &LogFolder, inside: &Path, found: String) -> MetricsError {
         MetricsError::FileLost {
             path: folder.shown_inside(inside),
             found,
@@ -75,7 +75,7 @@ impl Written {
 }
 
 /// Describes the rows and bytes of a file.
-fn counted(path: &Path, bytes: u64) -> String {
+fn rows_and_bytes(path: &Path, bytes: u64) -> String {
     let rows = csv::ReaderBuilder::new()
         .delimiter(b'\t')
         .flexible(true)
@@ -98,8 +98,8 @@ pub(super) struct BlockFile {
 }
 
 impl BlockFile {
-    /// Opens a data file for appending, and writes its header if it is new. `before` is what this log's writers have
-    /// already written there.
+    /// Opens a data file for appending, and writes its header if it is new. `before` is the state in which this log's writers left
+    /// the file; `None` for a new one.
     pub(super) fn open(
         folder: &LogFolder,
         inside: PathBuf,
@@ -111,14 +111,14 @@ impl BlockFile {
         } else if let Some(parent) = inside.parent() {
             folder.make(parent)?;
         }
-        let path = folder.place(&inside);
+        let path = folder.absolute(&inside);
         let io = |doing| MetricsError::io(folder.shown_inside(&inside), doing);
         let file = OpenOptions::new().append(true).create(before.is_none()).open(&path);
         let file = file.map_err(io("open this file"))?;
         let found = file.metadata().map_err(io("measure this file"))?;
-        let mut written = before.unwrap_or(Written::NOTHING);
+        let mut written = before.unwrap_or(Written::NEW_FILE);
         if found.len() != written.bytes && found.is_file() {
-            return Err(written.lost(folder, &inside, counted(&path, found.len())));
+            return Err(written.lost_error(folder, &inside, rows_and_bytes(&path, found.len())));
         }
         written.identity = Some(Identity::of(&found));
         let mut opened = Self {
@@ -133,9 +133,9 @@ impl BlockFile {
         Ok(opened)
     }
 
-    /// Whether the opened file is still the one at its path, and of the expected length: one system call, which also covers the
-    /// log's directory. [`Written::check`] finds the fault.
-    pub(super) fn is_as_it_was_left(&self) -> bool {
+    /// Whether the opened file is still the one at its path, and has the expected length. This takes one system call, which also
+    /// covers the log's directory; [`Written::check`] finds the fault.
+    pub(super) fn is_unchanged(&self) -> bool {
         fs::metadata(&self.place).is_ok_and(|found| {
             found.is_file() && found.len() == self.written.bytes && self.written.identity == Some(Identity::of(&found))
         })
@@ -176,7 +176,7 @@ impl BlockFile {
     }
 }
 
-/// A CRC-32, to compare bytes without protection against deliberate forgery.
+/// A CRC-32 of a file's bytes, which does not protect against deliberate forgery.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Digest(u32);
 

@@ -1,4 +1,4 @@
-//! Parses single cells of a data file, and words the errors for bad ones.
+//! Parses single cells of a data file, and formats the errors for invalid ones.
 
 use std::path::Path;
 
@@ -10,12 +10,12 @@ use super::record::{TaskParams, is_worker_id};
 use crate::{LogLine, MetricsError};
 
 /// Maximum number of characters of a cell quoted in a message.
-const MAX_QUOTED: usize = 60;
+const MAX_QUOTED_CHARS: usize = 60;
 
 /// Maximum number of names that a message lists.
-const LISTED: usize = 20;
+const MAX_NAMES: usize = 20;
 
-/// A cell with its place in the file, for the error if its text is wrong.
+/// A cell with its position in the file, which the error names if its text is invalid.
 #[derive(Clone, Copy)]
 pub(super) struct Cell<'a> {
     pub(super) path: &'a Path,
@@ -78,7 +78,7 @@ impl Cell<'_> {
         number(self.text).ok_or_else(|| self.error("a finite number, or nothing for a missing one"))
     }
 
-    /// The error that names what was found here and what was expected.
+    /// The error that states what was found here and what was expected.
     pub(super) fn error(self, expected: impl Into<String>) -> MetricsError {
         MetricsError::Cell {
             at: LogLine {
@@ -92,7 +92,7 @@ impl Cell<'_> {
     }
 }
 
-/// A number; NaN for an empty cell or a word that other programs write for a missing value. `None` for anything else.
+/// A finite number, or NaN for an empty cell or a word that other programs write for a missing value. `None` for anything else.
 pub(super) fn number(text: &str) -> Option<f64> {
     let number = match text.parse() {
         Ok(number) => number,
@@ -104,23 +104,23 @@ pub(super) fn number(text: &str) -> Option<f64> {
     Some(number).filter(|number| !number.is_infinite())
 }
 
-/// A cell for a message: quoted, and cut to [`MAX_QUOTED`] characters.
+/// A cell for a message: quoted, and cut to [`MAX_QUOTED_CHARS`] characters.
 pub(super) fn shown(text: &str) -> String {
-    match text.char_indices().nth(MAX_QUOTED) {
+    match text.char_indices().nth(MAX_QUOTED_CHARS) {
         Some((end, _)) => format!("{:?}…", &text[..end]),
         None => format!("{text:?}"),
     }
 }
 
-/// A name for a message, cut to [`MAX_QUOTED`] characters.
+/// A name for a message, cut to [`MAX_QUOTED_CHARS`] characters.
 pub(super) fn cut(text: &str) -> String {
-    driftworld_text::shortened(text, MAX_QUOTED)
+    driftworld_text::shortened(text, MAX_QUOTED_CHARS)
 }
 
-/// Names for a message: the first [`LISTED`], and how many more there are.
+/// Names for a message: the first few, and how many more there are.
 pub(super) fn listed(names: &[String]) -> String {
     let names: Vec<String> = names.iter().map(|name| cut(name)).collect();
-    driftworld_text::first_of(&names, LISTED)
+    driftworld_text::first_of(&names, MAX_NAMES)
 }
 
 #[cfg(test)]

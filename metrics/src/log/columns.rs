@@ -2,7 +2,7 @@
 
 use crate::Record;
 
-/// The columns of every log of format 1.1, in order; the metrics follow alphabetically.
+/// The standard columns of format 1.1, in order; the metrics follow in alphabetical order.
 pub const STANDARD_COLUMNS: [&str; 9] = [
     "block_num",
     "exp_num",
@@ -16,7 +16,7 @@ pub const STANDARD_COLUMNS: [&str; 9] = [
 ];
 
 /// The one standard column that logs of format 1.0 lack.
-pub(super) const SINCE_1_1: &str = "block_subtype";
+pub(super) const SUBTYPE_COLUMN: &str = "block_subtype";
 
 /// Names of a record's metrics and text columns, sorted by code point.
 pub(super) fn metric_columns(record: &Record) -> Vec<String> {
@@ -36,8 +36,8 @@ pub(super) fn header(metrics: &[String]) -> Vec<String> {
 
 /// One line of a data file, with quotes where necessary, and its line ending.
 ///
-/// The crate `csv` quotes a bare carriage return only if lines end with one, so the line is written that way and its end
-/// replaced by a single `\n`, as in l2logger.
+/// The crate `csv` quotes a bare carriage return only if lines end with one, so the line is written with a CRLF ending, which is
+/// then replaced by a single `\n`, as in l2logger.
 pub(crate) fn line(cells: impl IntoIterator<Item = impl AsRef<[u8]>>) -> Vec<u8> {
     delimited(b'\t', cells)
 }
@@ -50,8 +50,8 @@ pub(super) fn delimited(delimiter: u8, cells: impl IntoIterator<Item = impl AsRe
         .from_writer(Vec::new());
     writer
         .write_record(cells)
-        .expect("memory takes every byte, and one record cannot differ from itself in length");
-    let mut bytes = writer.into_inner().expect("memory takes every byte");
+        .expect("writing to memory does not fail, and a single record has a consistent length");
+    let mut bytes = writer.into_inner().expect("writing to memory does not fail");
     bytes.truncate(bytes.len() - 2);
     bytes.push(b'\n');
     bytes

@@ -1,4 +1,4 @@
-//! Reads one `data-log.tsv`: its rows and their faults.
+//! Reads the rows of one `data-log.tsv`, and their faults.
 
 use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom};
@@ -14,18 +14,18 @@ use super::table::Table;
 use super::whole_rows::{self, WholeRows};
 use crate::{LogLine, MetricsError};
 
-/// Largest data file that is read, in bytes.
+/// Maximum size of a data file, in bytes.
 pub const MAX_FILE_BYTES: u64 = 1 << 30;
 
-/// Largest cell, in bytes.
+/// Maximum size of a cell, in bytes.
 pub const MAX_CELL_BYTES: usize = 1 << 20;
 
 /// Bytes per read.
-const PIECE: usize = 1 << 16;
+const BUFFER_BYTES: usize = 1 << 16;
 
 /// Adds every row to the table in file order; returns the header.
 ///
-/// Faults of single rows are added to `faults`; a fault that makes the file unreadable is returned as the error.
+/// Adds faults of single rows to `faults`; a fault that makes the file unreadable is returned as the error.
 pub(super) fn read<'a>(
     path: &'a Path,
     metrics_columns: &[String],
@@ -38,8 +38,8 @@ pub(super) fn read<'a>(
         .delimiter(b'\t')
         .has_headers(false)
         .flexible(true)
-        .buffer_capacity(PIECE)
-        // Rows that a running writer adds in the meantime are left for the next read.
+        .buffer_capacity(BUFFER_BYTES)
+        // Stops at this length: rows that a running writer adds in the meantime are not read.
         .from_reader((&source.file).take(source.whole));
     let mut row = StringRecord::new();
     if !next_row(&mut rows, &mut row, path)? {
@@ -120,8 +120,8 @@ impl Source {
         let (mut whole, mut torn) = (length, None);
         if length > 0 && last_byte(&mut file).map_err(failed())? != b'\n' {
             file.rewind().map_err(failed())?;
-            let all = BufReader::with_capacity(PIECE, (&file).take(length));
-            let found = whole_rows::measure(all).map_err(failed())?;
+            let buffered = BufReader::with_capacity(BUFFER_BYTES, (&file).take(length));
+            let found = whole_rows::measure(buffered).map_err(failed())?;
             whole = found.bytes;
             torn = Some(found.fault(path, 1));
         }
@@ -129,13 +129,13 @@ impl Source {
         Ok(Self { file, whole, torn })
     }
 
-    /// The fault of the last row, which starts at this byte, if it ends within quotes: torn, or a quote was never closed.
+    /// The fault of the last row, which starts at this byte, if it ends within quotes: it is torn, or a quote was never closed.
     fn open_quote(&self, path: &Path, start: u64, line: u64) -> Result<Option<MetricsError>, MetricsError> {
         let failed = || MetricsError::io(path, "read this file");
         let mut file = &self.file;
         file.seek(SeekFrom::Start(start)).map_err(failed())?;
-        let piece = BufReader::with_capacity(PIECE, file.take(self.whole - start));
-        let found = whole_rows::measure(piece).map_err(failed())?;
+        let buffered = BufReader::with_capacity(BUFFER_BYTES, file.take(self.whole - start));
+        let found = whole_rows::measure(buffered).map_err(failed())?;
         // Only blank lines precede the open row.
         let found_here = WholeRows { lines: 0, ..found };
         Ok((found.bytes < self.whole - start).then(|| found_here.fault(path, line)))

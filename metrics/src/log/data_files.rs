@@ -16,8 +16,8 @@ const MAX_DEPTH: usize = 8;
 /// Name of every data file.
 pub(super) const FILE_NAME: &str = "data-log.tsv";
 
-/// Maximum depth of links to directories: those of workers and of blocks. Anything deeper behind a link is skipped, so that
-/// circular links end.
+/// Maximum depth of links to directories, enough for those of workers and blocks. Anything deeper behind a link is skipped, so
+/// that circular links end.
 const MAX_LINK_DEPTH: usize = 2;
 
 /// All data files under a log directory, sorted by path with numbers compared as numbers. A file reached by several paths
@@ -31,7 +31,7 @@ pub(super) fn find(dir: &Path) -> Result<Vec<PathBuf>, MetricsError> {
         });
     }
     let mut search = Search {
-        to_search: vec![Folder {
+        folders: vec![Folder {
             path: dir.to_owned(),
             depth: 0,
             is_linked: false,
@@ -39,7 +39,7 @@ pub(super) fn find(dir: &Path) -> Result<Vec<PathBuf>, MetricsError> {
         files: Vec::new(),
     };
     let mut seen = 0;
-    while let Some(current) = search.to_search.pop() {
+    while let Some(current) = search.folders.pop() {
         let list = |error| MetricsError::io(&current.path, "list this directory")(error);
         for entry in fs::read_dir(&current.path).map_err(list)? {
             let entry = entry.map_err(list)?;
@@ -49,16 +49,16 @@ pub(super) fn find(dir: &Path) -> Result<Vec<PathBuf>, MetricsError> {
                 return Err(MetricsError::too_large(dir, "files or more", found, limit));
             }
             let kind = entry.file_type().map_err(list)?;
-            search.take(&current, entry.path(), kind)?;
+            search.add_entry(&current, entry.path(), kind)?;
         }
     }
     search.files.sort_by_cached_key(|(path, _)| path_key(path));
-    Ok(each_once(search.files))
+    Ok(without_duplicates(search.files))
 }
 
 struct Search {
-    to_search: Vec<Folder>,
-    /// Each with whether it was reached through a link.
+    folders: Vec<Folder>,
+    /// The data files found, each with whether it was reached through a link.
     files: Vec<(PathBuf, bool)>,
 }
 
@@ -72,7 +72,7 @@ struct Folder {
 
 impl Search {
     /// Handles an entry of a folder: a data file, or a folder to search later.
-    fn take(&mut self, folder: &Folder, path: PathBuf, kind: FileType) -> Result<(), MetricsError> {
+    fn add_entry(&mut self, folder: &Folder, path: PathBuf, kind: FileType) -> Result<(), MetricsError> {
         let is_linked = folder.is_linked || kind.is_symlink();
         let depth = folder.depth + 1;
         if path.file_name().is_some_and(|name| name == FILE_NAME) {
@@ -80,7 +80,7 @@ impl Search {
             self.files.push((path, is_linked));
         } else if is_linked && depth <= MAX_LINK_DEPTH {
             match fs::metadata(&path) {
-                // Only its data file matters, and the folder may be large.
+                // Only the data file of a block matters; the folder itself may be large.
                 Ok(found) if found.is_dir() && depth == MAX_LINK_DEPTH => {
                     let file = path.join(FILE_NAME);
                     regular_file::check(&file)?;
@@ -88,15 +88,15 @@ impl Search {
                         self.files.push((file, true));
                     }
                 }
-                Ok(found) if found.is_dir() => self.to_search.push(Folder { path, depth, is_linked }),
-                // Broken links with an extension are ignored: they led to a file of some other kind.
+                Ok(found) if found.is_dir() => self.folders.push(Folder { path, depth, is_linked }),
+                // Broken links with an extension are ignored, because they led to files, not to workers or blocks.
                 Err(_) if path.extension().is_none() && !is_hidden(&path) => {
                     return Err(regular_file::lost_link(&path));
                 }
                 _ => {}
             }
         } else if kind.is_dir() && !is_linked && depth <= MAX_DEPTH {
-            self.to_search.push(Folder { path, depth, is_linked });
+            self.folders.push(Folder { path, depth, is_linked });
         }
         Ok(())
     }
@@ -108,24 +108,24 @@ fn is_hidden(path: &Path) -> bool {
 }
 
 /// Keeps one path to each file, preferably one without links.
-fn each_once(mut files: Vec<(PathBuf, bool)>) -> Vec<PathBuf> {
+fn without_duplicates(mut files: Vec<(PathBuf, bool)>) -> Vec<PathBuf> {
     if files.iter().any(|(_, is_linked)| *is_linked) {
-        let place = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
-        let places: Vec<PathBuf> = files.iter().map(|(path, _)| place(path)).collect();
-        let mut taken: BTreeSet<&Path> = (files.iter().zip(&places))
+        let canonical = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        let canonical_paths: Vec<PathBuf> = files.iter().map(|(path, _)| canonical(path)).collect();
+        let mut seen_paths: BTreeSet<&Path> = (files.iter().zip(&canonical_paths))
             .filter(|((_, is_linked), _)| !is_linked)
-            .map(|(_, place)| place.as_path())
+            .map(|(_, canonical)| canonical.as_path())
             .collect();
-        let mut places = places.iter();
+        let mut canonical_paths = canonical_paths.iter();
         files.retain(|(_, is_linked)| {
-            let place = places.next();
-            !is_linked || place.is_some_and(|place| taken.insert(place))
+            let canonical = canonical_paths.next();
+            !is_linked || canonical.is_some_and(|canonical| seen_paths.insert(canonical))
         });
     }
     files.into_iter().map(|(path, _)| path).collect()
 }
 
-/// Sorts `2-train` before `10-test`: each part of the path by its leading number first, then by its text.
+/// Sort key that puts `2-train` before `10-test`: each part of the path by its leading number first, then by its text.
 pub(super) fn path_key(path: &Path) -> Vec<(u64, String)> {
     let part_key = |part: &std::ffi::OsStr| {
         let text = part.to_string_lossy().into_owned();

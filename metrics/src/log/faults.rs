@@ -1,8 +1,8 @@
-//! Policy for faults of a log: reading stops at the first, validation lists them.
+//! The policy for faults of a log: reading stops at the first, validation lists them all.
 
 use crate::MetricsError;
 
-/// Maximum number of faults of a log that are listed.
+/// Maximum number of faults, and of warnings, that are listed for a log.
 pub const MAX_LISTED: usize = 100;
 
 /// Collects faults as they are found.
@@ -18,14 +18,14 @@ pub(super) enum Faults {
 #[derive(Debug, Clone)]
 pub(super) struct Listed<T> {
     pub(super) first: Vec<T>,
-    pub(super) more: u64,
+    pub(super) num_more: u64,
 }
 
 impl<T> Default for Listed<T> {
     fn default() -> Self {
         Self {
             first: Vec::new(),
-            more: 0,
+            num_more: 0,
         }
     }
 }
@@ -35,7 +35,7 @@ impl<T> Listed<T> {
         if self.first.len() < MAX_LISTED {
             self.first.push(found);
         } else {
-            self.more += 1;
+            self.num_more += 1;
         }
     }
 }
@@ -52,8 +52,8 @@ impl Faults {
         }
     }
 
-    /// The value, or `None` after adding the fault.
-    pub(super) fn sift<T>(&mut self, found: Result<T, MetricsError>) -> Result<Option<T>, MetricsError> {
+    /// Returns the value, or adds the fault and returns `None`.
+    pub(super) fn check<T>(&mut self, found: Result<T, MetricsError>) -> Result<Option<T>, MetricsError> {
         match found {
             Ok(value) => Ok(Some(value)),
             Err(fault) => self.add(fault).map(|()| None),

@@ -1,4 +1,4 @@
-//! Encodes names of tasks and runs as folder names for every file system, and decodes them.
+//! Encodes names of tasks and runs as folder names that are valid on every file system, and decodes them.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -8,16 +8,16 @@ use crate::MetricsError;
 /// Maximum length of a folder name, in bytes: file systems allow 255, and a number may be appended.
 const MAX_BYTES: usize = 200;
 
-/// Writes every byte except ASCII letters, digits, `_`, `-` and `.` as `%` and two hexadecimal digits; also a leading `.`, which
-/// would hide the folder or lead out of it, and a trailing one, which some file systems drop.
+/// Writes every byte except ASCII letters, digits, `_`, `-` and `.` as `%` and two hexadecimal digits. Also encodes a leading `.`,
+/// which would hide the folder or lead out of it, and a trailing one, which some file systems drop.
 ///
-/// `place`: named in the error if the name would be too long.
+/// The error for a name that is too long names the folder `place`.
 pub(super) fn encoded(place: &Path, name: &str) -> Result<String, MetricsError> {
     let mut encoded = String::with_capacity(name.len());
     let last = name.len().saturating_sub(1);
     for (index, byte) in name.bytes().enumerate() {
-        let inner_point = byte == b'.' && index != 0 && index != last;
-        if byte.is_ascii_alphanumeric() || byte == b'_' || byte == b'-' || inner_point {
+        let is_inner_dot = byte == b'.' && index != 0 && index != last;
+        if byte.is_ascii_alphanumeric() || byte == b'_' || byte == b'-' || is_inner_dot {
             encoded.push(char::from(byte));
         } else {
             // Writing to a string cannot fail.
@@ -25,7 +25,7 @@ pub(super) fn encoded(place: &Path, name: &str) -> Result<String, MetricsError> 
         }
     }
     if encoded.is_empty() {
-        // No other name is encoded like this, and it decodes to the empty name.
+        // Stands for the empty name; no other name is encoded like this.
         encoded.push('%');
     }
     if encoded.len() > MAX_BYTES {
@@ -39,7 +39,7 @@ pub(super) fn encoded(place: &Path, name: &str) -> Result<String, MetricsError> 
     Ok(encoded)
 }
 
-/// The name that a folder stands for. Names that we did not encode are taken as they are.
+/// The name that a folder stands for. Names that were not encoded by us stay unchanged.
 pub(super) fn decoded(folder: &Path) -> String {
     let encoded = folder.file_name().unwrap_or_default().to_string_lossy();
     if encoded == "%" {

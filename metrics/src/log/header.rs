@@ -5,7 +5,7 @@ use std::path::Path;
 use csv::StringRecord;
 
 use super::cell::{Cell, cut, listed, shown};
-use super::columns::{SINCE_1_1, STANDARD_COLUMNS};
+use super::columns::{STANDARD_COLUMNS, SUBTYPE_COLUMN};
 use super::data_file::MAX_CELL_BYTES;
 use super::faults::Faults;
 use super::record::{BlockSubtype, BlockType, ExpStatus};
@@ -13,16 +13,16 @@ use super::rows::Cells;
 use super::table::{MAX_COLUMNS, Table};
 use crate::{LogLine, MetricsError};
 
-/// The positions of the columns of one file.
+/// The columns of one file, by index.
 pub(super) struct Header<'a> {
     path: &'a Path,
     pub(super) names: Vec<String>,
     standard: [usize; STANDARD_COLUMNS.len()],
-    /// Position of `block_subtype`, which logs of format 1.0 lack.
+    /// Index of `block_subtype`, which logs of format 1.0 lack.
     subtype: Option<usize>,
-    /// Positions of the columns that must hold numbers.
+    /// Indices of the declared metrics columns, which must contain numbers.
     metrics: Vec<usize>,
-    /// Undeclared columns, each with its number in the table.
+    /// Indices of undeclared columns, each with its index in the table.
     others: Vec<(usize, usize)>,
 }
 
@@ -45,17 +45,17 @@ impl<'a> Header<'a> {
                 found: shown(&names[0]),
             });
         }
-        let place = |column: &str| names.iter().position(|name| name == column);
-        if STANDARD_COLUMNS.iter().all(|column| place(column).is_none()) {
+        let index_of = |column: &str| names.iter().position(|name| name == column);
+        if STANDARD_COLUMNS.iter().all(|column| index_of(column).is_none()) {
             return Err(MetricsError::NoHeader {
                 path: path.to_owned(),
                 found: cut(&names.join(" ")),
             });
         }
-        let needed = (STANDARD_COLUMNS.into_iter().filter(|column| *column != SINCE_1_1))
+        let required = (STANDARD_COLUMNS.into_iter().filter(|column| *column != SUBTYPE_COLUMN))
             .chain(metrics_columns.iter().map(String::as_str));
-        let absent = needed.filter(|column| place(column).is_none());
-        let missing = absent.map(|column| MetricsError::MissingColumn {
+        let missing_columns = required.filter(|column| index_of(column).is_none());
+        let missing = missing_columns.map(|column| MetricsError::MissingColumn {
             path: path.to_owned(),
             column: column.to_owned(),
             found: listed(&names),
@@ -65,22 +65,22 @@ impl<'a> Header<'a> {
             path: path.to_owned(),
             column: cut(&names[index]),
         });
-        let mut wrong: Vec<MetricsError> = repeated.into_iter().chain(missing).collect();
-        if let Some(last) = wrong.pop() {
-            for fault in wrong {
+        let mut header_faults: Vec<MetricsError> = repeated.into_iter().chain(missing).collect();
+        if let Some(last) = header_faults.pop() {
+            for fault in header_faults {
                 faults.add(fault)?;
             }
             return Err(last);
         }
         // Every required column exists.
-        let metrics: Vec<usize> = metrics_columns.iter().filter_map(|column| place(column)).collect();
+        let metrics: Vec<usize> = metrics_columns.iter().filter_map(|column| index_of(column)).collect();
         let is_other = |index: &usize| !metrics.contains(index) && !STANDARD_COLUMNS.contains(&names[*index].as_str());
         let others: Vec<usize> = (0..names.len()).filter(is_other).collect();
         let numbers = table.begin_columns(others.iter().map(|&index| names[index].as_str()))?;
         Ok(Self {
             path,
-            subtype: place(SINCE_1_1),
-            standard: STANDARD_COLUMNS.map(|column| place(column).unwrap_or_default()),
+            subtype: index_of(SUBTYPE_COLUMN),
+            standard: STANDARD_COLUMNS.map(|column| index_of(column).unwrap_or_default()),
             others: others.into_iter().zip(numbers).collect(),
             metrics,
             names,
@@ -108,9 +108,9 @@ impl<'a> Header<'a> {
             return faults.add(cell(index).error(format!("at most {MAX_CELL_BYTES} bytes; is a quote not closed?")));
         }
         let cells = self.standard_cells(cell, table, faults)?;
-        let mut numbers = table.spare_numbers();
+        let mut numbers = table.take_buffer();
         for &index in &self.metrics {
-            if let Some(number) = faults.sift(cell(index).number())? {
+            if let Some(number) = faults.check(cell(index).number())? {
                 numbers.push(number);
             }
         }
@@ -151,22 +151,22 @@ impl<'a> Header<'a> {
             exp_status,
             timestamp,
         ] = self.standard.map(&cell);
-        let block_num = faults.sift(block_num.whole_number())?;
-        let exp_num = faults.sift(exp_num.whole_number())?;
+        let block_num = faults.check(block_num.whole_number())?;
+        let exp_num = faults.check(exp_num.whole_number())?;
         let worker = (table.workers).id(&mut table.rows.workers, worker_id.text, |_| worker_id.worker());
-        let worker = faults.sift(worker)?;
-        let block_type = faults.sift(block_type.word(BlockType::expected))?;
+        let worker = faults.check(worker)?;
+        let block_type = faults.check(block_type.word(BlockType::expected))?;
         let block_subtype = match self.subtype {
             Some(index) => cell(index).word(BlockSubtype::expected),
             None => Ok(BlockSubtype::Wake),
         };
-        let block_subtype = faults.sift(block_subtype)?;
+        let block_subtype = faults.check(block_subtype)?;
         let task = (table.task_names).id(&mut table.rows.task_names, task_name.text, |text| Ok(text.to_owned()));
-        let task = faults.sift(task)?;
+        let task = faults.check(task)?;
         let params = (table.task_params).id(&mut table.rows.task_params, task_params.text, |_| task_params.params());
-        let params = faults.sift(params)?;
-        let exp_status = faults.sift(exp_status.word(ExpStatus::expected))?;
-        let timestamp = faults.sift(timestamp.timestamp())?;
+        let params = faults.check(params)?;
+        let exp_status = faults.check(exp_status.word(ExpStatus::expected))?;
+        let timestamp = faults.check(timestamp.timestamp())?;
         let cells = || {
             Some(Cells {
                 block_num: block_num?,

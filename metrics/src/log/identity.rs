@@ -1,8 +1,8 @@
-//! Identifies files and directories, to detect if one was replaced at its path.
+//! Identifies files and directories, to detect whether one was replaced at its path.
 
 use std::fs::Metadata;
 
-/// The device and file id of a file or directory, whatever its name. On systems without such ids, all are equal.
+/// The device and file id of a file or directory, which do not depend on its name. On systems without such ids, all are equal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Identity(u64, u64);
 

@@ -1,4 +1,4 @@
-//! Reads and writes the JSON files beside the rows: errors carry line and column, and writes are atomic.
+//! Reads and writes the JSON files of a log. Errors state line and column, and writes are atomic.
 
 use std::path::Path;
 
@@ -11,18 +11,17 @@ use serde_json::{Map, Value};
 use super::regular_file;
 use crate::MetricsError;
 
-/// Largest side file that is read, in bytes.
+/// Maximum size of a JSON file, in bytes.
 pub const MAX_JSON_BYTES: u64 = 16 << 20;
 
-/// Maximum number of values in a side file: numbers, strings, arrays, objects and so on. Each takes at least a hundred
-/// bytes in memory.
+/// Maximum number of values in a JSON file: numbers, strings, arrays, objects and so on. Each may take a hundred bytes of memory.
 pub const MAX_JSON_VALUES: u64 = 1_000_000;
 
-/// Reads a file that holds one JSON object.
+/// Reads a file that contains one JSON object.
 ///
 /// # Errors
-/// [`MetricsError::MissingFile`], [`MetricsError::NotAFile`], [`MetricsError::TooLarge`] over 16 MiB or over a million
-/// values, [`MetricsError::Json`] with line and column.
+/// [`MetricsError::MissingFile`] and [`MetricsError::NotAFile`]; [`MetricsError::TooLarge`] for more than 16 MiB or a million
+/// values; [`MetricsError::Json`] with line and column for anything but a JSON object.
 pub(super) fn read_object(path: &Path, expected: &'static str) -> Result<Map<String, Value>, MetricsError> {
     let text = regular_file::text(path, MAX_JSON_BYTES)?.ok_or_else(|| MetricsError::missing_file(path, expected))?;
     let wrong = |(line, column): (usize, usize), wrong: String| MetricsError::Json {
@@ -41,20 +40,20 @@ pub(super) fn read_object(path: &Path, expected: &'static str) -> Result<Map<Str
             MAX_JSON_VALUES,
         )),
         Err((error, stop)) => {
-            let place = twice(&text)
-                .map(|(place, _)| place)
+            let position = first_repeated_key(&text)
+                .map(|(position, _)| position)
                 .filter(|_| stop == Some(Stop::Repeated));
             Err(wrong(
-                place.unwrap_or((error.line(), error.column())),
+                position.unwrap_or((error.line(), error.column())),
                 fault(&text, &error, stop),
             ))
         }
     }
 }
 
-/// Says why this text cannot be parsed, in the same words as for documents.
+/// Explains why this text cannot be parsed, in the same words as for documents.
 pub(super) fn fault(text: &str, error: &serde_json::Error, stop: Option<Stop>) -> String {
-    match (stop, twice(text)) {
+    match (stop, first_repeated_key(text)) {
         (Some(Stop::LongKey), _) => {
             format!("found a key of more than {MAX_KEY_BYTES} bytes, expected at most that many")
         }
@@ -65,26 +64,26 @@ pub(super) fn fault(text: &str, error: &serde_json::Error, stop: Option<Stop>) -
     }
 }
 
-/// The first repeated key of an object, with its place.
-fn twice(text: &str) -> Option<((usize, usize), String)> {
+/// The first repeated key of an object, with its line and column.
+fn first_repeated_key(text: &str) -> Option<((usize, usize), String)> {
     let pointer = repeated(text, 1).pop()?;
     let wanted = [Wanted {
         pointer: &pointer,
         at_key: false,
     }];
-    let place = lines_and_columns(text, &offsets(text, &wanted))[0];
-    Some((place, last_key(&pointer)))
+    let position = lines_and_columns(text, &offsets(text, &wanted))[0];
+    Some((position, last_key(&pointer)))
 }
 
-/// Writes a value as indented JSON, first under a temporary name beside the target, so that no reader sees a partial file.
+/// Writes a value as indented JSON, first under a temporary name next to the target, so that no reader sees a partial file.
 ///
 /// # Errors
-/// [`MetricsError::Io`].
+/// [`MetricsError::Io`] if the file cannot be written.
 pub(crate) fn write_json(path: &Path, value: &impl Serialize) -> Result<(), MetricsError> {
     write_info(path, value, true)
 }
 
-/// Like [`write_json`]; without `syncs`, writes straight into the file, for a log that will be thrown away.
+/// Like [`write_json`]. Without `syncs`, writes directly into the file, for a log that will be thrown away.
 pub(super) fn write_info(path: &Path, value: &impl Serialize, syncs: bool) -> Result<(), MetricsError> {
     let mut bytes = serde_json::to_vec_pretty(value).map_err(|error| MetricsError::Io {
         path: path.to_owned(),
@@ -99,7 +98,7 @@ pub(super) fn write_info(path: &Path, value: &impl Serialize, syncs: bool) -> Re
     }
 }
 
-/// Writes bytes under a temporary name beside the target and renames. An existing file keeps its mode.
+/// Writes bytes under a temporary name next to the target, and renames the file. An existing file keeps its mode.
 pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), MetricsError> {
     driftworld_atomic_files::write(path, bytes).map_err(MetricsError::io(path, "write this file"))
 }
@@ -150,8 +149,8 @@ mod tests {
             b"{\"a\": NaN}",
             ":1:7: not valid JSON: JSON has no NaN or Infinity; numbers are finite",
         );
-        let twice = ":1:16: found the key \"a\" twice, expected each key once; remove one of the two";
-        check(b"{ \"a\": 1, \"a\": 2 }", twice);
+        let repeated = ":1:16: found the key \"a\" twice, expected each key once; remove one of the two";
+        check(b"{ \"a\": 1, \"a\": 2 }", repeated);
         check("\u{feff}{}".as_bytes(), "read");
         check(
             b"\xff\xfe{\0}\0",

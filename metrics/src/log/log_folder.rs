@@ -1,5 +1,5 @@
-//! [`LogFolder`]: the directory of a log being written. Locks it against a second writer, and checks that it is still the one
-//! at its path.
+//! [`LogFolder`]: the directory of a log that is being written. Locks it against a second writer, and checks that it is still the
+//! one at its path.
 
 use std::fs::{self, File, TryLockError};
 use std::io::ErrorKind;
@@ -10,15 +10,15 @@ use super::identity::Identity;
 use super::{logger_info, scenario_info};
 use crate::MetricsError;
 
-/// Holds the directory open, so that its lock ends with the writer, however the writer ends.
+/// An open, locked log directory. It stays open, so that the system releases its lock even if the writer is killed.
 #[derive(Debug)]
 pub(super) struct LogFolder {
     /// The path as the user gave it, for messages.
     shown: PathBuf,
-    /// The absolute path: the process may change its working directory.
-    place: PathBuf,
-    /// Never read; held for its lock, which the system releases on closing. `None` if directories cannot be opened.
-    _held: Option<File>,
+    /// The absolute path, because the process may change its working directory.
+    absolute: PathBuf,
+    /// Never read; holds the lock, which the system releases on closing. `None` if directories cannot be opened.
+    _lock: Option<File>,
     /// Identity of the open directory.
     identity: Option<Identity>,
     /// Its info files, with their lengths in bytes.
@@ -28,15 +28,15 @@ pub(super) struct LogFolder {
 impl LogFolder {
     /// Opens and locks an existing directory.
     pub(super) fn lock(dir: &Path) -> Result<Self, MetricsError> {
-        let place = std::path::absolute(dir).map_err(MetricsError::io(dir, "find this directory"))?;
-        let held = lock(dir, File::try_lock)?;
-        let found = held.as_ref().map(File::metadata).transpose();
+        let absolute = std::path::absolute(dir).map_err(MetricsError::io(dir, "find this directory"))?;
+        let lock = lock(dir, File::try_lock)?;
+        let found = lock.as_ref().map(File::metadata).transpose();
         let found = found.map_err(MetricsError::io(dir, "look at this directory"))?;
         Ok(Self {
             shown: dir.to_owned(),
-            place,
+            absolute,
             identity: found.as_ref().map(Identity::of),
-            _held: held,
+            _lock: lock,
             info: Vec::new(),
         })
     }
@@ -55,21 +55,21 @@ impl LogFolder {
         &self.shown
     }
 
-    /// Absolute path of something inside.
-    pub(super) fn place(&self, inside: &Path) -> PathBuf {
-        self.place.join(inside)
+    /// The absolute path of a file or directory inside.
+    pub(super) fn absolute(&self, inside: &Path) -> PathBuf {
+        self.absolute.join(inside)
     }
 
-    /// Path of something inside, for messages.
+    /// The path of a file or directory inside, for messages.
     pub(super) fn shown_inside(&self, inside: &Path) -> PathBuf {
         self.shown.join(inside)
     }
 
-    /// Fails if the open directory is not the one at the path; `written` is what would be lost with it.
+    /// Fails if the open directory is no longer the one at the path; `written` are the files that would be lost with it.
     pub(super) fn check<'a>(&self, written: impl Iterator<Item = &'a Written>) -> Result<(), MetricsError> {
-        let found = match fs::metadata(&self.place) {
+        let found = match fs::metadata(&self.absolute) {
             Ok(found) if !found.is_dir() => "a file",
-            Ok(found) if self.identity.is_some_and(|held| held != Identity::of(&found)) => "another directory",
+            Ok(found) if self.identity.is_some_and(|identity| identity != Identity::of(&found)) => "another directory",
             Ok(_) => return Ok(()),
             Err(error) if error.kind() == ErrorKind::NotFound => "no directory",
             Err(error) => return Err(MetricsError::io(&self.shown, "find this directory")(error)),
@@ -98,15 +98,15 @@ impl LogFolder {
         Ok(())
     }
 
-    /// The length of a file in it, in bytes; `None` without such a file.
+    /// The length of a file in the directory, in bytes; `None` if there is no such file.
     fn length_of(&self, name: &str) -> Option<u64> {
-        let found = fs::metadata(self.place.join(name)).ok()?;
+        let found = fs::metadata(self.absolute.join(name)).ok()?;
         found.is_file().then_some(found.len())
     }
 
     /// Creates missing nested directories inside, but never the log's directory itself.
     pub(super) fn make(&self, inside: &Path) -> Result<(), MetricsError> {
-        let mut path = self.place.clone();
+        let mut path = self.absolute.clone();
         for part in inside {
             path.push(part);
             match fs::create_dir(&path) {
@@ -124,10 +124,10 @@ impl LogFolder {
 /// Locks a directory against a second writer while the returned file is open. On systems without such locks, there is no
 /// protection.
 ///
-/// The lock is on the directory because that exists before any file of the log and, unlike files, is never replaced. It
-/// is taken only where locks are advisory: elsewhere it would block readers, too.
+/// The directory is locked because it exists before any file of the log and, unlike files, is never replaced. It is locked only
+/// where locks are advisory: elsewhere the lock would block readers as well.
 ///
-/// `try_lock`: [`File::try_lock`], or [`File::try_lock_shared`], which excludes writers but allows other readers.
+/// `try_lock` is [`File::try_lock`], or [`File::try_lock_shared`], which excludes writers but allows other readers.
 pub(super) fn lock(dir: &Path, try_lock: fn(&File) -> Result<(), TryLockError>) -> Result<Option<File>, MetricsError> {
     if !cfg!(unix) {
         return Ok(None);
@@ -136,7 +136,7 @@ pub(super) fn lock(dir: &Path, try_lock: fn(&File) -> Result<(), TryLockError>) 
     let file = File::open(dir).map_err(MetricsError::io(dir, "open this directory"))?;
     match try_lock(&file) {
         Err(TryLockError::WouldBlock) => Err(MetricsError::InUse(dir.to_owned())),
-        // Kept open all the same, for its identity.
+        // Without a lock, the directory stays open for its identity.
         Ok(()) | Err(TryLockError::Error(_)) => Ok(Some(file)),
     }
 }

@@ -12,7 +12,7 @@ use super::json_file;
 use super::table::MAX_COLUMNS;
 use crate::MetricsError;
 
-/// The version of the log format that is written. 1.0 can be read, too.
+/// The version of the log format that is written. Version 1.0 can also be read.
 pub const LOG_FORMAT_VERSION: &str = "1.1";
 
 pub(super) const FILE_NAME: &str = "logger_info.json";

@@ -26,21 +26,21 @@ pub struct Log {
     pub warnings: Vec<LogWarning>,
 }
 
-/// Reads the log in a directory: format 1.0 or 1.1, written by us or by l2logger, by one worker or by several. Faults are those
-/// of [`validate_log`](crate::validate_log), which lists them all; those that do not affect scores are warnings here.
+/// Reads the log in a directory: format 1.0 or 1.1, written by us or by l2logger, by one worker or several. The rules are those of
+/// [`validate_log`](crate::validate_log), which lists every fault; here, faults that do not affect scores are warnings.
 ///
 /// Text columns that `logger_info.json` does not declare are left out; see [`read_log_with_texts`]. Data files may be links,
 /// and so may the directories of workers and blocks.
 ///
 /// # Errors
-/// One of [`MetricsError`]'s reading variants, with file, line and column if known. Never panics, whatever the files hold;
-/// reads at most [`MAX_RECORDS`](crate::MAX_RECORDS) rows of [`MAX_COLUMNS`](crate::MAX_COLUMNS) columns,
+/// The first fault, with file, line and column if known. Never panics, whatever the files contain; reads at most
+/// [`MAX_RECORDS`](crate::MAX_RECORDS) rows of [`MAX_COLUMNS`](crate::MAX_COLUMNS) columns,
 /// [`MAX_LOG_FILES`](crate::MAX_LOG_FILES) files and [`MAX_FILE_BYTES`](crate::MAX_FILE_BYTES) per file.
 pub fn read_log(dir: impl AsRef<Path>) -> Result<Log, MetricsError> {
     read(dir.as_ref(), Texts::Leave)
 }
 
-/// Like [`read_log`], but lossless: undeclared text columns are read, too, into [`Rows::text`].
+/// Like [`read_log`], but lossless: undeclared text columns are also read, into [`Rows::text`].
 ///
 /// # Errors
 /// Those of [`read_log`].
@@ -60,7 +60,8 @@ fn read(dir: &Path, texts: Texts) -> Result<Log, MetricsError> {
     })
 }
 
-/// The directory's own name; if the path ends in `..` or is `.`, the name that it resolves to, if there is one.
+/// The directory's own name. If the path ends in `..` or is `.`, the name of the directory that it resolves to; empty if there is
+/// none.
 fn run_id(dir: &Path) -> String {
     let name = dir.file_name().map(ToOwned::to_owned);
     let name = name.or_else(|| dir.canonicalize().ok()?.file_name().map(ToOwned::to_owned));

@@ -11,7 +11,7 @@ use crate::choice::choice;
 /// Worker id of records if there is only one worker.
 pub const DEFAULT_WORKER: &str = "worker-default";
 
-/// Parameters of a task, a JSON object. Shared, because all experiences of a block usually have the same.
+/// Parameters of a task, as a JSON object. Shared, because all experiences of a block usually have the same ones.
 pub type TaskParams = Arc<Map<String, Value>>;
 
 choice! {
@@ -37,7 +37,7 @@ choice! {
 choice! {
     /// Whether a row closes its experience.
     ExpStatus, "experience status" {
-        /// The experience is finished; exactly one row of each experience says so, and only that row is scored.
+        /// The experience is finished. Exactly one row of each experience is complete, and only that row is scored.
         Complete = "complete",
         /// An intermediate row.
         Incomplete = "incomplete",
@@ -49,7 +49,7 @@ choice! {
 pub struct Record {
     /// Number of the block, from 0; never decreases within a log.
     pub block_num: u64,
-    /// Number of the experience (episode) within the whole lifetime, from 0; never decreases within a log.
+    /// Number of the experience (episode) within the lifetime, from 0; never decreases within a log.
     pub exp_num: u64,
     /// The worker that gathered the experience: letters, digits, `_`, `-` and `.`; default [`DEFAULT_WORKER`].
     pub worker_id: String,
@@ -65,7 +65,7 @@ pub struct Record {
     pub exp_status: ExpStatus,
     /// End of the experience.
     pub timestamp: Timestamp,
-    /// The numbers: at least every metrics column of the log, the same names in every record. NaN means "no value".
+    /// Numeric columns: at least every metrics column of the log, and the same names in every record. NaN means "no value".
     pub metrics: IndexMap<String, f64>,
     /// Text columns: the same names in every record, distinct from the numbers' names. They are not declared as metrics
     /// columns.

@@ -1,4 +1,4 @@
-//! Opens regular files only: reading a pipe could block for ever, and a device may never end. Converts errors of
+//! Opens regular files only, because reading a pipe could block forever, and a device may never end. Converts errors of
 //! `driftworld-files` to [`MetricsError`].
 
 use std::path::Path;

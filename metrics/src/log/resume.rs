@@ -18,17 +18,17 @@ use super::{begun, columns, data_file, data_files};
 use crate::MetricsError;
 
 impl LogWriter {
-    /// Continues the log in `dir`, which must be of format 1.1. Removes a last line that was torn when the run stopped. New
-    /// records must have the metrics of earlier ones, and numbers that do not decrease.
+    /// Continues the log in `dir`, which must have format 1.1. Removes a last line that was torn when the run stopped. New records
+    /// must have the same metrics as earlier ones, and numbers that do not decrease.
     ///
-    /// The log may have no record yet; its `logger_info.json` must exist.
+    /// The log need not have any record yet, but its `logger_info.json` must exist.
     ///
     /// # Errors
     /// Those of [`read_log`](crate::read_log), [`MetricsError::InUse`] while another writer is using it, and
     /// [`MetricsError::OtherColumns`] for a data file of format 1.0 or one with different columns.
     pub fn resume(dir: impl AsRef<Path>) -> Result<Self, MetricsError> {
         let dir = dir.as_ref();
-        // First reports a path that is not a directory.
+        // Reports a path that is not a directory before locking it.
         data_files::find(dir)?;
         let folder = LogFolder::lock(dir)?;
         let files = data_files::find(dir)?;
@@ -36,7 +36,7 @@ impl LogWriter {
         begun::remove_leftovers(dir)?;
         let mut table = Table::new(dir, logger_info.metrics_columns(), Texts::Leave);
         let mut columns: Option<Vec<String>> = None;
-        let mut known = BTreeMap::new();
+        let mut written_files = BTreeMap::new();
         for path in &files {
             let bytes = remove_torn_row(path)?;
             if bytes == 0 {
@@ -48,7 +48,7 @@ impl LogWriter {
             check_header(path, &header, metrics)?;
             let inside = path.strip_prefix(dir).expect("the files were found inside the log");
             let rows = (table.rows.len() - before) as u64;
-            known.insert(inside.to_owned(), Written::found(path, rows, bytes)?);
+            written_files.insert(inside.to_owned(), Written::found(path, rows, bytes)?);
         }
         let mut progress = Progress::default();
         for row in latest(&table.rows) {
@@ -56,11 +56,11 @@ impl LogWriter {
             progress.advance(&record, columns.clone().unwrap_or_default());
         }
         progress.columns = columns;
-        Ok(Self::with_progress(folder, &logger_info, progress, known))
+        Ok(Self::with_progress(folder, &logger_info, progress, written_files))
     }
 }
 
-/// The rows of the largest experience number, which are few, by block number.
+/// The rows with the largest experience number, of which there are few, by block number.
 fn latest(rows: &Rows) -> Vec<usize> {
     let last = rows.exp_nums().iter().max();
     let mut latest: Vec<usize> = (0..rows.len())
@@ -81,7 +81,7 @@ fn metrics_of(header: &[String]) -> Vec<String> {
     metrics
 }
 
-/// Fails if a file's header differs from that of the log's next record.
+/// Fails if a file's header differs from the header for the log's next record.
 fn check_header(path: &Path, header: &[String], metrics: &[String]) -> Result<(), MetricsError> {
     let expected = columns::header(metrics);
     if header == expected {
@@ -94,15 +94,15 @@ fn check_header(path: &Path, header: &[String], metrics: &[String]) -> Result<()
     })
 }
 
-/// Truncates a file after its last whole row. Returns the remaining bytes; a file without a row, not even a header, is removed.
+/// Truncates a file after its last whole row, and returns the number of remaining bytes. A file without even a header is removed.
 ///
-/// Only part of a single row is removed: if an open quote swallowed other rows, or line ends differ from ours, the file is left
-/// unchanged.
+/// Removes at most part of a single row: if an open quote swallowed other rows, or lines end with a carriage return only, the file
+/// stays unchanged, and the fault is the error.
 fn remove_torn_row(path: &Path) -> Result<u64, MetricsError> {
     let failed = || MetricsError::io(path, "remove a torn last line of this file");
     let file = OpenOptions::new().read(true).write(true).open(path).map_err(failed())?;
     let found = whole_rows::measure(BufReader::with_capacity(1 << 16, &file)).map_err(failed())?;
-    if found.swallowed || found.returns {
+    if found.rows_swallowed || found.lone_returns {
         return Err(found.fault(path, 1));
     }
     if found.bytes == 0 {

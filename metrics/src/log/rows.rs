@@ -41,7 +41,7 @@ pub struct Rows {
     pub(super) texts: IndexMap<String, SharedColumn<String>>,
 }
 
-/// The small cells that every row has.
+/// The cells of a row in the standard columns.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cells {
     pub(super) block_num: u64,
@@ -120,13 +120,13 @@ impl Rows {
         &self.timestamps
     }
 
-    /// The numeric columns: those declared in `logger_info.json`, in its order, then undeclared ones that hold only numbers, in
+    /// The numeric columns: those declared in `logger_info.json`, in its order, then undeclared ones that contain only numbers, in
     /// the order of their first occurrence.
     pub fn metric_names(&self) -> impl ExactSizeIterator<Item = &str> {
         self.metrics.keys().map(String::as_str)
     }
 
-    /// A numeric column, NaN for missing values; `None` without such a column.
+    /// A numeric column, NaN for missing values; `None` if there is no such column.
     pub fn metric(&self, name: &str) -> Option<&[f64]> {
         self.metrics.get(name).map(Vec::as_slice)
     }
@@ -136,7 +136,7 @@ impl Rows {
         self.texts.keys().map(String::as_str)
     }
 
-    /// A text column; `None` without such a column.
+    /// A text column; `None` if there is no such column.
     pub fn text(&self, name: &str) -> Option<&SharedColumn<String>> {
         self.texts.get(name)
     }
@@ -273,7 +273,7 @@ impl<'a> Row<'a> {
         self.rows.timestamps[self.index]
     }
 
-    /// A number of the row, NaN if missing; `None` without such a column.
+    /// A number of the row, NaN if missing; `None` if there is no such column.
     pub fn metric(self, name: &str) -> Option<f64> {
         Some(self.rows.metrics.get(name)?[self.index])
     }
@@ -284,7 +284,7 @@ impl<'a> Row<'a> {
         columns.map(move |(name, numbers)| (name.as_str(), numbers[self.index]))
     }
 
-    /// A text of the row, empty if missing; `None` without such a column.
+    /// A text of the row, empty if missing; `None` if there is no such column.
     pub fn text(self, name: &str) -> Option<&'a str> {
         Some(self.rows.texts.get(name)?.of(self.index))
     }

@@ -1,4 +1,4 @@
-//! `scenario_info.json`: the complexity, difficulty and type of a scenario, and its author's other notes.
+//! `scenario_info.json`: the complexity, difficulty and type of a scenario, and other notes of its author.
 
 use std::path::Path;
 use std::str::FromStr;
@@ -73,7 +73,7 @@ pub struct ScenarioInfo {
 }
 
 impl ScenarioInfo {
-    /// Reads the file from a log directory. Unusable content becomes a warning: the rows do not depend on it.
+    /// Reads the file from a log directory. A missing file and unknown words become warnings, because the rows do not depend on them.
     pub(super) fn read(dir: &Path, warnings: &mut Vec<LogWarning>) -> Result<Self, MetricsError> {
         let mut extra = match json_file::read_object(&dir.join(FILE_NAME), "a JSON object") {
             Ok(object) => object,
@@ -93,8 +93,8 @@ impl ScenarioInfo {
 }
 
 impl ScenarioInfo {
-    /// Whether a block of our own scenario may skip experience numbers: its regimes have budgets of decisions, and
-    /// either one of them ends here, or they are mixed and any may have ended.
+    /// Whether a block of our own scenario may skip experience numbers here: some of its regimes have a budget of decisions, and
+    /// either a regime ends here, or regimes are mixed, so that any may have ended.
     pub(super) fn leaves_numbers_unused(&self, block: u64, regime_ends: bool) -> bool {
         let Some(block) = self
             .extra
@@ -120,7 +120,7 @@ impl ScenarioInfo {
                 });
             }
         };
-        // Optional in our own scenarios: the author left out those that are missing.
+        // In our own scenarios, the author may leave out complexity and difficulty.
         let ours = self
             .extra
             .get("scenario")

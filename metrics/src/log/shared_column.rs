@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-/// Maximum number of distinct strings remembered; a log has few, but one with more can still be read.
-const REMEMBERED: usize = 65_536;
+/// Maximum number of distinct strings remembered. Most logs have few, but a log with more can still be read.
+const MAX_REMEMBERED: usize = 65_536;
 
 /// A column that stores each of its values once.
 ///
@@ -21,12 +21,12 @@ impl<T> SharedColumn<T> {
         &self.values
     }
 
-    /// For each row, the position of its value in [`values`](Self::values).
+    /// For each row, the index of its value in [`values`](Self::values).
     pub fn ids(&self) -> &[u32] {
         &self.ids
     }
 
-    /// The value of a row; `row` counts from 0, below the number of rows.
+    /// The value of a row. Panics unless `row` is below the number of rows.
     pub(crate) fn of(&self, row: usize) -> &T {
         &self.values[self.ids[row] as usize]
     }
@@ -78,7 +78,7 @@ impl Seen {
             // The number of rows is far below the range of a u32, and each adds at most one value.
             let id = column.values.len() as u32;
             column.values.push(value);
-            if self.ids.len() == REMEMBERED {
+            if self.ids.len() == MAX_REMEMBERED {
                 self.ids.clear();
             }
             self.ids.insert(text.to_owned(), id);

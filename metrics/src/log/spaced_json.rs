@@ -27,7 +27,7 @@ pub(crate) fn spaced_json(object: &Map<String, Value>) -> String {
     let mut serializer = serde_json::Serializer::with_formatter(&mut text, Spaced);
     object
         .serialize(&mut serializer)
-        .expect("a JSON object has string keys and memory takes every byte");
+        .expect("a JSON object has string keys, and writing to memory does not fail");
     String::from_utf8(text).expect("serde_json writes UTF-8")
 }
 
@@ -36,7 +36,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn spaces_are_where_python_puts_them() {
+    fn spaces_match_pythons_json_output() {
         let check = |text: &str| {
             let object: Map<String, Value> = serde_json::from_str(text).unwrap();
             assert_eq!(spaced_json(&object), text);

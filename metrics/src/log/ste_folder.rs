@@ -1,4 +1,4 @@
-//! The data folder of single-task experts on disk: copies logs into it, and names, lists and removes runs.
+//! Manages the data folder of single-task experts on disk: copies logs into it, and names, lists and removes runs.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,13 +11,13 @@ use crate::MetricsError;
 /// Prefix of folders that are being filled or removed. Killed processes leave such folders behind; they are never read.
 pub(super) const TEMPORARY: &str = ".storing-";
 
-/// Refuses a data folder inside a log's directory: everything there is read as part of the log.
+/// Refuses a data folder inside a log's directory, because everything in there is read as part of the log.
 pub(super) fn check_outside(data_folder: &Path, log_dir: &Path) -> Result<(), MetricsError> {
-    let place = std::path::absolute(data_folder).map_err(MetricsError::io(data_folder, "find this directory"))?;
+    let absolute = std::path::absolute(data_folder).map_err(MetricsError::io(data_folder, "find this directory"))?;
     let log = (log_dir.canonicalize()).map_err(MetricsError::io(log_dir, "find this directory"))?;
     // The folder may not exist yet, but one of its ancestors does.
-    let there = place.ancestors().find_map(|ancestor| ancestor.canonicalize().ok());
-    if there.is_some_and(|there| there.starts_with(&log)) {
+    let existing = absolute.ancestors().find_map(|ancestor| ancestor.canonicalize().ok());
+    if existing.is_some_and(|existing| existing.starts_with(&log)) {
         return Err(MetricsError::bad_option(
             "STE data folder",
             data_folder.display().to_string(),
@@ -27,7 +27,7 @@ pub(super) fn check_outside(data_folder: &Path, log_dir: &Path) -> Result<(), Me
     Ok(())
 }
 
-/// Copies the files of a log.
+/// Copies the info files and data files of a log.
 pub(super) fn copy(log_dir: &Path, data_files: &[PathBuf], to: &Path) -> Result<(), MetricsError> {
     let info = [logger_info::FILE_NAME, scenario_info::FILE_NAME].map(|name| log_dir.join(name));
     for file in info.iter().filter(|file| file.exists()).chain(data_files) {
@@ -64,17 +64,17 @@ pub(super) fn give_name(new: &Path, task_dir: &Path, run: &str) -> Result<PathBu
     unreachable!("there are more numbers than directories")
 }
 
-/// Moves a run out of sight, to be removed with the temporary directory.
-pub(super) fn take_away(run: &Path, temporary: &ScratchFolder) -> Result<(), MetricsError> {
-    // The same path as in the data folder, so that no two have the same name.
+/// Moves a run into the temporary directory, with which it is removed.
+pub(super) fn move_aside(run: &Path, temporary: &ScratchFolder) -> Result<(), MetricsError> {
+    // Keeps the path within the data folder, so that no two runs get the same one.
     let names = [run.parent().and_then(Path::file_name), run.file_name()];
-    let grave: PathBuf = std::iter::once(temporary.path())
+    let target_dir: PathBuf = std::iter::once(temporary.path())
         .chain([Path::new("old")])
         .chain(names.into_iter().flatten().map(Path::new))
         .collect();
-    let above = grave.parent().unwrap_or(temporary.path());
-    fs::create_dir_all(above).map_err(MetricsError::io(above, "make this directory"))?;
-    fs::rename(run, &grave).map_err(MetricsError::io(run, "move this directory aside"))
+    let target_parent = target_dir.parent().unwrap_or(temporary.path());
+    fs::create_dir_all(target_parent).map_err(MetricsError::io(target_parent, "make this directory"))?;
+    fs::rename(run, &target_dir).map_err(MetricsError::io(run, "move this directory aside"))
 }
 
 pub(super) fn is_run(dir: &Path) -> bool {
@@ -85,7 +85,7 @@ pub(super) fn runs_of(task_dir: &Path) -> Result<Vec<PathBuf>, MetricsError> {
     Ok(directories(task_dir)?.into_iter().filter(|dir| is_run(dir)).collect())
 }
 
-/// The directories in a directory, sorted by name, without links and hidden ones.
+/// The directories in a directory, sorted by name, except links and hidden ones.
 pub(super) fn directories(dir: &Path) -> Result<Vec<PathBuf>, MetricsError> {
     let list = |error| MetricsError::io(dir, "list this directory")(error);
     let mut found = Vec::new();
@@ -100,7 +100,7 @@ pub(super) fn directories(dir: &Path) -> Result<Vec<PathBuf>, MetricsError> {
     Ok(found)
 }
 
-/// Refuses a link in place of a task's directory: it would lead out of the data folder.
+/// Refuses a link in place of a task's directory, because it could lead out of the data folder.
 pub(super) fn own_directory(dir: &Path) -> Result<(), MetricsError> {
     let kind = fs::symlink_metadata(dir).map_err(MetricsError::io(dir, "look at this directory"))?;
     if kind.is_dir() {

@@ -1,4 +1,4 @@
-//! Stores logs of single-task experts in a data folder, `DATA/TASK/RUN/`: each an exact copy of the log.
+//! Stores exact copies of the logs of single-task experts in a data folder, as `DATA/TASK/RUN/`.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use driftworld_atomic_files::ScratchFolder;
 
 use super::ste_folder::{
-    TEMPORARY, check_outside, copy, directories, give_name, is_run, own_directory, refuse_pickles, runs_of, take_away,
+    TEMPORARY, check_outside, copy, directories, give_name, is_run, move_aside, own_directory, refuse_pickles, runs_of,
 };
 use super::{data_files, folder_name, log_folder};
 use crate::MetricsError;
@@ -37,15 +37,15 @@ pub struct StoredRun {
 pub struct StoredTask {
     /// The trained task, lower-case, with its variant.
     pub task_name: String,
-    /// Directories of its logs, by name with numbers compared as numbers.
+    /// Directories of its logs, sorted by name with numbers compared as numbers.
     pub runs: Vec<PathBuf>,
 }
 
-/// Copies an expert's log into a data folder, which is created if necessary. The run appears there whole or not at all, and
-/// other runs are removed only afterwards.
+/// Copies an expert's log into a data folder, which is created if necessary. The run appears there whole or not at all. In the mode
+/// [`Overwrite`](SteStoreMode::Overwrite), a run of the same name is removed just before, and other runs afterwards.
 ///
-/// In names, bytes that not every file system accepts are written as `%` and two hexadecimal digits; no name leads out of the
-/// folder.
+/// In folder names, bytes that not every file system accepts are written as `%` and two hexadecimal digits, so that no name leads
+/// out of the folder.
 ///
 /// # Errors
 /// Those of [`read_ste_log`]; [`MetricsError::InUse`] while one of our writers is using the log; [`MetricsError::TooLarge`] for
@@ -92,12 +92,12 @@ pub fn store_ste(
     drop(lock);
 
     if mode == SteStoreMode::Overwrite && is_run(&task_dir.join(&run)) {
-        take_away(&task_dir.join(&run), &temporary)?;
+        move_aside(&task_dir.join(&run), &temporary)?;
     }
     let dir = give_name(&new, &task_dir, &run)?;
     if mode == SteStoreMode::Overwrite {
         for other in runs_of(&task_dir)?.into_iter().filter(|other| *other != dir) {
-            take_away(&other, &temporary)?;
+            move_aside(&other, &temporary)?;
         }
     }
     let path = temporary.path().to_owned();
@@ -110,8 +110,8 @@ pub fn store_ste(
 /// The tasks whose experts are stored in a data folder, sorted by name, each with its runs.
 ///
 /// # Errors
-/// [`MetricsError::NoSteData`] if there is no such folder, or it is a log; [`MetricsError::StePickle`] if it holds experts in
-/// l2metrics' format; [`MetricsError::Io`].
+/// [`MetricsError::NoSteData`] if there is no such folder, or it is a log; [`MetricsError::StePickle`] if it contains experts in
+/// l2metrics' own format; [`MetricsError::Io`].
 pub fn find_ste(data_folder: impl AsRef<Path>) -> Result<Vec<StoredTask>, MetricsError> {
     let data_folder = data_folder.as_ref();
     let not_there = |found| MetricsError::NoSteData {
@@ -190,9 +190,9 @@ mod tests {
         );
         store_ste(&data, &first, SteStoreMode::Overwrite).unwrap();
         check(&data, &[("find_blue", &["blue"]), ("find_red", &["run"])]);
-        let again = store_ste(&data, &other, SteStoreMode::Overwrite).unwrap();
+        let overwritten = store_ste(&data, &other, SteStoreMode::Overwrite).unwrap();
         check(&data, &[("find_blue", &["blue"]), ("find_red", &["run10"])]);
-        let copied = read_log(&again.dir).unwrap();
+        let copied = read_log(&overwritten.dir).unwrap();
         let original = read_log(&other).unwrap();
         assert_eq!(copied, original);
     }
@@ -219,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn folders_without_experts_are_distinguished() {
+    fn error_names_the_kind_of_folder_without_experts() {
         let base = tempfile::tempdir().unwrap();
         let log = expert(base.path(), "log", "a_1", 1.0);
         let check = |path: &Path, found: &str| {
@@ -290,7 +290,7 @@ mod tests {
     }
 
     #[test]
-    fn one_log_can_be_stored_concurrently() {
+    fn one_log_can_be_stored_several_times_concurrently() {
         let base = tempfile::tempdir().unwrap();
         let (log, data) = (expert(base.path(), "run", "a_1", 1.0), base.path().join("data"));
         std::thread::scope(|scope| {
@@ -299,7 +299,7 @@ mod tests {
             }
         });
         assert_eq!(find_ste(&data).unwrap()[0].runs.len(), 8);
-        // A reader of a log excludes writers, but not other readers.
+        // Storing a log excludes its writers, but not other readers.
         let _reader = log_folder::lock(&log, fs::File::try_lock_shared).unwrap();
         store_ste(&data, &log, SteStoreMode::Append).unwrap();
         #[cfg(unix)]

@@ -1,4 +1,4 @@
-//! Collects rows file by file: all columns grow together, and columns that a file lacks are padded.
+//! Collects rows file by file. All columns grow together, and columns that a file lacks are padded.
 
 use std::convert::Infallible;
 use std::ops::Range;
@@ -40,9 +40,9 @@ pub(super) struct Table<'a> {
     pub(super) workers: Seen,
     pub(super) task_names: Seen,
     pub(super) task_params: Seen,
-    others: IndexMap<String, Other>,
+    undeclared: IndexMap<String, Other>,
     num_cells: u64,
-    spare: Vec<f64>,
+    buffer: Vec<f64>,
 }
 
 /// An undeclared column.
@@ -71,9 +71,9 @@ impl<'a> Table<'a> {
             workers: Seen::default(),
             task_names: Seen::default(),
             task_params: Seen::default(),
-            others: IndexMap::new(),
+            undeclared: IndexMap::new(),
             num_cells: 0,
-            spare: Vec::new(),
+            buffer: Vec::new(),
         }
     }
 
@@ -82,54 +82,54 @@ impl<'a> Table<'a> {
         self.files.push((path, self.rows.len()));
     }
 
-    /// Ids of the undeclared columns with these names, for the rows that follow.
+    /// Prepares the undeclared columns with these names for the rows that follow; returns their indices.
     pub(super) fn begin_columns<'n>(
         &mut self,
         names: impl Iterator<Item = &'n str>,
     ) -> Result<Vec<usize>, MetricsError> {
         let mut numbers = Vec::new();
         for name in names {
-            let entry = self.others.entry(name.to_owned());
+            let entry = self.undeclared.entry(name.to_owned());
             let number = entry.index();
             let missing = entry.or_default().missing(self.rows.len(), self.texts);
             numbers.push(number);
             self.count_cells(missing)?;
-            self.others[number].pad(self.rows.len(), self.texts);
+            self.undeclared[number].pad(self.rows.len(), self.texts);
         }
-        self.check_limit("columns or more", self.others.len() as u64, MAX_COLUMNS as u64)?;
+        self.check_limit("columns or more", self.undeclared.len() as u64, MAX_COLUMNS as u64)?;
         Ok(numbers)
     }
 
-    /// A buffer for the metrics of a row; [`push`](Self::push) takes it back.
-    pub(super) fn spare_numbers(&mut self) -> Vec<f64> {
-        std::mem::take(&mut self.spare)
+    /// A reusable buffer for the metrics of a row, which [`push`](Self::push) takes back.
+    pub(super) fn take_buffer(&mut self) -> Vec<f64> {
+        std::mem::take(&mut self.buffer)
     }
 
-    /// Adds a row: the declared metrics in order, and the cells of other columns with the columns' ids.
+    /// Adds a row: the declared metrics in order, and the cells of undeclared columns with the columns' indices.
     pub(super) fn push<'c>(
         &mut self,
         line: u64,
         cells: &Cells,
         mut metrics: Vec<f64>,
-        others: impl ExactSizeIterator<Item = (usize, &'c str)>,
+        undeclared: impl ExactSizeIterator<Item = (usize, &'c str)>,
     ) -> Result<(), MetricsError> {
         self.check_limit("rows or more", self.rows.len() as u64 + 1, MAX_RECORDS as u64)?;
-        self.count_cells((metrics.len() + others.len()) as u64)?;
+        self.count_cells((metrics.len() + undeclared.len()) as u64)?;
         // A file has fewer bytes, and so fewer lines, than the range of a u32.
         self.lines.push(line as u32);
         self.rows.push(cells);
         for (column, number) in self.rows.metrics.values_mut().zip(metrics.drain(..)) {
             column.push(number);
         }
-        self.spare = metrics;
-        for (column, text) in others {
-            self.others[column].push(text, self.texts);
+        self.buffer = metrics;
+        for (column, text) in undeclared {
+            self.undeclared[column].push(text, self.texts);
         }
         Ok(())
     }
 
     /// File and line of a row, by index in the order of files and lines.
-    pub(super) fn place(&self, row: usize) -> LogLine {
+    pub(super) fn line_of(&self, row: usize) -> LogLine {
         let file = self.files.partition_point(|(_, start)| *start <= row).saturating_sub(1);
         LogLine {
             path: self.files[file].0.to_owned(),
@@ -150,7 +150,7 @@ impl<'a> Table<'a> {
     /// Appends the undeclared columns to the declared ones: numeric columns, and text columns if they are kept.
     pub(super) fn complete(&mut self) -> Result<(), MetricsError> {
         let num_rows = self.rows.len();
-        for (name, mut other) in std::mem::take(&mut self.others) {
+        for (name, mut other) in std::mem::take(&mut self.undeclared) {
             self.count_cells(other.missing(num_rows, self.texts))?;
             other.pad(num_rows, self.texts);
             if !other.has_words {
@@ -164,7 +164,7 @@ impl<'a> Table<'a> {
 
     /// Whether the log has reached one of its overall limits.
     pub(super) fn is_full(&self) -> bool {
-        self.rows.len() == MAX_RECORDS || self.others.len() > MAX_COLUMNS || self.num_cells > MAX_CELLS
+        self.rows.len() == MAX_RECORDS || self.undeclared.len() > MAX_COLUMNS || self.num_cells > MAX_CELLS
     }
 
     fn count_cells(&mut self, more: u64) -> Result<(), MetricsError> {
@@ -181,14 +181,14 @@ impl<'a> Table<'a> {
 }
 
 impl Other {
-    /// Cells that padding to `num_rows` rows would add.
+    /// Number of cells that padding to `num_rows` rows would add.
     fn missing(&self, num_rows: usize, texts: Texts) -> u64 {
-        let here = match texts {
+        let present = match texts {
             _ if !self.has_words => self.numbers.len(),
             Texts::Keep => self.texts.ids().len(),
             Texts::Leave => num_rows,
         };
-        (num_rows - here) as u64
+        (num_rows - present) as u64
     }
 
     fn pad(&mut self, num_rows: usize, texts: Texts) {

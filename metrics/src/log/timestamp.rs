@@ -10,7 +10,7 @@ use crate::MetricsError;
 
 const EPOCH: DateTime = datetime(1970, 1, 1, 0, 0, 0, 0);
 
-/// A valid time stamp, year 1 to 9999, to the microsecond, without a time zone. Earlier ones compare as less.
+/// A valid time stamp in the years 1 to 9999, to the microsecond, without a time zone. Earlier time stamps compare as less.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Timestamp {
     /// Microseconds since 1 January 1970, in the time zone of the writer's clock.
@@ -18,7 +18,7 @@ pub struct Timestamp {
 }
 
 impl Timestamp {
-    /// The time stamp of a number of microseconds since 1970-01-01T00:00:00.
+    /// The time stamp at a number of microseconds since 1970-01-01T00:00:00.
     ///
     /// # Errors
     /// [`MetricsError::Timestamp`] outside the years 1 to 9999.
@@ -41,7 +41,7 @@ impl Timestamp {
         self.micros
     }
 
-    /// Seconds from `earlier` to `self`; negative if `self` is the earlier one.
+    /// Seconds from `earlier` to `self`; negative if `self` is earlier.
     pub fn seconds_since(self, earlier: Self) -> f64 {
         (self.micros - earlier.micros) as f64 / 1e6
     }
@@ -58,21 +58,30 @@ impl FromStr for Timestamp {
 
 impl fmt::Display for Timestamp {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let moment = moment(self.micros).expect("a stamp is of the years 1 to 9999");
+        let moment = moment(self.micros).expect("timestamps lie in the years 1 to 9999");
         write!(f, "{}", moment.strftime("%Y%m%dT%H%M%S.%6f"))
     }
 }
 
 fn parse(text: &str) -> Option<Timestamp> {
-    let (whole, fraction) = text.as_bytes().split_at_checked("YYYYMMDDTHHMMSS.".len())?;
-    if whole[8] != b'T' || whole[15] != b'.' || !(1..=6).contains(&fraction.len()) {
+    let (date_and_time, fraction) = text.as_bytes().split_at_checked("YYYYMMDDTHHMMSS.".len())?;
+    if date_and_time[8] != b'T' || date_and_time[15] != b'.' || !(1..=6).contains(&fraction.len()) {
         return None;
     }
-    let two = |at: usize| Some(number(&whole[at..at + 2])? as i8);
-    let year = number(&whole[..4]).filter(|year| *year >= 1)? as i16;
+    let two_digits = |at: usize| Some(number(&date_and_time[at..at + 2])? as i8);
+    let year = number(&date_and_time[..4]).filter(|year| *year >= 1)? as i16;
     // Missing digits are zeros.
     let nanos = (fraction.len()..9).fold(number(fraction)?, |nanos, _| nanos * 10) as i32;
-    let moment = DateTime::new(year, two(4)?, two(6)?, two(9)?, two(11)?, two(13)?, nanos).ok()?;
+    let moment = DateTime::new(
+        year,
+        two_digits(4)?,
+        two_digits(6)?,
+        two_digits(9)?,
+        two_digits(11)?,
+        two_digits(13)?,
+        nanos,
+    )
+    .ok()?;
     let micros = moment.duration_since(EPOCH).as_micros() as i64;
     Some(Timestamp { micros })
 }

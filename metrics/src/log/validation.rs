@@ -1,4 +1,4 @@
-//! Reads a log and checks the rules of the format: stops at the first fault, or lists them all.
+//! Reads a log and checks the rules of the format. Stops at the first fault, or lists them all.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -26,7 +26,7 @@ pub struct Validation {
     pub warnings: Vec<LogWarning>,
     /// Number of further warnings.
     pub more_warnings: u64,
-    /// What was checked.
+    /// Counts of the rows and files checked.
     pub counts: LogCounts,
 }
 
@@ -57,27 +57,27 @@ pub struct LogCounts {
     pub tasks: usize,
 }
 
-/// Checks a log by the rules of [`read_log`](crate::read_log), and lists every fault: numbers never fall within a file; every
-/// file has the same columns, those of the log's version; each experience has exactly one complete row, its last. Warns about
-/// departures from convention: task names that are not two words, unknown words in `scenario_info.json`, time stamps that run
-/// backwards, folders not named after the worker and the block of their rows, an unfinished last experience, and metrics
-/// without numbers.
+/// Checks a log by the rules of [`read_log`](crate::read_log), and lists every fault: numbers never fall within a file; every file
+/// has the same columns, those of the log's version; each experience has exactly one complete row, its last. Warns about
+/// departures from convention: task names that are not two words, missing or unknown words in `scenario_info.json`, missing
+/// experience numbers, time stamps that run backwards, folders not named after the worker and the block of their rows, an
+/// unfinished last experience, and metrics without numbers.
 pub fn validate_log(dir: impl AsRef<Path>) -> Validation {
     let dir = dir.as_ref();
     let mut check = Check::new(Faults::List(Listed::default()));
-    let ended = check.all(dir, Texts::Leave).err();
+    let fatal_error = check.all(dir, Texts::Leave).err();
     let mut listed = match check.faults {
         Faults::List(found) => found,
         Faults::Stop => Listed::default(),
     };
-    if let Some(error) = ended {
+    if let Some(error) = fatal_error {
         listed.add(error);
     }
     Validation {
         problems: listed.first,
-        more_problems: listed.more,
+        more_problems: listed.num_more,
         warnings: check.warnings.first,
-        more_warnings: check.warnings.more,
+        more_warnings: check.warnings.num_more,
         counts: check.counts,
     }
 }
@@ -101,7 +101,7 @@ impl Check {
         }
     }
 
-    /// The error is the first fault if reading stops there, else a problem that ends the check.
+    /// Reads and checks the whole log. The error is the first fault if reading stops there, otherwise a problem that ends the check.
     pub(super) fn all(&mut self, dir: &Path, texts: Texts) -> Result<Read, MetricsError> {
         let files = data_files::find(dir)?;
         self.counts.files = files.len();
@@ -122,8 +122,8 @@ impl Check {
         Ok((logger_info, scenario_info, table.rows))
     }
 
-    /// A broken rule that does not affect scores: a reader gets a warning with the same text.
-    fn breach(&mut self, fault: MetricsError) -> Result<(), MetricsError> {
+    /// Adds a broken rule that does not affect scores: a problem in validation, a warning with the same text in reading.
+    fn add_minor_fault(&mut self, fault: MetricsError) -> Result<(), MetricsError> {
         match self.faults {
             Faults::List(_) => self.faults.add(fault),
             Faults::Stop => {
@@ -135,7 +135,7 @@ impl Check {
 
     fn scenario_info(&mut self, dir: &Path) -> Result<ScenarioInfo, MetricsError> {
         let mut warnings = Vec::new();
-        let info = self.faults.sift(ScenarioInfo::read(dir, &mut warnings))?;
+        let info = self.faults.check(ScenarioInfo::read(dir, &mut warnings))?;
         if let (Some(info), Faults::List(_)) = (&info, &self.faults)
             && !warnings.contains(&LogWarning::NoScenarioInfo)
         {
@@ -158,7 +158,7 @@ impl Check {
         for path in files {
             match data_file::read(path, logger_info.metrics_columns(), table, &mut self.faults) {
                 Ok(header) => headers.push((path, header)),
-                // The log as a whole is too large: continuing is pointless.
+                // The log as a whole is too large, so continuing is pointless.
                 Err(error @ MetricsError::TooLarge { .. }) if table.is_full() => return Err(error),
                 Err(error) => self.faults.add(error)?,
             }
@@ -175,7 +175,7 @@ impl Check {
         };
         for (path, names) in &headers[1..] {
             if sorted(names) != sorted(expected) {
-                self.breach(MetricsError::ColumnsDiffer {
+                self.add_minor_fault(MetricsError::ColumnsDiffer {
                     path: path.to_path_buf(),
                     found: listed(names),
                     expected: listed(expected),
@@ -183,7 +183,7 @@ impl Check {
                 })?;
             }
         }
-        let has_subtype = expected.iter().any(|name| name == columns::SINCE_1_1);
+        let has_subtype = expected.iter().any(|name| name == columns::SUBTYPE_COLUMN);
         let version = logger_info.log_format_version();
         if has_subtype == (version == "1.0") {
             self.warnings.add(LogWarning::Version {
@@ -199,13 +199,13 @@ impl Check {
     fn order_in_files(&mut self, table: &Table<'_>) -> Result<(), MetricsError> {
         let rows = &table.rows;
         for (_, mut range) in table.files() {
-            let mut reported = false;
+            let mut is_reported = false;
             let Some(mut before) = range.next() else { continue };
             for row in range {
                 for (column, numbers) in [("block_num", rows.block_nums()), ("exp_num", rows.exp_nums())] {
                     if numbers[row] < numbers[before] {
-                        self.breach(MetricsError::NumberFalls {
-                            at: table.place(row),
+                        self.add_minor_fault(MetricsError::NumberFalls {
+                            at: table.line_of(row),
                             column,
                             found: numbers[row],
                             expected: numbers[before],
@@ -213,9 +213,9 @@ impl Check {
                     }
                 }
                 let stamps = rows.timestamps();
-                if stamps[row] < stamps[before] && !std::mem::replace(&mut reported, true) {
+                if stamps[row] < stamps[before] && !std::mem::replace(&mut is_reported, true) {
                     self.warnings.add(LogWarning::TimeRunsBack {
-                        at: table.place(row),
+                        at: table.line_of(row),
                         found: stamps[row],
                         before: stamps[before],
                     });
@@ -230,7 +230,7 @@ impl Check {
     fn folders(&mut self, dir: &Path, table: &Table<'_>) {
         let rows = &table.rows;
         for (path, mut range) in table.files() {
-            let place = |row: usize| {
+            let folder_key = |row: usize| {
                 (
                     rows.workers().ids()[row],
                     rows.block_nums()[row],
@@ -242,15 +242,15 @@ impl Check {
                 format!("{worker}/{}-{}", rows.block_nums()[row], rows.block_types()[row])
             };
             let folder = path.parent().and_then(|folder| folder.strip_prefix(dir).ok());
-            let is_there = |row: usize| folder == Some(Path::new(&expected(row)));
+            let is_in_place = |row: usize| folder == Some(Path::new(&expected(row)));
             let mut last = None;
             let stray = range.find(|&row| {
-                // Compares paths once for consecutive rows of one worker and block.
-                last.replace(place(row)) != Some(place(row)) && !is_there(row)
+                // Compares paths only once for consecutive rows of one worker and block.
+                last.replace(folder_key(row)) != Some(folder_key(row)) && !is_in_place(row)
             });
             if let Some(row) = stray {
                 self.warnings.add(LogWarning::OtherFolder {
-                    at: table.place(row),
+                    at: table.line_of(row),
                     expected: expected(row),
                 });
             }
@@ -271,22 +271,22 @@ impl Check {
             self.counts.experiences += 1;
             // An experience has at least one row.
             let first = experience[0] as usize;
-            let of_worker = |other: &&[u32]| key(other[0] as usize).0 == key(first).0;
-            let is_last = !experiences.peek().is_some_and(of_worker);
+            let is_same_worker = |other: &&[u32]| key(other[0] as usize).0 == key(first).0;
+            let is_last = !experiences.peek().is_some_and(is_same_worker);
             let is_complete = |&&row: &&u32| rows.exp_statuses()[row as usize] == ExpStatus::Complete;
             let (exp_num, worker) = (rows.exp_nums()[first], rows.workers().of(first).clone());
             match experience.iter().position(|row| is_complete(&row)) {
                 None if is_last => {
-                    let at = table.place(first);
+                    let at = table.line_of(first);
                     self.warnings.add(LogWarning::Unfinished { at, exp_num });
                 }
                 None => {
-                    let at = table.place(first);
-                    self.breach(MetricsError::NotCompleted { at, exp_num, worker })?;
+                    let at = table.line_of(first);
+                    self.add_minor_fault(MetricsError::NotCompleted { at, exp_num, worker })?;
                 }
                 Some(end) => {
                     if let Some(&after) = experience.get(end + 1) {
-                        let at = table.place(after as usize);
+                        let at = table.line_of(after as usize);
                         self.faults
                             .add(MetricsError::RowAfterComplete { at, exp_num, worker })?;
                     }
@@ -296,8 +296,8 @@ impl Check {
         Ok(())
     }
 
-    /// Checks that experience numbers increase by one, over all workers; gaps cause one warning per log, except where a
-    /// regime with a budget of decisions may leave numbers unused.
+    /// Checks that experience numbers increase by one, over all workers. Gaps cause one warning per log, except where a regime with
+    /// a budget of decisions may leave numbers unused.
     fn missing(&mut self, table: &Table<'_>, scenario: &ScenarioInfo) {
         let numbers = table.rows.exp_nums();
         let (blocks, tasks) = (table.rows.block_nums(), table.rows.task_names().ids());
@@ -316,7 +316,7 @@ impl Check {
             let missing = gaps.map(|(_, _, step)| step - 1).sum::<u64>() + step - 1;
             let [before, after] = [before, row].map(|row| numbers[row]);
             self.warnings.add(LogWarning::Missing {
-                at: table.place(row),
+                at: table.line_of(row),
                 before,
                 after,
                 missing,
@@ -324,8 +324,8 @@ impl Check {
         }
     }
 
-    /// Warns about declared metrics without any number, which cannot be scored; a reader checks only the metric that is
-    /// scored.
+    /// Warns about declared metrics without any number, which cannot be scored. Only for validation: when a log is scored, only the
+    /// scored metric matters.
     fn metrics(&mut self, table: &Table<'_>, declared: &[String]) {
         if matches!(self.faults, Faults::Stop) {
             return;
@@ -356,7 +356,7 @@ impl Check {
         let blocks = table.rows.block_nums();
         if let Some(row) = (1..blocks.len()).find(|&row| blocks[row] < blocks[row - 1]) {
             self.faults.add(MetricsError::BlockOrder {
-                at: table.place(order.map_or(row, |order| order[row] as usize)),
+                at: table.line_of(order.map_or(row, |order| order[row] as usize)),
                 found: blocks[row],
                 expected: blocks[row - 1],
             })?;
@@ -368,12 +368,12 @@ impl Check {
     /// Warns once about each unconventional name, in the order of the rows.
     fn task_names(&mut self, rows: &Rows) {
         let names = rows.task_names();
-        let mut odd: Vec<bool> = (names.values().iter())
+        let mut unreported: Vec<bool> = (names.values().iter())
             .map(|name| !is_conventional_task_name(name))
             .collect();
-        if odd.contains(&true) {
+        if unreported.contains(&true) {
             for &id in names.ids() {
-                if std::mem::take(&mut odd[id as usize]) {
+                if std::mem::take(&mut unreported[id as usize]) {
                     let found = names.values()[id as usize].clone();
                     self.warnings.add(LogWarning::TaskName { found });
                 }

@@ -12,8 +12,8 @@ use crate::LogLine;
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LogWarning {
-    /// A broken rule of the format that does not affect scores; the text is that of the [`MetricsError`](crate::MetricsError)
-    /// that validation lists.
+    /// A broken rule of the format that does not affect scores, with the text of the [`MetricsError`](crate::MetricsError) that
+    /// validation lists.
     #[error("{0}; scored as it is")]
     Breach(String),
     /// There is no `scenario_info.json`.
@@ -67,7 +67,7 @@ pub enum LogWarning {
         /// Number of the experience.
         exp_num: u64,
     },
-    /// Missing experience numbers: rows may have been lost.
+    /// Experience numbers are missing; rows may have been lost.
     #[error("{at}: found experience {after} after {before}, expected {}; numbers without a row: {missing}", before + 1)]
     Missing {
         /// File and line of the row after the first gap.
@@ -76,10 +76,10 @@ pub enum LogWarning {
         before: u64,
         /// The number after it.
         after: u64,
-        /// How many numbers are missing in total.
+        /// Number of missing numbers in total.
         missing: u64,
     },
-    /// A metrics column without a single number.
+    /// A metrics column contains no number.
     #[error(
         "column {}: found no number in any row, expected at least one; it cannot be scored",
         one_line(column)

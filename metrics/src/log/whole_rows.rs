@@ -8,8 +8,8 @@ use std::path::Path;
 
 use crate::{LogLine, MetricsError};
 
-/// Minimum number of tabs in a line that looks like a row: every row of any version has at least as many.
-const TABS_OF_A_ROW: usize = 8;
+/// Number of tabs from which a line looks like a row: no row has fewer.
+const MIN_ROW_TABS: usize = 8;
 
 /// The whole rows at the start of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -18,37 +18,39 @@ pub(super) struct WholeRows {
     pub(super) bytes: u64,
     /// Number of lines in them.
     pub(super) lines: u64,
-    /// Whether lines that look like rows follow: then the remainder is not a torn row, but a quote was never closed and
+    /// Whether the remainder contains lines that look like rows: then it is not a torn row, but a quote was never closed and
     /// swallowed the rows after it.
-    pub(super) swallowed: bool,
-    /// Whether lines that end with a lone carriage return follow: then the remainder is not a torn row either.
-    pub(super) returns: bool,
+    pub(super) rows_swallowed: bool,
+    /// Whether the remainder contains lines that end with a lone carriage return: then it is not a torn row either.
+    pub(super) lone_returns: bool,
 }
 
 impl WholeRows {
-    /// The fault to report for the remainder; what was read starts at line `first_line` of its file.
+    /// The fault to report for the remainder; `first_line` is the line of the file at which reading started.
     pub(super) fn fault(self, path: &Path, first_line: u64) -> MetricsError {
         let (path, line) = (path.to_owned(), first_line + self.lines);
-        let wrong = match self {
-            Self { swallowed: true, .. } => MetricsError::OpenQuote,
-            Self { returns: true, .. } => MetricsError::CarriageReturns,
+        let variant = match self {
+            Self {
+                rows_swallowed: true, ..
+            } => MetricsError::OpenQuote,
+            Self { lone_returns: true, .. } => MetricsError::CarriageReturns,
             _ => MetricsError::TornLastLine,
         };
-        wrong(LogLine { path, line })
+        variant(LogLine { path, line })
     }
 }
 
 #[derive(Clone, Copy, Default, PartialEq)]
-enum Place {
+enum State {
     #[default]
     CellStart,
     Cell,
     Quotes,
-    /// After a quote within quotes: it ends the cell, or is the first of two that encode one.
+    /// After a quote within quotes, which ends the cell, or is the first of two that encode one.
     QuoteInQuotes,
 }
 
-/// Reads to the end.
+/// Reads a file to its end, and finds its whole rows.
 pub(super) fn measure(mut file: impl BufRead) -> io::Result<WholeRows> {
     let mut found = WholeRows::default();
     let mut scan = Scan::default();
@@ -58,7 +60,7 @@ pub(super) fn measure(mut file: impl BufRead) -> io::Result<WholeRows> {
             return Ok(found);
         }
         for &byte in bytes {
-            scan.take(byte, &mut found);
+            scan.next_byte(byte, &mut found);
         }
         let num = bytes.len();
         file.consume(num);
@@ -67,39 +69,39 @@ pub(super) fn measure(mut file: impl BufRead) -> io::Result<WholeRows> {
 
 #[derive(Default)]
 struct Scan {
-    place: Place,
+    state: State,
     bytes: u64,
     lines: u64,
     /// Tabs since the start of the line.
     tabs: usize,
     /// Whether a line of this row has ended within quotes.
-    broken: bool,
+    has_open_line: bool,
     /// Whether the last byte was a carriage return outside quotes.
-    returned: bool,
+    after_return: bool,
 }
 
 impl Scan {
-    fn take(&mut self, byte: u8, found: &mut WholeRows) {
+    fn next_byte(&mut self, byte: u8, found: &mut WholeRows) {
         self.bytes += 1;
-        self.place = match (self.place, byte) {
-            (Place::Quotes, b'"') => Place::QuoteInQuotes,
-            (Place::Quotes, _) | (Place::CellStart | Place::QuoteInQuotes, b'"') => Place::Quotes,
-            (_, b'\t' | b'\n' | b'\r') => Place::CellStart,
-            _ => Place::Cell,
+        self.state = match (self.state, byte) {
+            (State::Quotes, b'"') => State::QuoteInQuotes,
+            (State::Quotes, _) | (State::CellStart | State::QuoteInQuotes, b'"') => State::Quotes,
+            (_, b'\t' | b'\n' | b'\r') => State::CellStart,
+            _ => State::Cell,
         };
-        found.returns |= self.returned && byte != b'\n';
-        self.returned = byte == b'\r' && self.place == Place::CellStart;
+        found.lone_returns |= self.after_return && byte != b'\n';
+        self.after_return = byte == b'\r' && self.state == State::CellStart;
         match byte {
             b'\t' => self.tabs += 1,
             b'\n' => {
                 self.lines += 1;
-                if self.place == Place::Quotes {
-                    found.swallowed |= self.broken && self.tabs >= TABS_OF_A_ROW;
-                    self.broken = true;
+                if self.state == State::Quotes {
+                    found.rows_swallowed |= self.has_open_line && self.tabs >= MIN_ROW_TABS;
+                    self.has_open_line = true;
                 } else {
                     (found.bytes, found.lines) = (self.bytes, self.lines);
-                    (found.swallowed, found.returns) = (false, false);
-                    self.broken = false;
+                    (found.rows_swallowed, found.lone_returns) = (false, false);
+                    self.has_open_line = false;
                 }
                 self.tabs = 0;
             }
@@ -117,7 +119,7 @@ mod tests {
         let check = |text: &str, bytes: u64, lines: u64| {
             let found = measure(text.as_bytes()).unwrap();
             assert_eq!(
-                (found.bytes, found.lines, found.swallowed),
+                (found.bytes, found.lines, found.rows_swallowed),
                 (bytes, lines, false),
                 "{text:?}"
             );
@@ -138,8 +140,12 @@ mod tests {
     #[test]
     fn quote_that_swallows_rows_is_not_a_torn_row() {
         let row = "0\t1\t2\t3\t4\t5\t6\t7\t8\n";
-        let check = |text: &str, swallowed: bool| {
-            assert_eq!(measure(text.as_bytes()).unwrap().swallowed, swallowed, "{text:?}");
+        let check = |text: &str, rows_swallowed: bool| {
+            assert_eq!(
+                measure(text.as_bytes()).unwrap().rows_swallowed,
+                rows_swallowed,
+                "{text:?}"
+            );
         };
         check(&format!("{row}0\t\"1\n{row}"), true);
         check(&format!("{row}0\t\"1\n{row}\"\n"), false);
@@ -149,12 +155,12 @@ mod tests {
 
     #[test]
     fn carriage_return_line_endings_are_not_a_torn_row() {
-        let check = |text: &str, returns: bool| {
-            assert_eq!(measure(text.as_bytes()).unwrap().returns, returns, "{text:?}");
+        let check = |text: &str, lone_returns: bool| {
+            assert_eq!(measure(text.as_bytes()).unwrap().lone_returns, lone_returns, "{text:?}");
         };
         check("a\tb\r0\t1\r", true);
         check("a\tb\r\n0\t1\r2\t3", true);
-        // The line feed was cut off, or will be read next.
+        // The line feed may have been cut off, or will be read next.
         check("a\tb\r", false);
         check("a\tb\r\n0\t1\r\n", false);
         check("a\t\"b\r0\"", false);

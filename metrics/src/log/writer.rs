@@ -1,4 +1,4 @@
-//! Writes a log in format 1.1: one directory, two info files, one data file per worker and block, one line per record.
+//! Writes a log in format 1.1: a directory with two info files and one data file per worker and block, with one line per record.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -13,13 +13,13 @@ use crate::log::BlockType;
 
 /// Writes records to a log directory, each flushed to the operating system as soon as it is written.
 ///
-/// The rules of the format are checked for every record: block and experience numbers never decrease, every record has the same
-/// metrics, a worker completes an experience once, and a worker's rows with one block number have one block type. Keeps
-/// one file open at a time, and syncs it to disk when it switches to the next: a power failure loses at most rows of
-/// the last block. A second writer to the directory is refused where the system can detect it.
+/// Checks the rules of the format for every record: block and experience numbers never decrease, every record has the same metrics,
+/// a worker completes an experience once, and a worker's rows of one experience in one block have one block type. Keeps one
+/// file open at a time, and syncs it to disk when it switches to the next, so that a power failure loses at most rows of the last
+/// block. A second writer to the directory is refused where the system can detect it.
 ///
 /// Before each record, and at the end, it checks that the directory and the files are still those that it wrote, with the same
-/// lengths: if one was removed, renamed, replaced or truncated in the meantime, it fails and never recreates anything.
+/// lengths. If one was removed, renamed, replaced or truncated in the meantime, it fails and does not recreate anything.
 #[derive(Debug)]
 pub struct LogWriter {
     folder: LogFolder,
@@ -41,7 +41,7 @@ pub(super) struct Progress {
     last_exp_num: u64,
     /// Workers that completed the last experience.
     completed_by: BTreeSet<String>,
-    /// The block in which each worker has rows of the last experience.
+    /// The block of each worker's last row of the last experience.
     begun_in: BTreeMap<String, (u64, BlockType)>,
 }
 
@@ -49,8 +49,8 @@ impl LogWriter {
     /// Starts a log in `dir`, conventionally `BASE/SCENARIO-TIMESTAMP`; creates the directory if necessary.
     ///
     /// # Errors
-    /// [`MetricsError::LogExists`] if the directory holds anything but the leftovers of an interrupted creation,
-    /// [`MetricsError::InUse`], [`MetricsError::Io`].
+    /// [`MetricsError::LogExists`] if the directory contains anything but the leftovers of an interrupted creation;
+    /// [`MetricsError::InUse`] if another writer is using it; [`MetricsError::Io`].
     pub fn create(
         dir: impl AsRef<Path>,
         logger_info: &LoggerInfo,
@@ -59,7 +59,7 @@ impl LogWriter {
         Self::begin(dir.as_ref(), logger_info, scenario_info, true)
     }
 
-    /// Like [`LogWriter::create`], without syncing to disk: for a log that is read at once and thrown away.
+    /// Like [`LogWriter::create`], but without syncing to disk, for a log that is read immediately and thrown away.
     ///
     /// # Errors
     /// Those of [`LogWriter::create`].
@@ -78,7 +78,7 @@ impl LogWriter {
         syncs: bool,
     ) -> Result<Self, MetricsError> {
         fs::create_dir_all(dir).map_err(MetricsError::io(dir, "make this directory"))?;
-        // Before anything is read or written: otherwise two simultaneous writers would both find the directory free.
+        // Locks before reading or writing anything; otherwise two simultaneous writers could both find the directory free.
         let folder = LogFolder::lock(dir)?;
         if !begun::is_free(dir)? {
             return Err(MetricsError::LogExists(dir.to_owned()));
@@ -90,7 +90,7 @@ impl LogWriter {
         Ok(Self { syncs, ..writer })
     }
 
-    /// Continues in a directory that holds these data files.
+    /// Continues in a directory with these data files.
     pub(super) fn with_progress(
         mut folder: LogFolder,
         logger_info: &LoggerInfo,
@@ -121,10 +121,9 @@ impl LogWriter {
     /// Writes one record as one line and flushes it.
     ///
     /// # Errors
-    /// [`MetricsError::Record`] if it breaks a rule of the format: then nothing is written, and the log continues as if this
-    /// had not been called. [`MetricsError::Io`] if the disk fails: a partial line is removed if possible.
-    /// [`MetricsError::FolderLost`] and [`MetricsError::FileLost`] if what was written so far is no longer there: then nothing
-    /// is written.
+    /// [`MetricsError::Record`] if the record breaks a rule of the format: nothing is written, and the log can continue.
+    /// [`MetricsError::Io`] if the disk fails: a partial line is removed if possible. [`MetricsError::FolderLost`] and
+    /// [`MetricsError::FileLost`] if earlier rows are no longer there: nothing is written.
     pub fn write(&mut self, record: &Record) -> Result<(), MetricsError> {
         check_cells(record)?;
         self.check_metrics(record)?;
@@ -135,8 +134,8 @@ impl LogWriter {
             .clone()
             .unwrap_or_else(|| columns::metric_columns(record));
         let line = columns::line(cells(record, &columns));
-        self.turn_to(record, &columns)?;
-        // The file just switched to.
+        self.switch_to(record, &columns)?;
+        // The file that was just opened, or was open already.
         if let Some(file) = &mut self.file {
             file.add_row(&self.folder, &line)?;
         }
@@ -147,25 +146,25 @@ impl LogWriter {
     /// Removes the last written block with its whole folder, as if it had never started.
     ///
     /// # Errors
-    /// [`MetricsError::Io`]; [`MetricsError::FolderLost`] if the log is no longer there.
+    /// [`MetricsError::Io`] if the files cannot be removed; [`MetricsError::FolderLost`] if the log is no longer there.
     pub fn withdraw_block(&mut self) -> Result<(), MetricsError> {
         self.check_folder()?;
         let Some(open) = self.file.take() else { return Ok(()) };
         let rows = self.dir().join(&open.inside);
         let folder = rows.parent().unwrap_or(&rows);
-        // The rows first: without them the log continues with this block, whatever else remains of it.
+        // The rows are removed first: without them the log continues with this block, whatever else remains of it.
         let removed = fs::remove_file(&rows).and_then(|()| fs::remove_dir_all(folder));
         removed.map_err(MetricsError::io(folder, "take back the block"))
     }
 
-    /// Ends the log: every record was flushed already; this syncs it to disk and checks that all of it is there.
+    /// Ends the log: syncs it to disk, and checks that all of it is there. Every record has already been flushed.
     ///
     /// # Errors
     /// [`MetricsError::Io`]; [`MetricsError::FolderLost`], [`MetricsError::FileLost`] and [`MetricsError::MissingFile`] if
     /// anything that was written is missing.
     pub fn finish(mut self) -> Result<(), MetricsError> {
         self.check_folder()?;
-        self.put_away()?;
+        self.close_file()?;
         self.folder.check_info_files()?;
         self.files
             .iter()
@@ -174,31 +173,31 @@ impl LogWriter {
 
     /// Opens or creates the file of a record's worker and block unless it is open already, and checks that everything is
     /// unchanged.
-    fn turn_to(&mut self, record: &Record, columns: &[String]) -> Result<(), MetricsError> {
+    fn switch_to(&mut self, record: &Record, columns: &[String]) -> Result<(), MetricsError> {
         let inside = data_path(&record.worker_id, record.block_num, record.block_type);
         let is_open = |open: &&BlockFile| open.inside == inside;
         let open = self.file.as_ref().filter(is_open);
-        if open.is_some_and(BlockFile::is_as_it_was_left) {
+        if open.is_some_and(BlockFile::is_unchanged) {
             return Ok(());
         }
         self.check_folder()?;
         if let Some(open) = open {
             return open.written.check(&self.folder, &inside);
         }
-        self.put_away()?;
-        // Checked again: the disk may have been slow, and nothing may be created in a directory that replaced ours.
+        self.close_file()?;
+        // Checks again, because the disk may have been slow, and nothing may be created in a directory that replaced ours.
         self.check_folder()?;
         let before = self.files.get(&inside).copied();
         let header = columns::line(columns::header(columns));
         let opened = BlockFile::open(&self.folder, inside.clone(), before, &header)?;
         self.files.remove(&inside);
         self.file = Some(opened);
-        // Checked again: if the directory was replaced in the meantime, the new files are in a different one.
+        // Checks again, because the new file is in a different directory if ours was replaced in the meantime.
         self.check_folder()
     }
 
     /// Closes the open file after syncing it to disk.
-    fn put_away(&mut self) -> Result<(), MetricsError> {
+    fn close_file(&mut self) -> Result<(), MetricsError> {
         let Some(open) = &self.file else { return Ok(()) };
         if self.syncs {
             open.sync(&self.folder)?;

@@ -1,4 +1,4 @@
-//! Clamping: performances outside a task's usual range are moved to its edge.
+//! Clamping: moves performances outside a task's usual range to its nearer end.
 
 use super::given_range;
 use crate::lifetime::Lifetime;
@@ -21,7 +21,7 @@ pub(crate) fn clamp(lifetime: &mut Lifetime, options: &Options) -> Result<(), Me
         };
         for regime in lifetime.all_regimes_mut().filter(|regime| regime.task_name == task) {
             for value in &mut regime.performance {
-                // The range is ordered: given ones were checked, quantiles are monotone.
+                // The range is ordered: given ranges were checked, and quantiles are monotone.
                 *value = value.max(range.min).min(range.max);
             }
         }

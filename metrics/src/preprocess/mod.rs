@@ -14,7 +14,7 @@ use crate::lifetime::Lifetime;
 use crate::{Anchors, DataRange, MetricsError, Options, VariantMode};
 
 /// The floor and ceiling of a task, under the name used for scoring; `None` if unknown, or if the ceiling is not above the
-/// floor: then nothing can be learned. If variants do not count, the lowest floor and the highest ceiling of its variants.
+/// floor, so that nothing can be learned. If variants do not count, the lowest floor and the highest ceiling of its variants.
 pub(crate) fn anchors(task: &str, options: &Options) -> Option<Anchors> {
     given_anchors(task, options).filter(|anchors| anchors.ceiling > anchors.floor)
 }
@@ -45,8 +45,8 @@ fn given_anchors(task: &str, options: &Options) -> Option<Anchors> {
     of_task.map(|(_, anchors)| anchors.clone()).reduce(hull)
 }
 
-/// The range given for a task, under the name used for scoring: if `data_range` is given, its range there, which must
-/// exist; otherwise its floor and ceiling, or `None` without these.
+/// The range given for a task, under the name used for scoring: its range in `data_range` if that option is given, and an error if
+/// the task is missing there; otherwise its floor and ceiling, or `None` if these are unknown.
 ///
 /// If variants do not count, the range of a task is the hull of its variants' ranges.
 pub(crate) fn given_range(

@@ -8,8 +8,8 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 use crate::Options;
 use crate::lifetime::Lifetime;
 
-/// Adds noise to every performance of the lifetime as scored, in normalised units; logged values and the experts' are
-/// unchanged.
+/// Adds noise, in normalised units, to every preprocessed performance of the lifetime. Logged values and the experts' performances
+/// are unchanged.
 ///
 /// The same seed gives the same noise on every machine. The reference uses `NumPy`'s generator, unseeded.
 pub(crate) fn disturb(lifetime: &mut Lifetime, options: &Options) {
@@ -24,7 +24,7 @@ pub(crate) fn disturb(lifetime: &mut Lifetime, options: &Options) {
 
 /// The Box–Muller method, using one of its two numbers.
 fn standard_normal(generator: &mut ChaCha8Rng) -> f64 {
-    // 53 bits each; the first in 0 (exclusive) to 1, so that its logarithm is finite.
+    // Uniform numbers of 53 bits; `radius` lies in 0 (exclusive) to 1, so that its logarithm is finite.
     let mut unit = || (generator.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
     let (radius, turn) = (1.0 - unit(), unit());
     libm::sqrt(-2.0 * libm::log(radius)) * libm::cos(2.0 * PI * turn)

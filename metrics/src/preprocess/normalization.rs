@@ -51,8 +51,8 @@ fn hull(values: impl Iterator<Item = f64>) -> DataRange {
     })
 }
 
-/// Share of the largest performance below which differences are rounding errors: a mean of a hundred equal numbers has a
-/// smaller error.
+/// Differences up to this share of the largest performance are rounding errors; a mean of a hundred equal numbers has a smaller
+/// one.
 const ROUNDING: f64 = 1e-12;
 
 fn stretch(values: &mut [f64], range: DataRange) {

@@ -1,4 +1,4 @@
-//! Smoothing with a moving window, with mirrored ends.
+//! Smoothing with a moving window over data with mirrored ends.
 
 use std::f64::consts::PI;
 
@@ -7,7 +7,7 @@ use crate::statistics::sum;
 use crate::{BlockType, Options, SmoothingMethod};
 
 /// Maximum default window length.
-const LONGEST_DEFAULT: usize = 100;
+const MAX_DEFAULT_LENGTH: usize = 100;
 
 /// Smooths learning regimes, evaluation regimes if requested, and every regime of the experts.
 pub(crate) fn smooth(lifetime: &mut Lifetime, options: &Options) {
@@ -23,9 +23,9 @@ pub(crate) fn smooth(lifetime: &mut Lifetime, options: &Options) {
     }
 }
 
-/// The values smoothed by a moving window; the length is kept.
+/// The values smoothed by a moving window; their number stays the same.
 ///
-/// `window_length`: in values; `None`, or one longer than the data, means a fifth of the data but at most 100. Windows shorter
+/// `window_length` counts values; `None`, or more values than there are, means a fifth of the data but at most 100. Windows shorter
 /// than 3 leave the data unchanged. Both ends are mirrored without repeating the last value. QUIRK: an even window reaches one
 /// value further back than ahead, an odd one two.
 pub(crate) fn smoothed(values: &[f64], window_length: Option<usize>, method: SmoothingMethod) -> Vec<f64> {
@@ -33,7 +33,7 @@ pub(crate) fn smoothed(values: &[f64], window_length: Option<usize>, method: Smo
     let fifth = (num as f64 * 0.2) as usize;
     let length = window_length
         .filter(|length| *length <= num)
-        .unwrap_or(fifth.min(LONGEST_DEFAULT));
+        .unwrap_or(fifth.min(MAX_DEFAULT_LENGTH));
     let weights = window(method, length);
     let total = sum(&weights);
     if length < 3 || total <= 0.0 {
@@ -53,23 +53,23 @@ pub(crate) fn smoothed(values: &[f64], window_length: Option<usize>, method: Smo
     moving_sums(&mirrored[start..start + num + length - 1], &shares)
 }
 
-/// Windows summed in parallel: enough independent sums to hide the latency of additions.
-const SIDE_BY_SIDE: usize = 16;
+/// Number of windows summed in parallel: enough independent sums to hide the latency of additions.
+const LANES: usize = 16;
 
 /// The weighted sum of each window, from the first position where it fits to the last.
 ///
 /// Each sum adds its values from the first to the last, so that its bits do not depend on its neighbours.
 fn moving_sums(values: &[f64], weights: &[f64]) -> Vec<f64> {
     let num = values.len() + 1 - weights.len();
-    let mut sums = Vec::with_capacity(num + SIDE_BY_SIDE);
-    while sums.len() + SIDE_BY_SIDE <= num {
-        let mut side = [0.0; SIDE_BY_SIDE];
-        for (part, weight) in values[sums.len()..].windows(SIDE_BY_SIDE).zip(weights) {
-            for (sum, value) in side.iter_mut().zip(part) {
+    let mut sums = Vec::with_capacity(num + LANES);
+    while sums.len() + LANES <= num {
+        let mut lanes = [0.0; LANES];
+        for (part, weight) in values[sums.len()..].windows(LANES).zip(weights) {
+            for (sum, value) in lanes.iter_mut().zip(part) {
                 *sum += value * weight;
             }
         }
-        sums.extend(side);
+        sums.extend(lanes);
     }
     for part in values[sums.len()..].windows(weights.len()) {
         sums.push(
@@ -86,15 +86,15 @@ fn window(method: SmoothingMethod, length: usize) -> Vec<f64> {
     let last = length.saturating_sub(1).max(1) as f64;
     let weight = |index: usize| {
         // From -last to last in steps of two.
-        let place = (2 * index) as f64 - last;
-        let turn = PI * place / last;
+        let position = (2 * index) as f64 - last;
+        let turn = PI * position / last;
         match method {
             SmoothingMethod::Flat | SmoothingMethod::Off => 1.0,
             SmoothingMethod::Hanning => 0.5 + 0.5 * libm::cos(turn),
             SmoothingMethod::Hamming => 0.54 + 0.46 * libm::cos(turn),
-            SmoothingMethod::Bartlett if place <= 0.0 => 1.0 + place / last,
-            SmoothingMethod::Bartlett => 1.0 - place / last,
-            SmoothingMethod::Blackman => 0.42 + 0.5 * libm::cos(turn) + 0.08 * libm::cos(2.0 * PI * place / last),
+            SmoothingMethod::Bartlett if position <= 0.0 => 1.0 + position / last,
+            SmoothingMethod::Bartlett => 1.0 - position / last,
+            SmoothingMethod::Blackman => 0.42 + 0.5 * libm::cos(turn) + 0.08 * libm::cos(2.0 * PI * position / last),
         }
     };
     (0..length).map(weight).collect()

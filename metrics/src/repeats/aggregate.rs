@@ -3,7 +3,7 @@
 use super::resample::Resample;
 use crate::statistics::{mean, median};
 
-/// How the scores of all runs and strata are aggregated. Same numbers as rliable 1.2, see `tests/oracles/`.
+/// How the scores of all runs and strata are aggregated. The numbers match rliable 1.2, see `tests/oracles/`.
 ///
 /// Mean and median weight strata equally. The interquartile mean weights scores equally, so if runs lack scores, strata with
 /// more scores count for more.
@@ -11,7 +11,7 @@ use crate::statistics::{mean, median};
 pub enum Aggregate {
     /// Mean of the strata's means. Sensitive to outliers.
     Mean,
-    /// Median of the strata's means. Ignores the other strata: nearly half of them may be 0.
+    /// Median of the strata's means. Insensitive to most strata: nearly half of the means may be 0 without changing it.
     Median,
     /// Mean of the middle half of all scores (interquartile mean): ⌊n/4⌋ are left out at either end. Recommended: robust to
     /// outliers, but still uses every stratum.
@@ -30,17 +30,17 @@ impl Aggregate {
     }
 }
 
-/// Mean without the lowest and the highest quarter, as `scipy.stats.trim_mean(scores, 0.25)`.
+/// Mean without the lowest and the highest quarter, like `scipy.stats.trim_mean(scores, 0.25)`.
 fn middle_mean(resample: &Resample) -> f64 {
     let num_drawn = resample.num_drawn();
-    let cut = num_drawn / 4;
-    let (first, end) = (cut, num_drawn - cut);
-    let (mut sum, mut place) = (0.0, 0);
+    let num_trimmed = num_drawn / 4;
+    let (first, end) = (num_trimmed, num_drawn - num_trimmed);
+    let (mut sum, mut position) = (0.0, 0);
     for (score, count) in resample.scores.iter().zip(&resample.counts) {
-        let next = place + u64::from(*count);
-        let counted = next.min(end).saturating_sub(place.max(first));
+        let next = position + u64::from(*count);
+        let counted = next.min(end).saturating_sub(position.max(first));
         sum += score * counted as f64;
-        place = next;
+        position = next;
     }
     sum / (end - first) as f64
 }

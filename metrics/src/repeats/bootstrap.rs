@@ -1,4 +1,4 @@
-//! Bootstrap options: number and method of resampling, and the intervals that result.
+//! Bootstrap options, such as the number and unit of resamples, and the intervals that result.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
@@ -53,15 +53,15 @@ impl BootstrapOptions {
             return wrong("confidence", self.confidence.to_string(), expected.to_owned());
         }
         let (resamples, confidence) = (self.resamples, self.confidence);
-        // At least one resample must lie outside at either end; otherwise the ends would be meaningless.
-        let least = (2.0 / (1.0 - confidence)).round().max(1.0);
-        if f64::from(resamples) < least {
-            let expected = format!("at least {least} for a confidence of {confidence}");
+        // At least one resample must lie beyond each end of the interval; otherwise the ends would be meaningless.
+        let min = (2.0 / (1.0 - confidence)).round().max(1.0);
+        if f64::from(resamples) < min {
+            let expected = format!("at least {min} for a confidence of {confidence}");
             return wrong("resamples", resamples.to_string(), expected);
         }
-        let most = (MAX_SCORES_DRAWN / num_scores.max(1) as u64).min(u64::from(MAX_RESAMPLES));
-        if u64::from(resamples) > most {
-            let expected = format!("at most {most} for {num_scores} scores");
+        let max = (MAX_SCORES_DRAWN / num_scores.max(1) as u64).min(u64::from(MAX_RESAMPLES));
+        if u64::from(resamples) > max {
+            let expected = format!("at most {max} for {num_scores} scores");
             return wrong("resamples", resamples.to_string(), expected);
         }
         Ok(())

@@ -15,7 +15,7 @@ pub(super) struct Contests {
 }
 
 impl Contests {
-    /// From two tables, for these strata.
+    /// Compares two tables in these strata.
     pub(super) fn new(a: &ScoreTable, b: &ScoreTable, strata: &[&str]) -> Self {
         Self {
             strata: strata.iter().map(|name| Contest::new(a, b, name)).collect(),
@@ -27,12 +27,12 @@ impl Contests {
     /// stratum has pairs.
     pub(super) fn probabilities(&self) -> Vec<Option<f64>> {
         let mut values = Vec::new();
-        self.put_probabilities(&mut values);
+        self.write_probabilities(&mut values);
         values
     }
 
     /// Like [`Self::probabilities`], but overwrites a list.
-    fn put_probabilities(&self, values: &mut Vec<Option<f64>>) {
+    fn write_probabilities(&self, values: &mut Vec<Option<f64>>) {
         values.clear();
         values.extend(self.strata.iter().map(Contest::probability));
         let known = values.iter().flatten();
@@ -40,16 +40,16 @@ impl Contests {
         values.push((num > 0).then(|| sum / num as f64));
     }
 
-    /// Intervals of the strata, followed by that of their mean. `None` for a stratum that resampling cannot vary, or that had no
-    /// pair in any resample.
+    /// Intervals of the strata, followed by the interval of their mean. `None` for a stratum that resampling cannot vary, or that
+    /// had no pair in any resample.
     pub(super) fn intervals(&mut self, options: &BootstrapOptions) -> Vec<Option<Interval>> {
         let resamples = options.resamples as usize;
         let mut drawn = vec![Vec::with_capacity(resamples); self.strata.len() + 1];
         let (mut values, mut rng) = (Vec::new(), options.rng());
-        // At worst six resamples in ten have no stratum: each agent draws a given run with a chance of at least 1 - 1/e.
+        // At most six resamples in ten have no pair in any stratum: each agent draws a given run with a chance of at least 1 - 1/e.
         while drawn[self.strata.len()].len() < resamples {
             self.draw(options.resampling, &mut rng);
-            self.put_probabilities(&mut values);
+            self.write_probabilities(&mut values);
             for (drawn, probability) in drawn.iter_mut().zip(&values) {
                 drawn.extend(*probability);
             }
@@ -62,28 +62,28 @@ impl Contests {
             .collect()
     }
 
-    /// Student's t intervals of the strata, followed by that of their mean, if an agent has few runs; within 0..=1. `None`
-    /// for a stratum in which an agent has one run.
+    /// Student's t intervals of the strata, followed by the interval of their mean, all clipped to 0..=1; `None` unless an agent has
+    /// few runs. A stratum in which an agent has only one run has no interval.
     pub(super) fn t_intervals(&mut self, confidence: f64) -> Option<Vec<Option<Interval>>> {
         if self.drawn.iter().all(|runs| runs.len() >= FEW_RUNS) {
             return None;
         }
-        self.take_each_once();
+        self.use_each_run_once();
         let values = self.probabilities();
         let mut left_out = vec![[vec![], vec![]]; values.len()];
         for agent in [0, 1] {
             for run in 0..self.drawn[agent].len() {
-                self.take_each_once();
+                self.use_each_run_once();
                 self.drawn[agent][run] = 0;
-                self.take_runs();
-                for (place, value) in self.probabilities().into_iter().enumerate() {
+                self.use_drawn_runs();
+                for (index, value) in self.probabilities().into_iter().enumerate() {
                     // A run without a score in a stratum does not count there.
-                    let scored = (self.strata.get(place)).is_none_or(|contest| contest.0[agent].has(run));
-                    left_out[place][agent].extend(value.filter(|_| scored));
+                    let scored = (self.strata.get(index)).is_none_or(|contest| contest.0[agent].has_score(run));
+                    left_out[index][agent].extend(value.filter(|_| scored));
                 }
             }
         }
-        self.take_each_once();
+        self.use_each_run_once();
         let interval = |(value, left_out): (Option<f64>, &[Vec<f64>; 2])| {
             let found = t_interval(value?, left_out, confidence)?;
             let (low, high) = (found.low.max(0.0), found.high.min(1.0));
@@ -92,15 +92,15 @@ impl Contests {
         Some(values.into_iter().zip(&left_out).map(interval).collect())
     }
 
-    fn take_each_once(&mut self) {
+    fn use_each_run_once(&mut self) {
         self.drawn.iter_mut().for_each(|runs| runs.fill(1));
-        self.take_runs();
+        self.use_drawn_runs();
     }
 
-    fn take_runs(&mut self) {
+    fn use_drawn_runs(&mut self) {
         for Contest(sides) in &mut self.strata {
             for (side, drawn) in sides.iter_mut().zip(&self.drawn) {
-                side.take(drawn);
+                side.use_runs(drawn);
             }
         }
     }
@@ -116,7 +116,7 @@ impl Contests {
                 for runs in &mut self.drawn {
                     draw_whole_runs(runs, rng);
                 }
-                self.take_runs();
+                self.use_drawn_runs();
             }
         }
     }
@@ -127,7 +127,7 @@ struct Contest([Side; 2]);
 
 /// One agent's runs.
 struct Side {
-    /// Each run with a score: its rank among the distinct scores of both agents, and its position in the table.
+    /// Each run with a score: its rank among the distinct scores of both agents, and its index in the table.
     runs: Vec<(u32, u32)>,
     /// Number of runs at each rank.
     counts: Vec<u32>,
@@ -138,10 +138,10 @@ struct Side {
 impl Contest {
     fn new(a: &ScoreTable, b: &ScoreTable, stratum: &str) -> Self {
         let (of_a, of_b) = (a.scored_runs(stratum), b.scored_runs(stratum));
-        let mut different: Vec<f64> = of_a.iter().chain(of_b).map(|(score, _)| *score).collect();
-        different.sort_by(f64::total_cmp);
-        different.dedup();
-        Self([of_a, of_b].map(|runs| Side::new(runs, &different)))
+        let mut distinct: Vec<f64> = of_a.iter().chain(of_b).map(|(score, _)| *score).collect();
+        distinct.sort_by(f64::total_cmp);
+        distinct.dedup();
+        Self([of_a, of_b].map(|runs| Side::new(runs, &distinct)))
     }
 
     fn varies(&self) -> bool {
@@ -162,11 +162,11 @@ impl Contest {
 }
 
 impl Side {
-    fn new(scored_runs: &[(f64, u32)], different: &[f64]) -> Self {
-        let rank = |score: f64| different.partition_point(|other| *other < score) as u32;
+    fn new(scored_runs: &[(f64, u32)], distinct: &[f64]) -> Self {
+        let rank = |score: f64| distinct.partition_point(|other| *other < score) as u32;
         let mut side = Self {
             runs: scored_runs.iter().map(|(score, run)| (rank(*score), *run)).collect(),
-            counts: vec![0; different.len()],
+            counts: vec![0; distinct.len()],
             num_drawn: scored_runs.len() as u64,
         };
         side.runs.iter().for_each(|(rank, _)| side.counts[*rank as usize] += 1);
@@ -174,7 +174,7 @@ impl Side {
     }
 
     /// Whether a run has a score.
-    fn has(&self, run: usize) -> bool {
+    fn has_score(&self, run: usize) -> bool {
         self.runs.iter().any(|(_, scored)| *scored as usize == run)
     }
 
@@ -189,7 +189,7 @@ impl Side {
     }
 
     /// Uses the runs drawn for all strata, if they have a score in this one.
-    fn take(&mut self, drawn: &[u32]) {
+    fn use_runs(&mut self, drawn: &[u32]) {
         self.counts.fill(0);
         self.num_drawn = 0;
         for (rank, run) in &self.runs {
@@ -231,7 +231,7 @@ mod tests {
         let b = ScoreTable::from_runs([("1", [("x", 1.0), ("y", 3.0)])]).unwrap();
         let mut contests = Contests::new(&a, &b, &["x", "y"]);
         for contest in &mut contests.strata {
-            contest.0[0].take(&[2, 0]);
+            contest.0[0].use_runs(&[2, 0]);
         }
         let found: Vec<Option<f64>> = contests.strata.iter().map(Contest::probability).collect();
         assert_eq!(found, [Some(1.0), None]);

@@ -15,15 +15,15 @@ pub struct Estimate {
     /// Its bootstrap interval; `None` if resampling cannot vary it, because there is only one run. See [`ScoreTable::caution`]
     /// for warnings to readers.
     pub interval: Option<Interval>,
-    /// Its interval by Student's t over runs, for two to nine runs, for which the bootstrap is too narrow; assumes normal
-    /// variation between runs. `None` for more runs, and for one. For a mean of runs that all have the same strata it is the
-    /// textbook interval; otherwise the jackknife gives the standard error.
+    /// Its Student's t interval over runs, which assumes normal variation between runs. Only for two to nine runs, for which the
+    /// bootstrap is too narrow. For a mean of runs that all have the same strata it is the textbook interval; otherwise the
+    /// jackknife gives the standard error.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub t_interval: Option<Interval>,
 }
 
 impl Estimate {
-    /// The recommended interval: Student's for few runs, else the bootstrap's.
+    /// The recommended interval: Student's t for few runs, otherwise the bootstrap.
     pub fn best_interval(&self) -> Option<Interval> {
         self.t_interval.or(self.interval)
     }
@@ -115,7 +115,7 @@ mod tests {
         }
     }
 
-    /// The exact numbers for this seed on every machine: if they change, the change breaks results.
+    /// A seed gives the same numbers on every machine. If these change, earlier results cannot be reproduced.
     #[test]
     fn intervals_are_reproducible() {
         let check = |resampling: Resampling, expected: (f64, f64)| {

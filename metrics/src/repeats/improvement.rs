@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::contest::Contests;
-use super::permutation::shared_out;
+use super::permutation::permutation_test;
 use super::score_table::wrong;
 use super::{BootstrapOptions, Estimate, ScoreTable};
 use crate::MetricsError;
@@ -15,7 +15,7 @@ pub struct Improvement {
     pub probability: Estimate,
     /// P-value of a permutation test: the share of ways to divide all runs between the two agents, as whole runs, in
     /// which the mean probability is at least as far from 0.5. Calling agents different at 0.05 or less is wrong for at
-    /// most 5 % of pairs of equal agents, whatever the correlation within runs. `None` for one run of each.
+    /// most 5 % of pairs of equal agents, whatever the correlation within runs. `None` if each agent has only one run.
     #[serde(default)]
     pub p_value: Option<f64>,
     /// The smallest possible p-value with this number of runs: 0.1 for three of each.
@@ -51,7 +51,7 @@ pub struct StratumImprovement {
 /// Time `O(resamples · scores)`.
 ///
 /// # Errors
-/// [`MetricsError::Scores`] if the tables have no stratum in common; [`MetricsError::BadOption`] as
+/// [`MetricsError::Scores`] if the tables have no stratum in common; [`MetricsError::BadOption`] as in
 /// [`estimate`](super::estimate()).
 ///
 /// # Example
@@ -92,11 +92,11 @@ pub fn probability_of_improvement(
     let intervals = varies.then(|| contests.intervals(options));
     let by_t = contests.t_intervals(options.confidence);
     let estimate = |k: usize| Estimate {
-        value: values[k].expect("before anything is drawn every stratum has pairs"),
+        value: values[k].expect("every stratum has pairs before resampling"),
         interval: intervals.as_ref().and_then(|intervals| intervals[k]),
         t_interval: by_t.as_ref().and_then(|intervals| intervals[k]),
     };
-    let shared_out = shared_out(a, b, &shared, options);
+    let permutation_test = permutation_test(a, b, &shared, options);
     let strata = shared.iter().enumerate().map(|(k, name)| StratumImprovement {
         stratum: (*name).to_owned(),
         probability: estimate(k),
@@ -108,8 +108,8 @@ pub fn probability_of_improvement(
     Ok(Improvement {
         strata: strata.collect(),
         probability: estimate(shared.len()),
-        p_value: shared_out.map(|shared| shared.p_value),
-        least_p_value: shared_out.map(|shared| shared.least),
+        p_value: permutation_test.map(|shared| shared.p_value),
+        least_p_value: permutation_test.map(|shared| shared.least),
         only_a: missing(a, b),
         only_b: missing(b, a),
     })
@@ -179,7 +179,7 @@ mod tests {
         assert_eq!((found.probability.value, found.probability.interval), (0.5, None));
     }
 
-    /// The exact numbers for this seed on every machine: if they change, the change breaks results.
+    /// A seed gives the same numbers on every machine. If these change, earlier results cannot be reproduced.
     #[test]
     fn intervals_are_reproducible() {
         let a = table(&[

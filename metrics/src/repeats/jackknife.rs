@@ -1,9 +1,9 @@
-//! Intervals by Student's t for few runs, with standard errors from the jackknife.
+//! Student's t intervals for few runs, with standard errors from the jackknife.
 
 use super::Interval;
 use super::student::student_reach;
 
-/// From this number of runs on, only bootstrap intervals are computed.
+/// With at least this many runs, only bootstrap intervals are computed.
 pub const FEW_RUNS: usize = 10;
 
 /// The jackknife's estimate of the variance, and its degrees of freedom, from the values with each run of one agent left out in
@@ -19,7 +19,7 @@ fn variance(left_out: &[f64]) -> (f64, f64) {
 }
 
 /// The interval around a value of one agent's runs, or of two agents' independent runs; `None` if an agent has only one run,
-/// whose variation is unknown. `left_out`: for each agent, the values with each of its runs left out in turn.
+/// whose variation is unknown. `left_out` are, for each agent, the values with each of its runs left out in turn.
 ///
 /// The degrees of freedom of two agents are those of Welch and Satterthwaite.
 pub(super) fn t_interval(value: f64, left_out: &[Vec<f64>], confidence: f64) -> Option<Interval> {
@@ -38,10 +38,10 @@ pub(super) fn t_interval(value: f64, left_out: &[Vec<f64>], confidence: f64) -> 
     } else {
         1.0
     };
-    let reach = student_reach(confidence, freedom) * variance.sqrt();
+    let half_width = student_reach(confidence, freedom) * variance.sqrt();
     Some(Interval {
-        low: value - reach,
-        high: value + reach,
+        low: value - half_width,
+        high: value + half_width,
     })
 }
 

@@ -1,4 +1,4 @@
-//! Permutation test: whether two agents differ at all.
+//! Permutation test of whether two agents differ at all.
 
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -6,15 +6,15 @@ use rand_chacha::rand_core::SeedableRng;
 
 use super::{BootstrapOptions, ScoreTable};
 
-/// Up to this number, all divisions of the runs are tried.
-const ALL_WAYS: u64 = 20_000;
+/// If there are at most this many divisions of the runs, all of them are tried.
+const MAX_EXHAUSTIVE: u64 = 20_000;
 
-/// Share of a probability by which sums in a different order may differ.
+/// Tolerance for rounding when the same terms are summed in a different order.
 const ROUNDING: f64 = 1e-12;
 
 /// The result of the test.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Shared {
+pub(super) struct PermutationResult {
     /// Share of divisions that differ at least as much as the observed one, which is included.
     pub(super) p_value: f64,
     /// The smallest possible p-value with this number of runs.
@@ -33,69 +33,69 @@ struct Pool {
 /// won pairs is at least as far from one half as observed. If the agents were equal, every division would be equally likely,
 /// whatever the correlation across strata: then the result is at most p with a chance of at most p.
 ///
-/// `None` for one run of each agent, which can only be swapped.
-pub(super) fn shared_out(
+/// `None` if each agent has only one run: these can only be swapped.
+pub(super) fn permutation_test(
     a: &ScoreTable,
     b: &ScoreTable,
     strata: &[&str],
     options: &BootstrapOptions,
-) -> Option<Shared> {
+) -> Option<PermutationResult> {
     let pool = Pool::new(a, b, strata);
     if pool.num_runs < 3 {
         return None;
     }
     let mut of_a: Vec<bool> = (0..pool.num_runs).map(|run| run < pool.num_of_a).collect();
     let found = pool.difference(&of_a);
-    let is_as_much = |difference: f64| difference >= found - ROUNDING;
-    let ways = ways(pool.num_runs as u64, pool.num_of_a as u64);
+    let is_as_extreme = |difference: f64| difference >= found - ROUNDING;
+    let num_divisions = num_divisions(pool.num_runs as u64, pool.num_of_a as u64);
     // Swapping the agents gives the same difference; if both have the same number of runs, that is another division.
     let twins = if 2 * pool.num_of_a == pool.num_runs { 2.0 } else { 1.0 };
-    let (as_much, all) = if let Some(ways) = ways {
-        let mut as_much = 0;
+    let (num_as_extreme, all) = if let Some(num_divisions) = num_divisions {
+        let mut num_as_extreme = 0;
         of_a.sort_unstable();
         loop {
-            as_much += u64::from(is_as_much(pool.difference(&of_a)));
-            if !next_way(&mut of_a) {
-                break (as_much, ways);
+            num_as_extreme += u64::from(is_as_extreme(pool.difference(&of_a)));
+            if !next_division(&mut of_a) {
+                break (num_as_extreme, num_divisions);
             }
         }
     } else {
         let mut rng = ChaCha8Rng::seed_from_u64(options.seed);
         // A different stream from the intervals' resamples.
         rng.set_stream(1);
-        let mut as_much = 1;
+        let mut num_as_extreme = 1;
         for _ in 0..options.resamples {
             shuffle(&mut of_a, &mut rng);
-            as_much += u64::from(is_as_much(pool.difference(&of_a)));
+            num_as_extreme += u64::from(is_as_extreme(pool.difference(&of_a)));
         }
-        (as_much, u64::from(options.resamples) + 1)
+        (num_as_extreme, u64::from(options.resamples) + 1)
     };
-    let least = ways.map_or(1.0 / all as f64, |ways| twins / ways as f64);
-    Some(Shared {
-        p_value: as_much as f64 / all as f64,
+    let least = num_divisions.map_or(1.0 / all as f64, |num_divisions| twins / num_divisions as f64);
+    Some(PermutationResult {
+        p_value: num_as_extreme as f64 / all as f64,
         least,
     })
 }
 
 /// The number of ways to choose `of_a` of `num_runs` runs; `None` if there are too many to try.
-fn ways(num_runs: u64, of_a: u64) -> Option<u64> {
-    let mut ways = 1_u64;
+fn num_divisions(num_runs: u64, of_a: u64) -> Option<u64> {
+    let mut num_divisions = 1_u64;
     for k in 1..=of_a.min(num_runs - of_a) {
-        ways = ways * (num_runs - k + 1) / k;
-        if ways > ALL_WAYS {
+        num_divisions = num_divisions * (num_runs - k + 1) / k;
+        if num_divisions > MAX_EXHAUSTIVE {
             return None;
         }
     }
-    Some(ways)
+    Some(num_divisions)
 }
 
 /// The next division in ascending order, from all of A's runs last to all first; false after the last.
-fn next_way(of_a: &mut [bool]) -> bool {
-    let Some(place) = (1..of_a.len()).rev().find(|&place| !of_a[place - 1] && of_a[place]) else {
+fn next_division(of_a: &mut [bool]) -> bool {
+    let Some(index) = (1..of_a.len()).rev().find(|&index| !of_a[index - 1] && of_a[index]) else {
         return false;
     };
-    of_a.swap(place - 1, place);
-    of_a[place + 1..].sort_unstable();
+    of_a.swap(index - 1, index);
+    of_a[index + 1..].sort_unstable();
     true
 }
 
@@ -179,7 +179,7 @@ mod tests {
     }
 
     fn check(a: &[&[f64]], b: &[&[f64]], p_value: f64, least: f64) {
-        let found = shared_out(&table(a), &table(b), &["0"], &BootstrapOptions::default()).unwrap();
+        let found = permutation_test(&table(a), &table(b), &["0"], &BootstrapOptions::default()).unwrap();
         assert!(
             (found.p_value - p_value).abs() < 1e-12 && (found.least - least).abs() < 1e-12,
             "{found:?}"
@@ -204,7 +204,7 @@ mod tests {
     fn many_divisions_are_sampled() {
         let runs: Vec<[f64; 1]> = (0..24).map(|run| [f64::from(run)]).collect();
         let runs: Vec<&[f64]> = runs.iter().map(|run| &run[..]).collect();
-        let found = shared_out(
+        let found = permutation_test(
             &table(&runs[12..]),
             &table(&runs[..12]),
             &["0"],
@@ -218,11 +218,14 @@ mod tests {
     fn every_division_occurs_once() {
         let mut way = [false, false, true, true];
         let mut seen = vec![way];
-        while next_way(&mut way) {
+        while next_division(&mut way) {
             seen.push(way);
         }
         seen.dedup();
-        assert_eq!(seen.len() as u64, ways(4, 2).unwrap());
-        assert_eq!((ways(10, 5), ways(10, 0), ways(40, 20)), (Some(252), Some(1), None));
+        assert_eq!(seen.len() as u64, num_divisions(4, 2).unwrap());
+        assert_eq!(
+            (num_divisions(10, 5), num_divisions(10, 0), num_divisions(40, 20)),
+            (Some(252), Some(1), None)
+        );
     }
 }

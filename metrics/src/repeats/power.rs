@@ -6,7 +6,7 @@ use super::student::student_reach;
 /// The significance level of a two-sided test: the chance of calling equal agents different.
 pub const POWER_LEVEL: f64 = 0.05;
 
-/// The default power.
+/// The power that [`lifetimes_for`] and [`smallest_effect`] aim for.
 pub const POWER_WANTED: f64 = 0.8;
 
 /// Maximum number of lifetimes per agent that the search considers.
@@ -19,8 +19,8 @@ const NUM_POINTS: usize = 48;
 const NUM_QUANTILES: usize = 64;
 
 /// The chance, 0..=1, that a two-sided Welch's t test at 5 % calls two agents different, if their lifetimes are independent and
-/// normally distributed with these standard deviations and with means that differ by `effect`. `lifetimes` are those of each
-/// agent. `None` for fewer than two lifetimes of either, or without any deviation.
+/// normally distributed with these standard deviations and with means that differ by `effect`. `lifetimes` are the numbers of
+/// lifetimes of the agents. `None` for fewer than two lifetimes of either agent, or if both deviations are 0.
 ///
 /// The difference of means is normal and independent of the two sample variances; given these, the chance follows from a normal
 /// distribution, and is integrated over their chi-squared distributions.
@@ -115,8 +115,9 @@ fn chi_squared(freedom: f64) -> Vec<(f64, f64)> {
 
 /// Quantiles of Student's t for all degrees of freedom that Welch's test can have.
 struct Quantiles {
-    /// One over the largest degrees of freedom, and the step to the next.
+    /// One over the largest degrees of freedom.
     first: f64,
+    /// The step from one point to the next.
     step: f64,
     values: Vec<f64>,
 }
@@ -127,7 +128,7 @@ impl Quantiles {
         let (first, last) = (1.0 / most, 1.0 / least);
         let step = (last - first) / NUM_QUANTILES as f64;
         let values =
-            (0..=NUM_QUANTILES).map(|place| student_reach(1.0 - POWER_LEVEL, 1.0 / (first + step * place as f64)));
+            (0..=NUM_QUANTILES).map(|index| student_reach(1.0 - POWER_LEVEL, 1.0 / (first + step * index as f64)));
         Self {
             first,
             step,
@@ -136,9 +137,9 @@ impl Quantiles {
     }
 
     fn at(&self, freedom: f64) -> f64 {
-        let place = ((1.0 / freedom - self.first) / self.step).clamp(0.0, NUM_QUANTILES as f64);
-        let below = (place.floor() as usize).min(NUM_QUANTILES - 1);
-        let share = place - below as f64;
+        let index = ((1.0 / freedom - self.first) / self.step).clamp(0.0, NUM_QUANTILES as f64);
+        let below = (index.floor() as usize).min(NUM_QUANTILES - 1);
+        let share = index - below as f64;
         self.values[below] + (self.values[below + 1] - self.values[below]) * share
     }
 }

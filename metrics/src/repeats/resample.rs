@@ -21,9 +21,9 @@ pub(super) struct Resample {
 /// A score of a stratum.
 #[derive(Clone, Copy)]
 struct Slot {
-    /// Position in `scores`.
-    position: u32,
-    /// Position of the run.
+    /// Index in `scores`.
+    index: u32,
+    /// Index of the run.
     run: u32,
 }
 
@@ -36,8 +36,8 @@ impl Resample {
         // The sort is stable: equal scores keep the order of strata, and within one the order of runs.
         all.sort_by(|(a, ..), (b, ..)| a.total_cmp(b));
         let mut strata: Vec<Vec<Slot>> = table.sorted().map(|sorted| Vec::with_capacity(sorted.len())).collect();
-        for (position, (_, stratum, run)) in (0..).zip(&all) {
-            strata[*stratum].push(Slot { position, run: *run });
+        for (index, (_, stratum, run)) in (0..).zip(&all) {
+            strata[*stratum].push(Slot { index, run: *run });
         }
         Self {
             counts: vec![1; all.len()],
@@ -50,7 +50,7 @@ impl Resample {
     /// Leaves out one run and counts every other run once; false if no score is left.
     pub(super) fn leave_out(&mut self, run: usize) -> bool {
         for slot in self.strata.iter().flatten() {
-            self.counts[slot.position as usize] = u32::from(slot.run as usize != run);
+            self.counts[slot.index as usize] = u32::from(slot.run as usize != run);
         }
         self.counts.iter().any(|count| *count > 0)
     }
@@ -70,7 +70,7 @@ impl Resample {
             let num_slots = slots.len() as u32;
             for _ in slots {
                 let slot = slots[rng.random_range(0..num_slots) as usize];
-                self.counts[slot.position as usize] += 1;
+                self.counts[slot.index as usize] += 1;
             }
         }
     }
@@ -82,7 +82,7 @@ impl Resample {
         loop {
             draw_whole_runs(&mut runs, rng);
             for slot in self.strata.iter().flatten() {
-                self.counts[slot.position as usize] = runs[slot.run as usize];
+                self.counts[slot.index as usize] = runs[slot.run as usize];
             }
             if self.counts.iter().any(|count| *count > 0) {
                 return;
@@ -100,8 +100,8 @@ impl Resample {
         self.strata.iter().filter_map(|slots| {
             let (mut sum, mut num_drawn) = (0.0, 0);
             for slot in slots {
-                let count = self.counts[slot.position as usize];
-                sum += self.scores[slot.position as usize] * f64::from(count);
+                let count = self.counts[slot.index as usize];
+                sum += self.scores[slot.index as usize] * f64::from(count);
                 num_drawn += count;
             }
             (num_drawn > 0).then(|| sum / f64::from(num_drawn))

@@ -1,4 +1,4 @@
-//! [`Resampling`]: what is drawn together in a resample.
+//! [`Resampling`]: the unit that a resample draws.
 
 use crate::choice::choice;
 
@@ -9,8 +9,8 @@ choice! {
         /// `Strata` if there is only one stratum. If runs lack scores, a stratum without any drawn score is left out of that
         /// resample.
         Runs = "runs",
-        /// In each stratum, independently, as many scores as it has. As in rliable; treats the scores of one run in
-        /// different strata as independent: if they are not, intervals are much too narrow.
+        /// The scores of each stratum, independently, as in rliable. Treats the scores of one run in different strata as
+        /// independent; if they are not, intervals are much too narrow.
         Strata = "strata",
     }
 }

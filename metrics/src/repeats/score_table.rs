@@ -16,7 +16,7 @@ pub const MAX_STRATA: usize = 10_000;
 pub const MAX_SCORES: usize = 1_000_000;
 
 /// Maximum number of names listed in a caution; the others are counted.
-const NAMES_SHOWN: usize = 5;
+const MAX_NAMES: usize = 5;
 
 /// Scores of repeated runs. A *stratum* is a task or a pair of tasks; a *run* is one lifetime of the agent, and may lack the
 /// score of a stratum.
@@ -43,7 +43,7 @@ const NAMES_SHOWN: usize = 5;
 #[derive(Debug, Clone, PartialEq)]
 pub struct ScoreTable {
     runs: IndexSet<String>,
-    /// Per stratum, each score with the position of its run, sorted by score.
+    /// Per stratum, each score with the index of its run, sorted by score.
     strata: IndexMap<String, Vec<(f64, u32)>>,
 }
 
@@ -70,10 +70,10 @@ impl ScoreTable {
             if !is_new {
                 return Err(wrong(format!("run {run:?}"), "it twice", "every run once"));
             }
-            within(table.runs.len(), "runs", MAX_RUNS)?;
+            check_limit(table.runs.len(), "runs", MAX_RUNS)?;
             for (stratum, score) in scores {
                 num_scores += 1;
-                within(num_scores, "scores", MAX_SCORES)?;
+                check_limit(num_scores, "scores", MAX_SCORES)?;
                 table.push(stratum.into(), score, &run, run_index as u32)?;
             }
         }
@@ -87,22 +87,22 @@ impl ScoreTable {
     }
 
     fn push(&mut self, stratum: String, score: f64, run: &str, run_index: u32) -> Result<(), MetricsError> {
-        let place = || format!("{stratum:?} of run {run:?}");
+        let location = || format!("{stratum:?} of run {run:?}");
         if !is_bounded(score) {
             return Err(wrong(
-                place(),
+                location(),
                 format!("{score:e}"),
                 "a number below 1e100 in magnitude",
             ));
         }
         // Runs are added one after the other, so a score of this run can only be the last.
-        let twice = self.strata.get(&stratum).and_then(|scores| scores.last());
-        if twice.is_some_and(|(_, last)| *last == run_index) {
-            return Err(wrong(place(), "two scores", "one"));
+        let last_score = self.strata.get(&stratum).and_then(|scores| scores.last());
+        if last_score.is_some_and(|(_, last)| *last == run_index) {
+            return Err(wrong(location(), "two scores", "one"));
         }
         // Zeros of either sign become one number, so that their order does not depend on the order of runs.
         self.strata.entry(stratum).or_default().push((score + 0.0, run_index));
-        within(self.strata.len(), "strata", MAX_STRATA)
+        check_limit(self.strata.len(), "strata", MAX_STRATA)
     }
 
     /// Number of runs.
@@ -120,18 +120,17 @@ impl ScoreTable {
         self.strata.keys().map(String::as_str)
     }
 
-    /// The scores of a stratum, sorted; `None` without such a stratum.
+    /// The scores of a stratum, sorted; `None` if there is no such stratum.
     pub fn scores(&self, stratum: &str) -> Option<impl Iterator<Item = f64>> {
         Some(self.strata.get(stratum)?.iter().map(|(score, _)| *score))
     }
 
-    /// The scores of a stratum with the positions of their runs, sorted by score; empty without such a stratum.
+    /// The scores of a stratum with the indices of their runs, sorted by score; empty if there is no such stratum.
     pub(super) fn scored_runs(&self, stratum: &str) -> &[(f64, u32)] {
         self.strata.get(stratum).map_or(&[], Vec::as_slice)
     }
 
-    /// A warning for readers of an interval: that there is none, or that it misses the variation of some strata, because only
-    /// one run scored them.
+    /// A warning for readers: there is no interval, or it misses the variation of some strata because only one run scored them.
     pub fn caution(&self, resampling: Resampling) -> Option<String> {
         if !self.varies(resampling) {
             let what = match resampling {
@@ -144,7 +143,7 @@ impl ScoreTable {
         if resampling == Resampling::Runs || single.is_empty() {
             return None;
         }
-        let named = driftworld_text::first_of(&single, NAMES_SHOWN);
+        let named = driftworld_text::first_of(&single, MAX_NAMES);
         Some(format!(
             "the interval is too narrow: only one run scored {named}, so its variance is unknown"
         ))
@@ -158,13 +157,13 @@ impl ScoreTable {
         }
     }
 
-    /// Per stratum, each score with the position of its run, sorted by score.
+    /// Per stratum, each score with the index of its run, sorted by score.
     pub(super) fn sorted(&self) -> impl Iterator<Item = &[(f64, u32)]> {
         self.strata.values().map(Vec::as_slice)
     }
 }
 
-fn within(found: usize, what: &str, limit: usize) -> Result<(), MetricsError> {
+fn check_limit(found: usize, what: &str, limit: usize) -> Result<(), MetricsError> {
     if found > limit {
         let (found, expected) = (format!("more than {limit} {what}"), format!("at most {limit}"));
         return Err(wrong("the table".to_owned(), found, expected));

@@ -1,7 +1,7 @@
 //! Student's t: the half-width of an interval of few runs, in standard errors.
 
-/// The number of standard errors within which Student's t lies with this confidence, on both sides. `confidence`: between 0 and
-/// 1. `freedom`: degrees of freedom, above 0 and not necessarily whole.
+/// The number of standard errors, on either side, within which Student's t lies with this confidence. `confidence` is between 0 and
+/// 1; `freedom`, the degrees of freedom, is above 0 and need not be whole.
 #[must_use]
 pub fn student_reach(confidence: f64, freedom: f64) -> f64 {
     let outside = |t: f64| incomplete_beta(freedom / (freedom + t * t), freedom / 2.0);
@@ -32,7 +32,7 @@ fn incomplete_beta(x: f64, a: f64) -> f64 {
     }
     let log_front = libm::lgamma(a + B) - libm::lgamma(a) - libm::lgamma(B) + a * libm::log(x) + B * libm::log1p(-x);
     let front = libm::exp(log_front);
-    // The fraction converges fast on this side of the mean.
+    // The fraction converges quickly on this side of the mean.
     if x < (a + 1.0) / (a + B + 2.0) {
         front * fraction(x, a, B) / a
     } else {
@@ -42,8 +42,8 @@ fn incomplete_beta(x: f64, a: f64) -> f64 {
 
 /// The continued fraction of the incomplete beta function, by Lentz's method.
 fn fraction(x: f64, a: f64, b: f64) -> f64 {
-    let away = |value: f64| if value.abs() < 1e-300 { 1e-300 } else { value };
-    let (mut c, mut d) = (1.0, 1.0 / away(1.0 - (a + b) * x / (a + 1.0)));
+    let nonzero = |value: f64| if value.abs() < 1e-300 { 1e-300 } else { value };
+    let (mut c, mut d) = (1.0, 1.0 / nonzero(1.0 - (a + b) * x / (a + 1.0)));
     let mut value = d;
     for step in 1..500 {
         let m = f64::from(step);
@@ -51,8 +51,8 @@ fn fraction(x: f64, a: f64, b: f64) -> f64 {
         let odd = -(a + m) * (a + b + m) * x / ((a + 2.0 * m) * (a + 2.0 * m + 1.0));
         let mut change = 1.0;
         for part in [even, odd] {
-            d = 1.0 / away(1.0 + part * d);
-            c = away(1.0 + part / c);
+            d = 1.0 / nonzero(1.0 + part * d);
+            c = nonzero(1.0 + part / c);
             change = c * d;
             value *= change;
         }

@@ -16,13 +16,13 @@ pub struct AsLogged {
     pub evaluation: Option<f64>,
 }
 
-/// Columns that show how good an agent is without scaling.
-const TELLING: [&str; 2] = ["reward", "success"];
+/// Columns that show an agent's performance without any scaling.
+const UNSCALED_COLUMNS: [&str; 2] = ["reward", "success"];
 
-/// The scored column, then `reward` and `success`; each once, and only if the log has it.
+/// Means of the scored column, then of `reward` and `success`, each once and only if the log has it.
 pub(crate) fn as_logged(log: &Log, options: &Options) -> Result<IndexMap<String, AsLogged>, MetricsError> {
     let mut found = IndexMap::new();
-    for column in std::iter::once(options.perf_measure.as_str()).chain(TELLING) {
+    for column in std::iter::once(options.perf_measure.as_str()).chain(UNSCALED_COLUMNS) {
         let Some(numbers) = log.rows.metric(column) else {
             continue;
         };

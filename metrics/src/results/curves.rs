@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Reached;
 use crate::BlockType;
-use crate::lifetime::{Lifetime, present};
+use crate::lifetime::{Lifetime, task_learned};
 use crate::statistics::mean;
 
 /// A point of an evaluation curve.
@@ -50,27 +50,27 @@ pub struct EvaluationCurve {
 
 /// The curve of each evaluated task, in the lifetime's order; `reached` must be from the same lifetime.
 pub(crate) fn curves(lifetime: &Lifetime, reached: &IndexMap<String, Reached>) -> IndexMap<String, EvaluationCurve> {
-    let courses = courses(lifetime);
+    let histories = histories(lifetime);
     let of_task = |(task, reached): (&String, &Reached)| {
-        let course = courses.get(task.as_str())?;
-        let curve = Curve::new(&course.evaluated, reached)?;
-        Some((task.clone(), curve.judged(course, reached)))
+        let history = histories.get(task.as_str())?;
+        let curve = Curve::new(&history.evaluated, reached)?;
+        Some((task.clone(), curve.measures(history, reached)))
     };
     reached.iter().filter_map(of_task).collect()
 }
 
 /// The evaluations and the learning of a task, by the number of learning experiences before.
 #[derive(Default)]
-struct Course {
+struct History {
     evaluated: Vec<usize>,
     /// The learning experiences in which it is present.
     present: Vec<usize>,
     /// Start of its first learning.
-    begins: Option<usize>,
+    first_learning: Option<usize>,
 }
 
-fn courses(lifetime: &Lifetime) -> HashMap<&str, Course> {
-    let mut found: HashMap<&str, Course> = HashMap::new();
+fn histories(lifetime: &Lifetime) -> HashMap<&str, History> {
+    let mut found: HashMap<&str, History> = HashMap::new();
     let mut learned = 0;
     for regime in lifetime.regimes() {
         match regime.block_type {
@@ -80,11 +80,11 @@ fn courses(lifetime: &Lifetime) -> HashMap<&str, Course> {
             BlockType::Test => {}
             BlockType::Train => {
                 for row in 0..regime.len() {
-                    let course = found.entry(present(regime, row)).or_default();
-                    course.present.push(learned + row);
+                    let history = found.entry(task_learned(regime, row)).or_default();
+                    history.present.push(learned + row);
                 }
                 for task in &regime.learns {
-                    found.entry(task).or_default().begins.get_or_insert(learned);
+                    found.entry(task).or_default().first_learning.get_or_insert(learned);
                 }
                 learned += regime.len();
             }
@@ -97,7 +97,7 @@ fn courses(lifetime: &Lifetime) -> HashMap<&str, Course> {
 struct Curve(Vec<CurvePoint>);
 
 impl Curve {
-    /// From evaluations after these numbers of learning experiences.
+    /// Builds a curve from evaluations after these numbers of learning experiences; `None` if there are none.
     fn new(learned: &[usize], reached: &Reached) -> Option<Self> {
         let scaled = |value: f64| reached.score(value).unwrap_or(value);
         let of_error = |error: f64| scaled(error) - scaled(0.0);
@@ -116,11 +116,11 @@ impl Curve {
         (!points.is_empty()).then_some(Self(points))
     }
 
-    fn judged(self, course: &Course, reached: &Reached) -> EvaluationCurve {
+    fn measures(self, history: &History, reached: &Reached) -> EvaluationCurve {
         let regrets: Option<Vec<f64>> = reached.expert.map(|expert| {
             let expert = reached.score(expert).unwrap_or(expert);
-            // In the middle of the experience.
-            let rows = course.present.iter();
+            // Takes the curve's height in the middle of each experience.
+            let rows = history.present.iter();
             rows.map(|row| expert - self.at(*row as f64 + 0.5)).collect()
         });
         let (forgetting, forgetting_error) = self.forgetting();
@@ -129,14 +129,14 @@ impl Curve {
             area: self.area(),
             forgetting,
             forgetting_error,
-            lag: self.lag(course.begins),
+            lag: self.lag(history.first_learning),
             regret: regrets.and_then(|regrets| mean(&regrets)),
-            num_present: course.present.len(),
+            num_present: history.present.len(),
             points: self.0,
         }
     }
 
-    /// Its height: linear between points, constant beyond.
+    /// The curve's height: linear between points, constant beyond them.
     fn at(&self, learned: f64) -> f64 {
         let after = self.0.partition_point(|point| point.learned as f64 <= learned);
         match (after.checked_sub(1).map(|before| self.0[before]), self.0.get(after)) {
@@ -171,25 +171,25 @@ impl Curve {
         (best.mean - last.mean, error.filter(|_| best.learned != last.learned))
     }
 
-    fn lag(&self, begins: Option<usize>) -> Option<f64> {
-        let begins = begins.unwrap_or(self.0[0].learned);
+    fn lag(&self, first_learning: Option<usize>) -> Option<f64> {
+        let first_learning = first_learning.unwrap_or(self.0[0].learned);
         // The level when learning began: the evaluation before, or else the first.
         let start = self
             .0
             .iter()
-            .take_while(|point| point.learned <= begins)
+            .take_while(|point| point.learned <= first_learning)
             .last()
             .unwrap_or(&self.0[0])
             .mean;
-        let after = || self.0.iter().filter(|point| point.learned > begins);
+        let after = || self.0.iter().filter(|point| point.learned > first_learning);
         let best = after().map(|point| point.mean).fold(start, f64::max);
         let half = f64::midpoint(start, best);
-        let mut before = (begins, start);
+        let mut before = (first_learning, start);
         for point in after() {
             if best > start && point.mean >= half {
                 let width = (point.learned - before.0) as f64;
                 let share = (half - before.1) / (point.mean - before.1);
-                return Some((before.0 - begins) as f64 + width * share);
+                return Some((before.0 - first_learning) as f64 + width * share);
             }
             before = (point.learned, point.mean);
         }

@@ -9,9 +9,9 @@ use crate::{Log, Options, VariantMode};
 /// The same quantity for a lifetime and for an expert.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct BesideExpert<T> {
-    /// The lifetime's.
+    /// The lifetime's value.
     pub lifetime: T,
-    /// The expert's.
+    /// The expert's value.
     pub expert: T,
 }
 
@@ -22,7 +22,7 @@ pub struct ExpertFit {
     pub run: String,
     /// The agents, from `agent` in `scenario_info.json`; `None` if either is not logged.
     pub agent: Option<BesideExpert<String>>,
-    /// Learning experiences of the task; in a drift those nearer to it.
+    /// Learning experiences of the task, including those of a drift that are nearer to it.
     pub learned: BesideExpert<usize>,
     /// Learning experiences before deployment, of any task: a lifetime and its experts should share them.
     pub before_deployment: BesideExpert<usize>,
@@ -30,7 +30,7 @@ pub struct ExpertFit {
     pub worlds: Option<BesideExpert<usize>>,
     /// Worlds that both learned in.
     pub shared_worlds: Option<usize>,
-    /// Differences as text; empty for an expert that is like for like as far as the logs say.
+    /// Differences as text; empty if the logs show none.
     pub differences: Vec<String>,
 }
 
@@ -41,11 +41,11 @@ pub(crate) fn expert_fits(log: &Log, lifetime: &Lifetime, options: &Options) -> 
         return IndexMap::new();
     }
     let budgets = budgets(log, lifetime, options);
-    let nothing = Budget::default();
+    let no_budget = Budget::default();
     let before = budgets.values().map(|own| own.before).sum();
     let agent = agent_of(log);
     let of_task = |task: &String| {
-        let own = budgets.get(task).unwrap_or(&nothing);
+        let own = budgets.get(task).unwrap_or(&no_budget);
         let runs = lifetime.experts_of(task).iter();
         let fits: Vec<ExpertFit> = runs.map(|run| fit(run, agent.as_ref(), own, before)).collect();
         // A task that is only evaluated is not learned in the lifetime, so there is nothing to compare.
@@ -65,10 +65,10 @@ fn fit(run: &SteRun, agent: Option<&String>, own: &Budget, before: usize) -> Exp
     let shared = worlds.map(|(own, expert)| own.intersection(expert).count());
     let found = ExpertFit {
         run: run.name.clone(),
-        agent: (agent.cloned().zip(run.agent.clone())).map(|(own, expert)| beside(own, expert)),
-        learned: beside(own.learned, expert.learned),
-        before_deployment: beside(before, expert.before),
-        worlds: worlds.map(|(own, expert)| beside(own.len(), expert.len())),
+        agent: (agent.cloned().zip(run.agent.clone())).map(|(own, expert)| pair(own, expert)),
+        learned: pair(own.learned, expert.learned),
+        before_deployment: pair(before, expert.before),
+        worlds: worlds.map(|(own, expert)| pair(own.len(), expert.len())),
         shared_worlds: shared,
         differences: Vec::new(),
     };
@@ -78,7 +78,7 @@ fn fit(run: &SteRun, agent: Option<&String>, own: &Budget, before: usize) -> Exp
     }
 }
 
-fn beside<T>(lifetime: T, expert: T) -> BesideExpert<T> {
+fn pair<T>(lifetime: T, expert: T) -> BesideExpert<T> {
     BesideExpert { lifetime, expert }
 }
 
@@ -115,8 +115,8 @@ fn differences(fit: &ExpertFit) -> Vec<String> {
     found
 }
 
-/// A sentence for each expert that is not like for like.
-pub(crate) fn unlike_experts(fits: &IndexMap<String, Vec<ExpertFit>>) -> Vec<String> {
+/// A sentence for each expert that is not comparable with the lifetime.
+pub(crate) fn incomparable_experts(fits: &IndexMap<String, Vec<ExpertFit>>) -> Vec<String> {
     let mut found = Vec::new();
     for (task, fits) in fits {
         for ExpertFit { run, differences, .. } in fits.iter().filter(|fit| !fit.differences.is_empty()) {

@@ -27,7 +27,7 @@ impl LifetimeMetrics {
     /// underscores. Returns the files in this order.
     ///
     /// # Errors
-    /// [`MetricsError::Io`]; [`MetricsError::BadOption`] for a name that is empty or has a `/` or `\`.
+    /// [`MetricsError::Io`]; [`MetricsError::BadOption`] for a name that is empty or contains `/` or `\`.
     pub fn save(&self, dir: impl AsRef<Path>, name: &str, settings: &Settings) -> Result<Vec<PathBuf>, MetricsError> {
         let mut saving = Saving::new(dir.as_ref(), name)?;
         write_json(saving.file("_metrics.json"), self)?;
@@ -81,18 +81,18 @@ impl<'a> Saving<'a> {
     }
 }
 
-/// Fields without a column: too long for a cell, and in the JSON anyway.
-const LEFT_OUT: [&str; 4] = ["normalization_data_range", "as_logged", "notes", "task_metrics"];
+/// Fields that get no column, because they are too long for a cell; the JSON contains them.
+const OMITTED: [&str; 4] = ["normalization_data_range", "as_logged", "notes", "task_metrics"];
 
-/// A row per lifetime, the log in the first column; a column for every value that any lifetime has.
+/// One row per lifetime, with the log in the first column, and a column for every value that any lifetime has.
 pub(super) fn lifetimes_tsv(lifetimes: &[LifetimeMetrics]) -> String {
     let rows = lifetimes
         .iter()
-        .map(|lifetime| serde_json::to_value(lifetime).expect("results always become JSON"));
+        .map(|lifetime| serde_json::to_value(lifetime).expect("results always serialise"));
     let rows: Vec<Value> = rows.collect();
     let names = rows.iter().filter_map(Value::as_object).flat_map(Map::keys);
     let mut columns = IndexSet::from(["run_id"]);
-    columns.extend(names.map(String::as_str).filter(|name| !LEFT_OUT.contains(name)));
+    columns.extend(names.map(String::as_str).filter(|name| !OMITTED.contains(name)));
     let mut text = line(&columns);
     for row in &rows {
         text.extend(line(columns.iter().map(|name| cell(&row[name]))));

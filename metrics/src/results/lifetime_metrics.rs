@@ -44,7 +44,7 @@ pub struct LifetimeMetrics {
     /// Range per task that was scaled to 1..=101; `null` without normalisation.
     pub normalization_data_range: Option<IndexMap<String, DataRange>>,
     /// Means of the columns as logged, by column: the scored one first, then `reward` and `success` if the log has them. These
-    /// are comparable between lifetimes, whatever each was scaled by.
+    /// can be compared between lifetimes, however these were scaled.
     #[serde(default)]
     pub as_logged: IndexMap<String, AsLogged>,
     /// Notes for readers of the values; in the JSON if there are any.
@@ -72,7 +72,7 @@ pub struct LifetimeMetrics {
     /// reference's fields.
     #[serde(default)]
     pub curves: IndexMap<String, EvaluationCurve>,
-    /// Warnings about tasks that were never learned, and about experts that are not like for like. Not in the JSON, which has
+    /// Warnings about tasks that were never learned, and about experts that are not comparable. Not in the JSON, which has
     /// the reference's fields.
     #[serde(default)]
     pub cautions: Vec<String>,
@@ -113,8 +113,8 @@ impl Serialize for LifetimeMetrics {
             Definitions::Published => number,
         };
         // As in the reference, requested values that could not be computed are null.
-        let asked = self.headlines.iter().map(|headline| (&*headline.name, None));
-        let mut lifetime: IndexMap<&str, Option<Value>> = asked.collect();
+        let requested = self.headlines.iter().map(|headline| (&*headline.name, None));
+        let mut lifetime: IndexMap<&str, Option<Value>> = requested.collect();
         for (name, value) in self.lifetime.iter() {
             let value = match value {
                 Value::Number(number) => Value::Number(rounded(*number)),
@@ -205,8 +205,8 @@ impl LifetimeMetrics {
 
     /// The lifetime's value of a metric, or of a contrast of transfer that was not requested.
     pub(super) fn number(&self, name: &str) -> Option<f64> {
-        let asked = self.lifetime.number(name);
-        asked.or_else(|| Some(self.null_bands.get(name)?.value))
+        let requested = self.lifetime.number(name);
+        requested.or_else(|| Some(self.null_bands.get(name)?.value))
     }
 
     /// The values of tasks, or of pairs of tasks, behind the lifetime's value of a metric, or of a contrast of transfer that
@@ -223,10 +223,10 @@ impl LifetimeMetrics {
 
     /// The headlines, including those that are shown although not requested.
     pub(super) fn shown_headlines(&self) -> Vec<Headline> {
-        let is_there = |name: &str| self.headlines.iter().any(|headline| headline.name == name);
+        let is_shown = |name: &str| self.headlines.iter().any(|headline| headline.name == name);
         let has_band = |name: &str| self.null_bands.contains_key(name);
         let mut contrasts: Vec<Headline> = crate::score::built_in_headlines();
-        contrasts.retain(|headline| has_band(&headline.name) && !is_there(&headline.name));
+        contrasts.retain(|headline| has_band(&headline.name) && !is_shown(&headline.name));
         let mut rows = Vec::new();
         for headline in &self.headlines {
             if headline.name.ends_with("_transfer_ratio") {
@@ -273,7 +273,7 @@ pub(crate) fn parts<'a>(
 /// A lifetime as JSON: the fields of [`LifetimeMetrics`], then `readings`, the row of each metric that has a value in the table
 /// of the lifetime; `null`, the null bands; `contrasts`, those of transfer between tasks if only ratios were requested;
 /// `reached`, the evaluation results of each task; `curves`, the measures of each evaluation curve; `cautions`, if
-/// there are any; and with experts `experts`, whether they are like for like.
+/// there are any; and `experts`, whether the experts are comparable, if there are any.
 #[derive(Debug, Clone, Serialize)]
 pub struct WholeLifetime<'a> {
     #[serde(flatten)]

@@ -14,7 +14,7 @@ pub enum Exchanged {
     Worlds,
     /// Rows by position in the evaluation: the log does not give their worlds, or no world is repeated.
     Positions,
-    /// By world if a world is repeated, else by position.
+    /// By world if a world is repeated, otherwise by position.
     WorldsAndPositions,
 }
 
@@ -37,11 +37,11 @@ pub struct NullBand {
     pub standard_error: Option<f64>,
 }
 
-/// Share of a value by which sums in a different order may differ.
+/// Relative tolerance for rounding when the same terms are summed in a different order.
 const ROUNDING: f64 = 1e-9;
 
 impl NullBand {
-    /// From the lifetime's value, and the permuted ones; `None` without any.
+    /// Builds the band from the lifetime's value and the permuted values; `None` if there are no permuted values.
     pub(crate) fn new(value: f64, permuted: &[f64], exchanged: Exchanged) -> Option<Self> {
         let (low, high) = (quantile(permuted, 0.025)?, quantile(permuted, 0.975)?);
         let slack = ROUNDING * value.abs().max(1.0);

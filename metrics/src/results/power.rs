@@ -21,7 +21,7 @@ pub struct MetricPower {
     /// The difference of means in question, in the metric's unit.
     pub effect: f64,
     /// The chance that the given lifetimes show that difference, 0..=1; `None` if the lifetimes do not vary: then no test is
-    /// possible, and the next two are `None`, too.
+    /// possible, and the next two are `None` as well.
     pub power: Option<f64>,
     /// Lifetimes per agent that show it with a chance of 80 %; `None` for more than 100,000.
     pub lifetimes_needed: Option<usize>,

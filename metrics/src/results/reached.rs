@@ -1,4 +1,5 @@
-//! The evaluation results of each task in the log's own unit, compared with the expert's level: whether it was learned at all.
+//! The evaluation results of each task in the log's own unit, and their comparison with the expert's level, which shows whether the
+//! task was learned at all.
 
 use std::collections::BTreeMap;
 
@@ -34,7 +35,7 @@ pub struct EvaluationCell {
 pub struct Reached {
     /// Every evaluation, in order.
     pub evaluations: Vec<EvaluationCell>,
-    /// Position in `evaluations` of the highest mean after the task was first learned; `None` without such an evaluation.
+    /// Index in `evaluations` of the highest mean after the task was first learned; `None` if there is no such evaluation.
     pub best: Option<usize>,
     /// The expert's level, averaged over its runs: its last evaluation of the task, or else the last tenth of its learning;
     /// without an expert the task's ceiling. `None` if neither is known.
@@ -42,7 +43,7 @@ pub struct Reached {
     /// The best evaluation as a share of the expert's level: both measured from the task's floor, or else the lower end of the
     /// given range, or else 0. `None` if one is missing, or the expert is not above that end.
     pub share: Option<f64>,
-    /// The same for the first evaluation after each time the task was learned, in order: how well it could still be learned.
+    /// Like `share`, for the first evaluation after each time the task was learned, in order: how well it could still be learned.
     /// Empty if there are no such shares.
     #[serde(default)]
     pub shares: Vec<f64>,
@@ -150,15 +151,15 @@ pub(crate) fn reached(log: &Log, lifetime: &Lifetime, options: &Options) -> Inde
         // Ranges that lack a task are refused where they are used.
         let range = given_range(task, lifetime, options).ok().flatten();
         let floor = (anchors.as_ref()).map_or(range.map_or(0.0, |range| range.min), |anchors| anchors.floor);
-        let part = |level: f64| {
+        let share_of_expert = |level: f64| {
             let expert = expert.filter(|expert| *expert > floor)?;
-            Some((level - floor) / (expert - floor)).filter(|part| part.is_finite())
+            Some((level - floor) / (expert - floor)).filter(|share_of_expert| share_of_expert.is_finite())
         };
         let mut reached = Reached {
-            best: best.map(|(place, _)| place),
+            best: best.map(|(index, _)| index),
             expert,
-            share: best.and_then(|(_, highest)| part(highest)),
-            shares: after_learning.into_iter().filter_map(part).collect(),
+            share: best.and_then(|(_, highest)| share_of_expert(highest)),
+            shares: after_learning.into_iter().filter_map(share_of_expert).collect(),
             floor: anchors.as_ref().map(|anchors| anchors.floor),
             ceiling,
             unlabelled: anchors.as_ref().and_then(|anchors| unlabelled(anchors, lifetime)),
@@ -176,9 +177,9 @@ pub(crate) fn reached(log: &Log, lifetime: &Lifetime, options: &Options) -> Inde
 
 /// The largest set of tasks that look alike and are all in the lifetime.
 fn unlabelled(anchors: &Anchors, lifetime: &Lifetime) -> Option<Unlabelled> {
-    let is_met = |set: &&Unlabelled| set.among.iter().all(|task| lifetime.tasks().contains(task));
-    let met = anchors.unlabelled.iter().filter(is_met);
-    met.max_by_key(|set| set.among.len()).cloned()
+    let is_complete = |set: &&Unlabelled| set.among.iter().all(|task| lifetime.tasks().contains(task));
+    let complete = anchors.unlabelled.iter().filter(is_complete);
+    complete.max_by_key(|set| set.among.len()).cloned()
 }
 
 /// Mean and standard error of an evaluation: each world counts once, by the mean of its rows.

@@ -28,7 +28,7 @@ pub enum Reading {
     Untested,
     /// Too few lifetimes for an interval.
     TooFew,
-    /// Based on negative performances, for which neither ratio nor contrast has a meaning.
+    /// Based on negative performances, for which neither ratio nor contrast is meaningful.
     Undefined,
 }
 
@@ -78,8 +78,8 @@ impl Reading {
             return Some(Self::Unclear);
         }
         let found = good.side(interval.low);
-        let is_denied = band.is_some_and(|band| band.reading(good) != found);
-        Some(if is_denied { Self::Unclear } else { found })
+        let band_disagrees = band.is_some_and(|band| band.reading(good) != found);
+        Some(if band_disagrees { Self::Unclear } else { found })
     }
 
     /// The reading in the metric's own words: `helps`, `forgets`, `mixed`, `no clear effect`.
@@ -175,12 +175,12 @@ mod tests {
 
         #[test]
         fn reading_depends_on_the_good_direction(band in any_band(), parts in proptest::collection::vec(-1.0..1.0, 0..6)) {
-            let turned = match Reading::of_lifetime(GOOD, Some(&band), &parts) {
+            let opposite = match Reading::of_lifetime(GOOD, Some(&band), &parts) {
                 Some(Reading::Good) => Some(Reading::Bad),
                 Some(Reading::Bad) => Some(Reading::Good),
                 other => other,
             };
-            prop_assert_eq!(Reading::of_lifetime(Direction::LowerThan(0.0), Some(&band), &parts), turned);
+            prop_assert_eq!(Reading::of_lifetime(Direction::LowerThan(0.0), Some(&band), &parts), opposite);
         }
 
         #[test]

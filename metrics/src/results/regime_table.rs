@@ -42,7 +42,7 @@ pub struct RegimeMetrics {
     pub block_subtype: BlockSubtype,
     /// The task.
     pub task_name: String,
-    /// Position among the regimes, from 0.
+    /// Index among the regimes.
     pub regime_num: usize,
     /// Parameters of its first row, as JSON.
     pub task_params: String,
@@ -124,7 +124,7 @@ pub(super) fn cell(value: &Value) -> String {
     match value {
         Value::Count(count) => count.to_string(),
         Value::Number(number) => format!("{number:?}"),
-        other => serde_json::to_string(other).expect("numbers and text always become JSON"),
+        other => serde_json::to_string(other).expect("numbers and text always serialise"),
     }
 }
 

@@ -79,7 +79,7 @@ pub struct ComparedMetric {
     pub values: [Estimate; 2],
 }
 
-/// Every metric that has a value in some lifetime, over all of them, in the order of the headlines.
+/// Aggregates every metric that has a value in some lifetime over all lifetimes, in the order of the headlines.
 ///
 /// Variation is analysed task by task: a task's values in the lifetimes are one stratum; for transfer, the first values
 /// of a pair of tasks; for a metric that has values for lifetimes only, those values.

@@ -28,7 +28,7 @@ pub enum Value {
 }
 
 impl Value {
-    /// Whether every number in it is finite. JSON cannot hold others.
+    /// Whether every number in it is finite. JSON cannot represent others.
     pub fn is_finite(&self) -> bool {
         match self {
             Self::Count(_) | Self::Counts(_) => true,

@@ -17,12 +17,12 @@ pub struct Assessment<'a> {
     tasks: IndexMap<String, Values>,
     whole: Values,
     /// Lifetime values that a metric set to a non-finite number; they are not aggregated from the tasks' values either.
-    none: IndexSet<String>,
+    non_finite: IndexSet<String>,
     /// Whether performances that differ only by rounding count as equal.
     pub(super) resolves_ties: bool,
 }
 
-/// Share of a performance by which sums of the same numbers in a different order may differ.
+/// Relative tolerance for rounding when the same numbers are summed in a different order.
 const ROUNDING: f64 = 1e-9;
 
 impl<'a> Assessment<'a> {
@@ -36,7 +36,7 @@ impl<'a> Assessment<'a> {
                 .map(|task| (task.clone(), Values::default()))
                 .collect(),
             whole: Values::default(),
-            none: IndexSet::new(),
+            non_finite: IndexSet::new(),
             resolves_ties: options.definitions == Definitions::Published,
         }
     }
@@ -63,12 +63,12 @@ impl<'a> Assessment<'a> {
         self.options
     }
 
-    /// Values of a regime by its number; `None` without such a regime.
+    /// Values of a regime by its number; `None` if there is no such regime.
     pub fn regime(&self, regime_num: usize) -> Option<&Values> {
         self.regimes.get(regime_num)
     }
 
-    /// Values of a task by its name; `None` without such a task.
+    /// Values of a task by its name; `None` if there is no such task.
     pub fn task(&self, task: &str) -> Option<&Values> {
         self.tasks.get(task)
     }
@@ -97,10 +97,10 @@ impl<'a> Assessment<'a> {
     pub fn set_lifetime(&mut self, name: &str, value: Option<impl Into<Value>>) {
         let Some(value) = value.map(Into::into) else { return };
         if value.is_finite() {
-            self.none.shift_remove(name);
+            self.non_finite.shift_remove(name);
             self.whole.set(name, value);
         } else {
-            self.none.insert(name.to_owned());
+            self.non_finite.insert(name.to_owned());
         }
     }
 
@@ -124,7 +124,7 @@ impl<'a> Assessment<'a> {
 
     /// If a headline has numbers for tasks but none for the lifetime, aggregates those, skipping missing ones.
     pub(super) fn aggregate_tasks(&mut self, name: &str) {
-        if self.whole.get(name).is_none() && !self.none.contains(name) {
+        if self.whole.get(name).is_none() && !self.non_finite.contains(name) {
             let numbers = self.tasks.values().filter_map(|values| values.number(name)).collect();
             self.set_lifetime(name, self.aggregate(numbers));
         }

@@ -9,7 +9,7 @@ use crate::{BlockType, MetricsError, Options};
 /// `avg_perf` of every regime; `avg_train_perf` and `avg_eval_perf` of every task, the means of its regimes' means, each with
 /// equal weight whatever its length.
 ///
-/// Wake evaluations of a lifetime with sleep blocks have none.
+/// Wake evaluations of a lifetime with sleep blocks have no `avg_perf`.
 pub(super) struct AveragePerformance;
 
 impl Metric for AveragePerformance {

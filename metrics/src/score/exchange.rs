@@ -28,17 +28,17 @@ type Bundle = Vec<Vec<usize>>;
 
 /// The unit of permutation: the scored task with the world, or with the position in the evaluation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-enum Place {
+enum Unit {
     World(World),
     Position(usize),
 }
 
 impl<'a> Evaluations<'a> {
-    /// From a lifetime and the log it was prepared from.
+    /// Collects the evaluations of a lifetime and of the log that it was prepared from.
     pub(super) fn of(log: &Log, lifetime: &'a Lifetime) -> Self {
         let worlds = worlds(log, lifetime);
-        let counts = |regime: &&Regime| regime.block_type == BlockType::Test && lifetime.is_assessed(regime);
-        let assessed: Vec<&Regime> = lifetime.regimes().iter().filter(counts).collect();
+        let is_counted = |regime: &&Regime| regime.block_type == BlockType::Test && lifetime.is_assessed(regime);
+        let assessed: Vec<&Regime> = lifetime.regimes().iter().filter(is_counted).collect();
         let mut regimes = Vec::new();
         let mut performance = Vec::new();
         for regime in assessed {
@@ -47,7 +47,7 @@ impl<'a> Evaluations<'a> {
             regimes.push((regime, first..performance.len()));
         }
         let groups = groups(&regimes, &worlds);
-        let by_world = |(_, place): &(&str, Place)| matches!(place, Place::World(_));
+        let by_world = |(_, unit): &(&str, Unit)| matches!(unit, Unit::World(_));
         let exchanged = match (groups.keys().any(by_world), groups.keys().all(by_world)) {
             (true, true) => Exchanged::Worlds,
             (true, false) => Exchanged::WorldsAndPositions,
@@ -97,7 +97,7 @@ impl<'a> Evaluations<'a> {
 fn groups<'a>(
     regimes: &[(&'a Regime, Range<usize>)],
     worlds: &[Vec<Option<World>>],
-) -> BTreeMap<(&'a str, Place), Vec<usize>> {
+) -> BTreeMap<(&'a str, Unit), Vec<usize>> {
     let mut regimes_of: HashMap<(&str, World), (usize, bool)> = HashMap::new();
     for (number, (regime, _)) in regimes.iter().enumerate() {
         for world in worlds[regime.regime_num].iter().flatten() {
@@ -105,15 +105,15 @@ fn groups<'a>(
             *recurs |= *first != number;
         }
     }
-    let mut groups: BTreeMap<(&str, Place), Vec<usize>> = BTreeMap::new();
+    let mut groups: BTreeMap<(&str, Unit), Vec<usize>> = BTreeMap::new();
     for (regime, rows) in regimes {
         let task = regime.task_name.as_str();
         let mut position = 0;
         for (row, world) in rows.clone().zip(&worlds[regime.regime_num]) {
             let recurring = world.filter(|world| regimes_of.get(&(task, *world)).is_some_and(|(_, recurs)| *recurs));
-            let place = recurring.map_or(Place::Position(position), Place::World);
+            let unit = recurring.map_or(Unit::Position(position), Unit::World);
             position += usize::from(recurring.is_none());
-            groups.entry((task, place)).or_default().push(row);
+            groups.entry((task, unit)).or_default().push(row);
         }
     }
     groups
@@ -121,16 +121,16 @@ fn groups<'a>(
 
 /// Bundles groups of one world, or of one position, that lie in the same blocks: an agent's luck in a world may be the same for
 /// several tasks, so these must move together.
-fn bundles(groups: BTreeMap<(&str, Place), Vec<usize>>, regimes: &[(&Regime, Range<usize>)]) -> Vec<Bundle> {
+fn bundles(groups: BTreeMap<(&str, Unit), Vec<usize>>, regimes: &[(&Regime, Range<usize>)]) -> Vec<Bundle> {
     let mut blocks = Vec::new();
     for (regime, rows) in regimes {
         blocks.extend(std::iter::repeat_n(regime.block_num, rows.len()));
     }
-    let mut bundles: BTreeMap<(Place, Vec<u64>), Bundle> = BTreeMap::new();
-    for ((_, place), rows) in groups {
-        let shared = match place {
-            Place::World(world) => Place::World(World { task: 0, ..world }),
-            Place::Position(_) => place,
+    let mut bundles: BTreeMap<(Unit, Vec<u64>), Bundle> = BTreeMap::new();
+    for ((_, unit), rows) in groups {
+        let shared = match unit {
+            Unit::World(world) => Unit::World(World { task: 0, ..world }),
+            Unit::Position(_) => unit,
         };
         let of_rows: Vec<u64> = rows.iter().map(|row| blocks[*row]).collect();
         if rows.len() > 1 {
@@ -217,7 +217,7 @@ mod tests {
         #[test]
         fn permuting_keeps_rewards_within_each_world(blocks in blocks(), seed in any::<u64>()) {
             let log = log_of(&blocks);
-            let lifetime = Lifetime::prepare(&log, &[], &options()).expect("rows that count");
+            let lifetime = Lifetime::prepare(&log, &[], &options()).expect("some rows are kept");
             let mut evaluations = Evaluations::of(&log, &lifetime);
             let before = evaluations.performance.clone();
             let evaluated = blocks.iter().filter(|(learns, ..)| !learns).map(|(_, _, rows)| rows.len());
@@ -237,7 +237,7 @@ mod tests {
         #[test]
         fn unpermuted_evaluations_give_the_lifetimes_terminal_performance(blocks in blocks()) {
             let log = log_of(&blocks);
-            let lifetime = Lifetime::prepare(&log, &[], &options()).expect("rows that count");
+            let lifetime = Lifetime::prepare(&log, &[], &options()).expect("some rows are kept");
             let scores = crate::score(&log, &[], &options()).expect("scores");
             let mut term_perfs = vec![f64::NAN; lifetime.regimes().len()];
             let evaluations = Evaluations::of(&log, &lifetime);

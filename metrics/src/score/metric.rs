@@ -4,7 +4,7 @@ use super::assessment::Assessment;
 use crate::results::Headline;
 use crate::{MetricsError, Options};
 
-/// A measure of a lifetime. The crate's own metrics implement this trait, too; a [`Scorer`](crate::Scorer) takes further ones.
+/// A measure of a lifetime. The crate's own metrics also implement this trait; a [`Scorer`](crate::Scorer) takes further ones.
 ///
 /// A metric reads the regimes of a preprocessed lifetime and the values of earlier metrics, and sets values: for regimes
 /// (columns of the regime table), for tasks (the numbers, and the lists behind them), for the lifetime. If it sets a headline
@@ -14,7 +14,7 @@ use crate::{MetricsError, Options};
 /// ```
 /// use driftworld_metrics::{Assessment, BlockType, Direction, Headline, Metric, MetricsError, Options};
 ///
-/// /// The worst that a task came to in an evaluation.
+/// /// The worst mean of an evaluation, for each task.
 /// struct WorstEvaluation;
 ///
 /// impl Metric for WorstEvaluation {
@@ -42,7 +42,7 @@ pub trait Metric: Send + Sync {
     /// Computes the metric.
     ///
     /// # Errors
-    /// If it cannot be computed although the lifetime has what it needs; a missing input is not an error, the value is then
-    /// left out. [`MetricsError::Metric`] is for errors of a user's metric.
+    /// Any error that keeps the metric from being computed; a user's metric returns [`MetricsError::Metric`]. A missing input is not
+    /// an error: the value is left out.
     fn judge(&self, assessment: &mut Assessment<'_>) -> Result<(), MetricsError>;
 }

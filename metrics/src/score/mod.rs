@@ -36,17 +36,17 @@ fn built_in() -> Vec<Box<dyn Metric>> {
     ]
 }
 
-/// The headlines of the metrics of this crate, whatever was requested.
+/// The headlines of this crate's metrics, including those that were not requested.
 pub(crate) fn built_in_headlines() -> Vec<Headline> {
     let metrics = built_in();
     metrics
         .iter()
-        .flat_map(|metric| metric.headlines(&all_asked()))
+        .flat_map(|metric| metric.headlines(&all_requested()))
         .collect()
 }
 
 /// Options that request every value.
-fn all_asked() -> Options {
+fn all_requested() -> Options {
     Options {
         maintenance_method: MaintenanceMethod::Both,
         transfer_method: TransferMethod::Both,

@@ -10,7 +10,7 @@ use crate::lifetime::{Lifetime, Regime, worlds};
 use crate::results::{NullBand, performance_error};
 use crate::{BlockType, Log, Options};
 
-/// How often the evaluations of a lifetime are permuted.
+/// Number of permutations of a lifetime's evaluations.
 pub const NULL_PERMUTATIONS: usize = 1000;
 
 /// Seed of the permutations; fixed, so that a lifetime gets the same bands wherever it is scored.
@@ -78,12 +78,12 @@ fn errors(log: &Log, lifetime: &Lifetime) -> Vec<(usize, Option<f64>)> {
     evaluated.map(error).collect()
 }
 
-/// With more evaluations, varying them one by one takes too long.
-const MOST_EVALUATIONS: usize = 2000;
+/// Maximum number of evaluations for a standard error; varying more of them one by one would take too long.
+const MAX_EVALUATIONS: usize = 2000;
 
 /// Propagates the evaluations' standard errors to the statistic, to first order.
 fn standard_error(statistic: &Statistic<'_>, term_perfs: &[f64], errors: &[(usize, Option<f64>)]) -> Option<f64> {
-    if errors.len() > MOST_EVALUATIONS {
+    if errors.len() > MAX_EVALUATIONS {
         return None;
     }
     let mut varied = term_perfs.to_vec();

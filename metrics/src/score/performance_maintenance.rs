@@ -1,4 +1,4 @@
-//! Performance maintenance: how much of what was learned is still there at later evaluations.
+//! Performance maintenance: how much of the performance after learning remains at later evaluations.
 
 use std::rc::Rc;
 
@@ -27,10 +27,10 @@ impl Metric for PerformanceMaintenance {
             Direction::HigherThan(0.0),
         );
         let method = options.maintenance_method;
-        let asked = [(method.has_mrlep(), mrlep), (method.has_mrtlp(), mrtlp)];
-        asked
+        let requested = [(method.has_mrlep(), mrlep), (method.has_mrtlp(), mrtlp)];
+        requested
             .into_iter()
-            .filter_map(|(is_asked, headline)| is_asked.then_some(headline))
+            .filter_map(|(is_requested, headline)| is_requested.then_some(headline))
             .collect()
     }
 
@@ -77,12 +77,12 @@ pub(super) fn statistics<'a>(lifetime: &Lifetime, options: &'a Options) -> Vec<S
     };
     let mrlep = statistic("perf_maintenance_mrlep", Difference::mrlep);
     let mrtlp = statistic("perf_maintenance_mrtlp", Difference::mrtlp);
-    let asked = [(method.has_mrlep(), mrlep), (method.has_mrtlp(), mrtlp)];
-    let asked = asked.into_iter().filter(|(is_asked, _)| *is_asked);
-    asked.map(|(_, statistic)| statistic).collect()
+    let requested = [(method.has_mrlep(), mrlep), (method.has_mrtlp(), mrtlp)];
+    let requested = requested.into_iter().filter(|(is_requested, _)| *is_requested);
+    requested.map(|(_, statistic)| statistic).collect()
 }
 
-/// An evaluation and what it is compared with, by their regime numbers.
+/// An evaluation and the regimes that it is compared with, by regime number.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Difference {
     evaluation: usize,
@@ -106,8 +106,8 @@ impl Difference {
 /// Compares each evaluation of a task with the one right after learning, in runs of consecutive regimes of the task.
 ///
 /// The first evaluation after each learning regime is its reference. Every later evaluation that is not a reference
-/// gives one difference of terminal performances; runs of such evaluations end where the task is learned again. Drifts
-/// whose `learns` names the task count as learning it.
+/// gives one difference of terminal performances; runs of such evaluations end where the task is learned again. A drift counts as
+/// learning the tasks in its `learns`.
 fn differences(lifetime: &Lifetime, task: &str) -> Vec<Vec<Difference>> {
     let mut found: Vec<Vec<Difference>> = Vec::new();
     // The most recent learning regime; whether its reference is still to come.

@@ -11,7 +11,7 @@ use crate::{Definitions, MetricsError, Options};
 /// Minus the Theil–Sen slope of a task's recovery times, in experiences per learning regime; positive if each recovery is
 /// faster than the last. `None` for fewer than two recovery times, that is, three learning regimes.
 ///
-/// QUIRK: if there is one recovery time in the whole lifetime, it is not listed. It is under the published definitions.
+/// QUIRK: if the whole lifetime has only one recovery time, it is not listed. Under the published definitions, it is.
 pub(super) struct PerformanceRecovery;
 
 const NAME: &str = "perf_recovery";
@@ -45,7 +45,7 @@ impl Metric for PerformanceRecovery {
 /// Recovery time, in experiences, of the second and every later wake learning regime of a task.
 ///
 /// The first index at which the regime reaches the terminal performance of the one before; its number of rows plus one if it
-/// never does. With `resolves_ties`, a performance that is lower only by rounding reaches it, too.
+/// never does. With `resolves_ties`, a performance that is lower only by rounding also reaches it.
 fn times_of(assessment: &Assessment<'_>, task: &str) -> Vec<f64> {
     let trained: Vec<_> = (assessment.lifetime().regimes_of(task))
         .filter(|regime| regime.is_wake_training())

@@ -10,7 +10,7 @@ use crate::statistics::{mean_of_known, trend_falls};
 use crate::{Definitions, MetricsError, Options, SteAveragingMethod};
 
 /// An agent below this share of the expert's saturation has not learned the task: its efficiency is 0.
-const LEAST_SATURATION: f64 = 0.2;
+const MIN_SATURATION_SHARE: f64 = 0.2;
 
 /// `sample_efficiency` of every task, the mean of its `sample_efficiency_vals`, and the numbers behind these.
 pub(super) struct SampleEfficiency;
@@ -28,9 +28,9 @@ impl Metric for SampleEfficiency {
 
     fn judge(&self, assessment: &mut Assessment<'_>) -> Result<(), MetricsError> {
         let mut of_tasks = Vec::new();
-        let is_given_up = is_given_up(assessment);
+        let is_left_out = is_left_out(assessment);
         for task in assessment.lifetime().tasks() {
-            let found = if is_given_up {
+            let found = if is_left_out {
                 Efficiency::default()
             } else {
                 of_task(assessment, task)
@@ -56,8 +56,8 @@ impl Metric for SampleEfficiency {
 }
 
 /// QUIRK: if a task was learned in experience 0 alone, the reference cannot fit a line to its performances and leaves the
-/// metric out for all tasks of the lifetime. Not so under the published definitions.
-fn is_given_up(assessment: &Assessment<'_>) -> bool {
+/// metric out for all tasks of the lifetime. Under the published definitions, it is computed.
+fn is_left_out(assessment: &Assessment<'_>) -> bool {
     let lifetime = assessment.lifetime();
     let without_line = |task: &String| {
         let (exp_nums, _) = lifetime.training_of(task);
@@ -100,8 +100,8 @@ fn of_task(assessment: &Assessment<'_>, task: &str) -> Efficiency {
     };
     for performances in expert_runs(experts, options.ste_averaging_method, per_experience) {
         let expert = peak_of(&performances);
-        let least = expert.value * LEAST_SATURATION - assessment.slack(&[expert.value]);
-        efficiency.compare(saturated, expert, falls || saturated.value < least);
+        let threshold = expert.value * MIN_SATURATION_SHARE - assessment.slack(&[expert.value]);
+        efficiency.compare(saturated, expert, falls || saturated.value < threshold);
     }
     // QUIRK: with one incomparable run, the task's own saturation is still listed; with an incomparable average, it is not.
     if options.ste_averaging_method == SteAveragingMethod::Time && efficiency.sample_efficiency_vals.is_empty() {

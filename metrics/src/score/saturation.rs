@@ -24,24 +24,24 @@ impl Metric for Saturation {
 pub(super) struct Peak {
     /// Largest smoothed performance.
     pub(super) value: f64,
-    /// Experiences before it, from 0.
+    /// Number of experiences before it.
     pub(super) experiences: usize,
 }
 
 /// Peak of one performance per experience; without experiences, 0 after 0.
 ///
 /// QUIRK: the data are smoothed again with a flat window of default length, on top of the preprocessing, whatever smoothing was
-/// chosen there. Not so under the published definitions.
+/// chosen there. Under the published definitions, they are not.
 ///
 /// Additions run in a fixed order, so the result is the same on every machine. If several windows tie in exact arithmetic,
 /// rounding decides which is the first maximum, and the reference's rounding may differ. With `resolves_ties`, the first
 /// within a billionth is taken.
 pub(super) fn peak(per_experience: &[f64], assessment: &Assessment<'_>) -> Peak {
-    let again;
+    let resmoothed;
     let values = match assessment.options().definitions {
         Definitions::Reference => {
-            again = smoothed(per_experience, None, SmoothingMethod::Flat);
-            &again
+            resmoothed = smoothed(per_experience, None, SmoothingMethod::Flat);
+            &resmoothed
         }
         Definitions::Published => per_experience,
     };

@@ -4,12 +4,12 @@ use indexmap::{IndexMap, IndexSet};
 
 use super::assessment::aggregate;
 use super::null_bands::{NullBands, null_bands};
-use super::{Assessment, Metric, all_asked, built_in, built_in_headlines};
+use super::{Assessment, Metric, all_requested, built_in, built_in_headlines};
 use crate::lifetime::{Lifetime, Regime, SteLog};
 use crate::preprocess::caution_of_scales;
 use crate::results::{
     Headline, LEARNED_SHARE, LifetimeMetrics, Reached, Reading, RegimeMetrics, Value, Values, as_logged, curves,
-    disagreements, expert_fits, is_regime_column, parts, reached, unlike_experts,
+    disagreements, expert_fits, incomparable_experts, is_regime_column, parts, reached,
 };
 use crate::{BlockType, Log, MetricsError, Options};
 
@@ -57,9 +57,9 @@ impl Scorer {
     /// [`MetricsError::BadOption`] for a headline that is empty, that another metric has, or that the result file uses for
     /// something else.
     pub fn with(mut self, metric: impl Metric + 'static) -> Result<Self, MetricsError> {
-        for headline in metric.headlines(&all_asked()) {
+        for headline in metric.headlines(&all_requested()) {
             let name = headline.name.into_owned();
-            let is_free = !name.is_empty() && !TAKEN.contains(&name.as_str());
+            let is_free = !name.is_empty() && !RESERVED.contains(&name.as_str());
             if !is_free || !self.headlines.insert(name.clone()) {
                 return Err(MetricsError::bad_option(
                     "headline of a metric",
@@ -96,10 +96,10 @@ impl Scorer {
         }
         let ties = decided_by_rounding(&assessment)?;
         let notes: Vec<String> = super::transfer::caution(&assessment).into_iter().collect();
-        let contrasts = super::transfer::contrasts_not_asked_for(&assessment);
+        let contrasts = super::transfer::contrasts_not_requested(&assessment);
         let null_bands = null_bands(log, lifetime, options, &assessment.term_perfs());
         let (regimes, tasks, found) = assessment.into_values();
-        check_names(&found, "the lifetime", |name| TAKEN.contains(&name))?;
+        check_names(&found, "the lifetime", |name| RESERVED.contains(&name))?;
         for (task, values) in &tasks {
             check_names(values, &format!("task {task:?}"), |name| EXTENT.contains(&name))?;
         }
@@ -116,7 +116,7 @@ impl Scorer {
         let reached = reached(log, lifetime, options);
         let expert_fits = expert_fits(log, lifetime, options);
         let mut cautions: Vec<String> = never_learned(&reached, &tasks, options).into_iter().collect();
-        cautions.extend(unlike_experts(&expert_fits));
+        cautions.extend(incomparable_experts(&expert_fits));
         cautions.extend(super::ste_relative_performance::caution(lifetime));
         cautions.extend(ties);
         cautions.extend(caution_of_scales(lifetime, options));
@@ -190,24 +190,28 @@ fn readings(
     all.into_iter().filter_map(reading).collect()
 }
 
-/// The caution about tasks that were never learned, in which there is nothing to retain; also gives maintenance without them.
+/// A caution about tasks that were never learned, which have nothing to retain; it also states the maintenance of the others.
 fn never_learned(
     reached: &IndexMap<String, Reached>,
     tasks: &IndexMap<String, Values>,
     options: &Options,
 ) -> Option<String> {
-    let is_not = |task: &str| reached.get(task).and_then(Reached::is_never_learned) == Some(true);
-    let not: Vec<&str> = tasks.keys().map(String::as_str).filter(|task| is_not(task)).collect();
-    if not.is_empty() {
+    let is_never_learned_task = |task: &str| reached.get(task).and_then(Reached::is_never_learned) == Some(true);
+    let never_learned_tasks: Vec<&str> = tasks
+        .keys()
+        .map(String::as_str)
+        .filter(|task| is_never_learned_task(task))
+        .collect();
+    if never_learned_tasks.is_empty() {
         return None;
     }
     let mut parts = vec![format!(
         "never learned (below {:.0}% of the expert): {}: their maintenance and transfer say nothing",
         100.0 * LEARNED_SHARE,
-        not.join(", ")
+        never_learned_tasks.join(", ")
     )];
     for name in ["perf_maintenance_mrlep", "perf_maintenance_mrtlp"] {
-        let learned = tasks.iter().filter(|(task, _)| !is_not(task));
+        let learned = tasks.iter().filter(|(task, _)| !is_never_learned_task(task));
         let values: Vec<f64> = learned.filter_map(|(_, values)| values.number(name)).collect();
         let has_any = tasks.values().any(|values| values.number(name).is_some());
         match aggregate(values, options) {
@@ -251,7 +255,7 @@ fn decided_by_rounding(found: &Assessment<'_>) -> Result<Option<String>, Metrics
 }
 
 /// Field names of the results that no headline and no value of a lifetime may use.
-const TAKEN: [&str; 22] = [
+const RESERVED: [&str; 22] = [
     "run_id",
     "complexity",
     "difficulty",
@@ -279,7 +283,7 @@ const TAKEN: [&str; 22] = [
 /// Field names of a task in the results that no value of a task may use.
 const EXTENT: [&str; 4] = ["min", "max", "num_lx", "num_ex"];
 
-/// Checks that no metric set a value whose name the results use for something else: it would occur twice.
+/// Checks that no metric set a value whose name the results use for something else; the name would occur twice.
 fn check_names(values: &Values, whose: &str, is_taken: impl Fn(&str) -> bool) -> Result<(), MetricsError> {
     match values.iter().find(|(name, _)| is_taken(name)) {
         Some((name, _)) => Err(MetricsError::bad_option(

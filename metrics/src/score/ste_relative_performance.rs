@@ -1,5 +1,5 @@
-//! Performance relative to a single-task expert: the rewards gathered while learning, as a share of those of an agent that has
-//! only this task to learn.
+//! Performance relative to a single-task expert: the rewards gathered while learning, divided by those of an agent that learns only
+//! this task.
 
 use super::assessment::Assessment;
 use super::metric::Metric;
@@ -27,9 +27,9 @@ impl Metric for SteRelativePerformance {
         let mut of_tasks = Vec::new();
         for task in lifetime.tasks() {
             let values = of_task(lifetime, task, assessment.options().ste_averaging_method);
-            let whole = mean_of_known(&values);
-            of_tasks.extend(whole);
-            assessment.set_task(task, NAME, whole);
+            let task_value = mean_of_known(&values);
+            of_tasks.extend(task_value);
+            assessment.set_task(task, NAME, task_value);
             assessment.set_task(task, "ste_rel_perf_vals", Some(with_gaps(&values)));
         }
         assessment.set_lifetime_of(NAME, of_tasks);
@@ -37,21 +37,21 @@ impl Metric for SteRelativePerformance {
     }
 }
 
-/// A caution about tasks in which the lifetime or an expert gathered 0 or less in total: a ratio is meaningless there,
-/// and of two losses the larger one looks better. The difference of the means is meaningful.
+/// A caution about tasks in which the lifetime or an expert gathered 0 or less in total. A ratio is meaningless there, and of two
+/// losses the larger one looks better; the caution states the difference of the means, which is meaningful.
 pub(super) fn caution(lifetime: &Lifetime) -> Option<String> {
     let mut found = Vec::new();
     for task in lifetime.tasks() {
         let (_, learning) = lifetime.training_of(task);
         let runs = lifetime.experts_of(task).iter().map(SteRun::training_performance);
-        // Over the shorter length, as in the ratio.
-        let both = runs.filter_map(|run| {
+        // Means over the shorter length, as in the ratio.
+        let pairs = runs.filter_map(|run| {
             let num = run.len().min(learning.len());
             Some((mean(&learning[..num])?, mean(&run[..num])?))
         });
-        let both: Vec<(f64, f64)> = both.collect();
-        if both.iter().any(|(own, expert)| *own <= 0.0 || *expert <= 0.0) {
-            let differences: Vec<f64> = both.iter().map(|(own, expert)| own - expert).collect();
+        let pairs: Vec<(f64, f64)> = pairs.collect();
+        if pairs.iter().any(|(own, expert)| *own <= 0.0 || *expert <= 0.0) {
+            let differences: Vec<f64> = pairs.iter().map(|(own, expert)| own - expert).collect();
             found.extend(mean(&differences).map(|difference| format!("{task} {difference:.3}")));
         }
     }
@@ -66,8 +66,9 @@ pub(super) fn caution(lifetime: &Lifetime) -> Option<String> {
 
 /// One value per run of the task's expert (`metrics`), or one for the average of all runs (`time`).
 ///
-/// Sum of the first n performances of the task's learning, over that of the expert's, n being the shorter length. Empty without
-/// experts or without learning. If a run sums to 0, the value is not finite; the mean skips NaN, as in the reference.
+/// Sum of the first n performances of the task's learning, divided by the sum of the expert's first n, where n is the shorter
+/// length. Empty without experts or without learning. If a run sums to 0, the value is not finite; the mean skips NaN, as in the
+/// reference.
 fn of_task(lifetime: &Lifetime, task: &str, averaging: SteAveragingMethod) -> Vec<f64> {
     let (_, learning) = lifetime.training_of(task);
     if learning.is_empty() {
@@ -99,7 +100,7 @@ pub(super) fn expert_runs(
     }
 }
 
-/// The runs cut to the shortest and averaged step by step; `None` without runs.
+/// The runs truncated to the shortest and averaged step by step; `None` if there are no runs.
 fn average_over_time(runs: &[SteRun]) -> Option<Vec<f64>> {
     let runs: Vec<Vec<f64>> = runs.iter().map(SteRun::training_performance).collect();
     let shortest = runs.iter().map(Vec::len).min()?;
@@ -135,13 +136,16 @@ mod tests {
             };
             let experts = [SteLog::new(log_of("expert", &[expert; 4])).expect("one task")];
             let found = crate::score(&log_of("life", &[own; 4]), &experts, &options).expect("scores");
-            let said = found.cautions.iter().find(|text| text.contains("ste_rel_perf"));
+            let caution_text = found.cautions.iter().find(|text| text.contains("ste_rel_perf"));
             match expected {
-                None => assert_eq!(said, None),
-                Some(end) => assert!(said.is_some_and(|said| said.ends_with(end)), "{said:?}"),
+                None => assert_eq!(caution_text, None),
+                Some(end) => assert!(
+                    caution_text.is_some_and(|caution_text| caution_text.ends_with(end)),
+                    "{caution_text:?}"
+                ),
             }
         };
-        // -20 over -10 is 2: twice the loss, and above 1.
+        // -20 divided by -10 is 2, which is above 1 although it is twice the loss.
         check(-20.0, -10.0, Some("in the mean: a_1 -10.000"));
         check(20.0, -10.0, Some("in the mean: a_1 30.000"));
         check(-20.0, 10.0, Some("in the mean: a_1 -30.000"));

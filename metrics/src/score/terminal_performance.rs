@@ -23,27 +23,27 @@ impl Metric for TerminalPerformance {
     }
 }
 
-/// The mean over the end of a regime, at least one experience, and the number of experiences before the end's middle.
+/// The mean over the end of a regime, which is at least one experience, and the number of experiences before the middle of the end.
 ///
-/// QUIRK: the end begins at the whole part of `(1 − 0.1) · n` in floating point. Under the published definitions it is the
-/// whole part of nine tenths. The two never differ below a million experiences, as a test shows.
+/// QUIRK: the end begins at `(1 − 0.1) · n` in floating point, rounded down. Under the published definitions it begins at nine
+/// tenths of n, rounded down. The two never differ below a million experiences, as a test shows.
 fn end(per_experience: &[f64], block_type: BlockType, definitions: Definitions) -> (f64, usize) {
     let num = per_experience.len();
     let (begin, experiences) = match (block_type, definitions) {
         (BlockType::Test, _) => (0, num / 2),
-        (BlockType::Train, Definitions::Reference) => reckoned_in_floating_point(num),
-        (BlockType::Train, Definitions::Published) => reckoned_in_whole_numbers(num),
+        (BlockType::Train, Definitions::Reference) => end_in_floating_point(num),
+        (BlockType::Train, Definitions::Published) => end_in_integers(num),
     };
     (mean(&per_experience[begin..]).unwrap_or(0.0), experiences)
 }
 
 /// Both products are below `num` and not negative.
-fn reckoned_in_floating_point(num: usize) -> (usize, usize) {
+fn end_in_floating_point(num: usize) -> (usize, usize) {
     let num = num as f64;
     (((1.0 - 0.1) * num) as usize, ((1.0 - 0.1 / 2.0) * num) as usize)
 }
 
-fn reckoned_in_whole_numbers(num: usize) -> (usize, usize) {
+fn end_in_integers(num: usize) -> (usize, usize) {
     (num * 9 / 10, num * 19 / 20)
 }
 
@@ -70,7 +70,7 @@ mod tests {
 
     #[test]
     fn floating_point_and_integer_ends_agree_below_a_million() {
-        let differ = (0..1_000_000).find(|num| reckoned_in_floating_point(*num) != reckoned_in_whole_numbers(*num));
+        let differ = (0..1_000_000).find(|num| end_in_floating_point(*num) != end_in_integers(*num));
         assert_eq!(differ, None);
     }
 }

@@ -22,7 +22,7 @@ pub(super) struct Transfer;
 impl Metric for Transfer {
     fn headlines(&self, options: &Options) -> Vec<Headline> {
         let mut headlines = Vec::new();
-        for measure in asked_for(options) {
+        for measure in requested(options) {
             for (name, others) in measure.names.into_iter().zip(["not learned yet", "learned before"]) {
                 let explanation = format!("does learning one task help others {others}? {}", measure.explanation);
                 headlines.push(Headline::new(
@@ -38,7 +38,7 @@ impl Metric for Transfer {
     fn judge(&self, assessment: &mut Assessment<'_>) -> Result<(), MetricsError> {
         let term_perfs = assessment.term_perfs();
         let gaps = gaps(assessment.lifetime(), assessment.options());
-        for measure in asked_for(assessment.options()) {
+        for measure in requested(assessment.options()) {
             for (name, gaps) in measure.names.iter().zip(&gaps) {
                 set(assessment, name, &pairs(gaps, &term_perfs, measure.compare));
             }
@@ -70,7 +70,7 @@ const RATIO: Measure = Measure {
     compare: ratio,
 };
 
-fn asked_for(options: &Options) -> impl Iterator<Item = Measure> + use<> {
+fn requested(options: &Options) -> impl Iterator<Item = Measure> + use<> {
     let method = options.transfer_method;
     let contrast = method.has_contrast().then_some(CONTRAST);
     contrast.into_iter().chain(method.has_ratio().then_some(RATIO))
@@ -99,12 +99,12 @@ pub(super) fn statistics<'a>(lifetime: &Lifetime, options: &'a Options) -> Vec<S
 pub(super) fn caution(assessment: &Assessment<'_>) -> Option<String> {
     let term_perfs = assessment.term_perfs();
     let gaps = gaps(assessment.lifetime(), assessment.options());
-    let least = (gaps.iter().flat_map(BTreeMap::values))
+    let lowest = (gaps.iter().flat_map(BTreeMap::values))
         .flat_map(|gap| [term_perfs[gap.before], term_perfs[gap.after]])
         .fold(f64::INFINITY, f64::min);
-    (least < 0.0).then(|| {
+    (lowest < 0.0).then(|| {
         format!(
-            "some performances are negative (down to {least:.4}): contrasts may lie outside -1 to 1, and a ratio \
+            "some performances are negative (down to {lowest:.4}): contrasts may lie outside -1 to 1, and a ratio \
              above 1 may be a loss; normalise performance (-n task) to interpret transfer"
         )
     })
@@ -115,8 +115,8 @@ pub(super) fn is_transfer(name: &str) -> bool {
     CONTRAST.names.contains(&name) || RATIO.names.contains(&name)
 }
 
-/// The contrasts of each task if only ratios are requested: they are shown all the same.
-pub(super) fn contrasts_not_asked_for(assessment: &Assessment<'_>) -> IndexMap<String, Values> {
+/// The contrasts of each task if only ratios are requested; results show them anyway.
+pub(super) fn contrasts_not_requested(assessment: &Assessment<'_>) -> IndexMap<String, Values> {
     if assessment.options().transfer_method.has_contrast() {
         return IndexMap::new();
     }
@@ -152,7 +152,7 @@ struct Gap<'a> {
     after: usize,
 }
 
-/// Gaps by the regime number of their later evaluation, and by the trained task where several may share one.
+/// Gaps by the regime number of their later evaluation, and by the index of the trained task where several may share an evaluation.
 type Gaps<'a> = BTreeMap<(usize, usize), Gap<'a>>;
 
 /// All gaps of a lifetime, forward and backward.
@@ -161,19 +161,19 @@ type Gaps<'a> = BTreeMap<(usize, usize), Gap<'a>>;
 /// of them contributed, but only the last pair in permutation order gets the value: tasks in the order in which they first
 /// appear among the assessed regimes. Under the published definitions, each of them gets the value.
 fn gaps<'a>(lifetime: &'a Lifetime, options: &Options) -> [Gaps<'a>; 2] {
-    let places = Places::of(lifetime);
+    let task_regimes = TaskRegimes::of(lifetime);
     let (mut forward, mut backward) = (Gaps::new(), Gaps::new());
-    for (index, (&trained, (learning, _))) in places.tasks.iter().enumerate() {
-        let who = match options.definitions {
+    for (index, (&trained, (learning, _))) in task_regimes.tasks.iter().enumerate() {
+        let slot = match options.definitions {
             Definitions::Reference => 0,
             Definitions::Published => index,
         };
-        for (&other, (learned, evaluated)) in places.tasks.iter().filter(|(other, _)| **other != trained) {
+        for (&other, (learned, evaluated)) in task_regimes.tasks.iter().filter(|(other, _)| **other != trained) {
             // A task that is never learned counts as learned after everything.
             let first_learned = learned.first().copied().unwrap_or(usize::MAX);
             for pair in evaluated.windows(2) {
                 // If the task was first learned in between, in a drift, the change is due to learning the task itself, not to transfer.
-                if pair[0] < first_learned && first_learned < pair[1] && places.drifts.contains(&first_learned) {
+                if pair[0] < first_learned && first_learned < pair[1] && task_regimes.drifts.contains(&first_learned) {
                     continue;
                 }
                 let gap = || Gap {
@@ -183,11 +183,11 @@ fn gaps<'a>(lifetime: &'a Lifetime, options: &Options) -> [Gaps<'a>; 2] {
                     after: pair[1],
                 };
                 let between = &learning[above(learning, pair[0])..above(learning, pair[1])];
-                if between.first().is_some_and(|place| *place < first_learned) {
-                    forward.insert((pair[1], who), gap());
+                if between.first().is_some_and(|regime_num| *regime_num < first_learned) {
+                    forward.insert((pair[1], slot), gap());
                 }
-                if between.last().is_some_and(|place| *place > first_learned) {
-                    backward.insert((pair[1], who), gap());
+                if between.last().is_some_and(|regime_num| *regime_num > first_learned) {
+                    backward.insert((pair[1], slot), gap());
                 }
             }
         }
@@ -195,20 +195,20 @@ fn gaps<'a>(lifetime: &'a Lifetime, options: &Options) -> [Gaps<'a>; 2] {
     [forward, backward]
 }
 
-/// Index of the first place after `limit`, in ascending places.
-fn above(places: &[usize], limit: usize) -> usize {
-    places.partition_point(|place| *place <= limit)
+/// Index of the first regime after `limit`, in ascending regime numbers.
+fn above(regime_nums: &[usize], limit: usize) -> usize {
+    regime_nums.partition_point(|regime_num| *regime_num <= limit)
 }
 
-/// Regime numbers of each task's learning and evaluation, ascending; tasks in order of appearance. Drifts count as learning
-/// the tasks in their `learns`.
-struct Places<'a> {
+/// Regime numbers of each task's learning and evaluation, ascending; tasks are in order of appearance. A drift counts as learning
+/// the tasks in its `learns`.
+struct TaskRegimes<'a> {
     tasks: IndexMap<&'a str, (Vec<usize>, Vec<usize>)>,
     /// Regime numbers of drifts.
     drifts: IndexSet<usize>,
 }
 
-impl<'a> Places<'a> {
+impl<'a> TaskRegimes<'a> {
     fn of(lifetime: &'a Lifetime) -> Self {
         let assessed = lifetime.regimes().iter().filter(|regime| lifetime.is_assessed(regime));
         let (mut tasks, mut drifts) = (IndexMap::<_, (Vec<_>, Vec<_>)>::new(), IndexSet::new());
@@ -233,12 +233,12 @@ impl<'a> Places<'a> {
 /// Compares the performance before with the one after.
 type Compare = fn(f64, f64) -> Option<f64>;
 
-/// After over before; `None` if before is 0.
+/// `after` divided by `before`; `None` if `before` is 0.
 fn ratio(before: f64, after: f64) -> Option<f64> {
     Some(after / before).filter(|value| value.is_finite())
 }
 
-/// Difference over sum; `None` if the sum is 0.
+/// The difference divided by the sum; `None` if the sum is 0.
 fn contrast(before: f64, after: f64) -> Option<f64> {
     Some((after - before) / (before + after)).filter(|value| value.is_finite())
 }
@@ -254,7 +254,7 @@ fn pairs<'a>(gaps: &Gaps<'a>, term_perfs: &[f64], compare: Compare) -> Pairs<'a>
     pairs
 }
 
-/// The evaluations before and after of each pair of tasks, in order.
+/// The evaluations before and after each gap of every pair of tasks, in order.
 fn by_pair(gaps: &Gaps<'_>) -> Vec<Vec<(usize, usize)>> {
     let mut pairs: IndexMap<(&str, &str), Vec<(usize, usize)>> = IndexMap::new();
     for gap in gaps.values() {

@@ -3,24 +3,24 @@
 use driftworld_metrics::LifetimeMetrics;
 use serde_json::{Number, Value};
 
-/// The reference adds in a different order; its values for lifetimes have ten decimals.
+/// The reference sums in a different order; its values for lifetimes have ten decimals.
 const TOLERANCE: f64 = 1e-9;
 
-/// Compares numbers within the tolerance, lists entry by entry; returns how many numbers were compared.
+/// Compares numbers within the tolerance, and lists and objects entry by entry; returns how many numbers were compared.
 pub(crate) fn compare(place: &str, found: &Value, expected: &Value) -> usize {
     // Differences of numbers around 100 lose precision by cancellation.
     compare_above(1.0, place, found, expected)
 }
 
-/// Like [`compare`], with a tolerance relative to each number, but at least to `least`.
-pub(crate) fn compare_above(least: f64, place: &str, found: &Value, expected: &Value) -> usize {
-    let compare = |place: String, found: &Value, expected: &Value| compare_above(least, &place, found, expected);
+/// Like [`compare`], with a tolerance relative to each number or to `min_scale`, whichever is larger.
+pub(crate) fn compare_above(min_scale: f64, place: &str, found: &Value, expected: &Value) -> usize {
+    let compare = |place: String, found: &Value, expected: &Value| compare_above(min_scale, &place, found, expected);
     match (found, expected) {
         (Value::Number(found), Value::Number(expected)) => {
             let number = |number: &Number| number.as_f64().expect("every number of a file is an f64");
             let (found, expected) = (number(found), number(expected));
-            let near = (found - expected).abs() <= TOLERANCE * expected.abs().max(least);
-            assert!(near, "{place}: found {found}, the reference has {expected}");
+            let is_near = (found - expected).abs() <= TOLERANCE * expected.abs().max(min_scale);
+            assert!(is_near, "{place}: found {found}, the reference has {expected}");
             1
         }
         (Value::Array(found), Value::Array(expected)) => {

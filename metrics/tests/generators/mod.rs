@@ -14,7 +14,7 @@ pub(crate) fn stamp(micros: i64) -> Timestamp {
 }
 
 /// Strings that are hard for tables.
-fn awkward() -> impl Strategy<Value = String> {
+fn awkward_text() -> impl Strategy<Value = String> {
     prop_oneof![
         "[a-z]{1,6}_[0-9]{1,3}",
         "\\PC{0,12}",
@@ -31,8 +31,11 @@ fn any_record() -> impl Strategy<Value = Record> {
         Just(f64::MIN_POSITIVE / 3.0),
         Just(-0.0),
     ];
-    let params = prop::collection::vec((awkward(), prop_oneof![Just(None), any::<i32>().prop_map(Some)]), 0..3);
-    let cells = (awkward(), params, "[0-9a-zA-Z_.-]{0,4}w", any::<[bool; 2]>());
+    let params = prop::collection::vec(
+        (awkward_text(), prop_oneof![Just(None), any::<i32>().prop_map(Some)]),
+        0..3,
+    );
+    let cells = (awkward_text(), params, "[0-9a-zA-Z_.-]{0,4}w", any::<[bool; 2]>());
     (cells, metric).prop_map(|((task_name, params, worker_id, choices), metric)| {
         let params = params.into_iter().map(|(key, value)| (key, value.into()));
         let block_type = if choices[0] { BlockType::Train } else { BlockType::Test };
@@ -48,8 +51,8 @@ fn any_record() -> impl Strategy<Value = Record> {
     })
 }
 
-/// A valid sequence of records: numbers stay or rise, sometimes by a lot, and a worker's experience ends with its complete row.
-/// Each has a time stamp of its own.
+/// A valid sequence of records: numbers stay the same or rise, sometimes by a lot, and a worker's experience ends with its complete
+/// row. Each record has a different time stamp.
 pub(crate) fn any_log() -> impl Strategy<Value = Vec<Record>> {
     let step = || prop_oneof![4 => Just(0_u64), 4 => Just(1), 1 => 2_u64..1_000_000];
     let rows = prop::collection::vec((any_record(), step(), step(), any::<bool>()), 1..10);

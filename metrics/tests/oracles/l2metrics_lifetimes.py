@@ -1,10 +1,10 @@
-"""Scores lifetimes drawn by chance with l2metrics; writes l2metrics_lifetimes.json beside this file.
+"""Scores random lifetimes with l2metrics; writes l2metrics_lifetimes.json beside this file.
 
 Usage: L2DATA=<empty folder> python l2metrics_lifetimes.py
 Made with l2metrics 3.1.0 and l2logger 1.8.2 under the versions that the JSON names.
 
-The lifetimes hold what the published example lacks: sleep, several workers, rows without a number, incomplete rows, tasks that are
-never trained or never evaluated, several tasks learned between two evaluations, regimes of one row.
+The lifetimes contain cases that the published example lacks: sleep, several workers, rows without a number, incomplete rows, tasks
+that are never trained or never evaluated, several tasks learned between two evaluations, regimes of one row.
 """
 
 import json
@@ -19,7 +19,7 @@ import numpy as np
 import pandas as pd
 import scipy
 
-np.NaN = np.nan  # l2metrics 3.1 was written before numpy 2 took this name away.
+np.NaN = np.nan  # l2metrics 3.1 uses this name, which numpy 2 removed.
 
 from l2metrics import util
 from l2metrics.report import MetricsReport
@@ -68,7 +68,7 @@ def write_log(folder, rows):
 
 
 def plain(value):
-    """What JSON can say; what could not be computed is left out."""
+    """The value in JSON's types; NaN becomes None, and entries that are None are left out."""
     if isinstance(value, dict):
         return {str(key): plain(entry) for key, entry in value.items() if plain(entry) is not None}
     if isinstance(value, (list, tuple, np.ndarray)):
@@ -108,7 +108,7 @@ def case(seed, base):
                         for k in range(chance.randint(3, 40))]
             experts.append(learning)
     options = options_of(chance)
-    # The reference keeps an expert under its task and variant, and finds none for a task without its variant.
+    # The reference stores an expert under its task and variant, and finds none for a task without a variant.
     shutil.rmtree(Path(os.environ["L2DATA"]) / "taskinfo", ignore_errors=True)
     if options["variant_mode"] == "agnostic":
         experts = []
@@ -141,7 +141,7 @@ for seed in range(30):
     with tempfile.TemporaryDirectory() as base:
         try:
             cases.append(case(seed, Path(base)))
-        except Exception as error:  # The reference stumbles over some lifetimes; those are no oracle.
+        except Exception as error:  # The reference fails for some lifetimes, which are left out.
             refused.append([seed, f"{type(error).__name__}: {error}"])
 
 made_with = f"numpy {np.__version__}, pandas {pd.__version__}, scipy {scipy.__version__}"

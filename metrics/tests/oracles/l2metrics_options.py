@@ -12,7 +12,7 @@ import numpy as np
 import pandas as pd
 import scipy
 
-np.NaN = np.nan  # l2metrics 3.1 was written before numpy 2 took this name away.
+np.NaN = np.nan  # l2metrics 3.1 uses this name, which numpy 2 removed.
 
 from l2metrics import util
 from l2metrics.report import MetricsReport

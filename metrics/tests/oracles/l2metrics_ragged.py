@@ -1,14 +1,14 @@
-"""Scores ragged lifetimes drawn by chance with l2metrics; writes l2metrics_ragged.json.gz beside this file.
+"""Scores random ragged lifetimes with l2metrics; writes l2metrics_ragged.json.gz beside this file.
 
-Usage: L2DATA=<empty folder> python l2metrics_ragged.py [NUMBER OF LIFETIMES]
+Usage: L2DATA=<empty folder> python l2metrics_ragged.py [NUMBER OF LIFETIMES [FILE TO WRITE]]
 Made with l2metrics 3.1.0 and l2logger 1.8.2 under the versions that the JSON names; pandas below 3, which the package was written for.
 
-Ragged is what the lifetimes of `l2metrics_lifetimes.py` are not: gaps in the numbers of experiences, experiences that were interrupted, a
-worker to a block, cells with tabs, quotes and line ends, words that stand for no number, tasks without a variant beside tasks with one,
-experts of several variants of a task and several runs of each, expert logs as ragged as the lifetime's.
+Unlike the lifetimes of `l2metrics_lifetimes.py`, ragged lifetimes have gaps in the numbers of experiences, interrupted experiences, a
+different worker for each block, cells with tabs, quotes and line ends, words for missing numbers, tasks without a variant beside tasks
+with one, experts of several variants of a task with several runs each, and expert logs that are ragged themselves.
 
-The reference takes the experts of a task's variants in the order in which the file system lists them; whoever compares lists with a value to
-an expert compares them as sets. Data files are listed by name here, for on their order depends which of two workers' rows with one number
+The reference takes the experts of a task's variants in the order in which the file system lists them, so lists with one value per expert
+must be compared as sets. Data files are listed by name here, because their order determines which of two workers' rows with one number
 comes first.
 """
 
@@ -29,7 +29,7 @@ import numpy as np
 import pandas as pd
 import scipy
 
-np.NaN = np.nan  # l2metrics 3.1 was written before numpy 2 took this name away.
+np.NaN = np.nan  # l2metrics 3.1 uses this name, which numpy 2 removed.
 warnings.simplefilter("ignore")
 
 from l2metrics import util
@@ -47,7 +47,7 @@ NO_NUMBER = ["nan", "", "NA", "null", "None", "N/A", "NaN", "<NA>"]
 
 
 def number_text(chance, value):
-    """A number as one of the ways to write it."""
+    """A number in a random notation."""
     way = chance.random()
     if way < 0.8:
         return f"{value:.2f}"
@@ -57,7 +57,7 @@ def number_text(chance, value):
 
 
 def draw_segment(chance, state, ragged, block, task, longest, level, slope):
-    """A stretch of rows of one task in one block: columns of numbers, statuses and scores."""
+    """Consecutive rows of one task in one block, as columns of numbers, statuses and scores."""
     segment = {"block": block, "task": task, "params": chance.randrange(len(PARAMS)),
                "exp": [], "status": "", "score": [], "pay": [], "comment": []}
 
@@ -73,7 +73,7 @@ def draw_segment(chance, state, ragged, block, task, longest, level, slope):
         value = level + slope * k + chance.uniform(-1, 1)
         if ragged and chance.random() < 0.08:
             row("i", number_text(chance, value - 1))
-            if chance.random() < 0.5:  # It was begun once and never again.
+            if chance.random() < 0.5:  # The experience is never completed.
                 state["exp"] += chance.randint(1, 3)
                 continue
         none = ragged and chance.random() < 0.06
@@ -104,14 +104,14 @@ def draw_expert(chance, task, style):
         kind = "test" if block == 1 else "train"
         segment = draw_segment(chance, state, style["ragged_experts"], block, task, chance.choice([8, 20]), level, 0.1)
         segments.append({"kind": kind, "subtype": "wake", "worker": "w0", **segment})
-    if style["flat_experts"]:  # What adds up to nothing, so that a quotient is none.
+    if style["flat_experts"]:  # Scores that sum to 0, so that ratios are undefined.
         for segment in segments:
             segment["score"] = ["0" for _ in segment["score"]]
     return segments
 
 
 def files_of(segments):
-    """The data files of a log by their path, each with its rows."""
+    """The rows of each data file of a log, by the file's path."""
     files = {}
     for segment in segments:
         path = f"{segment['worker']}/{segment['block']}-{segment['kind']}/data-log.tsv"
@@ -138,7 +138,7 @@ def write_log(folder, segments):
 
 
 def plain(value):
-    """What JSON can say, to twelve digits. In a list, what is no number is null; elsewhere it is left out."""
+    """The value in JSON's types, to twelve digits. Numbers that are not finite are None in a list and left out elsewhere."""
     if isinstance(value, dict):
         return {str(key): plain(entry) for key, entry in value.items() if plain(entry) is not None}
     if isinstance(value, (list, tuple, np.ndarray)):
@@ -166,7 +166,7 @@ def options_of(chance, tasks, number):
     }
     if chance.random() < 0.15:
         options["data_range"] = {task.lower(): {"min": chance.randint(-5, 0), "max": chance.randint(5, 12)} for task in tasks}
-    # Each of these by itself, whatever else is drawn.
+    # These cases are always included, whatever else is drawn.
     if number % 5 == 0:
         options.update(smoothing_method="none", clamp_outliers=True)
     if number % 7 == 0:
@@ -197,7 +197,7 @@ def score(life, options):
 def case(seed, base):
     chance = random.Random(seed)
     tasks = chance.sample(POOL, chance.randint(2, 5))
-    if seed % 3 == 0:  # A task without its variant, and what its variants' experts do for it.
+    if seed % 3 == 0:  # A task without a variant, with experts of its variants (added below).
         tasks = ["ferry"] + [task for task in tasks if task != "ferry"][:3]
     style = {"sleeps": seed % 6 == 1, "workers": chance.choice(["one", "each", "each", "numbers"]),
              "ragged_experts": chance.random() < 0.6, "flat_experts": seed % 10 == 4}
@@ -226,7 +226,7 @@ if __name__ == "__main__":
         with tempfile.TemporaryDirectory() as base:
             try:
                 cases.append(case(seed, Path(base)))
-            except Exception as error:  # The reference stumbles over some lifetimes; those are no oracle.
+            except Exception as error:  # The reference fails for some lifetimes, which are left out.
                 refused.append([seed, f"{type(error).__name__}: {error}"[:200]])
         seed += 1
 

@@ -1,4 +1,4 @@
-"""Aggregates, intervals and comparisons of random score tables by rliable; writes repeats_rliable.json beside this file.
+"""Computes aggregates, intervals and comparisons of random score tables with rliable; writes repeats_rliable.json beside this file.
 
 Usage: python repeats_rliable.py   (takes some minutes: rliable calls scipy for every stratum of every resample)
 Made with the versions that the JSON names. Scores are (runs, strata), as rliable takes them.

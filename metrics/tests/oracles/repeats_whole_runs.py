@@ -1,4 +1,4 @@
-"""Probability of improvement with whole runs resampled, by numpy; writes repeats_whole_runs.json beside this file.
+"""Computes the probability of improvement with whole runs resampled, with numpy; writes repeats_whole_runs.json beside this file.
 
 Usage: python repeats_whole_runs.py   (a few seconds)
 The JSON names the numpy version used. Scores are (runs, strata); null where a run lacks the score of a stratum.
@@ -26,7 +26,7 @@ def drawn_counts(num_runs):
 
 
 def probabilities(counts_a, counts_b, a, b):
-    """Share of drawn pairs that A wins, ties half; NaN where there is no pair: (resamples, strata)."""
+    """Share of drawn pairs that A wins, with ties as half; NaN where there is no pair: (resamples, strata)."""
     columns = []
     for of_a, of_b in zip(a.T, b.T):
         has_a, has_b = ~np.isnan(of_a), ~np.isnan(of_b)
@@ -55,7 +55,7 @@ def like_a_run(num_runs, num_strata, shift):
 
 
 def lacking(scores, share):
-    """Without some of the scores; the first run keeps all."""
+    """The scores with some removed; the first run keeps all."""
     holes = draw.uniform(size=scores.shape) < share
     holes[0] = False
     return np.where(holes, np.nan, scores)
