@@ -38,10 +38,10 @@ pub(crate) struct Drawn {
 
 impl Drawn {
     /// The distribution in a world in which the randomized parameters have these values.
-    pub(crate) fn law(&self, values: &[Value]) -> Cow<'_, Distribution> {
+    pub(crate) fn resolve(&self, values: &[Value]) -> Cow<'_, Distribution> {
         let look_up = self.look_up.as_ref();
         look_up.map_or(Cow::Borrowed(&self.distribution), |look_up| {
-            Cow::Owned(look_up.law(values))
+            Cow::Owned(look_up.resolve(values))
         })
     }
 }
@@ -56,7 +56,7 @@ struct LookUp {
 }
 
 impl LookUp {
-    fn law(&self, values: &[Value]) -> Distribution {
+    fn resolve(&self, values: &[Value]) -> Distribution {
         let drawn: Vec<(&str, Value)> = self
             .reads
             .iter()
@@ -103,8 +103,9 @@ impl Randomized {
         } else {
             None
         };
-        let value = from_sequence
-            .unwrap_or_else(|| draw(&self.drawn.law(known), &mut self.drawn.stream.at(index, 0, attempt)).into_owned());
+        let value = from_sequence.unwrap_or_else(|| {
+            draw(&self.drawn.resolve(known), &mut self.drawn.stream.at(index, 0, attempt)).into_owned()
+        });
         value
             .cast(self.kind)
             .expect("loading the task checked what the distribution yields")
@@ -172,7 +173,7 @@ impl Fill {
             ),
             Self::Own(drawn) => {
                 let mut rng: Rng = drawn.stream.at(at.index, at.object, at.attempt);
-                take(&draw(&drawn.law(values), &mut rng))
+                take(&draw(&drawn.resolve(values), &mut rng))
             }
         }
     }

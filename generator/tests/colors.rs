@@ -92,7 +92,12 @@ fn channels_follow_their_distributions() {
         let variant = default(&task(&color_parameter(distribution), ""));
         let drawn = colors(&Sampler::new(&variant, 11), DRAWS);
         let law = law(&variant);
-        for (k, channel) in law.color_channels().expect("channels with laws").iter().enumerate() {
+        for (k, channel) in law
+            .color_channels()
+            .expect("the distribution has separate channels")
+            .iter()
+            .enumerate()
+        {
             let cdf = |x| channel.cdf(x).expect("a channel is a number");
             let statistic = kolmogorov(drawn.iter().map(|color| color[k]).collect(), cdf);
             assert!(statistic < KOLMOGOROV, "{distribution}, channel {k}: {statistic}");
@@ -182,7 +187,9 @@ fn variants_share_random_numbers_channel_by_channel() {
     assert_eq!((mean, std), (Channels([0.25, 0.5, 0.75]), ChannelSpread::Same(0.3)));
     let units_of = |name: &str| {
         let variant = of(name);
-        let channels = law(&variant).color_channels().expect("channels with laws");
+        let channels = law(&variant)
+            .color_channels()
+            .expect("the distribution has separate channels");
         let drawn = colors(&Sampler::new(&variant, 1), 50);
         let units = move |color: [f64; 3]| [0, 1, 2].map(|k| channels[k].cdf(color[k]).expect("a number"));
         drawn.into_iter().map(units).collect::<Vec<_>>()

@@ -10,10 +10,10 @@ use crate::suggest::{did_you_mean, nearest};
 pub const MAX_PROBLEMS: usize = 300;
 
 /// Maximum number of problems shown in one message.
-const MAX_SHOWN: usize = 20;
+const NUM_SHOWN: usize = 20;
 
 /// Maximum number of characters of a value shown in a message.
-const MAX_SHOWN_CHARACTERS: usize = 100;
+const NUM_SHOWN_CHARACTERS: usize = 100;
 
 /// One problem of a document: where it is, what was found, what was expected, what to do.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -234,12 +234,12 @@ fn list(name: &str, problems: &[Problem], more: bool) -> String {
     let name = one_line(name);
     let mut lines: Vec<String> = problems
         .iter()
-        .take(MAX_SHOWN)
+        .take(NUM_SHOWN)
         .map(|problem| format!("{name}:{problem}"))
         .collect();
-    if problems.len() > MAX_SHOWN {
+    if problems.len() > NUM_SHOWN {
         let at_least = if more { "at least " } else { "" };
-        lines.push(format!("{name}: and {at_least}{} more", problems.len() - MAX_SHOWN));
+        lines.push(format!("{name}: and {at_least}{} more", problems.len() - NUM_SHOWN));
     } else if more {
         lines.push(format!("{name}: and perhaps more"));
     }
@@ -248,12 +248,12 @@ fn list(name: &str, problems: &[Problem], more: bool) -> String {
 
 /// A text for a message, cut to a limit.
 pub(crate) fn cut(text: &str) -> String {
-    driftworld_text::shortened(text, MAX_SHOWN_CHARACTERS)
+    driftworld_text::shortened(text, NUM_SHOWN_CHARACTERS)
 }
 
 /// Names for a message: the first of them, and how many more there are.
 pub(crate) fn first_of<S: AsRef<str>>(known: &[S]) -> String {
-    driftworld_text::first_of(known, MAX_SHOWN)
+    driftworld_text::first_of(known, NUM_SHOWN)
 }
 
 #[cfg(test)]

@@ -33,7 +33,7 @@ impl Sampler {
             tries,
             reason,
         };
-        let asked = &*group.placement.law(draft.values);
+        let asked = &*group.placement.resolve(draft.values);
         let mut cells = match asked {
             Distribution::Cells { .. } if count > 0 => {
                 let layout = draft.world.environment_params.layout.as_ref();

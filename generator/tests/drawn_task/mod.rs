@@ -29,7 +29,8 @@ impl Numbers {
 /// A parameter that may be chosen: its name, its declaration, and candidate default values.
 type Candidate = (&'static str, &'static str, Vec<&'static str>);
 
-/// The candidates, each ended by a semicolon. `ends` stands for the two ends of a law from which a randomized parameter is drawn.
+/// The candidates, each ended by a semicolon. `ends` stands for the two ends of the distribution of a
+/// randomized parameter.
 const CANDIDATES: &str = r#"
 a | "type": "number", "range": [0, 1] | 0 | 0.3 | 0.55 | 1;
 wolf_speed | "type": "number", "range": [0, 10] | 0 | 1 | 2.5 | 6;
