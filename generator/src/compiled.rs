@@ -98,12 +98,12 @@ impl Randomized {
         (index, attempt): (u64, u32),
         known: &[Value],
     ) -> Value {
-        let from_sequence = if attempt == 0 {
-            self.from_sequence(sequence, stream, index)
+        let in_sequence = if attempt == 0 {
+            self.in_sequence(sequence, stream, index)
         } else {
             None
         };
-        let value = from_sequence.unwrap_or_else(|| {
+        let value = in_sequence.unwrap_or_else(|| {
             draw(&self.drawn.resolve(known), &mut self.drawn.stream.at(index, 0, attempt)).into_owned()
         });
         value
@@ -111,7 +111,7 @@ impl Randomized {
             .expect("loading the task checked what the distribution yields")
     }
 
-    fn from_sequence(&self, sequence: Sequence, stream: &Stream, index: u64) -> Option<Value> {
+    fn in_sequence(&self, sequence: Sequence, stream: &Stream, index: u64) -> Option<Value> {
         let (first, count) = self.dimensions?;
         let u = sequence.unit(stream, first, index)?;
         let next_unit = |dimension: usize| sequence.unit(stream, first + dimension, index);

@@ -25,7 +25,7 @@ fn color_parameter(distribution: &str) -> String {
 }
 
 fn default(task: &Arc<TaskSpec>) -> Variant {
-    task.variant("default").expect("the default variant always exists")
+    task.variant("default").expect("default exists")
 }
 
 fn law(variant: &Variant) -> Distribution {
@@ -33,7 +33,7 @@ fn law(variant: &Variant) -> Distribution {
 }
 
 fn colors(sampler: &Sampler, count: u64) -> Vec<[f64; 3]> {
-    let value = |index| sampler.values(index).expect("the task has no requirements").pop();
+    let value = |index| sampler.values(index).expect("no requirements").pop();
     let color = |index| match value(index) {
         Some((_, Value::Color(color))) => color.0,
         other => panic!("{other:?} is no colour"),
@@ -92,12 +92,7 @@ fn channels_follow_their_distributions() {
         let variant = default(&task(&color_parameter(distribution), ""));
         let drawn = colors(&Sampler::new(&variant, 11), DRAWS);
         let law = law(&variant);
-        for (k, channel) in law
-            .color_channels()
-            .expect("the distribution has separate channels")
-            .iter()
-            .enumerate()
-        {
+        for (k, channel) in law.color_channels().expect("separate channels").iter().enumerate() {
             let cdf = |x| channel.cdf(x).expect("a channel is a number");
             let statistic = kolmogorov(drawn.iter().map(|color| color[k]).collect(), cdf);
             assert!(statistic < KOLMOGOROV, "{distribution}, channel {k}: {statistic}");
@@ -187,9 +182,7 @@ fn variants_share_random_numbers_channel_by_channel() {
     assert_eq!((mean, std), (Channels([0.25, 0.5, 0.75]), ChannelSpread::Same(0.3)));
     let units_of = |name: &str| {
         let variant = of(name);
-        let channels = law(&variant)
-            .color_channels()
-            .expect("the distribution has separate channels");
+        let channels = law(&variant).color_channels().expect("separate channels");
         let drawn = colors(&Sampler::new(&variant, 1), 50);
         let units = move |color: [f64; 3]| [0, 1, 2].map(|k| channels[k].cdf(color[k]).expect("a number"));
         drawn.into_iter().map(units).collect::<Vec<_>>()

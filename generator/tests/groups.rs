@@ -143,7 +143,7 @@ fn worlds_that_break_a_requirement_are_redrawn_and_the_others_unchanged() {
             .values(index)
             .expect("one in eight draws meets the requirement");
         assert!(number(&values, 0) + 0.5 < number(&values, 1), "{index}");
-        let first_draw = free.values(index).expect("the task has no requirements");
+        let first_draw = free.values(index).expect("no requirements");
         if number(&first_draw, 0) + 0.5 < number(&first_draw, 1) {
             assert_eq!(
                 values, first_draw,
@@ -181,7 +181,7 @@ fn histogram(
 ) -> Vec<usize> {
     let mut bins = vec![0; count];
     for index in worlds {
-        bins[bin_of(&sampler.values(index).expect("the task has no requirements"))] += 1;
+        bins[bin_of(&sampler.values(index).expect("no requirements"))] += 1;
     }
     bins
 }
@@ -206,23 +206,19 @@ fn sequences_spread_numbers_and_points_evenly_with_random_access() {
     let independent = sampler(&task, 3);
     assert_ne!(histogram(&independent, 64..128, light, 64), vec![1; 64]);
     // Choices are not numeric, so they are drawn independently.
-    let model = |sampler: &Sampler, index| {
-        sampler.values(index).expect("the task has no requirements")[3]
-            .1
-            .clone()
-    };
+    let model = |sampler: &Sampler, index| sampler.values(index).expect("no requirements")[3].1.clone();
     assert!((0..64).all(|index| model(&sobol, index) == model(&independent, index)));
     let repeated = sampler(&task, 3).with_sequence(Sequence::Sobol);
     assert_eq!(
-        repeated.values(100).expect("the task has no requirements"),
-        sobol.values(100).expect("the task has no requirements")
+        repeated.values(100).expect("no requirements"),
+        sobol.values(100).expect("no requirements")
     );
     assert_ne!(
         sampler(&task, 4)
             .with_sequence(Sequence::Sobol)
             .values(100)
-            .expect("the task has no requirements"),
-        sobol.values(100).expect("the task has no requirements")
+            .expect("no requirements"),
+        sobol.values(100).expect("no requirements")
     );
 }
 

@@ -45,7 +45,7 @@ proptest! {
         let drift = Drift::declared(&declared, from.clone(), to.clone(), seed).expect("any two variants can be mixed");
         let mut num_second = 0;
         for index in 0..WORLDS {
-            let drawn = drift.at(progress, index).expect("a mixture returns one of its variants");
+            let drawn = drift.at(progress, index).expect("one of the two");
             prop_assert!([from.id(), to.id()].contains(&drawn.id()), "{}", drawn.id());
             num_second += u64::from(drawn.id() == to.id());
             if index < 4 {
@@ -59,7 +59,7 @@ proptest! {
             prop_assert!((share - progress).abs() <= 5.0 * error + 0.01, "{share} at {progress}");
         }
         for (progress, only) in [(0.0, &from), (1.0, &to)] {
-            prop_assert_eq!(drift.at(progress, seed).expect("a mixture returns one of its variants").id(), only.id());
+            prop_assert_eq!(drift.at(progress, seed).expect("one of the two").id(), only.id());
         }
     }
 }
@@ -69,9 +69,7 @@ fn world_that_has_switched_stays_switched() {
     let all = variants();
     let drift = Drift::mixing(all[0].clone(), all[1].clone(), 5).with_schedule(DriftSchedule::Linear);
     let is_second = |progress: f64, index: u64| {
-        let drawn = drift
-            .at(progress, index)
-            .expect("a mixture returns one of its variants");
+        let drawn = drift.at(progress, index).expect("one of the two");
         drawn.id() == all[1].id()
     };
     for index in 0..50 {

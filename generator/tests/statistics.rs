@@ -16,26 +16,20 @@ fn sampler(kind: &str, distribution: &str, seed: u64) -> (Sampler, Distribution)
             "x": {{ "role": "randomized", "type": "{kind}", "affects": ["S"], "distribution": {distribution} }} }} }}"#
     );
     let task = TaskSpec::from_json("draws.json", &text).unwrap_or_else(|error| panic!("{error}"));
-    let variant = task.variant("default").expect("the default variant always exists");
+    let variant = task.variant("default").expect("default exists");
     let declared = variant.distribution("x").expect("x is randomized");
     (Sampler::new(&variant, seed), declared)
 }
 
 fn values(sampler: &Sampler) -> impl Iterator<Item = Value> + '_ {
-    (0..DRAWS).map(|index| {
-        sampler
-            .values(index)
-            .expect("the task has no requirements")
-            .swap_remove(0)
-            .1
-    })
+    (0..DRAWS).map(|index| sampler.values(index).expect("no requirements").swap_remove(0).1)
 }
 
 fn numbers(kind: &str, distribution: &str) -> (Vec<f64>, Distribution) {
     let (sampler, declared) = sampler(kind, distribution, 11);
     let drawn = values(&sampler).map(|value| match value {
         Value::Boolean(flag) => f64::from(u8::from(flag)),
-        other => other.as_number().expect("the distribution draws numbers"),
+        other => other.as_number().expect("it has numbers"),
     });
     (drawn.collect(), declared)
 }
@@ -82,13 +76,13 @@ fn check_moments(name: &str, drawn: &[f64], mean: f64, variance: f64) {
 #[track_caller]
 fn check_continuous(distribution: &str) {
     let (drawn, declared) = numbers("number", distribution);
-    let statistic = kolmogorov(&drawn, |x| declared.cdf(x).expect("the distribution draws numbers"));
+    let statistic = kolmogorov(&drawn, |x| declared.cdf(x).expect("it has numbers"));
     assert!(statistic < KOLMOGOROV, "{distribution}: {statistic}");
     check_moments(
         distribution,
         &drawn,
-        declared.mean().expect("the distribution draws numbers"),
-        declared.variance().expect("the distribution draws numbers"),
+        declared.mean().expect("it has numbers"),
+        declared.variance().expect("it has numbers"),
     );
 }
 
@@ -101,7 +95,7 @@ fn check_discrete(kind: &str, distribution: &str) {
         assert_eq!(number.fract(), 0.0, "{distribution}");
         *counts.entry(*number as i64).or_default() += 1.0;
     }
-    let cdf = |x: i64| declared.cdf(x as f64).expect("the distribution draws numbers");
+    let cdf = |x: i64| declared.cdf(x as f64).expect("it has numbers");
     let (low, high) = (
         *counts.keys().next().expect("there are draws"),
         *counts.keys().last().expect("there are draws"),
@@ -123,8 +117,8 @@ fn check_discrete(kind: &str, distribution: &str) {
     check_moments(
         distribution,
         &drawn,
-        declared.mean().expect("the distribution draws numbers"),
-        declared.variance().expect("the distribution draws numbers"),
+        declared.mean().expect("it has numbers"),
+        declared.variance().expect("it has numbers"),
     );
 }
 
@@ -168,9 +162,9 @@ fn integer_draws_follow_their_distribution() {
 fn slightly_wrong_distribution_is_detected() {
     let (drawn, _) = numbers("number", r#"{ "normal": { "mean": 2, "std": 3 } }"#);
     let shifted = Distribution::Normal { mean: 2.15, std: 3.0 };
-    assert!(kolmogorov(&drawn, |x| shifted.cdf(x).expect("the distribution draws numbers")) > KOLMOGOROV);
+    assert!(kolmogorov(&drawn, |x| shifted.cdf(x).expect("it has numbers")) > KOLMOGOROV);
     let wider = Distribution::Normal { mean: 2.0, std: 3.2 };
-    assert!(kolmogorov(&drawn, |x| wider.cdf(x).expect("the distribution draws numbers")) > KOLMOGOROV);
+    assert!(kolmogorov(&drawn, |x| wider.cdf(x).expect("it has numbers")) > KOLMOGOROV);
 }
 
 #[test]
@@ -195,7 +189,7 @@ fn heading_draws_follow_their_distribution() {
             .iter()
             .map(|degrees| (degrees - mean + 180.0).rem_euclid(360.0) - 180.0 + mean)
             .collect();
-        let statistic = kolmogorov(&unrolled, |x| declared.cdf(x).expect("the distribution draws headings"));
+        let statistic = kolmogorov(&unrolled, |x| declared.cdf(x).expect("it has headings"));
         assert!(statistic < KOLMOGOROV, "von_mises({mean}, {kappa}): {statistic}");
     }
 }
@@ -218,7 +212,7 @@ fn dirichlet_shares_sum_to_1_and_follow_beta_distributions() {
             low: None,
             high: None,
         };
-        let statistic = kolmogorov(drawn, |x| declared.cdf(x).expect("the distribution draws numbers"));
+        let statistic = kolmogorov(drawn, |x| declared.cdf(x).expect("it has numbers"));
         assert!(statistic < KOLMOGOROV, "share with alpha {alpha}: {statistic}");
     }
 }
@@ -275,7 +269,7 @@ fn neighbouring_worlds_and_seeds_are_uncorrelated() {
     let draws = |seed| {
         let (sampler, _) = sampler("number", r#"{ "uniform": { "low": -1, "high": 1 } }"#, seed);
         values(&sampler)
-            .map(|value| value.as_number().expect("the distribution draws numbers"))
+            .map(|value| value.as_number().expect("it has numbers"))
             .collect::<Vec<f64>>()
     };
     let (a, b) = (draws(1), draws(2));
@@ -293,14 +287,14 @@ fn neighbouring_worlds_and_seeds_are_uncorrelated() {
         "x": { "role": "randomized", "type": "number", "affects": ["S"], "distribution": { "uniform": { "low": -1, "high": 1 } } },
         "y": { "role": "randomized", "type": "number", "affects": ["S"], "distribution": { "uniform": { "low": -1, "high": 1 } } } } }"#;
     let task: Arc<TaskSpec> = TaskSpec::from_json("two.json", two).unwrap_or_else(|error| panic!("{error}"));
-    let sampler = Sampler::new(&task.variant("default").expect("the default variant always exists"), 1);
+    let sampler = Sampler::new(&task.variant("default").expect("default exists"), 1);
     let column = |position: usize| -> Vec<f64> {
         (0..DRAWS)
             .map(|index| {
-                sampler.values(index).expect("the task has no requirements")[position]
+                sampler.values(index).expect("no requirements")[position]
                     .1
                     .as_number()
-                    .expect("the distribution draws numbers")
+                    .expect("it has numbers")
             })
             .collect()
     };

@@ -207,7 +207,7 @@ impl<D: FnMut(&Variant) -> f64> Scan<'_, '_, D> {
         Ok(())
     }
 
-    /// Tries straight lines between points continue_from_nearest and points farther than the target distance.
+    /// Tries straight lines between points nearer and points farther than the target distance.
     fn pairs(&mut self, points: &[Measured]) -> Result<(), Stop> {
         let target = self.search.target;
         let side = |far: bool| {
@@ -227,7 +227,7 @@ impl<D: FnMut(&Variant) -> f64> Scan<'_, '_, D> {
         Ok(())
     }
 
-    /// From a point, takes ever smaller steps in any direction that brings it continue_from_nearest to the target distance.
+    /// From a point, takes ever smaller steps in any direction that brings it nearer to the target distance.
     fn refine(&mut self, (start, distance): Measured) -> Result<(), Stop> {
         let target = self.search.target;
         let directions = directions(self.space.axes.len());
