@@ -1,12 +1,11 @@
-"""Prints the cost of a learner's decision: processor microseconds, with 64 environments of 32 × 32 pixels and one
-thread.
+"""Prints the CPU time per decision of a learner, in microseconds, with 64 environments of 32 × 32 pixels and one thread.
 
     nice python scripts/learners.py                    # PPO
-    nice python scripts/learners.py PPO EWC CLEAR      # some learners, one after the other
-    nice python scripts/learners.py --quick            # does it run?
+    nice python scripts/learners.py PPO EWC CLEAR      # some learners, one after another
+    nice python scripts/learners.py --quick            # only checks that it runs
 
-A row has the total of `Curriculum.run_vector` on find_objects#huddle, the learner's share, and the rest: the
-environments and the loop. Only learning is measured. Needs PyTorch.
+Each row has the total for `Curriculum.run_vector` on find_objects#huddle, the learner's share, and the remainder: the
+environments and the loop. Only learning blocks are timed; nothing is evaluated. Needs PyTorch.
 """
 
 from __future__ import annotations
@@ -28,11 +27,11 @@ NEEDED: dict[str, dict[str, Any]] = {"PackNet": {"max_tasks": 2, "task_decisions
 
 
 def main() -> None:
-    """Runs each learner through two learning blocks: the first warms up, and the second is measured."""
+    """Runs each learner through two learning blocks: the first is a warm-up, the second is measured."""
     torch.set_num_threads(1)
     names = [name for name in sys.argv[1:] if name != "--quick"]
     count = EXPERIENCES if "--quick" not in sys.argv else NUM_ENVS
-    print("| learner | µs a decision | acting and learning | environments and loop |\n|---|--:|--:|--:|")
+    print("| learner | µs per decision | acting and learning | environments and loop |\n|---|--:|--:|--:|")
     for name in names or ["PPO"]:
         learner = getattr(learners, name)(len(ACTIONS), NUM_ENVS, **NEEDED.get(name, {}))
         marks: list[tuple[float, float, int]] = []

@@ -1,18 +1,18 @@
-"""Maps drawn with letters, text levels of DeepMind Lab and grids of MiniGrid, as worlds.
+"""Converts text maps (DeepMind Lab text levels, MiniGrid grids) to worlds.
 
     python examples/python/text_maps.py level.txt --of dmlab -o world.json
     python examples/python/text_maps.py grid.txt --of minigrid -o world.json
 
-DeepMind Lab: the entity layer of a text level. `*` is a wall, `P` where an agent may start, `G` a goal of 10 points
+DeepMind Lab: the entity layer of a text level. `*` is a wall, `P` a possible start of the agent, `G` a goal of 10 points
 that ends the episode, `A` an apple of 1 point, `I` and `H` doors, which open when the agent comes to them. Cells are
 3.125 m wide, as in DeepMind Lab. A variations layer after an empty line is ignored: it only affects the look of rooms.
 
-MiniGrid: the output of `env.unwrapped.pprint_grid()`, two characters a cell, the second its colour. `W` is a wall, `F`
+MiniGrid: the output of `env.unwrapped.pprint_grid()`, two characters per cell, of which the second is its colour. `W` is a wall, `F`
 and two spaces are floor, `G` a goal of 1 point that ends the episode, `V` lava, which ends it as a failure, `K` a key,
 `A` a ball, `B` a box, `D` a closed door, `L` one that a key of its colour unlocks, `__` an open one; `>>`, `VV`, `<<`
 and `^^` are the agent. It carries one object at a time. Cells are 2 m wide.
 
-Unknown characters are read as floor, and reported on standard error with line and column. Needs no packages.
+Unknown characters are read as floor and reported on standard error with line and column. Needs no packages.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ HEADINGS = {">>": 90.0, "VV": 180.0, "<<": 270.0, "^^": 0.0}
 
 
 class Map:
-    """The layout read so far, in letters, and the objects on it."""
+    """The layout read so far, as letters, and the objects on it."""
 
     def __init__(self, name: str, cell: float) -> None:
         self.name, self.cell = name, cell
@@ -88,7 +88,7 @@ class Map:
         return next(((at, 0.0) for at in cells if self.is_open(*at) and at not in taken), None)
 
     def zones(self) -> list[dict[str, Any]]:
-        """Lava: a zone for each run of cells in a row."""
+        """Zones of lava: one for each run of adjacent cells in a row."""
         stretches: list[list[tuple[int, int]]] = []
         for column, row in self.lava:
             if stretches and stretches[-1][-1] == (column - 1, row):
@@ -97,7 +97,7 @@ class Map:
                 stretches.append([(column, row)])
         zones = []
         for stretch in stretches:
-            (west, y), (east, _), half = self.place(stretch[0]), self.place(stretch[-1]), self.cell / 2
+            (west, y), (east, _), half = self.place(run[0]), self.place(run[-1]), self.cell / 2
             low, high = (west - half, y - half), (east + half, y + half)
             corners = [[low[0], low[1]], [high[0], low[1]], [high[0], high[1]], [low[0], high[1]]]
             zones.append({"polygon": corners, "name": "lava", "ends": "failure", "color": "orangered"})
@@ -111,14 +111,14 @@ class Map:
         return {**door, "coordinates": self.place(at), "heading": 90.0 if along_x > along_y else 0.0}
 
     def world(self, expected: str) -> dict[str, Any]:
-        """The world; short lines are padded with walls."""
+        """Builds the world; short lines are padded with walls."""
         for what, places in sorted(self.unknown.items(), key=lambda item: item[1][0]):
-            times = f" ({len(places)} of it, this one first)" if len(places) > 1 else ""
+            times = f" ({len(places)} occurrences, this is the first)" if len(places) > 1 else ""
             self.warn(f":{places[0][0]}:{places[0][1]}", f"{what} is not known{times}; it is read as floor")
         known = sum(letter != FLOOR for row in self.rows for letter in row)
         unknown = sum(map(len, self.unknown.values()))
         if unknown > known:
-            sys.exit(f"error: {self.name}: found {unknown} of {unknown + known} signs that are not known, expected {expected}")
+            sys.exit(f"error: {self.name}: {unknown} of {unknown + known} cells are not recognised, expected {expected}")
         columns = max(map(len, self.rows), default=0)
         self.rows = [row + ["#"] * (columns - len(row)) for row in self.rows]
         if not any(self.is_open(column, row) for row in range(len(self.rows)) for column in range(columns)):
@@ -130,7 +130,7 @@ class Map:
             "height": min(self.cell, 4.0),
             "legend": {letter: meaning for letter, meaning in sorted(self.legend.items()) if letter in used},
         }
-        # The agent fits through a single cell, as in the other program.
+        # The agent fits through a single cell, as in the original environment.
         agent: dict[str, Any] = {"agent_width": min(self.cell / 3, 1.0)}
         if start := self.start():
             agent |= {"coordinates": self.place(start[0]), "heading": start[1]}
@@ -156,7 +156,9 @@ def pays(reward: float) -> dict[str, Any]:
 
 
 def variations(lines: list[str]) -> int:
-    """The line where a variations layer starts: after an empty line, as many lines as before it, without walls."""
+    """Index of the first line of the variations layer, or the number of lines if there is none. The layer follows an empty
+    line, has as many lines as the entity layer, and contains no walls.
+    """
     texts = [number for number, line in enumerate(lines) if line]
     first = texts[0] if texts else 0
     empty = next((number for number in range(first, len(lines)) if not lines[number]), len(lines))
@@ -198,15 +200,15 @@ def minigrid(name: str, text: str) -> dict[str, Any]:
     found = Map(name, 2.0)
     for number, line in enumerate(text.splitlines()):
         shown = line.strip()
-        # The environment's name may stand above its grid, which has no lower-case letters.
+        # The environment's name may precede the grid, which has no lower-case letters.
         if not line or (shown.startswith("<") and shown.endswith(">") and shown != shown.upper()):
             continue
-        # Trailing spaces of a line may have been lost.
+        # Trailing spaces may have been stripped.
         pairs = [line[column : column + 2].ljust(2) for column in range(0, len(line), 2)]
         row = len(found.rows)
         cells = [cell_of_minigrid(found, pair, (column, row), (number + 1, 2 * column + 1)) for column, pair in enumerate(pairs)]
         found.rows.append(cells)
-    return found.world("two signs for each cell, such as WG for a wall, >> for the agent, GG for a goal")
+    return found.world("two characters for each cell, such as WG for a wall, >> for the agent, GG for a goal")
 
 
 def cell_of_minigrid(found: Map, pair: str, at: tuple[int, int], place: tuple[int, int]) -> str:
@@ -232,7 +234,7 @@ def cell_of_minigrid(found: Map, pair: str, at: tuple[int, int], place: tuple[in
     if what == "G":
         return found.put("G", {**thing("geometric", color, "goal"), **pays(1.0)}, at)
     kind, group = {"K": ("key", f"{color}_key"), "A": ("icosphere", "ball"), "B": ("cube", "box")}[what]
-    # `A` is the agent in a layout.
+    # In a layout, `A` is the agent.
     return found.put("O" if what == "A" else what, {**thing(kind, color, group), "portable": {}}, at)
 
 
@@ -243,13 +245,13 @@ def main() -> None:
     """Reads a map and writes its world."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("map", type=Path, help="the text file")
-    parser.add_argument("--of", choices=READERS, required=True, help="whose map it is")
+    parser.add_argument("--of", choices=READERS, required=True, help="the format of the map")
     parser.add_argument("-o", "--output", type=Path, help="file to write (default: standard output)")
-    asked = parser.parse_args()
-    world = READERS[asked.of](asked.map.name, asked.map.read_text(encoding="utf-8"))
+    args = parser.parse_args()
+    world = READERS[args.of](args.map.name, args.map.read_text(encoding="utf-8"))
     text = json.dumps(world, indent=2) + "\n"
-    if asked.output:
-        asked.output.write_text(text, encoding="utf-8")
+    if args.output:
+        args.output.write_text(text, encoding="utf-8")
     else:
         sys.stdout.write(text)
 

@@ -1,5 +1,5 @@
-"""The example that reads letter maps: walls, objects, doors and lava are where their letters are, and the world is
-valid.
+"""Tests `examples/python/text_maps.py`: walls, objects, doors and lava are placed where their letters are, and the world
+is valid.
 """
 
 from __future__ import annotations

@@ -142,7 +142,7 @@ task("03 planner: it plays beside", "#/play/maze?variant=small", async (page) =>
   await tabTo(page, "Planner");
   await page.keyboard.press("Enter");
   await page.waitForSelector('.seat[aria-label="Planner"]');
-  await tabTo(page, "6 times the world's time");
+  await tabTo(page, "6 times real time");
   await page.keyboard.press("Enter");
   await tabTo(page, "Go");
   await page.keyboard.press("Enter");

@@ -1,4 +1,4 @@
-// A world to walk in, alone or beside the trained policy and the planner; an episode of it as a link.
+// The play view: a world to walk in, alone or next to the trained policy and the planner. An episode can be shared as a link.
 
 import { useCallback, useEffect, useRef, useState } from "preact/hooks";
 import type { EngineError } from "../engine.ts";
@@ -17,8 +17,8 @@ import { FlatMap } from "../parts/pictures.tsx";
 import { type Companion, MEANINGS, NAMES, Seat } from "../parts/seat.tsx";
 
 const SPEEDS = [1, 2, 6];
-/** Worlds that are tried for one in which an agent fails. */
-const TRIED = 50;
+/** Maximum number of worlds searched for one in which an agent fails. */
+const MAX_WORLDS_SEARCHED = 50;
 
 export function Play({ route }: { route: Route }) {
   const task = route.task || "find_objects";
@@ -116,13 +116,13 @@ export function Play({ route }: { route: Route }) {
   const findFailure = async () => {
     const who = isTrained ? "policy" : "planner";
     const say = (text: string) => setSearch({ of: searched, text });
-    // Once it plays beside you, the world that is shown is known.
+    // If the agent already plays beside you, you can see how it does in this world, so start from the next one.
     const from = index + (companions.includes(who) ? 1 : 0);
-    say(`Trying up to ${TRIED} worlds …`);
+    say(`Trying up to ${MAX_WORLDS_SEARCHED} worlds …`);
     try {
-      const failure = await engine.findFailure(requestOf(task, variant, seed, from), isTrained ? await trainedAgent(task) : "planner", { worlds: TRIED });
+      const failure = await engine.findFailure(requestOf(task, variant, seed, from), isTrained ? await trainedAgent(task) : "planner", { worlds: MAX_WORLDS_SEARCHED });
       const found = failure && "index" in failure.request ? failure.request.index : undefined;
-      say(found === undefined ? `It succeeds in worlds ${from} to ${from + TRIED - 1}.` : `It fails in world ${found}: Go shows how.`);
+      say(found === undefined ? `It succeeds in worlds ${from} to ${from + MAX_WORLDS_SEARCHED - 1}.` : `It fails in world ${found}. Press Go to watch.`);
       if (found !== undefined) go({ index: found, with: who });
     } catch (reason) {
       say(asError(reason).message);
@@ -139,7 +139,7 @@ export function Play({ route }: { route: Route }) {
   }
   for (const name of companions) recipes[`A film of the ${name}`] = commands.film(subject, name === "planner" ? "onrails" : { network });
   recipes["Draw this world"] = commands.sample(subject);
-  // The arrow keys walk where the focus is.
+  // Keys are ignored while a button has focus, so give the focus back to the view.
   const toView = (action: () => void) => {
     action();
     document.querySelector<HTMLElement>(".seat .frame[tabindex]")?.focus({ preventScroll: true });
@@ -168,7 +168,7 @@ export function Play({ route }: { route: Route }) {
           {(Object.keys(NAMES) as Companion[]).map((name) => (
             <button
               key={name} type="button" aria-pressed={companions.includes(name)} onClick={() => toggle(name)} disabled={name === "policy" && !isTrained}
-              title={name === "policy" && !isTrained ? "No network that learned this task lies beside the page" : MEANINGS[name]}
+              title={name === "policy" && !isTrained ? "No trained network for this task is available on this page" : MEANINGS[name]}
             >{NAMES[name]}</button>
           ))}
           {!isTrained && <span class="faint small">(none for this task)</span>}
@@ -179,12 +179,12 @@ export function Play({ route }: { route: Route }) {
           <div class="group" role="group" aria-label="Speed">
             {SPEEDS.map((factor) => (
               <button
-                key={factor} type="button" aria-pressed={speed === factor} aria-label={`${factor} times the world's time`}
+                key={factor} type="button" aria-pressed={speed === factor} aria-label={`${factor} times real time`}
                 onClick={() => toView(() => setSpeed(factor))}
               >{factor}×</button>
             ))}
           </div>
-          <button type="button" title="Lets time pass, as any key does" onClick={() => toView(() => setState(state === "running" ? "paused" : "running"))}>
+          <button type="button" title="Start the clock (so does any movement key)" onClick={() => toView(() => setState(state === "running" ? "paused" : "running"))}>
             {state === "running" ? "Pause" : "Go"}
           </button>
           <button type="button" onClick={again}>Again</button>
@@ -224,7 +224,7 @@ export function Play({ route }: { route: Route }) {
                   ))}
                 </ul>
               )
-              : <p class="faint small">What you meet is listed here.</p>}
+              : <p class="faint small">Things you encounter will be listed here.</p>}
             <div class="stack">
             <div class="row">
               <button type="button" class="main" onClick={guarded(share)}>Share as a link</button>
@@ -232,7 +232,7 @@ export function Play({ route }: { route: Route }) {
               <button type="button" disabled={!you || you.step.step === 0} onClick={guarded(save)}>Save</button>
               <a class="button quiet" href={hrefOf("author", task === "draft" ? "" : task, { variant })}>Edit the task</a>
             </div>
-            <p class="small faint" role="status">{shared || (you?.step.step === 0 && "Replay and Save want a step first.")}</p>
+            <p class="small faint" role="status">{shared || (you?.step.step === 0 && "Take at least one step to enable Replay and Save.")}</p>
             {link && <input type="text" readOnly value={link} aria-label="The link" onFocus={(event) => event.currentTarget.select()} />}
             <Recipes of={recipes} />
             </div>

@@ -1,7 +1,7 @@
 """Published measures of a lifetime, each as its source defines it. Needs only NumPy.
 
-The matrix of a lifetime of ``T`` tasks has a row for each evaluation block, the first before any learning, and a column
-for each task, in the order of learning: ``values[k, i]`` is task ``i`` after ``k`` tasks. The papers evaluate many
+The matrix of a lifetime of ``T`` tasks has a row for each evaluation block (the first precedes any learning) and a
+column for each task, in the order of learning: ``values[k, i]`` is the evaluation of task ``i`` after ``k`` tasks. The papers evaluate many
 times while a task is learned and take the mean of the last few. Here a row is one evaluation block instead.
 """
 
@@ -103,8 +103,8 @@ def gem(values: ArrayLike) -> dict[str, float]:
 def cora(values: ArrayLike) -> dict[str, Floats]:
     """Isolated forgetting and zero-shot transfer of CORA (Powers et al. 2022, arXiv:2110.10067).
 
-    Both are the change in task ``i`` while task ``j`` is learned, over the largest absolute evaluation of ``i`` in any
-    seed (CORA: in its whole smoothed curve, and undefined if that is 0). Forgetting is defined where ``j`` comes after
+    Both are the change in task ``i`` while task ``j`` is learned (negated for forgetting), divided by the largest
+    absolute evaluation of ``i`` in any seed (CORA: in its whole smoothed curve, and undefined if that is 0). Forgetting is defined where ``j`` comes after
     ``i``, transfer where it comes before; other entries are NaN. Entries are means over seeds. CORA prints ten times
     the entries; the averages beside its tables are means of rows, of columns and of all entries, ignoring NaN.
 
@@ -117,8 +117,8 @@ def cora(values: ArrayLike) -> dict[str, Floats]:
     matrix = np.asarray(values, dtype=float)
     tasks = matrix.shape[-1]
     lifetimes = matrix.reshape(-1, tasks + 1, tasks)
-    size = np.abs(lifetimes).max(axis=(0, 1))
-    gained = np.diff(lifetimes.mean(axis=0), axis=0).T / np.where(size > 0, size, 1.0)[:, None]
+    scale = np.abs(lifetimes).max(axis=(0, 1))
+    gained = np.diff(lifetimes.mean(axis=0), axis=0).T / np.where(scale > 0, scale, 1.0)[:, None]
     i, j = np.indices((tasks, tasks))
     return {"forgetting": np.where(i < j, -gained, np.nan), "transfer": np.where(i > j, gained, np.nan)}
 
@@ -130,7 +130,7 @@ def regret(rewards: SequenceOf[ArrayLike], ceilings: SequenceOf[float]) -> float
 
 
 def interquartile_mean(values: ArrayLike) -> float:
-    """The mean without the lowest and the highest quarter of all values: rliable's IQM (arXiv:2108.13264)."""
+    """The mean of all values except the lowest and the highest quarter: rliable's IQM (arXiv:2108.13264)."""
     ordered = np.sort(np.asarray(values, dtype=float), axis=None)
     cut = int(0.25 * len(ordered))
     return float(ordered[cut : len(ordered) - cut].mean())
@@ -147,9 +147,9 @@ def interval(values: ArrayLike, draws: int = 10_000, seed: int = 0) -> tuple[flo
         drawn = np.indices((len(found),) * len(found)).reshape(len(found), -1).T
     else:
         drawn = np.random.default_rng(seed).integers(len(found), size=(draws, *found.shape))
-    again = np.take_along_axis(found[None], drawn, axis=1).reshape(len(drawn), -1)
+    resampled = np.take_along_axis(found[None], drawn, axis=1).reshape(len(drawn), -1)
     cut = int(0.25 * found.size)
-    means = np.sort(again, axis=1)[:, cut : found.size - cut].mean(axis=1)
+    means = np.sort(resampled, axis=1)[:, cut : found.size - cut].mean(axis=1)
     low, high = np.quantile(means, [0.025, 0.975])
     return float(low), float(high)
 
