@@ -1,4 +1,4 @@
-// Bundles the page and packs the simulator: `node build.mjs WASM OUT`, as `cargo xtask studio` calls it. Prints what each file takes.
+// Bundles the page and packs the simulator: `node build.mjs WASM OUT`, as `cargo xtask studio` calls it. Prints the size of each file.
 
 import { build } from "esbuild";
 import { cpSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -7,7 +7,7 @@ import { fileURLToPath } from "node:url";
 import { brotliCompressSync, constants, gzipSync } from "node:zlib";
 import { load } from "./test/bundle.mjs";
 
-/** The most that a browser transfers to show the page and run the simulator, networks apart, in bytes. */
+/** Maximum number of bytes that a browser transfers to show the page and run the simulator, excluding networks. */
 const MOST = 2_500_000;
 
 const here = dirname(fileURLToPath(import.meta.url));
@@ -25,7 +25,7 @@ await build({
   outdir: out,
   bundle: true,
   loader: { ".json": "text" },
-  // The editor is a file of its own, loaded where a text is edited.
+  // The editor is a separate file, loaded only when a text is edited.
   splitting: true,
   format: "esm",
   target: "es2022",
@@ -44,7 +44,7 @@ const packed = (bytes, name) => brotliCompressSync(bytes, {
   },
 });
 
-// What the gallery shows is asked of the simulator now: reading all tasks takes it a second.
+// The contents of the gallery are computed at build time: the simulator takes a second to read all tasks.
 const simulator = readFileSync(wasm);
 const { start } = await load("wasm.ts");
 const ask = await start(await WebAssembly.compile(simulator));
@@ -65,7 +65,7 @@ writeFileSync(join(out, "driftworld.wasm.gz"), gzipSync(simulator, { level: 9 })
 sum += small.length;
 tell("driftworld.wasm", simulator.length, small.length);
 
-// Trained networks, fetched when one is asked to play.
+// Trained networks, fetched when needed.
 const networks = join(here, "..", "examples", "networks");
 mkdirSync(join(out, "networks"));
 const names = readdirSync(networks).filter((name) => name.endsWith(".safetensors")).sort();

@@ -89,14 +89,14 @@ class Map:
 
     def zones(self) -> list[dict[str, Any]]:
         """Zones of lava: one for each run of adjacent cells in a row."""
-        stretches: list[list[tuple[int, int]]] = []
+        runs: list[list[tuple[int, int]]] = []
         for column, row in self.lava:
-            if stretches and stretches[-1][-1] == (column - 1, row):
-                stretches[-1].append((column, row))
+            if runs and runs[-1][-1] == (column - 1, row):
+                runs[-1].append((column, row))
             else:
-                stretches.append([(column, row)])
+                runs.append([(column, row)])
         zones = []
-        for stretch in stretches:
+        for run in runs:
             (west, y), (east, _), half = self.place(run[0]), self.place(run[-1]), self.cell / 2
             low, high = (west - half, y - half), (east + half, y + half)
             corners = [[low[0], low[1]], [high[0], low[1]], [high[0], high[1]], [low[0], high[1]]]

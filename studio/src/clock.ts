@@ -2,7 +2,7 @@
 
 import { useEffect, useRef } from "preact/hooks";
 
-/** Runs `tick` at this rate while `isRunning`; a slow tick delays the next. An error of a tick goes to `failed` and stops the clock. */
+/** Runs `tick` at this rate while `isRunning`; a slow tick delays the next. An error in a tick is passed to `failed` and stops the clock. */
 export function useClock(isRunning: boolean, perSecond: number, tick: () => Promise<void>, failed: (error: unknown) => void): void {
   const latest = useRef({ tick, failed });
   latest.current = { tick, failed };

@@ -1,4 +1,4 @@
-// Shell commands and Python programs that do what was done on the page.
+// Shell commands and Python programs equivalent to actions on the page.
 
 import type { Action, ActionSpace } from "./engine.ts";
 
@@ -10,7 +10,7 @@ export interface Subject {
   index: number;
 }
 
-/** Both forms of one action. */
+/** An action as a shell command and as a Python program. */
 export interface Recipe {
   command: string;
   python: string;
@@ -43,7 +43,7 @@ export const play = (subject: Subject): Recipe => ({
   python: environment(subject, null),
 });
 
-/** An agent's episode as a film; `network` is the path of a trained network. The wheel has the command, too. */
+/** An agent's episode as a film; `network` is the path of a trained network. The wheel includes the command. */
 export function film(subject: Subject, agent: "onrails" | "random" | { network: string }): Recipe {
   const word = typeof agent === "string" ? agent : `net:${agent.network}`;
   const words = ["film", name(subject), ...where(subject), "--agent", word, "-o", "film.gif"];

@@ -5,7 +5,7 @@ import type { LoggedEpisode } from "./engine.ts";
 /** The curve of one task. */
 export interface Curve {
   task: string;
-  /** Learning: number of the experience and mean reward of it and those before it. */
+  /** Learning: number of the experience, and mean reward of it and the preceding ones. */
   learned: [number, number][];
   /** Evaluation: number of the experience and its reward. */
   tested: [number, number][];

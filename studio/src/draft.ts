@@ -1,4 +1,4 @@
-// The text of the author view: kept in the browser, so that a reload loses nothing.
+// The text in the author view, stored in the browser so that a reload loses nothing.
 
 const KEY = "driftworld.draft";
 /** The text that was replaced outside the editor. */
@@ -16,7 +16,7 @@ function store(key: string, text: string): void {
   try {
     localStorage.setItem(key, text);
   } catch {
-    // Without storage, the text lasts as long as the page.
+    // Without storage, the text is lost when the page closes.
   }
 }
 
@@ -48,7 +48,7 @@ export const draft = {
     if (this.text && this.text !== text) store(REPLACED, this.text);
     this.keep(text);
   },
-  /** The text that `take` replaced last, once; empty if there is none. */
+  /** Returns the text that `take` last replaced, and forgets it; empty if there is none. */
   replaced(): string {
     const text = stored(REPLACED);
     store(REPLACED, "");

@@ -1,4 +1,4 @@
-// The editor of documents: CodeMirror in a shadow root, where its styles need no exception from the page's policy. Loaded when first used.
+// The editor of documents: CodeMirror in a shadow root, so that its styles need no exception from the page's content security policy. Loaded on first use.
 
 import { autocompletion, closeBrackets, closeBracketsKeymap, completionKeymap, type CompletionContext, type CompletionResult } from "@codemirror/autocomplete";
 import { defaultKeymap, history, historyKeymap, isolateHistory, redo, undo } from "@codemirror/commands";

@@ -1,4 +1,4 @@
-// Files that were dropped onto the page or picked: all of a folder, with their paths in it.
+// Reads files that were dropped onto the page or picked; a folder gives all its files, with their paths in it.
 
 import { EngineError, type DroppedFile } from "./engine.ts";
 

@@ -19,10 +19,10 @@ const SHOWN: Record<ViewName, (props: { route: Route }) => preact.JSX.Element> =
 const TITLES: Record<ViewName, string> = {
   gallery: "Gallery", play: "Play", author: "Author", compare: "Compare", order: "Order", replay: "Replay",
 };
-/** Calls that are shorter than this show no sign that they run. */
+/** Shorter calls show no busy indicator. */
 const SHORT_MS = 400;
 
-/** Says that the simulator works on something long, and can stop it. */
+/** Busy indicator for long calls, with a stop button. */
 function Busy() {
   const [isShown, setShown] = useState(false);
   useEffect(() => {
@@ -48,7 +48,7 @@ function Busy() {
   );
 }
 
-/** Says that an address leads nowhere. */
+/** Shown for an address that matches nothing. */
 function Nothing({ what }: { what: string }) {
   return <p class="note warn" role="alert"><span>{what} <a href={hrefOf("gallery")}>The gallery</a> shows all tasks.</span></p>;
 }

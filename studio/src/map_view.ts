@@ -5,7 +5,7 @@ import type { WorldMap } from "./engine.ts";
 /** Margin around the arena that a map shows, in metres. */
 const RIM = 0.5;
 
-/** The scale of a map on an image of a given width: north is at the top. */
+/** The scale of a map drawn at a given width, with north at the top. */
 export interface Scale {
   pixelsPerMetre: number;
   width: number;

@@ -1,4 +1,4 @@
-// An episode with its player, keys or an agent, and with the latest image and map.
+// An episode with its player (keys or an agent), the latest image and the latest map.
 
 import type { Action, Agent, Episode, Frame, Keys, Step, WorldMap, WorldRequest } from "./engine.ts";
 import { engine } from "./simulator.ts";

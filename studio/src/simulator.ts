@@ -48,7 +48,7 @@ export function requestOf(task: string, variant: string, seed: number, index: nu
 
 let shelf: Promise<string[]> | null = null;
 
-/** The tasks for which a trained network lies beside the page. */
+/** The tasks for which the page has a trained network. */
 export function trainedTasks(): Promise<string[]> {
   shelf ??= fetch("networks/index.json").then((reply) => (reply.ok ? (reply.json() as Promise<string[]>) : []), () => []);
   return shelf;

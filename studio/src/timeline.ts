@@ -2,7 +2,7 @@
 
 import type { Step } from "./engine.ts";
 
-/** A moment that is worth a mark. */
+/** A moment worth marking. */
 export interface Mark {
   step: number;
   reward: number;

@@ -1,4 +1,4 @@
-// The simulator as a WebAssembly instance: a call is JSON with bytes beside it, and so is its answer.
+// The simulator as a WebAssembly instance. Calls and answers are JSON with optional bytes.
 
 interface Exports {
   memory: WebAssembly.Memory;
@@ -6,7 +6,7 @@ interface Exports {
   driftworld_call(input: number, length: number, json: number): number;
 }
 
-/** A JSON answer, and the bytes beside it, copied. */
+/** A JSON answer with a copy of its bytes. */
 export interface Answer {
   json: string;
   bytes: Uint8Array<ArrayBuffer>;

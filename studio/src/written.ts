@@ -2,14 +2,14 @@
 
 import type { Json, Parameter, Task, Value } from "./engine.ts";
 
-/** A choice as it is written, and in full, as in variants. */
+/** A choice as its author wrote it, and in full, as in variants. */
 export interface WrittenChoice {
   value: Value;
   full: Value;
   name: string | null;
 }
 
-/** A parameter whose choices are as they are written. */
+/** A parameter with its choices as its author wrote them. */
 export type WrittenParameter = Omit<Parameter, "choices"> & { choices: WrittenChoice[] | null };
 
 /** The parameters of a task, with the choices as written in its text. */

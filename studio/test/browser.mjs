@@ -1,4 +1,4 @@
-// Serves a built page as any web server would, and opens it in headless Chromium.
+// Serves a built page like an ordinary web server, and opens it in headless Chromium.
 
 import { createServer } from "node:http";
 import { existsSync } from "node:fs";
@@ -10,13 +10,13 @@ const TYPES = {
   ".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml", ".json": "application/json", ".wasm": "application/wasm",
 };
 
-/** The browser that the tests use, or null. */
+/** The path of the browser for the tests, or null. */
 export function browserPath() {
   const known = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome", "/usr/bin/google-chrome-stable"];
   return process.env.DRIFTWORLD_BROWSER ?? known.find(existsSync) ?? null;
 }
 
-/** Serves a folder on loopback; `close` ends it. */
+/** Serves a folder on loopback; `close` stops the server. */
 export async function serve(folder) {
   const server = createServer(async (request, reply) => {
     const name = normalize(decodeURIComponent(new URL(request.url, "http://x").pathname)).replace(/^\/+/, "") || "index.html";
@@ -31,14 +31,14 @@ export async function serve(folder) {
   return { address: `http://127.0.0.1:${server.address().port}/`, close: () => server.close() };
 }
 
-/** Sizes and schemes of the pictures that people look at. */
+/** Window sizes and colour schemes of screenshots. */
 export const SCREENS = {
   light: { width: 1280, height: 900, scheme: "light" },
   dark: { width: 1280, height: 900, scheme: "dark" },
   phone: { width: 390, height: 844, scheme: "light", isMobile: true, hasTouch: true },
 };
 
-/** A browser; `page(screen)` opens a page of its own that collects what goes wrong in it in `page.faults`. */
+/** A browser; `page(screen)` opens a new page that collects its errors in `page.faults`. */
 export async function launch() {
   const browser = await chromium.launch({ executablePath: browserPath(), args: ["--no-sandbox", "--disable-gpu", "--force-color-profile=srgb"] });
   return {
@@ -55,7 +55,7 @@ export async function launch() {
   };
 }
 
-/** What sticks out of the page at its sides, or has text that is cut off. */
+/** The elements that overflow the page horizontally, or whose text is cut off. */
 export function overflow(page) {
   return page.evaluate(() => {
     const wide = document.documentElement.clientWidth;
@@ -71,7 +71,7 @@ export function overflow(page) {
   });
 }
 
-/** A picture of the page in a folder, if the environment names one in `DRIFTWORLD_SHOTS`. */
+/** Saves a screenshot into the folder named by `DRIFTWORLD_SHOTS`, if it is set. */
 export async function shot(page, name) {
   const folder = process.env.DRIFTWORLD_SHOTS;
   if (!folder) return;

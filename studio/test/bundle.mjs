@@ -1,4 +1,4 @@
-// Loads a module in TypeScript into Node, as the page's build sees it.
+// Loads a TypeScript module into Node, bundled as in the page's build.
 
 import { fileURLToPath } from "node:url";
 import { build } from "esbuild";

@@ -1,6 +1,6 @@
-// Every command and every program in Python that the page offers does what it says: they are run.
+// Runs every shell command and every Python program that the page offers, and checks its result.
 //
-// DRIFTWORLD_COMMAND is the command, DRIFTWORLD_PYTHON a Python that has the package; without one, its half is skipped.
+// DRIFTWORLD_COMMAND is the command, DRIFTWORLD_PYTHON a Python with the package installed; if either is missing, its half is skipped.
 
 import assert from "node:assert/strict";
 import { execFile } from "node:child_process";
@@ -21,7 +21,7 @@ const network = fileURLToPath(new URL("../../examples/networks/obstacle_course.s
 const built = { task: "find_objects", variant: "red", seed: 7, index: 2 };
 const own = { task: "my_maze.json", variant: "wide", seed: 0, index: 0 };
 const walk = [[2.5, -45, 0], [2.5, -45, 0], [0, 0.1, 1]];
-/** Each with a file that it writes, or a text that it prints. */
+/** Each recipe with a file that it writes, or a text that it prints. */
 const RECIPES = {
   "play is asked of a terminal": [commands.play(built), { command: /terminal/, fails: true }],
   "the planner is filmed": [commands.film(own, "onrails"), { file: "film.gif" }],
@@ -49,7 +49,7 @@ after(() => rm(folder, { recursive: true, force: true }));
 
 for (const [name, [recipe, expected]] of Object.entries(RECIPES)) {
   test(`${name} by the command`, { skip: !command && "DRIFTWORLD_COMMAND names no command" }, async () => {
-    // The recipe says `driftworld`; a link of that name lets it be any build.
+    // A shell function lets `driftworld` in the recipe run any build.
     const shell = `driftworld() { "${command}" "$@"; }; ${recipe.command}`;
     const { stdout, stderr } = await run("bash", ["-c", shell], { cwd: folder }).catch((error) => (expected.fails ? error : Promise.reject(error)));
     if (expected.command) assert.match(stdout + stderr, expected.command);

@@ -1,4 +1,4 @@
-// The text of documents: places, changes, completion, maps of letters; and the templates, which are valid JSON.
+// Tests the text of documents: positions, changes, completion and text layouts; and that templates are valid JSON.
 
 import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";

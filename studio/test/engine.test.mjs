@@ -1,4 +1,4 @@
-// The engine as a page has it, in Chromium: loading, speed, stopping, limits, and documents that are made to take for ever.
+// Tests the engine on a page in Chromium: loading, speed, stopping, limits, and documents built to take forever.
 
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
@@ -56,7 +56,7 @@ test("the simulator starts, plays and draws", { skip }, async () => {
   console.log(`the simulator is loaded in ${found.milliseconds.toFixed(0)} ms; steps with frames a second, at 320 x 240 plain ${found.speeds.plain}, natural ${found.speeds.natural}, at 84 x 84 ${found.speeds.small}`);
   assert.ok(found.cards > 50);
   assert.match(found.version, /^\d+\.\d+\.\d+$/);
-  // Some times what is promised, for machines that do other things.
+  // A few times the documented limits, for busy machines.
   assert.ok(found.milliseconds < 5000 && found.speeds.plain > 20);
 });
 

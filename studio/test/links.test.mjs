@@ -1,5 +1,5 @@
-// An episode fits into a link and comes back from it to the bit; a link that is damaged, hostile or of another version is a typed error.
-// `DRIFTWORLD_FULL=1` takes 1,000 episodes of two agents, else 40.
+// An episode survives a round trip through a link bit for bit; damaged, hostile and incompatible links give typed errors.
+// `DRIFTWORLD_FULL=1` tests 1,000 episodes of two agents instead of 40.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
@@ -19,7 +19,7 @@ function ask(call) {
   return answer.ok;
 }
 
-/** A small generator, so that a failure comes again. */
+/** A seeded random number generator, so that failures are reproducible. */
 function numbers(seed) {
   let state = seed >>> 0;
   return (below) => {
@@ -72,7 +72,7 @@ const { actions } = ask({ call: "run", request: { task: "maze" }, agent: "planne
 const whole = ask({ call: "encode_link", link: { request: { task: "maze" }, actions } });
 const original = ask({ call: "decode_link", fragment: whole });
 
-/** A link whose checksum is right, whatever is in it. */
+/** A link with a valid checksum for any content. */
 function sealed(format, unpacked) {
   const packed = deflateRawSync(unpacked);
   const sum = Buffer.alloc(4);
@@ -80,7 +80,7 @@ function sealed(format, unpacked) {
   return Buffer.concat([Buffer.from([format]), sum, packed]).toString("base64url");
 }
 
-/** What is said of links: nothing of bytes and offsets, which nobody who copied one knows. */
+/** The messages about links: without bytes and offsets, which mean nothing to a person who copied one. */
 const SAID = {
   "link/damaged": /^this link is cut or was changed; copy all of it$/,
   "link/version": /^this link was made by another version of Driftworld, or was changed; |^link: found .* made by Driftworld /,

@@ -1,4 +1,4 @@
-// The simulator in Node, from the folder that `cargo xtask studio` builds; and the answers of this machine to compare with.
+// Runs the simulator in Node, from the folder that `cargo xtask studio` builds, and natively, for comparison.
 
 import { execFileSync } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -32,7 +32,7 @@ export async function started() {
 
 export const network = (name) => new Uint8Array(readFileSync(join(root, "examples/networks", `${name}.safetensors`)));
 
-/** The answers of this machine to groups of calls: `cargo build -p driftworld-wasm --example answers` made the program. */
+/** The native answers to groups of calls; `cargo build -p driftworld-wasm --example answers` builds the program. */
 export function native(groups) {
   const program = process.env.DRIFTWORLD_ANSWERS ?? join(target, "debug", "examples", "answers");
   const folder = mkdtempSync(join(tmpdir(), "driftworld-answers-"));

@@ -1,4 +1,4 @@
-// The page's own reckoning: addresses, commands, maps, differences, timelines, curves and keys.
+// Tests the page's own logic: addresses, commands, maps, differences, timelines, curves and keys.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";

@@ -1,5 +1,5 @@
-// The simulator gives the same answers, to the bit, on this machine, in Node and in Chromium: worlds, distances, decisions, rewards and
-// pictures. `DRIFTWORLD_FULL=1` compares 10,000 frames, else 400.
+// The simulator gives bit-identical answers natively, in Node and in Chromium: worlds, distances, decisions, rewards and pictures.
+// `DRIFTWORLD_FULL=1` compares 10,000 frames instead of 400.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
@@ -10,7 +10,7 @@ import { answers, groups } from "./script.mjs";
 const full = process.env.DRIFTWORLD_FULL !== undefined;
 const asked = groups(full);
 const expected = native(asked);
-/** How many answers of a group, at least, are compared in full. */
+/** Minimum number of answers in each group, in a full run. */
 const LEAST = { frames: 20_000, worlds: 100, distances: 100 };
 
 function same(found) {
@@ -44,7 +44,7 @@ test("answers in Chromium are those of the machine", { skip: browserPath() ? fal
   const browser = await launch();
   try {
     const page = await browser.page();
-    // A document beside the page, in which nothing else runs.
+    // A page of the same origin in which nothing else runs.
     await page.goto(`${server.address}networks/index.json`);
     const found = await page.evaluate(`(async () => {
       const worker = new Worker(new URL("/worker.js", location.href), { type: "module" });

@@ -1,7 +1,7 @@
-// What the simulator is asked on a machine, in Node and in a browser, and one runner for the latter two: answers must be equal to the bit.
-// On the machine `studio/wasm/examples/answers.rs` does the same.
+// Calls whose answers must be bit-identical natively, in Node and in a browser, and their runner for Node and browsers.
+// `studio/wasm/examples/answers.rs` is the native runner.
 
-/** Ten worlds of many kinds: mazes, doors and keys, things that move or are pushed, zones, natural looks, tables of actions and numbers. */
+/** Ten worlds of many kinds: mazes, doors and keys, moving and pushable objects, zones, natural looks, discrete and continuous actions. */
 const PLAYED = [
   { open: { request: { task: "find_objects", variant: "red" }, style: "natural" }, agent: "planner" },
   { open: { request: { task: "nav_maze" }, style: "natural" }, agent: "planner" },
@@ -51,8 +51,8 @@ export function groups(full) {
 }
 
 /**
- * Runs groups of calls. `call` answers one, and `network` has the bytes of a network. Nothing from outside this function is used, so
- * that its text can be run in a page.
+ * Runs groups of calls. `call` answers a single call, and `network` holds the bytes of a network. The function uses nothing from
+ * outside, so that its source can be evaluated in a page.
  */
 export async function answers(groups, call, network) {
   const found = [];

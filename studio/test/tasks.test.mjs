@@ -1,7 +1,7 @@
-// Ten tasks that people come for, done by keyboard alone in headless Chromium.
+// Ten typical user tasks, done with the keyboard alone in headless Chromium.
 //
-// DRIFTWORLD_PAGE is the built page, DRIFTWORLD_COMMAND the command that writes a log to drop. With DRIFTWORLD_SHOTS, each task ends with
-// pictures of the page in that folder: on a desk in light and in dark, and on a phone.
+// DRIFTWORLD_PAGE is the built page, DRIFTWORLD_COMMAND the command that writes a log to drop. With DRIFTWORLD_SHOTS, each task saves
+// screenshots of the page into that folder: on a desktop in light and dark mode, and on a phone.
 
 import assert from "node:assert/strict";
 import { execFile } from "node:child_process";
@@ -14,7 +14,7 @@ import { browserPath, launch, overflow, SCREENS, serve, shot } from "./browser.m
 
 const { DRIFTWORLD_PAGE: folder, DRIFTWORLD_COMMAND: command } = process.env;
 const skip = (!folder && "DRIFTWORLD_PAGE names no built page") || (!browserPath() && "there is no Chromium");
-/** A busy machine draws its first world within this. */
+/** Time in which even a busy machine draws its first world. */
 const PATIENCE_MS = 60_000;
 
 let server;
@@ -29,7 +29,7 @@ after(async () => {
   server?.close();
 });
 
-/** A task: opens an address, does it, and looks at what is left: no fault, nothing that sticks out, and pictures of it. */
+/** Opens an address, performs a task, checks that the page has no errors and no overflow, and takes screenshots. */
 function task(name, address, does) {
   test(name, { skip, timeout: 5 * PATIENCE_MS }, async () => {
     const page = await browser.page();
@@ -39,7 +39,7 @@ function task(name, address, does) {
     for (const [screen, { width, height, scheme }] of Object.entries(SCREENS)) {
       await page.emulateMedia({ colorScheme: scheme, reducedMotion: "reduce" });
       await page.setViewportSize({ width, height });
-      // A picture of the page as it is after it was laid out anew.
+      // Wait for the new layout before the screenshot.
       await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
       await shot(page, `${name.split(":")[0].replaceAll(" ", "-")}-${screen}`);
       assert.deepEqual(await overflow(page), [], `${name}, ${screen}`);
@@ -49,14 +49,14 @@ function task(name, address, does) {
   });
 }
 
-/** The name by which a screen reader knows what has the focus. */
+/** The accessible name of the focused element. */
 const focused = (page) => page.evaluate(() => {
   const host = document.activeElement;
   const element = host?.shadowRoot?.activeElement ?? host;
   return (element?.getAttribute("aria-label") ?? element?.labels?.[0]?.firstChild?.textContent ?? element?.textContent ?? "").trim();
 });
 
-/** Presses Tab until something of this name has the focus. */
+/** Presses Tab until the element with this name has the focus. */
 async function tabTo(page, name) {
   const matches = (found) => (typeof name === "string" ? found === name : name.test(found));
   for (let presses = 0; presses < 250; presses += 1) {
@@ -66,7 +66,7 @@ async function tabTo(page, name) {
   assert.fail(`Tab never comes to ${name}`);
 }
 
-/** Chooses an entry of a list: its first letters select it. */
+/** Chooses an entry of a list by typing its first letters. */
 async function choose(page, list, entry) {
   await tabTo(page, list);
   await page.keyboard.type(entry);
@@ -74,13 +74,13 @@ async function choose(page, list, entry) {
 
 const text = (page, selector) => page.locator(selector).first().innerText();
 const until = (page, works, ...given) => page.waitForFunction(works, ...given, { polling: 100 });
-/** How many steps a seat has taken. */
+/** The number of steps that a seat has taken. */
 const stepsOf = async (page, seat) => Number(/step (\d+)/.exec(await text(page, `section.seat[aria-label="${seat}"] footer`))[1]);
 const untilSteps = (page, seat, least) => until(page, ([name, count]) => {
   const found = /step (\d+)/.exec(document.querySelector(`section.seat[aria-label="${name}"] footer`)?.textContent ?? "");
   return found !== null && Number(found[1]) >= count;
 }, [seat, least]);
-/** The pixels of a picture, as one number. */
+/** A hash of the pixels of a picture. */
 const hash = (selector) => {
   const canvas = document.querySelector(selector);
   const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
@@ -95,7 +95,7 @@ async function untilPixels(page, selector, wanted, isSame) {
     await page.waitForTimeout(100);
   }
 }
-/** Does something in a folder that is gone afterwards. */
+/** Runs a function in a temporary folder. */
 async function inFolder(does) {
   const place = await mkdtemp(join(tmpdir(), "driftworld-page-"));
   try {
@@ -165,7 +165,7 @@ task("05 share: an episode is a link", "#/play/four_rooms?seed=3", async (page) 
   await walk(page, "You", 12);
   await page.keyboard.press("KeyP");
   await page.waitForSelector(".seat .tag");
-  // A step that was under way ends.
+  // Let a running step finish.
   await page.waitForTimeout(500);
   await tabTo(page, "Share as a link");
   await page.keyboard.press("Enter");

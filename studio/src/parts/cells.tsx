@@ -1,4 +1,4 @@
-// A map of letters as a grid of cells: a click, a drag or a key puts a letter.
+// Editor for a text layout, as a grid of cells: a click, a drag or a key sets a letter.
 
 import { useState } from "preact/hooks";
 import type { TextLayout } from "../layouts.ts";

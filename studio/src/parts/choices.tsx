@@ -1,10 +1,10 @@
-// Which world is shown: task, variant, seed and number.
+// Pickers for the world to show: task, variant, seed and number.
 
 import type { TaskCard } from "../engine.ts";
 import { draft } from "../draft.ts";
 import { engine, useAnswer } from "../simulator.ts";
 
-/** A task, from all built-in ones and the draft. */
+/** Picks one of the built-in tasks or the draft. */
 export function TaskPicker({ task, pick }: { task: string; pick: (task: string) => void }) {
   const cards = useAnswer(() => engine.tasks(), []).value ?? [];
   const groups = [...new Set(cards.map((card) => card.group))];
@@ -23,7 +23,7 @@ export function TaskPicker({ task, pick }: { task: string; pick: (task: string) 
   );
 }
 
-/** A list with its label; an entry is a word, or a value and the words for it. */
+/** A labelled list; an entry is a word, or a value with its text. */
 export function Choice({ label, value, entries, pick }: {
   label: string;
   value: string;
@@ -43,7 +43,7 @@ export function Choice({ label, value, entries, pick }: {
   );
 }
 
-/** A variant of a task; empty is that of all defaults, where there is a choice of it. */
+/** Picks a variant of a task; an empty value stands for the variant with all defaults, if that can be chosen. */
 export function VariantPicker({ variants, variant, pick, label = "Variant", isNamed = false }: {
   variants: string[];
   variant: string;
@@ -55,13 +55,13 @@ export function VariantPicker({ variants, variant, pick, label = "Variant", isNa
   return <Choice label={label} value={variant} entries={isNamed ? names : [["", "defaults"], ...names]} pick={pick} />;
 }
 
-/** What the numbers of a world mean. */
+/** Explanations of the numbers that select a world. */
 const MEANINGS: Record<string, string> = {
   Seed: "Worlds are drawn by chance. The same seed draws the same worlds again.",
   World: "The number of the world among all that this seed draws, from 0.",
 };
 
-/** A whole number from 0; anything else is not taken, and the number before it is shown again. */
+/** Picks a whole number from 0; any other input is rejected and the previous number restored. */
 export function NumberPicker({ label, value, pick }: { label: string; value: number; pick: (value: number) => void }) {
   return (
     <label class="field" title={MEANINGS[label]}>

@@ -1,4 +1,4 @@
-// The learning curves of a log; a click opens the recorded episode that is nearest.
+// The learning curves of a log; a click opens the nearest recorded episode.
 
 import { useMemo } from "preact/hooks";
 import type { Log } from "../engine.ts";

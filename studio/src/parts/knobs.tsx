@@ -4,7 +4,7 @@ import type { Value, Variant } from "../engine.ts";
 import type { WrittenParameter } from "../written.ts";
 import { choiceOf, elementWords, wordOf } from "./value.tsx";
 
-/** A number as it is written by hand: no more digits than a step needs. */
+/** Rounds a number to the digits that a step needs. */
 const rounded = (value: number, step: number): number => Number(value.toFixed(Math.max(0, Math.ceil(-Math.log10(step)))));
 
 function Slider({ id, low, high, isWhole, value, set }: {
@@ -67,7 +67,7 @@ function Knob({ parameter, value, set }: { parameter: WrittenParameter; value: V
   );
 }
 
-/** All parameters that can be set: those of the role `variant` in the variant that is shown, and fixed numbers. */
+/** Controls for all parameters that can be set: those with role `variant`, in the shown variant, and fixed numbers. */
 export function Knobs({ parameters, variant, set }: {
   parameters: WrittenParameter[];
   variant: Variant | null;

@@ -1,11 +1,11 @@
-// What the page says: errors, what is under way, and texts to copy.
+// Messages on the page: errors, progress, and texts to copy.
 
 import { useState } from "preact/hooks";
 import type { ComponentChildren } from "preact";
 import type { EngineError } from "../engine.ts";
 import type { Recipe } from "../commands.ts";
 
-/** Why something did not come about, and ways out of it; `again` is offered where another try can do better. */
+/** Explains an error and how to resolve it; `again` is offered if a retry may help. */
 export function ErrorNote({ error, again, children }: { error: EngineError; again?: () => void; children?: ComponentChildren }) {
   const isStopped = error.code === "engine/stopped" || error.code === "engine/lost";
   const canPass = /^(engine|page)\//.test(error.code);
@@ -18,7 +18,7 @@ export function ErrorNote({ error, again, children }: { error: EngineError; agai
   );
 }
 
-/** Puts a text on the clipboard; false where the browser does not allow it. */
+/** Copies a text to the clipboard; returns false if the browser does not allow it. */
 export async function copyText(text: string): Promise<boolean> {
   try {
     await navigator.clipboard.writeText(text);
@@ -37,7 +37,7 @@ export function saveText(name: string, text: string): void {
   setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 }
 
-/** A button that copies a text, and says so. */
+/** A button that copies a text and confirms it. */
 export function CopyButton({ text, label, children }: { text: string; label: string; children?: ComponentChildren }) {
   const [said, setSaid] = useState("");
   const copy = async () => {
@@ -51,7 +51,7 @@ export function CopyButton({ text, label, children }: { text: string; label: str
   );
 }
 
-/** Actions as commands and as Python, to look at and to copy. */
+/** Shows recipes as shell commands and as Python, ready to copy. */
 export function Recipes({ of }: { of: Record<string, Recipe> }) {
   return (
     <details class="copy">

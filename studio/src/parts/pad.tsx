@@ -1,4 +1,4 @@
-// Buttons for who has no keyboard.
+// On-screen buttons for players without a keyboard.
 
 const PAD: [code: string, sign: string, word: string][] = [
   ["", "", ""], ["ArrowUp", "↑", "Ahead"], ["Space", "● use", "Use what is ahead"],

@@ -1,11 +1,11 @@
-// Pictures of the simulator on canvases: what an agent sees, and the flat map of a world.
+// Canvases that show an agent's view and the flat map of a world.
 
 import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
 import type { Frame, WorldMap } from "../engine.ts";
 import type { Line } from "../difference.ts";
 import { scaleOf, toMetres, toPixels, whatIsAt } from "../map_view.ts";
 
-/** A frame, with lines drawn over it. */
+/** Shows a frame with lines drawn over it. */
 export function Picture({ frame, label, lines }: { frame: Frame | null; label: string; lines?: Line[] }) {
   const canvas = useRef<HTMLCanvasElement>(null);
   useLayoutEffect(() => {
@@ -31,13 +31,13 @@ export function Picture({ frame, label, lines }: { frame: Frame | null; label: s
 const css = ([red, green, blue]: readonly [number, number, number], alpha = 1) =>
   `rgb(${Math.round(red * 255)} ${Math.round(green * 255)} ${Math.round(blue * 255)} / ${alpha})`;
 
-/** Pixels across a map; the page scales it. */
+/** Width of a map in pixels; the page scales it. */
 const WIDTH = 640;
 
-/** Where someone is and looks. */
+/** Position and heading of an agent. */
 type Pose = Pick<WorldMap["agent"], "x" | "y" | "heading">;
 
-/** Draws a map, with others as hollow arrows; the colours of ground and ink are those of the page. */
+/** Draws a map in the colours of the page, with other agents as hollow arrows. */
 function draw(canvas: HTMLCanvasElement, map: WorldMap, trail: readonly (readonly [number, number])[], others: readonly Pose[]): void {
   const scale = scaleOf(map, WIDTH);
   canvas.width = WIDTH;
@@ -70,7 +70,7 @@ function draw(canvas: HTMLCanvasElement, map: WorldMap, trail: readonly (readonl
     context.fillStyle = css(wall.color, 0.9);
     if (wall.closed) context.fill();
     context.strokeStyle = rim!;
-    // An open line is a face of a wall: as wide as to meet the one behind it.
+    // An open line is one face of a wall: drawn wide enough to meet the opposite face.
     context.lineWidth = wall.closed ? 1 : Math.max(3, 0.35 * scale.pixelsPerMetre);
     context.stroke();
   }
@@ -108,7 +108,7 @@ function draw(canvas: HTMLCanvasElement, map: WorldMap, trail: readonly (readonl
   }
 }
 
-/** Whether a media query holds, now and when that changes. */
+/** Whether a media query matches; re-renders when that changes. */
 export function useMedia(media: string): boolean {
   const query = matchMedia(media);
   const [holds, setHolds] = useState(query.matches);
@@ -120,10 +120,10 @@ export function useMedia(media: string): boolean {
   return holds;
 }
 
-/** One list, so that a map without anyone is drawn once. */
+/** A shared empty list: a new one at each render would redraw the map. */
 const NONE: never[] = [];
 
-/** A map that says what lies under the pointer; `click` hears where it was clicked, in metres. */
+/** A map that describes what is under the pointer; `click` gets the clicked point in metres. */
 export function FlatMap({ map, trail = NONE, others = NONE, click }: {
   map: WorldMap | null;
   others?: readonly Pose[];

@@ -1,4 +1,4 @@
-// One who acts in a world: the name, what it sees, and how it fares.
+// A player in a world, human or agent: name, view, and progress.
 
 import { useEffect, useRef } from "preact/hooks";
 import type { ComponentChildren } from "preact";
@@ -7,10 +7,10 @@ import { amount } from "../pay.ts";
 import { ending, type Session } from "../session.ts";
 import { Picture } from "./pictures.tsx";
 
-/** Who can play beside you. */
+/** The agents that can play beside you. */
 export type Companion = "policy" | "planner";
 export const NAMES: Record<Companion, string> = { planner: "Planner", policy: "Trained policy" };
-/** Who they are. */
+/** Their descriptions. */
 export const MEANINGS: Record<Companion, string> = {
   planner: "A program that knows the map plays the same world",
   policy: "A network that learned this task from pictures plays the same world",
@@ -26,7 +26,7 @@ export function Seat({ name, session, isYours = false, lines, below, children }:
 }) {
   const frame = useRef<HTMLDivElement>(null);
   useEffect(() => {
-    // A list that is walked by keyboard keeps the focus.
+    // Keep the focus on a list that is being used with the keyboard.
     if (isYours && !document.activeElement?.matches("select:focus-visible, input")) frame.current?.focus({ preventScroll: true });
   }, [session.episode.id]);
   const { step } = session;

@@ -1,4 +1,4 @@
-// The timeline of a replayed episode: what each moment paid, the loop, and a slider over all of it.
+// The timeline of a replayed episode: the reward at each moment, the loop, and a slider.
 
 import { useMemo } from "preact/hooks";
 import type { Step } from "../engine.ts";

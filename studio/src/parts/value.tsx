@@ -1,4 +1,4 @@
-// Values of parameters, for people: colours as swatches, the names of choices, long values cut short.
+// Displays parameter values: colours as swatches, choices by name, long values truncated.
 
 import type { Element, Value } from "../engine.ts";
 import { oneLine, same } from "../json_text.ts";
@@ -8,7 +8,7 @@ import type { WrittenParameter } from "../written.ts";
 export const ELEMENTS: Record<Element, string> = {
   S: "State", A: "Action", T: "Transition", R: "Reward", O: "Observation", p: "Initial state", phi: "Observation",
 };
-/** Elements in words, each once. */
+/** The names of elements, without duplicates. */
 export const elementWords = (elements: Element[]): string => [...new Set(elements.map((element) => ELEMENTS[element]))].join(", ");
 
 let brush: CanvasRenderingContext2D | null = null;
@@ -25,12 +25,12 @@ export function hexOf(value: Value): string | null {
   return brush.fillStyle === "#010203" ? null : brush.fillStyle;
 }
 
-/** The choice that a value is, by its number; -1 if it is none. */
+/** The index of the choice that equals a value; -1 if none does. */
 export function choiceOf({ choices }: WrittenParameter, value: Value): number {
   return choices?.findIndex(({ name, value: short, full }) => (name !== null && name === value) || same(short, value) || same(full, value)) ?? -1;
 }
 
-/** What a value is called in a list: its name, a short form, or its first characters. */
+/** The text for a value in a list: its name, a short form, or its first characters. */
 export function wordOf(value: Value, name: string | null = null): string {
   const text = name ?? (value === null ? "none" : typeof value === "string" ? value : oneLine(value));
   return text.length > 60 ? `${text.slice(0, 59)}…` : text;

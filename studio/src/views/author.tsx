@@ -1,4 +1,4 @@
-// A task as text, with its parameters as sliders, a world of it drawn as it is typed, and its map to click on.
+// The author view: edits a task as text, with sliders for its parameters, a live preview of a world, and a map to click on.
 
 import { useEffect, useRef, useState } from "preact/hooks";
 import { EngineError, type Frame, type Json, type Problem, type Task, type Value, type Variant, type WorldMap, type WorldRequest } from "../engine.ts";
@@ -17,12 +17,12 @@ import { Knobs } from "../parts/knobs.tsx";
 import { ErrorNote, Recipes, saveText } from "../parts/notes.tsx";
 import { FlatMap, Picture } from "../parts/pictures.tsx";
 
-/** Milliseconds without a key after which a text is looked at. */
+/** Milliseconds without a key press after which the text is checked. */
 const PAUSE_MS = 150;
-/** Metres within which a click takes a point away. */
+/** Metres within which a click removes a point. */
 const NEAR = 1.5;
 
-/** What the last valid text shows. */
+/** The preview of the last valid text. */
 interface Drawn {
   document: Json;
   task: Task | null;
@@ -31,7 +31,7 @@ interface Drawn {
   map: WorldMap;
 }
 
-/** Draws one world of a text. */
+/** Draws a world of a text. */
 async function drawn(text: string, kind: string, variant: string, seed: number, index: number): Promise<Drawn> {
   const task = kind === "task" ? await engine.task(text) : null;
   const known = task?.variants.some(({ name }) => name === variant);
@@ -45,7 +45,7 @@ async function drawn(text: string, kind: string, variant: string, seed: number, 
   }
 }
 
-/** The text that an address asks for: of a built-in task, or of a file that `driftworld studio` put beside the page; null is the draft. */
+/** The text that an address names: a built-in task, or a file served by `driftworld studio`; null stands for the draft. */
 async function begunWith({ task, options: { file } }: Route): Promise<string | null> {
   if (file && /^[\w-]+\.json$/.test(file)) {
     const reply = await fetch(file);
@@ -83,7 +83,7 @@ export function Author({ route }: { route: Route }) {
       begun.current = named;
       if (replaced) setSaid("Undo brings back the text that was here before.");
       if (named !== null || replaced) editor.current.replace(named ?? text);
-      // The text can be read before it can be completed.
+      // Show the text before completion is available.
       context.current.schema = await engine.schema("task");
     };
     begin().catch((reason: unknown) => setError(asError(reason)));
@@ -96,7 +96,7 @@ export function Author({ route }: { route: Route }) {
 
   useEffect(() => {
     draft.keep(text);
-    // An edited task is the draft: neither Back nor a reload begins again with the text that the address named.
+    // An edited task is the draft: neither Back nor a reload returns to the text that the address named.
     if (begun.current !== null && text !== begun.current) history.replaceState(null, "", hrefOf("author", "draft", { variant }));
     let isOver = false;
     const look = async () => {
@@ -147,7 +147,7 @@ export function Author({ route }: { route: Route }) {
       return;
     }
     const before = editor.current?.text() ?? text;
-    // The text may be ahead of what was drawn from it.
+    // The text may be newer than the preview.
     const now = spans(before) && pointGroups(JSON.parse(before) as Json).find(({ name }) => name === target);
     if (!now) return;
     const here = now.points.findIndex(([x, y]) => Math.hypot(x - point[0], y - point[1]) <= NEAR);
@@ -265,7 +265,7 @@ export function Author({ route }: { route: Route }) {
   );
 }
 
-/** Where the group of an object stands in a task: the first with its class and tag. */
+/** The path of an object's group in a task: the first group with its class and tag. */
 function placeOf({ document, map }: Drawn, object: number): Path {
   const found = map.objects.find(({ index }) => index === object);
   const groups = (document as { groups?: { object?: { class?: Json; tag?: Json } }[] }).groups ?? [];
@@ -281,7 +281,7 @@ function showProblem(editor: Editor | null, text: string, problem: Problem): voi
   return editor?.show(from, from);
 }
 
-/** One change that leads from a text to another. */
+/** The smallest single change from one text to another. */
 function minimal(before: string, after: string): Change {
   let from = 0;
   while (from < before.length && before[from] === after[from]) from += 1;

@@ -1,4 +1,4 @@
-// Two variants of a task side by side, under one seed and one set of actions; and how far apart they are, element by element.
+// The compare view: two variants of a task side by side, with the same seed and actions, and their distance in each element.
 
 import type { ComponentChildren } from "preact";
 import { useEffect, useMemo, useState } from "preact/hooks";
@@ -20,14 +20,14 @@ import { written, type WrittenParameter } from "../written.ts";
 import { ELEMENTS, elementWords, ShownValue } from "../parts/value.tsx";
 import { Seat } from "../parts/seat.tsx";
 
-/** What a test of their worlds found of the parameters' claims. */
+/** Verdicts on the parameters' declarations, from a test of the worlds. */
 const VERDICTS: Record<Found["verdict"], string> = {
   sound: "just what the parameters declare",
   idle: "a parameter changes nothing",
   contradicted: "more than the parameters declare",
 };
 
-/** A share as a bar, beside its number. */
+/** A share as a bar with its number. */
 export function Meter({ share }: { share: number }) {
   return (
     <svg class="meter" viewBox="0 0 100 8" preserveAspectRatio="none" aria-hidden="true">
@@ -36,7 +36,7 @@ export function Meter({ share }: { share: number }) {
   );
 }
 
-/** The parts that make a distance, the largest first: what counts for several elements is one of them. */
+/** The parts of a distance, largest first; a part that counts for several elements is listed once. */
 function partsOf({ parts }: Distance) {
   const rows = new Map<string, { name: string; measure: string; elements: Element[]; share: number }>();
   for (const { name, measure, raw, element, share } of parts.filter((part) => part.share > 0)) {

@@ -1,4 +1,4 @@
-// All tasks as cards with a picture of a world, in which the planner walks while a card is looked at.
+// The gallery: a card for each task with a picture of a world, in which the planner walks while the card is active.
 
 import { useEffect, useRef, useState } from "preact/hooks";
 import type { Frame, TaskCard } from "../engine.ts";
@@ -12,10 +12,10 @@ import { ErrorNote } from "../parts/notes.tsx";
 import { MEANINGS } from "../parts/seat.tsx";
 
 const SIZE = { width: 280, height: 210 };
-/** Steps of the planner before a card's picture is taken: many worlds begin in front of a wall. */
+/** Steps of the planner before a card's picture is taken: many worlds start in front of a wall. */
 const GLANCE = 12;
 
-/** The picture of a card: drawn once it comes into view, and alive while `isLive`. */
+/** The picture of a card: drawn when it scrolls into view, and animated while `isLive`. */
 function Shot({ card, isLive }: { card: TaskCard; isLive: boolean }) {
   const place = useRef<HTMLSpanElement>(null);
   const session = useRef<Session | null>(null);

@@ -1,4 +1,4 @@
-// The variants of a task as a contact sheet, as a map of their distances, and as an order that is walked along it.
+// The order view: the variants of a task as a contact sheet, as a map of their distances, and as an ordered path on it.
 
 import { useEffect, useState } from "preact/hooks";
 import type { Frame, Matrix, OrderMethod } from "../engine.ts";
@@ -21,13 +21,13 @@ const METHODS: Partial<Record<OrderMethod, string>> = {
   random: "By chance, to compare the others with.",
   given: "As the task lists them, the start first.",
 };
-/** Variants that are shown at first: more take longer, and their names overlap. */
+/** Maximum number of variants shown at first: more take longer, and their names overlap. */
 const MOST = 12;
 const SIZE = { width: 240, height: 180 };
 
 const short = (label: string): string => label.slice(label.indexOf("#") + 1);
 
-/** The pictures of the first worlds of variants, as they are drawn. */
+/** Pictures of a world of each variant, added as they are drawn. */
 function useFrames(task: string, variants: string[], seed: number, index: number): Map<string, Frame> {
   const [frames, setFrames] = useState(new Map<string, Frame>());
   const key = variants.join(" ");
@@ -51,7 +51,7 @@ function useFrames(task: string, variants: string[], seed: number, index: number
   return frames;
 }
 
-/** Points with about the distances of the variants, numbered along the way of an order among them. */
+/** Variants as points that approximate their distances, numbered in the order of a path. */
 function DistanceMap({ matrix, way, now, pick }: { matrix: Matrix; way: string[]; now: string; pick: (variant: string) => void }) {
   const width = useMedia("(max-width: 40rem)") ? 340 : 560;
   const [xs, ys] = [matrix.points.map(([x]) => x), matrix.points.map(([, y]) => y)];
@@ -66,7 +66,7 @@ function DistanceMap({ matrix, way, now, pick }: { matrix: Matrix; way: string[]
     const texts = [`${place + 1} ${variant}`, `${place + 1}`];
     return at < 0 ? [] : [{ variant, texts, x: inset + (xs[at]! - left) * scale, y: 40 + (top - ys[at]!) * scale }];
   });
-  // The variant that is looked at always has its label.
+  // The selected variant always has a label.
   const first = stops.findIndex(({ variant }) => variant === now);
   const ranked = [...stops.slice(first, first + 1), ...stops.filter((_, place) => place !== first)];
   const labels = placeLabels(ranked, width, height);

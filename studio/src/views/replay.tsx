@@ -1,4 +1,4 @@
-// An episode on a timeline: from a link, or from a log that was dropped onto the page, with its learning curve beside.
+// The replay view: an episode on a timeline, from a link or from a dropped log, with the learning curve of the log.
 
 import { useEffect, useLayoutEffect, useMemo, useRef, useState } from "preact/hooks";
 import type { DroppedFile, EngineError, Episode, Frame, Log, Step, WorldMap } from "../engine.ts";
@@ -16,11 +16,11 @@ import { ErrorNote, Recipes } from "../parts/notes.tsx";
 import { FlatMap, Picture } from "../parts/pictures.tsx";
 import { Timeline } from "../parts/timeline.tsx";
 
-/** An episode that is replayed, with all its steps. */
+/** A replayed episode with all its steps. */
 interface Played {
   episode: Episode;
   title: string;
-  /** The moment before the first step, and that after each. */
+  /** The state before the first step, and the state after each step. */
   steps: Step[];
 }
 
@@ -56,7 +56,7 @@ export function Replay({ route }: { route: Route }) {
   const [loop, setLoop] = useState<Loop | null>(null);
   const [isOver, setOver] = useState(false);
   const [isReading, setReading] = useState(false);
-  /** The moment that was asked for last; the state follows it. */
+  /** The moment requested last; the state catches up with it. */
   const wanted = useRef(0);
 
   const show = async (opening: Promise<Played>) => {
@@ -105,7 +105,7 @@ export function Replay({ route }: { route: Route }) {
     void show(engine.openLogged(number, VIEW).then((episode) => played(episode, `Episode ${number}`)));
   };
 
-  // One picture is drawn at a time, each of the moment that is wanted then.
+  // Only one picture is drawn at a time, always for the latest requested moment.
   const source = useRef<Episode | null>(null);
   const isDrawing = useRef(false);
   source.current = shown?.episode ?? null;
