@@ -8,7 +8,7 @@ import { brotliCompressSync, constants, gzipSync } from "node:zlib";
 import { load } from "./test/bundle.mjs";
 
 /** Maximum number of bytes that a browser transfers to show the page and run the simulator, excluding networks. */
-const MOST = 2_500_000;
+const MAX_BYTES = 2_500_000;
 
 const here = dirname(fileURLToPath(import.meta.url));
 const [wasm, out] = process.argv.slice(2);
@@ -72,8 +72,8 @@ const names = readdirSync(networks).filter((name) => name.endsWith(".safetensors
 for (const name of names) cpSync(join(networks, name), join(out, "networks", name));
 writeFileSync(join(out, "networks", "index.json"), JSON.stringify(names.map((name) => basename(name, ".safetensors"))));
 
-console.log(`in all               ${sum} bytes by brotli, at most ${MOST}; networks beside it: ${names.join(", ")}`);
-if (sum > MOST) {
-  console.error(`build.mjs: found ${sum} bytes by brotli, expected at most ${MOST}; make the page or the simulator smaller`);
+console.log(`in all               ${sum} bytes by brotli, at most ${MAX_BYTES}; networks beside it: ${names.join(", ")}`);
+if (sum > MAX_BYTES) {
+  console.error(`build.mjs: found ${sum} bytes by brotli, expected at most ${MAX_BYTES}; make the page or the simulator smaller`);
   process.exit(1);
 }

@@ -11,7 +11,7 @@ Afterwards `Curriculum.run_vector` evaluates it in worlds that it never learned 
 
     python examples/python/cleanrl_ppo.py              # a few minutes on two cores
     python examples/python/cleanrl_ppo.py --results    # also writes the result to results/
-    python examples/python/cleanrl_ppo.py --quick      # does it run?
+    python examples/python/cleanrl_ppo.py --quick      # only checks that it runs
 
 Needs PyTorch (`pip install torch`).
 """

@@ -6,7 +6,7 @@ and is frozen and evaluated in both before and after each block.
 
     python examples/python/experts_and_sequential_ppo.py               # experts, lifetime, scores and the report
     python examples/python/experts_and_sequential_ppo.py --seeds 1 2 3 4 5 --results   # also writes to results/
-    python examples/python/experts_and_sequential_ppo.py --quick       # does it run?
+    python examples/python/experts_and_sequential_ppo.py --quick       # only checks that it runs
 
 The loop is `Curriculum.run_vector`: it runs the blocks, freezes the learner, checks that evaluations do not change it,
 and writes the log. The learner is `driftworld.learners.PPO`; `replay_ppo.py` uses `CLEAR` instead. Needs PyTorch (`pip

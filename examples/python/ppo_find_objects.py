@@ -5,7 +5,7 @@ walks from cube to cube, both in the same environment.
 
     python examples/python/ppo_find_objects.py                               # one seed
     python examples/python/ppo_find_objects.py --seeds 1 2 3 4 5 --results   # also writes the result to results/
-    python examples/python/ppo_find_objects.py --quick                       # does it run?
+    python examples/python/ppo_find_objects.py --quick                       # only checks that it runs
 
 Seeds are independent: their environments share no world. All agents are evaluated in the same worlds, by
 `Curriculum.run_vector`, once with actions sampled from the policy and once greedily.

@@ -5,7 +5,7 @@ runs them, and are merged in order: the numbers and the digest are the same on o
 
     python examples/python/ray_sample_and_measure.py --variants 1000000            # on this machine's processors
     python examples/python/ray_sample_and_measure.py --variants 1000000 --address auto    # on the cluster that this machine is in
-    python examples/python/ray_sample_and_measure.py --quick                       # does it run?
+    python examples/python/ray_sample_and_measure.py --quick                       # only checks that it runs
 
 Needs `pip install "./python[ray]"`, on every machine of the cluster. A cluster with token authentication (see Ray's
 documentation) also needs the token here.
@@ -41,7 +41,7 @@ COLOURS = ("blue", "red", "green")
 ELEMENTS = ("S", "A", "T", "R", "O")
 BINS = 20
 # The largest distance: each parameter over its whole range counts 1, and so does the colour.
-MOST = float(len(RANGES) + 1)
+MAX_DISTANCE = float(len(RANGES) + 1)
 
 
 def variant_of(task: driftworld.TaskSpec, seed: int, number: int) -> driftworld.Variant:
@@ -76,7 +76,7 @@ def measure(batch: dict[str, np.ndarray], seed: int, shard_size: int, variants: 
             "most": max(totals),
             "elements": np.sum(elements, axis=0),
             "objects": int(np.sum(objects)),
-            "histogram": np.histogram(np.minimum(totals, MOST), bins=BINS, range=(0.0, MOST))[0],
+            "histogram": np.histogram(np.minimum(totals, MAX_DISTANCE), bins=BINS, range=(0.0, MAX_DISTANCE))[0],
             "digest": digest.hexdigest(),
         })  # fmt: skip
     return {name: [row[name] for row in rows] for name in rows[0]}
@@ -161,8 +161,8 @@ def main() -> None:
             settings={**vars(arguments), "ranges": RANGES, "answer": answer},
             variants=[f"{TASK}#blue"], seeds=[arguments.seed],
             # Empty bins are left out.
-            curve=[{"distance": MOST * (bin + 0.5) / BINS, "variants": count} for bin, count in enumerate(histogram) if count],
-            seconds=watch.seconds, load_before=watch.load, axes=("distance", "variants"), labels=("distance from blue", f"variants in {MOST / BINS:.1f} of distance"),
+            curve=[{"distance": MAX_DISTANCE * (bin + 0.5) / BINS, "variants": count} for bin, count in enumerate(histogram) if count],
+            seconds=watch.seconds, load_before=watch.load, axes=("distance", "variants"), labels=("distance from blue", f"variants in {MAX_DISTANCE / BINS:.1f} of distance"),
             table=[{
                 "variants": answer["variants"], "seconds": round(seconds, 1), "variants a second": round(answer["variants"] / seconds),
                 "mean distance": round(answer["distance"]["mean"], 4), "least": round(answer["distance"]["least"], 4),

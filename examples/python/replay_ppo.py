@@ -10,7 +10,7 @@ learner.
 
     python examples/python/replay_ppo.py               # lifetimes, scores and a report that compares them
     python examples/python/replay_ppo.py --seeds 1 2 3 4 5 --results     # also write the record into results/
-    python examples/python/replay_ppo.py --quick       # does it run?
+    python examples/python/replay_ppo.py --quick       # only checks that it runs
 
 Needs PyTorch (`pip install torch`).
 """

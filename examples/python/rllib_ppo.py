@@ -2,7 +2,7 @@
 
     python examples/python/rllib_ppo.py                    # a cluster of this machine's own
     python examples/python/rllib_ppo.py --address auto     # the Ray cluster that this machine is in
-    python examples/python/rllib_ppo.py --quick            # does it run?
+    python examples/python/rllib_ppo.py --quick            # only checks that it runs
 
 Unlike sampling and measuring (`ray_sample_and_measure.py`), learning depends on the number of runners: the experience
 comes from different worlds, in a different order. Needs `pip install "./python[ray]" torch`.

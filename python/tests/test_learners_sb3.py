@@ -186,7 +186,7 @@ def test_off_policy_rows_contain_only_steps_of_experiences() -> None:
 def test_model_that_remembers_evaluations_is_refused() -> None:
     plan = curriculum(2, evaluate=2)
     agent = agent_of("PPO", plan, policy="sampled")
-    agent._apart = lambda _: __import__("contextlib").nullcontext()
+    agent._evaluation_randomness = lambda _: __import__("contextlib").nullcontext()
     with pytest.raises(CurriculumError, match="once more"):
         plan.run(agent, **OPTIONS)
 

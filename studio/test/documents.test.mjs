@@ -26,7 +26,7 @@ const at = (path, text = TEXT) => {
 };
 const changed = (path, value, text = TEXT) => applied(text, change(text, path, value));
 
-test("spans find every value, and nothing in what is no JSON", () => {
+test("spans finds every value of a document, and nothing in invalid JSON", () => {
   assert.equal(at(["name"]), '"a\\"b"');
   assert.equal(at(["list", 1, 0]), "2");
   assert.equal(at(["deep", "y"]), "-2.5e3");
@@ -39,7 +39,7 @@ test("a change replaces one value and leaves the rest", () => {
   assert.deepEqual(JSON.parse(changed(["list", 1], { a: [true, null] })).list, [1, { a: [true, null] }]);
 });
 
-test("a new member is written as its neighbours are", () => {
+test("a new member is formatted like its neighbours", () => {
   assert.match(changed(["deep", "z"], 3), /-2\.5e3,\n {4}"z": 3\n/);
   assert.match(changed(["empty", "k"], "v"), /"empty": \{ "k": "v" \}/);
   assert.match(changed(["list", 2], 9), /\[1, \[2, 3\], 9\]/);
@@ -47,7 +47,7 @@ test("a new member is written as its neighbours are", () => {
   assert.equal(change(TEXT, ["absent", "k"], 1), null);
 });
 
-test("a removal takes its comma along", () => {
+test("a removal also removes the comma", () => {
   const without = (path) => JSON.parse(applied(TEXT, removal(TEXT, path)));
   assert.deepEqual(without(["list", 0]).list, [[2, 3]]);
   assert.deepEqual(without(["list", 1]).list, [1]);
@@ -86,7 +86,7 @@ test("completion follows the schema of tasks, and the task's own parameters", as
   assert.ok(offered('{"world": {"max_steps": {"param": ', task).includes('"light"'));
 });
 
-test("maps of letters and groups at points are found in a task", () => {
+test("text layouts and groups at listed points are found in a task", () => {
   const documents = TEMPLATES.map(({ text }) => JSON.parse(text));
   assert.deepEqual(documents.map((document) => textLayouts(document).length), [0, 1, 0]);
   const [layout] = textLayouts(documents[1]);
@@ -97,18 +97,18 @@ test("maps of letters and groups at points are found in a task", () => {
   assert.deepEqual(pointGroups(null), []);
 });
 
-test("JSON on one line reads back", () => {
+test("one-line JSON parses to the same value", () => {
   const value = { a: [1, "x", { b: null }], c: {} };
   assert.equal(oneLine(value), '{ "a": [1, "x", { "b": null }], "c": {} }');
   assert.deepEqual(JSON.parse(oneLine(value)), value);
 });
 
-test("values are the same in whatever order their keys stand", () => {
+test("values are equal regardless of key order", () => {
   assert.ok(same({ a: [1, { b: 2, c: null }] }, { a: [1, { c: null, b: 2 }] }));
   for (const [a, b] of [[{ a: 1 }, { a: 1, b: 1 }], [[1, 2], [2, 1]], [{}, []], [null, {}], ["1", 1], [{ a: 1 }, { b: 1 }]]) assert.ok(!same(a, b));
 });
 
-test("choices of parameters are as they are written", () => {
+test("choices of parameters are shown as written", () => {
   const text = '{"parameters": {"c": {"choices": ["gold"]}, "l": {"choices": {"big": {"maze": {}}}}, "n": {}}}';
   const full = [1, 0.84, 0];
   const parameters = [

@@ -60,7 +60,7 @@ test("the simulator starts, plays and draws", { skip }, async () => {
   assert.ok(found.milliseconds < 5000 && found.speeds.plain > 20);
 });
 
-test("an episode is played, gone back to, linked and replayed", { skip }, async () => {
+test("an episode is played, rewound, linked and replayed", { skip }, async () => {
   const found = await page.evaluate(async () => {
     const engine = window.begin(10_000);
     const episode = await engine.open({ task: "door_key", seed: 2 }, { looks: "natural" });
@@ -111,7 +111,7 @@ test("a call that takes too long or is stopped ends, and the next one works", { 
   assert.ok(found.measures > 10);
 });
 
-test("no document keeps the page from answering for a second", { skip }, async () => {
+test("no document blocks the page for a second", { skip }, async () => {
   const found = await page.evaluate(async () => {
     const limit = 1000;
     const engine = window.begin(limit);

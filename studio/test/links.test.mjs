@@ -30,7 +30,7 @@ function numbers(seed) {
 
 const cards = ask({ call: "tasks" });
 
-test("1,000 episodes come back from links of at most 2 kB", () => {
+test("1,000 episodes survive a round trip through links of at most 2 kB", () => {
   const lengths = [];
   for (let number = 0; number < EPISODES; number += 1) {
     const card = cards[Math.floor((number * cards.length) / EPISODES)];
@@ -53,7 +53,7 @@ test("1,000 episodes come back from links of at most 2 kB", () => {
   assert.ok(most <= 2000, `found a link of ${most} characters`);
 });
 
-test("people's keys and agents that take over come back, too", () => {
+test("episodes played by keys and by several agents survive a round trip", () => {
   const request = { task: "find_objects", values: { spread: 10 }, seed: 1 };
   const { id } = ask({ call: "open", request, style: "natural" });
   const draw = numbers(1);
@@ -81,7 +81,7 @@ function sealed(format, unpacked) {
 }
 
 /** The messages about links: without bytes and offsets, which mean nothing to a person who copied one. */
-const SAID = {
+const MESSAGES = {
   "link/damaged": /^this link is cut or was changed; copy all of it$/,
   "link/version": /^this link was made by another version of Driftworld, or was changed; |^link: found .* made by Driftworld /,
 };
@@ -91,12 +91,12 @@ function code(fragment) {
     ask({ call: "decode_link", fragment });
     return "";
   } catch (error) {
-    assert.match(error.message, SAID[error.code] ?? /^$/);
+    assert.match(error.message, MESSAGES[error.code] ?? /^$/);
     return error.code;
   }
 }
 
-test("damaged links are typed errors, and never another episode", () => {
+test("damaged links give typed errors, never another episode", () => {
   const letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_%=/ é";
   const draw = numbers(2);
   const seen = new Map();
@@ -119,7 +119,7 @@ test("damaged links are typed errors, and never another episode", () => {
   assert.ok((seen.get("link/damaged") ?? 0) > 500);
 });
 
-test("hostile links are typed errors", { skip: typeof crc32 === "function" ? false : "this Node.js has no crc32" }, () => {
+test("hostile links give typed errors", { skip: typeof crc32 === "function" ? false : "this Node.js has no crc32" }, () => {
   const bytes = Buffer.from(whole, "base64url");
   const plain = inflateRawSync(bytes.subarray(5));
   const end = plain.indexOf(10);

@@ -15,7 +15,7 @@ const { placeLabels } = await load("labels.ts");
 const { amount, payOf } = await load("pay.ts");
 const { askedBy, isAsking } = await load("keys.ts");
 
-test("addresses go there and back", () => {
+test("addresses survive a round trip", () => {
   const { view, task, options } = parseRoute(hrefOf("play", "a b/c", { variant: "x&y", seed: 3, index: undefined }));
   assert.deepEqual([view, task, options], ["play", "a b/c", { variant: "x&y", seed: "3" }]);
   assert.deepEqual(parseRoute("#1AbC_-"), { view: "replay", task: "", options: {}, link: "1AbC_-", unknown: null });
@@ -24,7 +24,7 @@ test("addresses go there and back", () => {
   assert.deepEqual(["7", "-1", "1e99", "x", undefined].map(wholeNumber), [7, 0, 0, 0, 0]);
 });
 
-test("a copy of a task has a name of its own", () => {
+test("a copy of a task gets a new name", () => {
   const text = '{\n  "version": 2,\n  "name": "maze",\n  "groups": [{ "name": "maze" }]\n}';
   assert.equal(copyOf(text), text.replace("maze", "my_maze"));
   assert.deepEqual([nameIn(copyOf(text)), nameIn("{}")], ["my_maze", "my_task"]);
@@ -60,14 +60,14 @@ const MAP = {
   ],
 };
 
-test("points of a map go from metres to pixels and back", () => {
+test("map points convert from metres to pixels and back", () => {
   const scale = scaleOf(MAP, 420);
   assert.deepEqual([scale.pixelsPerMetre, scale.height], [20, 220]);
   assert.deepEqual(toPixels(scale, [1, 2]), [230, 70]);
   assert.deepEqual(toMetres(scale, toPixels(scale, [-3.5, 4])), [-3.5, 4]);
 });
 
-test("a map says what lies at a point", () => {
+test("a map describes what is at a point", () => {
   const said = (x, y) => whatIsAt(MAP, [x, y]);
   assert.deepEqual(said(-3, 3.2), { text: "gate (door), open", object: 0 });
   assert.deepEqual(said(3, -3), { text: "geometric, pays 100", object: 1 });
@@ -102,7 +102,7 @@ test("labels of a map cover no point and no other label", () => {
   assert.deepEqual(placeLabels([{ x: 5, y: 5, texts: ["too long for this"] }], 60, 40), [null]);
 });
 
-test("what a world pays is one line", () => {
+test("rewards of a world fit on one line", () => {
   const touched = { reward_once_stimulus: ["AgentCollide"] };
   const world = {
     max_steps: 0, max_seconds: 120, rules: { step_reward: 0, reward_per_second: -0.5 },
@@ -128,14 +128,14 @@ test("timelines mark what is unusual, and loops keep to their ends", () => {
   assert.deepEqual(looped({ from: 0, to: 4 }, "from", 7, 9), { from: 7, to: 7 });
 });
 
-test("curves are means of what was learned, task by task", () => {
+test("curves are means of learning rewards, task by task", () => {
   assert.deepEqual(trailingMeans([1, 3, 5, 7], 2), [1, 2, 4, 6]);
   const episode = (experience, task, reward, type = "train") => ({ experience, task, reward, block_type: type });
   const found = curves([episode(0, "a", 1), episode(1, "b", 5), episode(2, "a", 3, "test"), episode(3, "a", Number.NaN)]);
   assert.deepEqual(found, [{ task: "a", learned: [[0, 1]], tested: [[2, 3]] }, { task: "b", learned: [[1, 5]], tested: [] }]);
 });
 
-test("keys against each other cancel out", () => {
+test("opposite keys cancel out", () => {
   assert.deepEqual(askedBy(new Set(["ArrowUp", "KeyD", "Space"])), { ahead: 1, turn: 1, interact: true });
   assert.equal(isAsking(askedBy(new Set(["ArrowUp", "KeyS", "KeyX"]))), false);
 });

@@ -11,19 +11,19 @@ const full = process.env.DRIFTWORLD_FULL !== undefined;
 const asked = groups(full);
 const expected = native(asked);
 /** Minimum number of answers in each group, in a full run. */
-const LEAST = { frames: 20_000, worlds: 100, distances: 100 };
+const MIN_ANSWERS = { frames: 20_000, worlds: 100, distances: 100 };
 
 function same(found) {
   for (const [place, own] of expected.entries()) {
     assert.deepEqual([found[place].name, found[place].answers, found[place].hash], [own.name, own.answers, own.hash]);
-    assert.ok(!full || own.answers >= (LEAST[own.name] ?? 0), `${own.name}: found ${own.answers} answers`);
+    assert.ok(!full || own.answers >= (MIN_ANSWERS[own.name] ?? 0), `${own.name}: found ${own.answers} answers`);
   }
   for (const { name, answers, frames, seconds } of found) {
     console.log(`${name}: ${answers} answers, ${frames} frames, ${seconds.toFixed(2)} s; on the machine ${expected.find((own) => own.name === name).seconds.toFixed(2)} s`);
   }
 }
 
-test("answers in Node are those of the machine", { skip: full && browserPath() ? "compared in Chromium" : false }, async () => {
+test("answers in Node equal native answers", { skip: full && browserPath() ? "compared in Chromium" : false }, async () => {
   const call = await started();
   same(await answers(asked, async (one, bytes) => call(one, bytes), network));
 });
@@ -39,7 +39,7 @@ test("one changed answer changes the hash", async () => {
   assert.notEqual(right.hash, wrong.hash);
 });
 
-test("answers in Chromium are those of the machine", { skip: browserPath() ? false : "no Chromium" }, async () => {
+test("answers in Chromium equal native answers", { skip: browserPath() ? false : "no Chromium" }, async () => {
   const server = await serve(built);
   const browser = await launch();
   try {

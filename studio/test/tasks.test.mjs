@@ -1,4 +1,4 @@
-// Ten typical user tasks, done with the keyboard alone in headless Chromium.
+// Typical user tasks, done with the keyboard alone in headless Chromium.
 //
 // DRIFTWORLD_PAGE is the built page, DRIFTWORLD_COMMAND the command that writes a log to drop. With DRIFTWORLD_SHOTS, each task saves
 // screenshots of the page into that folder: on a desktop in light and dark mode, and on a phone.

@@ -85,7 +85,7 @@ class Distance(float):
 
     def _repr_html_(self) -> str:
         elements = [(f"{letter} {ELEMENTS[letter]}", number(value)) for letter, value in self.elements.items()]
-        told = table(("element", "distance"), [("all", number(self.total)), *elements], self.compared)
+        html = table(("element", "distance"), [("all", number(self.total)), *elements], self.compared)
         head = ("part", "element", "measure", "raw", "weight", "share")
         rows = [
             (part["name"], part["element"], part["measure"], number(part["raw"]), f"{part['weight']:g}", f"{part['share']:.1%}")
@@ -93,7 +93,7 @@ class Distance(float):
             if part["raw"] != 0
         ]
         equal = dict.fromkeys(part["name"] for part in self.parts if part["raw"] == 0)
-        return told + (table(head, rows) if rows else "") + note(f"equal: {', '.join(equal)}" if equal else "")
+        return html + (table(head, rows) if rows else "") + note(f"equal: {', '.join(equal)}" if equal else "")
 
     def __getnewargs__(self) -> tuple[Any, ...]:
         return (self.total, self.elements, self.parts, self.by, self.compared)

@@ -37,8 +37,8 @@ if TYPE_CHECKING:
     from driftworld.curricula import Experience
 
 
-#: The file among an agent's saves that says which lifetime they belong to.
-WHOSE = "lifetime.json"
+#: The file in the folder of an agent's saves that identifies their lifetime.
+LIFETIME_FILE = "lifetime.json"
 
 
 @dataclass(frozen=True, slots=True)
@@ -197,7 +197,7 @@ class Lifetime:
         self._resume, self._check_frozen, self._record = resume, check_frozen, record
         # Saves are kept beside the log, because a log contains only rows.
         self._saves = None if self._log is None else _beside(self._log)
-        self._whose = ""
+        self._description = ""
 
     def live(self, made_with: Mapping[str, Any], rollout: Callable[[Callable[[int], None]], Rollout]) -> Summary:
         """Runs the curriculum from the first experience that is not in the log to the last.
@@ -226,49 +226,49 @@ class Lifetime:
             done = len(journal)
             self._own_saves(done, {"scenario": self._plan.scenario(), "agent": name, **notes})
             try:
-                said = journal.run(self._plan, lived, self._load(done), self._check_frozen)
+                result = journal.run(self._plan, lived, self._load(done), self._check_frozen)
             except CurriculumError as error:
                 # Otherwise the same call would resume after the refused block.
                 if error.code == "curriculum/not-frozen":
                     journal.withdraw_block()
                 raise
-        return Summary(**said, log=self._log, resumed=done)
+        return Summary(**result, log=self._log, resumed=done)
 
     def _own_saves(self, done: int, lifetime: dict[str, Any]) -> None:
         """Makes sure that the saves beside the log belong to this lifetime: those of a different one are removed."""
         if self._saves is None:
             return
-        self._whose = json.dumps(lifetime, sort_keys=True, indent=2)
-        file = self._saves / WHOSE
-        if done > 0 and file.is_file() and file.read_text(encoding="utf-8") == self._whose:
+        self._description = json.dumps(lifetime, sort_keys=True, indent=2)
+        file = self._saves / LIFETIME_FILE
+        if done > 0 and file.is_file() and file.read_text(encoding="utf-8") == self._description:
             return
-        for place in [file, self._saves / "unfinished", *(place for _, place in self._saved())]:
-            _remove(place)
+        for path in [file, self._saves / "unfinished", *(path for _, path in self._saved())]:
+            _remove(path)
 
     def _save(self, done: int) -> None:
         """Saves the agent after ``done`` experiences, then removes older saves."""
         if self._saves is None or not hasattr(self._agent, "save"):
             return
         self._saves.mkdir(parents=True, exist_ok=True)
-        write_whole(self._saves / WHOSE, self._whose.encode())
+        write_whole(self._saves / LIFETIME_FILE, self._description.encode())
         # Renamed when complete: a save named by a number is never partial.
         unfinished = self._saves / "unfinished"
         _remove(unfinished)
         self._agent.save(unfinished)
         if unfinished.exists():
-            place = self._saves / f"{done:08d}"
-            _remove(place)
-            unfinished.rename(place)
-        for number, place in self._saved():
+            path = self._saves / f"{done:08d}"
+            _remove(path)
+            unfinished.rename(path)
+        for number, path in self._saved():
             if number < done:
-                _remove(place)
+                _remove(path)
 
     def _saved(self) -> list[tuple[int, Path]]:
         """The agent's saves, each with its number of experiences, in order."""
         if self._saves is None or not self._saves.is_dir():
             return []
-        places = [place for place in self._saves.iterdir() if re.fullmatch(r"\d{8,}", place.name)]
-        return sorted((int(place.name), place) for place in places)
+        paths = [path for path in self._saves.iterdir() if re.fullmatch(r"\d{8,}", path.name)]
+        return sorted((int(path.name), path) for path in paths)
 
     def _load(self, done: int) -> int:
         """Loads an agent from its last save before the end of the log, if it supports that; returns the number of
@@ -278,8 +278,8 @@ class Lifetime:
         """
         if done == 0 or not hasattr(self._agent, "load"):
             return done
-        for number, place in reversed([saved for saved in self._saved() if saved[0] <= done]):
-            self._agent.load(place)
+        for number, path in reversed([saved for saved in self._saved() if saved[0] <= done]):
+            self._agent.load(path)
             return number
         return 0
 
@@ -421,9 +421,9 @@ def refuse_covering(plan: _native.Plan, options: Mapping[str, Any]) -> None:
         CurriculumError: Names the options, the worlds' keys, and the variants.
     """
     read = Options.read(cast(EnvOptions, dict(options)))
-    told = coverings(plan.covered(read.overrides, read.images))
-    if told:
-        raise CurriculumError("\n".join(told.values()), code="curriculum/covered")
+    messages = coverings(plan.covered(read.overrides, read.images))
+    if messages:
+        raise CurriculumError("\n".join(messages.values()), code="curriculum/covered")
 
 
 def first_world(plan: _native.Plan, options: Mapping[str, Any]) -> tuple[_native.Stream, dict[str, Any]]:
@@ -535,30 +535,28 @@ def one_hot(label: Mapping[str, Any]) -> NDArray[np.float32]:
 
 def _beside(log: Path) -> Path:
     """The folder beside a log where its agent is saved."""
-    whole = Path(os.path.abspath(log))
-    if not whole.name:
+    path = Path(os.path.abspath(log))
+    if not path.name:
         raise ValueError(f"log: found {str(log)!r}, expected the path of a folder of its own")
-    return whole.with_name(f"{whole.name}.agent")
+    return path.with_name(f"{path.name}.agent")
 
 
 def noted(options: Mapping[str, Any]) -> dict[str, Any]:
-    """Options in a canonical form for the log, however they were written; options set to ``None`` are left
-    out.
-    """
-    told: dict[str, Any] = json.loads(json.dumps(options, default=_said, sort_keys=True))
-    return {name: value for name, value in told.items() if value is not None}
+    """Options in a canonical form for the log, without those set to ``None``."""
+    values: dict[str, Any] = json.loads(json.dumps(options, default=_to_json, sort_keys=True))
+    return {name: value for name, value in values.items() if value is not None}
 
 
-def _said(value: Any) -> Any:
+def _to_json(value: Any) -> Any:
     try:
         return plain(value)
     except TypeError:
-        # Never the address, which differs between processes.
+        # Not `repr`, which may contain an address that differs between processes.
         return list(value) if isinstance(value, Iterable) else type(value).__qualname__
 
 
-def _remove(place: Path) -> None:
-    if place.is_dir():
-        shutil.rmtree(place)
+def _remove(path: Path) -> None:
+    if path.is_dir():
+        shutil.rmtree(path)
     else:
-        place.unlink(missing_ok=True)
+        path.unlink(missing_ok=True)

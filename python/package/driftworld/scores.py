@@ -88,19 +88,19 @@ class Metrics:
 
     def __repr__(self) -> str:
         count = len(self.lifetimes)
-        told = ", ".join(f"{name} {number(value)}" for name, value in self.lifetime.items())
-        return f"<Metrics of {count} {'lifetime' if count == 1 else 'lifetimes'}: {told}>"
+        values = ", ".join(f"{name} {number(value)}" for name, value in self.lifetime.items())
+        return f"<Metrics of {count} {'lifetime' if count == 1 else 'lifetimes'}: {values}>"
 
     def _repr_html_(self) -> str:
         if self.repeats or len(self.lifetimes) != 1:
             head = ("metric", "IQM", "interval", "mean", "null band", "p", "reading")
-            told = table(head, [_row_of_several(row) for row in self.repeats], f"{len(self.lifetimes)} lifetimes")
+            html = table(head, [_row_of_several(row) for row in self.repeats], f"{len(self.lifetimes)} lifetimes")
             cautions = dict.fromkeys(row["caution"] for row in self.repeats if row.get("caution"))
-            return told + "".join(note(f"note: {text}") for text in cautions)
+            return html + "".join(note(f"note: {text}") for text in cautions)
         rows = [_row_of_one(row) for row in self.readings.values()]
-        said = [*self.lifetimes[0].get("notes", []), *self.lifetimes[0].get("cautions", [])]
-        told = table(("metric", "value", "null band", "p", "reading", "what it says"), rows)
-        return told + "".join(note(f"note: {text}") for text in said)
+        remarks = [*self.lifetimes[0].get("notes", []), *self.lifetimes[0].get("cautions", [])]
+        html = table(("metric", "value", "null band", "p", "reading", "what it says"), rows)
+        return html + "".join(note(f"note: {text}") for text in remarks)
 
     @property
     def lifetime(self) -> dict[str, Any]:
@@ -108,12 +108,12 @@ class Metrics:
         if len(self.lifetimes) == 1:
             only = self.lifetimes[0]
             return {name: only[name] for name in LIFETIME if name in only}
-        told: dict[str, Any] = {}
+        means: dict[str, Any] = {}
         for name in LIFETIME:
             values = [lifetime[name] for lifetime in self.lifetimes if isinstance(lifetime.get(name), (int, float))]
             if any(name in lifetime for lifetime in self.lifetimes):
-                told[name] = sum(values) / len(values) if values else None
-        return told
+                means[name] = sum(values) / len(values) if values else None
+        return means
 
     @property
     def tasks(self) -> dict[str, dict[str, Any]]:
@@ -394,8 +394,8 @@ def _beside_null(band: Mapping[str, Any] | None) -> tuple[str, str]:
     return ("no null", "") if band is None else (f"{number(band['low'])} to {number(band['high'])}", number(band["p"]))
 
 
-def _warn(said: Iterable[str]) -> None:
-    for text in said:
+def _warn(messages: Iterable[str]) -> None:
+    for text in messages:
         warnings.warn(text, stacklevel=3)
 
 

@@ -76,11 +76,11 @@ def _variant_html(variant: Variant) -> str:
     usual = variant.task.variant().values
     parameters = variant.task.parameters
     rows = [
-        (name, _said(value), _said(usual[name]), ", ".join(parameters[name].get("affects", [])))
+        (name, _value_text(value), _value_text(usual[name]), ", ".join(parameters[name].get("affects", [])))
         for name, value in variant.values.items()
         if value != usual[name]
     ]
-    equal = [f"{name} {_said(value)}" for name, value in variant.values.items() if value == usual[name]]
+    equal = [f"{name} {_value_text(value)}" for name, value in variant.values.items() if value == usual[name]]
     caption = f"{variant.id}: {variant.description}" if variant.description else variant.id
     head = ("parameter", "value", "default", "affects")
     return table(head, rows, caption) + note(f"at their defaults: {', '.join(equal)}" if equal else "")
@@ -92,7 +92,7 @@ def _task_html(task: TaskSpec) -> str:
     rows = [
         (
             variant.name,
-            ", ".join(f"{name} {_said(value)}" for name, value in variant.values.items() if value != usual[name]) or "the defaults",
+            ", ".join(f"{name} {_value_text(value)}" for name, value in variant.values.items() if value != usual[name]) or "the defaults",
             variant.description or "",
         )
         for variant in task.variants
@@ -100,7 +100,7 @@ def _task_html(task: TaskSpec) -> str:
     return table(("variant", "changes", "description"), rows, f"{task.name}: {task.description}")
 
 
-def _said(value: Any) -> str:
+def _value_text(value: Any) -> str:
     """A value as JSON, strings without quotes."""
     if isinstance(value, float):
         return f"{value:g}"

@@ -22,7 +22,7 @@ const METHODS: Partial<Record<OrderMethod, string>> = {
   given: "As the task lists them, the start first.",
 };
 /** Maximum number of variants shown at first: more take longer, and their names overlap. */
-const MOST = 12;
+const MAX_SHOWN = 12;
 const SIZE = { width: 240, height: 180 };
 
 const short = (label: string): string => label.slice(label.indexOf("#") + 1);
@@ -93,7 +93,7 @@ export function Order({ route }: { route: Route }) {
   const start = startText ?? all[0] ?? "";
   const [seed, index] = [wholeNumber(route.options["seed"]), wholeNumber(route.options["index"])];
   const isAll = route.options["all"] === "1";
-  const variants = isAll ? all : [...new Set([start, ...all])].filter(Boolean).slice(0, MOST);
+  const variants = isAll ? all : [...new Set([start, ...all])].filter(Boolean).slice(0, MAX_SHOWN);
   const go = (change: Record<string, string | number>, to = task) => {
     location.hash = hrefOf("order", to, to === task
       ? { by, method, start, seed: seed || undefined, index: index || undefined, all: isAll ? 1 : undefined, ...change }
@@ -171,11 +171,11 @@ export function Order({ route }: { route: Route }) {
       <section class="card pad stack" aria-label="Contact sheet">
         <div class="row spread">
           <h2>Contact sheet</h2>
-          {all.length > MOST && (
+          {all.length > MAX_SHOWN && (
             <button
-              type="button" aria-pressed={isAll} title={`The first ${MOST} are shown, as more take longer`} onClick={() => go({ all: isAll ? 0 : 1 })}
+              type="button" aria-pressed={isAll} title={`The first ${MAX_SHOWN} are shown, as more take longer`} onClick={() => go({ all: isAll ? 0 : 1 })}
             >
-              {isAll ? `All ${all.length} variants` : `${MOST} of ${all.length} variants: show all`}
+              {isAll ? `All ${all.length} variants` : `${MAX_SHOWN} of ${all.length} variants: show all`}
             </button>
           )}
         </div>

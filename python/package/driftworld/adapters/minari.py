@@ -76,7 +76,7 @@ def collect(
     options: dict[str, Any] = {} if queue is None else {"queue": list(queue)}
     dataset: Any = None
     for number in range(episodes):
-        buffer, metadata = _lived(
+        buffer, metadata = _run_episode(
             env, policy, seed=seed if number == 0 else None, options=options if number == 0 else {}
         )
         if dataset is None:
@@ -101,7 +101,7 @@ def collect(
     return dataset
 
 
-def _lived(
+def _run_episode(
     env: gymnasium.Env[Any, Any],
     policy: Callable[[Any, dict[str, Any]], Any] | None,
     *,

@@ -76,8 +76,8 @@ class DriftworldPuffer(PufferEnv):  # type: ignore[misc, unused-ignore] # Any wh
     def reset(self, seed: int | None = None) -> tuple[npt.NDArray[Any], list[dict[str, Any]]]:
         """Starts new episodes in all environments, with the seeds of :func:`driftworld.spread_seeds`."""
         seed, self._seed = self._seed if seed is None else seed, None
-        self.observations[:], told = self.envs.reset(seed=seed)
-        self._variants = list(told["variant_id"])
+        self.observations[:], info = self.envs.reset(seed=seed)
+        self._variants = list(info["variant_id"])
         self.rewards[:] = 0
         self.terminals[:] = False
         self.truncations[:] = False
@@ -90,7 +90,7 @@ class DriftworldPuffer(PufferEnv):  # type: ignore[misc, unused-ignore] # Any wh
         self, actions: npt.NDArray[Any]
     ) -> tuple[npt.NDArray[Any], npt.NDArray[Any], npt.NDArray[Any], npt.NDArray[Any], list[dict[str, Any]]]:
         """Steps all environments; the returned arrays are PufferLib's buffers."""
-        observations, rewards, terminated, truncated, told = self.envs.step(
+        observations, rewards, terminated, truncated, info = self.envs.step(
             np.asarray(actions).reshape(self.envs.action_space.shape)
         )
         self.observations[:] = observations
@@ -99,7 +99,7 @@ class DriftworldPuffer(PufferEnv):  # type: ignore[misc, unused-ignore] # Any wh
         self.truncations[:] = truncated
         self._returns += rewards
         self._lengths += 1
-        infos = [self._closed(int(index), told) for index in np.flatnonzero(terminated | truncated)]
+        infos = [self._closed(int(index), info) for index in np.flatnonzero(terminated | truncated)]
         return self.observations, self.rewards, self.terminals, self.truncations, infos
 
     def _closed(self, index: int, told: Any) -> dict[str, Any]:

@@ -171,17 +171,17 @@ class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where
         """Steps all environments: observations, rewards (float32), dones, and one info for each."""
         if self._actions is None:
             raise RuntimeError("step_wait: found no actions, expected step_async before; call step(actions)")
-        observations, rewards, terminated, truncated, told = self.envs.step(self._actions)
+        observations, rewards, terminated, truncated, vector_info = self.envs.step(self._actions)
         self._actions = None
         dones = np.logical_or(terminated, truncated)
         infos: list[dict[str, Any]] = []
         for index in range(self.num_envs):
-            info = _of_one(told, index)
+            info = _of_one(vector_info, index)
             if dones[index]:
                 info.pop("final_obs", None)
                 last = info.pop("final_info", {})
                 self.reset_infos[index] = info
-                info = {**last, "terminal_observation": told["final_obs"][index]}
+                info = {**last, "terminal_observation": vector_info["final_obs"][index]}
             info["TimeLimit.truncated"] = bool(truncated[index] and not terminated[index])
             infos.append(info)
         return observations, np.asarray(rewards, dtype=np.float32), dones, infos
@@ -270,11 +270,11 @@ class _Monitor(VecMonitor):  # type: ignore[misc, unused-ignore] # Any where it 
         return answers
 
 
-def _of_one(told: Mapping[str, Any], index: int) -> dict[str, Any]:
+def _of_one(vector_info: Mapping[str, Any], index: int) -> dict[str, Any]:
     """The info of one environment, from a vector environment's infos."""
     one: dict[str, Any] = {}
-    for name, values in told.items():
-        mask = told.get(f"_{name}")
+    for name, values in vector_info.items():
+        mask = vector_info.get(f"_{name}")
         # Mask entries have no masks of their own and carry no values.
         if mask is None or not mask[index]:
             continue

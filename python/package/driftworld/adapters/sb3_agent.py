@@ -108,7 +108,7 @@ class Agent:
         is_many = "active" in infos
         seen = self._seen(observations if is_many else _lifted(observations))
         if self._frozen:
-            with self._apart(np.flatnonzero(infos["active"]) if is_many else np.zeros(1, dtype=int)):
+            with self._evaluation_randomness(np.flatnonzero(infos["active"]) if is_many else np.zeros(1, dtype=int)):
                 actions = self.model.predict(seen, deterministic=self.policy == "greedy")[0]
         else:
             actions = self._collector.act(seen)
@@ -143,7 +143,7 @@ class Agent:
         return seen if isinstance(observations, Mapping) else seen[""]
 
     @contextmanager
-    def _apart(self, active: NDArray[Any]) -> Iterator[None]:
+    def _evaluation_randomness(self, active: NDArray[Any]) -> Iterator[None]:
         """Draws from the seeds of these environments' experiences, and leaves the learning generators unchanged."""
         model = self.model
         seed = int(np.random.SeedSequence([int(self._chances[env].integers(2**32)) for env in active]).generate_state(1)[0])

@@ -145,12 +145,12 @@ def _run(parsed: argparse.Namespace) -> None:
             print(f"  {cell.folder(parsed.output)}")
         return
 
-    def told(cell: Cell, report: dict[str, Any] | None) -> None:
+    def report_cell(cell: Cell, report: dict[str, Any] | None) -> None:
         running = f"another process is running it, or was killed in the last {STALE:.0f} seconds: run this again then"
         print(f"  {cell.folder(parsed.output)}: ", end="")
         print(running if report is None else f"{report['seconds']:.0f} s of learning, digest {report['digest'][:12]}", flush=True)
 
-    run_cells(cells, parsed.output, parsed.jobs, parsed.ray, told)
+    run_cells(cells, parsed.output, parsed.jobs, parsed.ray, report_cell)
 
 
 def _table(parsed: argparse.Namespace) -> None:

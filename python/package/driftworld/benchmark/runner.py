@@ -1,7 +1,7 @@
-"""Runs the cells of a table: each once, in any free process, and resumes killed ones.
+"""Runs the cells of a table, each once, in any free process; resumes killed cells.
 
 A cell's folder is ``FOLDER/SEQUENCE/LEARNER/SEED``. While it runs, its logs and its learner are in ``work/``; in the
-end only ``report.json`` and ``logs.tar.xz`` remain. Several processes and several machines may share the folder: the
+end, only ``report.json`` and ``logs.tar.xz`` remain. Several processes and several machines may share the folder: the
 process that creates the folder ``claim/`` runs the cell, and keeps touching that folder. A claim that is no longer
 touched is renamed, then removed.
 """
@@ -50,9 +50,9 @@ class Cell:
     Attributes:
         sequence: Name or file of the sequence.
         learner: Name of a learner of ``driftworld.learners``, or ``FILE.py:CLASS``.
-        seed: Of the worlds and of the learner.
+        seed: The seed of the worlds and of the learner.
         split: ``"test"``, or ``"validation"`` to tune.
-        arguments: Of the learner, overriding the sequence's arguments for it.
+        arguments: Arguments of the learner, overriding the sequence's arguments for it.
     """
 
     sequence: str
@@ -83,7 +83,7 @@ class Cell:
             if not is_ours:
                 return None
             if not report.is_file():
-                _live(self, folder)
+                _run_cell(self, folder)
         return _read(report)
 
     def source(self) -> dict[str, str] | None:
@@ -127,10 +127,10 @@ def _claim(claim: Path) -> Iterator[bool]:
     except FileExistsError:
         yield False
         return
-    over = threading.Event()
+    finished = threading.Event()
 
     def touch() -> None:
-        while not over.wait(TOUCH):
+        while not finished.wait(TOUCH):
             with contextlib.suppress(OSError):
                 os.utime(claim)
 
@@ -139,7 +139,7 @@ def _claim(claim: Path) -> Iterator[bool]:
     try:
         yield True
     finally:
-        over.set()
+        finished.set()
         toucher.join()
         with contextlib.suppress(OSError):
             claim.rmdir()
@@ -156,7 +156,7 @@ def learner_class(name: str) -> Any:
         if not Path(file).is_file():
             raise ValueError(f"learner: found {name!r}, expected FILE.py:CLASS; there is no file {file!r}")
         spec = importlib.util.spec_from_file_location(Path(file).stem, file)
-        assert spec is not None and spec.loader is not None, "a file of Python has a loader"
+        assert spec is not None and spec.loader is not None, "a Python file has a loader"
         module = importlib.util.module_from_spec(spec)
         spec.loader.exec_module(module)
         found = getattr(module, own, None)
@@ -212,12 +212,12 @@ def arguments_of(cell: Cell, sequence: Sequence) -> dict[str, Any]:
     return {**dataclasses.asdict(Settings()), **own, **given}
 
 
-def _live(cell: Cell, folder: Path) -> None:
+def _run_cell(cell: Cell, folder: Path) -> None:
     """Runs a whole cell: the lifetime, and the greedy evaluations of the learner after each task."""
     import torch
 
     torch.set_num_threads(1)
-    sequence, work, began = Sequence.load(cell.sequence), folder / "work", time.time()
+    sequence, work, start = Sequence.load(cell.sequence), folder / "work", time.time()
     kept = work / "kept"
     kept.mkdir(parents=True, exist_ok=True)
     curriculum = sequence.curriculum(cell.seed, cell.split)
@@ -238,7 +238,7 @@ def _live(cell: Cell, folder: Path) -> None:
     if len(saves) < len(evaluations) - 1:
         # The process was killed between a block's last row and the save: the learner's state at that time is lost.
         shutil.rmtree(work)
-        _live(cell, folder)
+        _run_cell(cell, folder)
         return
     for number, (block, save_of) in enumerate(zip(evaluations[1:], saves, strict=True), start=1):
         greedy = make_learner(cell, sequence, "greedy")
@@ -246,17 +246,17 @@ def _live(cell: Cell, folder: Path) -> None:
         alone = Curriculum.from_dict({**curriculum.scenario, "form": "custom", "blocks": [block]})
         alone.run_vector(greedy, work / f"greedy-{number:02d}", check_frozen=False, **run)
     logs = [work / "sampled", *sorted(each for each in work.glob("greedy-*") if not each.name.endswith(".agent"))]
-    _finish(cell, sequence, folder, logs, learner.report() | {"weights": learner.digest(), "wall_seconds": round(time.time() - began, 1)})
+    _finish(cell, sequence, folder, logs, learner.report() | {"weights": learner.digest(), "wall_seconds": round(time.time() - start, 1)})
 
 
 def digest(logs: Iterable[Path]) -> str:
     """SHA-256 of the logs without time stamps: equal if two runs are bit-identical."""
-    print = hashlib.sha256()
+    sha256 = hashlib.sha256()
     for log in logs:
         columns = read_log(log).columns
         for name in sorted(set(columns) - {"timestamp"}):
-            print.update(f"{log.name} {name} {columns[name].tolist()!r}".encode())
-    return print.hexdigest()
+            sha256.update(f"{log.name} {name} {columns[name].tolist()!r}".encode())
+    return sha256.hexdigest()
 
 
 def _finish(cell: Cell, sequence: Sequence, folder: Path, logs: list[Path], report: dict[str, Any]) -> None:
@@ -270,13 +270,13 @@ def _finish(cell: Cell, sequence: Sequence, folder: Path, logs: list[Path], repo
                 with file.open("rb") as opened:
                     tar.addfile(entry, opened)
     write_whole(folder / "logs.tar.xz", packed.getvalue())
-    said = {
+    contents = {
         "sequence": sequence.name, "split": cell.split, "label": cell.label, "arguments": dict(cell.arguments),
         "made_with": arguments_of(cell, sequence), **({"source": source} if (source := cell.source()) else {}), **report,
         "peak_bytes": 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, "machine": platform.machine(),
         "digest": digest(logs),
     }  # fmt: skip
-    write_whole(folder / "report.json", (json.dumps(said, indent=1) + "\n").encode())
+    write_whole(folder / "report.json", (json.dumps(contents, indent=1) + "\n").encode())
     shutil.rmtree(folder / "work")
 
 

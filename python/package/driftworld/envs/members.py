@@ -142,12 +142,12 @@ class Members:
     def _streams(self, sources: list[Source]) -> list[_native.Stream]:
         """Each environment's worlds, after checking that they fit the spaces."""
         # A source shared by all environments is one object, and is checked once.
-        made: dict[int, list[_native.Stream]] = {}
+        streams: dict[int, list[_native.Stream]] = {}
         for source in sources:
-            if id(source) not in made:
-                made[id(source)] = source.streams(self.num_envs)
-                self._check(source, made[id(source)][0])
-        return [made[id(source)][env] for env, source in enumerate(sources)]
+            if id(source) not in streams:
+                streams[id(source)] = source.streams(self.num_envs)
+                self._check(source, streams[id(source)][0])
+        return [streams[id(source)][env] for env, source in enumerate(sources)]
 
     def _check(self, source: Source, stream: _native.Stream) -> None:
         """Checks that the worlds of a source fit the spaces."""
@@ -169,10 +169,10 @@ class Members:
             return
         first = [] if self._home.first is None else [self._home.first]
         found = _native.covered([*first, *variants], self._options.overrides, self._options.images)
-        for option, told in coverings(found).items():
+        for option, message in coverings(found).items():
             if option not in self._covering:
                 self._covering.add(option)
-                warnings.warn(told, stacklevel=2)
+                warnings.warn(message, stacklevel=2)
 
     def checked(self, options: Mapping[str, Any], *, many: bool, deals: bool = False) -> Prepared:
         """The options of a reset, checked before anything is changed.

@@ -204,24 +204,24 @@ def coverings(found: str) -> dict[str, str]:
     """Messages, by option, about the differences between variants that options hide, from the native module's
     findings.
     """
-    told = {}
+    messages = {}
     for each in json.loads(found):
-        option, said = each["option"], [(name, json.dumps(value)) for name, value in each["said"]]
+        option, values = each["option"], [(name, json.dumps(value)) for name, value in each["said"]]
         if "hidden" in each:
-            told[option] = (
-                f"{option}: found it over {each['hidden']}, in which {said[0][0]} and {said[1][0]} differ and which only rgb images "
+            messages[option] = (
+                f"{option}: found it over {each['hidden']}, in which {values[0][0]} and {values[1][0]} differ and which only rgb images "
                 "show, expected rgb among them, or variants that differ elsewhere: under it they are one"
             )
             continue
-        if len(said) == 1:
-            found_over = f"{said[0][0]} draws anew in each world"
+        if len(values) == 1:
+            found_over = f"{values[0][0]} draws anew in each world"
         else:
-            found_over = "differs between " + " and ".join(f"{name} ({value})" for name, value in said)
-        told[option] = (
+            found_over = "differs between " + " and ".join(f"{name} ({value})" for name, value in values)
+        messages[option] = (
             f"{option}: found it over {each['key']}, which {found_over}, expected no such option, or variants that agree there: "
             f"under it they are one{_INSTEAD.get(option, '')}"
         )
-    return told
+    return messages
 
 
 def images_among(kinds: Iterable[str]) -> list[str]:
