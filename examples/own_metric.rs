@@ -1,4 +1,4 @@
-//! Score a lifetime with a custom metric alongside the built-in ones: how much an agent forgets at worst.
+//! Score a lifetime with a custom metric alongside the built-in ones: the largest loss in any task.
 #![expect(clippy::print_stdout, reason = "an example shows what it does")]
 
 use driftworld::metrics::{
@@ -6,7 +6,7 @@ use driftworld::metrics::{
     ScenarioInfo, Scorer, Timestamp, read_log,
 };
 
-/// The furthest that an evaluation of a task fell below the best one before it.
+/// The largest drop of an evaluation of a task below the best earlier one.
 struct WorstForgetting;
 
 impl Metric for WorstForgetting {

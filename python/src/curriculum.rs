@@ -29,7 +29,7 @@ use crate::supply::{PyStream, Stream};
 #[pyclass(name = "Plan", module = "driftworld._native")]
 pub(crate) struct PyPlan {
     plan: Plan,
-    /// The documents that it was made from: later changes of files do not affect it.
+    /// The documents that it was made from: later changes to the files do not affect it.
     named: Named,
     warnings: Vec<String>,
 }
@@ -57,7 +57,7 @@ impl PyPlan {
         let (plan, named) = detach(py, || {
             let mut warn = |warning| warnings.push(warning);
             let file = ScenarioFile::from_text(Path::new(&path), text, &mut warn)?;
-            // The original's own scenario refers to a map that does not come with it, and has to run unchanged.
+            // L2Explorer's own scenario refers to a map that is not included with it, and has to run unchanged.
             let missing = Missing::may_stand_in(stand_in.unwrap_or(file.original));
             let planned = file.plan_named(missing, undrawable(skip_undrawable), &mut warn);
             planned.map_err(|error| because(&path, error))

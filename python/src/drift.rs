@@ -11,7 +11,7 @@ use crate::rounding::usually_rounded;
 use crate::task::specs;
 use crate::variant::PyVariant;
 
-/// The way from one variant of a task to another: ``Drift(blue, dusk, schedule="cosine").at(0.25)``.
+/// The path from one variant of a task to another: ``Drift(blue, dusk, schedule="cosine").at(0.25)``.
 ///
 /// ``schedule`` is ``"linear"``, ``"cosine"``, ``{"steps": n}`` or ``{"sawtooth": n}``; ``switch`` says when values that cannot
 /// be interpolated change: at a fixed progress with ``"at_point"``; at random with ``"mixture"``, drawn with ``seed``, more

@@ -12,7 +12,7 @@ use crate::task::PyTask;
 
 const REFUSED: &str = "TaskError";
 
-/// The elements that variants of a task claim to change and those that were found to change: the JSON of
+/// The elements that variants of a task declare to change, and those that were measured to change: the JSON of
 /// `driftworld elements --json` as a dictionary.
 #[pyfunction]
 pub(crate) fn elements<'py>(

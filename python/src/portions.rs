@@ -65,7 +65,7 @@ pub(crate) fn draw<T: Send>(
     Ok(())
 }
 
-/// Refuses requests that need more memory than probably intended: all worlds are held at once.
+/// Refuses requests that need an excessive amount of memory: all worlds are held at once.
 fn expect_room(numbers: &Range<u64>, first_bytes: usize) -> PyResult<()> {
     let count = numbers.end - numbers.start;
     let bytes = u128::from(count) * first_bytes as u128;

@@ -19,9 +19,9 @@ use crate::variant::PyVariant;
 pub(crate) enum Stream {
     /// Worlds of these variants, one per episode, in a repeating order.
     Variants { variants: Arc<[Variant]>, turns: Turns },
-    /// Worlds on the way from one variant to another, which ends with world number `episodes` − 1.
+    /// Worlds drifting from one variant to another; the drift ends with world number `episodes` − 1.
     Drift { drift: Arc<Drift>, episodes: u64 },
-    /// The same world again and again, with its name.
+    /// The same world in every episode, with its name.
     World { world: Arc<World>, name: String },
 }
 
@@ -72,7 +72,7 @@ impl PyStream {
         Ok(dealt.into_iter().map(Self).collect())
     }
 
-    /// The worlds on the way from one variant to another. `schedule` and `switch` are JSON, as in a scenario.
+    /// Worlds drifting from one variant to another. `schedule` and `switch` are JSON, as in a scenario.
     #[staticmethod]
     fn drift(
         from_: &Bound<'_, PyVariant>,
@@ -255,7 +255,7 @@ impl Supply {
         self.lock().origin.clone()
     }
 
-    /// Draws with a different seed from now on, starting at this index.
+    /// Draws worlds under this seed from now on, starting at this index.
     pub(crate) fn seed(&self, seed: u64, index: u64) {
         let mut state = self.lock();
         if state.seed != seed {
@@ -287,7 +287,7 @@ impl Supply {
         (state.seed, state.next, state.turn)
     }
 
-    /// Continues at another supply's place.
+    /// Continues from another supply's seed, index and turn.
     pub(crate) fn set_place(&self, (seed, next, turn): (u64, u64, u64)) {
         self.seed(seed, next);
         self.lock().turn = turn;

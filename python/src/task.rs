@@ -16,8 +16,8 @@ use crate::variant::PyVariant;
 
 /// A task: what its worlds have in common, and exactly what varies between them.
 ///
-/// Made by ``TaskSpec.load``, ``TaskSpec.from_json`` or ``TaskSpec.from_dict``. Immutable; equal if the documents mean
-/// the same. Can be pickled.
+/// Made by ``TaskSpec.load``, ``TaskSpec.from_json`` or ``TaskSpec.from_dict``. Immutable; equal if the documents have
+/// the same content. Can be pickled.
 #[pyclass(name = "TaskSpec", module = "driftworld._native", frozen)]
 pub(crate) struct PyTask(pub(crate) Arc<TaskSpec>);
 
@@ -81,7 +81,7 @@ impl PyTask {
         Ok(families)
     }
 
-    /// A table for notebooks: what each variant changes.
+    /// A table for notebooks: the changes of each variant.
     fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         specs(slf.py(), "_task_html")?.call1((slf,))
     }

@@ -19,7 +19,7 @@ use crate::portions::{draw, numbers};
 use crate::rounding::{detach, usually_rounded};
 use crate::task::{PyTask, hash_of, specs};
 
-/// One variant of a task, in which every parameter that is not drawn anew for each world has a fixed value.
+/// One variant of a task, in which every parameter that is not drawn for each world has a fixed value.
 ///
 /// Immutable; equal if worlds and distances are the same. Can be pickled.
 #[pyclass(name = "Variant", module = "driftworld._native", frozen)]
@@ -46,12 +46,12 @@ impl PyVariant {
         PyTask(Arc::clone(self.0.task()))
     }
 
-    /// A table for notebooks: the values, those that are not the task's defaults first.
+    /// A table for notebooks: its values, those that differ from the task's defaults first.
     fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         specs(slf.py(), "_variant_html")?.call1((slf,))
     }
 
-    /// What its author says about it, if anything.
+    /// The author's description of it, if any.
     #[getter]
     fn description(&self) -> Option<&str> {
         self.0.task().variant_description(self.0.name())
@@ -63,7 +63,7 @@ impl PyVariant {
         Ok(to_py(py, self.0.values())?)
     }
 
-    /// A hash of everything that its worlds and its distances are made from: 64 hexadecimal digits.
+    /// A hash of everything that determines its worlds and distances: 64 hexadecimal digits.
     #[getter]
     fn hash(&self) -> String {
         self.0.hash()
@@ -82,8 +82,8 @@ impl PyVariant {
         Ok(Self(usually_rounded(|| self.0.with(name, values))?))
     }
 
-    /// Finds a variant at a given distance, 0 or more, from this one, changing as few parameters as possible. ``subject`` is what
-    /// may change: an element of the decision process (``"reward"`` or ``"R"``; the distance is the one in this element), or a
+    /// Finds a variant at a given distance, 0 or more, from this one, changing as few parameters as possible. ``subject``
+    /// limits what may change: an element of the decision process (``"reward"`` or ``"R"``; the distance is the one in this element), or a
     /// list of parameters (the distance is the total). Returns the variant and its distance.
     #[pyo3(signature = (distance, subject, *, tolerance=1e-3, name="found"))]
     fn at_distance(
@@ -171,7 +171,7 @@ impl PyVariant {
         })
     }
 
-    /// Draws the first ``count`` worlds under a seed, and reports how often that fails, and why.
+    /// Draws the first ``count`` worlds under a seed, and reports the number of failures and their reasons.
     #[pyo3(signature = (count, *, seed=Whole(0)), text_signature = "($self, count, *, seed=0)")]
     fn try_worlds<'py>(&self, py: Python<'py>, count: Whole, seed: Whole) -> Result<Bound<'py, PyAny>> {
         let trial = detach(py, || driftworld_curriculum::try_worlds(&self.0, seed.0, count.0));

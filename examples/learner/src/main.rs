@@ -1,5 +1,5 @@
 //! PPO in one file (Schulman et al. 2017, arXiv:1707.06347) on candle: it learns to find objects from images of 32 × 32 pixels, is
-//! evaluated on other worlds, and writes its network for `driftworld … --agent net:FILE`. `README.md` says what it costs.
+//! evaluated on other worlds, and writes its network for `driftworld … --agent net:FILE`. `README.md` lists its cost.
 
 use std::collections::HashMap;
 use std::error::Error;

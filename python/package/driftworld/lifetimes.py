@@ -210,8 +210,8 @@ class Lifetime:
         with ExitStack() as stack:
             folder = self._log or Path(stack.enter_context(tempfile.TemporaryDirectory())) / "log"
             # First, so that no log is started if an option is wrong.
-            lived = rollout(self._save)
-            stack.callback(lived.close)
+            running = rollout(self._save)
+            stack.callback(running.close)
             policy = getattr(self._agent, "policy", None)
             settings = getattr(self._agent, "made_with", None)
             notes = {**made_with, **({} if policy is None else {"policy": str(policy)})}
@@ -222,11 +222,11 @@ class Lifetime:
             journal = _native.Journal(folder, self._plan, name, self._resume, self._record)
             stack.callback(journal.close)
             if journal.records:
-                lived.record()
+                running.record()
             done = len(journal)
             self._own_saves(done, {"scenario": self._plan.scenario(), "agent": name, **notes})
             try:
-                result = journal.run(self._plan, lived, self._load(done), self._check_frozen)
+                result = journal.run(self._plan, running, self._load(done), self._check_frozen)
             except CurriculumError as error:
                 # Otherwise the same call would resume after the refused block.
                 if error.code == "curriculum/not-frozen":

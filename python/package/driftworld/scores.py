@@ -309,8 +309,8 @@ def metrics(
     folders = _paths(options.pop("logs"), "logs")
     for paths in ("ste", "against"):
         options[paths] = None if options[paths] is None else _paths(options[paths])
-    scores, said = _native.Scores.of(folders, options)
-    _warn(said)
+    scores, messages = _native.Scores.of(folders, options)
+    _warn(messages)
     values = scores.values()
     if "lifetimes" not in values:
         values = {"lifetimes": [values]}
@@ -365,8 +365,8 @@ def report(
     folders, file = _paths(options.pop("logs"), "logs"), options.pop("path")
     for paths in ("ste", "against"):
         options[paths] = None if options[paths] is None else _paths(options[paths])
-    page, said = _native.report(folders, options)
-    _warn(said)
+    page, messages = _native.report(folders, options)
+    _warn(messages)
     if file is not None:
         from driftworld._files import write_whole
 

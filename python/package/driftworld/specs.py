@@ -152,8 +152,8 @@ def validate(
     paths = [assets] if isinstance(assets, (str, os.PathLike)) else list(assets)
     libraries = [read_bytes(path, "library") for path in paths]
     _, problems, notes, error = _native.check(name, text, kind, libraries)
-    for said in notes:
-        warnings.warn(said, stacklevel=2)
+    for note_text in notes:
+        warnings.warn(note_text, stacklevel=2)
     if check and error is not None:
         raise error
     return problems

@@ -56,7 +56,7 @@ pub unsafe extern "C" fn driftworld_call(input: *mut u8, length: usize, json: us
     })
 }
 
-/// Random bytes for the keys of hash maps: the same in every page, because nobody else chooses the contents of its maps.
+/// Random bytes for the keys of hash maps. They are the same in every page: no attacker chooses the keys of its maps.
 ///
 /// # Safety
 /// `place` must be valid for writing `length` bytes.

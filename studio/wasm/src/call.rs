@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::request::WorldRequest;
 
-/// A call, with its arguments. Files and new networks are bytes beside the call; later calls refer to networks by number.
+/// A call with its arguments. Files and new networks are passed as bytes; later calls refer to networks by number.
 #[derive(Debug, Deserialize)]
 #[serde(tag = "call", rename_all = "snake_case", deny_unknown_fields)]
 pub(crate) enum Call {
@@ -70,7 +70,7 @@ pub(crate) enum Call {
     Close {
         episode: u32,
     },
-    /// Hands over a network: the bytes beside the call.
+    /// Hands over a network, passed as bytes.
     Network,
     Run {
         request: WorldRequest,
@@ -138,7 +138,7 @@ pub(crate) struct Among {
     pub(crate) worlds: Option<u64>,
 }
 
-/// A file of a log: the next `length` bytes beside the call.
+/// A file of a log: the next `length` of the bytes passed with the call.
 #[derive(Debug, Deserialize)]
 pub(crate) struct File {
     pub(crate) path: String,
@@ -203,7 +203,7 @@ pub(crate) enum AgentName {
     Network(usize),
 }
 
-/// Where a picture is taken from.
+/// The viewpoint of a picture.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum View {

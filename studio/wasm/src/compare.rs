@@ -1,4 +1,4 @@
-//! Distances, elements and orders as a page shows them.
+//! Distances, elements and orders, formatted for the page.
 
 use driftworld::distances::{self, Sample, Side};
 use driftworld::elements::{ElementsRequest, elements_of};

@@ -1,4 +1,4 @@
-//! [`Episode`]: a running world with all actions taken in it, to go back to any step; its map and its pictures.
+//! [`Episode`]: a running world with all actions taken in it, so that it can return to any step; also its map and pictures.
 
 use driftworld::env::{
     Action, Agent, Camera, Environment, EpisodeOrigin, Frame, NetworkAgent, OnRailsAgent, Paint, RandomAgent,

@@ -1,4 +1,4 @@
-//! [`Fault`]: why a call failed, with a stable code and the problems of a document.
+//! [`Fault`]: the reason for a failed call, with a stable code and the problems of a document.
 
 use driftworld::Failure;
 use driftworld::distances::DistancesError;
@@ -9,7 +9,7 @@ use driftworld::spec::{Problem, SpecError};
 use driftworld::tasks::TaskError;
 use serde_json::{Value, json};
 
-/// Why a call failed.
+/// The reason for a failed call.
 #[derive(Debug)]
 pub(crate) struct Fault {
     pub(crate) code: String,

@@ -1,4 +1,4 @@
-//! Driftworld for a browser: a [`Session`] answers calls in JSON, with bytes beside them. The simulator, distances and orders
+//! Driftworld for a browser: a [`Session`] answers calls in JSON with optional bytes. The simulator, distances and orders
 //! come from other crates; `abi.rs` has the C functions that WebAssembly exports.
 
 #[cfg(target_family = "wasm")]

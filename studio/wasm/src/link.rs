@@ -236,7 +236,7 @@ fn unpacked(fragment: &str) -> Result<(Header, std::collections::VecDeque<u8>), 
     Ok((header, all.drain(end + 1..).collect()))
 }
 
-/// Knowing the kind of damage does not help to mend a link, so the message is the same for all damage.
+/// The message is the same for all kinds of damage: knowing the kind does not help to repair a link.
 fn damaged() -> Fault {
     Fault::new("link/damaged", "this link is cut or was changed; copy all of it")
 }

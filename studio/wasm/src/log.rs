@@ -161,7 +161,7 @@ mod tests {
             path: "log/data-log.tsv".to_owned(),
             length: text.len(),
         };
-        let (_, found) = Log::read(&[file], text.as_bytes()).expect("it is a log");
+        let (_, found) = Log::read(&[file], text.as_bytes()).expect("the log is valid");
         assert_eq!(
             (&found["tasks"], &found["metrics"]),
             (&json!(["a\t\"b\""]), &json!(["reward"]))

@@ -1,4 +1,4 @@
-//! [`Session`]: everything that a page has open; answers the page's calls.
+//! [`Session`]: holds the open episodes, networks and log of a page, and answers its calls.
 
 use std::collections::BTreeMap;
 
@@ -29,8 +29,8 @@ pub struct Session {
 }
 
 impl Session {
-    /// Answers a call in JSON, with a network or files as bytes beside it. The answer is `{"ok": …}` or `{"error": …}`,
-    /// with the pixels of a frame as bytes beside it.
+    /// Answers a call in JSON; a network or files are passed as bytes. The answer is `{"ok": …}` or `{"error": …}`; the
+    /// pixels of a frame are returned as bytes.
     ///
     /// # Example
     /// ```

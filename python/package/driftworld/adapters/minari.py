@@ -111,7 +111,7 @@ def _run_episode(
     """Runs one episode; returns Minari's buffer and the metadata."""
     observation, info = env.reset(seed=seed, options=options)
     # From the environment itself: the info names the variant only if the agent may know it.
-    told = env.unwrapped.origin()  # type: ignore[attr-defined]
+    origin = env.unwrapped.origin()  # type: ignore[attr-defined]
     observations, actions, rewards, terminations, truncations = [observation], [], [], [], []
     has_ended = False
     while not has_ended:
@@ -135,11 +135,11 @@ def _run_episode(
     )
     # Minari reserves `seed` for itself.
     metadata = {
-        "task_id": told["task_id"],
-        "variant_id": told["variant_id"],
-        "world_seed": int(told["seed"]),
-        "world_index": int(told["index"]),
-        "world_hash": told["world_hash"],
+        "task_id": origin["task_id"],
+        "variant_id": origin["variant_id"],
+        "world_seed": int(origin["seed"]),
+        "world_index": int(origin["index"]),
+        "world_hash": origin["world_hash"],
         "episode_return": float(np.sum(rewards)),
         **({"is_success": bool(info["is_success"])} if "is_success" in info else {}),
     }

@@ -99,19 +99,19 @@ class DriftworldPuffer(PufferEnv):  # type: ignore[misc, unused-ignore] # Any wh
         self.truncations[:] = truncated
         self._returns += rewards
         self._lengths += 1
-        infos = [self._closed(int(index), info) for index in np.flatnonzero(terminated | truncated)]
+        infos = [self._episode_info(int(index), info) for index in np.flatnonzero(terminated | truncated)]
         return self.observations, self.rewards, self.terminals, self.truncations, infos
 
-    def _closed(self, index: int, told: Any) -> dict[str, Any]:
+    def _episode_info(self, index: int, batch_info: Any) -> dict[str, Any]:
         info = {
             "variant_id": self._variants[index],
             "episode_return": float(self._returns[index]),
             "episode_length": int(self._lengths[index]),
-            "is_success": float(told["final_info"]["is_success"][index]),
+            "is_success": float(batch_info["final_info"]["is_success"][index]),
         }
         self._returns[index] = 0
         self._lengths[index] = 0
-        self._variants[index] = told["variant_id"][index]
+        self._variants[index] = batch_info["variant_id"][index]
         return info
 
     def render(self) -> Any:

@@ -141,11 +141,11 @@ class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where
                 seeds = [seed if is_in else None for seed, is_in in zip(self._seeds, mask, strict=True)]
                 # Always with a mask, even if it selects all: like a single environment, each then gets its own queue.
                 asked: dict[str, Any] = {**options, "reset_mask": mask}
-                observations, told = self.envs.reset(
+                observations, vector_info = self.envs.reset(
                     seed=seeds if any(seed is not None for seed in seeds) else None, options=asked
                 )
                 for index in np.flatnonzero(mask):
-                    self.reset_infos[index] = _of_one(told, int(index))
+                    self.reset_infos[index] = _of_one(vector_info, int(index))
         finally:
             # Invalid options are not applied again.
             self._reset_seeds()

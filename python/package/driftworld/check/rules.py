@@ -94,12 +94,12 @@ def _passes_sb3s_check(case: Case) -> None:
 
 
 def _same_seed_same_worlds(case: Case) -> None:
-    with closing(case.single()) as env, closing(case.single()) as again:
+    with closing(case.single()) as env, closing(case.single()) as other:
         for episode, seed in enumerate([case.seed, None, None, case.seed]):
             first, info = env.reset(seed=seed)
-            second, info_again = again.reset(seed=seed)
+            second, other_info = other.reset(seed=seed)
             _expect_same(first, second, f"observation of reset {episode}")
-            _expect_same(info, info_again, f"info of reset {episode}")
+            _expect_same(info, other_info, f"info of reset {episode}")
             expected = (case.seed, episode % 3)
             found = (info.get("seed"), info.get("index"))
             if found != expected:
@@ -135,12 +135,12 @@ def _can_be_sent(case: Case) -> None:
 
 def _walk(env: gymnasium.Env[Any, Any], case: Case) -> list[Any]:
     """Runs an episode of random actions; returns everything that the environment returned."""
-    told: list[Any] = [env.reset(seed=case.seed)]
+    results: list[Any] = [env.reset(seed=case.seed)]
     for action in case.actions(env.action_space)[:SHORT_EPISODE]:
-        told.append(copy.deepcopy(env.step(action)))
-        if told[-1][2] or told[-1][3]:
+        results.append(copy.deepcopy(env.step(action)))
+        if results[-1][2] or results[-1][3]:
             break
-    return told
+    return results
 
 
 def _draws_pictures(case: Case) -> None:
@@ -171,7 +171,7 @@ def _alone_as_in_the_batch(case: Case) -> None:
         observations, _ = batch.reset(seed=case.seed)
         actions = case.actions(batch.action_space)
         first = [_row(observations, index) for index in range(case.num_envs)]
-        rows = [_told(batch, action) for action in actions]
+        rows = [_step_results(batch, action) for action in actions]
     for index, seed in enumerate(spread_seeds(case.seed, case.num_envs)):
         with closing(case.single(max_episode_steps=case.options.get("max_episode_steps", SHORT_EPISODE))) as env:
             _expect_same(env.reset(seed=seed)[0], first[index], f"environment {index}, reset")
@@ -183,7 +183,7 @@ def _alone_as_in_the_batch(case: Case) -> None:
                 _expect_same((alone[0], float(alone[1]), *alone[2:]), together, f"environment {index}, step {number}")
 
 
-def _told(batch: Any, action: Any) -> Any:
+def _step_results(batch: Any, action: Any) -> Any:
     return copy.deepcopy(batch.step(action)[:4])
 
 

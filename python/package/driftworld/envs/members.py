@@ -339,8 +339,8 @@ class Members:
             locked = [kind or "the array" for kind, array in (arrays.items() if isinstance(arrays, Mapping) else ()) if _is_locked(array)]
             if locked:
                 raise ValueError(f"out: found {', '.join(locked)} read-only, expected writable arrays; nothing was changed")
-            told = ", ".join(f"{kind or 'an array'} {name} {shape}" for kind, (shape, name) in wanted.items())
-            raise ValueError(f"out: found other arrays than observations have, expected {told}; nothing was changed")
+            expected = ", ".join(f"{kind or 'an array'} {name} {shape}" for kind, (shape, name) in wanted.items())
+            raise ValueError(f"out: found other arrays than observations have, expected {expected}; nothing was changed")
 
     def write_into(self, out: Any) -> None:
         """Writes all observations into the given arrays."""
