@@ -2,11 +2,11 @@
 the list.
 
     python scripts/families.py target/release/driftworld measure [NAME]...    into examples/families.json
-    python scripts/families.py target/release/driftworld film [NAME]...       into docs/images/families/, with a picture of all variants
+    python scripts/families.py target/release/driftworld film [NAME]...       into docs/images/families/, and a picture of all variants
     python scripts/families.py target/release/driftworld sheet                docs/images/families.png, all families in one picture
-    python scripts/families.py target/release/driftworld pages                from these and examples/families_learned.json
+    python scripts/families.py target/release/driftworld pages                from the above and examples/families_learned.json
 
-scripts/learn_families.py makes the last one. Pictures need Pillow.
+scripts/learn_families.py writes the last file. Pictures need Pillow.
 
 For each variant: the rewards of a random agent and of the planner in 1,000 worlds, the planner's success rate, the
 elements that differ from the first variant in 32 pairs of worlds, and the distance from it.

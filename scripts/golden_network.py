@@ -31,7 +31,7 @@ class Small(PPO):
 
 
 def image(number: int) -> list[int]:
-    """Bytes of an image, made like the test's."""
+    """Bytes of an image, generated as in the test."""
     return [(k * (7 + 2 * number) + k // 5) % 256 for k in range(SIZE * SIZE * 3)]
 
 

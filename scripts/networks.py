@@ -1,4 +1,4 @@
-"""Trains PPO in some families, one network each, for examples/networks: the workbench plays them, the README films one.
+"""Trains PPO in some families, one network each, for examples/networks: the workbench plays them, and the README shows a film of one.
 
     python scripts/networks.py [NAME]... [--jobs 2] [--film target/release/driftworld]
 

@@ -1,4 +1,4 @@
-"""Measures which tasks of a sequence can be learned after which others: each pair, by fine-tuning.
+"""Measures which tasks of a sequence can be learned after which others, by fine-tuning on each pair.
 
 A pair that ends at the random agent's rewards, or at the planner's, does not distinguish learners. Each task is
 evaluated in 100 worlds. Finished pairs are not run again; the table is printed:

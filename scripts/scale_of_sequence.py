@@ -41,7 +41,7 @@ def planner(task: str, command: str) -> float:
 
 
 def main() -> None:
-    """Prints both."""
+    """Prints both rewards."""
     sequence, command = Sequence.load(sys.argv[1]), sys.argv[2]
     tasks = list(dict.fromkeys(sequence.tasks))
     scale = {task: [round(random(task, sequence), 2), round(planner(task, command), 2)] for task in tasks}

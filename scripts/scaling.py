@@ -1,8 +1,8 @@
-"""Prints how speed grows with size: objects, corners of walls, environments and threads, worlds in a matrix, rows in a log.
+"""Prints how speed scales with the number of objects, wall corners, environments, threads, worlds in a matrix and rows in a log.
 
     python scripts/scaling.py [--seconds 0.3] [--rounds 5]
 
-It needs the Python package. Each figure is the best of some rounds in which all sizes of one table take turns, so that a busy
+It needs the Python package. Each figure is the best of several rounds in which all sizes of a table take turns, so that a busy
 moment of the machine affects all of them; shares compare the figures of one table.
 """
 
@@ -32,7 +32,7 @@ Works = dict[str, tuple[Callable[[], Any], int]]
 
 
 def best(works: Works, seconds: float, rounds: int) -> dict[str, float]:
-    """The best rate of each workload, in its own units a second: a function, and the number of units in one call."""
+    """The best rate of each workload, in its own units a second: each is a function and the number of units per call."""
     rates = dict.fromkeys(works, 0.0)
     for work, _ in works.values():
         work()

@@ -1,6 +1,6 @@
 """A new user's first steps, run by an interpreter with nothing but `pip install ./python`.
 
-Runs the first Python block of docs/python.md unchanged, and then the command. `cargo xtask test` starts it and shows its output.
+Runs the first Python block of docs/python.md unchanged, then the command. `cargo xtask test` starts it and shows its output.
 The blocks of all pages, README.md among them, are run by `test_readme.py`.
 """
 

@@ -1,4 +1,4 @@
-"""The pages of the Python API have every public name with its arguments."""
+"""The pages of the Python API list every public name with its arguments."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Regimes with a budget of decisions: the experiences that run match an independent computation, also after a kill."""
+"""Regimes with a budget of decisions: the experiences that run match an independent computation, even after a kill."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def test_budget_runs_the_expected_experiences(tmp_path: Path, num_envs: int, mix
 @pytest.mark.parametrize("budget", range(21, 105, 12))
 @pytest.mark.parametrize("num_envs", [2, 3])
 def test_all_that_is_learned_from_is_in_the_log(tmp_path: Path, num_envs: int, budget: int) -> None:
-    """Also if all environments end in the same step."""
+    """Even if all environments end in the same step."""
     curriculum = Curriculum.from_dict(scenario({"lava": budget, "middle": budget}))
     agents = Many(num_envs, Stroller)
     assert curriculum.run_vector(agents, tmp_path / "log", num_envs=num_envs, **SMALL).finished

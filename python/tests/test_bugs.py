@@ -1,4 +1,4 @@
-"""The page of known bugs is made from its table, and every test that it names exists."""
+"""The page of known bugs matches its table, and every test that it names exists."""
 
 import shutil
 import subprocess

@@ -1,4 +1,4 @@
-"""The page of the comparison with other systems is made from its logs, and a run is summarised as the page says."""
+"""The page of the comparison with other systems matches its logs, and runs are summarised as the page describes."""
 
 import importlib.util
 import json

@@ -1,4 +1,4 @@
-"""The families' pages are made by scripts/families.py from the measurements, which a few worlds confirm."""
+"""The families' pages match the output of scripts/families.py, and a few worlds confirm the measurements."""
 
 from __future__ import annotations
 

@@ -67,7 +67,7 @@ CALLS = [0]
 
 
 class Counter(Uniform):
-    """Counts in state outside the agent."""
+    """Keeps a counter outside the agent."""
 
     def act(self, observation: Any, info: dict[str, Any]) -> Any:
         CALLS[0] += 1

@@ -1,4 +1,4 @@
-"""Each continual method, compared with values computed by hand."""
+"""Compares each continual method with values computed by hand."""
 
 from __future__ import annotations
 

@@ -41,7 +41,7 @@ def curriculum(variants: list[str], seed: int, label: str) -> Curriculum:
 
 
 def given(variants: list[str], seed: int, label: str, **options: Any) -> Listener:
-    """Runs a listener through such a curriculum."""
+    """Runs a listener through this curriculum."""
     listener = Listener()
     size = {**SMALL, "modalities": ["rgb"]} if label == "observation" else SMALL
     curriculum(variants, seed, label).run(listener, **size, **options)

@@ -212,7 +212,7 @@ def test_sb3_issue_1790_options_reach_the_reset_that_ends_an_episode() -> None:
     assert begun() == [("default", 0)] * 2
     envs.set_options({"variant": "dusk", "index": 7})
     assert envs.step(actions)[2].all() and begun() == [("dusk", 7)] * 2
-    # A variant persists until replaced; an index is for one episode.
+    # A variant persists until replaced; an index applies to one episode.
     assert envs.step(actions)[2].all() and begun() == [("dusk", 8)] * 2
     envs.set_options([{"variant": "red"}, {}])
     assert envs.step(actions)[2].all() and begun() == [("red", 9), ("dusk", 9)]

@@ -56,7 +56,7 @@ def tagged(world: dict[str, Any], tag: str) -> list[dict[str, Any]]:
     return [thing for thing in world["objects"] if thing["tag"] == tag]
 
 
-def test_dmlab_level_has_its_walls_things_and_warnings(maps: ModuleType, capsys: Any) -> None:
+def test_dmlab_level_gives_walls_objects_and_warnings(maps: ModuleType, capsys: Any) -> None:
     world = maps.dmlab("level.txt", LEVEL)
     assert problems(world) == []
     layout = world["environment_params"]["layout"]
@@ -74,20 +74,20 @@ def test_dmlab_level_has_its_walls_things_and_warnings(maps: ModuleType, capsys:
     ]
 
 
-def test_minigrid_grid_has_its_rooms_things_and_lava(maps: ModuleType, capsys: Any) -> None:
+def test_minigrid_grid_gives_rooms_objects_and_lava(maps: ModuleType, capsys: Any) -> None:
     grid = "WGWGWGWGWGWG\nWG>>  DY  WG\nWG  KYWGGGWG\nWGVRARWGXXWG\nWGWGWGWGWGWG\n"
     world = maps.minigrid("grid.txt", grid)
     assert problems(world) == []
     assert world["agent_params"] == {"agent_width": 2 / 3, "coordinates": [-3.0, 2.0], "heading": 90.0, "carry_limit": 1}
     assert [thing["tag"] for thing in world["objects"]] == ["yellow_key", "goal", "ball", "door"]
     (zone,) = world["environment_params"]["zones"]
-    # Its whole cell: the second of the fourth row.
+    # The zone covers its whole cell: the second of the fourth row.
     assert zone["polygon"] == [[-4.0, -3.0], [-2.0, -3.0], [-2.0, -1.0], [-4.0, -1.0]]
     assert zone["ends"] == "failure"
     assert '"XX" is not known' in capsys.readouterr().err
 
 
-def test_agent_starts_beside_a_door_not_in_it(maps: ModuleType) -> None:
+def test_agent_without_a_start_is_not_placed_in_a_door(maps: ModuleType) -> None:
     world = maps.dmlab("level.txt", "**H**\n*   *\n*****\n")
     door, start = tagged(world, "door")[0]["coordinates"], world["agent_params"]["coordinates"]
     assert start[1] < door[1] - 1

@@ -20,7 +20,7 @@ def page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("DRIFTWORLD_STUDIO", str(tmp_path))
 
 
-def test_frame_shows_what_is_served_until_it_is_closed() -> None:
+def test_frame_shows_the_served_page_until_it_is_closed() -> None:
     with closing(driftworld.studio("find_objects#red", height=400)) as studio:
         assert studio.address.endswith("#/play/find_objects?variant=red")
         found = re.fullmatch(r'<iframe src="(.*?)" .*height="400".*></iframe>', studio._repr_html_())

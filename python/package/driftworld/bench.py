@@ -1,7 +1,7 @@
-"""How fast the environments are through Python, beside the same batch in Rust, and beside peers that are installed.
+"""Measures the speed of environments through Python, compared with the same batch in Rust and with installed peers.
 
-``python -m driftworld.bench`` prints a table of this run's measurements on this machine; ``--quick`` measures only
-briefly, to check that it works.
+``python -m driftworld.bench`` measures on this machine and prints a table; ``--quick`` measures only briefly, to check
+that it works.
 
 Peers: ViZDoom (``pip install vizdoom``) and MiniWorld (``pip install miniworld``; it needs a display, ``xvfb-run``
 makes one). Each is measured with one environment, next to a single-threaded Driftworld environment at the peer's usual
@@ -34,7 +34,7 @@ _STRETCHES = 15
 
 
 def measure(*, seconds: float = 2.0, peers: bool = True) -> dict[str, Any]:
-    """Measures everything.
+    """Runs all measurements.
 
     Args:
         seconds: Time spent on each rate, which is the median of 15 measurements.

@@ -76,7 +76,7 @@ class Agent(Protocol):
       that it does not identify a world;
     - ``policy``, how it chooses its actions in evaluations, such as ``"sampled"`` or ``"greedy"``; it is recorded in
       the log;
-    - ``made_with``, its settings as a dictionary, such as ``{"seed": 1, "learning_rate": 0.001}``; recorded, too, and a
+    - ``made_with``, its settings as a dictionary, such as ``{"seed": 1, "learning_rate": 0.001}``; also recorded; a
       log is only resumed with the same ones;
     - ``save(path)`` and ``load(path)``: ``save`` is called after each learning block, with a path where nothing exists;
       ``load`` when a log is resumed, with the path of the last save.
@@ -209,7 +209,7 @@ class Lifetime:
         """
         with ExitStack() as stack:
             folder = self._log or Path(stack.enter_context(tempfile.TemporaryDirectory())) / "log"
-            # First, so that no log is started if an option is wrong.
+            # Made first, so that no log is started if an option is wrong.
             running = rollout(self._save)
             stack.callback(running.close)
             policy = getattr(self._agent, "policy", None)

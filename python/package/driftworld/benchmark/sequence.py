@@ -31,7 +31,7 @@ class Sequence:
         decisions: Number of decisions to learn from in each task.
         evaluations: Number of worlds in which each task is evaluated after each task.
         num_envs: Number of environments used in parallel for learning.
-        options: Of the environments.
+        options: Options of the environments.
         scale: For each task the rewards that map to 0 and 1: those of a random agent that acts as rarely as the
             learners, and of the planner.
         learners: Arguments of learners that differ from the defaults, by learner name.

@@ -39,7 +39,7 @@ def check(
         num_envs: Number of environments in vector environments, from 1.
         steps: Number of random steps in each comparison, from 1; episodes are cut to 9 steps, so that many of them end
             within 60 steps.
-        seed: Of worlds and actions.
+        seed: The seed of worlds and actions.
         processes: Whether to compare with ``AsyncVectorEnv`` as well, which starts a process for each environment.
         **options: Options of the environment, such as ``modalities="rgb"``.
 

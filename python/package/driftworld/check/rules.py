@@ -41,7 +41,7 @@ class Rule:
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("error")
-                # These come from underlying libraries and concern only them.
+                # These warnings are raised by underlying libraries and concern only them.
                 warnings.simplefilter("ignore", DeprecationWarning)
                 warnings.simplefilter("ignore", ResourceWarning)
                 self.check(case)

@@ -1,4 +1,4 @@
-"""Fine-tuning: PPO that continues across tasks. The baseline of every table, in two rows.
+"""Fine-tuning: PPO that continues across tasks. It is the baseline of every table, in two rows.
 
 ``FineTuning`` ignores tasks: its weights and Adam's moments carry over every border. ``ResetOptimizer`` clears the
 moments at borders. Both minimise the loss of the current task alone.
