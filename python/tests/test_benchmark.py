@@ -160,7 +160,7 @@ def test_a_killed_run_ends_with_the_same_digests(tiny: Path, tmp_path: Path) -> 
 
 
 @pytest.mark.learners
-def test_cell_that_lost_a_learner_in_a_kill_reruns_to_the_same_digest(tiny: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_cell_whose_learner_was_lost_reruns_to_the_same_digest(tiny: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     cell = Cell(str(tiny), "finetuning", 0)
     (whole,) = run_cells([cell], tmp_path / "whole")
 

@@ -65,7 +65,7 @@ def test_log_names_its_task_and_seed(compare: ModuleType) -> None:
         assert rows[-1]["decisions"] > head["decisions"] - head["num_envs"] * head["settings"]["rollout"]
 
 
-def test_without_logs_of_jaxenstein_the_page_has_four_systems_and_says_so(
+def test_page_without_jaxenstein_logs_has_four_systems_and_says_so(
     compare: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     assert "five systems" in compare.page()

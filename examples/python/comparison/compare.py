@@ -81,8 +81,8 @@ def install(systems: Systems, wheel: Path, torch: Path | None, only: list[str], 
     ``torch`` is a folder of packages with torch. ``keep`` keeps existing environments, and installs the wheel in
     Driftworld's.
     """
-    noted = LOGS / "install.json"
-    found = json.loads(noted.read_text(encoding="utf-8")) if noted.is_file() else {}
+    record = LOGS / "install.json"
+    found = json.loads(record.read_text(encoding="utf-8")) if record.is_file() else {}
     for system in only or [*systems.names, *([] if torch else ["learner"])]:
         folder = systems.envs / system
         pip = [str(folder / "bin/python"), "-m", "pip", "install", "--quiet", "--no-cache-dir", "--disable-pip-version-check"]
@@ -103,7 +103,7 @@ def install(systems: Systems, wheel: Path, torch: Path | None, only: list[str], 
         # Searched after the system's own packages, whose versions take precedence.
         others = [torch or own_packages(systems.envs / "learner"), own_packages(systems.envs / "driftworld")]
         whole.write_text("".join(f"{each}\n" for each in others if system != "learner" and each != whole.parent), encoding="utf-8")
-    write(noted, json.dumps({system: found[system] for system in SYSTEMS if system in found}, indent=1) + "\n")
+    write(record, json.dumps({system: found[system] for system in SYSTEMS if system in found}, indent=1) + "\n")
 
 
 def own_packages(environment: Path) -> Path:

@@ -148,7 +148,7 @@ class VectorRollout(Rollout):
         self._running: list[int | None] = [None] * self._num_envs
         self._regimes = np.zeros(self._num_envs, dtype=np.int64)
         self._decisions = np.zeros(self._num_regimes, dtype=np.int64)
-        self._over: dict[int, tuple[float, bool, int, bool, str | None]] = {}
+        self._finished: dict[int, tuple[float, bool, int, bool, str | None]] = {}
         self._traces: dict[int, Trace | None] = {}
         self._recordings: dict[int, _native.RecordingHandle] = {}
         self._earned = np.zeros(self._num_envs)
@@ -166,25 +166,25 @@ class VectorRollout(Rollout):
     def experience(
         self, number: int, world: _native.Stream, time: tuple[float, int, float]
     ) -> tuple[float, bool, int, float, bool, str | None]:
-        """Returns one experience, which may have run while earlier ones were asked for; like
+        """Returns one experience, which may have run while earlier ones were requested; like
         :meth:`driftworld.lifetimes.Rollout.experience`.
         """
         now = self._experience(number)
         # An earlier experience that is neither under way nor finished is run again, with all later ones, so that
         # batches are the same as before.
-        if now.block != self._block or (number < self._next and not (number in self._over or number in self._running)):
+        if now.block != self._block or (number < self._next and not (number in self._finished or number in self._running)):
             self._abandon()
             self._next, self._block, self._learning = number, now.block, now.learning
-        while number not in self._over:
+        while number not in self._finished:
             self._step()
-        reward, success, steps, truncated, ended_by = self._over.pop(number)
+        reward, success, steps, truncated, ended_by = self._finished.pop(number)
         self._frozenness.expect_same(now, self._traces.pop(number, None))
         return reward, success, steps, self._seconds(steps, time), truncated, ended_by
 
     def _step(self) -> None:
         """Steps all environments, after assigning the next experiences of the block to idle ones."""
-        begun = [self._begin(env) for env in range(self._num_envs) if self._running[env] is None]
-        if any(begun):
+        started = [self._begin(env) for env in range(self._num_envs) if self._running[env] is None]
+        if any(started):
             self._observations = self._copied()
         active = np.array([number is not None for number in self._running])
         observations = self._observations
@@ -215,7 +215,7 @@ class VectorRollout(Rollout):
             cut_off = bool(truncated[env] and not terminated[env])
             earned, success, steps = float(self._earned[env]), bool(self._success[env]), int(self._steps[env])
             ended_by = infos["ended_by"][env] or ("steps" if cut_off else None)
-            self._over[number] = (earned, success, steps, cut_off, ended_by)
+            self._finished[number] = (earned, success, steps, cut_off, ended_by)
             if self._records:
                 self._recordings[number] = self._env.recording(env)._handle
             self._running[env] = None
