@@ -15,7 +15,7 @@ pub struct Camera {
     pub field_of_view_deg: f32,
 }
 
-/// The camera's axes in the world: unit vectors.
+/// The camera's axes as unit vectors in the world's frame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Axes {
     pub(crate) right: [f32; 3],
@@ -24,7 +24,7 @@ pub(crate) struct Axes {
 }
 
 impl Camera {
-    /// The view of an agent at `position` with this heading; `height` is that of its eyes.
+    /// The view of an agent at `position` with this heading; `height` is the height of its eyes.
     pub fn first_person(position: [f32; 2], heading_deg: f32, height: f32, field_of_view_deg: f32) -> Self {
         Self {
             position: [position[0], position[1], height],
@@ -57,7 +57,7 @@ impl Camera {
         }
     }
 
-    /// Half the height of the image plane at 1 m.
+    /// Half the height of the image plane at a distance of 1 m.
     pub(crate) fn tangent(&self) -> f32 {
         let half = (self.field_of_view_deg.clamp(1.0, 170.0) / 2.0).to_radians();
         libm::sinf(half) / libm::cosf(half)

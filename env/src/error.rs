@@ -13,13 +13,13 @@ const GIB: f64 = (1_u64 << 30) as f64;
 #[strum(prefix = "env/", serialize_all = "kebab-case")]
 #[non_exhaustive]
 pub enum EnvError {
-    /// An action holds NaN or infinity.
+    /// An action contains NaN or infinity.
     #[error("action: found {found:?}, expected three finite numbers; nothing was changed")]
     NotFinite {
         /// The action.
         found: [f64; 3],
     },
-    /// An action is a row number that the world's table does not have.
+    /// An action is a row number beyond the world's action table.
     #[error("action: found row {found}, expected 0 to {last} of the world's action table; nothing was changed")]
     NoSuchAction {
         /// The requested row.
@@ -65,7 +65,7 @@ pub enum EnvError {
         /// Maximum number of bytes.
         most: u64,
     },
-    /// Work was stopped before it was done.
+    /// A reset was stopped before every environment had begun its episode.
     #[error(
         "batch: stopped before every environment had begun its episode, expected a reset of them all before the next step"
     )]
@@ -125,7 +125,7 @@ pub enum EnvError {
         /// Images of the batch.
         expected: String,
     },
-    /// A file of recordings is damaged, truncated or of a different kind.
+    /// A file of recordings is damaged or truncated, or not a file of recordings.
     #[error("line {line}: found {found}, expected {expected}", found = one_line(found), expected = one_line(expected))]
     Recording {
         /// The line, from 1.
@@ -143,7 +143,7 @@ pub enum EnvError {
     Replay {
         /// Index of the experience.
         experience: u64,
-        /// What differs: the reward, the cause of the end, or a step that cannot be taken.
+        /// What differs: the reward, the cause of the end, or a step that the replay cannot take.
         what: &'static str,
         /// The value in the replay.
         found: String,
@@ -170,7 +170,7 @@ pub enum EnvError {
         /// The object that has it.
         object: usize,
     },
-    /// The world is full.
+    /// The world has the maximum number of objects.
     #[error("spawn: found a world of {limit} objects, expected fewer; destroyed objects count, so start another world")]
     TooManyObjects {
         /// Maximum number of objects in a world.
@@ -184,18 +184,18 @@ pub enum EnvError {
         /// Number of objects.
         count: usize,
     },
-    /// The object was destroyed before, and does not respawn.
+    /// The object is already destroyed and does not respawn.
     #[error("destroy: found object {object} gone already, expected one that is there or comes back")]
     AlreadyGone {
         /// The object.
         object: usize,
     },
-    /// The agent cannot stand at this place.
+    /// The agent does not fit at the requested position.
     #[error(
         "teleport: found {found} at {position:?}, expected free ground inside the arena for an agent {width} m wide; it stays where it is"
     )]
     NoRoom {
-        /// The requested place, in metres.
+        /// The requested position in metres.
         position: [f64; 2],
         /// The obstacle.
         found: Obstacle,
@@ -303,7 +303,7 @@ pub enum EnvError {
         /// The requested name.
         found: String,
     },
-    /// A GPU is requested, and none is usable.
+    /// A GPU is requested, but none is usable.
     #[error(
         "renderer gpu: found no graphics adapter that works, expected one ({}); `driftworld doctor` says what is missing, \
          the renderer cpu works everywhere",
@@ -365,7 +365,7 @@ mod tests {
             EnvError::BadObject {
                 problem: driftworld_spec::Object::new("tree", [0.0, 400.0])
                     .check()
-                    .expect_err("no arena is that large"),
+                    .expect_err("the position is outside every arena"),
             },
             EnvError::NameTaken {
                 name: "gate".to_owned(),
@@ -400,7 +400,7 @@ mod tests {
                     ..driftworld_spec::WorldDraft::default()
                 }
                 .check()
-                .expect_err("time does not run back"),
+                .expect_err("durations are not negative"),
             },
             EnvError::PictureSize { width: 0, height: 5000 },
             EnvError::BadScript {
@@ -485,13 +485,13 @@ mod tests {
                 expected: "at most 1000000".to_owned(),
             },
         ];
-        let said: Vec<String> = errors
+        let lines: Vec<String> = errors
             .iter()
             .map(|error| format!("{}: {error}", error.code()))
             .collect();
-        insta::assert_snapshot!(said.join("\n"));
+        insta::assert_snapshot!(lines.join("\n"));
         let covered: BTreeSet<&str> = errors.iter().map(EnvError::code).collect();
         let all: BTreeSet<&str> = EnvError::VARIANTS.iter().copied().collect();
-        assert_eq!(covered, all, "every code has a case here");
+        assert_eq!(covered, all, "every error code has a case here");
     }
 }

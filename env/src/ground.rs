@@ -1,4 +1,4 @@
-//! Geometry of zones on the ground: flat coloured polygons, for both renderers.
+//! Geometry of zones on the ground as flat coloured polygons, for both renderers.
 
 use driftworld_spec::{World, Zone};
 
@@ -8,43 +8,44 @@ use crate::scene::PanelGroup;
 /// Number of corners of the polygon that approximates a disc.
 const CORNERS: u32 = 64;
 
-/// Height of a patch above the ground, as a fraction of the camera's height: too small to show in depths, large enough to lie
-/// on top.
+/// Height of a patch above the ground, as a fraction of the camera's height: too small to affect depth images, large enough to
+/// lie on top.
 const LIFT: f32 = 1e-4;
 
 /// Additional height of each patch over the one before, as a fraction of the lift, and the number of patches that get one.
 const STEP: (f32, usize) = (0.1, 100);
 
-/// Extent in metres of the ground around an arena: in two bands, because such distant corners are inexact nearby.
-const AROUND: [f32; 3] = [0.0, 500.0, 50_000.0];
+/// Distances in metres from the arena to the edges of the two bands of ground around it. A single band would be inexact nearby,
+/// because its outer corners are so distant.
+const BAND_EDGES: [f32; 3] = [0.0, 500.0, 50_000.0];
 
-/// Its height in metres.
-const HEIGHT_AROUND: f32 = 0.01;
+/// Height of that ground in metres.
+const SURROUNDING_HEIGHT: f32 = 0.01;
 
-/// Flat ground around an arena of this size, outside the arena's own.
+/// Flat ground outside an arena of this size.
 pub(crate) fn around(size: [f32; 2], color: [f32; 3]) -> PanelGroup {
     let ring = |more: f32| {
         let [x, y] = size.map(|side| side / 2.0 + more);
-        [[-x, -y], [x, -y], [x, y], [-x, y]].map(|[x, y]| [x, y, HEIGHT_AROUND])
+        [[-x, -y], [x, -y], [x, y], [-x, y]].map(|[x, y]| [x, y, SURROUNDING_HEIGHT])
     };
     let quads = [0, 4].into_iter().flat_map(|inner| {
         let outer = inner + 4;
         (0..4).map(move |k| [outer + k, outer + (k + 1) % 4, inner + (k + 1) % 4, inner + k])
     });
     let mesh = Mesh {
-        corners: AROUND.map(ring).concat(),
+        corners: BAND_EDGES.map(ring).concat(),
         triangles: quads.flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect(),
     };
     PanelGroup::of(mesh, color.map(|channel| 0.5 + 0.15 * channel))
 }
 
-/// The visible zones of a world, in its order: where they overlap, later ones lie on top.
+/// The visible zones of a world in its order; where they overlap, later ones lie on top.
 pub(crate) fn patches(world: &World) -> impl Iterator<Item = PanelGroup> {
     let zones = world.environment_params.zones.iter().filter(|zone| zone.visible);
     zones.enumerate().map(|(index, zone)| {
         let mut group = PanelGroup::of(mesh(zone), zone.ground_color().to_f32());
-        let (step, most) = STEP;
-        group.lift = LIFT * (1.0 + step * index.min(most) as f32);
+        let (step, max_steps) = STEP;
+        group.lift = LIFT * (1.0 + step * index.min(max_steps) as f32);
         group
     })
 }
@@ -72,7 +73,7 @@ pub(crate) fn middle(zone: &Zone) -> Option<[f64; 2]> {
     Some([0, 1].map(|axis| largest.iter().map(|corner| corner[axis]).sum::<f64>() / 3.0))
 }
 
-/// A zone's corners counter-clockwise; for a disc, those of its polygon.
+/// A zone's corners counter-clockwise; for a disc, the corners of the polygon that approximates it.
 pub(crate) fn corners(zone: &Zone) -> Vec<[f64; 2]> {
     if let Some(disc) = &zone.disc {
         let corner = |k: u32| {
@@ -91,25 +92,31 @@ pub(crate) fn corners(zone: &Zone) -> Vec<[f64; 2]> {
     corners
 }
 
-/// Triangulates a polygon by cutting off one corner after another. A self-intersecting polygon is filled as far as possible.
+/// Triangulates a polygon by ear clipping. A self-intersecting polygon is filled as far as possible.
 pub(crate) fn triangles(corners: &[[f64; 2]]) -> Vec<[u32; 3]> {
-    let mut left: Vec<u32> = (0..corners.len() as u32).collect();
+    let mut remaining: Vec<u32> = (0..corners.len() as u32).collect();
     let mut triangles = Vec::with_capacity(corners.len().saturating_sub(2));
     let at = |index: u32| corners[index as usize];
-    while left.len() > 3 {
-        let count = left.len();
-        let around = |k: usize| [left[(k + count - 1) % count], left[k], left[(k + 1) % count]];
+    while remaining.len() > 3 {
+        let count = remaining.len();
+        let around = |k: usize| {
+            [
+                remaining[(k + count - 1) % count],
+                remaining[k],
+                remaining[(k + 1) % count],
+            ]
+        };
         let is_ear = |k: &usize| {
             let [a, b, c] = around(*k);
             let inside =
                 |other: &u32| ![a, b, c].map(at).contains(&at(*other)) && is_within([a, b, c].map(at), at(*other));
-            turn(at(a), at(b), at(c)) >= 0.0 && !left.iter().any(inside)
+            turn(at(a), at(b), at(c)) >= 0.0 && !remaining.iter().any(inside)
         };
         let Some(ear) = (0..count).find(is_ear) else { break };
         triangles.push(around(ear));
-        left.remove(ear);
+        remaining.remove(ear);
     }
-    if let [a, b, c] = left[..] {
+    if let [a, b, c] = remaining[..] {
         triangles.push([a, b, c]);
     }
     triangles.retain(|triangle| {
@@ -129,7 +136,7 @@ fn is_within([a, b, c]: [[f64; 2]; 3], point: [f64; 2]) -> bool {
 }
 
 impl PanelGroup {
-    /// Faces of one colour, drawn together.
+    /// A group of faces of one colour.
     pub(crate) fn of(mesh: Mesh, color: [f32; 3]) -> Self {
         let part = Part::new(mesh, Paint::Fixed(color));
         let mut sides = [[f32::INFINITY, f32::NEG_INFINITY]; 3];
@@ -164,7 +171,7 @@ mod tests {
         #[test]
         fn triangles_cover_the_zone(
             radii in prop::collection::vec(0.5..5.0f64, 3..12),
-            turned in any::<bool>(),
+            is_clockwise in any::<bool>(),
             point in prop::array::uniform2(-5.0..5.0f64),
         ) {
             let count = radii.len() as f64;
@@ -172,7 +179,7 @@ mod tests {
                 let angle = std::f64::consts::TAU * k as f64 / count;
                 [radius * libm::cos(angle), radius * libm::sin(angle)]
             }).collect();
-            if turned {
+            if is_clockwise {
                 star.reverse();
             }
             let zone = Zone::polygon(star);

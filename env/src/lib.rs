@@ -1,8 +1,6 @@
-//! Runs a [`World`](driftworld_spec::World): physics, rewards and interactions, and cameras that need no GPU.
-//!
-//! [`Environment`] steps a world and renders what its agent sees; [`Scene`], [`Camera`] and [`CpuRenderer`] render any other
-//! view of it. Units are SI, x is east, y north, z up, headings are degrees clockwise from +y. Reads no files and samples no
-//! worlds.
+//! Runs a [`World`](driftworld_spec::World): physics, rewards and interactions, and cameras that need no GPU. [`Environment`]
+//! steps a world and renders its agent's view; [`Scene`], [`Camera`] and [`CpuRenderer`] render any other view of it. Units are
+//! SI; x is east, y north, z up; headings are degrees clockwise from +y. This crate reads no files and samples no worlds.
 
 mod abstraction;
 mod agents;

@@ -1,10 +1,10 @@
-//! [`NaturalLooks`]: the natural style of one scene, resolved.
+//! [`NaturalLooks`]: the natural style of one scene, with all defaults resolved.
 
 use driftworld_spec::{Covering, Style, World};
 
 use crate::assets::ColliderShape;
 
-/// The natural style, with every choice made.
+/// The natural style of one scene, with all defaults resolved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct NaturalLooks {
     /// Covering of the ground.
@@ -17,12 +17,12 @@ pub(crate) struct NaturalLooks {
     pub(crate) has_clouds: bool,
 }
 
-/// Finish of uncovered objects of a class.
+/// Surface finish of objects without a covering, by class.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Finish {
-    /// A door of boards: a frame around panels.
+    /// A wooden door: a frame around panels.
     Door,
-    /// A box of boards with edges.
+    /// A wooden crate: boards with edges.
     Crate,
     /// Brushed metal.
     Metal,
@@ -60,8 +60,8 @@ impl NaturalLooks {
             return None;
         }
         let has_ceiling = looks.has_ceiling(environment.layout.as_ref());
-        let planned = world.plan().into_iter().flat_map(|plan| &plan.walls);
-        let heights = planned.map(|wall| wall.height.unwrap_or(environment.wall_height));
+        let layout_walls = world.plan().into_iter().flat_map(|plan| &plan.walls);
+        let heights = layout_walls.map(|wall| wall.height.unwrap_or(environment.wall_height));
         let height = heights.clone().fold(0.0, f64::max);
         let height = if height > 0.0 { height } else { environment.wall_height };
         Some(Self {
@@ -72,8 +72,8 @@ impl NaturalLooks {
                 color: looks.ceiling_color.to_f32(),
                 meets_walls: {
                     let others = environment.walls.iter().filter_map(|wall| wall.height);
-                    let mut all = heights.chain(others).chain([environment.wall_height]);
-                    all.all(|wall| wall >= height)
+                    let mut heights = heights.chain(others).chain([environment.wall_height]);
+                    heights.all(|wall| wall >= height)
                 },
             }),
             has_shadows: looks.has_shadows(),

@@ -20,7 +20,7 @@ const SUN: [f32; 2] = [35.0, 50.0];
 pub struct Photograph {
     /// Index of the object in the world.
     pub object: usize,
-    /// Direction of the camera from the object, in degrees clockwise from the object's heading, 0..360: 0 shows its front, 90
+    /// Direction from the object to the camera, in degrees clockwise from the object's heading, 0..360: 0 shows its front, 90
     /// its right side.
     pub yaw_deg: f32,
     /// Elevation of the camera over the object's centre, in degrees, 0..=90: 90 looks straight down.
@@ -32,8 +32,8 @@ pub struct Photograph {
 /// A studio in which the objects of a world are photographed one by one.
 ///
 /// Each object stands alone on ground of the world's colour under a sky of the world's colour, without walls or fog. The light
-/// is full daylight, whatever the world's, with the sun behind the photographer's left shoulder, so that no view shows a shaded
-/// side. The same object gives the same pixels for every position and heading in the world.
+/// is always full daylight, with the sun behind the photographer's left shoulder, so that no view shows a shaded side. The same
+/// object gives the same pixels for every position and heading in the world.
 ///
 /// # Example
 /// ```
@@ -66,7 +66,7 @@ impl Studio {
     /// A studio for a world's objects, using the world's `image_params` or their defaults.
     ///
     /// # Errors
-    /// [`EnvError::TooManyPhotographs`] for more than [`MAX_PHOTOGRAPHS`].
+    /// [`EnvError::TooManyPhotographs`] for more than [`MAX_PHOTOGRAPHS`] photographs.
     pub fn new(world: &World) -> Result<Self, EnvError> {
         Self::with_catalogue(world, &Catalogue::default())
     }
@@ -74,7 +74,7 @@ impl Studio {
     /// Like [`Studio::new`], with assets from a catalogue.
     ///
     /// # Errors
-    /// Those of [`Studio::new`].
+    /// The errors of [`Studio::new`].
     pub fn with_catalogue(world: &World, catalogue: &Catalogue) -> Result<Self, EnvError> {
         let image = world.image_params.clone().unwrap_or_default();
         let views = image.yaw_subdivisions as usize * image.vertical_subdivisions as usize;
@@ -91,7 +91,7 @@ impl Studio {
             objects: world.objects.clone(),
             ..WorldDraft::default()
         };
-        let backdrop = backdrop.check_in_range().expect("it has the objects of a world");
+        let backdrop = backdrop.check_in_range().expect("the objects come from a valid world");
         let mut scene = Scene::from_world_with(&backdrop, catalogue);
         for item in &mut scene.items {
             (item.position, item.heading_deg, item.visible) = ([0.0; 2], 0.0, false);
@@ -108,7 +108,7 @@ impl Studio {
         })
     }
 
-    /// Width and height of the photographs in pixels: those of the world's observations.
+    /// Width and height of the photographs in pixels, the same as for the world's observations.
     pub fn picture_size(&self) -> [u32; 2] {
         self.size
     }
@@ -118,7 +118,7 @@ impl Studio {
         self.supersampling
     }
 
-    /// All photographs: object by object, in full circles from the side up to the top.
+    /// All photographs, object by object, in full circles from the level view up to the top view.
     ///
     /// Yaws divide the full circle into `yaw_subdivisions` equal parts, starting at the front. The first elevation is 0 degrees
     /// and the last of several is 90.
@@ -139,7 +139,7 @@ impl Studio {
         photographs
     }
 
-    /// Distance of the camera from an object's centre: `zoom` times that at which the object's bounding ball just fits.
+    /// Distance of the camera from an object's centre: `zoom` times the distance at which the object's bounding ball just fits.
     fn distance(&self, item: &Item) -> f32 {
         let [width, height] = self.size.map(|pixels| pixels as f32);
         let half = (self.field_of_view_deg.clamp(1.0, 170.0) / 2.0).to_radians();
@@ -151,7 +151,7 @@ impl Studio {
     /// The camera of a photograph. The object stands at the origin and faces along +y.
     ///
     /// # Errors
-    /// [`EnvError::NoSuchObject`].
+    /// [`EnvError::NoSuchObject`] if the photograph's object does not exist.
     pub fn camera(&self, photograph: &Photograph) -> Result<Camera, EnvError> {
         let (found, count) = (photograph.object, self.scene.items.len());
         let item = self.scene.items.get(found);
@@ -166,21 +166,21 @@ impl Studio {
         })
     }
 
-    /// Takes a photograph: fills the requested images of the target. Class and object numbers are those of the world.
+    /// Takes a photograph: fills the requested images of the target. Class and object numbers are the same as in the world.
     ///
     /// # Errors
-    /// [`EnvError::NoSuchObject`]; [`EnvError::PictureSize`] as for [`CpuRenderer::draw`].
+    /// [`EnvError::NoSuchObject`] if the photograph's object does not exist; the errors of [`CpuRenderer::draw`].
     pub fn take(&mut self, photograph: &Photograph, target: &mut Target<'_>) -> Result<(), EnvError> {
         let camera = self.camera(photograph)?;
         self.scene.light.direction = direction(photograph.yaw_deg + SUN[0], SUN[1]);
         self.scene.items[photograph.object].visible = true;
-        let drawn = self.renderer.draw(&self.scene, &camera, target);
+        let result = self.renderer.draw(&self.scene, &camera, target);
         self.scene.items[photograph.object].visible = false;
-        drawn
+        result
     }
 }
 
-/// The arena without anything that could obscure the view, in full daylight.
+/// An arena in full daylight, without anything that could obscure the view.
 fn backdrop(environment: &EnvironmentParams) -> EnvironmentParams {
     EnvironmentParams {
         ground_color: environment.ground_color,
@@ -217,7 +217,7 @@ mod tests {
             objects,
             ..WorldDraft::default()
         };
-        world.check().expect("the world is sound")
+        world.check().expect("the world is valid")
     }
 
     fn take(studio: &mut Studio, photograph: &Photograph) -> Frame {
@@ -225,7 +225,7 @@ mod tests {
         let mut frame = Frame::new(width, height);
         studio
             .take(photograph, &mut frame.target())
-            .expect("the photograph is one of this studio");
+            .expect("the photograph belongs to this studio");
         frame
     }
 
@@ -254,7 +254,7 @@ mod tests {
                 world.agent_params.observation_width = width;
                 world.agent_params.field_of_view = field_of_view;
             });
-            let world = world.expect("the world is sound");
+            let world = world.expect("the world is valid");
             let mut studio = Studio::new(&world).expect("there are few photographs");
             for photograph in studio.photographs() {
                 let (pixels, whole) = subject(&take(&mut studio, &photograph));
@@ -281,10 +281,15 @@ mod tests {
     fn yaw_0_shows_the_front_and_90_the_right_side() {
         let studio = Studio::new(&world(2.0, 4, 2, vec![Object::new("car", [0.0, 0.0])])).expect("eight photographs");
         let all = studio.photographs();
-        let place = |index: usize| studio.camera(&all[index]).expect("it is of this studio").position;
-        assert!(place(0)[1] > 1.0 && place(0)[0].abs() < 1e-3, "{:?}", place(0));
-        assert!(place(1)[0] > 1.0 && place(1)[1].abs() < 1e-3, "{:?}", place(1));
-        let above = place(4);
+        let position = |index: usize| {
+            studio
+                .camera(&all[index])
+                .expect("the photograph belongs to this studio")
+                .position
+        };
+        assert!(position(0)[1] > 1.0 && position(0)[0].abs() < 1e-3, "{:?}", position(0));
+        assert!(position(1)[0] > 1.0 && position(1)[1].abs() < 1e-3, "{:?}", position(1));
+        let above = position(4);
         assert!(above[2] > 1.0 && above[0].abs().max(above[1].abs()) < 1e-3, "{above:?}");
     }
 
@@ -300,9 +305,9 @@ mod tests {
             world.environment_params.light_intensity = 0.1;
             world.environment_params.fog_distance = Some(1.0);
         });
-        let mut crowd = Studio::new(&crowd.expect("the world is sound")).expect("few photographs");
-        let (all, of_two) = (alone.photographs(), crowd.photographs());
-        for (photograph, same) in all.iter().zip(&of_two[10..]) {
+        let mut crowd = Studio::new(&crowd.expect("the world is valid")).expect("few photographs");
+        let (all, in_crowd) = (alone.photographs(), crowd.photographs());
+        for (photograph, same) in all.iter().zip(&in_crowd[10..]) {
             let (one, two) = (take(&mut alone, photograph), take(&mut crowd, same));
             assert_eq!(
                 (&one.rgb, &one.depth, &one.category),
@@ -311,11 +316,11 @@ mod tests {
             assert!(one.category.contains(&CATEGORY_POSITIVE));
             assert!(
                 two.instance.iter().all(|id| [0, 2].contains(id)),
-                "numbers are the world's"
+                "object numbers match the world"
             );
             assert!(
                 two.class.contains(&6) && !two.class.contains(&5),
-                "a car and no building"
+                "the image shows a car and no building"
             );
         }
     }
@@ -338,7 +343,7 @@ mod tests {
             game_mode: driftworld_spec::GameMode::CollectImages,
             ..WorldDraft::default()
         };
-        let warnings = crate::Environment::new(world.check().expect("the world is sound")).warnings();
+        let warnings = crate::Environment::new(world.check().expect("the world is valid")).warnings();
         assert_eq!(warnings, [crate::Warning::ForPhotographs]);
         assert!(warnings[0].to_string().contains("driftworld photograph"));
     }
@@ -347,7 +352,7 @@ mod tests {
     fn too_many_photographs_are_refused_up_front() {
         let objects = vec![Object::new("cube", [0.0, 0.0]); 100];
         assert!(Studio::new(&world(2.0, 100, 5, objects.clone())).is_ok());
-        let error = Studio::new(&world(2.0, 100, 6, objects)).expect_err("60 000 are too many");
+        let error = Studio::new(&world(2.0, 100, 6, objects)).expect_err("60,000 photographs are too many");
         assert_eq!(error.code(), "env/too-many-photographs");
     }
 }

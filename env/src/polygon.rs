@@ -1,8 +1,8 @@
-//! Polygons on the ground: conversion and point tests.
+//! Helpers for polygons on the ground: conversion to `f32`, and point tests.
 
 use std::ops::{Add, Div, Mul, Sub};
 
-/// Converts corners to the simulator's precision.
+/// Converts corners to `f32`, the simulator's precision.
 pub(crate) fn to_f32(corners: &[[f64; 2]]) -> Vec<[f32; 2]> {
     let corners = corners.iter();
     corners.map(|corner| corner.map(|metres| metres as f32)).collect()
@@ -23,7 +23,7 @@ where
         } else {
             zero
         };
-        // Clamped to the edge's ends.
+        // Clamps the projection to the edge's ends.
         let along = if along < zero {
             zero
         } else if along > one {

@@ -1,4 +1,4 @@
-//! [`StateGrid`]: maps positions and headings to state numbers.
+//! [`StateGrid`] maps positions and headings to state numbers.
 
 /// Number of headings that a state can have: every 45°, starting at +y.
 pub const NUM_HEADINGS: usize = 8;
@@ -35,21 +35,22 @@ impl StateGrid {
         self.states() - 1
     }
 
-    /// The centre of a state's cell in metres, and its heading in degrees. `None` for the end, and for numbers out of range.
+    /// The centre of a state's cell in metres, and its heading in degrees. `None` for the end state and for states out of
+    /// range.
     pub fn pose(&self, state: usize) -> Option<([f64; 2], f64)> {
         let (cell, heading) = (state / NUM_HEADINGS, state % NUM_HEADINGS);
         if state >= self.end() {
             return None;
         }
-        let at = [cell % self.cells[0], cell / self.cells[0]];
-        let middle = |axis: usize| (at[axis] as f64 + 0.5 - self.cells[axis] as f64 / 2.0) * self.cell;
+        let column_row = [cell % self.cells[0], cell / self.cells[0]];
+        let middle = |axis: usize| (column_row[axis] as f64 + 0.5 - self.cells[axis] as f64 / 2.0) * self.cell;
         Some(([middle(0), middle(1)], heading as f64 * TURN))
     }
 
     /// The state for a position in metres and a heading in degrees; a position outside the grid belongs to the nearest cell.
-    pub fn state_at(&self, place: [f64; 2], heading_deg: f64) -> usize {
+    pub fn state_at(&self, position: [f64; 2], heading_deg: f64) -> usize {
         let [column, row] = [0, 1].map(|axis| {
-            let cells = place[axis] / self.cell + self.cells[axis] as f64 / 2.0;
+            let cells = position[axis] / self.cell + self.cells[axis] as f64 / 2.0;
             (cells.floor().max(0.0) as usize).min(self.cells[axis] - 1)
         });
         let heading = (heading_deg / TURN).round().rem_euclid(NUM_HEADINGS as f64) as usize % NUM_HEADINGS;
@@ -68,8 +69,8 @@ mod tests {
         assert_eq!(grid.pose(0), Some(([-3.0, -1.0], 0.0)));
         assert_eq!(grid.pose(grid.end()), None);
         for state in 0..grid.end() {
-            let (place, heading) = grid.pose(state).expect("a state has a pose");
-            assert_eq!(grid.state_at(place, heading + 22.0), state);
+            let (position, heading) = grid.pose(state).expect("a state has a pose");
+            assert_eq!(grid.state_at(position, heading + 22.0), state);
         }
         assert_eq!(grid.state_at([100.0, 100.0], 359.0), grid.end() - NUM_HEADINGS);
     }

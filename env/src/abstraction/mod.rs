@@ -12,7 +12,7 @@ pub use grid::{NUM_HEADINGS, StateGrid};
 
 use crate::EnvError;
 use crate::assets::Catalogue;
-use walker::{Walked, Walker};
+use walker::{MacroResult, Walker};
 
 /// Maximum number of states of a [`WorldAbstraction`].
 pub const MAX_ABSTRACT_STATES: usize = 1 << 20;
@@ -50,10 +50,10 @@ impl Default for Abstraction {
 
 /// Transition and reward tables of a world.
 ///
-/// A state is a cell and a heading; everything else is as at the start of the world: each object is present, pays what it paid
-/// then, and starts its own motion. So the tables reflect walls, the agent's body and speed, the time step, how long actions
-/// are held, the action model, solid and pushed objects, and rewards. Everything that was taken, pushed or moved is
-/// reset after the action; step and time limits are ignored; rules about the return count only what this one action earns.
+/// A state is a cell and a heading. Each action starts with everything else as at the start of the world: every object is
+/// present, pays its initial reward, and begins its motion. So the tables reflect walls, the agent's body and speed, the time
+/// step, the duration of actions, the action model, solid and pushed objects, and rewards. Whatever an action takes, pushes or
+/// moves is reset after it. Step and time limits are ignored. Rules about the return count only the reward of this one action.
 /// Uncertain rewards pay their mean.
 ///
 /// Actions are in the order of [`NUM_MACRO_ACTIONS`]; each is performed at the agent's full speed, with the nearest row if the
@@ -66,15 +66,15 @@ pub struct WorldAbstraction {
     pub states: usize,
     /// Number of actions: [`NUM_MACRO_ACTIONS`].
     pub actions: usize,
-    /// `(states · actions,)`, row-major by state: the successor state. The end leads to itself. A state in which the agent has
-    /// no room leads to the nearest neighbour in which it has, or to itself.
+    /// `(states · actions,)`, row-major by state: the successor state. The end leads to itself. An action that lands where the
+    /// agent has no room leads to the nearest neighbouring state with room, or stays in its state.
     pub successors: Vec<u32>,
     /// `(states · actions,)`: the reward of the action, in points.
     pub rewards: Vec<f64>,
     /// `(states · actions,)`: the agent's pose after the action, before it is rounded to a state: x and y in metres, heading in
     /// degrees.
     pub landings: Vec<[f32; 3]>,
-    /// `(states,)`: whether the agent has room at the centre of the state's cell.
+    /// `(states,)`: whether the agent fits at the centre of the state's cell.
     pub standable: Vec<bool>,
     /// The state in which the world starts.
     pub start: usize,
@@ -110,7 +110,7 @@ impl Abstraction {
     /// use driftworld_spec::World;
     /// let found = Abstraction::default().of(&World::default())?;
     /// let start = found.start * found.actions;
-    /// assert_eq!(found.landings[start][2], 0.0, "ahead, without a turn");
+    /// assert_eq!(found.landings[start][2], 0.0, "the first action moves ahead without turning");
     /// # Ok::<(), driftworld_env::EnvError>(())
     /// ```
     pub fn of(&self, world: &World) -> Result<WorldAbstraction, EnvError> {
@@ -125,15 +125,15 @@ impl Abstraction {
             })
             .collect();
         drop(first);
-        let of_cell = |walker: &mut Result<Walker, EnvError>, cell: usize| {
+        let walk_cell = |walker: &mut Result<Walker, EnvError>, cell: usize| {
             let walker = walker.as_mut().map_err(|error| error.clone())?;
-            of_cell(walker, grid, cell, open[cell])
+            walk_cell(walker, grid, cell, open[cell])
         };
-        let walked: Vec<Vec<Walked>> = (0..cells)
+        let results: Vec<Vec<MacroResult>> = (0..cells)
             .into_par_iter()
-            .map_init(walker, of_cell)
+            .map_init(walker, walk_cell)
             .collect::<Result<_, _>>()?;
-        Ok(tables(world, grid, &open, &walked))
+        Ok(tables(world, grid, &open, &results))
     }
 
     fn grid(&self, world: &World) -> Result<StateGrid, EnvError> {
@@ -161,32 +161,32 @@ impl Abstraction {
     }
 }
 
-/// Results of all actions from the states of a cell: heading by heading, action by action.
-fn of_cell(walker: &mut Walker, grid: StateGrid, cell: usize, is_open: bool) -> Result<Vec<Walked>, EnvError> {
-    let mut walked = Vec::with_capacity(NUM_HEADINGS * NUM_MACRO_ACTIONS);
+/// Results of all actions from a cell's states, ordered by heading, then by action.
+fn walk_cell(walker: &mut Walker, grid: StateGrid, cell: usize, is_open: bool) -> Result<Vec<MacroResult>, EnvError> {
+    let mut results = Vec::with_capacity(NUM_HEADINGS * NUM_MACRO_ACTIONS);
     for heading in 0..NUM_HEADINGS {
         let Some((place, heading_deg)) = grid.pose(cell * NUM_HEADINGS + heading) else {
             continue;
         };
-        let stays = Walked {
+        let stays = MacroResult {
             place: place.map(|metres| metres as f32),
             heading_deg: heading_deg as f32,
             reward: 0.0,
             ended: false,
         };
         for action in 0..NUM_MACRO_ACTIONS {
-            let done = match walked.last() {
+            let done = match results.last() {
                 _ if !is_open => stays,
                 Some(last) if action > 0 && walker.ignores_actions() => *last,
                 _ => walker.walk(place, heading_deg, action)?,
             };
-            walked.push(done);
+            results.push(done);
         }
     }
-    Ok(walked)
+    Ok(results)
 }
 
-fn tables(world: &World, grid: StateGrid, open: &[bool], walked: &[Vec<Walked>]) -> WorldAbstraction {
+fn tables(world: &World, grid: StateGrid, open: &[bool], results: &[Vec<MacroResult>]) -> WorldAbstraction {
     let (states, actions) = (grid.states(), NUM_MACRO_ACTIONS);
     let mut found = WorldAbstraction {
         grid,
@@ -198,21 +198,21 @@ fn tables(world: &World, grid: StateGrid, open: &[bool], walked: &[Vec<Walked>])
         standable: Vec::with_capacity(states),
         start: 0,
     };
-    for (cell, of_cell) in walked.iter().enumerate() {
+    for (cell, of_cell) in results.iter().enumerate() {
         found.standable.extend([open[cell]; NUM_HEADINGS]);
-        for (index, walked) in of_cell.iter().enumerate() {
+        for (index, result) in of_cell.iter().enumerate() {
             let from = cell * NUM_HEADINGS + index / actions;
-            let place = walked.place.map(f64::from);
-            let next = if walked.ended {
+            let place = result.place.map(f64::from);
+            let next = if result.ended {
                 grid.end()
             } else {
-                standing(grid, open, place, f64::from(walked.heading_deg), from)
+                standable_state(grid, open, place, f64::from(result.heading_deg), from)
             };
             found.successors.push(next as u32);
-            found.rewards.push(walked.reward);
+            found.rewards.push(result.reward);
             found
                 .landings
-                .push([walked.place[0], walked.place[1], walked.heading_deg]);
+                .push([result.place[0], result.place[1], result.heading_deg]);
         }
     }
     found.successors.extend([grid.end() as u32; NUM_MACRO_ACTIONS]);
@@ -220,14 +220,14 @@ fn tables(world: &World, grid: StateGrid, open: &[bool], walked: &[Vec<Walked>])
     found.landings.extend([[0.0; 3]; NUM_MACRO_ACTIONS]);
     found.standable.push(true);
     let agent = &world.agent_params;
-    let asked = grid.state_at(agent.coordinates, agent.heading);
-    found.start = standing(grid, open, agent.coordinates, agent.heading, asked);
+    let nominal = grid.state_at(agent.coordinates, agent.heading);
+    found.start = standable_state(grid, open, agent.coordinates, agent.heading, nominal);
     found
 }
 
-/// The state of a pose. If the agent has no room in that cell, the state in the nearest of the eight cells around it that has
-/// room; if none has, `otherwise`.
-fn standing(grid: StateGrid, open: &[bool], place: [f64; 2], heading_deg: f64, otherwise: usize) -> usize {
+/// The state of a pose. If the agent does not fit in that cell, the nearest of the eight cells around it in which it fits;
+/// `otherwise` if there is none.
+fn standable_state(grid: StateGrid, open: &[bool], place: [f64; 2], heading_deg: f64, otherwise: usize) -> usize {
     let own = grid.state_at(place, heading_deg);
     if open[own / NUM_HEADINGS] {
         return own;

@@ -1,4 +1,4 @@
-//! The tables match the simulator, and depend only on motion and rewards.
+//! Transition and reward tables match the simulator and depend only on motion and rewards.
 
 use driftworld_spec::{Color, Object, Stimulus, Wall, World, WorldDraft};
 
@@ -57,7 +57,7 @@ fn ended_episode_leads_to_the_end_state() {
 }
 
 #[test]
-fn settings_besides_motion_and_reward_do_not_change_the_tables() {
+fn settings_unrelated_to_motion_and_reward_do_not_change_the_tables() {
     let base = abstracted(|_| ());
     let looks = abstracted(|world| {
         world.environment_params.light_intensity = 0.2;
@@ -66,18 +66,18 @@ fn settings_besides_motion_and_reward_do_not_change_the_tables() {
     });
     assert_eq!(looks, base);
     let fine = abstracted(|world| (world.agent_params.time_step, world.agent_params.frame_skip) = (0.05, 2));
-    let apart = |a: &[f32; 3], b: &[f32; 3]| (0..2).any(|axis| (a[axis] - b[axis]).abs() > 0.3);
+    let differ = |a: &[f32; 3], b: &[f32; 3]| (0..2).any(|axis| (a[axis] - b[axis]).abs() > 0.3);
     let straight = (0..base.landings.len()).step_by(6);
     assert!(
         straight
-            .filter(|row| apart(&base.landings[*row], &fine.landings[*row]))
+            .filter(|row| differ(&base.landings[*row], &fine.landings[*row]))
             .count()
             < 20
     );
 }
 
 #[test]
-fn tables_depend_on_body_walls_speed_and_hold() {
+fn tables_depend_on_body_walls_speed_and_action_duration() {
     let base = abstracted(|_| ());
     let wall = Wall {
         polygon: vec![[-10.0, 0.0], [6.0, 0.0], [6.0, 0.4], [-10.0, 0.4]],
@@ -98,7 +98,7 @@ fn tables_depend_on_body_walls_speed_and_hold() {
 #[test]
 fn settings_out_of_range_are_refused() {
     let world = World::default();
-    let code = |settings: Abstraction| settings.of(&world).expect_err("it is out of range").code();
+    let code = |settings: Abstraction| settings.of(&world).expect_err("the setting is out of range").code();
     let default = Abstraction::default;
     assert_eq!(code(Abstraction { cell: 0.0, ..default() }), "env/bad-abstraction");
     assert_eq!(

@@ -1,4 +1,4 @@
-//! Runs the real simulator from one state after another.
+//! Runs the simulator from arbitrary states, one macro action at a time.
 
 use driftworld_spec::{ActionModel, World};
 
@@ -10,19 +10,19 @@ use crate::sim::{Environment, Snapshot, Step};
 
 /// Result of one macro action.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Walked {
+pub(super) struct MacroResult {
     pub(super) place: [f32; 2],
     pub(super) heading_deg: f32,
     pub(super) reward: f64,
     pub(super) ended: bool,
 }
 
-/// Runs macro actions in one world, restored to its start each time.
+/// Runs macro actions in one world, which is restored to its start each time.
 pub(super) struct Walker {
     environment: Environment,
-    begin: Snapshot,
+    start: Snapshot,
     step: Step,
-    /// Steps of the world per macro action.
+    /// World steps per macro action.
     steps: u32,
 }
 
@@ -40,11 +40,11 @@ impl Walker {
         });
         let endless = endless.map_err(|problem| EnvError::BadWorld { problem })?;
         let agent = &endless.agent_params;
-        let of_step = agent.time_step * f64::from(agent.frame_skip.max(1));
-        let steps = (seconds / of_step - 1e-6).ceil().max(1.0) as u32;
+        let step_seconds = agent.time_step * f64::from(agent.frame_skip.max(1));
+        let steps = (seconds / step_seconds - 1e-6).ceil().max(1.0) as u32;
         let environment = Environment::with_catalogue(endless, catalogue.clone());
         Ok(Self {
-            begin: environment.snapshot(),
+            start: environment.snapshot(),
             environment,
             step: Step::default(),
             steps,
@@ -57,15 +57,15 @@ impl Walker {
         matches!(model, ActionModel::OnRails | ActionModel::None)
     }
 
-    /// Whether the agent can stand at a place in metres.
+    /// Whether the agent fits at a position in metres.
     pub(super) fn can_stand(&mut self, place: [f64; 2]) -> bool {
-        self.environment.restore(&self.begin);
+        self.environment.restore(&self.start);
         self.environment.teleport(place, 0.0).is_ok()
     }
 
     /// Runs a macro action from a pose, with everything else as at the start.
-    pub(super) fn walk(&mut self, place: [f64; 2], heading_deg: f64, action: usize) -> Result<Walked, EnvError> {
-        self.environment.restore(&self.begin);
+    pub(super) fn walk(&mut self, place: [f64; 2], heading_deg: f64, action: usize) -> Result<MacroResult, EnvError> {
+        self.environment.restore(&self.start);
         self.environment.teleport(place, heading_deg)?;
         let (mut reward, mut ended) = (0.0, false);
         for step in 0..self.steps {
@@ -78,7 +78,7 @@ impl Walker {
             }
         }
         let agent = self.environment.agent();
-        Ok(Walked {
+        Ok(MacroResult {
             place: agent.position,
             heading_deg: agent.heading_deg,
             reward,

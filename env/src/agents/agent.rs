@@ -1,4 +1,4 @@
-//! [`Agent`]: the interface of agents, and the task label that they may see.
+//! [`Agent`], the interface of agents, and [`Label`], the task label that they may see.
 
 use super::steering::in_space;
 use crate::sim::{Action, Environment, Step};
@@ -18,8 +18,8 @@ pub trait Agent {
     /// Called before [`begin`](Self::begin) with the label of the next task, if the scenario reveals it.
     fn set_task_label(&mut self, _label: &Label) {}
 
-    /// Called after each step in which the agent may learn, never in an evaluation. An agent that learns only here is frozen
-    /// during evaluations.
+    /// Called after each step in which the agent may learn, never in an evaluation. So an agent that learns only here does not
+    /// change during evaluations.
     fn learn(&mut self, _environment: &Environment, _step: &Step) {}
 
     /// Whether [`learn`](Self::learn) may change the agent. If not, its behaviour in an episode depends only on the label, the
@@ -29,7 +29,7 @@ pub trait Agent {
     }
 
     /// A copy that acts as this agent does now and never learns. Copies run evaluations, possibly several at a time. `None`,
-    /// the default, is for agents that cannot be copied: they run their own evaluations, one after another.
+    /// the default, means that the agent cannot be copied; it then runs its own evaluations one after another.
     fn frozen(&self) -> Option<Box<dyn Agent + Send>> {
         None
     }

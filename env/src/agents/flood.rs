@@ -1,19 +1,18 @@
-//! Distances from one cell to others: Dijkstra's algorithm with one bucket per distance, run only as far as needed.
+//! Distances from one cell to others, by Dijkstra's algorithm with one bucket per distance, computed only as far as needed.
 
 use super::occupancy::OccupancyGrid;
 
 /// Cost of a straight and of a diagonal step, in fifths of a cell.
 pub(super) const STRAIGHT: u32 = 5;
-pub(super) const SLANTING: u32 = 7;
+pub(super) const DIAGONAL: u32 = 7;
 
-/// Factor on the cost of a step through a blocked cell: only an agent that is shut in goes that way.
+/// Factor on the cost of a step through a blocked cell, so that paths cross blocked cells only if there is no other way.
 pub(super) const BLOCKED: u32 = 40;
 
 /// More than the largest step cost, so that queued cells are never a full round ahead; a power of two.
 const NUM_BUCKETS: usize = 512;
 
-/// Which cell of a step decides whether the step counts as blocked. In terms of the walk, it is always the cell that the walk
-/// leaves.
+/// Which cell of a flood step decides whether the step counts as blocked: always the one that the walk leaves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Charge {
     /// The flood spreads from the walk's goal: the cell that the flood enters.
@@ -54,7 +53,7 @@ impl Flood {
         self.distance[cell]
     }
 
-    /// Finalises the distance of a cell, and of all nearer cells.
+    /// Finalises the distances of a cell and of all nearer cells.
     pub(super) fn reach(&mut self, cell: usize, occupancy: &OccupancyGrid, charge: Charge) -> u32 {
         while self.distance[cell] >= self.next && self.spread(occupancy, charge, |_| {}).is_some() {}
         self.distance[cell]
@@ -79,7 +78,7 @@ impl Flood {
         let around = occupancy
             .grid()
             .around()
-            .map(|(step, is_slanting)| (step, if is_slanting { SLANTING } else { STRAIGHT }));
+            .map(|(step, is_diagonal)| (step, if is_diagonal { DIAGONAL } else { STRAIGHT }));
         let mut cells = std::mem::take(&mut self.buckets[slot(here)]);
         for cell in cells.iter().map(|cell| *cell as usize) {
             if self.distance[cell] != here {
@@ -98,8 +97,8 @@ impl Flood {
                 if here + cost >= known {
                     continue;
                 }
-                let dear = charge == Charge::Entered && occupancy.is_blocked(other);
-                let through = here + cost * if dear { BLOCKED } else { factor };
+                let is_costly = charge == Charge::Entered && occupancy.is_blocked(other);
+                let through = here + cost * if is_costly { BLOCKED } else { factor };
                 if through < known {
                     self.distance[other] = through;
                     self.buckets[slot(through)].push(other as u32);

@@ -1,14 +1,14 @@
 //! The arena as a grid of square cells.
 
 /// Maximum number of cells along one side of the grid.
-const MOST_CELLS: usize = 256;
+const MAX_CELLS: usize = 256;
 
 /// Minimum side of a cell in metres.
-const LEAST_SIDE: f32 = 0.5;
+const MIN_SIDE: f32 = 0.5;
 
-/// Limits for a grid with narrow corridors.
-const MOST_FINE_CELLS: usize = 1024;
-const LEAST_FINE_SIDE: f32 = 0.1;
+/// The same limits for a world with narrow corridors.
+const MAX_FINE_CELLS: usize = 1024;
+const MIN_FINE_SIDE: f32 = 0.1;
 
 /// Cells over the arena, row by row, surrounded by a rim of one cell that is never walked on, so that every cell of the arena
 /// has eight neighbours.
@@ -26,22 +26,22 @@ impl Grid {
     /// Cells over an arena with these side lengths in metres.
     #[cfg(test)]
     pub(super) fn over(size: [f32; 2]) -> Self {
-        Self::of_side(size, LEAST_SIDE)
+        Self::of_side(size, MIN_SIDE)
     }
 
     /// A grid over an arena with these side lengths in metres, and cells of side `wanted` if that is smaller than the default side.
     pub(super) fn fine(size: [f32; 2], wanted: f32) -> Self {
         let long = size[0].max(size[1]);
-        let plain = (long / MOST_CELLS as f32).max(LEAST_SIDE);
+        let plain = (long / MAX_CELLS as f32).max(MIN_SIDE);
         Self::exact(
             size,
-            plain.min(wanted.max(long / MOST_FINE_CELLS as f32).max(LEAST_FINE_SIDE)),
+            plain.min(wanted.max(long / MAX_FINE_CELLS as f32).max(MIN_FINE_SIDE)),
         )
     }
 
     /// A grid with cells of at least this side in metres; larger if the arena would need too many cells.
     pub(super) fn of_side(size: [f32; 2], least: f32) -> Self {
-        Self::exact(size, (size[0].max(size[1]) / MOST_CELLS as f32).max(least))
+        Self::exact(size, (size[0].max(size[1]) / MAX_CELLS as f32).max(least))
     }
 
     fn exact([width, depth]: [f32; 2], side: f32) -> Self {
@@ -105,7 +105,7 @@ impl Grid {
         (low[1]..=high[1]).flat_map(move |row| (low[0]..=high[0]).map(move |column| self.cell([column, row])))
     }
 
-    /// The cells of the arena whose centres may lie within a square around a place, `reach` to each side.
+    /// The cells of the arena whose centres may lie within a square around a position, `reach` to each side.
     pub(super) fn near(self, at: [f32; 2], reach: f32) -> impl Iterator<Item = usize> {
         self.within(at.map(|metres| metres - reach), at.map(|metres| metres + reach))
     }

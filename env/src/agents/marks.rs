@@ -5,8 +5,8 @@ use std::collections::BinaryHeap;
 
 use super::grid::Grid;
 
-/// Maximum number of cells visited around goals per choice; beyond that, the best path length known so far is used.
-const MOST_LOOKS: usize = 4_000_000;
+/// Maximum number of cells visited around goals per choice; beyond that, the best path length found so far is used.
+const MAX_SEARCHED_CELLS: usize = 4_000_000;
 
 /// The goals of each cell, as linked lists in one vector, and scratch space for searching around a goal.
 #[derive(Clone, Debug, Default)]
@@ -20,8 +20,8 @@ pub(super) struct Marks {
     pub(super) back: Vec<u32>,
     pub(super) touched: Vec<usize>,
     pub(super) open: BinaryHeap<Reverse<(u32, usize)>>,
-    /// How many more cells may be visited around goals.
-    pub(super) looks: usize,
+    /// Number of cells around goals that may still be visited.
+    pub(super) searches_left: usize,
 }
 
 impl Marks {
@@ -33,7 +33,7 @@ impl Marks {
             }
         }
         self.links.clear();
-        self.looks = MOST_LOOKS;
+        self.searches_left = MAX_SEARCHED_CELLS;
         self.first.resize(grid.num_cells(), 0);
         self.back.resize(grid.num_cells(), u32::MAX);
     }

@@ -1,4 +1,4 @@
-//! Built-in agents: still, random, on rails (knows the map), scripted, Sarsa (learns), and trained networks.
+//! Built-in agents: still, random, on rails (knows the map), scripted, Sarsa (a learner), and trained networks.
 
 mod agent;
 mod flood;

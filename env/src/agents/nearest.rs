@@ -1,17 +1,17 @@
-//! Chooses the best of many goals to walk to: a single flood from the agent, which ends when no goal farther out can be better.
+//! Chooses the best of many goals with a single flood from the agent, which ends when no goal farther out can be better.
 
 use std::cmp::Reverse;
 
 use driftworld_spec::World;
 
-use super::flood::{BLOCKED, Charge, SLANTING, STRAIGHT};
+use super::flood::{BLOCKED, Charge, DIAGONAL, STRAIGHT};
 use super::marks::Marks;
 use super::route::Route;
 use crate::scene::Scene;
 
 /// Maximum number of cells that belong to goals in one choice. If there are more, only the nearest goals by straight-line
 /// distance are considered.
-const MOST_MARKS: usize = 2_000_000;
+const MAX_MARKS: usize = 2_000_000;
 
 /// A candidate destination.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,13 +20,12 @@ pub(super) struct Goal {
     pub(super) object: u32,
     /// Its position in metres.
     pub(super) place: [f32; 2],
-    /// Probability that it pays, above 0: a goal that pays half the time is worth as much as a certain one twice as far away.
+    /// Probability that it pays, above 0. A goal that pays half the time is worth as much as a certain one twice as far away.
     pub(super) probability: f32,
 }
 
 impl Route {
-    /// The goal with the shortest path from a place, where path lengths are divided by the goal's probability; ties go to the
-    /// first.
+    /// The goal with the smallest ratio of path length to probability, from a position; ties go to the first.
     ///
     /// Paths avoid all objects in `avoided` except their goal. Discards the previous route.
     pub(super) fn nearest(
@@ -40,8 +39,8 @@ impl Route {
         self.occupancy.block(world, scene, avoided);
         let grid = self.occupancy.grid();
         self.marks.begin(grid);
-        let looked_at = self.looked_at(from, goals);
-        for number in looked_at.iter().copied() {
+        let considered = self.goals_to_consider(from, goals);
+        for number in considered.iter().copied() {
             let goal = &goals[number];
             self.marks.add(grid.cell_at(goal.place), number);
             for cell in self
@@ -59,7 +58,7 @@ impl Route {
         // ground that the goal's own object blocks.
         let mut least: Vec<Option<u32>> = vec![None; goals.len()];
         let likeliest = goals.iter().map(|goal| goal.probability).fold(0.0, f32::max);
-        let (mut best, mut farthest, mut num_unseen) = (f32::INFINITY, 0, looked_at.len());
+        let (mut best, mut farthest, mut num_unseen) = (f32::INFINITY, 0, considered.len());
         let mut seen = Vec::new();
         loop {
             let marks = &self.marks;
@@ -71,10 +70,10 @@ impl Route {
                 if least[number].is_none() {
                     least[number] = Some(distance);
                     num_unseen -= 1;
-                    // Beyond the flood's edge the known distances are those of real paths, though maybe not the shortest.
-                    let way = self.length(&goals[number], distance);
-                    farthest = farthest.max(way);
-                    best = best.min(self.metres(way) / goals[number].probability);
+                    // Beyond the flood's edge, distances belong to real paths, though maybe not the shortest.
+                    let length = self.length(&goals[number], distance);
+                    farthest = farthest.max(length);
+                    best = best.min(self.metres(length) / goals[number].probability);
                 }
             }
             if self.metres(distance) / likeliest > best || num_unseen == 0 && distance >= farthest {
@@ -87,8 +86,8 @@ impl Route {
             if let Some(least) = least[number]
                 && self.metres(least) / goal.probability <= best
             {
-                let way = self.length(goal, least);
-                costs.push((number, self.metres(way) / goal.probability));
+                let length = self.length(goal, least);
+                costs.push((number, self.metres(length) / goal.probability));
             }
         }
         let nearest = costs.into_iter().min_by(|(_, a), (_, b)| a.total_cmp(b));
@@ -96,12 +95,12 @@ impl Route {
     }
 
     /// The numbers of the goals to consider, in ascending order: all, unless they have too many cells.
-    fn looked_at(&self, from: [f32; 2], goals: &[Goal]) -> Vec<usize> {
+    fn goals_to_consider(&self, from: [f32; 2], goals: &[Goal]) -> Vec<usize> {
         let grid = self.occupancy.grid();
         let num_cells = |goal: &Goal| 1 + self.occupancy.disc(goal.object).map_or(0, |disc| disc.num_cells(grid));
-        let all: usize = goals.iter().map(num_cells).sum();
+        let total: usize = goals.iter().map(num_cells).sum();
         let mut numbers: Vec<usize> = (0..goals.len()).collect();
-        if all <= MOST_MARKS {
+        if total <= MAX_MARKS {
             return numbers;
         }
         let cost = |number: &usize| {
@@ -110,10 +109,10 @@ impl Route {
             (x * x + y * y).sqrt() / probability
         };
         numbers.sort_by(|a, b| cost(a).total_cmp(&cost(b)));
-        let mut left = MOST_MARKS;
+        let mut budget = MAX_MARKS;
         let mut fits = |number: &usize| {
-            let rest = left.checked_sub(num_cells(&goals[*number]));
-            left = rest.unwrap_or(0);
+            let rest = budget.checked_sub(num_cells(&goals[*number]));
+            budget = rest.unwrap_or(0);
             rest.is_some()
         };
         let count = numbers.iter().take_while(|number| fits(number)).count().max(1);
@@ -122,11 +121,10 @@ impl Route {
         numbers
     }
 
-    /// Length of the path to a goal that may cross the goal's own ground, given what the flood knows so far; the flood reached
-    /// that ground, or the goal, at the distance `least`.
+    /// Length of the path to a goal, which may cross the ground that the goal's own object blocks. The flood reached that
+    /// ground, or the goal, at the distance `least`.
     ///
-    /// Searches from the goal until the rest of the path crosses only ground that is the same for all goals; the flood knows
-    /// the rest.
+    /// Searches outwards from the goal until the rest of the path lies outside that ground; its length comes from the flood.
     fn length(&mut self, goal: &Goal, least: u32) -> u32 {
         let (occupancy, flood) = (&self.occupancy, &self.flood);
         let grid = occupancy.grid();
@@ -138,7 +136,7 @@ impl Route {
             back,
             touched,
             open,
-            looks,
+            searches_left,
             ..
         } = &mut self.marks;
         let mut best = if occupancy.is_closed(start) {
@@ -158,15 +156,17 @@ impl Route {
             if distance > back[cell] {
                 continue;
             }
-            let Some(rest) = looks.checked_sub(1) else { break };
-            *looks = rest;
-            for (step, is_slanting) in grid.around() {
+            let Some(rest) = searches_left.checked_sub(1) else {
+                break;
+            };
+            *searches_left = rest;
+            for (step, is_diagonal) in grid.around() {
                 let other = cell.wrapping_add_signed(step);
                 if occupancy.is_closed(other) {
                     continue;
                 }
                 let is_blocked = occupancy.count(other) > u32::from(own.covers(other, grid));
-                let cost = if is_slanting { SLANTING } else { STRAIGHT } * if is_blocked { BLOCKED } else { 1 };
+                let cost = if is_diagonal { DIAGONAL } else { STRAIGHT } * if is_blocked { BLOCKED } else { 1 };
                 let through = distance + cost;
                 if through < back[other] {
                     if back[other] == u32::MAX {
@@ -191,8 +191,8 @@ mod tests {
 
     use super::*;
 
-    /// Reference plan that shares only the step costs with the real one: no queue, no rim, no marks. It relaxes all cells until
-    /// nothing changes.
+    /// Reference implementation that shares only the step costs with the real one. Without queue, rim or marks, it relaxes all
+    /// cells until nothing changes.
     struct SlowPlan {
         cells: [i64; 2],
         side: f32,
@@ -213,7 +213,7 @@ mod tests {
                 tenths: vec![f64::INFINITY; (cells[0] * cells[1]) as usize],
             };
             let is_blocked: Vec<bool> = (0..cells[0] * cells[1])
-                .map(|cell| plan.is_blocked(plan.middle(cell), world, scene, avoided))
+                .map(|cell| plan.is_blocked(plan.centre(cell), world, scene, avoided))
                 .collect();
             let start = plan.cell(goal);
             plan.tenths[start] = 0.0;
@@ -240,7 +240,7 @@ mod tests {
             }
         }
 
-        fn middle(&self, cell: i64) -> [f32; 2] {
+        fn centre(&self, cell: i64) -> [f32; 2] {
             let place = |axis: usize, index: i64| self.corner[axis] + (index as f32 + 0.5) * self.side;
             [place(0, cell % self.cells[0]), place(1, cell / self.cells[0])]
         }
@@ -260,12 +260,12 @@ mod tests {
         fn is_blocked(&self, at: [f32; 2], world: &World, scene: &Scene, avoided: &[u32]) -> bool {
             let body = world.agent_params.agent_width as f32 / 2.0;
             let margin = body + 0.15;
-            let apart = |[x, y]: [f32; 2]| ((at[0] - x).powi(2) + (at[1] - y).powi(2)).sqrt();
+            let distance = |[x, y]: [f32; 2]| ((at[0] - x).powi(2) + (at[1] - y).powi(2)).sqrt();
             let is_at_rim = (0..2).any(|axis| -self.corner[axis] - at[axis].abs() < body);
             let is_at_object = avoided.iter().any(|&index| {
                 let item = &scene.items[index as usize];
                 let place = world.objects[index as usize].coordinates.map(|metres| metres as f32);
-                apart(place) < item.body.collider.radius() * item.scale + margin
+                distance(place) < item.body.collider.radius() * item.scale + margin
             });
             let is_at_wall = world.environment_params.walls.iter().any(|wall| {
                 let corners: Vec<[f32; 2]> = wall.polygon.iter().map(|corner| corner.map(|m| m as f32)).collect();
@@ -277,7 +277,7 @@ mod tests {
                         let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
                         let along = ((at[0] - a[0]) * dx + (at[1] - a[1]) * dy) / (dx * dx + dy * dy);
                         let along = along.clamp(0.0, 1.0);
-                        apart([a[0] + along * dx, a[1] + along * dy]) < margin
+                        distance([a[0] + along * dx, a[1] + along * dy]) < margin
                     })
             });
             is_at_rim || is_at_object || is_at_wall
@@ -286,9 +286,9 @@ mod tests {
 
     /// A rotated rectangle.
     fn wall() -> impl Strategy<Value = Wall> {
-        ([-12.0..=12.0, -12.0..=12.0f64], [0.3..=5.0, 0.3..=5.0f64], 0.0..=3.2f64).prop_map(|(middle, half, turn)| {
+        ([-12.0..=12.0, -12.0..=12.0f64], [0.3..=5.0, 0.3..=5.0f64], 0.0..=3.2f64).prop_map(|(centre, half, turn)| {
             let (sin, cos) = (libm::sin(turn), libm::cos(turn));
-            let corner = |[x, y]: [f64; 2]| [middle[0] + x * cos - y * sin, middle[1] + x * sin + y * cos];
+            let corner = |[x, y]: [f64; 2]| [centre[0] + x * cos - y * sin, centre[1] + x * sin + y * cos];
             let [x, y] = half;
             Wall {
                 polygon: [[-x, -y], [x, -y], [x, y], [-x, y]].map(corner).to_vec(),
@@ -298,7 +298,7 @@ mod tests {
         })
     }
 
-    /// An arena with walls, and cubes of all sizes, some in clusters and inside walls.
+    /// An arena with walls and cubes of all sizes, some of them in clusters or inside walls.
     fn world() -> impl Strategy<Value = World> {
         let cube = ([-13.0..=13.0, -13.0..=13.0], 0.3..=4.0f64, 0.0..=1.0).prop_map(|(place, scale, chance)| {
             let mut cube = Object::new("cube", place);
@@ -323,7 +323,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 96)))]
 
-        /// One instance is reused for several worlds, as in agents, and avoids only some of the objects.
+        /// One instance is reused for several worlds, as agents do, and avoids only some of the objects.
         #[test]
         fn path_lengths_and_nearest_goal_match_a_slow_reference(
             worlds in vec((world(), [-13.0..=13.0, -13.0..=13.0f32], any::<u16>()), 1..3),
@@ -331,8 +331,8 @@ mod tests {
             let mut route = Route::default();
             for (world, from, solid) in worlds {
                 let scene = Scene::from_world(&world);
-                let all = (0..world.objects.len() as u32).filter(|index| solid >> index & 1 == 1);
-                let avoided: Vec<u32> = all.collect();
+                let chosen = (0..world.objects.len() as u32).filter(|index| solid >> index & 1 == 1);
+                let avoided: Vec<u32> = chosen.collect();
                 let goals: Vec<Goal> = (0..world.objects.len())
                     .map(|index| Goal {
                         object: index as u32,

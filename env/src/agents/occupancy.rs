@@ -1,4 +1,4 @@
-//! Marks the cells where the agent cannot walk: near walls, and near objects that paths avoid.
+//! [`OccupancyGrid`] marks the cells where the agent cannot walk: near walls, and near objects that paths avoid.
 
 use driftworld_spec::{World, Zone, ZoneEnd};
 
@@ -10,8 +10,7 @@ use crate::scene::Scene;
 /// Clearance of paths from walls and objects, in metres in addition to half the agent's width.
 const CLEARANCE: f32 = 0.15;
 
-/// Clearance of paths from walls and objects for this corridor width, in metres in addition to half the agent's width: smaller
-/// where there is little room.
+/// Like [`CLEARANCE`], reduced for narrow corridors; `body` is half the agent's width.
 fn clearance(corridor: f32, body: f32) -> f32 {
     CLEARANCE.min((corridor / 2.0 - body) / 2.0).max(0.0)
 }
@@ -22,13 +21,13 @@ const ZONE_CLEARANCE: f32 = 0.35;
 /// Maximum side of a cell in metres if zones end the episode as a failure, so that narrow gaps between them are found.
 const SIDE_BESIDE_FAILURE: f32 = 0.25;
 
-/// Counts how often each cell is taken: once by walls, and once by each avoided object. Updates only what changed since the
-/// last path.
+/// Counts the obstacles that block each cell: walls count once, and each avoided object once. Updates only what has changed
+/// since the last path.
 #[derive(Clone, Debug, Default)]
 pub(super) struct OccupancyGrid {
     grid: Grid,
     walls: Walls,
-    taken: Vec<u32>,
+    blockers: Vec<u32>,
     /// Whether a cell belongs to a wall of a layout, or to a zone that ends the episode as a failure: no path crosses it. Empty
     /// if there are neither.
     sealed: Vec<bool>,
@@ -36,20 +35,20 @@ pub(super) struct OccupancyGrid {
     discs: Vec<Disc>,
 }
 
-/// Everything that is blocked regardless of objects.
+/// The obstacles other than objects.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Walls {
     arena_size: [f32; 2],
     /// Half the agent's width in metres.
     body: f32,
-    /// The smallest distance between walls of the layout, in metres.
+    /// Width of the layout's narrowest corridor, in metres.
     corridor: f32,
     regions: Vec<Vec<[f64; 2]>>,
     /// Zones that cost, or end an episode as a failure: paths avoid them if possible.
     zones: Vec<Zone>,
 }
 
-/// Ground that an object blocks for the agent's centre.
+/// The ground where an object blocks the agent's centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Disc {
     object: u32,
@@ -102,9 +101,9 @@ impl OccupancyGrid {
         self.grid
     }
 
-    /// Whether a cell is taken.
+    /// Whether anything blocks a cell.
     pub(super) fn is_blocked(&self, cell: usize) -> bool {
-        self.taken[cell] > 0
+        self.blockers[cell] > 0
     }
 
     /// Whether no path may cross a cell, even as a last resort: it belongs to the rim, a wall of a layout, or a zone that
@@ -118,15 +117,15 @@ impl OccupancyGrid {
         (0..self.sealed.len()).filter(|cell| self.sealed[*cell])
     }
 
-    /// The number of walls and objects that take a cell.
+    /// The number of obstacles that block a cell.
     pub(super) fn count(&self, cell: usize) -> u32 {
-        self.taken[cell]
+        self.blockers[cell]
     }
 
-    /// The ground of an object, if the object is avoided.
+    /// The ground that an object blocks, if it is avoided.
     pub(super) fn disc(&self, object: u32) -> Option<Disc> {
-        let place = self.discs.binary_search_by_key(&object, |disc| disc.object).ok()?;
-        Some(self.discs[place])
+        let index = self.discs.binary_search_by_key(&object, |disc| disc.object).ok()?;
+        Some(self.discs[index])
     }
 
     /// Blocks the walls of a world and the `avoided` objects at their start positions; frees everything else.
@@ -145,7 +144,7 @@ impl OccupancyGrid {
             })
             .collect();
         discs.sort_by_key(|disc| disc.object);
-        // Both lists are sorted: discs in only one of them were added or removed.
+        // Both lists are sorted; a disc in only one of them was added or removed.
         let mut changed: Vec<(Disc, bool)> = Vec::new();
         let (mut old, mut new) = (self.discs.iter().peekable(), discs.iter().peekable());
         loop {
@@ -165,35 +164,35 @@ impl OccupancyGrid {
                 (_, None) => break,
             }
         }
-        self.take(&changed);
+        self.apply(&changed);
         self.discs = discs;
     }
 
-    /// Takes or frees the cells of discs.
-    fn take(&mut self, changed: &[(Disc, bool)]) {
+    /// Blocks (`true`) or frees the cells of discs.
+    fn apply(&mut self, changed: &[(Disc, bool)]) {
         let grid = self.grid;
         let num_cells: usize = changed.iter().map(|(disc, _)| disc.num_cells(grid)).sum();
         if num_cells <= 4 * grid.num_cells() {
-            for (disc, is_taken) in changed {
+            for (disc, is_added) in changed {
                 for cell in disc.cells(grid) {
-                    self.taken[cell] = self.taken[cell].wrapping_add_signed(if *is_taken { 1 } else { -1 });
+                    self.blockers[cell] = self.blockers[cell].wrapping_add_signed(if *is_added { 1 } else { -1 });
                 }
             }
             return;
         }
         // For many large discs: differences between neighbouring cells, then a running sum. Each row ends in a cell of the rim.
         let mut steps = vec![0_i32; grid.num_cells()];
-        for (disc, is_taken) in changed {
-            let by = if *is_taken { 1 } else { -1 };
+        for (disc, is_added) in changed {
+            let by = if *is_added { 1 } else { -1 };
             for (first, last) in disc.rows(grid) {
                 steps[first] += by;
                 steps[last + 1] -= by;
             }
         }
         let mut by = 0;
-        for (taken, step) in self.taken.iter_mut().zip(steps) {
+        for (blockers, step) in self.blockers.iter_mut().zip(steps) {
             by += step;
-            *taken = taken.wrapping_add_signed(by);
+            *blockers = blockers.wrapping_add_signed(by);
         }
     }
 
@@ -203,7 +202,7 @@ impl OccupancyGrid {
         let zones = || world.environment_params.zones.iter().filter(|zone| zone.is_costly());
         let fails = |zone: &Zone| zone.ends == Some(ZoneEnd::Failure);
         let known = &self.walls;
-        if !self.taken.is_empty()
+        if !self.blockers.is_empty()
             && (known.arena_size, known.body, known.corridor) == (arena_size, body, corridor)
             && known.regions.iter().map(Vec::as_slice).eq(world.obstacles())
             && known.zones.iter().eq(zones())
@@ -220,14 +219,14 @@ impl OccupancyGrid {
         };
         self.grid = grid;
         self.discs.clear();
-        self.taken.clear();
-        self.taken.resize(grid.num_cells(), 0);
+        self.blockers.clear();
+        self.blockers.resize(grid.num_cells(), 0);
         self.sealed.clear();
         let half = arena_size.map(|metres| metres / 2.0);
         for cell in grid.within(half.map(|metres| -metres), half) {
             let at = grid.centre(cell);
             let is_near = |axis: usize| half[axis] - at[axis].abs() < body;
-            self.taken[cell] = u32::from(is_near(0) || is_near(1));
+            self.blockers[cell] = u32::from(is_near(0) || is_near(1));
         }
         // At this distance, no step between cells can cross a wall.
         let seal = 0.71 * grid.side();
@@ -238,8 +237,8 @@ impl OccupancyGrid {
             let near = grid.near_polygon(corners, margin);
             let corners = corners.iter().map(|corner| corner.map(|metres| metres as f32));
             for cell in near {
-                if self.taken[cell] == 0 && is_near_or_inside(corners.clone(), grid.centre(cell), margin) {
-                    self.taken[cell] = 1;
+                if self.blockers[cell] == 0 && is_near_or_inside(corners.clone(), grid.centre(cell), margin) {
+                    self.blockers[cell] = 1;
                 }
                 if let Some(sealed) = self.sealed.get_mut(cell) {
                     *sealed |= is_near_or_inside(corners.clone(), grid.centre(cell), seal);
@@ -253,8 +252,8 @@ impl OccupancyGrid {
             let corners = ground::corners(zone);
             let corners = corners.iter().map(|corner| corner.map(|metres| metres as f32));
             for cell in grid.within(low, high) {
-                if self.taken[cell] == 0 && is_near_or_inside(corners.clone(), grid.centre(cell), ZONE_CLEARANCE) {
-                    self.taken[cell] = 1;
+                if self.blockers[cell] == 0 && is_near_or_inside(corners.clone(), grid.centre(cell), ZONE_CLEARANCE) {
+                    self.blockers[cell] = 1;
                 }
                 if fails(zone) && is_near_or_inside(corners.clone(), grid.centre(cell), seal) {
                     self.sealed[cell] = true;
@@ -297,23 +296,23 @@ mod tests {
         }
 
         #[test]
-        fn taking_many_discs_equals_taking_each(
+        fn adding_many_discs_at_once_equals_adding_each(
             discs in prop::collection::vec(([-30.0..30.0_f32, -30.0..30.0_f32], 0.0..60.0_f32, any::<bool>()), 1..40),
         ) {
             let grid = Grid::over([50.0, 40.0]);
-            let ground = OccupancyGrid { grid, taken: vec![100; grid.num_cells()], ..OccupancyGrid::default() };
+            let ground = OccupancyGrid { grid, blockers: vec![100; grid.num_cells()], ..OccupancyGrid::default() };
             let discs: Vec<(Disc, bool)> = discs
                 .into_iter()
-                .map(|(centre, radius, is_taken)| (Disc { object: 0, centre, radius }, is_taken))
+                .map(|(centre, radius, is_added)| (Disc { object: 0, centre, radius }, is_added))
                 .collect();
             let (mut together, mut alone) = (ground.clone(), ground);
-            together.take(&discs);
+            together.apply(&discs);
             for disc in &discs {
                 for cell in disc.0.cells(grid) {
-                    alone.taken[cell] = alone.taken[cell].wrapping_add_signed(if disc.1 { 1 } else { -1 });
+                    alone.blockers[cell] = alone.blockers[cell].wrapping_add_signed(if disc.1 { 1 } else { -1 });
                 }
             }
-            prop_assert!(together.taken == alone.taken);
+            prop_assert!(together.blockers == alone.blockers);
         }
     }
 }

@@ -1,4 +1,4 @@
-//! [`RandomAgent`]: acts at random, a baseline for learners.
+//! [`RandomAgent`] acts at random, as a baseline for learners.
 
 use driftworld_spec::{ActionModel, ActionSpace};
 use rand::{RngExt, SeedableRng};
@@ -7,10 +7,10 @@ use rand_chacha::ChaCha8Rng;
 use super::Agent;
 use crate::sim::{Action, Environment, in_units};
 
-/// Steps for which it keeps an action, so that it covers some ground.
+/// Steps for which it holds an action, so that it covers some ground.
 const HOLD: u32 = 8;
 
-/// Samples a forward speed, a turn rate and whether to interact, and keeps them for 8 steps; in a world with an action table it
+/// Samples a forward speed, a turn rate and whether to interact, and holds them for 8 steps. In a world with an action table it
 /// samples rows.
 #[derive(Clone, Debug)]
 pub struct RandomAgent {
@@ -42,7 +42,7 @@ impl Agent for RandomAgent {
                     Action::Continuous(match (agent.action_model, &agent.actions) {
                         (ActionModel::ByWaypoint, ActionSpace::Normalized) => shares,
                         (ActionModel::ByWaypoint, _) => in_units(shares, environment.world()),
-                        // Mostly forwards, as below.
+                        // Forwards only, as below.
                         _ => [shares[0].abs(), shares[1], shares[2]],
                     })
                 }

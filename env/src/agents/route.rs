@@ -1,4 +1,4 @@
-//! Paths around obstacles to one goal: the next step, and the distance.
+//! [`Route`]: a path around obstacles to one goal, its next step and its length.
 
 use driftworld_spec::World;
 
@@ -17,20 +17,19 @@ pub(super) struct Route {
 }
 
 impl Route {
-    /// Sets the goal; paths avoid walls, and these objects at their start positions.
-    ///
-    /// The goal's own cell may be blocked by objects around it.
+    /// Sets the goal; paths avoid walls, and these objects at their start positions. Objects around the goal may block its own
+    /// cell.
     pub(super) fn lead(&mut self, world: &World, scene: &Scene, goal: [f32; 2], avoided: &[u32]) {
         self.occupancy.block(world, scene, avoided);
         let grid = self.occupancy.grid();
         self.flood.begin(&self.occupancy, grid.cell_at(goal));
     }
 
-    /// The next point to walk to from a place: a few cells along the path to the goal.
+    /// The next point to walk to from a position: a few cells along the path to the goal.
     pub(super) fn next(&mut self, from: [f32; 2], ahead: usize) -> [f32; 2] {
         let grid = self.occupancy.grid();
         let mut cell = self.open_cell(from);
-        // All nearer cells are final now, and the path uses only those.
+        // The path uses only nearer cells, whose distances are final now.
         self.flood.reach(cell, &self.occupancy, Charge::Entered);
         for _ in 0..ahead {
             let around = grid.around().map(|(step, _)| cell.wrapping_add_signed(step));
@@ -43,14 +42,14 @@ impl Route {
         grid.centre(cell)
     }
 
-    /// Whether the path from a place `straight` metres from the goal as the crow flies makes hardly any detour.
+    /// Whether the path from a position hardly exceeds the straight-line distance to the goal, `straight` metres.
     pub(super) fn is_straight(&mut self, from: [f32; 2], straight: f32) -> bool {
         let cell = self.open_cell(from);
-        let way = self.flood.reach(cell, &self.occupancy, Charge::Entered);
-        self.metres(way) <= 1.25 * straight + 2.0 * self.occupancy.grid().side()
+        let length = self.flood.reach(cell, &self.occupancy, Charge::Entered);
+        self.metres(length) <= 1.25 * straight + 2.0 * self.occupancy.grid().side()
     }
 
-    /// The cell of a place, or a neighbour if that cell belongs to a wall.
+    /// The cell of a position, or the nearest open neighbour if that cell is closed.
     pub(super) fn open_cell(&self, from: [f32; 2]) -> usize {
         let grid = self.occupancy.grid();
         let cell = grid.cell_at(from);

@@ -1,4 +1,4 @@
-//! Parses and checks scripts for the scripted agent, with one command per line.
+//! Parses and checks scripts for the scripted agent. Scripts have one command per line.
 
 use std::str::FromStr;
 
@@ -9,16 +9,16 @@ use crate::EnvError;
 use crate::sim::Action;
 
 /// Maximum number of steps of one command.
-const MOST_STEPS: u32 = 100_000;
+const MAX_STEPS: u32 = 100_000;
 
-/// Default number of steps after which a walk to an object is given up.
+/// Default maximum number of steps of a walk to an object.
 const WALK_STEPS: u32 = 300;
 
 /// Maximum number of lines of a script.
-const MOST_LINES: usize = 100_000;
+const MAX_LINES: usize = 100_000;
 
 /// Maximum length of an object's name in characters, as in worlds.
-const MOST_LETTERS: usize = 100;
+const MAX_NAME_CHARS: usize = 100;
 
 /// Every command with its arguments.
 const COMMANDS: [(&str, &str); 7] = [
@@ -38,7 +38,7 @@ pub(super) enum Command {
     Act { action: Action, steps: u32 },
     /// Walks to the nearest object with a name, until a condition holds.
     Go { name: String, until: Until, steps: u32 },
-    /// Acts like the agent on rails until nothing is worth going to.
+    /// Acts like the agent on rails until nothing is left that is worth going to.
     Tour { steps: u32 },
     /// Starts again from the first line.
     Repeat,
@@ -55,7 +55,7 @@ pub(super) enum Until {
     Near(f32),
 }
 
-/// Parses a script; messages call it `name`.
+/// Parses a script. Error messages refer to it as `name`.
 pub(super) fn parse(name: &str, text: &str) -> Result<Vec<Command>, EnvError> {
     let wrong = |index: usize, (found, expected): (String, String)| EnvError::BadScript {
         script: name.to_owned(),
@@ -65,12 +65,12 @@ pub(super) fn parse(name: &str, text: &str) -> Result<Vec<Command>, EnvError> {
     };
     let mut commands = Vec::new();
     for (index, line) in text.lines().enumerate() {
-        if index == MOST_LINES {
-            let expected = format!("at most {MOST_LINES} lines");
+        if index == MAX_LINES {
+            let expected = format!("at most {MAX_LINES} lines");
             return Err(wrong(index, ("another line".to_owned(), expected)));
         }
-        let said = line.split('#').next().unwrap_or_default();
-        let words: Vec<&str> = said.split_whitespace().collect();
+        let code = line.split('#').next().unwrap_or_default();
+        let words: Vec<&str> = code.split_whitespace().collect();
         let [first, rest @ ..] = &words[..] else { continue };
         if commands.last() == Some(&Command::Repeat) {
             let expected = "nothing after repeat, which begins anew".to_owned();
@@ -86,14 +86,14 @@ pub(super) fn parse(name: &str, text: &str) -> Result<Vec<Command>, EnvError> {
     Ok(commands)
 }
 
-/// What was found, and what was expected.
+/// A faulty command: what was found, and what was expected.
 type Problem = (String, String);
 
 fn command(name: &str, words: &[&str]) -> Result<Command, Problem> {
     let go = |object: &str, until, rest: &[&str]| -> Result<Command, Problem> {
-        // Worlds may name objects freely, as the original's worlds do, so only unprintable names are refused.
-        if object.chars().count() > MOST_LETTERS || object.contains(is_unprintable) {
-            let expected = format!("the name of an object: 1 to {MOST_LETTERS} characters that can be seen");
+        // Names of objects are free in worlds, as in the original environment, so only unprintable ones are refused.
+        if object.chars().count() > MAX_NAME_CHARS || object.contains(is_unprintable) {
+            let expected = format!("the name of an object: 1 to {MAX_NAME_CHARS} characters that can be seen");
             return Err((quoted(object), expected));
         }
         Ok(Command::Go {
@@ -115,18 +115,18 @@ fn command(name: &str, words: &[&str]) -> Result<Command, Problem> {
         ("touch", [object, rest @ ..]) if rest.len() < 2 => go(object, Until::Touched, rest),
         ("interact", [object, rest @ ..]) if rest.len() < 2 => go(object, Until::Interacted, rest),
         ("near", [object, metres, rest @ ..]) if rest.len() < 2 => {
-            let is_sound = |metres: &f32| metres.is_finite() && *metres > 0.0;
-            let metres = parsed(metres, is_sound, "how many metres, more than 0")?;
+            let is_valid = |metres: &f32| metres.is_finite() && *metres > 0.0;
+            let metres = parsed(metres, is_valid, "how many metres, more than 0")?;
             go(object, Until::Near(metres), rest)
         }
-        ("tour", []) => Ok(Command::Tour { steps: MOST_STEPS }),
+        ("tour", []) => Ok(Command::Tour { steps: MAX_STEPS }),
         ("tour", [count]) => Ok(Command::Tour { steps: steps(count)? }),
         ("repeat", []) => Ok(Command::Repeat),
-        _ => Err(misused(name, words)),
+        _ => Err(unknown_or_misused(name, words)),
     }
 }
 
-fn misused(name: &str, words: &[&str]) -> Problem {
+fn unknown_or_misused(name: &str, words: &[&str]) -> Problem {
     if let Some((_, takes)) = COMMANDS.iter().find(|(known, _)| *known == name) {
         let found = std::iter::once(name)
             .chain(words.iter().copied())
@@ -160,12 +160,12 @@ fn number(word: &str) -> Result<f64, Problem> {
 }
 
 fn steps(word: &str) -> Result<u32, Problem> {
-    let expected = format!("how many steps, 1 to {MOST_STEPS}");
-    parsed(word, |steps| (1..=MOST_STEPS).contains(steps), &expected)
+    let expected = format!("how many steps, 1 to {MAX_STEPS}");
+    parsed(word, |steps| (1..=MAX_STEPS).contains(steps), &expected)
 }
 
-fn parsed<T: FromStr>(word: &str, is_sound: impl Fn(&T) -> bool, expected: &str) -> Result<T, Problem> {
-    let found = word.parse().ok().filter(is_sound);
+fn parsed<T: FromStr>(word: &str, is_valid: impl Fn(&T) -> bool, expected: &str) -> Result<T, Problem> {
+    let found = word.parse().ok().filter(is_valid);
     found.ok_or_else(|| (format!("{word:?}"), expected.to_owned()))
 }
 
@@ -174,7 +174,7 @@ mod tests {
     use super::*;
 
     fn check(text: &str, expected: &[Command]) {
-        assert_eq!(parse("script", text).expect("the script is sound"), expected, "{text}");
+        assert_eq!(parse("script", text).expect("the script is valid"), expected, "{text}");
     }
 
     #[test]
@@ -204,7 +204,7 @@ mod tests {
         check("near goal 2.5 9\nrepeat", &[go(Until::Near(2.5), 9), Command::Repeat]);
         check(
             "tour\ntour 7",
-            &[Command::Tour { steps: MOST_STEPS }, Command::Tour { steps: 7 }],
+            &[Command::Tour { steps: MAX_STEPS }, Command::Tour { steps: 7 }],
         );
     }
 
@@ -229,8 +229,8 @@ tour | repeat | step => 3: found "step", expected nothing after repeat, which be
         {
             let (text, expected) = row.split_once(" => ").expect("a row has two parts");
             let text = text.replace(" | ", "\n").replace("\\u{202e}", "\u{202e}");
-            let said = parse("way.txt", &text).expect_err("the script is not sound").to_string();
-            assert_eq!(said, format!("way.txt:{expected}"), "{text}");
+            let message = parse("way.txt", &text).expect_err("the script is invalid").to_string();
+            assert_eq!(message, format!("way.txt:{expected}"), "{text}");
         }
     }
 }

@@ -1,4 +1,4 @@
-//! [`ScriptedAgent`]: carries out a script of fixed actions and walks to named objects.
+//! [`ScriptedAgent`] plays a script of fixed actions and walks to named objects.
 
 use driftworld_spec::Object;
 
@@ -9,24 +9,23 @@ use super::{Agent, OnRailsAgent};
 use crate::EnvError;
 use crate::sim::{Action, Environment, ObjectState};
 
-/// Steps for which the agent keeps interacting with an object that does not react.
-const INSISTENCE: u32 = 10;
+/// Maximum number of interactions with an object that does not react.
+const MAX_INTERACTIONS: u32 = 10;
 
-/// Plays a script from the start in every episode, one command per line; `#` begins a comment, and after the last line the
-/// agent stands still.
+/// Plays a script from the start in every episode. A script has one command per line; `#` begins a comment. After the last line
+/// the agent stands still.
 ///
-/// | line | what it does |
+/// | line | effect |
 /// |---|---|
 /// | `step [N] [A B C \| ROW]` | takes N steps (1) with action A B C (0 0 0), or with a row of the action table, as in the console |
 /// | `action [-c N] -a A B C \| ROW` | the same, with options |
 /// | `touch NAME [N]` | walks to the nearest object of this tag or unique name until it touches it, for at most N steps (300) |
 /// | `interact NAME [N]` | walks there and interacts until the object reacts |
-/// | `near NAME METRES [N]` | walks there until its centre is nearer than that |
-/// | `tour [N]` | does what [`OnRailsAgent`] does until nothing is worth going to |
-/// | `repeat` | starts again; only as the last line |
-///
-/// A walk to an absent object takes no step. Walks work in every action space; the actions of `step` and `action` are passed to
-/// the world unchanged.
+/// | `near NAME METRES [N]` | walks there until its centre is nearer than METRES |
+/// | `tour [N]` | acts like [`OnRailsAgent`] until nothing is left that is worth going to |
+/// | `repeat` | restarts the script; only as the last line |
+/// A walk to an absent object takes no steps. Walks work in every action space; the actions of `step` and `action` are passed
+/// to the world unchanged.
 ///
 /// # Example
 /// ```
@@ -45,7 +44,7 @@ const INSISTENCE: u32 = 10;
 pub struct ScriptedAgent {
     commands: Vec<Command>,
     /// Index of the current command.
-    now: usize,
+    current: usize,
     /// Steps that the current command has taken so far.
     steps: u32,
     walk: Option<Walk>,
@@ -59,19 +58,19 @@ struct Walk {
     target: Target,
     /// The object's state when the walk began.
     before: ObjectState,
-    /// Steps in which the agent has interacted within reach.
-    asked: u32,
+    /// Number of steps in which the agent has interacted within reach.
+    num_interactions: u32,
 }
 
 impl ScriptedAgent {
-    /// Parses a script; messages call it `name`, usually its path.
+    /// Parses a script. Error messages refer to it as `name`, usually its path.
     ///
     /// # Errors
-    /// [`EnvError::BadScript`] with the first faulty line.
+    /// [`EnvError::BadScript`], with the first faulty line, if the script is invalid.
     pub fn parse(name: &str, text: &str) -> Result<Self, EnvError> {
         Ok(Self {
             commands: parse(name, text)?,
-            now: 0,
+            current: 0,
             steps: 0,
             walk: None,
             route: Route::default(),
@@ -81,11 +80,11 @@ impl ScriptedAgent {
 
     /// Whether the script has finished and the agent stands still.
     pub fn is_over(&self) -> bool {
-        self.now >= self.commands.len()
+        self.current >= self.commands.len()
     }
 
     fn next(&mut self) {
-        self.now += 1;
+        self.current += 1;
         self.steps = 0;
         self.walk = None;
         self.rails = OnRailsAgent::new();
@@ -93,11 +92,11 @@ impl ScriptedAgent {
 
     /// The current command's action for this step; `None` once the command is finished.
     fn run_command(&mut self, environment: &Environment) -> Option<Action> {
-        match self.commands[self.now].clone() {
+        match self.commands[self.current].clone() {
             Command::Act { action, steps } => (self.steps < steps).then_some(action),
             Command::Tour { steps } => {
-                let goes_on = self.steps < steps && !OnRailsAgent::is_done(environment.sim());
-                goes_on.then(|| self.rails.act(environment))
+                let continues = self.steps < steps && !OnRailsAgent::is_done(environment.sim());
+                continues.then(|| self.rails.act(environment))
             }
             Command::Go { name, until, steps } => {
                 let numbers = (self.steps < steps).then(|| self.go(environment, &name, until))??;
@@ -113,7 +112,7 @@ impl ScriptedAgent {
             self.walk = Some(Walk {
                 target: Target::at(object, environment.sim(), &mut self.route),
                 before: environment.objects()[object].clone(),
-                asked: 0,
+                num_interactions: 0,
             });
         }
         let walk = self.walk.as_mut()?;
@@ -128,7 +127,7 @@ impl ScriptedAgent {
             Until::Touched | Until::Near(_) => Purpose::Touch,
         };
         let numbers = walk.target.towards(environment.sim(), purpose, &mut self.route);
-        walk.asked += u32::from(purpose == Purpose::Interact && walk.target.is_in_reach(environment.sim()));
+        walk.num_interactions += u32::from(purpose == Purpose::Interact && walk.target.is_in_reach(environment.sim()));
         Some(numbers)
     }
 }
@@ -136,21 +135,25 @@ impl ScriptedAgent {
 impl Walk {
     fn is_over(&self, environment: &Environment, until: Until) -> bool {
         let index = self.target.object;
-        let now = &environment.objects()[index];
-        let answered = |before: &ObjectState| {
-            now.present != before.present || now.collected != before.collected || now.reward != before.reward
+        let current = &environment.objects()[index];
+        let has_reacted = |before: &ObjectState| {
+            current.present != before.present
+                || current.collected != before.collected
+                || current.reward != before.reward
         };
         match until {
-            Until::Touched => answered(&self.before) || environment.sim().state.touches(index),
-            Until::Interacted => answered(&self.before) || self.asked >= INSISTENCE,
-            Until::Near(metres) => !now.present || distance(environment.agent().position, now.position) < metres,
+            Until::Touched => has_reacted(&self.before) || environment.sim().state.touches(index),
+            Until::Interacted => has_reacted(&self.before) || self.num_interactions >= MAX_INTERACTIONS,
+            Until::Near(metres) => {
+                !current.present || distance(environment.agent().position, current.position) < metres
+            }
         }
     }
 }
 
 impl Agent for ScriptedAgent {
     fn act(&mut self, environment: &Environment) -> Action {
-        // Goes through the script at most once: a loop of commands that take no steps would never end.
+        // Goes through the script at most once, since a loop of commands that take no steps would never end.
         for _ in 0..=self.commands.len() {
             if self.is_over() {
                 break;
@@ -159,10 +162,10 @@ impl Agent for ScriptedAgent {
                 self.steps += 1;
                 return action;
             }
-            let again = self.commands[self.now] == Command::Repeat;
+            let repeats = self.commands[self.current] == Command::Repeat;
             self.next();
-            if again {
-                self.now = 0;
+            if repeats {
+                self.current = 0;
             }
         }
         in_space([0.0; 3], environment.sim())
@@ -170,7 +173,7 @@ impl Agent for ScriptedAgent {
 
     fn begin(&mut self, _seed: u64) {
         self.next();
-        self.now = 0;
+        self.current = 0;
     }
 
     fn learns(&self) -> bool {
@@ -185,7 +188,7 @@ impl Agent for ScriptedAgent {
 /// The nearest present object with this tag or unique name.
 fn nearest(environment: &Environment, name: &str) -> Option<usize> {
     let here = environment.agent().position;
-    let named = |object: &Object| {
+    let has_name = |object: &Object| {
         [&object.tag, &object.unique_name]
             .into_iter()
             .flatten()
@@ -198,7 +201,7 @@ fn nearest(environment: &Environment, name: &str) -> Option<usize> {
         .zip(environment.objects())
         .enumerate();
     objects
-        .filter(|(_, (object, state))| state.present && named(object))
+        .filter(|(_, (object, state))| state.present && has_name(object))
         .map(|(index, (_, state))| (index, distance(here, state.position)))
         .min_by(|(_, a), (_, b)| a.total_cmp(b))
         .map(|(index, _)| index)
@@ -229,7 +232,7 @@ mod tests {
 
     /// Return and final position after playing a script for this many steps.
     fn play(world: World, script: &str, steps: u32) -> (f64, [f32; 2]) {
-        let mut agent = ScriptedAgent::parse("script", script).expect("the script is sound");
+        let mut agent = ScriptedAgent::parse("script", script).expect("the script is valid");
         let mut environment = Environment::new(world);
         for _ in 0..steps {
             let action = agent.act(&environment);
@@ -273,7 +276,7 @@ mod tests {
 
     #[test]
     fn episode_restarts_the_script() {
-        let mut agent = ScriptedAgent::parse("script", "step 2 10 0 0").expect("the script is sound");
+        let mut agent = ScriptedAgent::parse("script", "step 2 10 0 0").expect("the script is valid");
         let environment = Environment::new(World::default());
         for _ in 0..3 {
             agent.act(&environment);

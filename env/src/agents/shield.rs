@@ -1,16 +1,16 @@
-//! Keeps agents that follow a plan out of zones and off objects that end the episode as a failure, and out of zones that cost.
-//! The plan avoids them, but the world's actions may force longer steps than planned.
+//! [`Shield`] keeps agents that follow a plan away from zones and objects that end the episode as a failure, and out of zones
+//! that cost. Plans avoid them, but the world's actions may force longer steps than planned.
 
 use driftworld_spec::{Zone, ZoneEnd};
 
 use super::steering::{failing, in_space_where};
 use crate::sim::{Action, SimRef};
 
-/// Fractions of a speed to try.
-const SHARES: [f64; 4] = [1.0, 0.5, 0.25, 0.0];
+/// Fractions of the planned speed to try, in this order.
+const SPEED_FRACTIONS: [f64; 4] = [1.0, 0.5, 0.25, 0.0];
 
 /// Extra distance that steps keep from objects whose touch is a failure, in metres.
-const AWAY: f64 = 0.01;
+const CLEARANCE: f64 = 0.01;
 
 /// Which zones steps avoid, in addition to objects whose touch is a failure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -18,46 +18,45 @@ pub(super) enum Shield {
     /// Zones that end the episode as a failure.
     #[default]
     Failure,
-    /// Zones that cost as well: the plan does not cross any.
+    /// Those, and zones that cost. Used when the plan crosses no such zone.
     Cost,
 }
 
 impl Shield {
-    fn shuns(self, zone: &Zone) -> bool {
+    fn avoids(self, zone: &Zone) -> bool {
         zone.ends == Some(ZoneEnd::Failure) || self == Self::Cost && zone.is_costly()
     }
 
-    fn has_use(self, sim: SimRef) -> bool {
-        sim.world.environment_params.zones.iter().any(|zone| self.shuns(zone)) || failing(sim).next().is_some()
+    fn is_needed(self, sim: SimRef) -> bool {
+        sim.world.environment_params.zones.iter().any(|zone| self.avoids(zone)) || failing(sim).next().is_some()
     }
 
-    /// The step as speed, turn rate and interaction, slowed where it would enter what is avoided.
+    /// The step as speed, turn rate and interaction, slowed down as far as necessary to be safe.
     pub(super) fn slowed(self, sim: SimRef, [speed, turn, interact]: [f64; 3]) -> [f64; 3] {
-        if !self.has_use(sim) {
+        if !self.is_needed(sim) {
             return [speed, turn, interact];
         }
-        let mut steps = SHARES.into_iter().map(|share| [speed * share, turn, interact]);
+        let mut steps = SPEED_FRACTIONS.into_iter().map(|share| [speed * share, turn, interact]);
         steps
             .find(|step| self.is_safe(sim, *step))
             .unwrap_or([0.0, turn, interact])
     }
 
-    /// The step as an action of the world. From an action table, it picks a row that does not enter what is avoided, if there
-    /// is one.
+    /// The step as an action of the world. From an action table, it picks a safe row, if there is one.
     pub(super) fn in_space(self, numbers: [f64; 3], sim: SimRef) -> Action {
-        let has_use = self.has_use(sim);
-        in_space_where(numbers, sim, |row| !has_use || self.is_safe(sim, row))
+        let is_needed = self.is_needed(sim);
+        in_space_where(numbers, sim, |row| !is_needed || self.is_safe(sim, row))
     }
 
-    /// Whether a step by a velocity enters no avoided zone and touches no avoided object, assuming that nothing blocks it.
+    /// Whether a step at this velocity enters no avoided zone and touches no failing object, assuming that nothing blocks it.
     fn is_safe(self, sim: SimRef, step: [f64; 3]) -> bool {
         let path = path(sim, step);
-        !sim.views.zones.are_entered(&path, |zone| self.shuns(zone))
-            && !failing(sim).any(|object| sim.would_touch(object as u32, &path, AWAY))
+        !sim.views.zones.are_entered(&path, |zone| self.avoids(zone))
+            && !failing(sim).any(|object| sim.would_touch(object as u32, &path, CLEARANCE))
     }
 }
 
-/// The positions along a step by a velocity, one per time step, assuming that nothing blocks it.
+/// The positions along a step at this velocity, one per time step, assuming that nothing blocks it.
 fn path(sim: SimRef, [speed, turn, _]: [f64; 3]) -> Vec<[f64; 2]> {
     let (agent, params) = (sim.agent(), &sim.world.agent_params);
     let turn = turn.clamp(-params.max_angular_speed, params.max_angular_speed);

@@ -1,11 +1,11 @@
-//! Walks to one object: the path, the next step on it, and that step as an action of the world.
+//! Steers to one object: chooses the path and the next step on it, and converts the step to an action of the world.
 
 use driftworld_spec::{ActionModel, ActionSpace, EndCondition, MotionModel, Object, World, Zone};
 
 use super::route::Route;
 use crate::sim::{Action, SimRef};
 
-/// Distance in metres within which it walks straight at an object, ignoring the path.
+/// Distance in metres within which an agent walks straight at an object, ignoring the path.
 const NEAR: f32 = 2.0;
 
 /// Like `NEAR`, in worlds with zones that cost.
@@ -14,13 +14,13 @@ const NEAR_BESIDE_ZONES: f32 = 1.2;
 /// Look-ahead along the path in metres, in worlds with zones that cost and without a layout.
 const AHEAD_BESIDE_ZONES: f32 = 0.5;
 
-/// Distance in metres within which an agent that wants to interact does so.
+/// Distance in metres within which an agent interacts while walking.
 const REACH: f32 = 3.0;
 
-/// Angle in degrees within which an agent in front of an object counts as facing it.
+/// Angle in degrees between heading and direction within which an agent faces an object.
 const FACING: f32 = 30.0;
 
-/// Fraction of the distance to an object by which it may move before its path is recomputed.
+/// Fraction of the distance to an object by which the object may move before the path is recomputed.
 const ASTRAY: f32 = 0.2;
 
 /// What an agent wants to do at an object.
@@ -73,7 +73,7 @@ impl Target {
         if purpose == Purpose::Interact && !interacts_on_the_way(sim) {
             // Walks there and faces the object before interacting.
             return match self.is_in_reach(sim) {
-                true if off(sim, goal).abs() < FACING => [0.0, 0.0, 1.0],
+                true if angle_to(sim, goal).abs() < FACING => [0.0, 0.0, 1.0],
                 true => [0.0, turn, 0.0],
                 false => [speed, turn, 0.0],
             };
@@ -83,13 +83,13 @@ impl Target {
     }
 }
 
-/// The next step along the route to a place, as speed, turn rate and no interaction.
+/// The next step along the route to a position, as speed, turn rate and no interaction.
 pub(super) fn walk(goal: [f32; 2], sim: SimRef, route: &mut Route) -> [f64; 3] {
     let world = sim.world;
     let agent = sim.agent();
-    // Cuts no corners beside zones that cost.
-    let costs = is_narrow(sim);
-    let ahead = if !costs {
+    // Where it is narrow, looks less far ahead, so as not to cut corners.
+    let is_narrow = is_narrow(sim);
+    let ahead = if !is_narrow {
         3
     } else if world.plan().is_some() {
         1
@@ -97,39 +97,39 @@ pub(super) fn walk(goal: [f32; 2], sim: SimRef, route: &mut Route) -> [f64; 3] {
         // About one coarse cell, however fine the cells are, so that walking speed does not depend on them.
         (AHEAD_BESIDE_ZONES / route.occupancy.grid().side()).round().max(1.0) as usize
     };
-    let near = if costs { NEAR_BESIDE_ZONES } else { NEAR };
+    let near = if is_narrow { NEAR_BESIDE_ZONES } else { NEAR };
     let straight = distance(agent.position, goal);
-    // In a layout a wall may stand between them.
+    // In a layout a wall may stand in between.
     let mut is_open = || world.plan().is_none() || route.is_straight(agent.position, straight);
     let point = if straight < near && is_open() {
         goal
     } else {
         route.next(agent.position, ahead)
     };
-    let (past, widest) = if costs { (0.0, 5.0) } else { (0.3, 25.0) };
-    step_to(sim, point, past, widest)
+    let (past, max_angle) = if is_narrow { (0.0, 5.0) } else { (0.3, 25.0) };
+    step_to(sim, point, past, max_angle)
 }
 
-/// A step towards a point, overshooting by `past` metres, as speed, turn rate and no interaction. The speed is 0 if the heading
-/// would still be off by more than `widest` degrees after the step.
-pub(super) fn step_to(sim: SimRef, point: [f32; 2], past: f32, widest: f32) -> [f64; 3] {
+/// A step towards a point, overshooting by `past` metres, as speed, turn rate and no interaction. The speed is 0 if the agent
+/// would still face more than `max_angle` degrees away from the point after the step.
+pub(super) fn step_to(sim: SimRef, point: [f32; 2], past: f32, max_angle: f32) -> [f64; 3] {
     let agent = &sim.world.agent_params;
-    let (off, seconds) = (off(sim, point), seconds(sim));
+    let (angle_to, seconds) = (angle_to(sim, point), seconds(sim));
     let reach = (distance(sim.agent().position, point) + past) / seconds;
-    let after_turn = (off.abs() - agent.max_angular_speed as f32 * seconds).max(0.0);
-    let speed = if after_turn > widest {
+    let after_turn = (angle_to.abs() - agent.max_angular_speed as f32 * seconds).max(0.0);
+    let speed = if after_turn > max_angle {
         0.0
     } else {
         reach.min(agent.max_linear_speed as f32)
     };
-    [f64::from(speed), f64::from(off / seconds), 0.0]
+    [f64::from(speed), f64::from(angle_to / seconds), 0.0]
 }
 
 /// Angle from the agent's heading to a point, clockwise in degrees, -180 to 180.
-pub(super) fn off(sim: SimRef, point: [f32; 2]) -> f32 {
+pub(super) fn angle_to(sim: SimRef, point: [f32; 2]) -> f32 {
     let agent = sim.agent();
-    let way = [point[0] - agent.position[0], point[1] - agent.position[1]];
-    let wanted = libm::atan2f(way[0], way[1]).to_degrees();
+    let direction = [point[0] - agent.position[0], point[1] - agent.position[1]];
+    let wanted = libm::atan2f(direction[0], direction[1]).to_degrees();
     (wanted - agent.heading_deg + 540.0).rem_euclid(360.0) - 180.0
 }
 
@@ -165,9 +165,9 @@ pub(super) fn is_narrow(sim: SimRef) -> bool {
 /// ascending order of index.
 pub(super) fn avoided(sim: SimRef, goal: Option<usize>) -> Vec<u32> {
     let objects = sim.world.objects.iter().zip(sim.objects());
-    let returns_elsewhere = |object: &Object| object.respawn.as_ref().is_some_and(|back| back.radius > 0.0);
+    let respawns_elsewhere = |object: &Object| object.respawn.as_ref().is_some_and(|back| back.radius > 0.0);
     let stands = |object: &Object| {
-        object.motion_model == MotionModel::Stationary && object.pushable.is_none() && !returns_elsewhere(object)
+        object.motion_model == MotionModel::Stationary && object.pushable.is_none() && !respawns_elsewhere(object)
     };
     objects
         .enumerate()

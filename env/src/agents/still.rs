@@ -1,4 +1,4 @@
-//! [`StillAgent`]: stands still, a baseline that a random agent may fall below.
+//! [`StillAgent`] stands still. It is a baseline that a random agent may fall below.
 
 use driftworld_spec::{ActionModel, ActionSpace};
 
@@ -59,7 +59,7 @@ mod tests {
             let start = environment.sim().agent();
             for _ in 0..20 {
                 let action = StillAgent.act(&environment);
-                environment.step(action).expect("it is in the action space");
+                environment.step(action).expect("the action is in the action space");
             }
             let end = environment.sim().agent();
             assert_eq!(

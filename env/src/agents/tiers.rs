@@ -11,15 +11,15 @@ pub(super) fn wanted(sim: SimRef) -> Vec<usize> {
     tiers(sim).into_iter().find(|tier| !tier.is_empty()).unwrap_or_default()
 }
 
-/// Objects worth going to, by index, in tiers: those that pay without ending the episode, those that pay and end it as a
-/// success, those that only end it as a success. Objects whose touch is a failure are left out.
+/// Objects worth going to, by index, in tiers: those that pay without ending the episode; those that pay and end it as a
+/// success; those that only end it as a success. Paying objects whose touch is a failure are left out.
 pub(super) fn tiers(sim: SimRef) -> [Vec<usize>; 3] {
     let world = sim.world;
     let states = sim.objects();
     // In a sequence only the first remaining object pays.
-    let left = world.objects.iter().zip(states).filter(|(_, state)| !state.collected);
-    let first = left.filter_map(|(object, _)| object.order).min();
-    let in_turn = |index: &usize| {
+    let remaining = world.objects.iter().zip(states).filter(|(_, state)| !state.collected);
+    let first = remaining.filter_map(|(object, _)| object.order).min();
+    let is_due = |index: &usize| {
         let order = world.objects[*index].order;
         order.is_none_or(|own| first.is_none_or(|first| own <= first))
     };
@@ -30,11 +30,11 @@ pub(super) fn tiers(sim: SimRef) -> [Vec<usize>; 3] {
         let mut conditions = world.rules.success.iter();
         conditions.any(|condition| condition.is_touch_of(&world.objects[*index]))
     };
-    let paying = (0..states.len()).filter(pays).filter(in_turn).filter(is_safe);
-    let (last, before): (Vec<usize>, Vec<usize>) = paying.partition(ends);
-    let is_left = |index: &usize| states[*index].present && !last.contains(index);
+    let paying = (0..states.len()).filter(pays).filter(is_due).filter(is_safe);
+    let (paying_ends, paying_only): (Vec<usize>, Vec<usize>) = paying.partition(ends);
+    let is_left = |index: &usize| states[*index].present && !paying_ends.contains(index);
     let ending = (0..states.len()).filter(ends).filter(is_left).collect();
-    [before, last, ending]
+    [paying_only, paying_ends, ending]
 }
 
 /// Whether an object pays for this stimulus.

@@ -1,8 +1,8 @@
-//! Meshes for the CPU renderer: triangles in blocks, with one array per coordinate.
+//! Meshes for the CPU renderer: blocks of triangles, with one array per coordinate.
 
 use super::{Mesh, Paint, Part};
 
-/// Triangles in a block: the lanes of the renderer's widest vectors.
+/// Triangles in a block: the number of lanes of the renderer's widest vectors.
 pub(crate) const BLOCK: usize = 16;
 
 /// Up to [`BLOCK`] triangles of one colour that face about the same way. Unused lanes never face the camera.
@@ -25,7 +25,7 @@ pub(crate) struct Material {
 }
 
 impl Material {
-    /// Groups a part's triangles by direction, so that whole blocks face away at once.
+    /// Groups a part's triangles by direction, so that whole blocks can be skipped when they face away.
     pub(crate) fn new(part: &Part) -> Self {
         let mut order: Vec<usize> = (0..part.mesh.triangles.len()).collect();
         order.sort_by_cached_key(|&triangle| facing(part.normals[triangle]));
@@ -40,8 +40,7 @@ impl Material {
     }
 }
 
-/// The direction that a normal faces, numbered so that neighbouring directions have close numbers: down, one of 24
-/// around, or up.
+/// A number for the direction of a normal: 0 for down, 1 to 25 around the horizon, 100 for up.
 fn facing([x, y, z]: [f32; 3]) -> u32 {
     if z.abs() > 0.7 {
         return if z < 0.0 { 0 } else { 100 };
@@ -54,7 +53,7 @@ fn block(mesh: &Mesh, normals: &[[f32; 3]], triangles: &[usize]) -> Block {
     let mut block = Block {
         corners: [[0.0; BLOCK]; 9],
         normal: [[0.0; BLOCK]; 3],
-        // Unused lanes: no normal, and a plane that is always seen from behind.
+        // Unused lanes have no normal, and a plane that is always seen from behind.
         offset: [1.0; BLOCK],
     };
     for (lane, &triangle) in triangles.iter().enumerate() {
@@ -85,13 +84,13 @@ mod tests {
                 .map(|lane| [0, 1, 2].map(|axis| block.normal[axis][lane]))
                 .collect()
         };
-        let real = material
+        let used = material
             .blocks
             .iter()
             .flat_map(lanes)
             .filter(|normal| *normal != [0.0; 3])
             .count();
-        assert_eq!(real, part.mesh.triangles.len());
+        assert_eq!(used, part.mesh.triangles.len());
         let last = &material.blocks[material.blocks.len() - 1];
         assert!(last.offset[BLOCK - 1] > 0.0 || last.normal.map(|row| row[BLOCK - 1]) != [0.0; 3]);
     }

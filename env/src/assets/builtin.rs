@@ -6,14 +6,14 @@ use driftworld_spec::{Model, Style};
 
 use super::{Asset, model_file};
 
-/// The models of a class in a style, read on first use: names and looks, ordered by number.
+/// The models of a class in a style, parsed on first use: names and assets, ordered by number.
 struct Models {
     class: &'static str,
     file: &'static str,
     read: OnceLock<Vec<(String, Arc<Asset>)>>,
 }
 
-/// A list of classes, each in the file with its name and this ending.
+/// An array of classes; each file is named after its class, with this ending.
 macro_rules! models {
     ($ending:literal: $($class:ident)+) => {
         [$(Models {
@@ -24,18 +24,19 @@ macro_rules! models {
     };
 }
 
-/// All classes, ordered by their numbers in class segmentation, which must not change: first those of the original in
-/// alphabetical order, then ours. New ones go to the end; the next is number 30, the last one possible.
+/// All classes, ordered by their numbers in class segmentation, which must not change: first those of the original environment
+/// in alphabetical order, then ours. Append new ones; the next is number 30, which is the last possible one.
 static PLAIN: [Models; 29] = models!(".gltf":
     bag barrel bed bench building car castleruin chair cube fence geometric icosphere mushroom nature pot roadblock rock
     shelf shrub streetsign table tent tree
     door key switch animal sign furniture
 );
 
-/// The classes with different models in the natural style: as many as in the plain style, with the same names and bodies.
+/// The classes that look different in the natural style. Their models have the same number, names and bodies as in the plain
+/// style.
 static NATURAL: [Models; 5] = models!("_natural.gltf": car mushroom rock shrub tree);
 
-/// The placeholder for unknown classes: a striped bollard to stumble over.
+/// The placeholder for unknown classes: a conspicuous striped bollard.
 static UNKNOWN: [Models; 1] = models!(".gltf": unknown);
 
 impl Models {
@@ -60,8 +61,8 @@ pub(crate) fn class_names<'a>() -> impl Iterator<Item = &'a str> {
 
 /// The number of a built-in class in class segmentation.
 pub(crate) fn class_number(class: &str) -> Option<u16> {
-    let place = class_names().position(|name| name == class)?;
-    u16::try_from(place + 1).ok()
+    let index = class_names().position(|name| name == class)?;
+    u16::try_from(index + 1).ok()
 }
 
 /// The names of a class's models, ordered by number.
@@ -73,8 +74,8 @@ pub(crate) fn model_names(class: &str) -> impl Iterator<Item = &'static str> + u
 /// The number of a model of a class, from its name or its number as a string, ignoring case. `None` if there is no such model.
 pub(crate) fn number(class: &str, model: &Model) -> Option<u32> {
     let name = model.0.trim();
-    let named = model_names(class).position(|own| own.eq_ignore_ascii_case(name));
-    let number = named.map(|place| place as u32 + 1).or_else(|| model.number())?;
+    let by_name = model_names(class).position(|own| own.eq_ignore_ascii_case(name));
+    let number = by_name.map(|index| index as u32 + 1).or_else(|| model.number())?;
     (1..=model_names(class).count() as u32)
         .contains(&number)
         .then_some(number)
@@ -89,26 +90,26 @@ pub(crate) fn asset(style: Style, class: &str, number: u32) -> Option<Arc<Asset>
 
 /// The asset of unknown classes.
 pub(crate) fn placeholder() -> Arc<Asset> {
-    static MADE: LazyLock<Arc<Asset>> = LazyLock::new(|| {
+    static PLACEHOLDER: LazyLock<Arc<Asset>> = LazyLock::new(|| {
         let (_, asset) = &UNKNOWN[0].read()[0];
         Arc::new(Asset {
             known: false,
             ..Asset::clone(asset)
         })
     });
-    Arc::clone(&MADE)
+    Arc::clone(&PLACEHOLDER)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// A checksum over the exact bits of everything that is drawn or bumped into.
+    /// A checksum over the exact bits of all shapes, colours and colliders.
     fn checksum(models: &[(String, Arc<Asset>)]) -> String {
         let mut bytes = Vec::new();
         for (name, asset) in models {
-            let said = format!("{name} {:?} {} {}", asset.collider, asset.height, asset.radius);
-            bytes.extend(said.bytes());
+            let body = format!("{name} {:?} {} {}", asset.collider, asset.height, asset.radius);
+            bytes.extend(body.bytes());
             for level in &asset.levels {
                 bytes.extend(level.error.to_le_bytes());
                 for material in &level.materials {

@@ -1,4 +1,4 @@
-//! [`Catalogue`]: the models that worlds can refer to; those of libraries take precedence over the built-in ones.
+//! [`Catalogue`]: the models that worlds can refer to. Models of libraries take precedence over built-in ones.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
@@ -8,15 +8,14 @@ use driftworld_spec::{Classes, Model, Models, Style};
 use super::library::{Library, LibraryModel};
 use super::{Asset, Lettering, asset_in, builtin, sign};
 
-/// The number in class segmentation of all classes unknown to the catalogue, which are drawn as placeholders.
+/// The number in class segmentation shared by all classes that are not in the catalogue; they are drawn as placeholders.
 pub const UNKNOWN_CLASS: u16 = 31;
 
 /// The number in class segmentation of the first class of libraries.
 pub const FIRST_LIBRARY_CLASS: u16 = 32;
 
-/// The models that worlds may refer to by class and model: the built-in ones, overridden by those of libraries.
-///
-/// Cloning is cheap: clones share their assets. A library's model becomes an asset, many times its size, on first use.
+/// The models that worlds may refer to by class and model: the built-in ones, overridden by those of libraries. Cloning is
+/// cheap: clones share their assets. A library's model is expanded to an asset, many times its size, on first use.
 ///
 /// # Example
 /// ```
@@ -67,10 +66,9 @@ impl Catalogue {
         self
     }
 
-    /// The number of a class in class segmentation, the same in every world; ignores case.
-    ///
-    /// Built-in classes have 1 to 29. Those of libraries follow from [`FIRST_LIBRARY_CLASS`] on, sorted by name. Unknown
-    /// classes have [`UNKNOWN_CLASS`]. A library's models of a built-in class have that class's number. 0 means no object.
+    /// The number of a class in class segmentation, the same in every world; ignores case. Built-in classes have numbers 1 to
+    /// 29. Classes of libraries are numbered from [`FIRST_LIBRARY_CLASS`], sorted by name. Unknown classes have
+    /// [`UNKNOWN_CLASS`]. A library's models of a built-in class have that class's number. 0 means no object.
     ///
     /// # Example
     /// ```
@@ -89,8 +87,8 @@ impl Catalogue {
 
     fn find_number(&self, class: &str) -> Option<u16> {
         builtin::class_number(class).or_else(|| {
-            let place = self.own_classes.binary_search_by(|own| own.as_str().cmp(class)).ok()?;
-            Some(u16::try_from(place).map_or(u16::MAX, |place| place.saturating_add(FIRST_LIBRARY_CLASS)))
+            let index = self.own_classes.binary_search_by(|own| own.as_str().cmp(class)).ok()?;
+            Some(u16::try_from(index).map_or(u16::MAX, |index| index.saturating_add(FIRST_LIBRARY_CLASS)))
         })
     }
 
@@ -180,7 +178,7 @@ mod tests {
         let collider = ColliderShape::Ball { radius: 1.0 };
         let paints = vec![Paint::Fixed([0.5; 3])];
         LibraryModel::checked(class.into(), "1".into(), collider, corners, paints, vec![whole])
-            .expect("a cube is a sound model")
+            .expect("a cube is a valid model")
     }
 
     /// Pinned: stored images use these numbers.
@@ -237,10 +235,10 @@ mod tests {
             library.insert(model(class)).expect("there is room");
         }
         let catalogue = Catalogue::default().with_library(&library);
-        let seen = |classes: &[&str]| {
+        let visible = |classes: &[&str]| {
             let objects = classes.iter().enumerate();
             let at =
-                |(place, class): (usize, &&str)| driftworld_spec::Object::new(*class, [3.0 * place as f64 - 3.0, 8.0]);
+                |(index, class): (usize, &&str)| driftworld_spec::Object::new(*class, [3.0 * index as f64 - 3.0, 8.0]);
             let mut world = driftworld_spec::WorldDraft::with_objects(objects.map(at).collect());
             world.agent_params.modalities = vec![driftworld_spec::Modality::Class];
             let world = world.check().expect("the world is sound");
@@ -250,10 +248,10 @@ mod tests {
             seen.dedup();
             seen
         };
-        assert_eq!(seen(&["barrel", "tree", "rock"]), [0, 2, 17, 23]);
-        assert_eq!(seen(&["rock", "Barrel"]), [0, 2, 17]);
-        assert_eq!(seen(&["dragon", "barrel"]), [0, 2, UNKNOWN_CLASS]);
-        assert_eq!(seen(&["lamp", "barrel", "dragon"]), [0, 2, UNKNOWN_CLASS, 33]);
+        assert_eq!(visible(&["barrel", "tree", "rock"]), [0, 2, 17, 23]);
+        assert_eq!(visible(&["rock", "Barrel"]), [0, 2, 17]);
+        assert_eq!(visible(&["dragon", "barrel"]), [0, 2, UNKNOWN_CLASS]);
+        assert_eq!(visible(&["lamp", "barrel", "dragon"]), [0, 2, UNKNOWN_CLASS, 33]);
     }
 
     #[test]
@@ -263,11 +261,11 @@ mod tests {
             library.insert(model(class)).expect("there is room");
         }
         let catalogue = Catalogue::default().with_library(&library);
-        let made = |catalogue: &Catalogue| {
+        let num_loaded = |catalogue: &Catalogue| {
             let entries = catalogue.models.values();
             entries.filter(|entry| entry.asset.get().is_some()).count()
         };
-        assert_eq!(made(&catalogue), 0, "nobody asked yet");
+        assert_eq!(num_loaded(&catalogue), 0, "no model has been used yet");
         let classes = catalogue.classes();
         assert!(
             ["kiosk", "Lamp", "tree", " Barrel"]
@@ -277,10 +275,10 @@ mod tests {
         assert!(!classes.has("bushh") && !Catalogue::default().classes().has("kiosk"));
         let number = Model("1".into());
         let first = catalogue.clone().asset("Lamp", &number);
-        assert_eq!(made(&catalogue), 1, "the lamp, and no kiosk");
+        assert_eq!(num_loaded(&catalogue), 1, "only the lamp has been used");
         assert!(
             Arc::ptr_eq(&first, &catalogue.asset("lamp", &number)),
-            "clones share it"
+            "clones share the asset"
         );
     }
 }

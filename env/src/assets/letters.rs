@@ -1,9 +1,9 @@
-//! Text as geometry: a block font of five by seven squares, merged into few rectangles.
+//! Text as geometry: a block font of five by seven squares per character, merged into a few rectangles.
 
 use super::Mesh;
 
-/// Squares of a character, across and down.
-pub(crate) const LETTER: [u32; 2] = [5, 7];
+/// Number of squares of a character, across and down.
+pub(crate) const CHARACTER_SIZE: [u32; 2] = [5, 7];
 
 /// Each character as seven rows from the top; the highest of five bits is the left square.
 const FONT: &[(char, [u8; 7])] = &[
@@ -53,21 +53,21 @@ const FONT: &[(char, [u8; 7])] = &[
 ];
 
 /// Whether a square of a character, counted from the left and the top, is filled; characters missing from the font are blank.
-pub(crate) fn is_filled(letter: char, column: u32, row: u32) -> bool {
-    let found = FONT.binary_search_by_key(&letter, |(letter, _)| *letter);
-    found.is_ok_and(|place| FONT[place].1[row as usize] >> (LETTER[0] - 1 - column) & 1 == 1)
+pub(crate) fn is_filled(character: char, column: u32, row: u32) -> bool {
+    let found = FONT.binary_search_by_key(&character, |(character, _)| *character);
+    found.is_ok_and(|index| FONT[index].1[row as usize] >> (CHARACTER_SIZE[0] - 1 - column) & 1 == 1)
 }
 
 /// A character as disjoint rectangles: left, top, width and height in squares. Identical runs in successive rows are one
 /// rectangle.
-fn rectangles(letter: char) -> Vec<[u32; 4]> {
-    let [columns, rows] = LETTER;
+fn rectangles(character: char) -> Vec<[u32; 4]> {
+    let [columns, rows] = CHARACTER_SIZE;
     let mut found: Vec<[u32; 4]> = Vec::new();
     for row in 0..rows {
         let mut column = 0;
         while column < columns {
             let run = (column..columns)
-                .take_while(|column| is_filled(letter, *column, row))
+                .take_while(|column| is_filled(character, *column, row))
                 .count() as u32;
             if run == 0 {
                 column += 1;
@@ -87,15 +87,15 @@ fn rectangles(letter: char) -> Vec<[u32; 4]> {
 
 /// Text in the plane y = `front`, centred at x = 0 and z = `middle`, readable when looking along −y; `square` is the size of a
 /// square in metres.
-pub(crate) fn written(text: &str, square: f32, front: f32, middle: f32) -> Mesh {
-    let [columns, rows] = LETTER.map(|count| count as f32);
-    let letters = text.chars().count() as f32;
-    let left = square * ((columns + 1.0) * letters - 1.0) / 2.0;
+pub(crate) fn text_mesh(text: &str, square: f32, front: f32, middle: f32) -> Mesh {
+    let [columns, rows] = CHARACTER_SIZE.map(|count| count as f32);
+    let count = text.chars().count() as f32;
+    let left = square * ((columns + 1.0) * count - 1.0) / 2.0;
     let top = middle + square * rows / 2.0;
     let mut mesh = Mesh::default();
-    for (k, letter) in text.chars().enumerate() {
+    for (k, character) in text.chars().enumerate() {
         let start = left - square * (columns + 1.0) * k as f32;
-        for rectangle in rectangles(letter) {
+        for rectangle in rectangles(character) {
             let [column, row, wide, high] = rectangle.map(|count| square * count as f32);
             let ([x0, x1], [z0, z1]) = ([start - column, start - column - wide], [top - row, top - row - high]);
             let first = mesh.corners.len() as u32;
@@ -116,30 +116,32 @@ mod tests {
     fn font_is_sorted_and_its_characters_are_distinct() {
         assert!(
             FONT.windows(2).all(|pair| pair[0].0 < pair[1].0),
-            "binary search needs it"
+            "binary search needs a sorted font"
         );
-        for (k, (letter, rows)) in FONT.iter().enumerate() {
-            assert!(FONT[..k].iter().all(|(_, other)| other != rows), "{letter}");
+        for (k, (character, rows)) in FONT.iter().enumerate() {
+            assert!(FONT[..k].iter().all(|(_, other)| other != rows), "{character}");
         }
         assert_eq!(FONT.len(), 26 + 10 + 6 + 1);
     }
 
     #[test]
     fn rectangles_cover_exactly_the_filled_squares_once() {
-        for (letter, _) in FONT {
-            let rectangles = rectangles(*letter);
-            for (row, column) in (0..LETTER[1]).flat_map(|row| (0..LETTER[0]).map(move |column| (row, column))) {
+        for (character, _) in FONT {
+            let rectangles = rectangles(*character);
+            for (row, column) in
+                (0..CHARACTER_SIZE[1]).flat_map(|row| (0..CHARACTER_SIZE[0]).map(move |column| (row, column)))
+            {
                 let covers = |[left, top, wide, high]: &&[u32; 4]| {
                     (*left..left + wide).contains(&column) && (*top..top + high).contains(&row)
                 };
-                let times = rectangles.iter().filter(covers).count();
+                let num_covers = rectangles.iter().filter(covers).count();
                 assert_eq!(
-                    times,
-                    usize::from(is_filled(*letter, column, row)),
-                    "{letter}: {column}, {row}"
+                    num_covers,
+                    usize::from(is_filled(*character, column, row)),
+                    "{character}: {column}, {row}"
                 );
             }
-            assert!(rectangles.len() <= 11, "{letter}: {} rectangles", rectangles.len());
+            assert!(rectangles.len() <= 11, "{character}: {} rectangles", rectangles.len());
         }
         assert_eq!(rectangles('I'), [[1, 0, 3, 1], [2, 1, 1, 5], [1, 6, 3, 1]]);
     }

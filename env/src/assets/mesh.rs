@@ -5,11 +5,11 @@
 pub struct Mesh {
     /// Corners in metres; x east, y north, z up.
     pub corners: Vec<[f32; 3]>,
-    /// Three corners each.
+    /// Indices of three corners each.
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// Shapes for tests in other files.
+/// Simple shapes for tests in other files.
 #[cfg(test)]
 mod tests {
     use std::f32::consts::TAU;

@@ -1,4 +1,4 @@
-//! Meshes and colliders of objects, from built-in model files or from libraries.
+//! Meshes and colliders of objects, from built-in model files or libraries.
 
 mod blocks;
 mod builtin;
@@ -43,7 +43,7 @@ pub struct Asset {
     pub collider: ColliderShape,
     /// Height in metres.
     pub height: f32,
-    /// Largest distance of any corner from the upright axis in metres.
+    /// Largest distance of any corner from the vertical axis in metres.
     pub radius: f32,
     /// Whether class and model are known; otherwise this is the placeholder.
     pub known: bool,
@@ -63,26 +63,26 @@ struct Level {
 impl Asset {
     /// The coarsest level whose error is at most `error` metres at scale 1.
     pub(crate) fn level(&self, error: f32) -> &[Material] {
-        let good = self.levels.iter().rev().find(|level| level.error <= error);
-        good.or(self.levels.first()).map_or(&[], |level| &level.materials)
+        let accurate = self.levels.iter().rev().find(|level| level.error <= error);
+        accurate.or(self.levels.first()).map_or(&[], |level| &level.materials)
     }
 
-    /// An asset of these levels of detail, each with its error in metres; the first is the full model.
+    /// An asset with these levels of detail, each with its error in metres; the first is the full model.
     pub(crate) fn of_levels(levels: Vec<(f32, Vec<Part>)>, collider: ColliderShape) -> Self {
-        let drawn = levels.iter().map(|(error, parts)| Level {
+        let drawable = levels.iter().map(|(error, parts)| Level {
             error: *error,
             num_triangles: parts.iter().map(|part| part.mesh.triangles.len()).sum(),
             materials: parts.iter().map(Material::new).collect(),
         });
-        let drawn = drawn.collect();
+        let drawable = drawable.collect();
         let parts = levels.into_iter().next().map_or_else(Vec::new, |(_, parts)| parts);
         let corners = || parts.iter().flat_map(|part| &part.mesh.corners);
         Self {
             collider,
-            height: corners().fold(0.01_f32, |most, corner| most.max(corner[2])),
+            height: corners().fold(0.01_f32, |max, corner| max.max(corner[2])),
             radius: reach(corners()).max(0.01),
             known: true,
-            levels: drawn,
+            levels: drawable,
             parts,
         }
     }
@@ -181,7 +181,7 @@ pub enum ColliderShape {
 }
 
 impl ColliderShape {
-    /// Largest distance of the shape from its upright axis in metres at scale 1.
+    /// Largest distance of the shape from its vertical axis in metres at scale 1.
     pub fn radius(&self) -> f32 {
         match self {
             Self::Box { half: [x, y, _] } => (x * x + y * y).sqrt(),
@@ -191,9 +191,9 @@ impl ColliderShape {
     }
 }
 
-/// Largest distance of points from the upright axis.
+/// Largest distance of points from the vertical axis.
 fn reach<'a>(points: impl Iterator<Item = &'a [f32; 3]>) -> f32 {
-    points.fold(0.0, |most, [x, y, _]| most.max((x * x + y * y).sqrt()))
+    points.fold(0.0, |max, [x, y, _]| max.max((x * x + y * y).sqrt()))
 }
 
 /// The built-in asset of a class and model, built once and shared. Unknown ones get a placeholder.
@@ -211,8 +211,8 @@ pub fn asset_in(style: Style, class: &str, model: &Model) -> Arc<Asset> {
 
 /// Lowercases a class name; copies only if needed.
 pub(crate) fn lowercase(class: &str) -> Cow<'_, str> {
-    let is_small = |byte: u8| byte.is_ascii() && !byte.is_ascii_uppercase();
-    if class.bytes().all(is_small) {
+    let is_ascii_lowercase = |byte: u8| byte.is_ascii() && !byte.is_ascii_uppercase();
+    if class.bytes().all(is_ascii_lowercase) {
         Cow::Borrowed(class)
     } else {
         Cow::Owned(class.to_lowercase())
@@ -221,33 +221,33 @@ pub(crate) fn lowercase(class: &str) -> Cow<'_, str> {
 
 /// The built-in sign number `model` with text, built on first use and cached.
 pub(crate) fn sign(model: u32, text: &str, lettering: Lettering) -> Arc<Asset> {
-    type Made = HashMap<(u32, String, Lettering), Arc<Asset>>;
-    static MADE: LazyLock<Mutex<Made>> = LazyLock::new(Mutex::default);
+    type Cache = HashMap<(u32, String, Lettering), Arc<Asset>>;
+    static CACHE: LazyLock<Mutex<Cache>> = LazyLock::new(Mutex::default);
     // The cache stays valid after a panic: only finished assets are inserted.
-    let mut made = MADE.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut cache = CACHE.lock().unwrap_or_else(PoisonError::into_inner);
     let key = (model, text.to_owned(), lettering);
-    if let Some(asset) = made.get(&key) {
+    if let Some(asset) = cache.get(&key) {
         return Arc::clone(asset);
     }
     // Bounds the memory if new texts keep coming; assets in use stay alive.
-    if made.len() >= MOST_SIGNS {
-        made.clear();
+    if cache.len() >= MAX_CACHED_SIGNS {
+        cache.clear();
     }
     let bare = builtin::asset(Style::Plain, "sign", model).unwrap_or_else(builtin::placeholder);
     let asset = Arc::new(signs::sign(&bare, model, text, lettering));
-    made.insert(key, Arc::clone(&asset));
+    cache.insert(key, Arc::clone(&asset));
     asset
 }
 
 /// Maximum number of signs in the cache.
-const MOST_SIGNS: usize = 256;
+const MAX_CACHED_SIGNS: usize = 256;
 
-/// The built-in classes with their numbers of models, ordered by number in class segmentation.
+/// The built-in classes, each with its number of models, ordered by number in class segmentation.
 pub fn classes() -> impl Iterator<Item = (&'static str, u32)> {
     builtin::class_names().map(|class| (class, builtin::model_names(class).count() as u32))
 }
 
-/// The models of a built-in class, ordered by number: their names if they have any, otherwise their numbers; empty if the class
+/// The models of a built-in class, ordered by number: their names if they have any, otherwise their numbers. Empty if the class
 /// is not built in.
 ///
 /// # Example
@@ -257,7 +257,7 @@ pub fn classes() -> impl Iterator<Item = (&'static str, u32)> {
 /// assert_eq!(model_names("table").collect::<Vec<_>>(), ["1", "2", "3"]);
 /// let animals: Vec<String> = model_names("animal").collect();
 /// assert_eq!((animals[0].as_str(), animals[6].as_str()), ("rabbit", "wolf"));
-/// // Worlds may use either.
+/// // Worlds may use names or numbers.
 /// assert_eq!(asset("animal", &Model("7".into())).height, asset("animal", &Model("wolf".into())).height);
 /// ```
 pub fn model_names(class: &str) -> impl Iterator<Item = String> {

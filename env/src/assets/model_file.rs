@@ -1,4 +1,4 @@
-//! Reads the glTF files of built-in models; `docs/assets.md` describes their contents. `import/` reads and checks users' files.
+//! Reads the glTF files of built-in models, which `docs/assets.md` describes. `import/` reads and checks users' files.
 
 use std::sync::Arc;
 
@@ -9,7 +9,7 @@ use serde_json::Value;
 
 use super::{Asset, ColliderShape, Mesh, Paint, Part};
 
-/// A file embedded in the program: tests read all of them completely, so nothing can be missing.
+/// A file embedded in the program. Tests read all of them completely, so reading cannot fail.
 struct File {
     json: Value,
     buffers: Vec<Vec<u8>>,
@@ -20,7 +20,7 @@ type Levels = Vec<(f32, Vec<Part>)>;
 
 /// The models of a file with their names, in the order of their nodes.
 pub(super) fn read(text: &str) -> Vec<(String, Arc<Asset>)> {
-    let json: Value = serde_json::from_str(text).expect("a model file is JSON");
+    let json: Value = serde_json::from_str(text).expect("a model file is valid JSON");
     let buffers = list(&json["buffers"]).iter().map(decoded).collect();
     let file = File { json, buffers };
     let mut models: Vec<(&Value, Levels)> = Vec::new();
@@ -31,11 +31,11 @@ pub(super) fn read(text: &str) -> Vec<(String, Arc<Asset>)> {
             _ => models.push((node, vec![(0.0, parts)])),
         }
     }
-    let named = |(node, levels): (&Value, Levels)| {
+    let with_name = |(node, levels): (&Value, Levels)| {
         let name = node["name"].as_str().unwrap_or_default();
         (name.to_owned(), Arc::new(Asset::of_levels(levels, body(node))))
     };
-    models.into_iter().map(named).collect()
+    models.into_iter().map(with_name).collect()
 }
 
 impl File {
@@ -50,7 +50,7 @@ impl File {
         let indices = self.bytes(&primitive["indices"], 2);
         let corner = |bytes: &[u8; 12]| {
             let [x, y, z] = [0, 4, 8].map(|k| f32::from_le_bytes([bytes[k], bytes[k + 1], bytes[k + 2], bytes[k + 3]]));
-            // Converts axes: glTF's up is ours, its front is our north, and its x points west.
+            // Converts axes: glTF's up (+y) is our +z, its front (+z) our +y (north), and its +x our −x (west).
             [-x, z, y]
         };
         let triangle = |bytes: &[u8; 6]| [0, 2, 4].map(|k| u32::from(u16::from_le_bytes([bytes[k], bytes[k + 1]])));
@@ -81,12 +81,12 @@ fn index(value: &Value) -> usize {
 
 fn decoded(buffer: &Value) -> Vec<u8> {
     let uri = buffer["uri"].as_str().and_then(|uri| uri.split_once(','));
-    let (_, data) = uri.expect("a buffer of a model file is in the file");
-    BASE64_STANDARD.decode(data).expect("a buffer is base64")
+    let (_, data) = uri.expect("buffers are embedded in the model file");
+    BASE64_STANDARD.decode(data).expect("buffers are valid base64")
 }
 
 fn body(node: &Value) -> ColliderShape {
-    serde_json::from_value(node["extras"]["body"].clone()).expect("a model has a body")
+    serde_json::from_value(node["extras"]["body"].clone()).expect("every model has a body")
 }
 
 fn paint(material: &Value) -> Paint {

@@ -1,22 +1,22 @@
 //! Signs with text on their boards.
 
-use super::letters::{LETTER, written};
+use super::letters::{CHARACTER_SIZE, text_mesh};
 use super::{Asset, Paint, Part};
 
 const DARK: [f32; 3] = [0.06, 0.06, 0.08];
 const LIGHT: [f32; 3] = [0.97, 0.97, 0.95];
 
-/// Width and height of a board, and the height of its centre, in metres.
+/// Width and height of each kind of board, and the height of its centre, in metres.
 const POST: [f32; 2] = [1.3, 0.62];
 const WIDE: [f32; 2] = [2.2, 0.62];
-const MIDDLE: f32 = 1.15;
+const CENTRE: f32 = 1.15;
 
-/// Letters are drawn if their squares have at least this size in pixels, at the sign's distance from the camera.
-const READABLE: f32 = 1.6;
+/// Minimum size in pixels of a letter's squares in the image; smaller text is not drawn.
+const MIN_SQUARE_PIXELS: f32 = 1.6;
 
-/// Thickness of a board, and distance of letters in front of it, in metres.
-const THICK: f32 = 0.05;
-const BEFORE: f32 = 0.01;
+/// Thickness of a board, and the distance of letters in front of it, in metres.
+const THICKNESS: f32 = 0.05;
+const GAP: f32 = 0.01;
 
 /// Colour of letters.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -31,7 +31,7 @@ pub(crate) enum Lettering {
 impl Lettering {
     /// The lettering that is readable on a colour (sRGB).
     pub(crate) fn on([r, g, b]: [f32; 3]) -> Self {
-        // Luma weights; perceived middle grey is a little below a half in sRGB.
+        // Luma weights. In sRGB, perceived middle grey is slightly below one half.
         if 0.30 * r + 0.59 * g + 0.11 * b < 0.45 {
             Self::Light
         } else {
@@ -40,7 +40,7 @@ impl Lettering {
     }
 }
 
-/// The bare sign number `model` with text on its front. Letters are left out where their squares are below [`READABLE`] pixels,
+/// The sign number `model` with text on its front. Letters with squares smaller than [`MIN_SQUARE_PIXELS`] are not drawn,
 /// because they would flicker and be misread.
 pub(crate) fn sign(bare: &Asset, model: u32, text: &str, lettering: Lettering) -> Asset {
     if text.trim().is_empty() {
@@ -48,16 +48,16 @@ pub(crate) fn sign(bare: &Asset, model: u32, text: &str, lettering: Lettering) -
     }
     let [wide, high] = if model == 2 { WIDE } else { POST };
     let count = text.chars().count();
-    let [columns, rows] = LETTER.map(|count| count as f32);
+    let [columns, rows] = CHARACTER_SIZE.map(|count| count as f32);
     let square = (wide / ((columns + 1.0) * count as f32 + 1.0)).min(high / (rows + 2.0));
-    let letters = written(text, square, THICK / 2.0 + BEFORE, MIDDLE);
+    let letters = text_mesh(text, square, THICKNESS / 2.0 + GAP, CENTRE);
     let color = match lettering {
         Lettering::Dark => DARK,
         Lettering::Light => LIGHT,
     };
     let mut all = bare.parts.clone();
     all.push(Part::new(letters, Paint::Fixed(color)));
-    // An error of half a pixel is allowed: this many metres if a square is `READABLE` pixels wide.
-    let levels = vec![(0.0, all), (square / (2.0 * READABLE), bare.parts.clone())];
+    // The allowed error is half a pixel, which is this many metres if a square is `MIN_SQUARE_PIXELS` wide.
+    let levels = vec![(0.0, all), (square / (2.0 * MIN_SQUARE_PIXELS), bare.parts.clone())];
     Asset::of_levels(levels, bare.collider.clone())
 }

@@ -1,6 +1,6 @@
 //! Draws the images of a whole batch together, for renderers that are faster that way.
 
-use super::images::{ImagesMut, blank_unasked};
+use super::images::{ImagesMut, blank_unrequested};
 use super::slot::Slot;
 use crate::EnvError;
 use crate::render::{Picture, Renderer};
@@ -19,8 +19,8 @@ pub(super) fn draw(
         .enumerate()
         .filter(|(env, (slot, _))| is_chosen(*env, slot))
         .map(|(_, (slot, mut target))| {
-            if let Some(asked) = slot.blanks() {
-                blank_unasked(&mut target, asked);
+            if let Some(requested) = slot.reduced_modalities() {
+                blank_unrequested(&mut target, requested);
             }
             (slot, target)
         })

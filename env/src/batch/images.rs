@@ -6,7 +6,7 @@ use super::options::MAX_BATCH_BYTES;
 use crate::EnvError;
 use crate::render::{DepthForm, FAR_DEPTH, Target, gray, millimetres};
 
-/// The layout of a batch's images, the same for all environments.
+/// The layout of a batch's images; all environments share it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ImageLayout {
     /// Width in pixels.
@@ -19,12 +19,12 @@ pub struct ImageLayout {
     pub modalities: Vec<Modality>,
     /// Features of the state vectors.
     pub state_features: Vec<StateFeature>,
-    /// Length of the instruction that follows these features.
+    /// Length of the instruction, which follows the features in the state vector.
     pub instruction_len: usize,
 }
 
 impl ImageLayout {
-    /// The images that a world requests.
+    /// The layout that a world requests.
     pub fn of(world: &World) -> Self {
         let agent = &world.agent_params;
         Self {
@@ -37,12 +37,15 @@ impl ImageLayout {
         }
     }
 
-    /// Whether a world's images fit this layout: the same size, and no modality that the layout lacks.
+    /// Checks that a world's images fit this layout: they have the same size, and no modality that the layout lacks.
     pub(super) fn check(&self, env: usize, world: &World) -> Result<(), EnvError> {
         let agent = &world.agent_params;
         if [self.width, self.height] == agent.picture_size()
             && self.supersampling == agent.supersampling
-            && agent.modalities.iter().all(|asked| self.modalities.contains(asked))
+            && agent
+                .modalities
+                .iter()
+                .all(|requested| self.modalities.contains(requested))
             && self.state_features == agent.state_features
             && self.instruction_len == agent.instruction.len()
         {
@@ -57,19 +60,19 @@ impl ImageLayout {
 
     /// Bytes of one environment's images.
     pub(super) fn bytes(&self, form: DepthForm) -> u64 {
-        let of_depth = match form {
+        let depth_bytes = match form {
             DepthForm::Metres => 4,
             DepthForm::Millimetres => 4 + 2,
             DepthForm::Gray => 4 + 1,
         };
-        let of_pixel = |modality: &Modality| match modality {
+        let bytes_per_pixel = |modality: &Modality| match modality {
             Modality::Rgb => 3,
-            Modality::Depth => of_depth,
+            Modality::Depth => depth_bytes,
             Modality::Segmentation => 1,
             Modality::Class => 2,
             Modality::Instance => 4,
         };
-        self.modalities.iter().map(of_pixel).sum::<u64>() * self.num_pixels() as u64
+        self.modalities.iter().map(bytes_per_pixel).sum::<u64>() * self.num_pixels() as u64
     }
 
     /// Pixels of one image.
@@ -104,8 +107,8 @@ impl std::fmt::Display for ImageLayout {
     }
 }
 
-/// The images of all environments of a batch, one after another; row 0 on top. Buffers of modalities that the layout lacks are
-/// empty. Images that the layout has but an environment's world does not request are 0 everywhere.
+/// The images of all environments of a batch, one after another; row 0 on top. Modalities that the layout lacks have empty
+/// buffers. A modality of the layout that an environment's world does not request is 0 everywhere.
 #[derive(Clone, Debug)]
 pub struct Images {
     /// Sizes and modalities.
@@ -122,19 +125,19 @@ pub struct Images {
     pub category: Vec<u8>,
     /// Object class, `(num_envs, height, width)`.
     pub class: Vec<u16>,
-    /// Object, `(num_envs, height, width)`: its index plus 1, or 0 for none.
+    /// Object index plus 1, or 0 for none, `(num_envs, height, width)`.
     pub instance: Vec<u32>,
 }
 
 impl Images {
-    /// Blank images, for environments that have not begun.
+    /// Blank images for environments whose episodes have not begun.
     ///
     /// # Errors
     /// [`EnvError::BatchMemory`] if memory is not available.
     pub(super) fn new(layout: ImageLayout, num_envs: usize, form: DepthForm) -> Result<Self, EnvError> {
         let pixels = |modality: Modality| {
-            let wanted = usize::from(layout.modalities.contains(&modality));
-            wanted * num_envs * layout.num_pixels()
+            let is_wanted = usize::from(layout.modalities.contains(&modality));
+            is_wanted * num_envs * layout.num_pixels()
         };
         let depth = pixels(Modality::Depth);
         Ok(Self {
@@ -194,11 +197,11 @@ impl<'a> ImagesMut<'a> {
             width: self.size[0],
             height: self.size[1],
             supersampling: self.supersampling,
-            rgb: wanted(self.rgb),
-            depth: wanted(self.depth),
-            category: wanted(self.category),
-            class: wanted(self.class),
-            instance: wanted(self.instance),
+            rgb: non_empty(self.rgb),
+            depth: non_empty(self.depth),
+            category: non_empty(self.category),
+            class: non_empty(self.class),
+            instance: non_empty(self.instance),
         }
     }
 
@@ -220,7 +223,7 @@ impl<'a> ImagesMut<'a> {
     }
 
     /// Converts the rendered depth of one environment, by its index in this view, to the chosen format.
-    pub(super) fn form_depth(&mut self, env: usize) {
+    pub(super) fn convert_depth(&mut self, env: usize) {
         let pixels = self.size[0] as usize * self.size[1] as usize;
         let drawn = env * pixels..(env + 1) * pixels;
         if !self.depth_millimetres.is_empty() {
@@ -248,24 +251,25 @@ impl<'a> ImagesMut<'a> {
 }
 
 /// Clears the images that a world does not request, and removes them from the render target.
-pub(super) fn blank_unasked(target: &mut Target<'_>, asked: &[Modality]) {
-    fn blank<T: Default + Clone>(image: &mut Option<&mut [T]>, is_asked: bool) {
-        if !is_asked && let Some(image) = image.take() {
+pub(super) fn blank_unrequested(target: &mut Target<'_>, requested: &[Modality]) {
+    fn blank<T: Default + Clone>(image: &mut Option<&mut [T]>, is_requested: bool) {
+        if !is_requested && let Some(image) = image.take() {
             image.fill(T::default());
         }
     }
-    let is_asked = |modality| asked.contains(&modality);
-    blank(&mut target.rgb, is_asked(Modality::Rgb));
-    blank(&mut target.depth, is_asked(Modality::Depth));
-    blank(&mut target.category, is_asked(Modality::Segmentation));
-    blank(&mut target.class, is_asked(Modality::Class));
-    blank(&mut target.instance, is_asked(Modality::Instance));
+    let is_requested = |modality| requested.contains(&modality);
+    blank(&mut target.rgb, is_requested(Modality::Rgb));
+    blank(&mut target.depth, is_requested(Modality::Depth));
+    blank(&mut target.category, is_requested(Modality::Segmentation));
+    blank(&mut target.class, is_requested(Modality::Class));
+    blank(&mut target.instance, is_requested(Modality::Instance));
 }
 
 /// A buffer of `length` copies of a value.
 ///
 /// # Errors
-/// [`EnvError::BatchMemory`] if memory is not available: the caller chose the size, so running out must not abort the process.
+/// [`EnvError::BatchMemory`] if memory is not available. The caller chooses the size, so running out must not abort the
+/// process.
 pub(super) fn filled<T: Clone>(value: T, length: usize) -> Result<Vec<T>, EnvError> {
     let mut buffer = Vec::new();
     buffer.try_reserve_exact(length).map_err(|_| EnvError::BatchMemory {
@@ -276,7 +280,7 @@ pub(super) fn filled<T: Clone>(value: T, length: usize) -> Result<Vec<T>, EnvErr
     Ok(buffer)
 }
 
-fn wanted<T>(all: &mut [T]) -> Option<&mut [T]> {
+fn non_empty<T>(all: &mut [T]) -> Option<&mut [T]> {
     (!all.is_empty()).then_some(all)
 }
 

@@ -22,14 +22,14 @@ use crate::recording::Recording;
 use crate::render::{CpuRenderer, Renderer, RendererKind};
 use crate::sim::{Action, EndedBy, Environment, Event};
 
-/// Maximum number of threads of a batch per processor: more would only take turns.
+/// Maximum number of threads of a batch per processor; more would only take turns.
 const THREADS_PER_PROCESSOR: usize = 4;
 
 /// `num_envs` environments that step together.
 ///
-/// Each behaves exactly as a single [`Environment`] would, whatever the number of threads. A step in which no episode begins
-/// allocates nothing, except that with several threads it allocates a small block for each thread but its own. Worlds allocate
-/// in steps in which something is pushed or respawns, bodies overlap, or an agent on rails chooses where to go.
+/// Each behaves exactly as a single [`Environment`] would, regardless of the number of threads. A step in which no episode
+/// begins allocates nothing, except a small block for each additional thread. Worlds allocate in steps in which something is
+/// pushed or respawns, bodies overlap, or an agent on rails chooses a destination.
 ///
 /// # Example
 /// ```
@@ -59,11 +59,11 @@ impl Batch {
     /// Creates environments at the start of their episode 0, with their first observations rendered.
     ///
     /// # Errors
-    /// [`EnvError::BatchSize`] for no environments, or more than [`MAX_ENVS`]; [`EnvError::BatchMemory`] if outputs would take
-    /// more than [`MAX_BATCH_BYTES`], or more than is available; [`EnvError::BatchWorld`] if the source has no world;
+    /// [`EnvError::BatchSize`] unless there are 1 to [`MAX_ENVS`] environments; [`EnvError::BatchMemory`] if outputs would take
+    /// more memory than [`MAX_BATCH_BYTES`] or than is available; [`EnvError::BatchWorld`] if the source has no world;
     /// [`EnvError::BatchImages`] if worlds request images of different sizes, or modalities that the batch lacks;
     /// [`EnvError::BatchThreads`] if threads cannot be started; [`EnvError::NoGpu`] if a GPU is requested and none works; and
-    /// those of [`Renderer::draw_batch`].
+    /// the errors of [`Renderer::draw_batch`].
     pub fn new(num_envs: usize, source: WorldSource, options: BatchOptions) -> Result<Self, EnvError> {
         Self::with_catalogue(num_envs, source, options, &Catalogue::default())
     }
@@ -71,23 +71,23 @@ impl Batch {
     /// Like [`Batch::new`], with assets from a catalogue for all environments and episodes.
     ///
     /// # Errors
-    /// As [`Batch::new`].
+    /// The errors of [`Batch::new`].
     pub fn with_catalogue(
         num_envs: usize,
         source: WorldSource,
         options: BatchOptions,
         catalogue: &Catalogue,
     ) -> Result<Self, EnvError> {
-        Self::with_catalogue_while(num_envs, source, options, catalogue, &always)
+        Self::with_catalogue_while(num_envs, source, options, catalogue, &never_stop)
     }
 
     /// Like [`Batch::with_catalogue`], but stops when `go_on` returns false.
     ///
     /// # Errors
-    /// As [`Batch::new`], and [`EnvError::Stopped`].
+    /// The errors of [`Batch::new`], and [`EnvError::Stopped`] if `go_on` returned false.
     #[expect(
         clippy::needless_pass_by_value,
-        reason = "a source is made for its batch; callers keep a clone if they want one"
+        reason = "a source belongs to its batch; callers keep a clone if they need one"
     )]
     pub fn with_catalogue_while(
         num_envs: usize,
@@ -111,7 +111,7 @@ impl Batch {
         let first = Slot::new(0, world, &source, &layout, catalogue, limit)?;
         // Checks memory before allocating anything large.
         let copies = 1 + u64::from(options.autoreset == Autoreset::SameStep);
-        expect_room(copies * Outputs::bytes(&layout, options.depth, state_len, num_envs))?;
+        check_memory(copies * Outputs::bytes(&layout, options.depth, state_len, num_envs))?;
         let threads = threads(options.num_threads, num_envs);
         // The calling thread works too, unless a GPU draws the images.
         let pool = match threads - usize::from(graphics.is_none()) {
@@ -164,8 +164,8 @@ impl Batch {
         &self.outputs
     }
 
-    /// With [`Autoreset::SameStep`], the last observation, reward and flags of each environment whose episode ended in the last
-    /// step: those that the outputs mark as terminated or truncated. Other environments' entries are stale.
+    /// With [`Autoreset::SameStep`], the last observation, reward and flags of each episode that ended in the last step. The
+    /// outputs mark these environments as terminated or truncated; entries of the others are stale.
     pub fn final_outputs(&self) -> Option<&Outputs> {
         self.finals.as_ref()
     }
@@ -199,8 +199,8 @@ impl Batch {
         }
     }
 
-    /// The recording of an environment's current episode; before that episode's first step, as after an automatic
-    /// reset, the recording of the previous one, if there is one. `None` unless [`Batch::set_recording`] requested it.
+    /// The recording of an environment's current episode. Before that episode's first step, for example after an automatic
+    /// reset, it is the recording of the previous episode, if any. `None` unless [`Batch::set_recording`] requested it.
     pub fn recording(&self, env: usize) -> Option<Recording> {
         self.slots.get(env)?.recording()
     }
@@ -215,10 +215,10 @@ impl Batch {
         self.slots.get(env).map(|slot| slot.steps)
     }
 
-    /// Sets the number of steps taken, for an episode that began elsewhere.
+    /// Sets the number of steps already taken, for an episode that began elsewhere.
     ///
     /// # Errors
-    /// [`EnvError::NoSuchEnv`].
+    /// [`EnvError::NoSuchEnv`] if there is no such environment.
     pub fn set_episode_steps(&mut self, env: usize, steps: u32) -> Result<(), EnvError> {
         let num_envs = self.slots.len();
         let slot = self.slots.get_mut(env);
@@ -230,11 +230,11 @@ impl Batch {
     /// Begins the next episode in every environment, whether its current one has ended or not.
     ///
     /// # Errors
-    /// [`EnvError::BatchWorld`] and [`EnvError::BatchImages`] for the first environment that gets no world: all others have
-    /// begun.
+    /// [`EnvError::BatchWorld`] or [`EnvError::BatchImages`] for the first environment that gets no suitable world; all others
+    /// have begun.
     pub fn reset(&mut self) -> Result<(), EnvError> {
         self.begin_next(|_| true);
-        let go_on = &always;
+        let go_on = &never_stop;
         self.work(Work::Reset { chosen: &[], go_on })
     }
 
@@ -242,11 +242,11 @@ impl Batch {
     /// stay.
     ///
     /// # Errors
-    /// [`EnvError::BatchLength`] unless `chosen` has one entry per environment; those of [`Batch::reset`];
-    /// [`EnvError::Stopped`] if some have not begun: they do so with the next reset, or, with automatic resets, with the next
-    /// step.
+    /// [`EnvError::BatchLength`] unless `chosen` has one entry per environment; the errors of [`Batch::reset`];
+    /// [`EnvError::Stopped`] if `go_on` returned false before all chosen environments had begun. The rest begin with the next
+    /// reset or, with automatic resets, with the next step.
     pub fn reset_where_while(&mut self, chosen: &[bool], go_on: GoOn<'_>) -> Result<(), EnvError> {
-        self.expect_one_each(chosen.len())?;
+        self.check_length(chosen.len())?;
         self.begin_next(|env| chosen[env]);
         self.work(Work::Reset { chosen, go_on })
     }
@@ -262,11 +262,11 @@ impl Batch {
     /// Steps every environment with one action each, in order. The results are in [`Batch::outputs`].
     ///
     /// # Errors
-    /// [`EnvError::BatchLength`] and [`EnvError::BatchAction`] before anything has changed. [`EnvError::BatchWorld`] and
-    /// [`EnvError::BatchImages`] if the next episode of an environment cannot begin: the others have stepped, and the next step
-    /// requests that world again.
+    /// [`EnvError::BatchLength`] and [`EnvError::BatchAction`] if the actions are invalid; nothing has changed then.
+    /// [`EnvError::BatchWorld`] and [`EnvError::BatchImages`] if the next episode of an environment cannot begin; the others
+    /// have stepped, and the next step requests that world again.
     pub fn step(&mut self, actions: &[Action]) -> Result<(), EnvError> {
-        self.expect_one_each(actions.len())?;
+        self.check_length(actions.len())?;
         for (env, (slot, action)) in self.slots.iter().zip(actions).enumerate() {
             let checked = slot.check(*action, self.autoreset);
             checked.map_err(|error| EnvError::BatchAction {
@@ -278,7 +278,7 @@ impl Batch {
         self.work(Work::Step { actions, autoreset })
     }
 
-    fn expect_one_each(&self, found: usize) -> Result<(), EnvError> {
+    fn check_length(&self, found: usize) -> Result<(), EnvError> {
         let num_envs = self.slots.len();
         if found == num_envs {
             Ok(())
@@ -287,16 +287,16 @@ impl Batch {
         }
     }
 
-    /// What draws the images: the CPU or a GPU.
+    /// The kind of renderer that draws the images.
     pub fn renderer(&self) -> RendererKind {
         self.graphics.as_ref().map_or(RendererKind::Cpu, Renderer::kind)
     }
 
     fn work(&mut self, work: Work<'_>) -> Result<(), EnvError> {
         if self.graphics.is_none() {
-            return self.go(work, Drawing::Now);
+            return self.run_parts(work, Drawing::Now);
         }
-        let mut outcome = self.go(work, Drawing::Later);
+        let mut outcome = self.run_parts(work, Drawing::Later);
         if let Some(finals) = &mut self.finals
             && matches!(work, Work::Step { .. })
         {
@@ -305,22 +305,24 @@ impl Batch {
                 self.pool.as_ref(),
                 &self.slots,
                 finals,
-                |_, slot| slot.ends_late(),
+                |_, slot| slot.awaits_last_image(),
             );
-            outcome = outcome.and(last).and(self.go(Work::BeginLate, Drawing::Later));
+            outcome = outcome
+                .and(last)
+                .and(self.run_parts(Work::BeginAfterLastImage, Drawing::Later));
         }
         let chosen = match work {
             Work::Reset { chosen, .. } => chosen,
-            Work::Step { .. } | Work::BeginLate => &[],
+            Work::Step { .. } | Work::BeginAfterLastImage => &[],
         };
         let (pool, outputs) = (self.pool.as_ref(), &mut self.outputs);
-        let drawn = draw_together(&mut self.graphics, pool, &self.slots, outputs, |env, _| {
+        let result = draw_together(&mut self.graphics, pool, &self.slots, outputs, |env, _| {
             chosen.get(env) != Some(&false)
         });
-        outcome.and(drawn)
+        outcome.and(result)
     }
 
-    fn go(&mut self, work: Work<'_>, drawing: Drawing) -> Result<(), EnvError> {
+    fn run_parts(&mut self, work: Work<'_>, drawing: Drawing) -> Result<(), EnvError> {
         let part = Part {
             slots: &mut self.slots,
             outputs: self.outputs.view(),
@@ -331,18 +333,18 @@ impl Batch {
     }
 }
 
-fn always() -> bool {
+fn never_stop() -> bool {
     true
 }
 
 /// Number of threads: as many as requested, but no more than can be kept busy.
-fn threads(asked: usize, num_envs: usize) -> usize {
+fn threads(requested: usize, num_envs: usize) -> usize {
     let processors = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
-    let wanted = if asked == 0 { processors } else { asked };
+    let wanted = if requested == 0 { processors } else { requested };
     wanted.min(num_envs).min(THREADS_PER_PROCESSOR * processors)
 }
 
-fn expect_room(bytes: u64) -> Result<(), EnvError> {
+fn check_memory(bytes: u64) -> Result<(), EnvError> {
     if bytes <= MAX_BATCH_BYTES {
         return Ok(());
     }
@@ -369,7 +371,7 @@ fn draw_together(
     let mut images = outputs.images.view();
     for (env, slot) in slots.iter().enumerate() {
         if is_chosen(env, slot) {
-            images.form_depth(env);
+            images.convert_depth(env);
         }
     }
     Ok(())

@@ -17,7 +17,7 @@ pub struct Outputs {
     pub rewards: Vec<f64>,
     /// Whether the last step terminated the episode, `(num_envs,)`.
     pub terminated: Vec<bool>,
-    /// Whether the last step reached the limit, `(num_envs,)`.
+    /// Whether the last step truncated the episode, `(num_envs,)`.
     pub truncated: Vec<bool>,
     /// Whether the last step ended the episode as a success, `(num_envs,)`.
     pub success: Vec<bool>,
@@ -35,7 +35,7 @@ pub(super) struct OutputsMut<'a> {
 }
 
 impl Outputs {
-    /// Blank outputs, for environments that have not begun.
+    /// Blank outputs for environments whose episodes have not begun.
     ///
     /// # Errors
     /// [`EnvError::BatchMemory`] if memory is not available.
@@ -56,7 +56,7 @@ impl Outputs {
         })
     }
 
-    /// Their size in bytes.
+    /// Size of the outputs in bytes.
     pub(super) fn bytes(layout: &ImageLayout, form: DepthForm, state_len: usize, num_envs: usize) -> u64 {
         let flags = size_of::<f64>() + 3 * size_of::<bool>();
         let numbers = (state_len * size_of::<f32>() + flags) as u64;
@@ -101,7 +101,7 @@ impl OutputsMut<'_> {
     }
 
     /// Stores a step's reward and flags.
-    pub(super) fn note(&mut self, env: usize, step: &crate::sim::Step) {
+    pub(super) fn record(&mut self, env: usize, step: &crate::sim::Step) {
         self.rewards[env] = step.reward;
         self.terminated[env] = step.terminated;
         self.truncated[env] = step.truncated;

@@ -1,4 +1,4 @@
-//! Shares the work of a step or a reset among threads: each takes a part of the environments.
+//! Divides the work of a step or a reset among threads; each thread takes parts of the environments.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -11,18 +11,18 @@ use crate::prefetch::prefetch;
 use crate::render::CpuRenderer;
 use crate::sim::Action;
 
-/// Number of parts per thread into which the rest of a batch is divided: several, because environments near many objects take
-/// longer.
+/// Number of parts per thread into which the rest of a batch is divided. It exceeds 1 because environments near many objects
+/// take longer.
 const PARTS_PER_THREAD: usize = 4;
 
-/// How often to check whether the other threads have finished, before sleeping: about 100 µs.
-const MOST_SPINS: u32 = 3_000;
+/// Maximum number of checks whether the other threads have finished, before sleeping; together they take about 100 µs.
+const MAX_SPINS: u32 = 3_000;
 
-/// Number of environments that stay in a processor's cache: in larger parts, they are prefetched.
-const MOST_CACHED: usize = 32;
+/// Maximum number of environments that stay in a processor's cache; in larger parts, they are prefetched.
+const MAX_CACHED_ENVS: usize = 32;
 
-/// Maximum number of bytes of an image to prefetch: beyond that, the processor itself detects that they are written in order.
-const MOST_PREFETCHED: usize = 1 << 14;
+/// Maximum number of bytes of an image to prefetch. Beyond that, the processor itself detects that they are written in order.
+const MAX_PREFETCHED_BYTES: usize = 1 << 14;
 
 /// A part of a batch for one step or reset.
 pub(super) struct Part<'a> {
@@ -53,11 +53,11 @@ pub(super) enum Work<'a> {
         go_on: GoOn<'a>,
     },
     /// Begins the next episodes of environments whose last image had to be drawn first.
-    BeginLate,
+    BeginAfterLastImage,
 }
 
 impl Part<'_> {
-    /// Does the work on this thread and on those of a pool, with a renderer for each: every thread that is free takes a few
+    /// Does the work on this thread and on those of a pool, with one renderer per thread. Each free thread takes a few
     /// environments.
     pub(super) fn run(
         self,
@@ -75,7 +75,7 @@ impl Part<'_> {
         let rest = Mutex::new((0, Some(self)));
         let earliest: Mutex<Option<(usize, EnvError)>> = Mutex::new(None);
         let busy = AtomicUsize::new(others.len());
-        let take_turns = |renderer: &mut CpuRenderer| {
+        let run_until_done = |renderer: &mut CpuRenderer| {
             while let Some((first, part)) = take(&rest, num_threads) {
                 if let Err(error) = part.run_here(first, renderer, work) {
                     let mut earliest = earliest.lock().unwrap_or_else(PoisonError::into_inner);
@@ -88,13 +88,13 @@ impl Part<'_> {
         pool.in_place_scope(|scope| {
             for renderer in others {
                 scope.spawn(|_| {
-                    take_turns(renderer);
+                    run_until_done(renderer);
                     busy.fetch_sub(1, Ordering::Release);
                 });
             }
-            take_turns(own);
-            // The others are about to finish, and sleeping would take longer than that.
-            for _ in 0..MOST_SPINS {
+            run_until_done(own);
+            // The others are about to finish, which takes less time than going to sleep.
+            for _ in 0..MAX_SPINS {
                 if busy.load(Ordering::Acquire) == 0 {
                     break;
                 }
@@ -135,13 +135,13 @@ impl Part<'_> {
         if let Some(slot) = after(1) {
             slot.environment.prefetch_contents();
             let colors = self.outputs.images.target(index + 1).rgb;
-            colors.inspect(|colors| prefetch(&colors[..colors.len().min(MOST_PREFETCHED)]));
+            colors.inspect(|colors| prefetch(&colors[..colors.len().min(MAX_PREFETCHED_BYTES)]));
         }
     }
 
     fn run_here(mut self, first: usize, renderer: &mut CpuRenderer, work: Work<'_>) -> Result<(), EnvError> {
         let mut outcome = Ok(());
-        let is_prefetched = matches!(work, Work::Step { .. }) && self.slots.len() > MOST_CACHED;
+        let is_prefetched = matches!(work, Work::Step { .. }) && self.slots.len() > MAX_CACHED_ENVS;
         for index in 0..self.slots.len() {
             if is_prefetched {
                 self.prefetch_after(index);
@@ -149,7 +149,7 @@ impl Part<'_> {
             let slot = &mut self.slots[index];
             let env = first + index;
             let renderer = (self.drawing == Drawing::Now).then_some(&mut *renderer);
-            let done = match work {
+            let result = match work {
                 Work::Reset { chosen, .. } if chosen.get(env) == Some(&false) => Ok(()),
                 Work::Reset { go_on, .. } if !go_on() => Err(EnvError::Stopped),
                 Work::Reset { .. } => slot.reset(index, &mut self.outputs, renderer),
@@ -161,16 +161,16 @@ impl Part<'_> {
                     self.finals.as_mut(),
                     renderer,
                 ),
-                Work::BeginLate => slot.begin_late(index, &mut self.outputs),
+                Work::BeginAfterLastImage => slot.begin_after_last_image(index, &mut self.outputs),
             };
-            outcome = outcome.and(done);
+            outcome = outcome.and(result);
         }
         outcome
     }
 }
 
-/// Takes the next environments that no thread has taken, with the index of the first: fewer and fewer, so that all threads
-/// finish at about the same time. `None` if none are left.
+/// Takes the next environments that no thread has taken yet, and the index of the first. Takes fewer each time, so that all
+/// threads finish at about the same time. `None` if none are left.
 fn take<'a>(rest: &Mutex<(usize, Option<Part<'a>>)>, num_threads: usize) -> Option<(usize, Part<'a>)> {
     let mut rest = rest.lock().unwrap_or_else(PoisonError::into_inner);
     let (first, part) = (rest.0, rest.1.take()?);

@@ -1,11 +1,11 @@
-//! One environment of a batch: fetches its worlds, and handles the end of episodes.
+//! [`Slot`]: one environment of a batch, which fetches its worlds and handles the ends of its episodes.
 
 use std::num::NonZeroU32;
 use std::sync::Arc;
 
 use driftworld_spec::{Modality, World};
 
-use super::images::{ImageLayout, blank_unasked};
+use super::images::{ImageLayout, blank_unrequested};
 use super::options::{Autoreset, Episode, WorldSource};
 use super::outputs::OutputsMut;
 use crate::EnvError;
@@ -29,9 +29,9 @@ pub(super) struct Slot {
     /// Steps of the current episode, and its limit.
     pub(super) steps: u32,
     limit: Option<NonZeroU32>,
-    /// Records the episode if requested, and keeps the recording of the one before.
+    /// Records the episode, if requested; `previous` is the recording of the previous episode.
     recorder: Option<Box<Recorder>>,
-    before: Option<Box<Recording>>,
+    previous: Option<Box<Recording>>,
 }
 
 impl Slot {
@@ -57,23 +57,23 @@ impl Slot {
             steps: 0,
             limit,
             recorder: None,
-            before: None,
+            previous: None,
         })
     }
 
     /// Starts or stops recording.
     pub(super) fn set_recording(&mut self, records: bool) {
         self.recorder = records.then(|| Box::new(Recorder::from_now(&self.environment)));
-        self.before = None;
+        self.previous = None;
     }
 
-    /// The recording of the current episode; before its first step that of the previous one, if any.
+    /// The recording of the current episode; before its first step, the recording of the previous one, if any.
     pub(super) fn recording(&self) -> Option<Recording> {
         let recorder = self.recorder.as_ref()?;
-        if recorder.num_steps() == 0 && self.before.is_some() {
-            return self.before.as_deref().cloned();
+        if recorder.num_steps() == 0 && self.previous.is_some() {
+            return self.previous.as_deref().cloned();
         }
-        // An end before the first recorded step belongs to an earlier episode.
+        // Without recorded steps, the end belongs to an earlier episode.
         let ended_by = self.step.ended_by.filter(|_| recorder.num_steps() > 0);
         Some(recorder.recording(&self.environment, ended_by))
     }
@@ -91,7 +91,7 @@ impl Slot {
         self.is_over |= self.limit.is_some_and(|limit| steps >= limit.get());
     }
 
-    /// Whether the action is valid now.
+    /// Checks that the action is valid now.
     pub(super) fn check(&self, action: Action, autoreset: Autoreset) -> Result<(), EnvError> {
         if !self.is_over {
             return self.environment.check(action);
@@ -103,16 +103,20 @@ impl Slot {
     }
 
     /// Begins the next episode after a same-step reset, once the last image has been drawn.
-    pub(super) fn begin_late(&mut self, index: usize, outputs: &mut OutputsMut<'_>) -> Result<(), EnvError> {
-        if self.ends_late() {
+    pub(super) fn begin_after_last_image(
+        &mut self,
+        index: usize,
+        outputs: &mut OutputsMut<'_>,
+    ) -> Result<(), EnvError> {
+        if self.awaits_last_image() {
             self.begin()?;
             self.environment.write_state(outputs.state(index))?;
         }
         Ok(())
     }
 
-    /// Whether the last step ended the episode and the next one has not begun.
-    pub(super) fn ends_late(&self) -> bool {
+    /// Whether the last step ended the episode and the next episode has not begun.
+    pub(super) fn awaits_last_image(&self) -> bool {
         self.is_over && self.step.ended()
     }
 
@@ -127,7 +131,7 @@ impl Slot {
             self.begin()?;
         }
         self.step.clear();
-        outputs.note(index, &self.step);
+        outputs.record(index, &self.step);
         self.observe(index, outputs, renderer)
     }
 
@@ -141,7 +145,7 @@ impl Slot {
         mut renderer: Option<&mut CpuRenderer>,
     ) -> Result<(), EnvError> {
         if self.is_over {
-            // Next-step autoreset, or an episode that could not begin when it was due.
+            // Either autoreset is next-step, or an episode could not begin when it was due.
             return self.reset(index, outputs, renderer);
         }
         self.environment.step_into(action, &mut self.step)?;
@@ -153,13 +157,13 @@ impl Slot {
             self.step.truncated = true;
             self.step.ended_by.get_or_insert(EndedBy::Steps);
         }
-        outputs.note(index, &self.step);
+        outputs.record(index, &self.step);
         self.is_over = self.step.ended();
         if let (true, Autoreset::SameStep, Some(finals)) = (self.is_over, autoreset, finals) {
-            finals.note(index, &self.step);
+            finals.record(index, &self.step);
             self.observe(index, finals, renderer.as_deref_mut())?;
             if renderer.is_none() {
-                // The last image is still to be drawn: see `begin_late`.
+                // The last image is still to be drawn: see `begin_after_last_image`.
                 return Ok(());
             }
             self.begin()?;
@@ -167,34 +171,34 @@ impl Slot {
         self.observe(index, outputs, renderer)
     }
 
-    /// Fetches the next world and enters it; on error the slot stays unchanged.
+    /// Fetches the next world and begins an episode in it. On error the slot stays unchanged.
     fn begin(&mut self) -> Result<(), EnvError> {
         let world = world_of(&self.source, self.env, self.next)?;
         self.layout.check(self.env, &world)?;
         if let Some(recorder) = &mut self.recorder {
             if recorder.num_steps() > 0 {
-                self.before = Some(Box::new(recorder.recording(&self.environment, self.step.ended_by)));
+                self.previous = Some(Box::new(recorder.recording(&self.environment, self.step.ended_by)));
             }
             recorder.begin(world.clone());
         }
         self.environment.reset(world);
         self.current = self.next;
         self.next = self.next.saturating_add(1);
-        // A world that was saved after its end has no steps left.
+        // A world that was saved after the end of its episode has no steps left.
         self.is_over = self.environment.ended();
         self.steps = 0;
         Ok(())
     }
 
     /// The modalities that its world requests, if fewer than the layout's.
-    pub(super) fn blanks(&self) -> Option<&[Modality]> {
-        let asked = &self.environment.world().agent_params.modalities;
-        let is_less = self.layout.modalities.iter().any(|there| !asked.contains(there));
-        is_less.then_some(asked)
+    pub(super) fn reduced_modalities(&self) -> Option<&[Modality]> {
+        let requested = &self.environment.world().agent_params.modalities;
+        let requests_fewer = self.layout.modalities.iter().any(|there| !requested.contains(there));
+        requests_fewer.then_some(requested)
     }
 
-    /// Writes the state vector, and the images if there is a renderer; otherwise they are drawn later, for all environments
-    /// together.
+    /// Writes the state vector, and the images if there is a renderer. Otherwise the images are drawn later, for all
+    /// environments together.
     fn observe(
         &self,
         index: usize,
@@ -205,15 +209,15 @@ impl Slot {
         let Some(renderer) = renderer else { return Ok(()) };
         let camera = self.environment.camera();
         let mut target = outputs.images.target(index);
-        if let Some(asked) = self.blanks() {
-            blank_unasked(&mut target, asked);
+        if let Some(requested) = self.reduced_modalities() {
+            blank_unrequested(&mut target, requested);
         }
         if !target.is_empty() {
             let scene = self.environment.scene();
             renderer.draw(scene, &camera, &mut target)?;
             renderer.draw_carried(scene, self.environment.shown_carried(), &mut target);
         }
-        outputs.images.form_depth(index);
+        outputs.images.convert_depth(index);
         Ok(())
     }
 }

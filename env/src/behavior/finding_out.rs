@@ -1,4 +1,4 @@
-//! An agent that knows the map, but only that rewards are as in one of several worlds, so it has to find out which.
+//! An agent that knows the map but not which of several worlds has the true rewards, so that it has to find out.
 
 use driftworld_spec::World;
 
@@ -15,14 +15,15 @@ impl Expertise {
     /// An agent in the world `abroad` that knows only that rewards are as in one of `homes`.
     ///
     /// It acts as the expert of the first home does [`abroad`](Self::abroad). After each step it drops the homes in which that
-    /// step would have given a different reward or ending, and follows the first remaining one. If none remains, it keeps the
-    /// last one it followed. Uncertain rewards are compared using the random draws of this very world, so the agent finds out
-    /// sooner than a learner could.
+    /// step would have given a different reward or ending, and follows the first of the rest. If none remains, it keeps the one
+    /// it followed. Uncertain rewards are compared using this world's own random draws, so the agent finds out sooner than a
+    /// learner could.
     ///
-    /// With one home it is the expert of that home abroad, bit for bit; with none, the expert of the world itself.
+    /// With one home, the result is that of [`abroad`](Self::abroad), bit for bit; with none, that of
+    /// [`at_home`](Self::at_home).
     ///
     /// # Errors
-    /// Those of [`Expertise::abroad`].
+    /// The errors of [`Expertise::abroad`].
     ///
     /// # Example
     /// ```
@@ -35,13 +36,13 @@ impl Expertise {
     ///     cube.reward_once_stimulus = vec![Stimulus::AgentCollide];
     ///     draft.objects.push(cube);
     /// }
-    /// let red = draft.check().expect("it is sound");
+    /// let red = draft.check().expect("the world is valid");
     /// let purple = red.clone().edit(|world| {
     ///     for object in &mut world.objects {
     ///         object.reward = -object.reward;
     ///     }
-    /// }).expect("it is sound");
-    /// // It pays 10 to know, costs 10 to be wrong, and 10 less to be wrong first.
+    /// }).expect("the world is valid");
+    /// // Knowing earns 10, a wrong belief -10, and finding out 0.
     /// let expertise = Expertise::default();
     /// assert_eq!(expertise.at_home(&purple)?.earned, 10.0);
     /// assert_eq!(expertise.abroad(&red, &purple)?.earned, -10.0);
@@ -53,41 +54,41 @@ impl Expertise {
         let mut beliefs: Vec<Belief> = beliefs.collect::<Result<_, _>>()?;
         let mut truth = Environment::with_catalogue(abroad.clone(), self.catalogue.clone());
         let (mut expert, mut run) = (OnRailsAgent::new(), ExpertRun::default());
-        let (mut step, mut foreseen) = (Step::default(), Step::default());
+        let (mut step, mut predicted) = (Step::default(), Step::default());
         while !truth.ended() && run.steps < self.steps.min(MAX_EXPERT_STEPS) {
-            // An expert from elsewhere does not know where the zones are.
+            // An expert of another world does not know where the zones are.
             let action = match beliefs.first_mut() {
                 Some(belief) => in_space(expert.steer(belief.at(&truth).sim()), truth.sim()),
                 None => expert.act(&truth),
             };
-            let doubts = beliefs.len() > 1;
-            if doubts {
+            let has_alternatives = beliefs.len() > 1;
+            if has_alternatives {
                 for belief in &mut beliefs {
                     belief.at(&truth);
                 }
             }
             truth.step_into(action, &mut step)?;
-            if doubts {
-                let mut agrees = Vec::with_capacity(beliefs.len());
+            if has_alternatives {
+                let mut matches = Vec::with_capacity(beliefs.len());
                 for belief in &mut beliefs {
-                    belief.foresee(action, &mut foreseen)?;
-                    agrees.push(
-                        (foreseen.reward - step.reward).abs() <= SAME_REWARD
-                            && (foreseen.success, foreseen.terminated) == (step.success, step.terminated),
+                    belief.predict(action, &mut predicted)?;
+                    matches.push(
+                        (predicted.reward - step.reward).abs() <= SAME_REWARD
+                            && (predicted.success, predicted.terminated) == (step.success, step.terminated),
                     );
                 }
-                if agrees.contains(&true) {
-                    if !agrees[0] {
+                if matches.contains(&true) {
+                    if !matches[0] {
                         expert = OnRailsAgent::new();
                     }
-                    let mut kept = agrees.into_iter();
-                    beliefs.retain(|_| kept.next() == Some(true));
+                    let mut matched = matches.into_iter();
+                    beliefs.retain(|_| matched.next() == Some(true));
                 } else {
                     beliefs.truncate(1);
                 }
             }
             for belief in &mut beliefs {
-                belief.note(&step);
+                belief.record(&step);
             }
             run.earned += step.reward;
             run.success |= step.success;

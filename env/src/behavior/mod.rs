@@ -1,4 +1,4 @@
-//! Measures what experts earn in worlds that are not their own.
+//! Measures how much experts earn in their own worlds and in others.
 
 mod belief;
 mod finding_out;
@@ -46,24 +46,25 @@ impl Expertise {
     /// Runs the expert of a world in its own world: [`OnRailsAgent`](crate::OnRailsAgent).
     ///
     /// # Errors
-    /// Those of [`Environment::step`](crate::Environment::step).
+    /// The errors of [`Environment::step`](crate::Environment::step).
     pub fn at_home(&self, world: &World) -> Result<ExpertRun, EnvError> {
         self.finding_out(&[], world)
     }
 
-    /// Runs the expert of the world `home` in the world `abroad`: it sees what is there and believes in the rewards of home.
+    /// Runs the expert of the world `home` in the world `abroad`, where it sees the true objects but believes in the rewards of
+    /// home.
     ///
-    /// Before each step the expert is shown the true state of `abroad`: its map, the agent and the present objects with their
-    /// positions. It plans by the rules of `home`, and takes each object for the most similar one of the same class at home: by
-    /// nearest colour, then by model, then by nearest place, then by index. It believes that the object has that one's
-    /// reward, probability, stimuli, order and respawn; it believes objects of a class that home lacks to have no
-    /// effect. The chosen action is then carried out in `abroad`, within that agent's limits, as the nearest row of its action
-    /// table if there is one. The expert leaves an object alone once it has triggered what it believes to use the object up.
+    /// Before each step the expert sees the true state of `abroad`: its map, the agent, and the present objects with their
+    /// positions. It plans by the rules of `home`. It mistakes each object for the most similar one of the same class at home:
+    /// by nearest colour, then model, then nearest position, then index. It believes that the object has the reward,
+    /// probability, stimuli, order and respawn of that counterpart, and that objects of classes that home lacks have no effect.
+    /// The chosen action is carried out in `abroad`, within that agent's limits, as the nearest row of the action table if
+    /// there is one. The expert leaves an object alone once it has triggered a stimulus that it believes to use the object up.
     ///
     /// If the world is `home` itself, the result is that of [`at_home`](Self::at_home), bit for bit.
     ///
     /// # Errors
-    /// Those of [`Environment::step`](crate::Environment::step); [`EnvError::BadWorld`] if the rules of one world are invalid
+    /// The errors of [`Environment::step`](crate::Environment::step); [`EnvError::BadWorld`] if the rules of one world are invalid
     /// in the other.
     ///
     /// # Example
@@ -73,8 +74,8 @@ impl Expertise {
     /// let mut cube = Object::new("geometric", [0.0, 8.0]);
     /// cube.reward = 10.0;
     /// cube.reward_once_stimulus = vec![Stimulus::AgentCollide];
-    /// let home = WorldDraft::with_objects(vec![cube]).check().expect("it is sound");
-    /// let trap = home.clone().edit(|world| world.objects[0].reward = -10.0).expect("it is sound");
+    /// let home = WorldDraft::with_objects(vec![cube]).check().expect("the world is valid");
+    /// let trap = home.clone().edit(|world| world.objects[0].reward = -10.0).expect("the world is valid");
     /// let expertise = Expertise { steps: 50, ..Expertise::default() };
     /// assert_eq!(expertise.abroad(&home, &trap)?.earned, -10.0);
     /// assert_eq!(expertise.at_home(&trap)?.earned, 0.0);

@@ -1,4 +1,4 @@
-//! Experts in their own and in other worlds.
+//! Tests of experts in their own worlds and in others.
 
 use driftworld_spec::{Color, EndCondition, Object, Respawn, Stimulus, World, WorldDraft};
 use proptest::prelude::*;
@@ -37,44 +37,49 @@ fn world(paying: Color, other: Color) -> WorldDraft {
     world
 }
 
-fn sound(draft: WorldDraft) -> World {
-    draft.check().expect("the world is sound")
+fn checked(draft: WorldDraft) -> World {
+    draft.check().expect("the world is valid")
 }
 
 #[test]
 fn expert_goes_for_the_colour_that_pays_at_home() {
-    let (red, blue) = (sound(world(RED, BLUE)), sound(world(BLUE, RED)));
+    let (red, blue) = (checked(world(RED, BLUE)), checked(world(BLUE, RED)));
     let expertise = Expertise::default();
-    let own = expertise.at_home(&blue).expect("it lives");
+    let own = expertise.at_home(&blue).expect("the expert runs");
     assert_eq!((own.earned, own.success), (20.0, true));
-    let other = expertise.abroad(&red, &blue).expect("it lives");
+    let other = expertise.abroad(&red, &blue).expect("the expert runs");
     assert!(other.earned <= -10.0 && !other.success, "{other:?}");
     // The order and the tags of objects at home make no difference.
-    let mut turned = world(RED, BLUE);
-    turned.objects.reverse();
-    assert_eq!(expertise.abroad(&sound(turned), &blue).expect("it lives"), other);
+    let mut reversed = world(RED, BLUE);
+    reversed.objects.reverse();
+    assert_eq!(
+        expertise.abroad(&checked(reversed), &blue).expect("the expert runs"),
+        other
+    );
 }
 
 #[test]
 fn objects_believed_used_up_are_left_alone_after_one_try() {
-    let home = sound(world(RED, BLUE));
-    let mut idle = world(RED, BLUE);
-    idle.rules.success.clear();
-    for object in &mut idle.objects {
+    let home = checked(world(RED, BLUE));
+    let mut unrewarding = world(RED, BLUE);
+    unrewarding.rules.success.clear();
+    for object in &mut unrewarding.objects {
         (object.reward, object.destroy_stimulus) = (-1.0, Vec::new());
     }
-    let found = Expertise::default().abroad(&home, &sound(idle)).expect("it lives");
+    let found = Expertise::default()
+        .abroad(&home, &checked(unrewarding))
+        .expect("the expert runs");
     assert_eq!(found.earned, -2.0, "each red cube once");
 }
 
 #[test]
-fn class_unknown_at_home_is_ignored() {
+fn class_missing_at_home_is_ignored() {
     let mut barrels = world(RED, BLUE);
     for object in &mut barrels.objects {
         object.class = "barrel".to_owned();
     }
-    let (home, barrels) = (sound(world(RED, BLUE)), sound(barrels));
-    let found = Expertise::default().abroad(&home, &barrels).expect("it lives");
+    let (home, barrels) = (checked(world(RED, BLUE)), checked(barrels));
+    let found = Expertise::default().abroad(&home, &barrels).expect("the expert runs");
     assert_eq!((found.earned, found.success, found.steps), (0.0, false, 300));
 }
 
@@ -86,11 +91,11 @@ fn coming_near_does_not_count_as_a_touch() {
             let mut object = cube([0.0, 8.0], RED, reward, "any");
             object.range_stimulus_distance = range;
             draft.objects.push(object);
-            sound(draft)
+            checked(draft)
         };
         let (home, abroad) = (pays(50.0), pays(49.0));
         let expertise = Expertise::default();
-        let run = |found: Result<ExpertRun, EnvError>| found.expect("both worlds are sound");
+        let run = |found: Result<ExpertRun, EnvError>| found.expect("the expert runs");
         let visitor = run(expertise.abroad(&home, &abroad));
         assert_eq!(
             (visitor.earned, visitor),
@@ -122,7 +127,7 @@ proptest! {
             }
             draft.objects.push(object);
         }
-        let world = sound(draft);
+        let world = checked(draft);
         let expertise = Expertise::default();
         prop_assert_eq!(expertise.abroad(&world, &world), expertise.at_home(&world));
     }
@@ -132,11 +137,11 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
     #[test]
-    fn finding_out_between_two_homes_errs_once(
-        // Far enough apart to walk between: detours around a crowd could cost one expert more than another.
+    fn finding_out_between_two_homes_earns_between_wrong_and_right_belief(
+        // Far enough apart to walk between, because detours around a crowd could cost one expert more than another.
         places in Just([-12_i8, -6, 0, 6, 12]).prop_flat_map(|x| {
-            let all: Vec<_> = x.iter().flat_map(|x| [(*x, 4_i8), (*x, 11)]).collect();
-            prop::sample::subsequence(all, 4).prop_shuffle()
+            let positions: Vec<_> = x.iter().flat_map(|x| [(*x, 4_i8), (*x, 11)]).collect();
+            prop::sample::subsequence(positions, 4).prop_shuffle()
         }),
         is_first in any::<bool>(),
     ) {
@@ -152,27 +157,27 @@ proptest! {
         for (own, other) in blue.objects.iter_mut().zip(&red.objects) {
             (own.color, own.reward) = (other.color, -other.reward / 2.0 - 1.0);
         }
-        let (red, blue) = (sound(red), sound(blue));
+        let (red, blue) = (checked(red), checked(blue));
         let expertise = Expertise::default();
-        // At home the expert is the planner, step by step.
+        // At home the expert acts as the planner, step by step.
         let mut truth = Environment::with_catalogue(blue.clone(), Catalogue::default());
         let (mut planner, mut step, mut planned) = (OnRailsAgent::new(), Step::default(), ExpertRun::default());
         while !truth.ended() && planned.steps < expertise.steps {
             let action = planner.act(&truth);
-            truth.step_into(action, &mut step).expect("it runs");
+            truth.step_into(action, &mut step).expect("the expert runs");
             planned.earned += step.reward;
             planned.success |= step.success;
             planned.steps += 1;
         }
-        prop_assert_eq!(expertise.at_home(&blue).expect("it runs"), planned);
+        prop_assert_eq!(expertise.at_home(&blue).expect("the expert runs"), planned);
         let homes = if is_first { [&red, &blue] } else { [&blue, &red] };
-        let own = expertise.at_home(homes[1]).expect("it runs");
-        let found = expertise.finding_out(&homes, homes[1]).expect("it runs");
-        let fixed = expertise.abroad(homes[0], homes[1]).expect("it runs");
-        // The right home is never dropped: finding out costs at most the first object touched in vain.
+        let own = expertise.at_home(homes[1]).expect("the expert runs");
+        let found = expertise.finding_out(&homes, homes[1]).expect("the expert runs");
+        let fixed = expertise.abroad(homes[0], homes[1]).expect("the expert runs");
+        // The true home is never dropped, so finding out costs at most the first wrong object.
         prop_assert!(found.earned >= fixed.earned, "{found:?} {fixed:?}");
         prop_assert!(found.earned <= own.earned, "{found:?} {own:?}");
-        let known = expertise.finding_out(&[homes[1], homes[0]], homes[1]).expect("it runs");
+        let known = expertise.finding_out(&[homes[1], homes[0]], homes[1]).expect("the expert runs");
         prop_assert_eq!(known, own);
     }
 }

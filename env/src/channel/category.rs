@@ -8,16 +8,16 @@ use strum::VariantArray;
 pub enum Category {
     /// Contacts of the agent and their effects.
     Agent,
-    /// Messages received, and messages refused.
+    /// Messages received and refused.
     Communications,
     /// Worlds and objects created by messages.
     Worldmaker,
-    /// Episodes: starts requested by messages, and all endings.
+    /// Episodes: all endings, and starts requested by messages.
     Academy,
 }
 
 impl Category {
-    /// All categories, in the original's order.
+    /// All categories, in the order used by the original environment.
     pub const ALL: &[Self] = Self::VARIANTS;
 
     /// Its name in messages.
@@ -42,7 +42,7 @@ impl Category {
 pub enum Level {
     /// Information.
     Log,
-    /// Something may not be as intended.
+    /// A possible mistake.
     Warning,
     /// A request was refused.
     Error,

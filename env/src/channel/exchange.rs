@@ -1,4 +1,4 @@
-//! [`Channels`]: carries out requests and answers them.
+//! [`Channels`] carries out requests and answers them.
 
 use driftworld_spec::World;
 use driftworld_spec::maps::MapLibrary;
@@ -11,11 +11,10 @@ use super::message::{Message, Outgoing, Refusal, unknown};
 use super::request::{PARTS, Screenshot, categories, create, parts, remark_of, screenshot};
 use crate::{Environment, Step, Warning};
 
-/// Our end of the three channels: which parts are observed, and which remarks are wanted.
-///
-/// Messages in, messages out; the caller transports them, provides the time, and writes screenshots. A message that is not
-/// understood is answered by an `error` and changes nothing. Our tokens are derived from the world's hash and a count, in the
-/// form of a UUID (version 8): the same messages always give the same answers.
+/// The server's end of the three channels. Stores which parts of the world are observed, and which remarks are wanted. The
+/// caller transports messages, provides the time, and writes screenshots. A message that is not understood is answered by an
+/// `error` and changes nothing. Tokens have the form of a UUID (version 8) and are derived from the world's hash and a count,
+/// so that the same messages always give the same answers.
 ///
 /// # Example
 /// ```
@@ -30,32 +29,32 @@ use crate::{Environment, Step, Warning};
 /// ```
 #[derive(Clone, Debug)]
 pub struct Channels {
-    /// The hash of the last world that was reset to.
+    /// The hash of the world of the last reset.
     world: String,
-    /// Layouts that replace the built-in ones in worlds that are reset to.
+    /// Layouts that replace the built-in ones in worlds of later resets.
     maps: MapLibrary,
     sent: u64,
     /// The parts that are sent after each step, out of [`PARTS`].
     watched: Vec<&'static str>,
-    /// Which of [`Category::ALL`] are on.
+    /// Whether each of [`Category::ALL`] is on.
     active: [bool; 4],
 }
 
 /// The result of a message.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Received {
-    /// The answers, in this order.
+    /// The answers, in order.
     pub messages: Vec<Outgoing>,
     /// A screenshot to be written before [`Channels::answer_screenshot`] answers the request.
     pub screenshot: Option<Screenshot>,
-    /// Whether the environment is at the start of a new world.
+    /// Whether the message has reset the environment to a new world.
     pub reset: bool,
     /// Warnings about a new world or object: unknown keys and unknown assets. The Debug channel sends the same warnings to
     /// clients that listen to `worldmaker`.
     pub remarks: Vec<String>,
 }
 
-/// The result of a message that was understood.
+/// The answer to a message that was understood.
 enum Answer {
     Say(&'static str, Option<Value>),
     Picture(Screenshot),
@@ -64,7 +63,7 @@ enum Answer {
 const OK: Answer = Answer::Say("ok", None);
 
 impl Channels {
-    /// Channels of a world at its start: no parts are observed, no remarks are wanted.
+    /// Channels for a world at its start. No parts are observed, and no remarks are wanted.
     pub fn new(world: &World) -> Self {
         Self {
             world: world.hash(),
@@ -75,7 +74,7 @@ impl Channels {
         }
     }
 
-    /// The same channels, with these layouts in place of the built-in ones in worlds that are reset to.
+    /// Replaces the built-in layouts in worlds of later resets.
     #[must_use]
     pub fn with_maps(mut self, maps: MapLibrary) -> Self {
         self.maps = maps;
@@ -90,7 +89,7 @@ impl Channels {
 
     /// Turns the remarks of a category on or off, as `set_debug_categories` does.
     pub fn set_active(&mut self, category: Category, active: bool) {
-        // As above: one entry per category.
+        // One entry per category, as above.
         self.active[category as usize] = active;
     }
 
@@ -102,24 +101,24 @@ impl Channels {
     /// Carries out the request in a message. `time` is the current time in ISO 8601.
     pub fn receive(&mut self, environment: &mut Environment, channel: Channel, text: &str, time: &str) -> Received {
         let mut received = Received::default();
-        let (token, done) = match Message::parse(text) {
+        let (token, answer) = match Message::parse(text) {
             Ok(message) => {
-                let said = format!("{} received {:.40}", channel.name(), message.action);
-                let remark = self.remark(Category::Communications, Level::Log, said, time);
+                let text = format!("{} received {:.40}", channel.name(), message.action);
+                let remark = self.remark(Category::Communications, Level::Log, text, time);
                 received.messages.extend(remark);
-                let done = self.execute(environment, channel, &message, time, &mut received);
-                (message.token, done)
+                let answer = self.execute(environment, channel, &message, time, &mut received);
+                (message.token, answer)
             }
             Err((token, refusal)) => (token, Err(refusal)),
         };
         let messages = &mut received.messages;
-        match done {
+        match answer {
             Ok(Answer::Say(action, payload)) => messages.push(self.message(channel, action, payload, token, time)),
             Ok(Answer::Picture(screenshot)) => received.screenshot = Some(Screenshot { token, ..screenshot }),
             Err(refusal) => {
                 // A refusal always has at least one text.
-                let said = format!("{} refused: {}", channel.name(), refusal.texts()[0]);
-                messages.extend(self.remark(Category::Communications, Level::Error, said, time));
+                let text = format!("{} refused: {}", channel.name(), refusal.texts()[0]);
+                messages.extend(self.remark(Category::Communications, Level::Error, text, time));
                 let payload = Some(json!(refusal.texts()));
                 messages.push(self.message(channel, "error", payload, token, time));
             }
@@ -127,7 +126,7 @@ impl Channels {
         received
     }
 
-    /// The answer to a message that could not be read as text.
+    /// The answer to a message that is not text.
     pub fn refuse(&mut self, channel: Channel, reason: &str, time: &str) -> Outgoing {
         let payload = Some(json!([format!("message: {reason}")]));
         self.message(channel, "error", payload, None, time)
@@ -148,14 +147,14 @@ impl Channels {
         for event in &step.events {
             let object = &environment.world().objects[event.object];
             let gone = if event.destroyed { ", destroyed" } else { "" };
-            let said = format!(
+            let text = format!(
                 "{:?} object {} ({}), reward {}{gone}",
                 event.stimulus,
                 event.object,
                 object.class,
                 amount(event.reward)
             );
-            messages.extend(self.remark(Category::Agent, Level::Log, said, time));
+            messages.extend(self.remark(Category::Agent, Level::Log, text, time));
         }
         if step.ended() {
             let ending = match (step.success, step.terminated) {
@@ -164,8 +163,8 @@ impl Channels {
                 (false, false) => "at its last step",
             };
             let (steps, earned) = (environment.num_steps(), amount(environment.episode_return()));
-            let said = format!("the episode ended {ending} after {steps} steps, return {earned}");
-            messages.extend(self.remark(Category::Academy, Level::Log, said, time));
+            let text = format!("the episode ended {ending} after {steps} steps, return {earned}");
+            messages.extend(self.remark(Category::Academy, Level::Log, text, time));
         }
         if !self.watched.is_empty() {
             let payload = Some(self.state(environment));
@@ -198,28 +197,28 @@ impl Channels {
         time: &str,
         received: &mut Received,
     ) -> Result<Answer, Refusal> {
-        if let Some(right) = Channel::for_action(&message.action).filter(|right| *right != channel) {
+        if let Some(expected) = Channel::for_action(&message.action).filter(|expected| *expected != channel) {
             return Err(Refusal::new(format!(
                 "action: found {:?} on the {} channel, expected it on the {} channel",
                 message.action,
                 channel.name(),
-                right.name()
+                expected.name()
             )));
         }
         match message.action.as_str() {
             "reset_environment" => {
                 let remarks = self.reset(environment, message)?;
                 received.reset = true;
-                let said = format!("a new episode of world {:.12}", self.world);
-                let remark = self.remark(Category::Academy, Level::Log, said, time);
+                let text = format!("a new episode of world {:.12}", self.world);
+                let remark = self.remark(Category::Academy, Level::Log, text, time);
                 received.messages.extend(remark);
                 self.warn(remarks, time, received);
                 Ok(OK)
             }
             "object_create" => {
                 let (index, remarks) = create(environment, message)?;
-                let said = format!("object {index} is a {}", environment.world().objects[index].class);
-                let remark = self.remark(Category::Worldmaker, Level::Log, said, time);
+                let text = format!("object {index} is a {}", environment.world().objects[index].class);
+                let remark = self.remark(Category::Worldmaker, Level::Log, text, time);
                 received.messages.extend(remark);
                 self.warn(remarks, time, received);
                 Ok(OK)
@@ -243,14 +242,14 @@ impl Channels {
 
     /// Reports remarks on a new world or object to the caller and to listening clients.
     fn warn(&mut self, remarks: Vec<String>, time: &str, received: &mut Received) {
-        for said in remarks {
-            received.remarks.push(said.clone());
-            let remark = self.remark(Category::Worldmaker, Level::Warning, said, time);
+        for text in remarks {
+            received.remarks.push(text.clone());
+            let remark = self.remark(Category::Worldmaker, Level::Warning, text, time);
             received.messages.extend(remark);
         }
     }
 
-    /// Resets to the world in the payload; returns remarks on it.
+    /// Resets to the world in the payload, and returns remarks on it.
     fn reset(&mut self, environment: &mut Environment, message: &Message) -> Result<Vec<String>, Refusal> {
         let payload = message.payload("a world as in L2Explorer's reset files")?;
         let (world, warnings) = World::from_l2explorer_with("payload", &payload.to_string(), &self.maps)
@@ -265,8 +264,8 @@ impl Channels {
         Ok(warnings.iter().map(remark_of).chain(own).collect())
     }
 
-    /// The current state of the observed parts of the world. Absent objects are left out; objects without a name get one made
-    /// from their index.
+    /// The current state of the observed parts of the world. Absent objects are left out; objects without a name get one
+    /// derived from their index.
     fn state(&self, environment: &Environment) -> Value {
         let world = environment.world();
         let part = |part: &str| match part {
@@ -290,7 +289,7 @@ impl Channels {
         time: &str,
     ) -> Outgoing {
         self.sent += 1;
-        // The token takes 18 of the hash's 64 digits: all that UUID version 8 leaves free besides the count.
+        // The token takes 18 of the hash's 64 digits, which is all that UUID version 8 leaves free besides the count.
         let hash = &self.world;
         let token = format!(
             "{}-{}-8{}-8{}-{:012x}",
@@ -315,10 +314,10 @@ impl Channels {
 fn objects_now(environment: &Environment) -> Value {
     let states = environment.objects().iter().enumerate();
     let present = states.filter(|(_, state)| state.present);
-    let named = present.map(|(index, _)| {
+    let with_name = present.map(|(index, _)| {
         let mut object = environment.object_now(index);
         object.unique_name.get_or_insert_with(|| format!("object-{index}"));
         json!(object)
     });
-    Value::Array(named.collect())
+    Value::Array(with_name.collect())
 }

@@ -1,21 +1,21 @@
-//! Messages: parsed leniently, written strictly.
+//! Parses incoming messages leniently, and writes outgoing ones strictly.
 
 use driftworld_spec::nearest;
 use serde_json::{Map, Value, json};
 
 use super::Channel;
 
-/// Maximum size of a message that is read, in bytes: the limit for documents.
+/// Maximum size of an incoming message in bytes, the same as for documents.
 pub const MAX_MESSAGE_BYTES: usize = driftworld_spec::MAX_BYTES;
 
 /// Maximum length of a token in characters; a UUID has 36.
-const LONGEST_TOKEN: usize = 100;
+const MAX_TOKEN_CHARS: usize = 100;
 
-/// The `req_token` of a message that answers no other.
+/// The `req_token` of a message that does not answer a request.
 const NO_TOKEN: &str = "00000000-0000-0000-0000-000000000000";
 
-/// Maximum number of strings in the payload of an error, plus one that says how many were left out.
-const MOST_TEXTS: usize = 20;
+/// Maximum number of problems in the payload of an error; one more string says how many were left out.
+const MAX_TEXTS: usize = 20;
 
 /// A message to the client.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,9 +28,9 @@ pub struct Outgoing {
     pub payload: Option<Value>,
     /// Its token, in the form of a UUID.
     pub token: String,
-    /// The token of the message that it answers, if there is one.
+    /// The token of the request that it answers, if any.
     pub req_token: Option<String>,
-    /// The time at which it was made, as given by the caller.
+    /// The time at which it was created, as given by the caller.
     pub time: String,
 }
 
@@ -42,7 +42,8 @@ impl Outgoing {
         Some(texts.join("; "))
     }
 
-    /// The message as one line of JSON, with every key: the original's clients access them unconditionally.
+    /// The message as one line of JSON, with every key, because clients of the original environment access them
+    /// unconditionally.
     ///
     /// Without a message to answer, `req_token` is all zeros; without a payload, `payload` is `null`.
     pub fn to_json(&self) -> String {
@@ -57,7 +58,7 @@ impl Outgoing {
     }
 }
 
-/// The reasons for refusing a message: strings for the payload of the `error` that answers it.
+/// The reasons for refusing a message: the strings in the payload of the `error` that answers it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Refusal(Vec<String>);
 
@@ -66,7 +67,7 @@ impl Refusal {
         Self(vec![text.into()])
     }
 
-    /// All problems of a payload, without their positions in the text, which refer to our own copy.
+    /// All problems of a payload, without their positions in the text, which would refer to our own copy.
     pub(super) fn of_document(error: &driftworld_spec::SpecError) -> Self {
         let problems = error.problems();
         if problems.is_empty() {
@@ -74,16 +75,16 @@ impl Refusal {
         }
         let mut texts: Vec<String> = problems
             .iter()
-            .take(MOST_TEXTS)
+            .take(MAX_TEXTS)
             .map(|problem| {
                 let mut problem = problem.clone();
                 (problem.line, problem.column) = (0, 0);
                 format!("payload {problem}")
             })
             .collect();
-        if problems.len() > MOST_TEXTS {
+        if problems.len() > MAX_TEXTS {
             let at_least = if error.has_more() { "at least " } else { "" };
-            let more = problems.len() - MOST_TEXTS;
+            let more = problems.len() - MAX_TEXTS;
             texts.push(format!("payload: and {at_least}{more} more"));
         }
         Self(texts)
@@ -101,7 +102,7 @@ pub(super) struct Message {
     pub(super) action: String,
     /// `null` counts as missing.
     pub(super) payload: Option<Value>,
-    /// The whole message, because some clients put values beside `action`.
+    /// All keys of the message, because some clients put values next to `action` instead of into the payload.
     pub(super) all: Map<String, Value>,
 }
 
@@ -127,16 +128,16 @@ impl Message {
         };
         let token = match all.get("token") {
             None | Some(Value::Null) => None,
-            Some(Value::String(token)) if token.chars().count() <= LONGEST_TOKEN => Some(token.clone()),
+            Some(Value::String(token)) if token.chars().count() <= MAX_TOKEN_CHARS => Some(token.clone()),
             Some(Value::String(_)) => {
                 return refuse(format!(
-                    "token: found a longer text, expected at most {LONGEST_TOKEN} characters"
+                    "token: found a longer text, expected at most {MAX_TOKEN_CHARS} characters"
                 ));
             }
             Some(other) => return refuse(format!("token: found {}, expected a text such as a UUID", kind(other))),
         };
         let refuse = |text: String| Err((token.clone(), Refusal::new(text)));
-        // The original's client sends times without a zone; nothing depends on them.
+        // The original client sends times without a time zone; nothing depends on them.
         if let Some(time) = all.get("msg_time").filter(|time| !time.is_string() && !time.is_null()) {
             return refuse(format!("msg_time: found {}, expected a text in ISO 8601", kind(time)));
         }
@@ -188,7 +189,7 @@ mod tests {
     use super::*;
 
     fn check(text: &str, expected: &str) {
-        let (_, refusal) = Message::parse(text).expect_err("the message cannot be read");
+        let (_, refusal) = Message::parse(text).expect_err("the message is malformed");
         assert!(refusal.texts()[0].contains(expected), "{refusal:?}");
     }
 
@@ -197,7 +198,7 @@ mod tests {
         let message = Message::parse(
             "\u{feff}{ \"action\": \" Get_Observers\", \"msg_time\": \"2020-03-01T12:00:00.123\", \"payload\": null }",
         )
-        .expect("the message is as clients send them");
+        .expect("the message is valid");
         assert_eq!((message.action.as_str(), message.token), ("get_observers", None));
         assert_eq!(message.payload, None);
     }
@@ -219,7 +220,7 @@ mod tests {
 
     #[test]
     fn refusal_keeps_the_token_of_its_message() {
-        let (token, _) = Message::parse(r#"{ "token": "abc" }"#).expect_err("there is no action");
+        let (token, _) = Message::parse(r#"{ "token": "abc" }"#).expect_err("the message has no action");
         assert_eq!(token.as_deref(), Some("abc"));
     }
 }

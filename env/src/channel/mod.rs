@@ -1,5 +1,5 @@
-//! L2Explorer's three channels of JSON messages: a client's requests to a running world, and the answers. Does no I/O: the
-//! caller handles transport, time and files.
+//! L2Explorer's three channels of JSON messages: a client's requests to a running world, and the answers. The caller handles
+//! transport, time and files.
 
 mod category;
 mod exchange;
@@ -18,7 +18,7 @@ use strum::VariantArray;
 pub enum Channel {
     /// New worlds, and new objects in the current world.
     Reset,
-    /// Parts of the world, sent after each step to clients that asked for them.
+    /// Parts of the world, sent after each step to clients that requested them.
     State,
     /// Screenshots and debug messages.
     Debug,
@@ -53,14 +53,15 @@ impl Channel {
 
     /// Finds a channel by its name, ignoring case, or by its UUID.
     pub fn from_name(name: &str) -> Option<Self> {
-        let named = |channel: &Self| channel.name().eq_ignore_ascii_case(name) || channel.guid() == name.to_lowercase();
-        Self::ALL.iter().copied().find(named)
+        let matches_name =
+            |channel: &Self| channel.name().eq_ignore_ascii_case(name) || channel.guid() == name.to_lowercase();
+        Self::ALL.iter().copied().find(matches_name)
     }
 
     /// The channel that accepts an action.
     pub fn for_action(action: &str) -> Option<Self> {
-        let takes = |channel: &Self| channel.actions().contains(&action);
-        Self::ALL.iter().copied().find(takes)
+        let accepts = |channel: &Self| channel.actions().contains(&action);
+        Self::ALL.iter().copied().find(accepts)
     }
 }
 
@@ -69,7 +70,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn channels_are_known_by_name_identifier_and_action() {
+    fn channels_are_found_by_name_identifier_and_action() {
         for &channel in Channel::ALL {
             assert_eq!(Channel::from_name(&channel.name().to_uppercase()), Some(channel));
             assert_eq!(Channel::from_name(channel.guid()), Some(channel));

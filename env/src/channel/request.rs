@@ -11,12 +11,12 @@ use crate::{EnvError, Environment};
 pub(super) const PARTS: [&str; 4] = ["agent_params", "environment_params", "objects", "game_mode"];
 
 /// The longest side of a screenshot in pixels.
-const LONGEST_SIDE: u32 = 4096;
+const MAX_SIDE: u32 = 4096;
 
 /// A request for a colour image of what the agent sees now.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Screenshot {
-    /// The requested file name; the caller decides where such a file may be written, if at all.
+    /// The requested file name; the caller decides whether and where such a file may be written.
     pub filename: String,
     /// Width in pixels, at most 4096.
     pub width: u32,
@@ -26,7 +26,7 @@ pub struct Screenshot {
     pub(super) token: Option<String>,
 }
 
-/// A warning without its position, which refers to our own copy of the text.
+/// A warning without its position, which would refer to our own copy of the text.
 pub(super) fn remark_of(warning: &driftworld_spec::Warning) -> String {
     format!("({}): {}", warning.pointer, warning.text)
 }
@@ -57,7 +57,7 @@ pub(super) fn create(environment: &mut Environment, message: &Message) -> Result
     Ok((index, warnings.iter().map(remark_of).chain(own).collect()))
 }
 
-/// The parts that `set_active_observers` names, in its payload or beside its action.
+/// The parts that `set_active_observers` names, in its payload or as a key of the message itself.
 pub(super) fn parts(message: &Message) -> Result<Vec<&'static str>, Refusal> {
     let own = message.payload.as_ref().and_then(|payload| payload.get("state"));
     let beside = own.or(message.all.get("state"));
@@ -90,14 +90,14 @@ pub(super) fn screenshot(environment: &Environment, message: &Message) -> Result
         ));
     };
     let [width, height] = environment.world().agent_params.picture_size();
-    let most = LONGEST_SIDE / width.max(height);
+    let most = MAX_SIDE / width.max(height);
     let factor = match payload.get("upscale_factor") {
         None | Some(Value::Null) => 1.0,
         Some(factor) => factor.as_f64().unwrap_or(f64::NAN),
     };
     if factor.fract() != 0.0 || !(1.0..=f64::from(most)).contains(&factor) {
         return Err(Refusal::new(format!(
-            "payload/upscale_factor: expected a whole number from 1 to {most}, so that no side is longer than {LONGEST_SIDE} pixels"
+            "payload/upscale_factor: expected a whole number from 1 to {most}, so that no side is longer than {MAX_SIDE} pixels"
         )));
     }
     let factor = factor as u32;

@@ -1,18 +1,18 @@
-//! Results of an experiment: a witness for each element that differs, and how much was tested.
+//! Results of an experiment: a witness for each element that differs, and the amount of testing.
 
 use driftworld_spec::Element;
 use serde::{Deserialize, Serialize};
 
 use super::policy::Policy;
-use crate::sim::Unlike;
+use crate::sim::Difference;
 
 /// The first case in which an element was found to differ.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Witness {
-    /// Index of the pair of worlds, from 0; absent if only all pairs together show the difference.
+    /// Index of the pair of worlds, from 0; absent if the difference shows only over all pairs.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub world: Option<usize>,
-    /// The policy; absent if none is needed.
+    /// The policy; absent if the difference shows without running one.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub policy: Option<Policy>,
     /// The step, from 0.
@@ -27,39 +27,39 @@ pub struct Witness {
 }
 
 impl Witness {
-    pub(super) fn of(world: Option<usize>, policy: Option<Policy>, step: Option<u32>, unlike: Unlike) -> Self {
+    pub(super) fn of(world: Option<usize>, policy: Option<Policy>, step: Option<u32>, difference: Difference) -> Self {
         Self {
             world,
             policy,
             step,
-            what: unlike.what,
-            a: unlike.own,
-            b: unlike.other,
+            what: difference.what,
+            a: difference.own,
+            b: difference.other,
         }
     }
 }
 
-/// How much was tested.
+/// The amount of testing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Proof {
     /// Pairs of worlds.
     pub worlds: u64,
-    /// Episodes, over all policies, led by either world.
+    /// Episodes over all policies, each led by one of the two worlds.
     pub runs: u64,
     /// Steps that both worlds took from the same state with the same command.
     pub steps: u64,
-    /// States in which the two observations were compared.
+    /// States in which both observations were compared.
     pub observations: u64,
-    /// States of one world without a counterpart in the other, such as places beyond its walls; nothing is compared there.
+    /// States of one world without a counterpart in the other, such as positions inside its walls; nothing is compared there.
     pub without_counterpart: u64,
 }
 
-/// The differences between two tasks, and how much was tested.
+/// The differences between two tasks, and the amount of testing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Findings {
     /// The elements that differ with their first witnesses, in the order of [`Element::WITH_FINE`].
     pub differences: Vec<(Element, Witness)>,
-    /// How much was tested.
+    /// The amount of testing.
     pub proof: Proof,
 }
 
@@ -79,19 +79,19 @@ impl Findings {
         self.witness(element).is_some()
     }
 
-    /// Records that an element differs, unless it is already known.
-    pub(super) fn note(&mut self, element: Element, witness: Witness) {
+    /// Records that an element differs, unless it has a witness already.
+    pub(super) fn record(&mut self, element: Element, witness: Witness) {
         if !self.differs(element) {
             self.differences.push((element, witness));
-            let place = |element: &Element| Element::WITH_FINE.iter().position(|other| other == element);
-            self.differences.sort_by_key(|(element, _)| place(element));
+            let rank = |element: &Element| Element::WITH_FINE.iter().position(|other| other == element);
+            self.differences.sort_by_key(|(element, _)| rank(element));
         }
     }
 
     /// Adds the findings of later pairs.
     pub(super) fn add(&mut self, later: Self) {
         for (element, witness) in later.differences {
-            self.note(element, witness);
+            self.record(element, witness);
         }
         let (own, more) = (&mut self.proof, later.proof);
         own.worlds += more.worlds;

@@ -1,4 +1,4 @@
-//! Finds which elements of the decision process differ between two tasks, by experiments on pairs of their worlds.
+//! Finds out by experiments on pairs of worlds which elements of the decision process differ between two tasks.
 //!
 //! The definitions are those of `docs/decisions/0024-elements-by-experiment.md`.
 
@@ -28,9 +28,9 @@ pub const MAX_EXPERIMENT_STEPS: u32 = 100_000;
 pub struct Experiment {
     /// Modalities of the learner's images; by default those that each world requests.
     pub modalities: Option<Vec<Modality>>,
-    /// Steps of a run, 1 to [`MAX_EXPERIMENT_STEPS`]; 100 by default. An agent that stands still takes a fifth of them.
+    /// Steps of a run, 1 to [`MAX_EXPERIMENT_STEPS`]; 100 by default. The agent that stands still runs for a fifth of them.
     pub steps: u32,
-    /// Number of steps between comparisons of observations, starting with the first; 25 by default, at least 1.
+    /// Observations are compared at the first step and every this many steps after it; 25 by default, at least 1.
     pub look_every: u32,
     /// Height and width of the images that are compared, in pixels, 1 to 4096; 48 by default.
     pub side: u32,
@@ -54,11 +54,11 @@ impl Default for Experiment {
 }
 
 impl Experiment {
-    /// Compares pairs of worlds: the differences between the first and second worlds, with a witness for each element.
+    /// Finds the differences between the first and second worlds of pairs, with a witness for each element that differs.
     ///
-    /// Each pair runs twice per [`Policy`]: once the agent acts in the first world and the second is set to the same state
-    /// before every step, once the other way round. So the order of the two worlds does not matter. Pairs run in parallel; the
-    /// findings depend only on the pairs and on this experiment.
+    /// Each pair runs twice per [`Policy`]: once the agent acts in the first world, and the second world is set to the same
+    /// state before every step; once the other way round. So the order of the two worlds does not matter. Pairs run in
+    /// parallel; the findings depend only on the pairs and on these settings.
     ///
     /// # Errors
     /// [`EnvError::PictureSize`] unless `side` is 1 to 4096.
@@ -75,37 +75,47 @@ impl Experiment {
     pub fn compare(&self, pairs: &[(World, World)]) -> Result<Findings, EnvError> {
         let first = StateSpace::of(pairs.iter().map(|(a, _)| a));
         let second = StateSpace::of(pairs.iter().map(|(_, b)| b));
-        let of_pair = |(number, pair): (usize, &(World, World))| self.of_pair(number, pair, [&first, &second]);
-        let each: Vec<Findings> = pairs.par_iter().enumerate().map(of_pair).collect::<Result<_, _>>()?;
+        let compare_pair =
+            |(number, pair): (usize, &(World, World))| self.compare_pair(number, pair, [&first, &second]);
+        let per_pair: Vec<Findings> = pairs
+            .par_iter()
+            .enumerate()
+            .map(compare_pair)
+            .collect::<Result<_, _>>()?;
         let mut found = Findings::default();
-        if let Some(unlike) = first.unlike(&second) {
-            found.note(Element::S, Witness::of(None, None, None, unlike));
+        if let Some(difference) = first.difference(&second) {
+            found.record(Element::S, Witness::of(None, None, None, difference));
         }
-        for own in each {
+        for own in per_pair {
             found.add(own);
         }
         Ok(found)
     }
 
-    fn of_pair(&self, number: usize, (a, b): &(World, World), spaces: [&StateSpace; 2]) -> Result<Findings, EnvError> {
+    fn compare_pair(
+        &self,
+        number: usize,
+        (a, b): &(World, World),
+        spaces: [&StateSpace; 2],
+    ) -> Result<Findings, EnvError> {
         let paired = Paired::new(a, b);
         let mut found = Findings::default();
-        let spaces_of_states = space::ground_unlike(a, b).map(|unlike| (Element::S, unlike));
-        let laws = paired.counts_unlike(spaces).or_else(|| paired.places_unlike());
-        let actions = space::actions_unlike(a, b).map(|unlike| (Element::A, unlike));
+        let state_space = space::ground_difference(a, b).map(|difference| (Element::S, difference));
+        let start = paired.count_difference(spaces).or_else(|| paired.start_difference());
+        let actions = space::action_difference(a, b).map(|difference| (Element::A, difference));
         let observations =
-            space::observations_unlike(a, b, self.modalities.is_some()).map(|unlike| (Element::O, unlike));
-        let laws = laws.map(|unlike| (Element::P, unlike));
-        for (element, unlike) in [spaces_of_states, laws, actions, observations].into_iter().flatten() {
-            found.note(element, Witness::of(Some(number), None, None, unlike));
+            space::observation_difference(a, b, self.modalities.is_some()).map(|difference| (Element::O, difference));
+        let start = start.map(|difference| (Element::P, difference));
+        for (element, difference) in [state_space, start, actions, observations].into_iter().flatten() {
+            found.record(element, Witness::of(Some(number), None, None, difference));
         }
         found.proof.worlds += 1;
         for leader in [0, 1] {
             let mut run = Run::new(self, number, &paired, leader)?;
             for policy in Policy::ALL {
-                run.live(policy, &mut found)?;
+                run.run_policy(policy, &mut found)?;
             }
-            run.at_the_limit(&mut found);
+            run.compare_at_time_limit(&mut found);
         }
         Ok(found)
     }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::agents::{Agent, OnRailsAgent, RandomAgent, ScriptedAgent, StillAgent};
 
-/// An agent of an experiment.
+/// The kind of agent in an experiment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, strum::IntoStaticStr)]
 #[serde(rename_all = "lowercase")]
 #[strum(serialize_all = "lowercase")]
@@ -16,7 +16,7 @@ pub enum Policy {
     Random,
     /// Knows the map and visits what pays, as [`OnRailsAgent`] does.
     Expert,
-    /// Touches one object of each tag and interacts with one, whatever their rewards.
+    /// Touches one object of each tag and interacts with one, regardless of rewards.
     Visitor,
 }
 
@@ -43,7 +43,7 @@ impl Policy {
 fn scripted(script: &str) -> Box<dyn Agent> {
     match ScriptedAgent::parse("experiment", script) {
         Ok(agent) => Box::new(agent),
-        // If a tag cannot be named in a script, the expert takes over.
+        // If a script cannot name a tag, the expert takes over.
         Err(_) => Box::new(OnRailsAgent::new()),
     }
 }
@@ -55,7 +55,7 @@ fn visits(world: &World, is_backwards: bool) -> String {
         .iter()
         .filter_map(|object| object.tag.as_deref())
         .collect();
-    tags.retain(|tag| !tag.is_empty() && !tag.contains(|letter: char| letter.is_whitespace() || letter == '#'));
+    tags.retain(|tag| !tag.is_empty() && !tag.contains(|c: char| c.is_whitespace() || c == '#'));
     if is_backwards {
         tags.reverse();
     }

@@ -1,11 +1,11 @@
-//! The spaces of states, actions and observations of two worlds, and their differences.
+//! Compares the spaces of states, actions and observations of two worlds.
 
 use std::collections::BTreeMap;
 
 use driftworld_spec::{ActionModel, AgentParams, World};
 
 use super::matching::count;
-use crate::sim::{Action, Intent, Unlike};
+use crate::sim::{Action, Difference, Intent};
 
 /// The kind of an object in the state space: its class, and the tag that rules use.
 pub(super) type Kind = (String, Option<String>);
@@ -16,11 +16,11 @@ pub(super) fn kind(object: &driftworld_spec::Object) -> Kind {
 }
 
 /// A kind's name: its tag if it has one, otherwise its class.
-pub(super) fn shown((class, tag): &Kind) -> &str {
+pub(super) fn display_name((class, tag): &Kind) -> &str {
     tag.as_deref().unwrap_or(class)
 }
 
-/// Observed ranges of a task's worlds: the minimum and maximum number of objects of each kind.
+/// The minimum and maximum number of objects of each kind over a task's worlds.
 #[derive(Debug, Default)]
 pub(super) struct StateSpace {
     counts: BTreeMap<Kind, [usize; 2]>,
@@ -28,11 +28,15 @@ pub(super) struct StateSpace {
 
 impl StateSpace {
     pub(super) fn of<'a>(worlds: impl Iterator<Item = &'a World> + Clone) -> Self {
-        let each: Vec<_> = worlds.map(count).collect();
+        let counts_per_world: Vec<_> = worlds.map(count).collect();
         let mut counts: BTreeMap<Kind, [usize; 2]> = BTreeMap::new();
-        for kind in each.iter().flat_map(BTreeMap::keys) {
+        for kind in counts_per_world.iter().flat_map(BTreeMap::keys) {
             if !counts.contains_key(kind) {
-                let own = || each.iter().map(|counts| counts.get(kind).copied().unwrap_or(0));
+                let own = || {
+                    counts_per_world
+                        .iter()
+                        .map(|counts| counts.get(kind).copied().unwrap_or(0))
+                };
                 counts.insert(kind.clone(), [own().min().unwrap_or(0), own().max().unwrap_or(0)]);
             }
         }
@@ -43,14 +47,14 @@ impl StateSpace {
         self.counts.get(kind).copied().unwrap_or([0, 0])
     }
 
-    /// Whether both have objects of this kind, and their ranges of numbers overlap.
+    /// Whether both or neither have objects of this kind, and their ranges overlap.
     pub(super) fn shares_counts(&self, other: &Self, kind: &Kind) -> bool {
         let ([low, high], [other_low, other_high]) = (self.range(kind), other.range(kind));
         (high > 0) == (other_high > 0) && low <= other_high && other_low <= high
     }
 
-    /// A kind that only one of the two has, or whose ranges of numbers do not overlap.
-    pub(super) fn unlike(&self, other: &Self) -> Option<Unlike> {
+    /// A kind that only one of the two has, or whose ranges do not overlap.
+    pub(super) fn difference(&self, other: &Self) -> Option<Difference> {
         let kinds = self.counts.keys().chain(other.counts.keys());
         let found = kinds.into_iter().find(|kind| !self.shares_counts(other, kind))?;
         let [a, b] = [self, other].map(|space| {
@@ -61,56 +65,56 @@ impl StateSpace {
                 format!("{low} to {high}")
             }
         });
-        let what = format!("the number of objects {} that there are", shown(found));
-        Some(Unlike { what, own: a, other: b })
+        let what = format!("the number of objects {} that there are", display_name(found));
+        Some(Difference { what, own: a, other: b })
     }
 }
 
-/// Differences in the ground on which objects can be.
-pub(super) fn ground_unlike(a: &World, b: &World) -> Option<Unlike> {
+/// A difference in the ground on which objects can be.
+pub(super) fn ground_difference(a: &World, b: &World) -> Option<Difference> {
     let (own, other) = (&a.environment_params, &b.environment_params);
     let walls = |world: &World| -> Vec<Vec<[f64; 2]>> {
         let regions = world.environment_params.regions().len();
         world.obstacles().skip(regions).map(<[_]>::to_vec).collect()
     };
-    Unlike::of(
+    Difference::of(
         "the size of the arena in metres",
         &own.arena_size(),
         &other.arena_size(),
     )
-    .or_else(|| Unlike::of("the regions that cannot be entered", &own.regions(), &other.regions()))
-    .or_else(|| Unlike::of("the walls", &walls(a), &walls(b)))
+    .or_else(|| Difference::of("the regions that cannot be entered", &own.regions(), &other.regions()))
+    .or_else(|| Difference::of("the walls", &walls(a), &walls(b)))
 }
 
-/// Differences in the available actions, or in the commands that they give the body.
-pub(super) fn actions_unlike(a: &World, b: &World) -> Option<Unlike> {
+/// A difference in the available actions, or in the commands that they give the body.
+pub(super) fn action_difference(a: &World, b: &World) -> Option<Difference> {
     let space = |agent: &AgentParams| match agent.num_actions() {
         Some(rows) => format!("{rows} rows of a table"),
         None => "three numbers".to_owned(),
     };
     let (own, other) = (&a.agent_params, &b.agent_params);
-    let known = |agent: &AgentParams| match agent.action_model {
+    let effect = |agent: &AgentParams| match agent.action_model {
         ActionModel::OnRails => "ignored, and the agent tours",
         ActionModel::None => "ignored",
         ActionModel::ByVelocity | ActionModel::ByWaypoint => "obeyed",
     };
-    Unlike::of("the form of an action", &space(own), &space(other))
-        .or_else(|| Unlike::of("what becomes of an action", &known(own), &known(other)))
+    Difference::of("the form of an action", &space(own), &space(other))
+        .or_else(|| Difference::of("what becomes of an action", &effect(own), &effect(other)))
         .or_else(|| {
-            let mut tried = tried(own).into_iter();
-            tried.find_map(|action| {
-                Unlike::of(
-                    format!("what the body does in a second by {}", in_words(action)),
-                    &intent_of(a, action),
-                    &intent_of(b, action),
+            let mut actions_to_test = actions_to_test(own).into_iter();
+            actions_to_test.find_map(|action| {
+                Difference::of(
+                    format!("what the body does in a second by {}", describe(action)),
+                    &intent_text(a, action),
+                    &intent_text(b, action),
                 )
             })
         })
 }
 
 /// Actions to test: all rows of a table, or numbers within and beyond the agents' limits.
-fn tried(agent: &AgentParams) -> Vec<Action> {
-    /// From tiny to more than the fastest agent's limit.
+fn actions_to_test(agent: &AgentParams) -> Vec<Action> {
+    /// From small values to beyond the limit of the fastest agent.
     const NUMBERS: [f64; 9] = [-4000.0, -70.0, -7.0, -0.4, 0.0, 0.4, 7.0, 70.0, 4000.0];
     if let Some(rows) = agent.num_actions() {
         return (0..rows).map(Action::Discrete).collect();
@@ -126,7 +130,7 @@ fn tried(agent: &AgentParams) -> Vec<Action> {
     actions
 }
 
-fn in_words(action: Action) -> String {
+fn describe(action: Action) -> String {
     match action {
         Action::Continuous([a, b, c]) => format!("the action [{a}, {b}, {c}]"),
         Action::Discrete(row) => format!("action number {row}"),
@@ -134,7 +138,7 @@ fn in_words(action: Action) -> String {
 }
 
 /// The command that an action gives the body for one second, as text; `None` if the world has no such action.
-fn intent_of(world: &World, action: Action) -> Option<String> {
+fn intent_text(world: &World, action: Action) -> Option<String> {
     let per_second = AgentParams {
         time_step: 1.0,
         ..world.agent_params.clone()
@@ -149,29 +153,29 @@ fn intent_of(world: &World, action: Action) -> Option<String> {
     Some(format!("turns {} degrees, {goes}{interacts}", intent.turn_deg))
 }
 
-/// Differences in the form of observations.
-pub(super) fn observations_unlike(a: &World, b: &World, is_chosen: bool) -> Option<Unlike> {
+/// A difference in the form of observations.
+pub(super) fn observation_difference(a: &World, b: &World, is_chosen: bool) -> Option<Difference> {
     let (own, other) = (&a.agent_params, &b.agent_params);
-    let modalities = || Unlike::of("the images of an observation", &own.modalities, &other.modalities);
+    let modalities = || Difference::of("the images of an observation", &own.modalities, &other.modalities);
     (!is_chosen)
         .then(modalities)
         .flatten()
         .or_else(|| {
-            Unlike::of(
+            Difference::of(
                 "the images' width and height",
                 &own.picture_size(),
                 &other.picture_size(),
             )
         })
         .or_else(|| {
-            Unlike::of(
+            Difference::of(
                 "what the state vector holds",
                 &own.state_features,
                 &other.state_features,
             )
         })
         .or_else(|| {
-            Unlike::of(
+            Difference::of(
                 "the length of the instruction",
                 &own.instruction.len(),
                 &other.instruction.len(),

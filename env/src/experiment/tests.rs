@@ -1,4 +1,4 @@
-//! Compares a world with itself and with worlds that have one change, in both orders.
+//! Compares a world with itself and with variants that have one change, in both orders.
 
 use driftworld_spec::{
     ActionModel, ActionSpace, Color, Door, Element, Energy, MotionModel, Object, Portable, Stimulus, Switch, Wall,
@@ -33,14 +33,14 @@ fn world() -> WorldDraft {
     world
 }
 
-fn sound(world: &WorldDraft) -> World {
-    world.clone().check().expect("the world is sound")
+fn checked(world: &WorldDraft) -> World {
+    world.clone().check().expect("the world is valid")
 }
 
 fn elements(a: &WorldDraft, b: &WorldDraft) -> Vec<Element> {
     let found = Experiment::default()
-        .compare(&[(sound(a), sound(b))])
-        .expect("both run");
+        .compare(&[(checked(a), checked(b))])
+        .expect("the experiment runs");
     assert_eq!(found.proof.worlds, 1);
     found.elements()
 }
@@ -55,8 +55,8 @@ fn check(expected: &[Element], change: impl Fn(&mut WorldDraft)) {
 
 #[test]
 fn world_does_not_differ_from_itself() {
-    let pairs: Vec<_> = (0..3).map(|_| (sound(&world()), sound(&world()))).collect();
-    let found = Experiment::default().compare(&pairs).expect("all run");
+    let pairs: Vec<_> = (0..3).map(|_| (checked(&world()), checked(&world()))).collect();
+    let found = Experiment::default().compare(&pairs).expect("the experiment runs");
     assert_eq!(found.differences, []);
     assert_eq!((found.proof.worlds, found.proof.runs), (3, 3 * 8));
     assert!(
@@ -78,7 +78,7 @@ fn objects_and_ground_belong_to_the_state_space() {
 }
 
 #[test]
-fn places_belong_to_the_initial_state() {
+fn positions_belong_to_the_initial_state() {
     check(&[Element::P], |world| world.objects[0].coordinates = [2.0, 9.0]);
     check(&[Element::P], |world| world.agent_params.heading = 30.0);
     check(&[Element::P], |world| world.agent_params.coordinates = [1.0, 1.0]);
@@ -108,7 +108,7 @@ fn dynamics_belong_to_the_transitions() {
     });
 }
 
-/// A room with a lever, a key, and a door that opens by touch on the way to a goal.
+/// A room with a lever, a key, and a door that opens on touch on the way to a goal.
 fn rooms() -> WorldDraft {
     let mut world = WorldDraft::default();
     world.environment_params.map_size = [6.0, 12.0];
@@ -142,25 +142,32 @@ fn rooms() -> WorldDraft {
 fn changes_to_doors_switches_keys_and_energy_are_found() {
     // Two pairs, so that the visitor also goes through the tags backwards.
     let elements = |a: &WorldDraft, b: &WorldDraft| {
-        let pair = (sound(a), sound(b));
-        let found = Experiment::default().compare(&[pair.clone(), pair]).expect("all run");
+        let pair = (checked(a), checked(b));
+        let found = Experiment::default()
+            .compare(&[pair.clone(), pair])
+            .expect("the experiment runs");
         found.elements()
     };
-    let mut asked = 0;
+    let mut num_changes = 0;
     let mut check = |expected: &[Element], change: &dyn Fn(&mut WorldDraft)| {
-        asked += 1;
-        // A table's row moves or interacts; numbers can do both at once.
+        num_changes += 1;
+        // A row of the table either moves or interacts; continuous actions can do both at once.
         for actions in [ActionSpace::Continuous, ActionSpace::DefaultDiscrete] {
             let mut own = rooms();
             own.agent_params.actions = actions;
             let mut changed = own.clone();
             change(&mut changed);
-            assert_eq!(elements(&own, &changed), expected, "change {asked}");
-            assert_eq!(elements(&changed, &own), expected, "change {asked} the other way round");
+            assert_eq!(elements(&own, &changed), expected, "change {num_changes}");
+            assert_eq!(
+                elements(&changed, &own),
+                expected,
+                "change {num_changes} the other way round"
+            );
         }
     };
-    let door =
-        |change: fn(&mut Door)| move |world: &mut WorldDraft| change(world.objects[0].door.as_mut().expect("a door"));
+    let door = |change: fn(&mut Door)| {
+        move |world: &mut WorldDraft| change(world.objects[0].door.as_mut().expect("the object is a door"))
+    };
     check(&[], &|_| {});
     check(&[Element::P], &door(|door| door.open = true));
     check(&[Element::T], &door(|door| door.closes_after = Some(60.0)));
@@ -177,7 +184,7 @@ fn changes_to_doors_switches_keys_and_energy_are_found() {
     });
     check(&[Element::T], &|world| world.agent_params.carry_limit = 0);
     let energy = |change: fn(&mut Energy)| {
-        move |world: &mut WorldDraft| change(world.agent_params.energy.as_mut().expect("some"))
+        move |world: &mut WorldDraft| change(world.agent_params.energy.as_mut().expect("the agent has energy"))
     };
     check(&[Element::P], &energy(|energy| energy.start = 50.0));
     check(&[Element::T], &energy(|energy| energy.per_second = -2.0));
@@ -208,7 +215,7 @@ fn zones_that_pay_or_end_belong_to_the_rewards() {
     check(&[Element::T], &zone(|zone| zone.speed_factor = 0.5));
 }
 
-/// The corners are the same, but sums round differently.
+/// The corners are the same, but sums are rounded differently.
 #[test]
 fn wall_in_two_pieces_looks_like_one() {
     let wall = |x: [f64; 2]| Wall {
@@ -230,7 +237,7 @@ fn wall_in_two_pieces_looks_like_one() {
 }
 
 #[test]
-fn place_of_a_respawning_object_belongs_only_to_the_initial_state() {
+fn position_of_a_respawning_object_belongs_only_to_the_initial_state() {
     let returning = |at: [f64; 2]| {
         let mut world = world();
         world.objects[0].coordinates = at;
@@ -299,13 +306,15 @@ fn reward_sign_shows_only_in_the_segmentation() {
             modalities: Some(modalities),
             ..Experiment::default()
         };
-        let found = experiment.compare(&[(sound(&own), sound(&changed))]).expect("both run");
+        let found = experiment
+            .compare(&[(checked(&own), checked(&changed))])
+            .expect("the experiment runs");
         assert_eq!(found.elements(), expected);
     }
 }
 
 #[test]
-fn overlapping_object_counts_differ_in_law_and_disjoint_ones_in_space() {
+fn overlapping_object_counts_differ_in_the_initial_state_and_disjoint_ones_in_space() {
     let with = |trees: usize| {
         let mut world = world();
         let tree = |number: usize| Object::new("tent", [12.0, number as f64 * 3.0]);
@@ -315,9 +324,12 @@ fn overlapping_object_counts_differ_in_law_and_disjoint_ones_in_space() {
     let found = |pairs: &[(usize, usize)]| {
         let pairs: Vec<_> = pairs
             .iter()
-            .map(|(a, b)| (sound(&with(*a)), sound(&with(*b))))
+            .map(|(a, b)| (checked(&with(*a)), checked(&with(*b))))
             .collect();
-        Experiment::default().compare(&pairs).expect("all run").elements()
+        Experiment::default()
+            .compare(&pairs)
+            .expect("the experiment runs")
+            .elements()
     };
     assert_eq!(found(&[(1, 2), (3, 3)]), [Element::P]);
     assert_eq!(found(&[(1, 3), (2, 4)]), [Element::S]);
@@ -329,15 +341,15 @@ fn witness_names_the_world_and_both_values() {
     let (own, mut changed) = (world(), world());
     changed.objects[0].reward = 3.0;
     let found = Experiment::default()
-        .compare(&[(sound(&own), sound(&changed))])
-        .expect("both run");
+        .compare(&[(checked(&own), checked(&changed))])
+        .expect("the experiment runs");
     let witness = found.witness(Element::R).expect("the reward differs");
     assert_eq!((witness.world, witness.what.as_str()), (Some(0), "the reward"));
     let [a, b] = [&witness.a, &witness.b].map(|text| text.parse::<f64>().expect("a number"));
     assert_eq!(a - b, 7.0, "{witness:?}");
     let back = Experiment::default()
-        .compare(&[(sound(&changed), sound(&own))])
-        .expect("both run");
+        .compare(&[(checked(&changed), checked(&own))])
+        .expect("the experiment runs");
     let back = back.witness(Element::R).expect("the reward differs");
     assert_eq!((&back.a, &back.b), (&witness.b, &witness.a));
 }
@@ -360,7 +372,7 @@ fn change(world: &mut WorldDraft, which: u8) {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(12))]
 
-    /// The same elements differ in either order, whatever is changed in either world.
+    /// The order of the two worlds makes no difference, regardless of the changes to them.
     #[test]
     fn findings_are_order_independent(ours in prop::collection::vec(0u8..9, 0..3), theirs in prop::collection::vec(0u8..9, 0..3)) {
         let (mut a, mut b) = (world(), world());
@@ -371,8 +383,8 @@ proptest! {
             change(&mut b, which);
         }
         let experiment = Experiment { steps: 40, side: 16, ..Experiment::default() };
-        let there = experiment.compare(&[(sound(&a), sound(&b))]).expect("both run");
-        let back = experiment.compare(&[(sound(&b), sound(&a))]).expect("both run");
+        let there = experiment.compare(&[(checked(&a), checked(&b))]).expect("the experiment runs");
+        let back = experiment.compare(&[(checked(&b), checked(&a))]).expect("the experiment runs");
         prop_assert_eq!(there.elements(), back.elements());
         prop_assert_eq!(there.proof, back.proof);
     }

@@ -1,5 +1,5 @@
-//! [`RecordingLines`]: writes recordings as lines of JSON. The first line identifies the file; a world has its own line before
-//! the first episode that begins in it; each line ends with a checksum of its contents.
+//! [`RecordingLines`] writes recordings as lines of JSON. The first line identifies the file. A world has its own line before
+//! the first episode that uses it. Each line ends with a checksum of its contents.
 
 use std::collections::BTreeSet;
 
@@ -26,7 +26,7 @@ pub(super) struct HeaderLine {
 pub(super) struct WorldLine {
     /// Its hash.
     pub(super) world_hash: String,
-    /// Its JSON, deflated.
+    /// Its JSON, deflated and encoded as text.
     pub(super) world: String,
 }
 
@@ -37,7 +37,7 @@ pub(super) struct EpisodeLine {
     pub(super) origin: EpisodeOrigin,
     /// The hash of its world.
     pub(super) world_hash: String,
-    /// For readers that do not replay the episode: seconds per time step, and time steps for which an action is held.
+    /// Seconds per time step, and time steps for which an action is held, for readers that do not replay the episode.
     pub(super) time_step: f64,
     pub(super) frame_skip: u32,
     pub(super) steps: u32,
@@ -60,7 +60,7 @@ pub struct RecordingLines {
 impl RecordingLines {
     /// The first line of a file.
     pub fn header() -> String {
-        sealed(&HeaderLine {
+        with_checksum(&HeaderLine {
             recording_format: RECORDING_FORMAT,
             driftworld: env!("CARGO_PKG_VERSION").to_owned(),
         })
@@ -80,7 +80,7 @@ impl RecordingLines {
             let json = world.to_json();
             let hash = world.hash();
             if self.known.insert(hash.clone()) {
-                lines.push_str(&sealed(&WorldLine {
+                lines.push_str(&with_checksum(&WorldLine {
                     world_hash: hash.clone(),
                     world: deflated(json.into_bytes()),
                 }));
@@ -95,42 +95,45 @@ impl RecordingLines {
             frame_skip: agent.frame_skip.max(1),
             steps: u32::try_from(recording.actions.len()).unwrap_or(u32::MAX),
             reward: recording.reward,
-            ended_by: recording.ended_by.map(|word| word.word().to_owned()),
+            ended_by: recording.ended_by.map(|ended_by| ended_by.word().to_owned()),
             driftworld: recording.recorded_by.clone(),
             edits: (recording.edits.iter())
                 .map(|edit| (edit.step, hash_of(&edit.world)))
                 .collect(),
             actions: PackedActions::new(&recording.actions),
         };
-        lines.push_str(&sealed(&episode));
+        lines.push_str(&with_checksum(&episode));
         lines
     }
 }
 
 /// The key of the checksum, the last in a line.
-const SEAL: &str = ",\"crc32\":\"";
+const CHECKSUM_KEY: &str = ",\"crc32\":\"";
 
 /// Serialises a line of JSON, with the checksum of its contents and a line ending.
-pub(super) fn sealed(line: &impl Serialize) -> String {
-    let mut json = serde_json::to_string(line).expect("lines have string keys only, which always serialise");
+pub(super) fn with_checksum(line: &impl Serialize) -> String {
+    let mut json = serde_json::to_string(line).expect("lines have only string keys, so they always serialise");
     let end = json.pop();
     debug_assert_eq!(end, Some('}'), "a line is an object");
     let sum = crc32fast::hash(json.as_bytes());
-    json + &format!("{SEAL}{sum:08x}\"}}\n")
+    json + &format!("{CHECKSUM_KEY}{sum:08x}\"}}\n")
 }
 
-/// Checks the checksum of a line without its line ending; the error is what was found, and what was expected.
-pub(super) fn unsealed(line: &[u8]) -> Result<(), (String, String)> {
+/// Verifies the checksum of a line without its line ending; the error is what was found, and what was expected.
+pub(super) fn check_checksum(line: &[u8]) -> Result<(), (String, String)> {
     let expected = || "a line of JSON that ends with its checksum".to_owned();
     let text = std::str::from_utf8(line).map_err(|_| ("bytes that are no text".to_owned(), expected()))?;
-    let (body, said) = text
-        .rsplit_once(SEAL)
+    let (body, expected_sum) = text
+        .rsplit_once(CHECKSUM_KEY)
         .and_then(|(body, rest)| Some((body, rest.strip_suffix("\"}")?)))
         .ok_or_else(|| ("a line without a checksum at its end".to_owned(), expected()))?;
     let sum = format!("{:08x}", crc32fast::hash(body.as_bytes()));
-    if said == sum {
+    if expected_sum == sum {
         Ok(())
     } else {
-        Err((format!("the checksum {sum}"), format!("{said:.12}, as the line says")))
+        Err((
+            format!("the checksum {sum}"),
+            format!("{expected_sum:.12}, as the line says"),
+        ))
     }
 }

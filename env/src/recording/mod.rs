@@ -1,4 +1,4 @@
-//! [`Recording`]: an episode as its initial world and its actions, so that it can be run and rendered again.
+//! [`Recording`]: an episode's initial world and actions, from which it can be replayed and rendered.
 
 mod lines;
 mod packed;
@@ -20,7 +20,8 @@ use crate::sim::{Action, EndedBy};
 /// Identifies a recorded episode; unknown fields are `None`.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct EpisodeOrigin {
-    /// Index of the experience over the whole lifetime, as in the log; otherwise the episode's index in its file, from 0.
+    /// Index of the experience over the whole lifetime, as in the log; without a lifetime, the episode's index in its file.
+    /// From 0.
     pub experience: u64,
     /// Its block, from 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -28,7 +29,7 @@ pub struct EpisodeOrigin {
     /// The task.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub task: Option<String>,
-    /// The variant; during a drift, both of its ends, as in the log's summary.
+    /// The variant; during a drift, its start and end variants, as in the log's summary.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub variant: Option<String>,
     /// The seed of its world.
@@ -39,12 +40,12 @@ pub struct EpisodeOrigin {
     pub index: Option<u64>,
 }
 
-/// A change from outside during an episode.
+/// A change to the world during an episode that its own rules did not cause.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Edit {
-    /// Number of steps before it.
+    /// Number of steps before the change.
     pub step: u32,
-    /// The world after it ([`Environment::state`](crate::Environment::state)).
+    /// The world after the change ([`Environment::state`](crate::Environment::state)).
     pub world: World,
 }
 
@@ -75,13 +76,13 @@ pub struct Recording {
     pub recorded_by: String,
     /// The initial world.
     pub world: World,
-    /// Changes from outside, in the order of their steps.
+    /// Changes to the world, in the order of their steps.
     pub edits: Vec<Edit>,
     /// The action of each step.
     pub actions: Vec<Action>,
-    /// The sum of rewards; if the initial world had run before, including the rewards it had already paid.
+    /// The sum of rewards, including those that the initial world had already paid, if it was saved during an episode.
     pub reward: f64,
-    /// The cause of the end, if it has ended.
+    /// The cause of the end, if the episode has ended.
     pub ended_by: Option<EndedBy>,
 }
 

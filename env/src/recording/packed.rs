@@ -1,4 +1,4 @@
-//! Encodes actions and worlds as short strings: deflated with zlib, then base64.
+//! Encodes actions and worlds as short strings: deflated with zlib, then encoded in base64.
 
 use std::io::{Read, Write};
 
@@ -11,18 +11,18 @@ use serde::{Deserialize, Serialize};
 
 use crate::sim::Action;
 
-/// Maximum number of steps in an episode that can be read.
+/// Maximum number of steps of an episode that can be read.
 pub const MAX_RECORDED_STEPS: u32 = 1 << 24;
 
-/// The actions of an episode, in the shortest lossless form. Little-endian.
+/// The actions of an episode in the shortest lossless form; numbers are little-endian.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub(super) enum PackedActions {
     /// Rows of the action table, 16 bits each.
     Rows(String),
-    /// Three 32-bit numbers per step: all of the numbers fit exactly.
+    /// Three 32-bit numbers per step, if all numbers fit exactly.
     F32(String),
-    /// Three 64-bit numbers per step. A row of the action table is its number and two NaNs, which no action can contain.
+    /// Three 64-bit numbers per step. A row of the action table is stored as its number and two NaNs, which no action contains.
     F64(String),
 }
 
@@ -58,15 +58,14 @@ impl PackedActions {
             ));
         }
         let action = |bytes: &[u8]| match self {
-            // Chunks have the length of `width`.
+            // Chunks have `width` bytes.
             Self::Rows(_) => Action::Discrete(usize::from(u16::from_le_bytes([bytes[0], bytes[1]]))),
-            Self::F32(_) => Action::Continuous(std::array::from_fn(|place| {
-                f64::from(f32::from_le_bytes(std::array::from_fn(|byte| bytes[4 * place + byte])))
+            Self::F32(_) => Action::Continuous(std::array::from_fn(|k| {
+                f64::from(f32::from_le_bytes(std::array::from_fn(|byte| bytes[4 * k + byte])))
             })),
             Self::F64(_) => {
-                let numbers: [f64; 3] = std::array::from_fn(|place| {
-                    f64::from_le_bytes(std::array::from_fn(|byte| bytes[8 * place + byte]))
-                });
+                let numbers: [f64; 3] =
+                    std::array::from_fn(|k| f64::from_le_bytes(std::array::from_fn(|byte| bytes[8 * k + byte])));
                 if numbers[1].is_nan() {
                     Action::Discrete(numbers[0] as usize)
                 } else {
@@ -100,7 +99,7 @@ pub(super) fn deflated(bytes: impl IntoIterator<Item = u8>) -> String {
     STANDARD.encode(written.expect("writing into memory cannot fail"))
 }
 
-/// Decodes and inflates such a string, to at most `most` + 1 bytes.
+/// Decodes and inflates such a string to at most `most` + 1 bytes, so that callers can detect larger contents.
 pub(super) fn inflated(text: &str, most: u64) -> Result<Vec<u8>, (String, String)> {
     let wrong = |reason: String| (reason, "zlib in base64".to_owned());
     let bytes = STANDARD.decode(text).map_err(|error| wrong(error.to_string()))?;
@@ -160,7 +159,7 @@ mod tests {
     fn held_actions_compress_well() {
         let held = vec![Action::Continuous([10.0, 30.0, 0.0]); 1000];
         let PackedActions::F32(text) = PackedActions::new(&held) else {
-            panic!("these are numbers of 32 bits")
+            panic!("the actions fit in 32-bit numbers")
         };
         assert!(text.len() < 120, "{} bytes for 1,000 steps", text.len());
     }

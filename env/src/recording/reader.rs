@@ -1,4 +1,4 @@
-//! [`RecordingReader`]: reads recordings. A damaged line is an error with its number, and does not affect other lines.
+//! [`RecordingReader`] reads recordings. A damaged line is an error with its number, and does not affect other lines.
 
 use std::collections::BTreeMap;
 use std::io::{BufRead, ErrorKind, Read, Seek};
@@ -6,13 +6,13 @@ use std::io::{BufRead, ErrorKind, Read, Seek};
 use driftworld_spec::{MAX_BYTES, World};
 use driftworld_text::in_plain_words;
 
-use super::lines::{EpisodeLine, HeaderLine, RECORDING_FORMAT, RecordingLines, WorldLine, unsealed};
+use super::lines::{EpisodeLine, HeaderLine, RECORDING_FORMAT, RecordingLines, WorldLine, check_checksum};
 use super::packed::inflated;
 use super::{Edit, EpisodeOrigin, Recording};
 use crate::EnvError;
 use crate::sim::EndedBy;
 
-/// Maximum length of a line that is read, in bytes.
+/// Maximum length of a line in bytes.
 pub const MAX_RECORDING_LINE: u64 = 1 << 27;
 
 /// Reads the episodes of a file one after another.
@@ -23,7 +23,7 @@ pub struct RecordingReader<R> {
     offset: u64,
     /// Encoded worlds with their line numbers, by hash.
     worlds: BTreeMap<String, (u64, String)>,
-    is_torn: bool,
+    is_truncated: bool,
 }
 
 /// A position in a file between two lines.
@@ -33,34 +33,34 @@ pub struct RecordingMark {
     offset: u64,
 }
 
-/// An undecoded episode of a file, for [`RecordingReader::recording`].
+/// An episode of a file that is not decoded yet; see [`RecordingReader::recording`].
 #[derive(Debug)]
 pub struct RecordedEpisode {
     /// The episode's identity.
     pub origin: EpisodeOrigin,
-    /// Its claimed number of steps.
+    /// Its number of steps, as stated in the file.
     pub steps: u32,
-    /// Its claimed reward.
+    /// Its reward, as stated in the file.
     pub reward: f64,
     /// Its line in the file, from 1.
     pub line: u64,
     /// The position of that line.
     pub place: RecordingMark,
-    said: EpisodeLine,
+    stored: EpisodeLine,
 }
 
 impl<R: BufRead> RecordingReader<R> {
     /// A reader at the first line.
     ///
     /// # Errors
-    /// [`EnvError::Recording`] if it is not the first line of a file of recordings of this version.
+    /// [`EnvError::Recording`] if the first line is not that of a file of recordings of this version.
     pub fn new(reader: R) -> Result<Self, EnvError> {
         let mut this = Self {
             reader,
             line: 0,
             offset: 0,
             worlds: BTreeMap::new(),
-            is_torn: false,
+            is_truncated: false,
         };
         let expected = "the first line of a file of recordings, as run --record writes it";
         let Some(line) = this.line()? else {
@@ -96,18 +96,18 @@ impl<R: BufRead> RecordingReader<R> {
             if line.starts_with(b"{\"world_hash\":") {
                 let world: WorldLine = serde_json::from_slice(&line).map_err(|error| not_a_line(self, &error))?;
                 let line = self.line;
-                // If a world has several lines, the last counts: it was written because an earlier one was undecodable.
+                // If a world has several lines, the last one counts: it was written because earlier ones could not be decoded.
                 self.worlds.insert(world.world_hash, (line, world.world));
                 continue;
             }
-            let said: EpisodeLine = serde_json::from_slice(&line).map_err(|error| not_a_line(self, &error))?;
+            let stored: EpisodeLine = serde_json::from_slice(&line).map_err(|error| not_a_line(self, &error))?;
             return Ok(Some(RecordedEpisode {
-                origin: said.origin.clone(),
-                steps: said.steps,
-                reward: said.reward,
+                origin: stored.origin.clone(),
+                steps: stored.steps,
+                reward: stored.reward,
                 line: self.line,
                 place,
-                said,
+                stored,
             }));
         }
     }
@@ -117,16 +117,16 @@ impl<R: BufRead> RecordingReader<R> {
     /// # Errors
     /// [`EnvError::Recording`] if its actions or its worlds cannot be read.
     pub fn recording(&self, episode: &RecordedEpisode) -> Result<Recording, EnvError> {
-        let said = &episode.said;
+        let stored = &episode.stored;
         let at_episode = |(found, expected): (String, String)| wrong(episode.line, found, expected);
-        let world = self.world(episode.line, &said.world_hash)?;
-        check_said(said, &world).map_err(at_episode)?;
-        let actions = said.actions.unpack(said.steps).map_err(at_episode)?;
-        let ended_by = said.ended_by.as_deref().map(|word| {
+        let world = self.world(episode.line, &stored.world_hash)?;
+        check_metadata(stored, &world).map_err(at_episode)?;
+        let actions = stored.actions.unpack(stored.steps).map_err(at_episode)?;
+        let ended_by = stored.ended_by.as_deref().map(|word| {
             let parsed = word.parse::<EndedBy>();
             parsed.map_err(|_| wrong(episode.line, format!("ended_by {word:.40}"), "a word of this version"))
         });
-        let edits = said.edits.iter().map(|(step, hash)| {
+        let edits = stored.edits.iter().map(|(step, hash)| {
             Ok(Edit {
                 step: *step,
                 world: self.world(episode.line, hash)?,
@@ -134,16 +134,16 @@ impl<R: BufRead> RecordingReader<R> {
         });
         Ok(Recording {
             origin: episode.origin.clone(),
-            recorded_by: said.driftworld.clone(),
+            recorded_by: stored.driftworld.clone(),
             world,
             edits: edits.collect::<Result<_, _>>()?,
             actions,
-            reward: said.reward,
+            reward: stored.reward,
             ended_by: ended_by.transpose()?,
         })
     }
 
-    /// Seeks to a marked position, after the file has been read to its end. Consecutive positions are read without seeking.
+    /// Seeks to a marked position after the file has been read to its end. Does not seek if the reader is already there.
     ///
     /// # Errors
     /// [`EnvError::Recording`] if seeking fails.
@@ -152,8 +152,8 @@ impl<R: BufRead> RecordingReader<R> {
         R: Seek,
     {
         let by = place.offset.cast_signed() - self.offset.cast_signed();
-        let turned = self.reader.seek_relative(by);
-        turned.map_err(|error| wrong(self.line, error.to_string(), "a file that can be read"))?;
+        let result = self.reader.seek_relative(by);
+        result.map_err(|error| wrong(self.line, error.to_string(), "a file that can be read"))?;
         (self.line, self.offset) = (place.line, place.offset);
         Ok(())
     }
@@ -166,8 +166,9 @@ impl<R: BufRead> RecordingReader<R> {
         }
     }
 
-    /// Returns the number of bytes before the first episode of this or a later experience, or before an incomplete last
-    /// line; a writer that continues there; and the experience after the last one before that point, or 0 without any.
+    /// Finds the end of the episodes before this experience: the first episode of this or a later experience, or an incomplete
+    /// last line. Returns the number of bytes before that point, a writer that continues there, and the index of the next
+    /// experience (0 if there are no episodes before).
     ///
     /// # Errors
     /// [`EnvError::Recording`] for a damaged line before that point.
@@ -179,7 +180,7 @@ impl<R: BufRead> RecordingReader<R> {
                 Ok(Some(episode)) if episode.origin.experience < experience => next = episode.origin.experience + 1,
                 Ok(Some(_)) => break before,
                 Ok(None) => break self.mark(),
-                Err(_) if self.is_torn => break before,
+                Err(_) if self.is_truncated => break before,
                 Err(error) => return Err(error),
             }
         };
@@ -187,13 +188,13 @@ impl<R: BufRead> RecordingReader<R> {
         Ok((length, lines, next))
     }
 
-    /// The number of bytes before a position, and a writer that continues there. It rewrites worlds whose lines cannot be
-    /// decoded, such as those of a different version.
+    /// The number of bytes before a position, and a writer that continues there. The writer writes worlds again if their lines
+    /// cannot be decoded, for example because they are of a different version.
     fn into_lines_at(self, place: RecordingMark) -> (u64, RecordingLines) {
         let before = self.worlds.iter().filter(|(_, (line, _))| *line <= place.line);
-        let sound = before.filter(|(hash, _)| self.world(place.line, hash).is_ok());
-        let sound = sound.map(|(hash, _)| hash.clone());
-        (place.offset, RecordingLines::with_worlds(sound))
+        let decodable = before.filter(|(hash, _)| self.world(place.line, hash).is_ok());
+        let decodable = decodable.map(|(hash, _)| hash.clone());
+        (place.offset, RecordingLines::with_worlds(decodable))
     }
 
     fn world(&self, line: u64, hash: &str) -> Result<World, EnvError> {
@@ -233,11 +234,11 @@ impl<R: BufRead> RecordingReader<R> {
         }
         self.offset += line.len() as u64;
         if line.pop() != Some(b'\n') {
-            self.is_torn = true;
+            self.is_truncated = true;
             let advice = "a line end: the writer was stopped in the midst of it; what stands before it is whole";
             return Err(wrong(self.line, "the end of the file", advice));
         }
-        unsealed(&line).map_err(|(found, expected)| wrong(self.line, found, expected))?;
+        check_checksum(&line).map_err(|(found, expected)| wrong(self.line, found, expected))?;
         Ok(Some(line))
     }
 }
@@ -250,8 +251,8 @@ fn wrong(line: u64, found: impl Into<String>, expected: impl Into<String>) -> En
     }
 }
 
-/// Checks the line's redundant information against the world, and the syntax of its version.
-fn check_said(said: &EpisodeLine, world: &World) -> Result<(), (String, String)> {
+/// Checks the line's redundant information against the world, and that its version is not newer than this one.
+fn check_metadata(stored: &EpisodeLine, world: &World) -> Result<(), (String, String)> {
     let agent = &world.agent_params;
     let numbers = |version: &str| {
         version
@@ -262,26 +263,26 @@ fn check_said(said: &EpisodeLine, world: &World) -> Result<(), (String, String)>
     let own = env!("CARGO_PKG_VERSION");
     let differs =
         |key: &str, found: &dyn std::fmt::Display, expected: String| Err((format!("{key} {found:.40}"), expected));
-    if said.time_step.to_bits() != agent.time_step.to_bits() {
+    if stored.time_step.to_bits() != agent.time_step.to_bits() {
         return differs(
             "time_step",
-            &said.time_step,
+            &stored.time_step,
             format!("{} as in its world", agent.time_step),
         );
     }
-    if said.frame_skip != agent.frame_skip.max(1) {
+    if stored.frame_skip != agent.frame_skip.max(1) {
         let expected = format!("{} as in its world", agent.frame_skip.max(1));
-        return differs("frame_skip", &said.frame_skip, expected);
+        return differs("frame_skip", &stored.frame_skip, expected);
     }
-    if numbers(&said.driftworld).is_none_or(|found| found.len() != 3 || Some(found) > numbers(own)) {
-        return differs("driftworld", &said.driftworld, format!("a version up to {own}"));
+    if numbers(&stored.driftworld).is_none_or(|found| found.len() != 3 || Some(found) > numbers(own)) {
+        return differs("driftworld", &stored.driftworld, format!("a version up to {own}"));
     }
     Ok(())
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::lines::sealed;
+    use super::super::lines::with_checksum;
     use super::*;
     use crate::recording::packed::deflated;
     use crate::{Action, Environment, Recorder};
@@ -298,20 +299,24 @@ mod tests {
         recording
     }
 
-    /// Found by the fuzzer: episodes written after such a line could not be read.
+    /// A bug found by the fuzzer: episodes written after such a line could not be read.
     #[test]
     fn undecodable_world_is_written_again() {
-        let world = sealed(&WorldLine {
+        let world = with_checksum(&WorldLine {
             world_hash: World::default().hash(),
             world: deflated(br#"{ "of_another_version": true }"#.iter().copied()),
         });
         let mut file = RecordingLines::header() + &world;
-        let reader = RecordingReader::new(file.as_bytes()).expect("the file begins well");
+        let reader = RecordingReader::new(file.as_bytes()).expect("the first line is valid");
         let (offset, mut lines, next) = reader.into_lines_before(u64::MAX).expect("no line is damaged");
         assert_eq!((offset, next), (file.len() as u64, 0));
         file += &lines.lines(&recording(0));
         file += &lines.lines(&recording(1));
-        assert_eq!(file.matches("{\"world_hash\"").count(), 2, "written again, and once");
+        assert_eq!(
+            file.matches("{\"world_hash\"").count(),
+            2,
+            "the damaged line and one new line"
+        );
         let mut reader = RecordingReader::new(file.as_bytes()).unwrap();
         for number in 0..2 {
             let episode = reader.next_episode().unwrap().unwrap();

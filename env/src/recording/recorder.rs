@@ -1,11 +1,11 @@
-//! [`Recorder`]: records an episode while it runs.
+//! [`Recorder`] records an episode while it runs.
 
 use driftworld_spec::World;
 
 use super::{Edit, EpisodeOrigin, Recording};
 use crate::sim::{Action, EndedBy, Environment};
 
-/// The current episode.
+/// Records the current episode of an environment.
 #[derive(Clone, Debug, Default)]
 pub struct Recorder {
     world: Option<World>,
@@ -33,7 +33,7 @@ impl Recorder {
         self.actions.push(action);
     }
 
-    /// Records that the world was changed from outside.
+    /// Records a change to the world that an action did not cause.
     pub fn edit(&mut self, environment: &Environment) {
         let (step, world) = (self.num_steps(), environment.state());
         // Of several changes between the same steps, only the last counts.

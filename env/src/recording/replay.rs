@@ -1,4 +1,4 @@
-//! [`Replay`]: runs a recorded episode again and compares the results.
+//! [`Replay`] runs a recorded episode again and compares the results.
 
 use super::Recording;
 use crate::EnvError;
@@ -9,7 +9,7 @@ use crate::sim::{EndedBy, Environment, Step};
 pub struct Replay<'a> {
     recording: &'a Recording,
     environment: Environment,
-    /// Numbers of steps and changes from outside so far.
+    /// Number of steps so far, and number of recorded edits applied so far.
     steps: usize,
     edits: usize,
     /// The cause of the end, if it has ended.
@@ -17,7 +17,7 @@ pub struct Replay<'a> {
 }
 
 impl<'a> Replay<'a> {
-    /// An episode at its start; `catalogue` should be the one that it was recorded with.
+    /// An episode at its start; `catalogue` should be the one with which it was recorded.
     pub fn new(recording: &'a Recording, catalogue: &Catalogue) -> Self {
         let mut replay = Self {
             recording,
@@ -68,14 +68,14 @@ impl<'a> Replay<'a> {
     /// After the last step, checks that the reward and the end match the recording.
     ///
     /// # Errors
-    /// [`EnvError::Replay`] with the difference.
+    /// [`EnvError::Replay`] if they differ.
     pub fn check(&self) -> Result<(), EnvError> {
         let (found, expected) = (self.environment.episode_return(), self.recording.reward);
         if found.to_bits() != expected.to_bits() {
             return Err(self.differs("reward", found.to_string(), expected.to_string()));
         }
         let (found, expected) = (self.ended_by, self.recording.ended_by);
-        // A step limit may have been set from outside.
+        // The step limit of the recording may not have been part of the world.
         if found != expected && (found, expected) != (None, Some(EndedBy::Steps)) {
             let word = |ended_by: Option<EndedBy>| ended_by.map_or("nothing", EndedBy::word).to_owned();
             return Err(self.differs("ended_by", word(found), word(expected)));
@@ -83,7 +83,7 @@ impl<'a> Replay<'a> {
         Ok(())
     }
 
-    /// Applies recorded changes from outside that came before the next step.
+    /// Applies the recorded edits before the next step.
     fn edit(&mut self) {
         while let Some(edit) = self.recording.edits.get(self.edits)
             && edit.step as usize == self.steps

@@ -1,7 +1,7 @@
-//! Sky and ground by formula: for each row of an image, the distance of the ground and its colours.
+//! Computes sky and ground by formula: the distance of the ground and the colours of each row of an image.
 
 use super::frame::{CATEGORY_MAP, CATEGORY_SKY};
-use super::lanes::{Lanes, MOST_LANES};
+use super::lanes::{Lanes, MAX_LANES};
 use super::shade::{FULL_LEVEL, ROUNDING, Shader};
 use super::view::View;
 use crate::scene::Scene;
@@ -12,8 +12,8 @@ pub(crate) const SQUARE: f32 = 2.0;
 /// Contrast of the squares with the ground, and of the blocks of 8 × 8 squares.
 pub(super) const CONTRAST: [f32; 2] = [0.045, 0.03];
 
-/// How fast the contrast of squares and blocks fades, per square that a pixel covers: it reaches 0 just before they are as small as
-/// a pixel.
+/// How fast the contrast of squares and of blocks fades, per square that a pixel covers. It reaches 0 just before they are as
+/// small as a pixel.
 pub(super) const FADING: [f32; 2] = [1.3, 1.3 / 8.0];
 
 /// The background of an image, row by row. Reused between images.
@@ -23,14 +23,14 @@ pub(super) struct Backdrop {
     pub(super) rise: Vec<f32>,
     /// 1 / distance of the ground along the view axis; 0 in rows of sky.
     pub(super) ground: Vec<f32>,
-    /// Packed pixels: of the sky; or of the ground's light and dark squares, in light and in dark blocks.
+    /// Packed pixels: the sky's in all four, or those of the ground's light and dark squares, in light and in dark blocks.
     pub(super) pixels: [Vec<u32>; 4],
-    /// Colour of the fog, as bytes 0 to 255.
+    /// Colour of the fog, as levels 0 to 255.
     pub(super) fog_color: [f32; 3],
 }
 
 /// Values shared by all rows.
-struct Look {
+struct RowParams {
     height: f32,
     step: f32,
     ground: [f32; 3],
@@ -41,7 +41,7 @@ struct Look {
 impl Backdrop {
     #[inline(always)]
     pub(super) fn prepare<L: Lanes>(&mut self, l: L, scene: &Scene, view: &View, shader: &Shader, rows: usize) {
-        let padded = rows.next_multiple_of(MOST_LANES);
+        let padded = rows.next_multiple_of(MAX_LANES);
         for buffer in [&mut self.rise, &mut self.ground] {
             buffer.resize(padded, 0.0);
         }
@@ -50,7 +50,7 @@ impl Backdrop {
         }
         let [zenith, horizon] = shader.sky(scene.light.sky_color);
         let upward = shader.share([0.0, 0.0, 1.0]);
-        let look = Look {
+        let look = RowParams {
             height: view.position[2].max(0.01),
             step: view.step,
             ground: shader.in_light(scene.ground_color).map(|level| level * upward),
@@ -64,7 +64,7 @@ impl Backdrop {
     }
 
     #[inline(always)]
-    fn prepare_rows<L: Lanes>(&mut self, l: L, view: &View, look: &Look, first: usize) {
+    fn prepare_rows<L: Lanes>(&mut self, l: L, view: &View, look: &RowParams, first: usize) {
         let (zero, one) = (l.splat(0.0), l.splat(1.0));
         let row = l.add(l.count_up(), l.splat(first as f32));
         let middle = l.splat(view.size[1] / 2.0 - 0.5);
@@ -81,9 +81,9 @@ impl Backdrop {
         let left = l.sub(one, steepness);
         let share = l.sub(one, l.mul(left, l.mul(left, left)));
         let sky = [
-            between(l, share, look.horizon[0], look.zenith[0]),
-            between(l, share, look.horizon[1], look.zenith[1]),
-            between(l, share, look.horizon[2], look.zenith[2]),
+            lerp(l, share, look.horizon[0], look.zenith[0]),
+            lerp(l, share, look.horizon[1], look.zenith[1]),
+            lerp(l, share, look.horizon[2], look.zenith[2]),
         ];
         let sky = pack(l, sky, CATEGORY_SKY);
 
@@ -111,7 +111,7 @@ impl Backdrop {
 }
 
 #[inline(always)]
-fn between<L: Lanes>(l: L, share: L::Float, from: f32, to: f32) -> L::Float {
+fn lerp<L: Lanes>(l: L, share: L::Float, from: f32, to: f32) -> L::Float {
     l.mul_add(share, l.splat(to - from), l.splat(from))
 }
 

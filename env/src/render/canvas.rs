@@ -1,6 +1,6 @@
-//! The canvas that triangles are rasterised into: depth and packed pixel of each position.
+//! The canvas into which triangles are rasterised: the depth and the packed pixel of each position.
 
-use super::lanes::{Lanes, MOST_LANES};
+use super::lanes::{Lanes, MAX_LANES};
 
 /// Buffers of one image, reused between images. Rows are padded to whole vectors.
 #[derive(Clone, Debug, Default)]
@@ -9,7 +9,7 @@ pub(super) struct Canvas {
     pub(super) height: usize,
     /// Offset from one row to the next, in pixels.
     pub(super) stride: usize,
-    /// 1 / depth; 0 is infinitely far.
+    /// 1 / depth; 0 means infinitely far.
     pub(super) inverse_depth: Aligned<f32>,
     /// Colour in the lower three bytes, red lowest; a label in the highest. Valid only where something was drawn.
     pub(super) pixels: Aligned<u32>,
@@ -36,20 +36,14 @@ pub(super) struct Triangle {
 /// A pattern that modifies a triangle's pixels.
 pub(super) trait Texture: Copy {
     /// The packed pixels with the pattern applied, at these columns of a row, for 1 / depth.
-    fn shown<L: Lanes>(
-        self,
-        l: L,
-        taken: L::Mask,
-        packed: L::Word,
-        at: (usize, L::Float),
-        inverse: L::Float,
-    ) -> L::Word;
+    fn apply<L: Lanes>(self, l: L, mask: L::Mask, packed: L::Word, at: (usize, L::Float), inverse: L::Float)
+    -> L::Word;
 }
 
 /// No pattern.
 impl Texture for () {
     #[inline(always)]
-    fn shown<L: Lanes>(self, _: L, _: L::Mask, packed: L::Word, _: (usize, L::Float), _: L::Float) -> L::Word {
+    fn apply<L: Lanes>(self, _: L, _: L::Mask, packed: L::Word, _: (usize, L::Float), _: L::Float) -> L::Word {
         packed
     }
 }
@@ -57,7 +51,7 @@ impl Texture for () {
 impl Canvas {
     /// Clears the canvas and sets its size.
     pub(super) fn clear(&mut self, width: usize, height: usize, with_items: bool) {
-        let stride = width.next_multiple_of(MOST_LANES);
+        let stride = width.next_multiple_of(MAX_LANES);
         let pixels = stride * height;
         (self.width, self.height, self.stride) = (width, height, stride);
         self.inverse_depth.resize(pixels);
@@ -69,7 +63,7 @@ impl Canvas {
 
     /// Draws a triangle, with a depth test.
     ///
-    /// A pixel's values depend only on its position and on the triangle's first row, whatever the number of lanes.
+    /// A pixel's values depend only on its position and on the triangle's first row, not on the number of lanes.
     #[inline(always)]
     pub(super) fn fill<L: Lanes, const ITEMS: bool>(&mut self, lanes: L, triangle: &Triangle, texture: impl Texture) {
         let Triangle { columns, rows, .. } = *triangle;
@@ -80,7 +74,7 @@ impl Canvas {
         let stride = self.stride;
         let (depths, pixels, items) = (&mut *self.inverse_depth, &mut *self.pixels, &mut *self.items);
         let last_start = stride - L::N;
-        let reach = (rows[1] - rows[0] >= TALL).then(|| Reach::of(triangle));
+        let reach = (rows[1] - rows[0] >= MIN_TALL_ROWS).then(|| Reach::of(triangle));
         let mut start = columns[0].min(last_start);
         loop {
             let [first, last] = match &reach {
@@ -88,7 +82,10 @@ impl Canvas {
                 None => rows,
             };
             let x = lanes.add(lanes.count_up(), lanes.splat(start as f32));
-            let mut e0 = lanes.add(at_top(lanes, triangle.edges[0], x, top), within(lanes, start, columns));
+            let mut e0 = lanes.add(
+                at_top(lanes, triangle.edges[0], x, top),
+                column_mask(lanes, start, columns),
+            );
             let mut e1 = at_top(lanes, triangle.edges[1], x, top);
             let mut e2 = at_top(lanes, triangle.edges[2], x, top);
             let mut inverse = at_top(lanes, triangle.inverse_depth, x, top);
@@ -104,12 +101,12 @@ impl Canvas {
             for row in first..=last {
                 let depths = &mut depths[pixel..pixel + L::N];
                 let inside = lanes.at_least(lanes.min(e0, lanes.min(e1, e2)), zero);
-                let taken = lanes.both(inside, lanes.above(inverse, lanes.load(depths)));
-                lanes.store_where(taken, inverse, depths);
-                let shown = texture.shown(lanes, taken, packed, (row, x), inverse);
-                lanes.store_words_where(taken, shown, &mut pixels[pixel..pixel + L::N]);
+                let mask = lanes.both(inside, lanes.above(inverse, lanes.load(depths)));
+                lanes.store_where(mask, inverse, depths);
+                let word = texture.apply(lanes, mask, packed, (row, x), inverse);
+                lanes.store_words_where(mask, word, &mut pixels[pixel..pixel + L::N]);
                 if ITEMS {
-                    lanes.store_words_where(taken, item, &mut items[pixel..pixel + L::N]);
+                    lanes.store_words_where(mask, item, &mut items[pixel..pixel + L::N]);
                 }
                 (e0, e1, e2) = (lanes.add(e0, d0), lanes.add(e1, d1), lanes.add(e2, d2));
                 inverse = lanes.add(inverse, down);
@@ -124,16 +121,16 @@ impl Canvas {
     }
 }
 
-/// Minimum height, in rows, of triangles for which it pays to find the rows that they reach in a few columns.
-const TALL: usize = 12;
+/// Minimum height in rows of triangles for which finding the rows that they reach in a few columns saves time.
+const MIN_TALL_ROWS: usize = 12;
 
-/// Computes the rows that a triangle reaches in some columns: never too few, despite rounding.
+/// Computes the rows that a triangle reaches in some columns. Despite rounding, it never leaves any out.
 struct Reach {
     edges: [[f32; 3]; 3],
     /// 1 / the change of each edge function per row.
     per_row: [f32; 3],
     /// Maximum rounding error of each edge function.
-    off: [f32; 3],
+    max_error: [f32; 3],
 }
 
 impl Reach {
@@ -145,8 +142,8 @@ impl Reach {
         Self {
             edges,
             per_row: edges.map(|edge| 1.0 / edge[2]),
-            off: edges.map(|[c, a, b]| {
-                let largest = c.abs() + a.abs() * (columns[1] + MOST_LANES) as f32 + b.abs() * rows[1] as f32;
+            max_error: edges.map(|[c, a, b]| {
+                let largest = c.abs() + a.abs() * (columns[1] + MAX_LANES) as f32 + b.abs() * rows[1] as f32;
                 largest * count * f32::EPSILON
             }),
         }
@@ -156,22 +153,22 @@ impl Reach {
         let [mut first, mut last] = rows.map(|row| row as f32);
         for k in 0..3 {
             let [c, a, b] = self.edges[k];
-            let most = c + (a * left).max(a * right) + self.off[k];
-            let zero = -most * self.per_row[k];
+            let max = c + (a * left).max(a * right) + self.max_error[k];
+            let zero = -max * self.per_row[k];
             if b > 0.0 {
                 first = first.max(zero - 1.0);
             } else if b < 0.0 {
                 last = last.min(zero + 1.0);
             }
         }
-        // At least one row is visited, at little cost.
+        // Always visits at least one row, which costs little.
         let first = (first as usize).min(rows[1]);
         [first, (last.max(0.0) as usize).clamp(first, rows[1])]
     }
 }
 
-/// A buffer whose first element is aligned to a cache line, so that whole vectors lie within one. A clone is aligned once it is
-/// resized.
+/// A buffer whose first element is aligned to a cache line, so that no vector crosses a line. A clone is aligned only after it
+/// is resized.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Aligned<T> {
     numbers: Vec<T>,
@@ -208,23 +205,23 @@ impl<T> std::ops::DerefMut for Aligned<T> {
     }
 }
 
-/// A term that, added to an edge function, excludes the lanes beside a triangle's columns: their number depends on the
-/// instruction set, and the edge functions of a sliver may be non-negative there.
+/// A term that, added to an edge function, excludes the lanes beside a triangle's columns. The number of these lanes depends on
+/// the instruction set, and the edge functions of a sliver may be non-negative there.
 #[inline(always)]
-fn within<L: Lanes>(lanes: L, start: usize, [first, last]: [usize; 2]) -> L::Float {
-    let beside = BESIDE.as_flattened();
-    let right = lanes.load(&beside[2 * MOST_LANES - (last + 1 - start).min(L::N)..]);
+fn column_mask<L: Lanes>(lanes: L, start: usize, [first, last]: [usize; 2]) -> L::Float {
+    let masks = COLUMN_MASKS.as_flattened();
+    let right = lanes.load(&masks[2 * MAX_LANES - (last + 1 - start).min(L::N)..]);
     if start >= first {
         return right;
     }
-    lanes.min(right, lanes.load(&beside[MOST_LANES + start - first..]))
+    lanes.min(right, lanes.load(&masks[MAX_LANES + start - first..]))
 }
 
-/// Zeros, with as many negative infinities on each side.
-const BESIDE: [[f32; MOST_LANES]; 3] = [
-    [f32::NEG_INFINITY; MOST_LANES],
-    [0.0; MOST_LANES],
-    [f32::NEG_INFINITY; MOST_LANES],
+/// Zeros between equally many negative infinities.
+const COLUMN_MASKS: [[f32; MAX_LANES]; 3] = [
+    [f32::NEG_INFINITY; MAX_LANES],
+    [0.0; MAX_LANES],
+    [f32::NEG_INFINITY; MAX_LANES],
 ];
 
 /// `c + a·x + b·y` in one row.
@@ -240,7 +237,7 @@ mod tests {
     use super::super::lanes::Portable;
     use super::*;
 
-    /// A triangle with these corners and 1 / depth of each; clockwise on the screen, where rows go down.
+    /// A triangle with these corners, clockwise on the screen, and 1 / depth of each.
     fn triangle(corners: [[f32; 2]; 3], inverse: [f32; 3], size: [usize; 2]) -> Option<Triangle> {
         let edge = |k: usize| {
             let ([px, py], [qx, qy]) = (corners[(k + 1) % 3], corners[(k + 2) % 3]);
@@ -270,7 +267,7 @@ mod tests {
     }
 
     /// Reference result of `fill`, pixel by pixel, visiting every row.
-    fn plainly(triangle: &Triangle, canvas: &Canvas) -> Vec<f32> {
+    fn reference_depths(triangle: &Triangle, canvas: &Canvas) -> Vec<f32> {
         let mut depths = vec![0.0; canvas.stride * canvas.height];
         let first = triangle.rows[0] as f32;
         for x in triangle.columns[0]..=triangle.columns[1] {
@@ -305,10 +302,10 @@ mod tests {
             if let Some(triangle) = found {
                 canvas.fill::<_, true>(Portable, &triangle, ());
                 let drawn: Vec<u32> = canvas.inverse_depth.iter().map(|depth| depth.to_bits()).collect();
-                let plain = plainly(&triangle, &canvas);
-                for (place, (drawn, plain)) in drawn.into_iter().zip(plain).enumerate() {
-                    prop_assert_eq!(drawn, plain.to_bits(), "row {}, column {}", place / canvas.stride, place % canvas.stride);
-                    prop_assert_eq!(canvas.items[place] == 3, plain > 0.0);
+                let plain = reference_depths(&triangle, &canvas);
+                for (index, (drawn, plain)) in drawn.into_iter().zip(plain).enumerate() {
+                    prop_assert_eq!(drawn, plain.to_bits(), "row {}, column {}", index / canvas.stride, index % canvas.stride);
+                    prop_assert_eq!(canvas.items[index] == 3, plain > 0.0);
                 }
             }
         }

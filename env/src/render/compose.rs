@@ -1,11 +1,11 @@
-//! Composes images from packed pixels: draws the canvas over ground, sky and the arena's walls, and writes each modality.
+//! Composes images from packed pixels: lays the canvas over ground, sky and the arena's walls, and writes each modality.
 
 use std::ops::Range;
 
 use super::backdrop::{Backdrop, SQUARE};
 use super::canvas::Canvas;
 use super::frame::{CATEGORY_MAP, FAR_DEPTH};
-use super::lanes::{Lanes, MOST_LANES};
+use super::lanes::{Lanes, MAX_LANES};
 use super::shade::Shader;
 use super::target::Target;
 use super::view::View;
@@ -14,14 +14,14 @@ use crate::scene::{ARENA_WALLS, Scene};
 /// Bits of a label for the reward category; the rest hold the class.
 pub(super) const CATEGORY_BITS: u32 = 3;
 
-/// Ground farther than this many squares from the origin shows no squares: their indices would overflow.
-pub(super) const MOST_SQUARES: f32 = 8000.0;
+/// Ground farther than this many squares from the origin is drawn without squares, because their indices would overflow.
+pub(super) const MAX_SQUARES: f32 = 8000.0;
 
 /// Added to indices of squares to make them positive; a multiple of 16, which preserves the pattern.
 pub(super) const SHIFT: f32 = 8192.0;
 
-/// The four walls around the camera, as linear functions. For each, 1 / distance of the wall along the view axis is
-/// `base + right · x + up · y` for a pixel x to the right and y up at 1 m.
+/// The arena's four walls around the camera as linear functions. For each wall, 1 / its distance along the view axis is `base +
+/// right · x + up · y` for a pixel that is x to the right and y up at 1 m.
 pub(super) struct Walls {
     pub(super) base: [f32; 4],
     pub(super) right: [f32; 4],
@@ -34,7 +34,7 @@ pub(super) struct Walls {
 /// One row's part of [`Walls`], and the row's background.
 struct Row {
     walls: [[f32; 2]; 4],
-    /// 1 / distance at which a wall's upper edge is visible in this row; more distant walls are not visible.
+    /// 1 / distance at which a wall's upper edge is in this row; walls farther away end below it.
     edge: f32,
     ground: f32,
     pixels: [u32; 4],
@@ -47,17 +47,17 @@ struct Row {
 }
 
 impl Walls {
-    /// The arena's walls seen from inside; `None` if the camera is elsewhere, where they are drawn as panels.
+    /// The arena's walls seen from inside; `None` if the camera is elsewhere, because then they are drawn as panels.
     pub(super) fn around(scene: &Scene, view: &View, shader: &Shader) -> Option<Self> {
         let [half_x, half_y] = scene.arena_size().map(|side| side / 2.0);
         let height = scene.walls.first()?.height;
         let [x, y, z] = view.position;
-        // A camera so near to a wall that the near plane intersects it would see through it.
+        // A camera whose near plane intersects a wall would see through it.
         let inside = half_x - x.abs() > 0.1 && half_y - y.abs() > 0.1 && z > 0.0 && z < height;
         if !inside {
             return None;
         }
-        // West, north, east, south: the scene's order.
+        // West, north, east, south, as in the scene.
         let inward = [[1.0, 0.0], [0.0, -1.0], [-1.0, 0.0], [0.0, 1.0]];
         let mut walls = Self {
             base: [0.0; 4],
@@ -97,9 +97,9 @@ pub(super) struct Composition<'a> {
     pub(super) view: View,
     /// Offset of each column from the image's middle, to the right, at 1 m.
     pub(super) offsets: &'a [f32],
-    /// Distance in metres at which fog hides half of what is seen.
+    /// Distance in metres at which fog has half its effect.
     pub(super) fog_distance: Option<f32>,
-    /// Class of each item; empty if labels contain it.
+    /// Class of each item; empty if labels contain the class.
     pub(super) classes: &'a [u16],
 }
 
@@ -156,10 +156,10 @@ impl Composition<'_> {
                 }
                 let inverse = l.max(drawn, behind);
                 if let Some(distance) = self.fog_distance {
-                    word = self.in_fog(l, word, inverse, distance);
+                    word = self.add_fog(l, word, inverse, distance);
                 }
                 if width < L::N {
-                    narrow(l, word, inverse, target, out..out + width);
+                    write_narrow_row(l, word, inverse, target, out..out + width);
                 } else {
                     if let Some(rgb) = &mut target.rgb {
                         l.store_rgb(word, &mut rgb[3 * (out + start)..]);
@@ -249,12 +249,12 @@ impl Composition<'_> {
             let half_width = self.offsets[0].abs();
             for axis in 0..2 {
                 let ahead = axes.forward[axis] + offset * axes.up[axis];
-                let place = (self.view.position[axis] + ahead * metres) / SQUARE;
+                let position = (self.view.position[axis] + ahead * metres) / SQUARE;
                 let across = axes.right[axis] * metres / SQUARE;
-                furthest = furthest.max(place.abs() + across.abs() * half_width);
-                row.squares[axis] = [place + SHIFT, across];
+                furthest = furthest.max(position.abs() + across.abs() * half_width);
+                row.squares[axis] = [position + SHIFT, across];
             }
-            row.has_squares = furthest < MOST_SQUARES;
+            row.has_squares = furthest < MAX_SQUARES;
         }
         if let Some(walls) = &self.walls {
             let rise = backdrop.rise[y];
@@ -307,13 +307,13 @@ impl Composition<'_> {
 
     /// Blends colours into the fog with distance; the sky stays unchanged.
     #[inline(always)]
-    fn in_fog<L: Lanes>(&self, l: L, word: L::Word, inverse: L::Float, distance: f32) -> L::Word {
+    fn add_fog<L: Lanes>(&self, l: L, word: L::Word, inverse: L::Float, distance: f32) -> L::Word {
         let one = l.splat(1.0);
         let reach = l.mul(inverse, l.splat(distance));
         let fog = l.div(one, l.mul_add(reach, reach, one));
         let is_sky = l.at_least(l.splat(0.0), inverse);
-        let mut words = [0; MOST_LANES];
-        let mut shares = [0.0; MOST_LANES];
+        let mut words = [0; MAX_LANES];
+        let mut shares = [0.0; MAX_LANES];
         l.store_words(word, &mut words);
         l.store(l.select(is_sky, l.splat(0.0), fog), &mut shares);
         for (word, share) in words.iter_mut().zip(shares).take(L::N) {
@@ -343,22 +343,22 @@ fn square<L: Lanes>(l: L, row: [f32; 2], offset: L::Float) -> L::Word {
 /// Converts 1 / depth to metres.
 #[inline(always)]
 pub(super) fn metres<L: Lanes>(l: L, inverse: L::Float) -> L::Float {
-    // Lanes that divide by 0 are not selected.
+    // Lanes with a division by 0 are not selected.
     let near = l.above(inverse, l.splat(1.0 / FAR_DEPTH));
     l.select(near, l.div(l.splat(1.0), inverse), l.splat(FAR_DEPTH))
 }
 
 /// Writes colour and depth of a row that is shorter than a vector.
 #[inline(never)]
-fn narrow<L: Lanes>(l: L, word: L::Word, inverse: L::Float, target: &mut Target<'_>, row: Range<usize>) {
+fn write_narrow_row<L: Lanes>(l: L, word: L::Word, inverse: L::Float, target: &mut Target<'_>, row: Range<usize>) {
     let count = row.len();
     if let Some(rgb) = &mut target.rgb {
-        let mut bytes = [0; 3 * MOST_LANES];
+        let mut bytes = [0; 3 * MAX_LANES];
         l.store_rgb(word, &mut bytes);
         rgb[3 * row.start..3 * row.end].copy_from_slice(&bytes[..3 * count]);
     }
     if let Some(depth) = &mut target.depth {
-        let mut all = [0.0; MOST_LANES];
+        let mut all = [0.0; MAX_LANES];
         l.store(metres(l, inverse), &mut all);
         depth[row].copy_from_slice(&all[..count]);
     }

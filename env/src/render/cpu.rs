@@ -1,4 +1,4 @@
-//! [`CpuRenderer`]: chooses the instruction set, and draws everything visible from near to far.
+//! [`CpuRenderer`] chooses the instruction set, and draws everything visible from near to far.
 
 use super::backdrop::Backdrop;
 use super::canvas::Canvas;
@@ -8,7 +8,7 @@ use super::hand::Hand;
 use super::hidden::Hidden;
 #[cfg(target_arch = "x86_64")]
 use super::lanes::{Avx2, Avx512};
-use super::lanes::{Lanes, MOST_LANES, Portable};
+use super::lanes::{Lanes, MAX_LANES, Portable};
 use super::natural::{Natural, labels_hold_classes};
 use super::raster::{ShadingParams, draw_block};
 use super::shade::Shader;
@@ -22,7 +22,7 @@ use crate::scene::{Item, PanelGroup, Scene};
 
 /// Renders scenes on the CPU. Reuses its buffers, and allocates nothing once they are large enough.
 ///
-/// The same scene and camera give the same pixels on every machine, whatever the instruction set.
+/// The same scene and camera give the same pixels on every machine, regardless of the instruction set.
 #[derive(Clone, Debug, Default)]
 pub struct CpuRenderer {
     set: Set,
@@ -56,9 +56,8 @@ impl CpuRenderer {
         Self::default()
     }
 
-    /// One renderer for each instruction set of this CPU, with the set's name; the widest last.
-    ///
-    /// All render the same pixels; for tests and measurements.
+    /// One renderer for each instruction set of this CPU, with the set's name; the widest last. All render the same pixels.
+    /// Meant for tests and benchmarks.
     pub fn each_instruction_set() -> Vec<(&'static str, Self)> {
         Set::all()
             .into_iter()
@@ -69,10 +68,10 @@ impl CpuRenderer {
             .collect()
     }
 
-    /// A renderer with or without culling of everything behind walls: the images are the same.
+    /// A renderer with or without culling of everything behind walls; images are the same either way.
     #[cfg(test)]
-    pub(super) fn that_hides(mut self, hides: bool) -> Self {
-        self.hidden.is_off = !hides;
+    pub(super) fn with_culling(mut self, hides: bool) -> Self {
+        self.hidden.is_disabled = !hides;
         self
     }
 
@@ -102,7 +101,7 @@ impl CpuRenderer {
         Ok(())
     }
 
-    /// Draws these carried items of the scene at the bottom of the target's colour image.
+    /// Draws these items of the scene, which the agent carries, at the bottom of the target's colour image.
     pub(crate) fn draw_carried(&mut self, scene: &Scene, carried: &[u32], target: &mut Target<'_>) {
         self.hand.draw(scene, carried, target);
     }
@@ -128,7 +127,7 @@ impl CpuRenderer {
 
     fn run(&mut self, scene: &Scene, camera: &Camera, target: &mut Target<'_>) {
         self.run_with_set(scene, camera, target);
-        target.see_fog(&scene.light);
+        target.apply_fog_to_depth(&scene.light);
     }
 
     fn run_with_set(&mut self, scene: &Scene, camera: &Camera, target: &mut Target<'_>) {
@@ -214,7 +213,7 @@ impl CpuRenderer {
                         continue;
                     }
                     self.draw_panels::<L, ITEMS>(lanes, group, visible, &view, &shader, scene);
-                    self.hidden.note(group, &view);
+                    self.hidden.record(group, &view);
                 }
             }
         }
@@ -240,13 +239,16 @@ impl CpuRenderer {
     /// Computes the columns' offsets from the image's middle, padded to whole vectors.
     pub(super) fn measure_columns(&mut self, view: &View, width: usize) {
         self.offsets.clear();
-        let padded = width.next_multiple_of(MOST_LANES);
+        let padded = width.next_multiple_of(MAX_LANES);
         self.offsets
             .extend((0..padded).map(|column| view.offset(0, column as f32)));
     }
 
     #[inline(always)]
-    #[expect(clippy::too_many_arguments, reason = "an item, and all that its looks depend on")]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "an item, and everything on which its look depends"
+    )]
     fn draw_item<L: Lanes, const ITEMS: bool>(
         &mut self,
         lanes: L,
@@ -268,7 +270,7 @@ impl CpuRenderer {
             ambient: shader.ambient,
             label: (label | u32::from(category(item))) << 24,
             item: index + 1,
-            may_be_cut: visible.nearest < NEAR,
+            may_need_clipping: visible.nearest < NEAR,
         };
         for material in level(item, visible, view) {
             let color = match material.paint {
@@ -298,7 +300,7 @@ impl CpuRenderer {
             ambient: shader.ambient,
             label: u32::from(CATEGORY_MAP) << 24,
             item: 0,
-            may_be_cut: visible.nearest < NEAR,
+            may_need_clipping: visible.nearest < NEAR,
         };
         for block in &group.blocks {
             draw_block::<L, ITEMS, _>(lanes, &mut self.canvas, block, &at, &params);

@@ -1,7 +1,6 @@
-//! Light of the natural style: sun and sky by the sun's elevation, or lamps under a ceiling.
-//!
-//! Each face gets sunlight by its angle, and ambient light by how much it faces up. The sum is about 1 in full daylight, so
-//! that saturated colours keep their shading. As in the plain style, everything is in gamma space.
+//! Light of the natural style: sun and sky, which depend on the sun's elevation, or lamps under a ceiling. Each face gets
+//! sunlight according to its angle, and ambient light according to how much it faces up. The sum is about 1 in full daylight,
+//! so that saturated colours keep their shading. As in the plain style, everything is computed in gamma space.
 
 use super::shade::FULL_LEVEL;
 use crate::scene::Light;
@@ -11,8 +10,8 @@ use crate::scene::Light;
 pub(super) struct Daylight {
     /// Towards the sun, length 1.
     pub(super) direction: [f32; 3],
-    /// Per channel: the factor for a face that points at the sun, the ambient factor of an upright face, and what is added for
-    /// a face that points up.
+    /// Per channel: the factor for a face that points at the sun, the ambient factor of a vertical face, and the addition for a
+    /// face that points up.
     pub(super) sun: [f32; 3],
     pub(super) around: [f32; 3],
     pub(super) above: [f32; 3],
@@ -27,12 +26,12 @@ pub(super) struct Daylight {
 }
 
 /// Smooth step from 0 at `from` to 1 at `to`.
-pub(super) fn rise(value: f32, from: f32, to: f32) -> f32 {
+pub(super) fn smoothstep(value: f32, from: f32, to: f32) -> f32 {
     let share = ((value - from) / (to - from)).clamp(0.0, 1.0);
     share * share * (3.0 - 2.0 * share)
 }
 
-pub(super) fn between(a: [f32; 3], b: [f32; 3], share: f32) -> [f32; 3] {
+pub(super) fn lerp(a: [f32; 3], b: [f32; 3], share: f32) -> [f32; 3] {
     std::array::from_fn(|k| a[k] + (b[k] - a[k]) * share)
 }
 
@@ -40,8 +39,8 @@ impl Daylight {
     pub(super) fn new(light: &Light, is_inside: bool) -> Self {
         // Under a ceiling nothing depends on the sun, not even fog.
         let height = if is_inside { 1.0 } else { light.direction[2] };
-        // Dim light looks like a low sun, too.
-        let low = (1.0 - rise(height, 0.04, 0.5)).max(0.9 * (1.0 - rise(light.exposure, 0.1, 0.8)));
+        // Dim light looks like a low sun as well.
+        let low = (1.0 - smoothstep(height, 0.04, 0.5)).max(0.9 * (1.0 - smoothstep(light.exposure, 0.1, 0.8)));
         let exposure = if light.exposure < 1.0 {
             light.exposure.sqrt()
         } else {
@@ -52,9 +51,9 @@ impl Daylight {
         if is_inside {
             return Self::inside(color, sky);
         }
-        let warm = between([1.0; 3], [1.0, 0.66, 0.36], low);
-        let cold = between([0.94, 1.0, 1.1], [0.84, 0.84, 1.06], low);
-        let strength = (1.0 - light.ambient) * rise(height, -0.06, 0.1) * (0.88 - 0.08 * low);
+        let warm = lerp([1.0; 3], [1.0, 0.66, 0.36], low);
+        let cold = lerp([0.94, 1.0, 1.1], [0.84, 0.84, 1.06], low);
+        let strength = (1.0 - light.ambient) * smoothstep(height, -0.06, 0.1) * (0.88 - 0.08 * low);
         let around = light.ambient * (1.5 + 0.1 * low);
         let top: [f32; 3] = std::array::from_fn(|k| color[k] * cold[k] * around);
         let bottom = [0, 1, 2].map(|k| color[k] * around * [0.74, 0.72, 0.66][k]);
@@ -67,7 +66,7 @@ impl Daylight {
         }
     }
 
-    /// Lamps everywhere under the ceiling, slightly brighter from one side, so that corners are visible.
+    /// Lamps under the whole ceiling, slightly brighter from one side, so that corners are visible.
     fn inside(color: [f32; 3], sky: Self) -> Self {
         const LAMPS: [f32; 3] = [0.48, -0.36, 0.8];
         Self {
@@ -120,17 +119,17 @@ mod tests {
     #[test]
     fn a_low_sun_warms_light_and_sky() {
         let warmth = |levels: [f32; 3]| levels[0] / levels[2];
-        let mut before = [f32::INFINITY; 2];
+        let mut previous = [f32::INFINITY; 2];
         for height in [0.08, 0.2, 0.35, 0.6, 0.9] {
             let day = Daylight::new(&light(height, 1.0), false);
             let here = [warmth(day.sun), warmth(day.sunward)];
             assert!(
-                here[0] <= before[0] && here[1] <= before[1],
-                "{height}: {here:?} after {before:?}"
+                here[0] <= previous[0] && here[1] <= previous[1],
+                "{height}: {here:?} after {previous:?}"
             );
-            before = here;
+            previous = here;
         }
-        assert!((before[0] - 1.0).abs() < 1e-5);
+        assert!((previous[0] - 1.0).abs() < 1e-5);
         assert!(warmth(Daylight::new(&light(0.08, 1.0), false).sun) > 1.7);
     }
 
@@ -144,7 +143,8 @@ mod tests {
         }
     }
 
-    /// In full daylight a saturated colour is clipped by 6 % at most: faces in different directions have different levels.
+    /// In full daylight a saturated colour is clipped by at most 6 %, so that faces in different directions keep different
+    /// levels.
     #[test]
     fn saturated_colours_keep_their_shading() {
         let day = Daylight::new(&light(0.6, 1.0), false);
@@ -166,13 +166,13 @@ mod tests {
 
     #[test]
     fn more_light_is_brighter_and_shadow_is_darker() {
-        let mut before = 0.0;
+        let mut previous = 0.0;
         for exposure in [0.05, 0.2, 0.6, 1.0, 1.5] {
             let day = Daylight::new(&light(0.7, exposure), false);
             let ground = day.levels([0.5; 3], [0.0, 0.0, 1.0])[1];
-            assert!(ground > before);
+            assert!(ground > previous);
             assert!(day.shade() >> 8 & 255 < 110);
-            before = ground;
+            previous = ground;
         }
     }
 }

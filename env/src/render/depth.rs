@@ -1,21 +1,21 @@
-//! Converts depth to millimetres and grey; [`DepthForm`] names the number formats of a batch's depth images.
+//! Converts depth to millimetres and to grey. [`DepthForm`] is the number format of a batch's depth images.
 
-/// The number format of a batch's depth images, named like the dtypes of `NumPy`.
+/// The number format of a batch's depth images; formats are named like the dtypes of `NumPy`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, strum::EnumString)]
 pub enum DepthForm {
     /// Metres, as rendered.
     #[default]
     #[strum(serialize = "float32")]
     Metres,
-    /// Whole millimetres, capped at 65,535, as depth cameras give them.
+    /// Whole millimetres, capped at 65,535, as from depth cameras.
     #[strum(serialize = "uint16")]
     Millimetres,
-    /// Grey, as L2Explorer shows it: 0 at the camera, 255 at 100 m and beyond.
+    /// Grey, as in L2Explorer: 0 at the camera, 255 at 100 m and beyond.
     #[strum(serialize = "uint8")]
     Gray,
 }
 
-/// Depth as L2Explorer shows it: black at the camera, white at 100 m and beyond.
+/// Converts depth to grey as in L2Explorer: black at the camera, white at 100 m and beyond.
 pub fn depth_to_gray(depth: &[f32]) -> Vec<u8> {
     let gray = |metres: &f32| rounded(metres * GRAY_PER_METRE, 255.0) as u8;
     depth.iter().map(gray).collect()
@@ -26,8 +26,8 @@ const GRAY_PER_METRE: f32 = 2.55;
 
 /// The nearest integer, halves rounded up, within 0..=`most`, which must be below 2²³.
 ///
-/// A sum with 2²³ has no bits for a fraction: its last bits are the integer. Compilers vectorise this, but not a
-/// saturating cast, which takes three times as long with SSE2.
+/// A sum with 2²³ has no bits for a fraction, so its last bits are the integer. Compilers vectorise this, but not a saturating
+/// cast; with SSE2 the cast takes three times as long.
 #[inline]
 fn rounded(number: f32, most: f32) -> u32 {
     const SHIFT: f32 = 8_388_608.0;
@@ -50,43 +50,40 @@ pub(crate) fn gray(depth: &[f32], out: &mut [u8]) {
     scaled(depth, GRAY_PER_METRE, 255.0, |word| word as u8, out);
 }
 
-/// Rounds `scale` times the metres, capped at `most`, with the CPU's widest vectors: 0.7 µs for 84 × 84 pixels with AVX-512,
-/// 1.2 with AVX2, 2.1 with SSE2. The numbers are the same with all of them.
+/// Rounds `scale` times the metres, capped at `most`, with the CPU's widest vectors. 84 × 84 pixels take 0.7 µs with AVX-512,
+/// 1.2 µs with AVX2 and 2.1 µs with SSE2; the results are the same.
 fn scaled<T>(depth: &[f32], scale: f32, most: f32, lowest: impl Fn(u32) -> T, out: &mut [T]) {
     #[cfg(target_arch = "x86_64")]
     {
         if is_x86_feature_detected!("avx512bw") && is_x86_feature_detected!("avx512vl") {
             #[expect(unsafe_code, reason = "the processor was just checked for these instructions")]
-            // SAFETY: the CPU has them; AVX-512BW implies F and AVX2.
+            // SAFETY: the CPU has these instructions; AVX-512BW implies F and AVX2.
             return unsafe { scaled_avx512(depth, scale, most, lowest, out) };
         }
         if is_x86_feature_detected!("avx2") {
             #[expect(unsafe_code, reason = "the processor was just checked for these instructions")]
-            // SAFETY: the CPU has them.
+            // SAFETY: the CPU has these instructions.
             return unsafe { scaled_avx2(depth, scale, most, lowest, out) };
         }
     }
-    scaled_here(depth, scale, most, lowest, out);
+    scaled_inline(depth, scale, most, lowest, out);
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,avx512f,avx512bw,avx512vl")]
 fn scaled_avx512<T>(depth: &[f32], scale: f32, most: f32, lowest: impl Fn(u32) -> T, out: &mut [T]) {
-    scaled_here(depth, scale, most, lowest, out);
+    scaled_inline(depth, scale, most, lowest, out);
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
 fn scaled_avx2<T>(depth: &[f32], scale: f32, most: f32, lowest: impl Fn(u32) -> T, out: &mut [T]) {
-    scaled_here(depth, scale, most, lowest, out);
+    scaled_inline(depth, scale, most, lowest, out);
 }
 
-#[expect(
-    clippy::inline_always,
-    reason = "it is to be compiled for each caller's instructions"
-)]
+#[expect(clippy::inline_always, reason = "must be compiled for each caller's instruction set")]
 #[inline(always)]
-fn scaled_here<T>(depth: &[f32], scale: f32, most: f32, lowest: impl Fn(u32) -> T, out: &mut [T]) {
+fn scaled_inline<T>(depth: &[f32], scale: f32, most: f32, lowest: impl Fn(u32) -> T, out: &mut [T]) {
     for (out, metres) in out.iter_mut().zip(depth) {
         *out = lowest(rounded(metres * scale, most));
     }
@@ -125,7 +122,7 @@ mod tests {
         let depth: Vec<f32> = steps.map(|step| f32::from(step) * 0.011_3).collect();
         let (mut fast, mut plain) = (vec![0_u8; depth.len()], vec![0_u8; depth.len()]);
         gray(&depth, &mut fast);
-        scaled_here(&depth, GRAY_PER_METRE, 255.0, |word| word as u8, &mut plain);
+        scaled_inline(&depth, GRAY_PER_METRE, 255.0, |word| word as u8, &mut plain);
         assert_eq!(fast, plain);
     }
 }

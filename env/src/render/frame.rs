@@ -29,9 +29,9 @@ pub struct Frame {
     pub depth: Vec<f32>,
     /// Reward category, `(height, width)`.
     pub category: Vec<u8>,
-    /// Object class, `(height, width)`: the scene's class number, or 0 for none.
+    /// Class number of the object, or 0 for none, `(height, width)`.
     pub class: Vec<u16>,
-    /// Object, `(height, width)`: the item's index plus 1, or 0 for none.
+    /// Item index plus 1, or 0 for none, `(height, width)`.
     pub instance: Vec<u32>,
 }
 

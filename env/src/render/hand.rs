@@ -1,5 +1,5 @@
-//! Draws the things that the agent carries as small pictures at the bottom of its view: only in the colour image, and always on
-//! the CPU, so that the pixels do not depend on the renderer.
+//! Draws the things that the agent carries as small pictures at the bottom of its view. They appear only in the colour image,
+//! and are always drawn on the CPU, so that their pixels do not depend on the renderer.
 
 use driftworld_spec::World;
 
@@ -8,17 +8,17 @@ use super::target::Target;
 use crate::camera::Camera;
 use crate::scene::{Item, Light, Scene};
 
-/// The image's height divided by this is the height of a thing's picture.
-const SHARE: u32 = 5;
+/// The image's height divided by the height of a thing's picture.
+const HEIGHT_DIVISOR: u32 = 5;
 
 /// Minimum height of a thing's picture in pixels, if the image is that large.
-const LEAST: u32 = 8;
+const MIN_SIDE: u32 = 8;
 
-/// Draws carried things. Allocates when the first is drawn, and afterwards only for larger pictures.
+/// Draws carried things. Allocates for the first one, and afterwards only for larger pictures.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Hand(Option<Box<Studio>>);
 
-/// An empty scene for the thing that is drawn.
+/// A scene with only the thing to draw.
 #[derive(Clone, Debug)]
 struct Studio {
     renderer: CpuRenderer,
@@ -28,11 +28,11 @@ struct Studio {
 }
 
 impl Hand {
-    /// Draws these items side by side at the bottom of the colour image, in this order; only the last ones if there is no room
-    /// for all.
+    /// Draws these items side by side at the bottom of the colour image, in this order. If there is no room for all, draws the
+    /// last ones.
     pub(super) fn draw(&mut self, scene: &Scene, carried: &[u32], target: &mut Target<'_>) {
         let (width, height) = (target.width, target.height);
-        let side = (height / SHARE).max(LEAST).min(width).min(height);
+        let side = (height / HEIGHT_DIVISOR).max(MIN_SIDE).min(width).min(height);
         let Some(rgb) = target.rgb.as_deref_mut().filter(|_| side > 0) else {
             return;
         };
@@ -64,7 +64,7 @@ impl Default for Studio {
 impl Studio {
     /// Draws one thing so that it fills a square, in the world's light but without fog.
     fn draw(&mut self, item: &Item, light: Light, side: u32) {
-        /// From behind the camera, to its left and above: every visible side is lit.
+        /// Behind the camera, to its left and above, so that every visible side is lit.
         const SUN: [f32; 3] = [-0.36, -0.8, 0.48];
         /// Distance of the camera, in lengths of the thing.
         const DISTANCE: f32 = 3.0;
@@ -73,7 +73,7 @@ impl Studio {
         let length = item.asset.height.max(2.0 * item.asset.radius).max(1e-3);
         let item = Item {
             position: [0.0; 2],
-            // Its face, slightly from the side.
+            // Shows its front, slightly from the side.
             heading_deg: 200.0,
             scale: 1.0 / length,
             // Its class number may be unknown in this scene.
@@ -104,7 +104,7 @@ impl Studio {
         };
         self.renderer
             .draw(&self.scene, &camera, &mut target)
-            .expect("a side is 1 to 4096, and the buffers fit it");
+            .expect("the side is 1 to 4096 pixels, and the buffers have its size");
     }
 
     /// Copies the thing's pixels, without their background, into an image.

@@ -1,15 +1,15 @@
-//! Culls what walls hide: records the nearest wall in each column of an image. Things behind it that are not higher are not
-//! drawn.
+//! Culls objects hidden by walls. Records the nearest wall in each column of an image; objects behind it that are not higher
+//! need not be drawn.
 
 use super::view::{NEAR, View};
 use crate::scene::{Item, PanelGroup};
 
 /// Tolerances for rounding: in columns, and as a fraction of a depth.
-const COLUMN: f32 = 0.01;
-const SHARE: f32 = 1e-3;
+const COLUMN_TOLERANCE: f32 = 0.01;
+const DEPTH_TOLERANCE: f32 = 1e-3;
 
-/// The drawn walls by column. Used only for cameras that look straight ahead, between the ground and the tops of walls: there a
-/// wall fills its columns from the ground to above the horizon.
+/// The drawn walls by column. Used only for cameras that look straight ahead from a height between the ground and the tops of
+/// walls, because there a wall fills its columns from the ground to above the horizon.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Hidden {
     /// 1 / depth of the nearest wall of each column; 0 without one.
@@ -18,7 +18,7 @@ pub(super) struct Hidden {
     height: Option<f32>,
     is_usable: bool,
     /// Disables culling, so that everything is drawn.
-    pub(super) is_off: bool,
+    pub(super) is_disabled: bool,
 }
 
 impl Hidden {
@@ -28,49 +28,49 @@ impl Hidden {
         self.inverse.resize(view.size[0] as usize, 0.0);
         self.height = None;
         self.is_usable =
-            !self.is_off && view.axes.forward[2] == 0.0 && view.axes.right[2] == 0.0 && view.position[2] > 0.0;
+            !self.is_disabled && view.axes.forward[2] == 0.0 && view.axes.right[2] == 0.0 && view.position[2] > 0.0;
     }
 
     /// Records walls that were drawn.
-    pub(super) fn note(&mut self, group: &PanelGroup, view: &View) {
+    pub(super) fn record(&mut self, group: &PanelGroup, view: &View) {
         let is_high_enough = match self.height {
             Some(height) => group.height >= height,
-            None => group.height > view.position[2] * (1.0 + SHARE),
+            None => group.height > view.position[2] * (1.0 + DEPTH_TOLERANCE),
         };
         if !self.is_usable || !is_high_enough {
             return;
         }
         for [from, to] in &group.edges {
-            self.note_edge(place(view, *from), place(view, *to), view);
+            self.record_edge(camera_position(view, *from), camera_position(view, *to), view);
         }
         if !group.edges.is_empty() {
             self.height.get_or_insert(group.height);
         }
     }
 
-    fn note_edge(&mut self, mut from: [f32; 2], mut to: [f32; 2], view: &View) {
+    fn record_edge(&mut self, mut from: [f32; 2], mut to: [f32; 2], view: &View) {
         // Walls are visible only from their right-hand side.
         if from[0] * to[1] - from[1] * to[0] >= 0.0 {
             return;
         }
-        let least = 2.0 * NEAR;
-        if from[1] < least && to[1] < least {
+        let min_depth = 2.0 * NEAR;
+        if from[1] < min_depth && to[1] < min_depth {
             return;
         }
         let cut = |near: [f32; 2], far: [f32; 2]| {
-            let along = (least - near[1]) / (far[1] - near[1]);
-            [near[0] + along * (far[0] - near[0]), least]
+            let along = (min_depth - near[1]) / (far[1] - near[1]);
+            [near[0] + along * (far[0] - near[0]), min_depth]
         };
-        if from[1] < least {
+        if from[1] < min_depth {
             from = cut(from, to);
-        } else if to[1] < least {
+        } else if to[1] < min_depth {
             to = cut(to, from);
         }
         let [a, b] = [from, to].map(|[right, ahead]| (column(view, right, ahead), 1.0 / ahead));
         let [(left, left_inverse), (right, right_inverse)] = if a.0 < b.0 { [a, b] } else { [b, a] };
         let last = self.inverse.len() as f32 - 1.0;
-        let first = (left + COLUMN).ceil().max(0.0);
-        let last = (right - COLUMN).floor().min(last);
+        let first = (left + COLUMN_TOLERANCE).ceil().max(0.0);
+        let last = (right - COLUMN_TOLERANCE).floor().min(last);
         if first > last {
             return;
         }
@@ -87,10 +87,10 @@ impl Hidden {
             return false;
         }
         let (mut columns, mut nearest) = ([f32::INFINITY, f32::NEG_INFINITY], f32::INFINITY);
-        // Around a region, each edge begins where another ends; a wall of the arena is a single edge with two ends.
+        // Around a region, each edge begins where another one ends. A wall of the arena is a single edge, so its end is added.
         let last = group.edges.last().map(|[_, to]| to);
         for corner in group.edges.iter().map(|[from, _]| from).chain(last) {
-            let [right, ahead] = place(view, *corner);
+            let [right, ahead] = camera_position(view, *corner);
             if ahead < 2.0 * NEAR {
                 return false;
             }
@@ -131,19 +131,19 @@ impl Hidden {
 
     fn hides(&self, columns: [f32; 2], nearest: f32) -> bool {
         let last = self.inverse.len() as f32 - 1.0;
-        let first = (columns[0] - COLUMN).ceil().max(0.0);
-        let last = (columns[1] + COLUMN).floor().min(last);
+        let first = (columns[0] - COLUMN_TOLERANCE).ceil().max(0.0);
+        let last = (columns[1] + COLUMN_TOLERANCE).floor().min(last);
         if first > last {
             return true;
         }
-        let inverse = (1.0 + SHARE) / nearest;
+        let inverse = (1.0 + DEPTH_TOLERANCE) / nearest;
         let mut walls = self.inverse[first as usize..=last as usize].iter();
         walls.all(|wall| *wall > inverse)
     }
 }
 
 /// Position of a point on the ground relative to the camera: metres to the right and ahead.
-fn place(view: &View, [x, y]: [f32; 2]) -> [f32; 2] {
+fn camera_position(view: &View, [x, y]: [f32; 2]) -> [f32; 2] {
     let [right, _, ahead] = view.view_from_world([x, y, 0.0]);
     [right, ahead]
 }
@@ -164,7 +164,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 64)))]
 
-        /// Colours, depths and instances are the same, bit for bit.
+        /// Compares colours, depths and instances bit for bit.
         #[test]
         fn culling_hidden_objects_does_not_change_images(
             (seed, standing, wall) in (0_u64..999, 0.3..=1.0, 0.05..1.5_f64),
@@ -176,11 +176,11 @@ mod tests {
             let maze = Maze { seed: Some(seed), wall, height: Some(low), ..Maze::default() };
             draft.environment_params.layout = Some(Layout { maze: Some(maze), standing, ..Layout::default() });
             draft.objects.extend(things.into_iter().map(|(at, scale)| Object { scale, ..Object::new("geometric", at) }));
-            let scene = Scene::from_world(&draft.check().expect("the world is sound"));
+            let scene = Scene::from_world(&draft.check().expect("the world is valid"));
             let camera = Camera::first_person(at, heading, eye, 60.0);
             let [hiding, all] = [true, false].map(|hides| {
                 let mut frame = Frame::new(84, 84);
-                CpuRenderer::new().that_hides(hides).render(&scene, &camera, &mut frame);
+                CpuRenderer::new().with_culling(hides).render(&scene, &camera, &mut frame);
                 frame
             });
             let other = (0..84 * 84).filter(|pixel| {

@@ -1,4 +1,4 @@
-//! [`RendererKind`]: the choice between renderers, by name.
+//! [`RendererKind`]: a choice of renderer, by name.
 
 use crate::EnvError;
 
@@ -7,12 +7,12 @@ use crate::EnvError;
 #[cfg_attr(test, derive(strum::EnumIter))]
 #[strum(serialize_all = "lowercase", parse_err_ty = EnvError, parse_err_fn = unknown)]
 pub enum RendererKind {
-    /// The CPU: works everywhere, with the same pixels on every machine.
+    /// The CPU, which works everywhere and gives the same pixels on every machine.
     #[default]
     Cpu,
     /// A GPU, or software emulation of one; an error if there is none. The natural style is rendered on the CPU.
     Gpu,
-    /// A GPU if one works, otherwise the CPU. Never software emulation of a GPU: the CPU renderer is faster.
+    /// A GPU if one works, otherwise the CPU. Never software emulation of a GPU, because the CPU renderer is faster.
     Auto,
 }
 

@@ -1,5 +1,5 @@
-//! The natural style on the CPU: draws objects with their texels, and marks walls and zones with the number of their covering,
-//! so that `compose_natural.rs` can add the texels.
+//! The natural style on the CPU. Draws objects with their texels, and marks walls and zones with the number of their covering;
+//! `compose_natural.rs` adds the texels of walls and zones.
 
 use driftworld_spec::Surface;
 
@@ -27,8 +27,7 @@ use crate::scene::{Item, PanelGroup, Scene};
 /// Number of classes that fit into a label.
 const CLASSES: u16 = 32;
 
-/// Position, in the packed pixel of a covered object's triangle, of the axis that the face is normal to, until the triangle is
-/// filled.
+/// Position of a face's axis in the packed pixel of a covered object's triangle, until the triangle is filled.
 const AXIS_SHIFT: u32 = 30;
 
 /// State of the style, reused between images.
@@ -37,21 +36,21 @@ pub(super) struct Natural {
     pub(super) rows: Rows,
     /// Coverings of walls that face along x and y, and of their tops.
     pub(super) walls: Option<[Patch; 3]>,
-    /// Per column, how much it shows of the sky towards the sun: a byte, repeated in the three bytes of a colour.
+    /// How close each column is to the direction of the sun: a byte, repeated in the three bytes of a colour.
     pub(super) glow: Vec<u32>,
 }
 
 /// Values shared by all triangles of a material.
 #[derive(Clone, Copy, Debug)]
 struct NaturalParams<'a> {
-    /// Levels 0 to 255: of the sun; of ambient light; and what is added for a face that points up.
+    /// Levels 0 to 255: of the sun, of ambient light, and the addition for a face that points up.
     sun: [f32; 3],
     around: [f32; 3],
     above: [f32; 3],
     /// Labels of faces along x, y and z, in the highest byte.
     labels: [u32; 3],
     item: u32,
-    may_be_cut: bool,
+    may_need_clipping: bool,
     cover: Option<&'a Cover>,
 }
 
@@ -76,7 +75,7 @@ impl NaturalParams<'_> {
             above: by(daylight.above),
             labels,
             item: 0,
-            may_be_cut: false,
+            may_need_clipping: false,
             cover: None,
         }
     }
@@ -96,7 +95,7 @@ impl NaturalParams<'_> {
 impl Shading for NaturalParams<'_> {
     #[inline(always)]
     fn item(&self) -> (u32, bool) {
-        (self.item, self.may_be_cut)
+        (self.item, self.may_need_clipping)
     }
 
     #[inline(always)]
@@ -147,7 +146,7 @@ struct Picture<'a> {
     daylight: Daylight,
     /// Whether the canvas stores items' classes instead of their indices.
     keeps_classes: bool,
-    /// Whether labels hold items' classes, in the bits that hold the covering's number in the map's labels.
+    /// Whether items' labels contain their classes, in the bits that contain the covering's number for the map.
     labels_classes: bool,
 }
 
@@ -192,7 +191,7 @@ impl CpuRenderer {
                         continue;
                     }
                     self.draw_natural_panels::<L, ITEMS>(lanes, group, visible, &picture);
-                    self.hidden.note(group, &view);
+                    self.hidden.record(group, &view);
                 }
             }
         }
@@ -238,7 +237,7 @@ impl CpuRenderer {
         let at = view.placement(&Pose::of(item), picture.daylight.direction);
         for material in level(item, visible, view) {
             let color = color_of(item, material);
-            // A class's own finish applies only to parts in the object's colour, not to handles and feet.
+            // A class's finish covers only parts in the object's main colour, not handles and feet.
             let is_covered = item.surface != Surface::Plain || matches!(material.paint, Paint::Main(_));
             let cover = cover.as_ref().filter(|_| is_covered);
             let labels = cover.map_or([label; 3], |_| [0, 1, 2].map(|axis| axis << AXIS_SHIFT));
@@ -248,7 +247,7 @@ impl CpuRenderer {
                 } else {
                     index + 1
                 },
-                may_be_cut: visible.nearest < NEAR,
+                may_need_clipping: visible.nearest < NEAR,
                 cover,
                 ..NaturalParams::new(color, &picture.daylight, labels)
             };
@@ -277,7 +276,7 @@ impl CpuRenderer {
         let labels = materials.map(|number| number << MATERIAL_SHIFT | u32::from(CATEGORY_MAP) << 24);
         let at = view.placement(&Pose::of_panels(group, view), daylight.direction);
         let params = NaturalParams {
-            may_be_cut: visible.nearest < NEAR,
+            may_need_clipping: visible.nearest < NEAR,
             ..NaturalParams::new(group.color, daylight, labels)
         };
         for block in &group.blocks {
@@ -301,7 +300,7 @@ impl CpuRenderer {
         shadows::find(scene, looks, &cast, view, &self.hidden, &mut found);
         for &shadow in &found {
             let params = ShadowParams {
-                may_be_cut: shadow.nearest < NEAR,
+                may_need_clipping: shadow.nearest < NEAR,
                 from_behind: matches!(shadow.drawable, Drawable::Panels(_)),
             };
             match shadow.drawable {
@@ -327,13 +326,13 @@ impl CpuRenderer {
     }
 }
 
-/// Factor on the ground's light directly below things under a ceiling.
-const BELOW_THINGS: u32 = 0x8062_6262;
+/// Factor on the ground's light directly below objects under a ceiling, as a texel.
+const SHADE_BELOW_OBJECTS: u32 = 0x8062_6262;
 
 /// Factor on the ground's light in shadow, as a texel.
 pub(super) fn shade(looks: &NaturalLooks, daylight: &Daylight) -> u32 {
     if looks.ceiling.is_some() {
-        BELOW_THINGS
+        SHADE_BELOW_OBJECTS
     } else {
         daylight.shade()
     }
@@ -351,19 +350,19 @@ pub(super) fn glow_towards(looks: &NaturalLooks, daylight: &Daylight) -> Option<
     (length >= 0.05 && looks.ceiling.is_none()).then(|| [x / length, y / length])
 }
 
-/// Share of grey in a pure colour: weathered paint.
-const MUTED: f32 = 0.28;
+/// Share of grey mixed into a pure colour, which makes paint look weathered.
+const MAX_GRAY_SHARE: f32 = 0.28;
 
-/// A material's colour, muted: the purer it is, the more.
+/// A material's colour, muted in proportion to its purity.
 fn color_of(item: &Item, material: &Material) -> [f32; 3] {
     let color = match material.paint {
         Paint::Main(own) => item.color.unwrap_or(own),
         Paint::Fixed(color) => color,
     };
     let [red, green, blue] = color;
-    let most = red.max(green).max(blue);
-    let share = MUTED * (most - red.min(green).min(blue));
-    let gray = 0.6 * most;
+    let max = red.max(green).max(blue);
+    let share = MAX_GRAY_SHARE * (max - red.min(green).min(blue));
+    let gray = 0.6 * max;
     color.map(|channel| channel + (gray - channel) * share)
 }
 
@@ -406,7 +405,7 @@ impl Natural {
         (along_x.is_upright() && along_y.is_upright()).then_some(along_x)
     }
 
-    /// Computes how much each column shows of the sky towards the sun.
+    /// Computes how close each column is to the direction of the sun.
     #[inline(always)]
     fn measure_glow<L: Lanes>(&mut self, l: L, picture: &Picture<'_>, offsets: &[f32]) {
         self.glow.clear();

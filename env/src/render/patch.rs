@@ -1,24 +1,25 @@
-//! Maps screen positions on covered walls and objects to texels: tile, level and texel.
+//! Maps screen positions on covered walls and objects to texels of a tile's levels.
 
 use super::canvas::Texture;
 use super::compose::metres;
-use super::lanes::{Lanes, MOST_LANES};
+use super::lanes::{Lanes, MAX_LANES};
 use super::surfaces::{SIDE, Tile};
 use super::view::View;
 
-/// Added to positions to make them positive: no wall or object is that many tiles long.
+/// Added to positions to make them positive; no wall or object is that many tiles long.
 pub(super) const SHIFT: f32 = 4096.0;
 
-/// Texels per pixel, and the smallest cosine of a viewing angle that is used.
+/// Texels per pixel.
 const SHARPNESS: f32 = 1.0;
+/// Minimum cosine of a viewing angle; smaller ones are raised to it.
 pub(super) const GRAZING: f32 = 0.06;
 
 /// Mapping from screen positions to texels, for faces of one direction.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Patch {
     texels: &'static [u32],
-    /// Texture coordinates in tiles: at the camera; and their change per metre of depth at the image's middle, to the right and
-    /// up.
+    /// Texture coordinates in tiles at the camera, and their change per metre of depth at the image's middle, per metre to the
+    /// right and per metre up.
     pub(super) u: [f32; 4],
     pub(super) v: [f32; 4],
     /// Cosine of the faces' angle to the camera: at the middle, to the right and up.
@@ -28,7 +29,7 @@ pub(super) struct Patch {
 }
 
 impl Patch {
-    /// A patch of a tile, scaled, on faces with this normal, along these axes from an origin: all in the world's frame.
+    /// A patch of a scaled tile on faces with this normal, along these axes from an origin, all in the world's frame.
     pub(super) fn new(
         (tile, scale): (&'static Tile, f32),
         view: &View,
@@ -56,8 +57,8 @@ impl Patch {
     pub(super) fn texel<L: Lanes>(&self, l: L, up: f32, offset: L::Float, inverse: L::Float) -> L::Word {
         let depth = depth(l, inverse);
         let side = self.side(l, up, offset, inverse);
-        let u = part_of_tile(l, self.u, up, offset, depth, side);
-        let v = part_of_tile(l, self.v, up, offset, depth, side);
+        let u = texel_index(l, self.u, up, offset, depth, side);
+        let v = texel_index(l, self.v, up, offset, depth, side);
         l.gather(self.texels, l.truncate(l.mul_add(side, l.add(side, u), v)))
     }
 
@@ -88,15 +89,15 @@ pub(super) struct Sheet<'a> {
 
 impl Texture for Sheet<'_> {
     #[inline(always)]
-    fn shown<L: Lanes>(
+    fn apply<L: Lanes>(
         self,
         l: L,
-        taken: L::Mask,
+        mask: L::Mask,
         packed: L::Word,
         (row, x): (usize, L::Float),
         inverse: L::Float,
     ) -> L::Word {
-        if l.bits(taken) == 0 {
+        if l.bits(mask) == 0 {
             return packed;
         }
         let up = (self.middle[1] - row as f32) * self.step;
@@ -112,7 +113,7 @@ fn depth<L: Lanes>(l: L, inverse: L::Float) -> L::Float {
 
 /// The index of a texel along a side of a tile of `side` texels.
 #[inline(always)]
-fn part_of_tile<L: Lanes>(
+fn texel_index<L: Lanes>(
     l: L,
     [at, ahead, right, above]: [f32; 4],
     up: f32,
@@ -121,7 +122,7 @@ fn part_of_tile<L: Lanes>(
     side: L::Float,
 ) -> L::Float {
     let slope = l.mul_add(l.splat(right), offset, l.splat(ahead + up * above));
-    texel_of(
+    wrapped_texel(
         l,
         l.mul_add(l.mul(depth, side), slope, l.mul(side, l.splat(at + SHIFT))),
         side,
@@ -130,21 +131,22 @@ fn part_of_tile<L: Lanes>(
 
 /// The index within its tile of the texel at `texels` along the side.
 #[inline(always)]
-fn texel_of<L: Lanes>(l: L, texels: L::Float, side: L::Float) -> L::Float {
+fn wrapped_texel<L: Lanes>(l: L, texels: L::Float, side: L::Float) -> L::Float {
     let last = l.truncate(l.sub(side, l.splat(1.0)));
     l.float(l.and(l.truncate(texels), last))
 }
 
-/// A cache of the columns' view of walls: as long as 1 / depth and covering stay the same, so do level and column of texels.
+/// Caches the columns' view of walls. As long as 1 / depth and covering stay the same, so do the level and the column of
+/// texels.
 #[derive(Clone, Copy)]
-pub(super) struct Run<L: Lanes> {
+pub(super) struct WallCache<L: Lanes> {
     /// 1 / depth; below 0 if nothing is cached.
     inverse: L::Float,
     /// The bits of a packed pixel that identify the covering.
     material: L::Word,
     /// Distance in metres, for depth images and formulas.
     pub(super) metres: L::Float,
-    /// Texels per side; texels per metre of depth; and the last texel of a row.
+    /// Texels per side, texels per metre of depth, and the last texel of a row.
     side: L::Float,
     density: L::Float,
     last: L::Word,
@@ -152,7 +154,7 @@ pub(super) struct Run<L: Lanes> {
     first: L::Word,
 }
 
-impl<L: Lanes> Run<L> {
+impl<L: Lanes> WallCache<L> {
     #[inline(always)]
     pub(super) fn new(l: L) -> Self {
         Self {
@@ -168,7 +170,7 @@ impl<L: Lanes> Run<L> {
 
     /// Where the cached values are still valid.
     #[inline(always)]
-    pub(super) fn goes_on(&self, l: L, inverse: L::Float, material: L::Word) -> L::Mask {
+    pub(super) fn is_valid(&self, l: L, inverse: L::Float, material: L::Word) -> L::Mask {
         l.both(l.same(inverse, self.inverse), l.equal(material, self.material))
     }
 
@@ -180,21 +182,21 @@ impl<L: Lanes> Run<L> {
 
     /// The smallest and largest cached 1 / depth, if any is cached.
     #[inline(always)]
-    pub(super) fn known(&self, l: L) -> Option<[f32; 2]> {
-        let mut all = [-1.0; MOST_LANES];
+    pub(super) fn range(&self, l: L) -> Option<[f32; 2]> {
+        let mut all = [-1.0; MAX_LANES];
         l.store(self.inverse, &mut all);
-        let (mut least, mut most) = (f32::INFINITY, 0.0_f32);
+        let (mut min, mut max) = (f32::INFINITY, 0.0_f32);
         for inverse in all {
             if inverse > 0.0 {
-                (least, most) = (least.min(inverse), most.max(inverse));
+                (min, max) = (min.min(inverse), max.max(inverse));
             }
         }
-        (most > 0.0).then_some([least, most])
+        (max > 0.0).then_some([min, max])
     }
 
     /// Caches the values of these columns; the patch must be upright.
     #[inline(always)]
-    pub(super) fn note(
+    pub(super) fn record(
         &mut self,
         l: L,
         columns: L::Mask,
@@ -204,7 +206,7 @@ impl<L: Lanes> Run<L> {
     ) {
         let depth = depth(l, inverse);
         let side = patch.side(l, 0.0, offset, inverse);
-        let u = part_of_tile(l, patch.u, 0.0, offset, depth, side);
+        let u = texel_index(l, patch.u, 0.0, offset, depth, side);
         self.inverse = l.select(columns, inverse, self.inverse);
         self.material = l.select_words(columns, material, self.material);
         self.metres = l.select(columns, metres(l, inverse), self.metres);
@@ -243,9 +245,9 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
 
-        /// A run finds the same texels with less work, and marks columns that it does not know.
+        /// The cache finds the same texels with less work, and marks columns that it does not contain.
         #[test]
-        fn run_finds_the_same_texels_as_its_patch(
+        fn cache_finds_the_same_texels_as_its_patch(
             (at, heading, eye) in (prop::array::uniform2(-50.0_f32..50.0), 0.0_f32..360.0, 0.1_f32..3.0),
             distances in prop::array::uniform4(0.05_f32..90.0),
             (first, rows) in (0_usize..80, prop::collection::vec(0..84_u16, 1..8)),
@@ -258,17 +260,17 @@ mod tests {
             let offset: [f32; 4] = std::array::from_fn(|k| view.offset(0, (first + k) as f32));
             let inverse = distances.map(|metres| 1.0 / metres);
             let material = [4 << 27; 4];
-            let mut run = Run::new(l);
-            run.note(l, [true, true, true, false], &patch, offset, (inverse, material));
-            prop_assert_eq!(run.goes_on(l, inverse, material), [true, true, true, false]);
-            prop_assert_eq!(run.goes_on(l, inverse.map(|inverse| inverse * 1.01), material), [false; 4]);
-            prop_assert_eq!(run.goes_on(l, inverse, [5 << 27; 4]), [false; 4]);
+            let mut cache = WallCache::new(l);
+            cache.record(l, [true, true, true, false], &patch, offset, (inverse, material));
+            prop_assert_eq!(cache.is_valid(l, inverse, material), [true, true, true, false]);
+            prop_assert_eq!(cache.is_valid(l, inverse.map(|inverse| inverse * 1.01), material), [false; 4]);
+            prop_assert_eq!(cache.is_valid(l, inverse, [5 << 27; 4]), [false; 4]);
             for row in rows {
                 let up = -view.offset(1, f32::from(row));
-                let (found, expected) = (run.texel(l, &patch, up), patch.texel(l, up, offset, inverse));
+                let (found, expected) = (cache.texel(l, &patch, up), patch.texel(l, up, offset, inverse));
                 prop_assert_eq!(found[..3].to_vec(), expected[..3].to_vec());
             }
-            prop_assert_eq!(run.metres[..3].to_vec(), metres(l, inverse)[..3].to_vec());
+            prop_assert_eq!(cache.metres[..3].to_vec(), metres(l, inverse)[..3].to_vec());
         }
 
         /// A camera that looks up or down does not see walls column by column.

@@ -1,4 +1,4 @@
-//! [`Picture`]: one image of several that are rendered together.
+//! [`Picture`]: one of several images that are rendered together.
 
 use super::target::Target;
 use crate::camera::Camera;

@@ -1,4 +1,4 @@
-//! Turns blocks of triangles into screen-space triangles: culling, light, projection, clipping at the near plane.
+//! Turns blocks of triangles into screen-space triangles: culls, lights, projects and clips them at the near plane.
 
 use super::canvas::{Canvas, Triangle};
 use super::lanes::Lanes;
@@ -17,22 +17,22 @@ pub(super) struct ShadingParams {
     pub(super) label: u32,
     pub(super) item: u32,
     /// Whether parts of it may be in front of the near plane.
-    pub(super) may_be_cut: bool,
+    pub(super) may_need_clipping: bool,
 }
 
 /// Converts a material's triangles to pixels.
 pub(super) trait Shading: Copy {
-    /// Index of the item, and whether parts of it may be in front of the near plane.
+    /// Index of the item, and whether its triangles may need clipping at the near plane.
     fn item(&self) -> (u32, bool);
 
-    /// Whether triangles have the opposite winding on the screen from those seen from the front.
+    /// Whether drawn triangles have the opposite winding on the screen, as if seen from behind.
     #[inline(always)]
-    fn is_turned(&self) -> bool {
+    fn is_mirrored(&self) -> bool {
         false
     }
 
-    /// Which of a block's faces are drawn: those that face the camera. `behind` is the distance of their planes behind the
-    /// origin.
+    /// Which of a block's faces are drawn; by default those that face the camera. `behind` is the distance of their planes
+    /// behind the origin.
     #[inline(always)]
     fn facing<L: Lanes>(&self, l: L, normal: [L::Float; 3], behind: L::Float, at: &Placement) -> L::Mask {
         l.above(dot(l, normal, at.eye, behind), l.splat(0.0))
@@ -51,7 +51,7 @@ pub(super) trait Shading: Copy {
 impl Shading for ShadingParams {
     #[inline(always)]
     fn item(&self) -> (u32, bool) {
-        (self.item, self.may_be_cut)
+        (self.item, self.may_need_clipping)
     }
 
     #[inline(always)]
@@ -99,28 +99,28 @@ fn draw_lanes<L: Lanes, const ITEMS: bool, S: Shading>(
     ];
     let depth = project(l, corners, &at.depth);
     let pixels = params.pixels(l, normal, at);
-    // The path of a triangle must not depend on its neighbours: their number depends on the instruction set.
-    let mut cut = 0;
-    let (item, may_be_cut) = params.item();
-    if may_be_cut {
-        cut = l.bits(l.both(facing, l.above(l.splat(NEAR), least(l, depth))));
-        draw_all_cut::<L, ITEMS, S>(l, canvas, block, (first, cut), at, (&pixels, params));
+    // The treatment of a triangle must not depend on its neighbours, whose number depends on the instruction set.
+    let mut to_clip = 0;
+    let (item, may_need_clipping) = params.item();
+    if may_need_clipping {
+        to_clip = l.bits(l.both(facing, l.above(l.splat(NEAR), min3(l, depth))));
+        draw_clipped::<L, ITEMS, S>(l, canvas, block, (first, to_clip), at, (&pixels, params));
     }
     let one = l.splat(1.0);
     let inverse = [l.div(one, depth[0]), l.div(one, depth[1]), l.div(one, depth[2])];
     let x = product(l, project(l, corners, &at.column), inverse);
     let y = product(l, project(l, corners, &at.row), inverse);
     // Integer coordinates within the triangle's bounding box and the image.
-    let (left, top) = (round_up(l, least(l, x)), round_up(l, least(l, y)));
-    let right = l.min(most(l, x), l.splat(canvas.width as f32 - 1.0));
-    let bottom = l.min(most(l, y), l.splat(canvas.height as f32 - 1.0));
+    let (left, top) = (round_up(l, min3(l, x)), round_up(l, min3(l, y)));
+    let right = l.min(max3(l, x), l.splat(canvas.width as f32 - 1.0));
+    let bottom = l.min(max3(l, y), l.splat(canvas.height as f32 - 1.0));
     let seen = l.both(facing, l.both(l.at_least(right, left), l.at_least(bottom, top)));
-    let mut seen = l.bits(seen) & !cut;
+    let mut seen = l.bits(seen) & !to_clip;
     if seen == 0 {
         return;
     }
-    // Edge k is opposite corner k; the triangle on its other side has exactly the same line, bit for bit.
-    let edges = if params.is_turned() {
+    // Edge k is opposite corner k. The neighbouring triangle there has the same line, bit for bit.
+    let edges = if params.is_mirrored() {
         [edge(l, x, y, 2, 1), edge(l, x, y, 0, 2), edge(l, x, y, 1, 0)]
     } else {
         [edge(l, x, y, 1, 2), edge(l, x, y, 2, 0), edge(l, x, y, 0, 1)]
@@ -134,8 +134,8 @@ fn draw_lanes<L: Lanes, const ITEMS: bool, S: Shading>(
         l.store(edge[2], &mut rows[3 * k + 2]);
     }
     for k in 0..3 {
-        let of_two = l.mul_add(edges[1][k], inverse[1], l.mul(edges[2][k], inverse[2]));
-        let sum = l.mul_add(edges[0][k], inverse[0], of_two);
+        let last_two = l.mul_add(edges[1][k], inverse[1], l.mul(edges[2][k], inverse[2]));
+        let sum = l.mul_add(edges[0][k], inverse[0], last_two);
         l.store(l.mul(sum, share), &mut rows[9 + k]);
     }
     l.store(left, &mut rows[12]);
@@ -189,12 +189,12 @@ fn product<L: Lanes>(l: L, a: [L::Float; 3], b: [L::Float; 3]) -> [L::Float; 3] 
 }
 
 #[inline(always)]
-fn least<L: Lanes>(l: L, a: [L::Float; 3]) -> L::Float {
+fn min3<L: Lanes>(l: L, a: [L::Float; 3]) -> L::Float {
     l.min(a[0], l.min(a[1], a[2]))
 }
 
 #[inline(always)]
-fn most<L: Lanes>(l: L, a: [L::Float; 3]) -> L::Float {
+fn max3<L: Lanes>(l: L, a: [L::Float; 3]) -> L::Float {
     l.max(a[0], l.max(a[1], a[2]))
 }
 
@@ -202,8 +202,8 @@ fn most<L: Lanes>(l: L, a: [L::Float; 3]) -> L::Float {
 #[inline(always)]
 fn round_up<L: Lanes>(l: L, value: L::Float) -> L::Float {
     let value = l.min(l.max(value, l.splat(0.0)), l.splat(65536.0));
-    let cut = l.float(l.truncate(value));
-    l.select(l.above(value, cut), l.add(cut, l.splat(1.0)), cut)
+    let truncated = l.float(l.truncate(value));
+    l.select(l.above(value, truncated), l.add(truncated, l.splat(1.0)), truncated)
 }
 
 /// The line from corner p to corner q: c, a, b of `c + a·x + b·y`.
@@ -225,7 +225,7 @@ pub(super) fn dot<L: Lanes>(l: L, point: [L::Float; 3], by: [f32; 3], plus: L::F
     )
 }
 
-/// Packed pixels of a block's faces, with the label above the colour: the formula of `shade.rs` for all lanes at once.
+/// Packed pixels of a block's faces, with the label above the colour. This is the formula of `shade.rs` for all lanes at once.
 #[inline(always)]
 fn packed_pixels<L: Lanes>(l: L, normal: [L::Float; 3], at: &Placement, params: &ShadingParams) -> [u32; BLOCK] {
     let (zero, one) = (l.splat(0.0), l.splat(1.0));
@@ -252,26 +252,28 @@ fn byte<L: Lanes>(l: L, share: L::Float, full: f32) -> L::Word {
     l.truncate(l.min(level, l.splat(FULL_LEVEL)))
 }
 
-/// Draws the parts of these lanes' triangles beyond the near plane: one by one, because few are ever that near.
+/// Draws the parts of these lanes' triangles beyond the near plane. Processes triangles one by one, because few are that near.
 #[inline(always)]
-fn draw_all_cut<L: Lanes, const ITEMS: bool, S: Shading>(
+fn draw_clipped<L: Lanes, const ITEMS: bool, S: Shading>(
     lanes: L,
     canvas: &mut Canvas,
     block: &Block,
-    (first, mut lanes_to_cut): (usize, u32),
+    (first, mut lanes_to_clip): (usize, u32),
     at: &Placement,
     (pixels, params): (&[u32; BLOCK], &S),
 ) {
-    while lanes_to_cut != 0 {
-        let lane = lanes_to_cut.trailing_zeros() as usize;
-        lanes_to_cut &= lanes_to_cut - 1;
-        let (polygon, count) = cut(block, first + lane, at);
+    while lanes_to_clip != 0 {
+        let lane = lanes_to_clip.trailing_zeros() as usize;
+        lanes_to_clip &= lanes_to_clip - 1;
+        let (polygon, count) = clip(block, first + lane, at);
         for k in 2..count {
             let mut corners = [polygon[0], polygon[k - 1], polygon[k]];
-            if params.is_turned() {
+            if params.is_mirrored() {
                 corners.swap(1, 2);
             }
-            if let Some(triangle) = set_up(corners, [canvas.width, canvas.height], pixels[lane], params.item().0) {
+            if let Some(triangle) =
+                screen_triangle(corners, [canvas.width, canvas.height], pixels[lane], params.item().0)
+            {
                 params.fill::<L, ITEMS>(lanes, canvas, &triangle);
             }
         }
@@ -279,7 +281,7 @@ fn draw_all_cut<L: Lanes, const ITEMS: bool, S: Shading>(
 }
 
 /// Column, row and 1 / depth of the corners of a triangle clipped at the near plane, and their number.
-fn cut(block: &Block, lane: usize, at: &Placement) -> ([[f32; 3]; 4], usize) {
+fn clip(block: &Block, lane: usize, at: &Placement) -> ([[f32; 3]; 4], usize) {
     let corner = |k: usize| {
         let point = [0, 1, 2].map(|axis| block.corners[3 * k + axis][lane]);
         let apply = |row: &[f32; 4]| row[0] * point[0] + row[1] * point[1] + row[2] * point[2] + row[3];
@@ -308,7 +310,7 @@ fn cut(block: &Block, lane: usize, at: &Placement) -> ([[f32; 3]; 4], usize) {
 }
 
 /// A triangle from its corners' columns, rows and 1 / depth; `None` if it cannot contain a pixel's centre.
-fn set_up(corners: [[f32; 3]; 3], size: [usize; 2], pixel: u32, item: u32) -> Option<Triangle> {
+fn screen_triangle(corners: [[f32; 3]; 3], size: [usize; 2], pixel: u32, item: u32) -> Option<Triangle> {
     let range = |axis: usize| {
         let values = corners.map(|corner| corner[axis]);
         let low = values.iter().copied().fold(f32::INFINITY, f32::min).max(0.0).ceil();

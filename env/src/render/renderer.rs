@@ -1,4 +1,4 @@
-//! [`Renderer`]: the CPU or GPU renderer, as chosen.
+//! [`Renderer`]: either the CPU or the GPU renderer.
 
 use super::cpu::CpuRenderer;
 use super::frame::Frame;
@@ -43,7 +43,7 @@ impl Renderer {
         }
     }
 
-    /// A renderer on a GPU; with `or_software`, if none works, on software emulation of one.
+    /// A renderer on a GPU; with `or_software`, falls back to software emulation of one.
     #[cfg(feature = "gpu")]
     fn on_gpu(or_software: bool) -> Result<Self, EnvError> {
         let choice = if or_software {
@@ -81,10 +81,10 @@ impl Renderer {
     /// Renders all images of a frame.
     ///
     /// # Errors
-    /// As [`Renderer::draw_batch`].
+    /// The errors of [`Renderer::draw_batch`].
     #[cfg_attr(
         not(feature = "gpu"),
-        expect(clippy::unnecessary_wraps, reason = "as where there is the feature")
+        expect(clippy::unnecessary_wraps, reason = "same signature as with the feature")
     )]
     pub fn render(&mut self, scene: &Scene, camera: &Camera, frame: &mut Frame) -> Result<(), EnvError> {
         match &mut self.0 {
@@ -100,7 +100,7 @@ impl Renderer {
     /// Renders the images that the target requests.
     ///
     /// # Errors
-    /// As [`Renderer::draw_batch`].
+    /// The errors of [`Renderer::draw_batch`].
     pub fn draw(&mut self, scene: &Scene, camera: &Camera, target: &mut Target<'_>) -> Result<(), EnvError> {
         match &mut self.0 {
             Inner::Cpu(renderer) => renderer.draw(scene, camera, target),
@@ -109,7 +109,7 @@ impl Renderer {
         }
     }
 
-    /// Draws these carried items of the scene at the bottom of the target's colour image.
+    /// Draws these items of the scene, which the agent carries, at the bottom of the target's colour image.
     pub(crate) fn draw_carried(&mut self, scene: &Scene, carried: &[u32], target: &mut Target<'_>) {
         match &mut self.0 {
             Inner::Cpu(renderer) => renderer.draw_carried(scene, carried, target),
@@ -121,8 +121,8 @@ impl Renderer {
     /// Renders many images; a GPU renders those of the same size together.
     ///
     /// # Errors
-    /// [`EnvError::PictureSize`] for sizes out of range; on a GPU also [`EnvError::GpuPicture`] for images too large for it,
-    /// and [`EnvError::Gpu`] if it fails. Some images may be stale then.
+    /// [`EnvError::PictureSize`] for sizes out of range. On a GPU also [`EnvError::GpuPicture`] for images too large for it,
+    /// and [`EnvError::Gpu`] if it fails; some images may be stale then.
     pub fn draw_batch(&mut self, pictures: &mut [Picture<'_>]) -> Result<(), EnvError> {
         match &mut self.0 {
             Inner::Cpu(renderer) => pictures
@@ -139,18 +139,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_processor_is_always_there() {
-        let renderer = Renderer::new(RendererKind::Cpu).expect("a processor");
+    fn cpu_renderer_is_always_available() {
+        let renderer = Renderer::new(RendererKind::Cpu).expect("the CPU renderer always works");
         assert_eq!(renderer.kind(), RendererKind::Cpu);
         assert!(renderer.device().starts_with("processor ("));
-        let automatic = Renderer::new(RendererKind::Auto).expect("at least the processor");
+        let automatic = Renderer::new(RendererKind::Auto).expect("the CPU renderer always works");
         assert_ne!(automatic.kind(), RendererKind::Auto);
     }
 
     #[cfg(not(feature = "gpu"))]
     #[test]
     fn missing_gpu_feature_error_says_how_to_build_it() {
-        let error = Renderer::new(RendererKind::Gpu).expect_err("not in this build");
+        let error = Renderer::new(RendererKind::Gpu).expect_err("this build has no GPU renderer");
         assert!(error.to_string().contains("--features gpu"), "{error}");
     }
 }

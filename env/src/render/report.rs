@@ -35,7 +35,7 @@ pub struct AdapterReport {
 }
 
 #[cfg(not(feature = "gpu"))]
-/// Why a build without the feature `gpu` has no adapter, and how to build one that has.
+/// The reason why a build without the feature `gpu` has no adapter, and how to build with it.
 pub(super) const NO_FEATURE: &str =
     "this build has no GPU renderer; build it with `cargo build --release --features gpu`";
 
@@ -50,11 +50,11 @@ impl RendererReport {
             Ok(adapters) => (adapters, None),
             Err(reason) => (Vec::new(), Some(reason)),
         };
-        let takes = |adapter: &AdapterReport| adapter.problem.is_none() && !adapter.is_software;
+        let is_usable = |adapter: &AdapterReport| adapter.problem.is_none() && !adapter.is_software;
         Self {
             instruction_set: super::cpu::CpuRenderer::new().instruction_set(),
             has_gpu_feature: cfg!(feature = "gpu"),
-            auto: if adapters.iter().any(takes) {
+            auto: if adapters.iter().any(is_usable) {
                 RendererKind::Gpu
             } else {
                 RendererKind::Cpu

@@ -1,9 +1,9 @@
 //! The background in the natural style, row by row: ground, sky with clouds, or a ceiling. Ground and ceiling are planes, and
-//! the camera never rolls, so a row of an image has the same depth throughout, with evenly spaced texels of a single level.
+//! the camera never rolls. So a row of an image has the same depth throughout, and evenly spaced texels of a single level.
 
 use driftworld_spec::Surface;
 
-use super::daylight::{Daylight, between};
+use super::daylight::{Daylight, lerp};
 use super::frame::{CATEGORY_MAP, CATEGORY_SKY, FAR_DEPTH};
 use super::shade::{FULL_LEVEL, ROUNDING};
 use super::surfaces::{self, SIDE, Tile};
@@ -14,30 +14,31 @@ use crate::scene::{Light, Scene};
 /// Added to texel indices to make them positive; a multiple of every side of a tile.
 const SHIFT: f32 = 65536.0;
 
-/// Maximum number of texels per pixel, along the pixel's footprint. The side of a level is a power of two, so a pixel shows
-/// between half as many texels and this many.
+/// Maximum number of texels per pixel along the pixel's footprint. The side of a level is a power of two, so a pixel shows
+/// between half this many texels and this many.
 const SHARPNESS: f32 = 1.25;
 
-/// Columns may share a texel if the texel is wider than them by this factor.
-const WIDER: f32 = 1.25;
+/// Columns may share a texel if its width is at least this many times theirs.
+const MIN_TEXEL_COLUMNS: f32 = 1.25;
 
-/// Number of the finest texels across a pixel's width at which the detail starts to appear, and at which it has its full strength.
+/// Number of finest texels across a pixel's width at which the detail starts to appear, and at which it reaches full strength.
 const DETAIL: [f32; 2] = [0.5, 0.25];
 
-/// A layer of clouds: metres above the eye, metres per side of its tile, and the slope of the ray from which it is fully
-/// visible.
+/// The layer of clouds: its height above the eye in metres, metres per side of its tile, and the slope of a ray from which on
+/// it is fully visible.
 const CLOUDS: [f32; 3] = [40.0, 150.0, 0.22];
 
 /// Covering of the ceiling.
 pub(super) const CEILING: Surface = Surface::Tile;
 
-/// Darkness where walls, ground, ceiling and objects meet, and the distance in metres over which it fades.
+/// Strength of the darkening where walls and objects touch ground or ceiling, and the distance in metres over which it fades.
 pub(super) const CONTACT: [f32; 2] = [0.5, 0.35];
 
-/// Minimum number of pixels over which that darkness fades, so that it does not flicker; it is fainter where this limit applies.
+/// Minimum number of pixels over which that darkening fades, so that it does not flicker. It is fainter where this limit
+/// applies.
 pub(super) const CONTACT_PIXELS: f32 = 1.5;
 
-/// Number of a wall's lowest pixels that count as meeting the ground.
+/// Number of a wall's lowest pixels that count as touching the ground.
 const FOOT_PIXELS: f32 = 3.0;
 
 /// The part of a row that does not depend on the camera's position and heading.
@@ -62,41 +63,41 @@ pub(super) struct Row {
     pub(super) metres: f32,
     /// Packed pixel without pattern; for the sky, away from the sun.
     pub(super) base: u32,
-    /// Packed pixels of the sky towards the sun, and of clouds; the same as `base` if there is no difference.
+    /// Packed pixels of the sky towards the sun, and of clouds; equal to `base` if there is no difference.
     pub(super) sunward: u32,
     pub(super) cloud: u32,
-    /// Texture coordinates: each at the middle column, and its change per metre to the right at 1 m depth. The texel is
-    /// `texels[(u & mask) << bits | v & mask | first]`. With a side of 1 there is nothing to look up.
+    /// Texture coordinates: the value at the middle column, and its change per metre to the right at a depth of 1 m. The texel
+    /// is `texels[(u & mask) << bits | v & mask | first]`. With a side of 1 there is nothing to look up.
     pub(super) u: [f32; 2],
     pub(super) v: [f32; 2],
     pub(super) side: u32,
-    /// Columns that share a texel, 1, 2 or 4: fewer than the texel is wide.
-    pub(super) alike: u32,
+    /// Number of adjacent columns that share a texel: 1, 2 or 4.
+    pub(super) group: u32,
     /// Rows with the same number show the same texels.
     pub(super) pair: u32,
-    /// Scale of the detail, which is the same tile, finer, laid over texels larger than a pixel.
+    /// Scale of the detail: the same tile, repeated at a finer scale, over texels larger than a pixel. 0 for no detail.
     pub(super) detail: f32,
-    /// Strength of the detail, 1 to 255: it increases as rows get nearer, so that it appears without a seam.
+    /// Strength of the detail, 1 to 255. It increases as rows get nearer, so that the detail appears without a seam.
     pub(super) detail_share: u32,
-    pub(super) shows: Shows,
-    /// Height in metres of the plane above or below the eye, and how much nearer to it a ray through the row comes per metre.
+    pub(super) content: Content,
+    /// Distance in metres of the plane from eye height, and by how much a ray through the row approaches it per metre.
     pub(super) plane: [f32; 2],
-    /// 1 / the distance in metres over which the darkness fades where something meets the plane.
-    pub(super) fades: f32,
-    /// Largest height above the plane, per metre of depth, at which a wall's pixel may be its lowest.
+    /// 1 / the distance in metres over which the darkening at contacts with the plane fades.
+    pub(super) fade_rate: f32,
+    /// Maximum height above the plane, per metre of depth, at which a wall's pixel still counts as its foot.
     pub(super) foot: f32,
 }
 
 /// The content of a row.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) enum Shows {
+pub(super) enum Content {
     Floor,
     Ceiling,
     #[default]
     Sky,
 }
 
-/// Everything that rows depend on except the camera's position and heading.
+/// Everything on which rows depend except the camera's position and heading.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Key {
     size: [f32; 2],
@@ -109,7 +110,7 @@ struct Key {
     looks: NaturalLooks,
 }
 
-/// The rows of an image, cached for the next image: for the same camera and light, they differ only in the positions of texels.
+/// The rows of an image, cached for the next image. For the same camera and light, only the positions of texels differ.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Rows {
     key: Option<Key>,
@@ -146,8 +147,8 @@ impl Rows {
         let axes = &view.axes;
         for (look, row) in self.looks.iter().zip(&mut self.seen) {
             if look.row.side > 1 {
-                let is_sky = look.row.shows == Shows::Sky;
-                let place = |axis: usize| {
+                let is_sky = look.row.content == Content::Sky;
+                let coordinate = |axis: usize| {
                     let from = if is_sky { 0.0 } else { view.position[axis] };
                     let ahead = axes.forward[axis] + look.offset * axes.up[axis];
                     let at = (from + ahead * look.metres) * look.density;
@@ -158,18 +159,18 @@ impl Rows {
                         axes.right[axis] * look.metres * look.density,
                     ]
                 };
-                (row.u, row.v) = (place(0), place(1));
+                (row.u, row.v) = (coordinate(0), coordinate(1));
             }
         }
         daylight
     }
 
     /// The texels of a row's content; empty if it has no pattern.
-    pub(super) fn texels(&self, shows: Shows) -> &'static [u32] {
-        let tile = match shows {
-            Shows::Floor => self.ground,
-            Shows::Ceiling => self.ceiling,
-            Shows::Sky => Some(surfaces::clouds()),
+    pub(super) fn texels(&self, content: Content) -> &'static [u32] {
+        let tile = match content {
+            Content::Floor => self.ground,
+            Content::Ceiling => self.ceiling,
+            Content::Sky => Some(surfaces::clouds()),
         };
         tile.map_or(&[], |tile| &tile.texels)
     }
@@ -192,7 +193,7 @@ impl Rows {
                         color,
                         scale,
                     };
-                    plane.look(key, offset, Shows::Floor, self.ground)
+                    plane.look(key, offset, Content::Floor, self.ground)
                 }
                 Some(ceiling) => {
                     let color = daylight.levels(ceiling.color, [0.0, 0.0, -1.0]);
@@ -202,7 +203,7 @@ impl Rows {
                         color,
                         scale: 2.0,
                     };
-                    plane.look(key, offset, Shows::Ceiling, self.ceiling)
+                    plane.look(key, offset, Content::Ceiling, self.ceiling)
                 }
                 None => sky(key, daylight, offset, rise),
             };
@@ -232,7 +233,7 @@ struct Plane {
 }
 
 impl Plane {
-    fn look(&self, key: &Key, offset: f32, shows: Shows, tile: Option<&Tile>) -> RowLook {
+    fn look(&self, key: &Key, offset: f32, content: Content, tile: Option<&Tile>) -> RowLook {
         let inverse = self.rise.abs() / self.below;
         let base = packed(self.color, CATEGORY_MAP);
         let metres = 1.0 / inverse.max(1e-6);
@@ -249,9 +250,9 @@ impl Plane {
                 sunward: base,
                 cloud: base,
                 side: 1,
-                shows,
+                content,
                 plane: [self.below, self.rise.abs()],
-                fades: 1.0 / CONTACT[1].max(CONTACT_PIXELS * length),
+                fade_rate: 1.0 / CONTACT[1].max(CONTACT_PIXELS * length),
                 foot: FOOT_PIXELS * key.step / (key.up - offset * key.forward).max(0.05),
                 ..Row::default()
             },
@@ -272,19 +273,19 @@ impl Plane {
 }
 
 impl RowLook {
-    /// Shares the texels of the row above, if both have the same level, texels higher than a pixel, and no detail.
+    /// Shares the texels of the row above, if both have the same content and level, and no detail.
     fn share_texels(&mut self, above: &Self) {
         let [row, other] = [&self.row, &above.row];
         let has_detail = row.detail > 0.0 || other.detail > 0.0;
-        if row.shows == other.shows && row.side > 1 && row.side == other.side && !has_detail {
+        if row.content == other.content && row.side > 1 && row.side == other.side && !has_detail {
             (self.metres, self.offset) = (above.metres, above.offset);
-            self.row.alike = above.row.alike;
+            self.row.group = above.row.group;
         } else {
             self.row.pair = u32::MAX - 1 - self.row.pair;
         }
     }
 
-    /// Chooses the level whose texels are about as large as a pixel is long, all in metres.
+    /// Chooses the level whose texels are about as long as a pixel; all lengths are in metres.
     fn sharpen(&mut self, period: f32, pixel: f32, width: f32) {
         let texels = (SHARPNESS * period / pixel.max(1e-9)).clamp(1.0, SIDE as f32);
         let side = 1 << (texels as u32).ilog2();
@@ -292,9 +293,9 @@ impl RowLook {
         self.density = side as f32 / period;
         self.tiles = 1.0 / side as f32;
         let columns = 1.0 / (self.density * width);
-        self.row.alike = [4, 2]
+        self.row.group = [4, 2]
             .into_iter()
-            .find(|alike| columns >= WIDER * *alike as f32)
+            .find(|group| columns >= MIN_TEXEL_COLUMNS * *group as f32)
             .unwrap_or(1);
     }
 }
@@ -309,7 +310,7 @@ fn sky(key: &Key, daylight: &Daylight, offset: f32, rise: f32) -> RowLook {
             sunward: packed(toward, CATEGORY_SKY),
             cloud: base,
             side: 1,
-            shows: Shows::Sky,
+            content: Content::Sky,
             ..Row::default()
         },
         ..RowLook::default()
@@ -318,7 +319,7 @@ fn sky(key: &Key, daylight: &Daylight, offset: f32, rise: f32) -> RowLook {
     let seen = (rise / full).min(1.0) * (1.0 - fog);
     if key.looks.has_clouds && seen > 0.02 {
         look.metres = height / rise;
-        look.row.cloud = packed(between(away, daylight.cloud, 0.85 * seen), CATEGORY_SKY);
+        look.row.cloud = packed(lerp(away, daylight.cloud, 0.85 * seen), CATEGORY_SKY);
         let pixel = look.metres * look.metres * key.step * key.up.abs().max(0.05) / height;
         look.sharpen(period, pixel, look.metres * key.step);
     }
@@ -335,8 +336,7 @@ pub(super) fn packed(levels: [f32; 3], category: u8) -> u32 {
 mod tests {
     use super::*;
 
-    /// Detail of the ground is absent from the farthest row and increases row by row, faster when nearer, with no jump
-    /// between neighbouring rows.
+    /// The farthest row of the ground has no detail. It increases from row to row without jumps.
     #[test]
     fn detail_increases_gradually_from_row_to_row() {
         let tile = surfaces::tile(Surface::Noise);
@@ -360,19 +360,19 @@ mod tests {
                     ground: [0.5; 3],
                     looks: LOOKS,
                 };
-                plane.look(&key, offset, Shows::Floor, tile).row.detail_share
+                plane.look(&key, offset, Content::Floor, tile).row.detail_share
             };
             let shares: Vec<u32> = (1..side as u32 / 2).map(|row| share(row as f32)).collect();
-            let most = 255.0 * 64.0 / side;
+            let max_increase = 255.0 * 64.0 / side;
             for pair in shares.windows(2) {
                 assert!(
-                    pair[0] <= pair[1] && (pair[1] - pair[0]) as f32 <= most,
+                    pair[0] <= pair[1] && (pair[1] - pair[0]) as f32 <= max_increase,
                     "{side}: {pair:?}"
                 );
             }
             assert!(
                 shares[0] == 0 && shares[shares.len() - 1] > 0,
-                "{side}: from none to some"
+                "{side}: detail appears in near rows"
             );
         }
     }

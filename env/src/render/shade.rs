@@ -1,25 +1,23 @@
 //! Light on flat faces: sun, ambient and sky light.
 //!
-//! Light is applied in gamma space: sRGB values are multiplied directly, without linearising. A colour in full light is then
-//! the colour that the task names, and no image depends on a power function, which platforms round differently. The price is
-//! that half the light looks darker than in reality.
-//!
-//! The formula exists three times: for one face (here), for the lanes of a block (`raster.rs`) and on the GPU (`objects.wgsl`).
-//! All three use the constants below.
+//! Light is applied in gamma space: sRGB values are multiplied directly, without linearising. So a colour in full light is the
+//! colour that the task specifies, and no image depends on a power function, which platforms round differently. The
+//! disadvantage is that half the light looks darker than in reality. The formula is implemented three times: for one face
+//! (here), for the lanes of a block (`raster.rs`) and on the GPU (`objects.wgsl`). All three use the constants below.
 
 use crate::scene::Light;
 use crate::vector::dot;
 
-/// Sky light on a face turned away from the sun, as a share of full light: once for an upright face, twice for the ground.
+/// Sky light on a vertical face that faces away from the sun, as a share of full light; the ground gets twice as much.
 pub(crate) const SKY_SHARE: f32 = 0.06;
 
-/// The level of a colour of 1 in full light, and the highest that a byte holds.
+/// The level of a colour of 1 in full light, which is the highest value of a byte.
 pub(crate) const FULL_LEVEL: f32 = 255.0;
 
 /// Added to a level before truncating it to a byte.
 pub(crate) const ROUNDING: f32 = 0.5;
 
-/// Computes levels from colours and normals in one light: 0 to 255, or more; the caller clamps them.
+/// Computes levels from colours and normals in one light. Levels may exceed 255; the caller clamps them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shader {
     direction: [f32; 3],

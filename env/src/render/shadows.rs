@@ -1,11 +1,11 @@
-//! Shadows on the ground: objects are flattened along the light onto the ground and drawn where ground is visible. Only the
-//! ground gets shadows.
+//! Draws shadows on the ground: objects are projected along the light onto the ground, and drawn where ground is visible.
+//! Nothing else gets shadows.
 
 use super::canvas::{Canvas, Triangle, at_top};
 use super::daylight::Daylight;
 use super::hidden::Hidden;
 use super::lanes::Lanes;
-use super::material::{BARE, GROUND, MATERIAL, MATERIAL_SHIFT, NO_MAP};
+use super::material::{BARE_IN_SHADOW, GROUND, ITEM_BITS, MATERIAL, MATERIAL_SHIFT};
 use super::raster::Shading;
 use super::view::{NEAR, Placement, Pose, View};
 use super::visibility::{Drawable, Visible};
@@ -13,19 +13,19 @@ use crate::assets::{BLOCK, Material};
 use crate::looks::NaturalLooks;
 use crate::scene::{ARENA_WALLS, Item, Scene};
 
-/// Height of shadows above the ground, as a fraction of the camera's height: more than that of zones.
+/// Height of shadows above the ground, as a fraction of the camera's height; above zones.
 const LIFT: f32 = 2e-3;
 
 /// Maximum length of a shadow, as a multiple of the object's height.
-const LONGEST: f32 = 2.5;
+const MAX_LENGTH: f32 = 2.5;
 
-/// Width of the shadow below a thing in diffuse light, as a multiple of the thing's width.
+/// Width of the shadow below an object in diffuse light, as a multiple of the object's width.
 const SPREAD: f32 = 1.2;
 
 /// Maximum error of a simplified mesh that casts a shadow, in pixels.
 const TOLERANCE: f32 = 2.5;
 
-/// How shadows are cast: away from the light, in the direction opposite to `toward`, whose height is 1.
+/// How shadows are cast: opposite to `toward`, the direction of the light, scaled to a height of 1.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cast {
     toward: [f32; 3],
@@ -50,14 +50,14 @@ impl Cast {
             return None;
         }
         let length = (x * x + y * y).sqrt() / z;
-        let shorter = (LONGEST / length.max(1e-6)).min(1.0) / z;
+        let shorter = (MAX_LENGTH / length.max(1e-6)).min(1.0) / z;
         Some(Self {
             toward: [x * shorter, y * shorter, 1.0],
             spread: 1.0,
         })
     }
 
-    /// Shadows directly below things, in diffuse light.
+    /// Shadows directly below objects, in diffuse light.
     fn below() -> Self {
         Self {
             toward: [0.0, 0.0, 1.0],
@@ -65,7 +65,7 @@ impl Cast {
         }
     }
 
-    /// Bounding ball of the shadow of a thing with this position, radius and height.
+    /// Bounding ball of the shadow of an object with this position, radius and height.
     fn ball(&self, [x, y]: [f32; 2], radius: f32, height: f32) -> ([f32; 3], f32) {
         let away = [self.toward[0], self.toward[1]].map(|part| part * height / 2.0);
         let length = (away[0] * away[0] + away[1] * away[1]).sqrt();
@@ -92,8 +92,8 @@ impl Cast {
     }
 }
 
-/// Collects the casters of shadows that may be visible: things, and outdoors also the walls within the arena. Leaves
-/// out shadows behind the walls recorded in `hidden`. The depth of each is that of its shadow.
+/// Collects the objects whose shadows may be visible, and outdoors also the walls within the arena. Leaves out shadows behind
+/// the walls recorded in `hidden`. Depths are those of the shadows.
 pub(super) fn find(
     scene: &Scene,
     looks: &NaturalLooks,
@@ -103,7 +103,7 @@ pub(super) fn find(
     found: &mut Vec<Visible>,
 ) {
     found.clear();
-    let mut note = |(middle, reach): ([f32; 3], f32), drawable: Drawable| {
+    let mut record = |(middle, reach): ([f32; 3], f32), drawable: Drawable| {
         let there = view.view_from_world(middle);
         let is_hidden = || hidden.hides_ball(middle, reach, 0.0, view);
         if view.sees(there, reach) && !Cast::is_too_flat(view, there[2], reach) && !is_hidden() {
@@ -116,7 +116,7 @@ pub(super) fn find(
     for (index, item) in (0..).zip(&scene.items) {
         if item.visible {
             let (radius, height) = (item.asset.radius * item.scale, item.asset.height * item.scale);
-            note(cast.ball(item.position, radius, height), Drawable::Item(index));
+            record(cast.ball(item.position, radius, height), Drawable::Item(index));
         }
     }
     if looks.ceiling.is_some() {
@@ -125,7 +125,7 @@ pub(super) fn find(
     for (index, group) in (0..).zip(&scene.panels).skip(ARENA_WALLS) {
         if !group.edges.is_empty() {
             let [x, y, _] = group.middle;
-            note(cast.ball([x, y], group.radius, group.height), Drawable::Panels(index));
+            record(cast.ball([x, y], group.radius, group.height), Drawable::Panels(index));
         }
     }
 }
@@ -139,24 +139,24 @@ pub(super) fn level<'a>(item: &'a Item, shadow: Visible, view: &View) -> &'a [Ma
 /// Values shared by all triangles of a shadow.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ShadowParams {
-    pub(super) may_be_cut: bool,
-    /// Whether the faces turned away from the light cast it. Walls have no tops, so their shadow ends with that of the edge
-    /// farthest from the light.
+    pub(super) may_need_clipping: bool,
+    /// Whether the faces turned away from the light cast the shadow. Walls have no tops, so their shadow ends with the shadow
+    /// of the edge farthest from the light.
     pub(super) from_behind: bool,
 }
 
 impl Shading for ShadowParams {
     #[inline(always)]
     fn item(&self) -> (u32, bool) {
-        (0, self.may_be_cut)
+        (0, self.may_need_clipping)
     }
 
     #[inline(always)]
-    fn is_turned(&self) -> bool {
+    fn is_mirrored(&self) -> bool {
         self.from_behind
     }
 
-    /// Faces towards the light, which have the same winding from above as the resulting triangles; or faces away from it.
+    /// Faces towards the light, which have the same winding from above as the resulting triangles, or faces away from it.
     #[inline(always)]
     fn facing<L: Lanes>(&self, l: L, normal: [L::Float; 3], _behind: L::Float, at: &Placement) -> L::Mask {
         let zero = l.splat(0.0);
@@ -170,7 +170,7 @@ impl Shading for ShadowParams {
 
     #[inline(always)]
     fn pixels<L: Lanes>(&self, _l: L, _normal: [L::Float; 3], _at: &Placement) -> [u32; BLOCK] {
-        [BARE << MATERIAL_SHIFT; BLOCK]
+        [BARE_IN_SHADOW << MATERIAL_SHIFT; BLOCK]
     }
 
     #[inline(always)]
@@ -185,7 +185,10 @@ fn shade<L: Lanes, const ITEMS: bool>(l: L, canvas: &mut Canvas, triangle: &Tria
     let Triangle { columns, rows, .. } = *triangle;
     let zero = l.splat(0.0);
     let bare = l.splat_word(triangle.pixel);
-    let (material, zone) = (l.splat_word(MATERIAL | NO_MAP), l.splat_word(GROUND << MATERIAL_SHIFT));
+    let (material, zone) = (
+        l.splat_word(MATERIAL | ITEM_BITS),
+        l.splat_word(GROUND << MATERIAL_SHIFT),
+    );
     let shaded = l.splat_word(1 << MATERIAL_SHIFT);
     let top = rows[0] as f32;
     let last_start = canvas.stride - L::N;
@@ -200,19 +203,19 @@ fn shade<L: Lanes, const ITEMS: bool>(l: L, canvas: &mut Canvas, triangle: &Tria
         let mut inverse = at_top(l, triangle.inverse_depth, x, top);
         let mut pixel = rows[0] * canvas.stride + start;
         for _ in rows[0]..=rows[1] {
-            let place = pixel..pixel + L::N;
+            let lanes = pixel..pixel + L::N;
             let inside = l.at_least(l.min(edges[0], l.min(edges[1], edges[2])), zero);
-            let depths = l.load(&canvas.inverse_depth[place.clone()]);
-            let taken = l.both(inside, l.above(inverse, depths));
-            if l.bits(taken) != 0 {
-                let old = l.load_words(&canvas.pixels[place.clone()]);
-                let on_zone = l.both(taken, l.equal(l.and(old, material), zone));
-                let on_ground = l.both(taken, l.at_least(zero, depths));
-                l.store_words_where(on_zone, l.or(old, shaded), &mut canvas.pixels[place.clone()]);
-                l.store_words_where(on_ground, bare, &mut canvas.pixels[place.clone()]);
-                l.store_where(on_ground, inverse, &mut canvas.inverse_depth[place.clone()]);
+            let depths = l.load(&canvas.inverse_depth[lanes.clone()]);
+            let drawn = l.both(inside, l.above(inverse, depths));
+            if l.bits(drawn) != 0 {
+                let old = l.load_words(&canvas.pixels[lanes.clone()]);
+                let on_zone = l.both(drawn, l.equal(l.and(old, material), zone));
+                let on_ground = l.both(drawn, l.at_least(zero, depths));
+                l.store_words_where(on_zone, l.or(old, shaded), &mut canvas.pixels[lanes.clone()]);
+                l.store_words_where(on_ground, bare, &mut canvas.pixels[lanes.clone()]);
+                l.store_where(on_ground, inverse, &mut canvas.inverse_depth[lanes.clone()]);
                 if ITEMS {
-                    l.store_words_where(on_ground, l.splat_word(0), &mut canvas.items[place]);
+                    l.store_words_where(on_ground, l.splat_word(0), &mut canvas.items[lanes]);
                 }
             }
             for (edge, line) in edges.iter_mut().zip(triangle.edges) {

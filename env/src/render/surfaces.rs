@@ -1,8 +1,6 @@
-//! Patterns of the natural style as repeating tiles: factors, brighter and darker, on the colour that they cover, at several
-//! levels.
-//!
-//! Each tile is computed once, on first use. Its finest level has 256 × 256 texels, and each coarser one half as many per side,
-//! down to a single texel, which is neutral: where a pixel covers a whole tile there is no pattern.
+//! Patterns of the natural style as repeating tiles. A tile holds factors, brighter and darker, on the colour that it covers,
+//! at several levels. Each tile is computed once, on first use. Its finest level has 256 × 256 texels, and each coarser one
+//! half as many per side, down to a single neutral texel: where a pixel covers a whole tile, no pattern is visible.
 
 use std::sync::LazyLock;
 
@@ -23,15 +21,15 @@ pub(super) struct Tile {
     pub(super) texels: Vec<u32>,
     /// Metres per side.
     pub(super) period: f32,
-    /// Whether it looks similar when enlarged, so that it can serve as its own detail.
+    /// Whether the pattern looks similar at a finer scale, so that it can serve as its own detail.
     pub(super) is_grain: bool,
-    /// Texels per pixel: less than 1 for hard continuous edges, so that they do not flicker.
+    /// Texels per pixel; below 1 for patterns with long hard edges, so that these do not flicker.
     pub(super) sharpness: f32,
 }
 
-macro_rules! baked {
+macro_rules! new_tile {
     ($period:literal, $is_grain:literal, $sharpness:expr, $texel:expr) => {{
-        static TILE: LazyLock<Tile> = LazyLock::new(|| Tile::baked($period, $is_grain, $sharpness, $texel));
+        static TILE: LazyLock<Tile> = LazyLock::new(|| Tile::new_tile($period, $is_grain, $sharpness, $texel));
         &*TILE
     }};
 }
@@ -40,30 +38,30 @@ macro_rules! baked {
 pub(super) fn tile(surface: Surface) -> Option<&'static Tile> {
     Some(match surface {
         Surface::Plain => return None,
-        Surface::Noise => baked!(8.0, true, 1.0, noise),
-        Surface::Brick => baked!(2.0, false, 1.0, brick),
-        Surface::Plank => baked!(2.0, false, 1.0, plank),
-        Surface::Tile => baked!(2.0, false, 1.0, floor_tile),
-        Surface::Stripes => baked!(2.0, false, 0.5, stripes),
-        Surface::Checker => baked!(2.0, false, 0.5, checker),
-        Surface::Stone => baked!(2.0, false, 1.0, stone),
-        Surface::Plaster => baked!(4.0, true, 1.0, plaster),
-        Surface::Cobbles => baked!(2.0, false, 1.0, cobbles),
+        Surface::Noise => new_tile!(8.0, true, 1.0, noise),
+        Surface::Brick => new_tile!(2.0, false, 1.0, brick),
+        Surface::Plank => new_tile!(2.0, false, 1.0, plank),
+        Surface::Tile => new_tile!(2.0, false, 1.0, floor_tile),
+        Surface::Stripes => new_tile!(2.0, false, 0.5, stripes),
+        Surface::Checker => new_tile!(2.0, false, 0.5, checker),
+        Surface::Stone => new_tile!(2.0, false, 1.0, stone),
+        Surface::Plaster => new_tile!(4.0, true, 1.0, plaster),
+        Surface::Cobbles => new_tile!(2.0, false, 1.0, cobbles),
     })
 }
 
 impl Finish {
-    /// The finish's tile, in metres of a model at scale 1; 0 is the middle.
+    /// The finish's tile, in metres of a model at scale 1; its origin is the model's middle.
     pub(super) fn tile(self) -> &'static Tile {
         match self {
-            Self::Door => baked!(2.0, false, 1.0, door),
-            Self::Crate => baked!(0.9, false, 1.0, wooden_box),
-            Self::Metal => baked!(1.0, false, 1.0, metal),
+            Self::Door => new_tile!(2.0, false, 1.0, door),
+            Self::Crate => new_tile!(0.9, false, 1.0, wooden_box),
+            Self::Metal => new_tile!(1.0, false, 1.0, metal),
         }
     }
 }
 
-/// Cloud cover: the same in each byte but the highest, 0 to 255.
+/// Cloud cover, 0 to 255, in each of the three lower bytes.
 pub(super) fn clouds() -> &'static Tile {
     static TILE: LazyLock<Tile> = LazyLock::new(|| {
         let cover = |x: f32, y: f32| smooth((fractal(x, y, 3, 6, 0.55, 71) + 0.02) / 0.34);
@@ -79,7 +77,7 @@ pub(super) fn clouds() -> &'static Tile {
 }
 
 impl Tile {
-    fn baked(period: f32, is_grain: bool, sharpness: f32, texel: fn(f32, f32) -> [f32; 3]) -> Self {
+    fn new_tile(period: f32, is_grain: bool, sharpness: f32, texel: fn(f32, f32) -> [f32; 3]) -> Self {
         let mut levels = levels(texel);
         // Normalises each channel to a mean of 1, so that the mean is the covered colour.
         let mean = levels.last().map_or([1.0; 3], |coarsest| coarsest[0]);
@@ -95,8 +93,8 @@ impl Tile {
     }
 }
 
-/// All levels of a pattern, the finest first, column by column, in the order in which images are composed; `texel` gives the
-/// pattern by position in the tile, 0..1 along each side.
+/// All levels of a pattern, the finest first. Levels are stored column by column, in the order in which images are composed.
+/// `texel` gives the pattern at a position in the tile, 0..1 along each side.
 fn levels(texel: impl Fn(f32, f32) -> [f32; 3]) -> Vec<Vec<[f32; 3]>> {
     let at = |k: usize| (k as f32 + 0.5) / SIDE as f32;
     let finest = (0..SIDE * SIDE).map(|k| texel(at(k / SIDE), at(k % SIDE))).collect();
@@ -146,9 +144,9 @@ fn smooth(share: f32) -> f32 {
 
 /// Value noise, −1..1, on a repeating lattice of `cells` along x and y.
 fn lattice(x: f32, y: f32, cells: [u32; 2], seed: u32) -> f32 {
-    let place = [x * cells[0] as f32, y * cells[1] as f32];
-    let cell = place.map(|at| at as u32);
-    let share = [0, 1].map(|axis| smooth(place[axis] - cell[axis] as f32));
+    let position = [x * cells[0] as f32, y * cells[1] as f32];
+    let cell = position.map(|at| at as u32);
+    let share = [0, 1].map(|axis| smooth(position[axis] - cell[axis] as f32));
     let corner = |dx: u32, dy: u32| hash((cell[0] + dx) % cells[0], (cell[1] + dy) % cells[1], seed);
     let row = |dy: u32| corner(0, dy) + (corner(1, dy) - corner(0, dy)) * share[0];
     2.0 * (row(0) + (row(1) - row(0)) * share[1]) - 1.0
@@ -166,7 +164,7 @@ fn fractal(x: f32, y: f32, cells: u32, octaves: u32, gain: f32, seed: u32) -> f3
     sum * (1.0 - gain)
 }
 
-/// A factor, made warmer or colder by `warmth`.
+/// A grey factor, made warmer or colder by `warmth`.
 fn tinted(factor: f32, warmth: f32) -> [f32; 3] {
     [factor * (1.0 + warmth), factor, factor * (1.0 - warmth)]
 }
@@ -183,7 +181,7 @@ fn piece(at: f32, count: u32) -> (u32, f32) {
     (scaled as u32 % count, scaled - scaled as u32 as f32)
 }
 
-/// 1 within a piece, 0 in the joint around it, whose width is this fraction of the piece.
+/// 1 within a piece, 0 in the joint around it; `joint` is the joint's width as a fraction of the piece.
 fn within(at: f32, joint: f32) -> f32 {
     smooth((at.min(1.0 - at) - joint / 2.0) / (joint / 2.0) + 0.5)
 }
@@ -279,19 +277,19 @@ fn cobbles(x: f32, y: f32) -> [f32; 3] {
     tinted(0.5 + (tone - 0.5) * body, 0.1 * (hash(own[0], own[1], 84) - 0.5) * body)
 }
 
-/// Converts a position in a tile, 0..1, to one around its middle, −0.5..0.5.
-fn around_middle(at: f32) -> f32 {
+/// Converts a position in a tile, 0..1, to one relative to its origin, −0.5..0.5.
+fn centred(at: f32) -> f32 {
     if at < 0.5 { at } else { at - 1.0 }
 }
 
 /// A frame with four panels, 1 m wide and 2 m high.
 fn door(x: f32, y: f32) -> [f32; 3] {
-    let [across, up] = [x, y].map(|at| 2.0 * around_middle(at));
+    let [across, up] = [x, y].map(|at| 2.0 * centred(at));
     let grain = lattice(x, y, [96, 6], 91) + 0.7 * lattice(x, y, [48, 3], 92);
     let [low, high] = if up < 0.0 { [-0.82, -0.12] } else { [0.08, 0.86] };
     let sides = [across.abs() - 0.06, 0.38 - across.abs(), up - low, high - up];
     let inside = sides.into_iter().fold(f32::INFINITY, f32::min);
-    // Light comes from above: the lower part of a panel's rim is bright, the upper part dark.
+    // With light from above, the lower part of a panel's rim is bright and the upper part dark.
     let rim = if inside == sides[2] {
         1.3
     } else if inside == sides[3] {
@@ -313,7 +311,7 @@ fn door(x: f32, y: f32) -> [f32; 3] {
 
 /// A frame around boards with a brace, 0.9 m on each side.
 fn wooden_box(x: f32, y: f32) -> [f32; 3] {
-    let [across, up] = [x, y].map(around_middle);
+    let [across, up] = [x, y].map(centred);
     let out = across.abs().max(up.abs());
     let (board, along) = piece(x + 0.5 - (x + 0.5) as u32 as f32, 6);
     let brace = (across - up).abs();
@@ -343,14 +341,15 @@ mod tests {
 
     fn all() -> [Surface; 9] {
         let names = r#"["stone", "plaster", "cobbles", "noise", "brick", "plank", "tile", "stripes", "checker"]"#;
-        serde_json::from_str(names).expect("they are surfaces")
+        serde_json::from_str(names).expect("the names are surfaces")
     }
 
-    /// From a distance a surface has its plain colour: the mean at every level is 1, and the coarsest level has no pattern.
+    /// The mean at every level is 1, and the coarsest level has no pattern, so that from a distance a surface has its plain
+    /// colour.
     #[test]
     fn mean_of_every_surface_level_is_neutral() {
         for surface in all() {
-            let tile = tile(surface).expect("it is not plain");
+            let tile = tile(surface).expect("the surface has a tile");
             let mut side = 1;
             while side <= SIDE {
                 let level = &tile.texels[side * side..2 * side * side];
@@ -366,7 +365,7 @@ mod tests {
             let differs = tile.texels[SIDE * SIDE..]
                 .iter()
                 .any(|texel| texel.abs_diff(NEUTRAL) & 255 > 20);
-            assert!(differs, "{surface:?} shows from near");
+            assert!(differs, "{surface:?} is visible from nearby");
         }
         assert!(tile(Surface::Plain).is_none());
     }
@@ -374,7 +373,7 @@ mod tests {
     /// Texels match across the edges of a tile, so that no seam is visible.
     #[test]
     fn grain_repeats_without_a_seam() {
-        let tile = tile(Surface::Noise).expect("it is not plain");
+        let tile = tile(Surface::Noise).expect("the surface has a tile");
         let side = 32;
         let at = |x: usize, y: usize| i64::from(tile.texels[side * side + x * side + y] >> 8 & 255);
         let inside = (0..side).map(|y| (at(15, y) - at(16, y)).abs()).sum::<i64>();

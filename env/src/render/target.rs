@@ -21,9 +21,9 @@ pub struct Target<'a> {
     pub depth: Option<&'a mut [f32]>,
     /// Reward category, `(height, width)`.
     pub category: Option<&'a mut [u8]>,
-    /// Object class, `(height, width)`: the scene's class number, or 0 for none.
+    /// Class number of the object, or 0 for none, `(height, width)`.
     pub class: Option<&'a mut [u16]>,
-    /// Object, `(height, width)`: the item's index plus 1, or 0 for none.
+    /// Item index plus 1, or 0 for none, `(height, width)`.
     pub instance: Option<&'a mut [u32]>,
 }
 
@@ -52,7 +52,7 @@ impl<'a> Target<'a> {
         }
     }
 
-    /// The same, with the images of these modalities only.
+    /// The target with only the images of these modalities.
     #[must_use]
     pub fn only(mut self, modalities: &[Modality]) -> Self {
         let wanted = |modality: Modality| modalities.contains(&modality);
@@ -69,7 +69,7 @@ impl<'a> Target<'a> {
     /// samples in all, and every image has room for exactly its pixels.
     pub(super) fn check(&self) -> Result<(), EnvError> {
         let (width, height) = (self.width, self.height);
-        if self.is_sound() {
+        if self.is_valid() {
             Ok(())
         } else {
             Err(EnvError::PictureSize { width, height })
@@ -77,7 +77,7 @@ impl<'a> Target<'a> {
     }
 
     /// Whether sizes are in range and every slice has one element per pixel (three bytes for colour).
-    fn is_sound(&self) -> bool {
+    fn is_valid(&self) -> bool {
         let pixels = self.width as usize * self.height as usize;
         let fits = |length: Option<usize>, each: usize| length.is_none_or(|length| length == pixels * each);
         (1..=4096).contains(&self.width)
@@ -91,8 +91,8 @@ impl<'a> Target<'a> {
             && fits(self.instance.as_ref().map(|instance| instance.len()), 1)
     }
 
-    /// Shortens depths to what is visible through fog, if depth images include fog.
-    pub(super) fn see_fog(&mut self, light: &Light) {
+    /// Shortens depths according to visibility in fog, if depth images include fog.
+    pub(super) fn apply_fog_to_depth(&mut self, light: &Light) {
         let (Some(depth), Some(fog), true) = (&mut self.depth, light.fog_distance, light.fog_in_depth) else {
             return;
         };

@@ -1,4 +1,4 @@
-//! Draws a map of a scene, seen from straight above, with north at the top and the agent on it.
+//! Draws a map of a scene from straight above, with north at the top and the agent as an arrow.
 
 use super::cpu::CpuRenderer;
 use super::frame::Frame;
@@ -7,7 +7,7 @@ use crate::camera::Camera;
 use crate::scene::{ARENA_WALLS, Item, Scene};
 
 /// Minimum radius of an object on the map, as a fraction of the map's height.
-const LEAST_SIZE: f32 = 0.014;
+const MIN_RADIUS: f32 = 0.014;
 
 /// Classes that are hardly visible from above.
 const THIN: [&str; 4] = ["door", "key", "switch", "sign"];
@@ -31,7 +31,7 @@ pub fn top_down(scene: &Scene, width: u32, height: u32, agent: Option<([f32; 2],
     top_down_with_way(scene, width, height, agent, &[])
 }
 
-/// Like [`top_down`], with the path through these positions, in metres, as a line under the arrow.
+/// Like [`top_down`], with a line through these positions, in metres, under the arrow.
 pub fn top_down_with_way(
     scene: &Scene,
     width: u32,
@@ -49,10 +49,10 @@ pub fn top_down_with_way(
         field_of_view_deg: 2.0 * libm::atanf(span / 2.0 / camera_height).to_degrees(),
     };
     let mut scene = scene.clone().with_wall_tops();
-    // A map is a drawing, without surfaces or shadows.
+    // Maps have no surface patterns or shadows.
     scene.natural = None;
     for item in &mut scene.items {
-        item.scale = item.scale.max(LEAST_SIZE * span / item.asset.radius);
+        item.scale = item.scale.max(MIN_RADIUS * span / item.asset.radius);
     }
     let mut frame = Frame::new(width, height);
     CpuRenderer::new().render(&scene, &camera, &mut frame);
@@ -63,7 +63,7 @@ pub fn top_down_with_way(
     };
     let scale = height as f32 / span;
     let pixel = |[x, y]: [f32; 2]| [width as f32 / 2.0 + x * scale, height as f32 / 2.0 - y * scale];
-    // Dark rims, if there are walls besides the arena's own.
+    // Rims are dark if there are walls other than the arena's.
     let brightness = if scene.walls.len() > ARENA_WALLS { 90.0 } else { 200.0 };
     for wall in &scene.walls {
         image.line([wall.from, wall.to].map(pixel), 0, darkened(wall.color, brightness));
@@ -87,12 +87,12 @@ pub fn top_down_with_way(
     image
 }
 
-/// Pixels per metre of the map that [`top_down`] draws at this size; the arena's middle is the image's.
+/// Pixels per metre of the map that [`top_down`] draws at this size; the arena's centre is in the middle of the image.
 pub fn top_down_scale(scene: &Scene, width: u32, height: u32) -> f32 {
     height as f32 / span(scene, width as f32 / height as f32)
 }
 
-/// Height in metres of the ground that the map shows: arena and objects, with a margin of 6 %.
+/// Height in metres of the area that the map shows: the arena and all objects, with a margin of 6 %.
 fn span(scene: &Scene, aspect: f32) -> f32 {
     let [mut wide, mut deep] = scene.arena_size();
     for item in scene.items.iter().filter(|item| item.visible) {
@@ -109,7 +109,7 @@ fn darkened(color: [f32; 3], brightness: f32) -> [u8; 3] {
 }
 
 impl Image {
-    /// Draws a door as a bar along its leaf, and round objects as a dot, in their main colour with a dark rim.
+    /// Draws a door as a bar along its width, and other objects as a dot, in their main colour with a dark rim.
     fn bar(&mut self, item: &Item, pixel: impl Fn([f32; 2]) -> [f32; 2]) {
         let half = match item.body.collider {
             ColliderShape::Box {
@@ -129,7 +129,8 @@ impl Image {
         self.line(ends, more, darkened(item.color.or(own).unwrap_or([0.5; 3]), 255.0));
     }
 
-    /// Draws a line with a thickness relative to the image, at least two pixels, plus `more` pixels: walls are thin from above.
+    /// Draws a line, because walls are thin from above. Its thickness is relative to the image, at least two pixels, plus
+    /// `more` pixels.
     fn line(&mut self, [from, to]: [[f32; 2]; 2], more: i32, rgb: [u8; 3]) {
         let thick = (self.height as i32 / 150).max(1) + more;
         let along = [to[0] - from[0], to[1] - from[1]];

@@ -1,10 +1,10 @@
-//! [`View`]: a camera ready to project, and the projection of an object's frame.
+//! [`View`]: a camera prepared for projecting, and the projection of an object's frame.
 
 use crate::camera::{Axes, Camera};
 use crate::scene::{Item, PanelGroup};
 use crate::vector::{add, dot, scaled, sub};
 
-/// Nearest distance at which anything is drawn, in metres.
+/// Minimum distance in metres at which anything is drawn.
 pub(crate) const NEAR: f32 = 0.05;
 
 /// A camera for an image of a given size. Pixel centres have integer coordinates.
@@ -35,7 +35,7 @@ pub(crate) struct Placement {
     pub(crate) sun: [f32; 3],
 }
 
-/// An object's frame in the world: rotated about the upright axis, scaled and translated.
+/// An object's frame in the world: rotated about the vertical axis, scaled and translated.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pose {
     pub(crate) position: [f32; 3],
@@ -51,11 +51,11 @@ impl Pose {
         scale: 1.0,
     };
 
-    /// The frame of panels: flat ones are lifted slightly off the ground, depending on the camera.
+    /// The frame of panels. Flat ones are lifted slightly off the ground, depending on the camera.
     pub(crate) fn of_panels(group: &PanelGroup, view: &View) -> Self {
-        /// Maximum camera height in metres that is used for the lift.
-        const HIGHEST: f32 = 1000.0;
-        let height = view.position[2].clamp(0.0, HIGHEST);
+        /// Camera height in metres above which the lift stays the same.
+        const MAX_HEIGHT: f32 = 1000.0;
+        let height = view.position[2].clamp(0.0, MAX_HEIGHT);
         Self {
             position: [0.0, 0.0, group.lift * height],
             ..Self::WORLD
@@ -100,7 +100,7 @@ impl View {
             return false;
         }
         let [tx, ty] = self.size.map(|pixels| pixels / 2.0 * self.step);
-        // Avoids square roots: a ball is outside if it is beyond a side by more than its radius.
+        // A ball is outside if it is beyond a side by more than its radius; comparing squares avoids square roots.
         let beyond = |across: f32, tangent: f32| {
             let over = across.abs() - tangent * forward;
             over > 0.0 && over * over > radius * radius * (1.0 + tangent * tangent)

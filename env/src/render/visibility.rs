@@ -1,4 +1,4 @@
-//! Finds the parts of a scene that may be visible, and their level of detail.
+//! Finds the parts of a scene that may be visible, and chooses their levels of detail.
 
 use super::view::{NEAR, View};
 use crate::assets::Material;
@@ -22,10 +22,11 @@ pub(super) enum Drawable {
     Panels(u32),
 }
 
-/// Collects what may be visible, in the scene's order; the arena's own walls only if they are not drawn by formula.
-pub(super) fn find(scene: &Scene, view: &View, walls_are_drawn: bool, found: &mut Vec<Visible>) {
+/// Collects everything that may be visible, in the scene's order; includes the arena's own walls only if they are not drawn by
+/// formula.
+pub(super) fn find(scene: &Scene, view: &View, walls_by_formula: bool, found: &mut Vec<Visible>) {
     found.clear();
-    let mut note = |middle: [f32; 3], radius: f32, drawable: Drawable| {
+    let mut record = |middle: [f32; 3], radius: f32, drawable: Drawable| {
         let middle = view.view_from_world(middle);
         if view.sees(middle, radius) {
             found.push(Visible {
@@ -38,7 +39,7 @@ pub(super) fn find(scene: &Scene, view: &View, walls_are_drawn: bool, found: &mu
         if item.visible {
             let [x, y] = item.position;
             let half = item.asset.height * item.scale / 2.0;
-            note(
+            record(
                 [x, y, half],
                 item.asset.ball_radius() * item.scale,
                 Drawable::Item(index as u32),
@@ -46,8 +47,8 @@ pub(super) fn find(scene: &Scene, view: &View, walls_are_drawn: bool, found: &mu
         }
     }
     for (index, group) in scene.panels.iter().enumerate() {
-        if index >= ARENA_WALLS || !walls_are_drawn {
-            note(group.middle, group.radius, Drawable::Panels(index as u32));
+        if index >= ARENA_WALLS || !walls_by_formula {
+            record(group.middle, group.radius, Drawable::Panels(index as u32));
         }
     }
 }
@@ -57,7 +58,7 @@ pub(super) fn sort(found: &mut [Visible]) {
     found.sort_unstable_by(|a, b| a.nearest.total_cmp(&b.nearest).then(a.drawable.cmp(&b.drawable)));
 }
 
-/// Like [`sort`], with the arena's own walls last: they are long, so parts of each are near, but everything else stands in
+/// Like [`sort`], with the arena's own walls last. They are long, so parts of them may be near, but everything else stands in
 /// front of them.
 pub(super) fn sort_arena_last(found: &mut [Visible]) {
     found.sort_unstable_by(|a, b| {
@@ -87,7 +88,7 @@ mod tests {
     fn objects_ahead_are_sorted_near_to_far_and_those_behind_left_out() {
         let objects = [[0.0, 30.0], [0.0, -10.0], [0.0, 10.0]].map(|place| Object::new("cube", place));
         let world = WorldDraft::with_objects(objects.to_vec());
-        let scene = Scene::from_world(&world.check().expect("the world is sound"));
+        let scene = Scene::from_world(&world.check().expect("the world is valid"));
         let view = View::new(&Camera::first_person([0.0, 0.0], 0.0, 1.0, 60.0), 84, 84);
         let mut found = Vec::new();
         find(&scene, &view, true, &mut found);
@@ -95,6 +96,6 @@ mod tests {
         let order: Vec<Drawable> = found.iter().map(|visible| visible.drawable).collect();
         assert_eq!(order, [Drawable::Item(2), Drawable::Item(0)]);
         find(&scene, &view, false, &mut found);
-        assert!(found.len() > 2, "the arena's walls, as panels");
+        assert!(found.len() > 2, "the arena's walls are drawn as panels");
     }
 }

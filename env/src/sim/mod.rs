@@ -59,6 +59,6 @@ pub(crate) use sim_ref::SimRef;
 pub use snapshot::Snapshot;
 pub use state::{AgentState, ObjectState};
 pub(crate) use things::{answering, put_down_place};
-pub(crate) use transplant::Unlike;
+pub(crate) use transplant::Difference;
 
 pub use warning::Warning;

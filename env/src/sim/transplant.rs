@@ -17,13 +17,13 @@ const MOST_CHARACTERS: usize = 200;
 
 /// A difference, as text, with the value on each side.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Unlike {
+pub(crate) struct Difference {
     pub(crate) what: String,
     pub(crate) own: String,
     pub(crate) other: String,
 }
 
-impl Unlike {
+impl Difference {
     pub(crate) fn new(what: impl Into<String>, own: impl std::fmt::Debug, other: impl std::fmt::Debug) -> Self {
         let [own, other] = [format!("{own:?}"), format!("{other:?}")].map(|text| shortened(&text, MOST_CHARACTERS));
         Self {
@@ -138,25 +138,25 @@ impl Environment {
     }
 
     /// The first difference between the states of two worlds with the same objects, ignoring rewards.
-    pub(crate) fn state_unlike(&self, other: &Self) -> Option<Unlike> {
+    pub(crate) fn state_difference(&self, other: &Self) -> Option<Difference> {
         let (own, their) = (&self.state, &other.state);
         let (agent, its) = (&own.agent, &their.agent);
-        Unlike::of("the agent's position in metres", &agent.position, &its.position)
-            .or_else(|| Unlike::of("the agent's heading in degrees", &agent.heading_deg, &its.heading_deg))
-            .or_else(|| Unlike::of("the agent's velocity in m/s", &agent.velocity, &its.velocity))
-            .or_else(|| Unlike::of("the seconds gone by", &self.seconds(), &other.seconds()))
+        Difference::of("the agent's position in metres", &agent.position, &its.position)
+            .or_else(|| Difference::of("the agent's heading in degrees", &agent.heading_deg, &its.heading_deg))
+            .or_else(|| Difference::of("the agent's velocity in m/s", &agent.velocity, &its.velocity))
+            .or_else(|| Difference::of("the seconds gone by", &self.seconds(), &other.seconds()))
             .or_else(|| (0..own.objects.len()).find_map(|index| self.object_unlike(other, index)))
-            .or_else(|| Unlike::of("the objects that the agent touches", &own.contacts, &their.contacts))
+            .or_else(|| Difference::of("the objects that the agent touches", &own.contacts, &their.contacts))
             .or_else(|| {
                 // If the zones differ, being inside one follows from the agent's position, and is not a state of its own.
                 let [own, their] = [self, other].map(|one| one.views.zones.entered(&one.state));
-                let unlike = Unlike::of("the zones that the agent is in", &own, &their);
-                unlike.filter(|_| have_same_zones(&self.world, &other.world))
+                let difference = Difference::of("the zones that the agent is in", &own, &their);
+                difference.filter(|_| have_same_zones(&self.world, &other.world))
             })
-            .or_else(|| Unlike::of("what the agent carries", &own.carried, &their.carried))
-            .or_else(|| Unlike::of("the agent's energy", &own.energy, &their.energy))
-            .or_else(|| Unlike::of("how what was pushed moves", &own.pushed, &their.pushed))
-            .or_else(|| Unlike::of("when objects come back", &self.returns(), &other.returns()))
+            .or_else(|| Difference::of("what the agent carries", &own.carried, &their.carried))
+            .or_else(|| Difference::of("the agent's energy", &own.energy, &their.energy))
+            .or_else(|| Difference::of("how what was pushed moves", &own.pushed, &their.pushed))
+            .or_else(|| Difference::of("when objects come back", &self.returns(), &other.returns()))
     }
 
     /// Respawning objects: their indices, and the times in seconds at which they are due.
@@ -172,7 +172,7 @@ impl Environment {
         Some(ticks as f64 * self.world.agent_params.time_step)
     }
 
-    fn object_unlike(&self, other: &Self, index: usize) -> Option<Unlike> {
+    fn object_unlike(&self, other: &Self, index: usize) -> Option<Difference> {
         let (own, their) = (&self.state.objects[index], &other.state.objects[index]);
         let is_ordered = |world: &World| world.objects[index].order.is_some();
         let counts = is_ordered(&self.world) || is_ordered(&other.world);
@@ -181,25 +181,25 @@ impl Environment {
             let place = state.movers.binary_search_by_key(&index, |mover| mover.object);
             place.ok().map(|place| Mover::progress(&state.movers[place]))
         };
-        Unlike::of(of("the presence"), &own.present, &their.present)
-            .or_else(|| Unlike::of(of("whether it is open"), &own.open, &their.open))
+        Difference::of(of("the presence"), &own.present, &their.present)
+            .or_else(|| Difference::of(of("whether it is open"), &own.open, &their.open))
             .or_else(|| {
                 let [own, their] = [self, other].map(|one| one.state.is_unlocked(index));
-                Unlike::of(of("whether it is unlocked"), &own, &their)
+                Difference::of(of("whether it is unlocked"), &own, &their)
             })
             .or_else(|| {
                 let [own, their] = [self, other].map(|one| one.closes_at(index));
-                Unlike::of(of("the second at which it closes"), &own, &their)
+                Difference::of(of("the second at which it closes"), &own, &their)
             })
-            .or_else(|| Unlike::of(of("the position in metres"), &own.position, &their.position))
-            .or_else(|| Unlike::of(of("the heading in degrees"), &own.heading_deg, &their.heading_deg))
+            .or_else(|| Difference::of(of("the position in metres"), &own.position, &their.position))
+            .or_else(|| Difference::of(of("the heading in degrees"), &own.heading_deg, &their.heading_deg))
             .or_else(|| {
-                let collected = Unlike::of(of("whether it is found"), &own.collected, &their.collected);
+                let collected = Difference::of(of("whether it is found"), &own.collected, &their.collected);
                 collected.filter(|_| counts)
             })
             .or_else(|| {
                 let (own, their) = (of_mover(&self.state)?, of_mover(&other.state)?);
-                Unlike::of(of("the next goal"), &own, &their)
+                Difference::of(of("the next goal"), &own, &their)
             })
     }
 }

@@ -1,4 +1,4 @@
-//! Reads network files in the safetensors format: eight bytes with the length of a JSON header, the header, and numbers.
+//! Reads network files in the safetensors format: eight bytes with the length of the JSON header, the header, and the tensors.
 
 use std::collections::BTreeMap;
 
@@ -53,8 +53,8 @@ pub(super) fn read(name: &str, bytes: &[u8]) -> Result<Trained, EnvError> {
     let hidden = image.outputs() as u64;
     let policy = file.layer("policy", hidden, Some(actions.len() as u64))?;
     // Per 2 × 2 patches: the patches themselves, the layer that joins them, and their share of the hidden layer.
-    let of_four = width * ((4 * PATCH * PATCH * 3) as u64 + 8 * width + 2 * hidden);
-    let products = halves * halves * of_four + hidden * actions.len() as u64;
+    let products_per_block = width * ((4 * PATCH * PATCH * 3) as u64 + 8 * width + 2 * hidden);
+    let products = halves * halves * products_per_block + hidden * actions.len() as u64;
     if products > MAX_NETWORK_PRODUCTS {
         let found = format!("{products} multiplications for an image");
         return Err(file.bad("size", found, format!("at most {MAX_NETWORK_PRODUCTS}")));
@@ -141,14 +141,14 @@ impl<'a> Safetensors<'a> {
         })
     }
 
-    /// A layer with this number of inputs and, if known, of outputs.
+    /// A layer with the given number of inputs and, if known, of outputs.
     fn layer(&self, name: &str, inputs: u64, outputs: Option<u64>) -> Result<Layer, EnvError> {
         let biases = self.tensor(&format!("{name}.bias"), [outputs].as_slice())?;
         let weights = self.tensor(&format!("{name}.weight"), &[Some(biases.len() as u64), Some(inputs)])?;
         Ok(Layer::new(&weights, biases))
     }
 
-    /// The numbers of a tensor; an axis of unknown length has at least one entry.
+    /// The numbers of a tensor with this shape; an axis of unknown length must have at least one entry.
     fn tensor(&self, name: &str, shape: &[Option<u64>]) -> Result<Vec<f32>, EnvError> {
         let axes: Vec<String> = shape
             .iter()
@@ -174,8 +174,8 @@ impl<'a> Safetensors<'a> {
         let mut axes = tensor.shape.iter();
         let bytes = axes.try_fold(width, |bytes, axis| bytes.checked_mul(*axis));
         let [start, end] = tensor.data_offsets;
-        let is_as_long = bytes == end.checked_sub(start).map(|length| length as u64);
-        let data = is_as_long.then(|| self.data.get(start..end)).flatten();
+        let length_matches = bytes == end.checked_sub(start).map(|length| length as u64);
+        let data = length_matches.then(|| self.data.get(start..end)).flatten();
         let Some(data) = data else {
             let expected = format!(
                 "a place of {} bytes in data of {}",

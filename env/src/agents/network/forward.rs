@@ -1,5 +1,5 @@
-//! Forward pass of `PatchNetwork` from `driftworld.learners`: patches of 4 × 4 pixels, then 2 × 2 of those, a hidden layer, the
-//! policy. Sums have a fixed order, so results are the same on every machine.
+//! Forward pass of `PatchNetwork` from `driftworld.learners`: a layer over patches of 4 × 4 pixels, one over 2 × 2 patches, a
+//! hidden layer, and the policy. Sums have a fixed order, so results are the same on every machine.
 
 /// Side of a patch in pixels.
 pub(super) const PATCH: usize = 4;
@@ -17,9 +17,9 @@ impl Layer {
     pub(super) fn new(weights: &[f32], biases: Vec<f32>) -> Self {
         let outputs = biases.len();
         let inputs = weights.len() / outputs.max(1);
-        let turned = (0..inputs).flat_map(|input| (0..outputs).map(move |output| weights[output * inputs + input]));
+        let transposed = (0..inputs).flat_map(|input| (0..outputs).map(move |output| weights[output * inputs + input]));
         Self {
-            weights: turned.collect(),
+            weights: transposed.collect(),
             biases,
         }
     }
@@ -58,7 +58,7 @@ pub(super) struct PatchNetwork {
     pub(super) small: Layer,
     /// Maps the features of 2 × 2 patches, row by row, to features.
     pub(super) large: Layer,
-    /// Maps all of those to hidden units.
+    /// Maps the features of the whole image to hidden units.
     pub(super) image: Layer,
     /// Maps hidden units to actions.
     pub(super) policy: Layer,
@@ -85,11 +85,11 @@ impl PatchNetwork {
         let (mut hidden, mut scores) = (Vec::new(), Vec::new());
         self.image.apply(rectified(&large), &mut hidden);
         self.policy.apply(rectified(&hidden), &mut scores);
-        let most = f64::from(scores.iter().copied().fold(f32::NEG_INFINITY, f32::max));
-        let sum: f64 = scores.iter().map(|score| libm::exp(f64::from(*score) - most)).sum();
+        let max = f64::from(scores.iter().copied().fold(f32::NEG_INFINITY, f32::max));
+        let sum: f64 = scores.iter().map(|score| libm::exp(f64::from(*score) - max)).sum();
         scores
             .iter()
-            .map(|score| f64::from(*score) - most - libm::log(sum))
+            .map(|score| f64::from(*score) - max - libm::log(sum))
             .collect()
     }
 }

@@ -29,10 +29,10 @@ struct Trained {
 }
 
 /// Acts with a network that a Python learner's `export` wrote: renders a small image of its camera view on the CPU, and holds
-/// each action as long as in training.
+/// each action for as long as it did in training.
 ///
-/// Its image is bit-identical to that of an environment with the modality RGB and the network's size. A sampled policy draws
-/// with the episode's seed. In worlds with an action table it takes the nearest row.
+/// Its image is bit-identical to the RGB observation of an environment with the network's image size. A stochastic policy uses
+/// the episode's seed. In worlds with an action table it takes the nearest row.
 pub struct NetworkAgent {
     trained: Arc<Trained>,
     renderer: CpuRenderer,
@@ -44,10 +44,10 @@ pub struct NetworkAgent {
 }
 
 impl NetworkAgent {
-    /// Parses a network in safetensors format; messages call it `name`, usually its path.
+    /// Parses a network in safetensors format. Error messages refer to it as `name`, usually its path.
     ///
     /// # Errors
-    /// [`EnvError::BadNetwork`] with the location of the fault.
+    /// [`EnvError::BadNetwork`], with the location of the fault, if the file is not a valid network.
     pub fn parse(name: &str, bytes: &[u8]) -> Result<Self, EnvError> {
         file::read(name, bytes).map(|trained| Self::of(Arc::new(trained)))
     }
@@ -72,8 +72,8 @@ impl NetworkAgent {
             ..Target::of_colors([side, side], &mut self.image)
         };
         let camera = environment.camera();
-        let drawn = self.renderer.draw(environment.scene(), &camera, &mut target);
-        drawn.expect("a network's image is small enough for any supersampling");
+        let rendered = self.renderer.draw(environment.scene(), &camera, &mut target);
+        rendered.expect("a network's image is small enough for any supersampling");
         environment.draw_carried(&mut self.renderer, &mut target);
     }
 
@@ -101,10 +101,10 @@ impl Agent for NetworkAgent {
             self.look(environment);
             let row = self.decide();
             self.action = self.trained.actions[row];
-            let of_world = environment.world().agent_params.frame_skip.max(1);
-            self.held = self.trained.frame_skip.unwrap_or(1).div_ceil(of_world);
+            let frame_skip = environment.world().agent_params.frame_skip.max(1);
+            self.held = self.trained.frame_skip.unwrap_or(1).div_ceil(frame_skip);
         } else {
-            // Interacts only in the first time step.
+            // Interacts only in the first step of an action.
             self.action[2] = 0.0;
         }
         self.held -= 1;

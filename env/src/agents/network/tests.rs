@@ -1,4 +1,4 @@
-//! The network matches torch; tests of its agent, and of files that are refused.
+//! The network matches PyTorch, the agent holds its actions, and bad files are refused.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use crate::sim::{Action, Environment};
 const NETWORK: &[u8] = include_bytes!("../../../tests/golden/network.safetensors");
 
 fn trained() -> Trained {
-    file::read("golden", NETWORK).expect("a learner wrote it")
+    file::read("golden", NETWORK).expect("the golden network is valid")
 }
 
 fn agent(edit: impl FnOnce(&mut Trained)) -> NetworkAgent {
@@ -75,19 +75,22 @@ fn action_is_held_and_interacts_only_in_its_first_time_step() {
     let always = |trained: &mut Trained| trained.actions = vec![[4.0, 9.0, 1.0]; 3];
     let first = Action::Continuous([4.0, 9.0, 1.0]);
     let later = Action::Continuous([4.0, 9.0, 0.0]);
-    for (of_world, held) in [(1, 5), (2, 3), (5, 1), (7, 1)] {
-        let done = actions(&mut agent(always), 0, |world| world.agent_params.frame_skip = of_world);
+    for (frame_skip, held) in [(1, 5), (2, 3), (5, 1), (7, 1)] {
+        let done = actions(&mut agent(always), 0, |world| {
+            world.agent_params.frame_skip = frame_skip
+        });
         for (step, action) in done.into_iter().enumerate() {
             let expected = if step % held == 0 { first } else { later };
-            assert_eq!(action, expected, "step {step} of {of_world} time steps");
+            assert_eq!(action, expected, "step {step} with a frame skip of {frame_skip}");
         }
     }
-    let unsaid = |trained: &mut Trained| (trained.actions, trained.frame_skip) = (vec![[4.0, 9.0, 1.0]; 3], None);
-    assert_eq!(actions(&mut agent(unsaid), 0, |_| {}), vec![first; 40]);
+    let no_frame_skip =
+        |trained: &mut Trained| (trained.actions, trained.frame_skip) = (vec![[4.0, 9.0, 1.0]; 3], None);
+    assert_eq!(actions(&mut agent(no_frame_skip), 0, |_| {}), vec![first; 40]);
 }
 
 #[test]
-fn action_table_gives_the_nearest_row() {
+fn action_in_a_world_with_a_table_is_the_nearest_row() {
     let always = |trained: &mut Trained| trained.actions = vec![[4.0, 9.0, 0.0]; 3];
     let table = vec![[0.0, 90.0, 0.0], [5.0, 0.0, 0.0], [-5.0, 0.0, 0.0]];
     let done = actions(&mut agent(always), 0, |world| {
@@ -121,14 +124,14 @@ fn changed(from: &str, to: &str) -> Vec<u8> {
 }
 
 #[test]
-fn bf16_numbers_are_upper_halves_of_f32() {
+fn bf16_tensors_give_the_same_output_as_f32() {
     let length = u64::from_le_bytes(*NETWORK.first_chunk().expect("eight bytes")) as usize;
     let (header, data) = NETWORK[8..].split_at(length);
     let rounded: Vec<[u8; 4]> = data.as_chunks().0.iter().map(|[_, _, c, d]| [0, 0, *c, *d]).collect();
     let halves: Vec<u8> = rounded.iter().flat_map(|bytes| &bytes[2..]).copied().collect();
     let mut tensors: serde_json::Value = serde_json::from_slice(header).expect("JSON");
     for tensor in tensors.as_object_mut().expect("tensors").values_mut().skip(1) {
-        let offsets = [0, 1].map(|k| tensor["data_offsets"][k].as_u64().expect("a place") / 2);
+        let offsets = [0, 1].map(|k| tensor["data_offsets"][k].as_u64().expect("an offset") / 2);
         (tensor["dtype"], tensor["data_offsets"]) = ("BF16".into(), offsets.as_slice().into());
     }
     let short = tensors.to_string();
@@ -142,8 +145,8 @@ fn bf16_numbers_are_upper_halves_of_f32() {
 }
 
 fn refusal(bytes: &[u8]) -> String {
-    let refused = NetworkAgent::parse("a.safetensors", bytes).map(|_| "taken".to_owned());
-    refused.unwrap_or_else(|error| error.to_string())
+    let result = NetworkAgent::parse("a.safetensors", bytes).map(|_| "accepted".to_owned());
+    result.unwrap_or_else(|error| error.to_string())
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! [`OnRailsAgent`] as an agent.
+//! Implements [`Agent`] for [`OnRailsAgent`].
 
 use super::OnRailsAgent;
 use crate::agents::Agent;
@@ -11,7 +11,7 @@ impl Agent for OnRailsAgent {
         self.planner.shield().in_space(step, sim)
     }
 
-    // The route checks its cached ground before using it, so it can be kept.
+    // Keeps the route: it checks its cached grid before using it.
     fn begin(&mut self, _seed: u64) {
         let route = std::mem::take(&mut self.route);
         let mut planner = std::mem::take(&mut self.planner);

@@ -16,14 +16,14 @@ use crate::sim::SimRef;
 /// Steps after which an unreached target is postponed.
 const PATIENCE: u32 = 150;
 
-/// Steps after which it checks again whether anything can be reached.
-const IDLE: u32 = 20;
+/// Steps after which it checks again whether anything is reachable.
+const RECHECK_INTERVAL: u32 = 20;
 
 /// Distance in metres from the edge of a respawning object at which the agent waits for it.
-const ASIDE: f32 = 1.5;
+const RESPAWN_CLEARANCE: f32 = 1.5;
 
-/// Visits all objects that pay, nearest first along paths around obstacles and most probable first if rewards are uncertain,
-/// and then goes to the object or zone that counts as success.
+/// Visits all objects that pay, along paths around obstacles, then goes to the object or zone that counts as success. Visits
+/// the nearest first, where an uncertain reward counts as farther away.
 ///
 /// Reads the world's state, not its images.
 #[derive(Clone, Debug, Default)]
@@ -45,7 +45,7 @@ impl OnRailsAgent {
         Self::default()
     }
 
-    /// Its plans, for a snapshot.
+    /// Its plan, for a snapshot.
     pub(crate) fn progress(&self) -> RailsProgress {
         let target = self.target.as_ref();
         let planner = &self.planner;
@@ -66,7 +66,7 @@ impl OnRailsAgent {
         }
     }
 
-    /// Resumes from a snapshot. A checked world names only its own objects.
+    /// Resumes from a snapshot; ignores objects that the world does not have.
     pub(crate) fn resumed(progress: &RailsProgress, world: &World, scene: &Scene) -> Self {
         let known = |index: &u32| (*index as usize) < world.objects.len();
         if world.objects.iter().any(Object::is_used) {
@@ -100,7 +100,7 @@ impl OnRailsAgent {
         }
     }
 
-    /// Whether there is nothing left worth going to.
+    /// Whether nothing is left that is worth going to.
     pub(crate) fn is_done(sim: SimRef) -> bool {
         if sim.state.has_things {
             return Planner::is_done(sim);
@@ -120,7 +120,7 @@ impl OnRailsAgent {
             if self.target.is_some() {
                 return;
             }
-            // They cannot be reached.
+            // None of these objects can be reached.
             let given_up = self.given_up_of(sim);
             wanted.retain(|index| !given_up.contains(*index));
             self.given_up.append(&mut wanted);
@@ -168,20 +168,24 @@ impl OnRailsAgent {
             if let Some(step) = self.towards_zone(sim) {
                 return step;
             }
-            return if stands_in_the_way(sim) { back(sim) } else { [0.0; 3] };
+            return if blocks_a_respawn(sim) {
+                step_back(sim)
+            } else {
+                [0.0; 3]
+            };
         };
         let object = &sim.world.objects[target.object];
         if reacts_to(object, Stimulus::AgentInteract) {
             return target.towards(sim, Purpose::Interact, &mut self.route);
         }
-        // Contacts count when they begin, so it steps back before touching the object again.
+        // Contacts count when they begin, so it backs up before touching the object again.
         if sim.state.touches(target.object) && reacts_to(object, Stimulus::AgentCollide) {
-            return back(sim);
+            return step_back(sim);
         }
         target.towards(sim, Purpose::Touch, &mut self.route)
     }
 
-    /// The next step into the best zone to be in, zero once it is there; `None` without such a zone.
+    /// The next step towards the best zone, zero once the agent is in it; `None` if there is no such zone.
     fn towards_zone(&mut self, sim: SimRef) -> Option<[f64; 3]> {
         let here = sim.agent().position;
         let zones = sim.world.environment_params.zones.iter();
@@ -204,7 +208,7 @@ impl OnRailsAgent {
         Some(walk(goal, sim, &mut self.route))
     }
 
-    /// Its next step as speed, turn rate and interaction, whatever the world's action space.
+    /// Its next step as speed, turn rate and interaction, independent of the world's action space.
     pub(crate) fn steer(&mut self, sim: SimRef) -> [f64; 3] {
         let step = if sim.state.has_things {
             self.planner.steer(sim)
@@ -226,12 +230,12 @@ impl OnRailsAgent {
             self.given_up.extend(self.target.as_ref().map(|target| target.object));
         }
         // If nothing can be reached, it checks again from time to time.
-        let waits = self.target.is_none()
-            && self.steps_on_target < IDLE
+        let is_waiting = self.target.is_none()
+            && self.steps_on_target < RECHECK_INTERVAL
             && wanted.iter().all(|index| given_up.contains(*index));
         if wanted.is_empty() {
             self.target = None;
-        } else if (stale || self.steps_on_target > PATIENCE) && !waits {
+        } else if (stale || self.steps_on_target > PATIENCE) && !is_waiting {
             self.choose(sim);
         }
         if self.target.is_some() {
@@ -263,17 +267,17 @@ impl GivenUp {
 }
 
 /// Whether the agent stands where a paying object would respawn.
-fn stands_in_the_way(sim: SimRef) -> bool {
+fn blocks_a_respawn(sim: SimRef) -> bool {
     let here = sim.agent().position;
     let objects = sim.world.objects.iter().zip(sim.objects()).enumerate();
-    let mut gone =
+    let mut absent =
         objects.filter(|(_, (object, state))| !state.present && object.respawn.is_some() && object.is_target());
-    gone.any(|(index, (object, _))| {
-        let first_place = object.coordinates.map(|metres| metres as f32);
-        distance(here, first_place) < ASIDE + sim.body_radius(index)
+    absent.any(|(index, (object, _))| {
+        let start = object.coordinates.map(|metres| metres as f32);
+        distance(here, start) < RESPAWN_CLEARANCE + sim.body_radius(index)
     })
 }
 
-fn back(sim: SimRef) -> [f64; 3] {
+fn step_back(sim: SimRef) -> [f64; 3] {
     [-sim.world.agent_params.max_linear_speed / 2.0, 0.0, 0.0]
 }

@@ -1,53 +1,58 @@
-//! [`Goal`]: lists the goals in a world with doors and things: those that pay, then those that end the episode in
-//! success. `plan.rs` finds what must be done first.
+//! Lists the [`Goal`]s in a world with doors and things: those that pay, then those that end the episode in success. `plan.rs`
+//! finds the subgoals that come first.
 
 use driftworld_spec::{EndCondition, Object, Stimulus};
 
 use super::super::tiers::{reacts_to, wanted};
-use super::plan::{can_interact, usable};
+use super::plan::{can_interact, usable_stimulus};
 use crate::sim::SimRef;
 
 /// Something the agent wants to achieve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Goal<'a> {
-    /// Touch an object, or come near it.
+    /// Touch an object or come near it.
     Touch(u32),
     /// Interact with an object that only pays.
     Use(u32),
-    /// Open a door, set off a switch, pick up a thing.
-    Move(u32),
+    /// Open a door, set off a switch or pick up a thing.
+    Activate(u32),
     /// Put a thing down near an object with a tag.
     Bring { thing: u32, tag: &'a str },
 }
 
 impl Goal<'_> {
-    /// The object that it is about.
+    /// The object to act on.
     pub(super) fn object(self) -> u32 {
         match self {
-            Self::Touch(object) | Self::Use(object) | Self::Move(object) | Self::Bring { thing: object, .. } => object,
+            Self::Touch(object) | Self::Use(object) | Self::Activate(object) | Self::Bring { thing: object, .. } => {
+                object
+            }
         }
     }
 }
 
-/// All goals in three lists by priority: those that pay; those that end the episode in success; and the delivery of the
-/// thing picked up last, which comes second if the agent's hands are full.
+/// All goals in three lists by priority: those that pay, those that end the episode in success, and the delivery of the thing
+/// picked up last. That delivery comes second if the agent's hands are full.
 pub(super) fn goals(sim: SimRef) -> [Vec<Goal>; 3] {
-    let paying: Vec<Goal> = wanted(sim).into_iter().map(|index| toward(sim, index as u32)).collect();
+    let paying: Vec<Goal> = wanted(sim)
+        .into_iter()
+        .map(|index| goal_at(sim, index as u32))
+        .collect();
     let carried = sim.state.carried();
-    let has_hand = carried.len() < sim.world.agent_params.carry_limit as usize;
+    let has_free_hand = carried.len() < sim.world.agent_params.carry_limit as usize;
     let is_carried = |goal: &Goal| matches!(goal, Goal::Bring { thing, .. } if carried.contains(thing));
     let (mut held, mut others): (Vec<Goal>, Vec<Goal>) = endings(sim).into_iter().partition(is_carried);
-    // What was picked up last is put down first.
-    let place = |goal: &Goal| carried.iter().position(|thing| *thing == goal.object());
-    let last = held.iter().copied().max_by_key(place);
+    // The thing picked up last is put down first.
+    let rank = |goal: &Goal| carried.iter().position(|thing| *thing == goal.object());
+    let last = held.iter().copied().max_by_key(rank);
     held.retain(|goal| Some(*goal) == last);
     let is_touched = |index: &u32| ends_by_touch(sim, *index) && !paying.iter().any(|goal| goal.object() == *index);
     others.extend(
         (0..sim.objects().len() as u32)
             .filter(is_touched)
-            .map(|index| toward(sim, index)),
+            .map(|index| goal_at(sim, index)),
     );
-    if held.is_empty() || has_hand {
+    if held.is_empty() || has_free_hand {
         [paying, others, held]
     } else {
         [paying, held, others]
@@ -61,11 +66,11 @@ fn ends_by_touch(sim: SimRef, index: u32) -> bool {
     sim.objects()[index as usize].present && conditions.any(|condition| condition.is_touch_of(object))
 }
 
-/// The goal that makes an object pay, or counts as touching it.
-pub(super) fn toward(sim: SimRef, index: u32) -> Goal<'static> {
+/// The goal that makes an object pay or counts as touching it.
+pub(super) fn goal_at(sim: SimRef, index: u32) -> Goal<'static> {
     let (object, own) = (&sim.world.objects[index as usize], &sim.objects()[index as usize]);
-    if moving(object, own.open).any(|list| list.iter().any(|stimulus| reacts_to(object, *stimulus))) {
-        return Goal::Move(index);
+    if activating_stimuli(object, own.open).any(|list| list.iter().any(|stimulus| reacts_to(object, *stimulus))) {
+        return Goal::Activate(index);
     }
     let by_hand = reacts_to(object, Stimulus::AgentInteract) && can_interact(sim.world);
     if by_hand { Goal::Use(index) } else { Goal::Touch(index) }
@@ -75,7 +80,7 @@ pub(super) fn toward(sim: SimRef, index: u32) -> Goal<'static> {
 fn endings(sim: SimRef) -> Vec<Goal> {
     let (world, states) = (sim.world, sim.objects());
     let mut found = Vec::new();
-    let of_tag = |tag: &str| {
+    let with_tag = |tag: &str| {
         let is_one = move |index: &u32, tag: &str| world.objects[*index as usize].tag.as_deref() == Some(tag);
         let tag = tag.to_owned();
         (0..states.len() as u32).filter(move |index| is_one(index, &tag))
@@ -87,12 +92,12 @@ fn endings(sim: SimRef) -> Vec<Goal> {
                     let own = &states[*index as usize];
                     world.objects[*index as usize].door.is_some() && own.present && !own.open
                 };
-                found.extend(of_tag(tag).filter(is_closed).map(Goal::Move));
+                found.extend(with_tag(tag).filter(is_closed).map(Goal::Activate));
             }
             EndCondition::Carried(tag) => {
-                let lies =
+                let is_on_the_ground =
                     |index: &u32| world.objects[*index as usize].portable.is_some() && states[*index as usize].present;
-                found.extend(of_tag(tag).filter(lies).map(Goal::Move));
+                found.extend(with_tag(tag).filter(is_on_the_ground).map(Goal::Activate));
             }
             EndCondition::Delivered(delivery) => {
                 let is_there = |index: u32| {
@@ -101,13 +106,13 @@ fn endings(sim: SimRef) -> Vec<Goal> {
                         let ([ax, ay], [bx, by]) = (at(index), at(other));
                         (ax - bx).powi(2) + (ay - by).powi(2) <= delivery.within * delivery.within
                     };
-                    states[index as usize].present && of_tag(&delivery.to).any(near)
+                    states[index as usize].present && with_tag(&delivery.to).any(near)
                 };
                 let is_left = |index: &u32| {
                     let (object, own) = (&world.objects[*index as usize], &states[*index as usize]);
                     object.portable.is_some() && (own.present || own.carried) && !is_there(*index)
                 };
-                found.extend(of_tag(&delivery.tag).filter(is_left).map(|thing| Goal::Bring {
+                found.extend(with_tag(&delivery.tag).filter(is_left).map(|thing| Goal::Bring {
                     thing,
                     tag: &delivery.to,
                 }));
@@ -115,11 +120,11 @@ fn endings(sim: SimRef) -> Vec<Goal> {
             _ => {}
         }
     }
-    before_their_turn(sim, found)
+    due_goals(sim, found)
 }
 
-/// The goals whose turn it is in the sequence; if some must wait, also what comes before them.
-fn before_their_turn<'a>(sim: SimRef<'a>, found: Vec<Goal<'a>>) -> Vec<Goal<'a>> {
+/// The goals whose turn it is in the sequence; if some must wait, also the goals that come before them.
+fn due_goals<'a>(sim: SimRef<'a>, found: Vec<Goal<'a>>) -> Vec<Goal<'a>> {
     let (world, states) = (sim.world, sim.objects());
     let is_due = |object: &Object| sim.state.is_due(object.order);
     if found.iter().all(|goal| is_due(&world.objects[goal.object() as usize])) {
@@ -129,7 +134,7 @@ fn before_their_turn<'a>(sim: SimRef<'a>, found: Vec<Goal<'a>>) -> Vec<Goal<'a>>
         let (object, own) = (&world.objects[*index as usize], &states[*index as usize]);
         object.order.is_some() && !own.collected && own.present && is_due(object) && object.is_used()
     };
-    let first = (0..states.len() as u32).filter(comes_first).map(Goal::Move);
+    let first = (0..states.len() as u32).filter(comes_first).map(Goal::Activate);
     let due = found
         .iter()
         .copied()
@@ -138,13 +143,13 @@ fn before_their_turn<'a>(sim: SimRef<'a>, found: Vec<Goal<'a>>) -> Vec<Goal<'a>>
 }
 
 /// The stimulus that opens a door, sets off a switch or picks up a thing, if the agent can cause it.
-pub(super) fn moving_stimulus(sim: SimRef, index: u32) -> Option<Stimulus> {
+pub(super) fn activating_stimulus(sim: SimRef, index: u32) -> Option<Stimulus> {
     let (object, own) = (&sim.world.objects[index as usize], &sim.objects()[index as usize]);
-    moving(object, own.open).find_map(|list| usable(sim.world, index, list))
+    activating_stimuli(object, own.open).find_map(|list| usable_stimulus(sim.world, index, list))
 }
 
 /// The stimuli that open an object, set it off or pick it up.
-fn moving(object: &Object, is_open: bool) -> impl Iterator<Item = &Vec<Stimulus>> {
+fn activating_stimuli(object: &Object, is_open: bool) -> impl Iterator<Item = &Vec<Stimulus>> {
     let opens = object.door.as_ref().filter(|_| !is_open).map(|door| &door.opens_on);
     let lists = [
         opens,

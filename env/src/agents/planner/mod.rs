@@ -1,13 +1,13 @@
-//! Planning in worlds with doors, keys, switches and things that are carried. The planner knows the map and the rules,
-//! and does nothing that an episode does not allow.
+//! Plans in worlds with doors, keys, switches and portable things. The planner knows the map and the rules, and acts only as an
+//! episode allows.
 //!
-//! `goals.rs` lists the goals, `plan.rs` and `spending.rs` choose the subgoal that comes first, `subgoal.rs` carries it out, and
-//! `floor.rs`, `zone_costs.rs` and `ways.rs` find the way. The next step depends only on where things are and on the current
-//! target, so a saved world continues as it would have.
+//! `goals.rs` lists the goals, `plan.rs` and `spending.rs` choose the next subgoal, `subgoal.rs` carries it out, and
+//! `floor.rs`, `zone_costs.rs` and `ways.rs` find the path. The next step depends only on the state of the world and on the
+//! current target, so a resumed episode continues as it would have.
 
 mod floor;
 mod goals;
-mod leaf;
+mod ground_shape;
 mod plan;
 mod spending;
 mod subgoal;
@@ -24,7 +24,7 @@ use subgoal::{Act, Subgoal, is_blocked_by_a_thing};
 use crate::agents::shield::Shield;
 use crate::sim::SimRef;
 
-/// Steps after which a goal that was not reached is put off.
+/// Steps after which a goal that was not reached is postponed.
 const PATIENCE: u32 = 3000;
 
 /// Unstick rule `(period, backoff)`: back up for the last steps of each period, longer every time.
@@ -45,17 +45,17 @@ pub(super) struct Planner {
     known: Option<(Situation, Option<Subgoal>)>,
     /// A situation in which no goal can be reached, and the zone to enter then.
     idle: Option<(Situation, Option<Subgoal>)>,
-    /// Whether a free hand can gather something else in this situation.
+    /// Whether the agent can pick up another thing to deliver in this situation.
     gathers: Option<(Situation, bool)>,
 }
 
-/// Everything that a plan depends on.
+/// Everything on which a plan depends.
 #[derive(Clone, Debug, PartialEq)]
 struct Situation {
     version: u64,
     room: Option<u32>,
     target: Option<u32>,
-    /// Where the target is, if that can change.
+    /// The target's room, if the target can move.
     target_room: Option<u32>,
     /// For each door, whether it is unlocked.
     unlocked: Vec<bool>,
@@ -81,9 +81,9 @@ impl Planner {
         goals(sim).iter().all(Vec::is_empty)
     }
 
-    /// The zones that the next step must not enter.
+    /// Which zones the next step must not enter.
     pub(super) fn shield(&self) -> Shield {
-        if self.floor.keeps_out {
+        if self.floor.avoids_costs {
             Shield::Cost
         } else {
             Shield::Failure
@@ -93,7 +93,7 @@ impl Planner {
     /// The next action, as speed, turn rate and interaction.
     pub(super) fn steer(&mut self, sim: SimRef) -> [f64; 3] {
         self.floor.update(sim);
-        self.floor.keeps_out = false;
+        self.floor.avoids_costs = false;
         let goals = goals(sim);
         let find = |target: u32| goals.iter().flatten().copied().find(|goal| goal.object() == target);
         let mut goal = self.target.and_then(find);
@@ -117,12 +117,12 @@ impl Planner {
             self.steps_on_target = 0;
             subgoal = goal.and_then(|goal| self.first(sim, goal, &goals));
             if subgoal.is_none() {
-                subgoal = self.rest(sim, &goals);
+                subgoal = self.subgoal_without_goals(sim, &goals);
             }
         }
-        let (least, each) = BLOCKED;
+        let (first, each) = BLOCKED;
         if !is_waiting
-            && self.steps_on_target >= least
+            && self.steps_on_target >= first
             && self.steps_on_target.is_multiple_of(each)
             && is_blocked_by_a_thing(sim)
         {
@@ -137,27 +137,27 @@ impl Planner {
         subgoal.map_or([0.0; 3], |subgoal| subgoal.act(sim, &mut self.floor))
     }
 
-    /// Whether no goal can be reached in this situation, as found before.
+    /// Whether this situation is known to be one in which no goal can be reached.
     fn is_known_to_be_idle(&self, sim: SimRef, goals: &[Vec<Goal>; 3]) -> bool {
         let known = self.idle.as_ref().map(|(known, _)| known);
         known.is_some_and(|known| *known == self.situation(sim, None, goals))
     }
 
-    /// The subgoal if no goal can be reached: enters the best zone within reach, preferring zones that end the episode
-    /// in success, then those that pay most.
-    fn rest(&mut self, sim: SimRef, goals: &[Vec<Goal>; 3]) -> Option<Subgoal> {
+    /// The subgoal if no goal can be reached: to enter the best zone within reach. Zones that end the episode in success come
+    /// first, then those that pay most.
+    fn subgoal_without_goals(&mut self, sim: SimRef, goals: &[Vec<Goal>; 3]) -> Option<Subgoal> {
         let plan = Plan::new(sim, &self.floor, goals);
         let zones = sim.world.environment_params.zones.iter().enumerate();
         let wanted = zones.filter(|(_, zone)| zone.is_wanted());
-        let ways = wanted.filter_map(|(index, zone)| Some((zone, plan.as_ref()?.zone_entered(index, zone)?)));
+        let subgoals = wanted.filter_map(|(index, zone)| Some((zone, plan.as_ref()?.subgoal_to_enter(index, zone)?)));
         let value = |zone: &Zone| (zone.ends.is_some(), zone.reward_per_second, zone.reward_on_entering);
-        let best = ways.reduce(|best, other| if value(other.0) > value(best.0) { other } else { best });
+        let best = subgoals.reduce(|best, other| if value(other.0) > value(best.0) { other } else { best });
         let subgoal = best.map(|(_, subgoal)| subgoal);
         self.idle = Some((self.situation(sim, None, goals), subgoal));
         subgoal
     }
 
-    /// Whether an agent that delivers something has a free hand for another thing that is to be delivered.
+    /// Whether an agent that is delivering a thing can pick up another one to deliver on the same trip.
     fn can_gather(&mut self, sim: SimRef, goals: &[Vec<Goal>; 3]) -> bool {
         let situation = self.situation(sim, None, goals);
         if let Some((known, gathers)) = &self.gathers
@@ -187,15 +187,15 @@ impl Planner {
             self.given_up.clear();
         }
         list.retain(|goal| !self.given_up.contains(&goal.object()));
-        // Fewest doors first, then the straight distance divided by the chance that it pays.
+        // Fewest doors first, then the straight-line distance divided by the probability that it pays.
         let here = sim.agent().position;
         let cost = |goal: &Goal| {
             let index = goal.object() as usize;
             let [x, y] = sim.objects()[index].position;
-            let far = ((x - here[0]).powi(2) + (y - here[1]).powi(2)).sqrt();
-            let odds = sim.world.objects[index].reward_probability.max(0.01) as f32;
-            let doors = plan.takes_doors(goal.object()).unwrap_or(0);
-            (doors, far / odds)
+            let distance = ((x - here[0]).powi(2) + (y - here[1]).powi(2)).sqrt();
+            let probability = sim.world.objects[index].reward_probability.max(0.01) as f32;
+            let doors = plan.num_doors_to(goal.object()).unwrap_or(0);
+            (doors, distance / probability)
         };
         list.into_iter().min_by(|a, b| {
             let (a, b) = (cost(a), cost(b));
@@ -203,7 +203,7 @@ impl Planner {
         })
     }
 
-    /// The first subgoal of a goal, planned again only when the situation has changed.
+    /// The first subgoal of a goal; plans again only if the situation has changed.
     fn first(&mut self, sim: SimRef, goal: Goal, goals: &[Vec<Goal>; 3]) -> Option<Subgoal> {
         let situation = self.situation(sim, Some(goal.object()), goals);
         if let Some((known, subgoal)) = &self.known

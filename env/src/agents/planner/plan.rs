@@ -1,10 +1,10 @@
-//! [`Plan`]: chooses the next subgoal: which door to open, and which key or switch comes first. `subgoal.rs` carries it out;
-//! `spending.rs` decides which doors to spend keys on, where a key opens only one door.
+//! [`Plan`] chooses the next subgoal: which door to open, and which key or switch comes first. `subgoal.rs` carries it out.
+//! `spending.rs` chooses the doors on which to spend single-use keys.
 
 use driftworld_spec::{ActionModel, ActionSpace, Object, Stimulus, SwitchAction, World, Zone};
 
 use super::floor::{Floor, Room};
-use super::goals::{Goal, toward};
+use super::goals::{Goal, goal_at};
 use super::subgoal::{Act, Subgoal};
 use crate::sim::SimRef;
 
@@ -19,34 +19,34 @@ enum Means {
     Switch(u32),
     /// By waiting for its clock.
     Clock,
-    /// After this goal has had its turn in the sequence.
+    /// By achieving this goal, whose turn comes first in the sequence.
     After(Goal<'static>),
 }
 
-/// A door that can be opened; the ways that lead to it come before it in the plan.
+/// Opening a door; doors that must be passed first have earlier steps.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Way {
+pub(super) struct DoorStep {
     pub(super) door: u32,
-    /// The room from which it is opened, or passed.
+    /// The room from which it is opened.
     from: Room,
     means: Means,
     /// The key that is used up by opening it.
     pub(super) spends: Option<u32>,
 }
 
-/// What the agent can reach, door by door.
+/// The rooms that the agent can reach, door by door.
 #[derive(Clone)]
 pub(super) struct Plan<'a> {
     pub(super) sim: SimRef<'a>,
     floor: &'a Floor,
     here: Room,
-    /// For each other room within reach, the index of the way that leads there.
+    /// For each other reachable room, the index of the step that opens the door to it.
     entered: Vec<(Room, usize)>,
-    pub(super) ways: Vec<Way>,
+    pub(super) steps: Vec<DoorStep>,
 }
 
 impl<'a> Plan<'a> {
-    /// Opens every free door, then spends keys as these goals require.
+    /// Opens every door that uses up no key, then spends keys to serve these goals.
     pub(super) fn new(sim: SimRef<'a>, floor: &'a Floor, goals: &[Vec<Goal>; 3]) -> Option<Self> {
         let here = floor.room_at(sim.agent().position)?;
         let mut plan = Self {
@@ -54,41 +54,41 @@ impl<'a> Plan<'a> {
             floor,
             here,
             entered: Vec::new(),
-            ways: Vec::new(),
+            steps: Vec::new(),
         };
-        plan.open_what_is_free();
+        plan.open_free_doors();
         Some(plan.with_keys_spent(goals))
     }
 
     /// Opens all doors that use up no key, in rounds: each round uses only what earlier rounds reached.
-    pub(super) fn open_what_is_free(&mut self) {
+    pub(super) fn open_free_doors(&mut self) {
         loop {
-            let found = self.ways_through();
-            let free: Vec<Way> = found.into_iter().filter(|way| way.spends.is_none()).collect();
+            let found = self.openable_doors();
+            let free: Vec<DoorStep> = found.into_iter().filter(|step| step.spends.is_none()).collect();
             if free.is_empty() {
                 return;
             }
-            for way in free {
-                self.take(way);
+            for step in free {
+                self.add_door(step);
             }
         }
     }
 
     /// The doors that can be opened next, in ascending order of object.
-    pub(super) fn ways_through(&self) -> Vec<Way> {
+    pub(super) fn openable_doors(&self) -> Vec<DoorStep> {
         let doors = self.floor.doors.iter();
         doors
-            .filter_map(|door| self.way_through(door.object, door.rooms))
+            .filter_map(|door| self.step_through(door.object, door.rooms))
             .collect()
     }
 
-    /// Opens a door.
-    pub(super) fn take(&mut self, way: Way) {
-        let number = self.ways.len();
-        self.ways.push(way);
+    /// Adds a step that opens a door.
+    pub(super) fn add_door(&mut self, step: DoorStep) {
+        let number = self.steps.len();
+        self.steps.push(step);
         let mut doors = self.floor.doors.iter();
         let rooms = doors
-            .find(|door| door.object == way.door)
+            .find(|door| door.object == step.door)
             .map_or([None; 2], |door| door.rooms);
         for room in rooms.into_iter().flatten() {
             if !self.can_reach(room) {
@@ -107,14 +107,14 @@ impl<'a> Plan<'a> {
             .is_some_and(|room| self.can_reach(room))
     }
 
-    /// How a door that is still closed can be opened with what is within reach.
-    fn way_through(&self, door: u32, rooms: [Option<Room>; 2]) -> Option<Way> {
-        if self.ways.iter().any(|way| way.door == door) {
+    /// The step that opens a door with what is reachable; `None` if there is none or the plan has it already.
+    fn step_through(&self, door: u32, rooms: [Option<Room>; 2]) -> Option<DoorStep> {
+        if self.steps.iter().any(|step| step.door == door) {
             return None;
         }
         let from = rooms.into_iter().flatten().find(|room| self.can_reach(*room))?;
         let (means, spends) = self.means(door)?;
-        Some(Way {
+        Some(DoorStep {
             door,
             from,
             means,
@@ -122,7 +122,7 @@ impl<'a> Plan<'a> {
         })
     }
 
-    /// How to open a door, and the key that this uses up; prefers means that use up none.
+    /// How to open a door, and the key that this uses up, if any; prefers means that use up none.
     fn means(&self, door: u32) -> Option<(Means, Option<u32>)> {
         let by_hand = self.by_hand(door);
         match by_hand {
@@ -136,7 +136,7 @@ impl<'a> Plan<'a> {
         let SimRef { world, state, .. } = self.sim;
         let object = &world.objects[door as usize];
         let own = object.door.as_ref()?;
-        if !state.is_due(object.order) || usable(world, door, &own.opens_on).is_none() {
+        if !state.is_due(object.order) || usable_stimulus(world, door, &own.opens_on).is_none() {
             return None;
         }
         let Some(tag) = own.key.as_ref().filter(|_| !state.is_unlocked(door as usize)) else {
@@ -158,7 +158,7 @@ impl<'a> Plan<'a> {
     }
 
     fn is_spent(&self, key: u32) -> bool {
-        self.ways.iter().any(|way| way.spends == Some(key))
+        self.steps.iter().any(|step| step.spends == Some(key))
     }
 
     /// How to open a door without a key: by a switch, by its clock, or later in the sequence.
@@ -167,11 +167,11 @@ impl<'a> Plan<'a> {
         let object = &world.objects[door as usize];
         let own = object.door.as_ref()?;
         let opens = |index: &u32| {
-            let object_of = &world.objects[*index as usize];
-            object_of.switch.as_ref().is_some_and(|switch| {
+            let candidate = &world.objects[*index as usize];
+            candidate.switch.as_ref().is_some_and(|switch| {
                 let moves = Some(&switch.target) == object.tag.as_ref() && switch.action != SwitchAction::Close;
-                let is_there = self.sim.objects()[*index as usize].present && state.is_due(object_of.order);
-                moves && is_there && usable(world, *index, &switch.on).is_some()
+                let is_there = self.sim.objects()[*index as usize].present && state.is_due(candidate.order);
+                moves && is_there && usable_stimulus(world, *index, &switch.on).is_some()
             })
         };
         let mut switches = (0..world.objects.len() as u32).filter(opens);
@@ -184,7 +184,7 @@ impl<'a> Plan<'a> {
         self.next_in_turn(door).map(Means::After)
     }
 
-    /// The possible goal whose turn it is in the sequence, if the door, its key or its switch waits for its own turn.
+    /// The achievable goal whose turn it is in the sequence, if the door, its key or its switch must wait for its own turn.
     fn next_in_turn(&self, door: u32) -> Option<Goal<'static>> {
         let SimRef { world, state, .. } = self.sim;
         let object = &world.objects[door as usize];
@@ -206,15 +206,15 @@ impl<'a> Plan<'a> {
         let next = (0..world.objects.len() as u32).filter(is_next);
         let mut goals = next.map(|index| {
             if world.objects[index as usize].is_used() {
-                Goal::Move(index)
+                Goal::Activate(index)
             } else {
-                toward(self.sim, index)
+                goal_at(self.sim, index)
             }
         });
         goals.find(|goal| self.first(*goal).is_some())
     }
 
-    /// Whether a thing lies within reach and can be picked up.
+    /// Whether a thing is reachable and can be picked up.
     fn can_pick_up(&self, index: u32) -> bool {
         let SimRef { world, state, .. } = self.sim;
         let object = &world.objects[index as usize];
@@ -222,18 +222,18 @@ impl<'a> Plan<'a> {
         self.sim.objects()[index as usize].present
             && world.agent_params.carry_limit > 0
             && state.is_due(object.order)
-            && usable(world, index, &portable.on).is_some()
+            && usable_stimulus(world, index, &portable.on).is_some()
             && self.can_reach_object(index)
     }
 
-    /// How many doors lie on the way to an object; `None` if it cannot be reached.
-    pub(super) fn takes_doors(&self, object: u32) -> Option<usize> {
+    /// Number of doors on the way to an object; `None` if it cannot be reached.
+    pub(super) fn num_doors_to(&self, object: u32) -> Option<usize> {
         let room = self.floor.room_of(self.sim, object)?;
         let mut doors = 0;
-        let mut now = room;
-        while now != self.here {
-            let (_, number) = self.entered.iter().find(|(other, _)| *other == now)?;
-            now = self.ways[*number].from;
+        let mut current = room;
+        while current != self.here {
+            let (_, number) = self.entered.iter().find(|(other, _)| *other == current)?;
+            current = self.steps[*number].from;
             doors += 1;
         }
         Some(doors)
@@ -242,28 +242,28 @@ impl<'a> Plan<'a> {
     /// The first subgoal of a goal; `None` if it cannot be reached.
     pub(super) fn first(&self, goal: Goal) -> Option<Subgoal> {
         match goal {
-            Goal::Touch(object) => self.at(object, Act::Touch),
-            Goal::Use(object) => self.at(object, Act::Use),
-            Goal::Move(object) => self.moved(object),
+            Goal::Touch(object) => self.subgoal_at(object, Act::Touch),
+            Goal::Use(object) => self.subgoal_at(object, Act::Use),
+            Goal::Activate(object) => self.subgoal_to_activate(object),
             Goal::Bring { thing, tag } => {
                 if !self.sim.state.carried().contains(&thing) {
-                    return self.picked_up(thing);
+                    return self.subgoal_to_pick_up(thing);
                 }
                 let world = self.sim.world;
                 let objects = 0..world.objects.len() as u32;
-                let mut places = objects.filter(|index| {
+                let mut recipients = objects.filter(|index| {
                     let is_there = self.sim.objects()[*index as usize].present;
                     is_there
                         && world.objects[*index as usize].tag.as_deref() == Some(tag)
                         && self.can_reach_object(*index)
                 });
-                self.at(places.next()?, Act::Bring { thing })
+                self.subgoal_at(recipients.next()?, Act::Bring { thing })
             }
         }
     }
 
     /// The first subgoal of entering a zone; `None` if it cannot be reached.
-    pub(super) fn zone_entered(&self, index: usize, zone: &Zone) -> Option<Subgoal> {
+    pub(super) fn subgoal_to_enter(&self, index: usize, zone: &Zone) -> Option<Subgoal> {
         let rooms = self.floor.cells_in(zone).into_iter();
         let mut rooms: Vec<Room> = rooms.map(|cell| self.floor.room[cell as usize]).collect();
         rooms.sort_by_key(|room| (*room != self.here, *room));
@@ -273,59 +273,59 @@ impl<'a> Plan<'a> {
             room,
             act: Act::Enter,
         };
-        self.reached_first(room, subgoal)
+        self.subgoal_in_room(room, subgoal)
     }
 
-    /// An act at an object, or the subgoal that comes before it.
-    fn at(&self, object: u32, act: Act) -> Option<Subgoal> {
+    /// The subgoal of an act at an object, or the one that comes before it.
+    fn subgoal_at(&self, object: u32, act: Act) -> Option<Subgoal> {
         let room = self.floor.room_of(self.sim, object)?;
-        self.reached_first(room, Subgoal { object, room, act })
+        self.subgoal_in_room(room, Subgoal { object, room, act })
     }
 
-    /// A subgoal in a room, or the one that comes before it. Terminates: each door is opened only with what was reached before
-    /// it.
-    fn reached_first(&self, room: Room, subgoal: Subgoal) -> Option<Subgoal> {
+    /// A subgoal in a room, or the one that comes before it. Terminates, because each door is opened only with what was reached
+    /// before it.
+    fn subgoal_in_room(&self, room: Room, subgoal: Subgoal) -> Option<Subgoal> {
         if room == self.here {
             return Some(subgoal);
         }
         let (_, number) = self.entered.iter().find(|(other, _)| *other == room)?;
-        self.opened(self.ways[*number])
+        self.subgoal_to_open(self.steps[*number])
     }
 
-    fn opened(&self, way: Way) -> Option<Subgoal> {
+    fn subgoal_to_open(&self, step: DoorStep) -> Option<Subgoal> {
         let at_door = |act| {
-            self.reached_first(
-                way.from,
+            self.subgoal_in_room(
+                step.from,
                 Subgoal {
-                    object: way.door,
-                    room: way.from,
+                    object: step.door,
+                    room: step.from,
                     act,
                 },
             )
         };
-        match way.means {
-            Means::Hand => at_door(Act::Move),
+        match step.means {
+            Means::Hand => at_door(Act::Activate),
             Means::Clock => at_door(Act::Wait),
-            Means::Key(key) => match self.locked_before(way) {
-                Some(earlier) => self.opened(earlier),
-                None => self.picked_up(key),
+            Means::Key(key) => match self.locked_before(step) {
+                Some(earlier) => self.subgoal_to_open(earlier),
+                None => self.subgoal_to_pick_up(key),
             },
-            Means::Switch(switch) => self.at(switch, Act::Move),
+            Means::Switch(switch) => self.subgoal_at(switch, Act::Activate),
             Means::After(goal) => self.first(goal),
         }
     }
 
-    /// The first locked door on the way to a door, if the door's key would fill the agent's hands: otherwise it would
-    /// swap the two keys forever. Terminates, since an unlocked door stays unlocked.
-    fn locked_before(&self, way: Way) -> Option<Way> {
+    /// The first locked door on the way to a door, if the latter's key would fill the agent's hands. Without this rule, the
+    /// agent would swap the two keys forever. Terminates, because an unlocked door stays unlocked.
+    fn locked_before(&self, step: DoorStep) -> Option<DoorStep> {
         let hands = self.sim.world.agent_params.carry_limit as usize;
         if self.sim.state.carried().len() + 1 < hands {
             return None;
         }
-        let (mut first, mut room) = (None, way.from);
+        let (mut first, mut room) = (None, step.from);
         while room != self.here {
             let (_, number) = self.entered.iter().find(|(other, _)| *other == room)?;
-            let earlier = self.ways[*number];
+            let earlier = self.steps[*number];
             let door = earlier.door as usize;
             let has_key = self.sim.world.objects[door]
                 .door
@@ -340,25 +340,25 @@ impl<'a> Plan<'a> {
     }
 
     /// The first subgoal of opening a door, setting off a switch or picking up a thing.
-    fn moved(&self, object: u32) -> Option<Subgoal> {
+    fn subgoal_to_activate(&self, object: u32) -> Option<Subgoal> {
         let parts = &self.sim.world.objects[object as usize];
         if parts.door.is_some() && !self.sim.objects()[object as usize].open {
-            let way = self.ways.iter().find(|way| way.door == object)?;
-            return self.opened(*way);
+            let step = self.steps.iter().find(|step| step.door == object)?;
+            return self.subgoal_to_open(*step);
         }
         if parts.portable.is_some() && parts.switch.is_none() {
-            return self.picked_up(object);
+            return self.subgoal_to_pick_up(object);
         }
-        self.at(object, Act::Move)
+        self.subgoal_at(object, Act::Activate)
     }
 
-    fn picked_up(&self, thing: u32) -> Option<Subgoal> {
+    fn subgoal_to_pick_up(&self, thing: u32) -> Option<Subgoal> {
         if !self.can_pick_up(thing) {
             return None;
         }
-        let subgoal = self.at(thing, Act::Move)?;
+        let subgoal = self.subgoal_at(thing, Act::Activate)?;
         let hands_are_full = self.sim.state.carried().len() >= self.sim.world.agent_params.carry_limit as usize;
-        // Hands are emptied at the thing itself: the way to it may need what they carry.
+        // Drops what is held only on reaching the thing: it may be needed on the way.
         let hands_can_be_emptied = !hands_are_full || can_interact(self.sim.world);
         hands_can_be_emptied.then_some(subgoal)
     }
@@ -376,8 +376,8 @@ pub(super) fn can_interact(world: &World) -> bool {
     agent.interact && agent.action_model != ActionModel::ByWaypoint && has_row
 }
 
-/// The stimulus of an object that the agent can cause; an interaction if possible.
-pub(super) fn usable(world: &World, object: u32, stimuli: &[Stimulus]) -> Option<Stimulus> {
+/// The stimulus in a list that the agent can cause at an object; an interaction if possible.
+pub(super) fn usable_stimulus(world: &World, object: u32, stimuli: &[Stimulus]) -> Option<Stimulus> {
     let has_range = world.objects[object as usize].range_stimulus_distance > 0.0;
     let can = |stimulus: &Stimulus| match stimulus {
         Stimulus::AgentInteract => can_interact(world),

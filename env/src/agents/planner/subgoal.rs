@@ -1,26 +1,26 @@
-//! [`Subgoal`]: walks to an object, and touches it, uses it, waits at it or puts something down there. `plan.rs` chooses which.
+//! [`Subgoal`] walks to an object or zone, and acts there: touches, uses, waits or puts something down. `plan.rs` chooses it.
 
 use driftworld_spec::Stimulus;
 
 use super::floor::{Floor, Room};
-use super::goals::moving_stimulus;
-use super::leaf::Leaf;
+use super::goals::activating_stimulus;
+use super::ground_shape::GroundShape;
 use super::plan::can_interact;
-use super::ways::{Bringing, is_left};
-use crate::agents::steering::{distance, is_narrow, off, seconds, step_to};
+use super::ways::{Delivery, is_to_collect};
+use crate::agents::steering::{angle_to, distance, is_narrow, seconds, step_to};
 use crate::sim::{SimRef, answering, put_down_place};
 
-/// An object is faced if it is at most this many degrees off.
-const OFF: f32 = 8.0;
+/// Maximum angle in degrees between the agent's heading and an object that it faces.
+const MAX_HEADING_ERROR: f32 = 8.0;
 
-/// An agent slower than this, in m/s, is held up.
-const HELD_UP: f32 = 0.3;
+/// Maximum speed in m/s of an agent that counts as blocked.
+const MAX_BLOCKED_SPEED: f32 = 0.3;
 
-/// Within this distance of a thing, in metres, an agent with full hands puts something down to take it.
-const BESIDE: f32 = 1.8;
+/// Distance to a wanted thing, in metres, within which an agent with full hands puts something down.
+const PUT_DOWN_RANGE: f32 = 1.8;
 
-/// Things are put down at least this far, in metres, from things still to be picked up.
-const CROWDED: f32 = 1.0;
+/// Minimum distance in metres of things put down from things still to be picked up.
+const MIN_SPACING: f32 = 1.0;
 
 /// What to do at an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,8 +30,8 @@ pub(super) enum Act {
     /// Interact with it.
     Use,
     /// Open it, set it off or pick it up.
-    Move,
-    /// Stand before it until it opens by itself.
+    Activate,
+    /// Stand in front of it until it opens by itself.
     Wait,
     /// Put this thing down near it.
     Bring {
@@ -42,7 +42,7 @@ pub(super) enum Act {
     Enter,
 }
 
-/// What to do next, and where.
+/// The next act, and where to perform it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Subgoal {
     pub(super) object: u32,
@@ -56,18 +56,18 @@ impl Subgoal {
         match self.act {
             Act::Bring { thing } => self.bring(sim, floor, thing),
             Act::Enter => self.enter(sim, floor),
-            Act::Touch | Act::Use | Act::Move | Act::Wait => self.meet(sim, floor),
+            Act::Touch | Act::Use | Act::Activate | Act::Wait => self.approach(sim, floor),
         }
     }
 
-    fn meet(self, sim: SimRef, floor: &mut Floor) -> [f64; 3] {
+    fn approach(self, sim: SimRef, floor: &mut Floor) -> [f64; 3] {
         let stimulus = match self.act {
             Act::Use => Some(Stimulus::AgentInteract),
-            Act::Move => moving_stimulus(sim, self.object),
+            Act::Activate => activating_stimulus(sim, self.object),
             _ => None,
         };
-        let away = distance(sim.agent().position, sim.objects()[self.object as usize].position);
-        if self.act == Act::Move && is_too_much(sim, self.object) && away < BESIDE {
+        let gap_to_object = distance(sim.agent().position, sim.objects()[self.object as usize].position);
+        if self.act == Act::Activate && needs_a_free_hand(sim, self.object) && gap_to_object < PUT_DOWN_RANGE {
             return put_down(sim, self.object);
         }
         let by_hand = stimulus == Some(Stimulus::AgentInteract) && can_interact(sim.world);
@@ -84,7 +84,7 @@ impl Subgoal {
             return walk(sim, point, 0.3);
         }
         let at = sim.objects()[self.object as usize].position;
-        let gap = Leaf::of(sim, self.object as usize).distance(sim.agent().position)
+        let gap = GroundShape::of(sim, self.object as usize).distance(sim.agent().position)
             - sim.world.agent_params.agent_width as f32 / 2.0;
         if self.act == Act::Wait && gap < 0.4 || by_hand && gap < 0.15 && !is_facing(sim, at) {
             return [0.0, turn(sim, at), 0.0];
@@ -92,7 +92,7 @@ impl Subgoal {
         walk(sim, at, if by_hand { 0.1 } else { 0.5 })
     }
 
-    /// Whether this object would answer an interaction now.
+    /// Whether this object would react to an interaction now.
     fn is_at_hand(self, sim: SimRef) -> bool {
         let reached = reached(sim);
         match self.act {
@@ -101,11 +101,11 @@ impl Subgoal {
         }
     }
 
-    /// Whether a different thing would answer, although the agent faces the wanted one and is as close as it can get: the agent
-    /// then takes that thing and puts it down elsewhere.
+    /// Whether a different thing would react, although the agent faces the wanted one and is as close as it can get. The agent
+    /// then picks up that thing and puts it down elsewhere.
     fn is_behind_another(self, sim: SimRef) -> bool {
         let object = &sim.world.objects[self.object as usize];
-        if self.act != Act::Move || object.portable.is_none() {
+        if self.act != Act::Activate || object.portable.is_none() {
             return false;
         }
         let reached = reached(sim);
@@ -142,16 +142,16 @@ impl Subgoal {
     fn bring(self, sim: SimRef, floor: &mut Floor, thing: u32) -> [f64; 3] {
         let to = sim.objects()[self.object as usize].position;
         let within = self.within(sim, thing);
-        // What was picked up last is put down first.
+        // The thing picked up last is put down first.
         let last = sim.state.carried().last().copied().unwrap_or(thing);
         let tag = |index: u32| &sim.world.objects[index as usize].tag;
-        let is_ours = tag(last) == tag(thing);
+        let is_deliverable = tag(last) == tag(thing);
         let radius = sim.body_radius(last as usize);
         let ahead = sim.world.agent_params.agent_width as f32 / 2.0 + radius + 0.1;
-        let least = Leaf::of(sim, self.object as usize).reach() + radius + 0.1;
+        let least = GroundShape::of(sim, self.object as usize).reach() + radius + 0.1;
         let most = (within - 0.1).max(least.min(within)) + ahead;
         let least = (least + ahead).min(most - 0.05);
-        let bringing = Bringing {
+        let delivery = Delivery {
             to: self.object,
             room: self.room,
             radius,
@@ -160,12 +160,12 @@ impl Subgoal {
             within,
             carried: sim.state.carried().len(),
         };
-        floor.lead_to_bring(sim, bringing);
+        floor.lead_to_delivery(sim, delivery);
         let next = floor.next(sim.agent().position);
         if let Some((_, place)) = put_down_place(sim)
             && answering(sim, &reached(sim)).is_none()
-            && (!is_ours
-                || distance(place, to) < within - 0.02 && (next.is_none() || !is_crowded(sim, bringing, place)))
+            && (!is_deliverable
+                || distance(place, to) < within - 0.02 && (next.is_none() || !is_crowded(sim, delivery, place)))
         {
             return [0.0, 0.0, 1.0];
         }
@@ -188,25 +188,25 @@ impl Subgoal {
             driftworld_spec::EndCondition::Delivered(delivery) => Some(delivery),
             _ => None,
         });
-        let is_ours =
+        let is_deliverable =
             |delivery: &&driftworld_spec::Delivery| tags == [Some(delivery.tag.as_str()), Some(delivery.to.as_str())];
         deliveries
-            .filter(is_ours)
+            .filter(is_deliverable)
             .map(|delivery| delivery.within as f32)
             .fold(f32::INFINITY, f32::min)
             .min(1000.0)
     }
 }
 
-/// Whether a thing put down here would answer in place of one still to be picked up.
-fn is_crowded(sim: SimRef, bringing: Bringing, place: [f32; 2]) -> bool {
-    let near = |index: &u32| distance(sim.objects()[*index as usize].position, place) < CROWDED;
+/// Whether a thing put down here would react in place of one still to be picked up.
+fn is_crowded(sim: SimRef, delivery: Delivery, place: [f32; 2]) -> bool {
+    let near = |index: &u32| distance(sim.objects()[*index as usize].position, place) < MIN_SPACING;
     (0..sim.objects().len() as u32)
         .filter(near)
-        .any(|index| is_left(sim, bringing, index))
+        .any(|index| is_to_collect(sim, delivery, index))
 }
 
-/// Puts something down: turns until there is room in front, away from the wanted thing.
+/// Puts something down, after turning until there is room in front and the wanted thing is out of reach.
 fn put_down(sim: SimRef, wanted: u32) -> [f64; 3] {
     let reached = reached(sim);
     let is_free = answering(sim, &reached).is_none() && put_down_place(sim).is_some() && !reached.contains(&wanted);
@@ -219,22 +219,22 @@ fn put_down(sim: SimRef, wanted: u32) -> [f64; 3] {
 /// Whether the agent faces a point, as precisely as its turns allow.
 fn is_facing(sim: SimRef, point: [f32; 2]) -> bool {
     let step = sim.world.agent_params.max_angular_speed as f32 * seconds(sim);
-    off(sim, point).abs() <= OFF.max(0.55 * step)
+    angle_to(sim, point).abs() <= MAX_HEADING_ERROR.max(0.55 * step)
 }
 
-/// Whether an object is portable and the agent's hands are full.
-fn is_too_much(sim: SimRef, object: u32) -> bool {
+/// Whether picking up an object requires putting something down first.
+fn needs_a_free_hand(sim: SimRef, object: u32) -> bool {
     let object = &sim.world.objects[object as usize];
     let is_thing = object.portable.is_some() && object.door.is_none() && object.switch.is_none();
     is_thing && sim.state.carried().len() >= sim.world.agent_params.carry_limit as usize
 }
 
-/// Whether the agent is held up by a solid portable thing that it could pick up.
+/// Whether a solid portable thing blocks the agent, which could pick it up.
 pub(super) fn is_blocked_by_a_thing(sim: SimRef) -> bool {
     let world = sim.world;
-    let has_hand = sim.state.carried().len() < world.agent_params.carry_limit as usize;
+    let has_free_hand = sim.state.carried().len() < world.agent_params.carry_limit as usize;
     let [east, north] = sim.agent().velocity;
-    if !has_hand || !can_interact(world) || (east * east + north * north).sqrt() > HELD_UP {
+    if !has_free_hand || !can_interact(world) || (east * east + north * north).sqrt() > MAX_BLOCKED_SPEED {
         return false;
     }
     let is_thing = |index: u32| {
@@ -253,10 +253,10 @@ fn reached(sim: SimRef) -> Vec<u32> {
 
 /// The turn rate that would face a point after one step.
 fn turn(sim: SimRef, point: [f32; 2]) -> f64 {
-    f64::from(off(sim, point) / seconds(sim))
+    f64::from(angle_to(sim, point) / seconds(sim))
 }
 
-/// A step towards a point, and `past` metres beyond it; slower in turns.
+/// A step towards a point and `past` metres beyond it, slower in turns.
 fn walk(sim: SimRef, point: [f32; 2], past: f32) -> [f64; 3] {
     if is_narrow(sim) {
         // Does not cut corners beside something that costs.

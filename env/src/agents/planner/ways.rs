@@ -1,22 +1,22 @@
-//! Shortest paths over the floor: the cost from each cell to the target, and where to walk next.
+//! Shortest paths over the floor: the cost from each cell to the targets, and the next point to walk to.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use super::floor::{BESIDE, Floor, Room, Standing, squared};
-use super::leaf::Leaf;
+use super::floor::{BESIDE, Floor, FloorObject, Room, squared};
+use super::ground_shape::GroundShape;
 use crate::sim::{SimRef, answering};
 
 /// Cells still to be expanded, the cheapest first.
-pub(super) type Waiting = BinaryHeap<Reverse<(u32, u32)>>;
+pub(super) type Queue = BinaryHeap<Reverse<(u32, u32)>>;
 
 /// How far beyond the agent's body and to its sides an interaction reaches, in metres.
 const REACH: f32 = 1.0;
-const ASIDE: f32 = 0.5;
+const SIDE_REACH: f32 = 0.5;
 
-/// Where to put a thing down.
+/// How and where to put a thing down.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Bringing {
+pub(super) struct Delivery {
     /// Index of the object to put it near.
     pub(super) to: u32,
     /// The room of the agent.
@@ -29,40 +29,40 @@ pub(super) struct Bringing {
     pub(super) from: [f32; 2],
     /// Maximum distance of the thing from the object, in metres.
     pub(super) within: f32,
-    /// How many things the agent carries: a free hand picks up what lies in front of it.
+    /// Number of things that the agent carries: with a free hand, it would pick up what lies in front of it.
     pub(super) carried: usize,
 }
 
 impl Floor {
-    /// Leads to where a thing can be put down near an object by an agent that faces it from a distance in `from`.
-    pub(super) fn lead_to_bring(&mut self, sim: SimRef, bringing: Bringing) {
-        if self.brings == Some((self.version, bringing)) {
+    /// Leads to the cells from which an agent that faces the object can put the thing down near it.
+    pub(super) fn lead_to_delivery(&mut self, sim: SimRef, delivery: Delivery) {
+        if self.delivery == Some((self.version, delivery)) {
             return;
         }
-        // Tries with room to spare first, since the agent may stand anywhere in a cell.
+        // Tries a generous margin first, since the agent may stand anywhere in a cell.
         let mut goals = [0.15, 0.03]
             .into_iter()
-            .map(|margin| self.places_to_bring(sim, bringing, margin));
+            .map(|margin| self.cells_to_deliver_from(sim, delivery, margin));
         let goals = goals.find(|goals| !goals.is_empty()).unwrap_or_default();
         self.lead(goals);
-        self.brings = Some((self.version, bringing));
+        self.delivery = Some((self.version, delivery));
     }
 
-    fn places_to_bring(&self, sim: SimRef, bringing: Bringing, margin: f32) -> Vec<u32> {
-        let Bringing {
+    fn cells_to_deliver_from(&self, sim: SimRef, delivery: Delivery, margin: f32) -> Vec<u32> {
+        let Delivery {
             to,
             room,
             radius,
             ahead,
             from: [least, most],
             ..
-        } = bringing;
+        } = delivery;
         let at = sim.objects()[to as usize].position;
-        // The nearest thing answers an interaction: nothing else that answers, or is still to be picked up, may be within reach.
-        let answers = |index: &u32| answering(sim, &[*index]).is_some() || is_left(sim, bringing, *index);
-        let others: Vec<Leaf> = (0..sim.objects().len() as u32)
+        // The nearest thing reacts to an interaction, so nothing else that reacts or must be picked up may be within reach.
+        let answers = |index: &u32| answering(sim, &[*index]).is_some() || is_to_collect(sim, delivery, *index);
+        let others: Vec<GroundShape> = (0..sim.objects().len() as u32)
             .filter(answers)
-            .map(|index| Leaf::of(sim, index as usize))
+            .map(|index| GroundShape::of(sim, index as usize))
             .collect();
         let is_free = |cell: &usize| {
             let cell = self.grid.centre(*cell);
@@ -71,17 +71,17 @@ impl Floor {
                 return false;
             }
             let [east, north] = [0, 1].map(|axis| (at[axis] - cell[axis]) / away);
-            // Where it would lie, and halfway there.
+            // The thing must fit where it would lie, and halfway there.
             let has_room = [ahead, ahead / 2.0].into_iter().all(|metres| {
                 let point = [cell[0] + east * metres, cell[1] + north * metres];
-                let is_room = |standing: &Standing| standing.leaf.distance(point) > radius + margin;
-                self.standing.iter().all(is_room) && self.is_off_walls(point, radius + margin)
+                let is_clear = |object: &FloorObject| object.shape.distance(point) > radius + margin;
+                self.objects.iter().all(is_clear) && self.is_off_walls(point, radius + margin)
             });
-            let is_out_of_reach = |leaf: &Leaf| {
-                let [dx, dy] = [leaf.at[0] - cell[0], leaf.at[1] - cell[1]];
+            let is_out_of_reach = |shape: &GroundShape| {
+                let [dx, dy] = [shape.at[0] - cell[0], shape.at[1] - cell[1]];
                 let (before, aside) = (dx * east + dy * north, (dx * north - dy * east).abs());
-                let spare = leaf.reach() + margin;
-                before < -spare || before > self.body + REACH + spare || aside > ASIDE + spare
+                let spare = shape.reach() + margin;
+                before < -spare || before > self.body + REACH + spare || aside > SIDE_REACH + spare
             };
             has_room && others.iter().all(is_out_of_reach)
         };
@@ -92,10 +92,10 @@ impl Floor {
             .collect()
     }
 
-    /// Sets the cells that paths lead to.
+    /// Sets the target cells of paths.
     pub(super) fn lead(&mut self, goals: Vec<u32>) {
         if self
-            .leads
+            .destination
             .as_ref()
             .is_some_and(|(version, old)| *version == self.version && *old == goals)
         {
@@ -108,26 +108,26 @@ impl Floor {
             self.field[*cell as usize] = 0;
             self.open.push(Reverse((0, *cell)));
         }
-        self.brings = None;
-        self.leads = Some((self.version, goals));
+        self.delivery = None;
+        self.destination = Some((self.version, goals));
     }
 
-    /// Expands cells until the cost from this cell is known, and no farther.
-    fn reach(&mut self, asked: usize) {
+    /// Expands cells only until the cost from this cell is known.
+    fn reach(&mut self, goal: usize) {
         while let Some(Reverse((here, cell))) = self.open.peek().copied()
-            && here <= self.field[asked]
+            && here <= self.field[goal]
         {
             self.open.pop();
             let cell = cell as usize;
             if here > self.field[cell] {
                 continue;
             }
-            for (step, is_slanting) in self.grid.around() {
+            for (step, is_diagonal) in self.grid.around() {
                 let other = cell.wrapping_add_signed(step);
-                if self.weight[other] == 0 || is_slanting && !self.is_corner_open(cell, step) {
+                if self.weight[other] == 0 || is_diagonal && !self.is_corner_open(cell, step) {
                     continue;
                 }
-                let ground = u32::from(self.weight[other]) * if is_slanting { 7 } else { 5 };
+                let ground = u32::from(self.weight[other]) * if is_diagonal { 7 } else { 5 };
                 let through = here.saturating_add(ground + self.zone_costs.of(other, cell));
                 if through < self.field[other] {
                     self.field[other] = through;
@@ -144,8 +144,8 @@ impl Floor {
         self.weight[cell.wrapping_add_signed(row)] > 0 && self.weight[cell.wrapping_add_signed(column)] > 0
     }
 
-    /// Where to walk next from a place: the farthest point on the way that can be walked to straight. `None` at the goal, and
-    /// if there is no way.
+    /// The next point to walk to: the farthest point on the path that can be reached in a straight line. `None` at a target,
+    /// and if there is no path.
     pub(super) fn next(&mut self, from: [f32; 2]) -> Option<[f32; 2]> {
         let start = self.cell_near(from)?;
         self.reach(start);
@@ -153,11 +153,11 @@ impl Floor {
             return None;
         }
         let (mut cell, mut best) = (start, self.grid.centre(start));
-        self.keeps_out = true;
+        self.avoids_costs = true;
         let mut beside = None;
         for _ in 0..15 {
             let around = self.grid.around().into_iter();
-            let open = around.filter(|(step, is_slanting)| !is_slanting || self.is_corner_open(cell, *step));
+            let open = around.filter(|(step, is_diagonal)| !is_diagonal || self.is_corner_open(cell, *step));
             let nearest = open
                 .map(|(step, _)| cell.wrapping_add_signed(step))
                 .min_by_key(|other| self.field[*other].saturating_add(self.zone_costs.of(cell, *other)));
@@ -165,7 +165,7 @@ impl Floor {
                 break;
             };
             cell = nearest;
-            self.keeps_out &= !self.zone_costs.is_in_what_costs(cell);
+            self.avoids_costs &= !self.zone_costs.is_in_costly_zone(cell);
             beside.get_or_insert(nearest);
             if self.is_clear(from, self.grid.centre(cell)) {
                 best = self.grid.centre(cell);
@@ -173,33 +173,34 @@ impl Floor {
                 break;
             }
         }
-        // Straight walks onto costlier ground, such as a zone to enter, are not clear: the agent walks cell by cell there.
+        // Straight walks onto costlier ground, such as a zone to enter, do not count as clear, so the agent walks cell by cell
+        // there.
         if best == self.grid.centre(start) && self.grid.cell_at(from) == start {
             best = beside.map_or(best, |cell| self.grid.centre(cell));
         }
         Some(best)
     }
 
-    /// Whether a straight walk is clear, except where it begins.
+    /// Whether a straight walk is clear; its start may be beside an obstacle.
     fn is_clear(&self, from: [f32; 2], to: [f32; 2]) -> bool {
         let length = squared(from, to).sqrt();
-        let count = (length / (self.grid.side() / 2.0)) as usize;
+        let num_samples = (length / (self.grid.side() / 2.0)) as usize;
         let start = self.grid.cell_at(from);
-        let dear = self.weight[start].max(BESIDE);
-        (1..=count).all(|number| {
-            let share = number as f32 / count as f32;
-            let at = [0, 1].map(|axis| from[axis] + (to[axis] - from[axis]) * share);
+        let max_weight = self.weight[start].max(BESIDE);
+        (1..=num_samples).all(|number| {
+            let fraction = number as f32 / num_samples as f32;
+            let at = [0, 1].map(|axis| from[axis] + (to[axis] - from[axis]) * fraction);
             let cell = self.grid.cell_at(at);
             let weight = self.weight[cell];
-            let is_walked = (1..=dear).contains(&weight) && self.zone_costs.of(start, cell) == 0;
-            is_walked || weight == 0 && share * length < 0.3
+            let is_walked = (1..=max_weight).contains(&weight) && self.zone_costs.of(start, cell) == 0;
+            is_walked || weight == 0 && fraction * length < 0.3
         })
     }
 }
 
-/// Whether a thing is present, not yet delivered, and may be picked up next.
-pub(super) fn is_left(sim: SimRef, bringing: Bringing, index: u32) -> bool {
+/// Whether a thing is present, portable and not yet delivered, so that it may be picked up next.
+pub(super) fn is_to_collect(sim: SimRef, delivery: Delivery, index: u32) -> bool {
     let (object, own) = (&sim.world.objects[index as usize], &sim.objects()[index as usize]);
-    let to = sim.objects()[bringing.to as usize].position;
-    own.present && object.portable.is_some() && squared(own.position, to) > bringing.within * bringing.within
+    let to = sim.objects()[delivery.to as usize].position;
+    own.present && object.portable.is_some() && squared(own.position, to) > delivery.within * delivery.within
 }

@@ -1,4 +1,4 @@
-//! [`ZoneCosts`]: what zones add to the cost of the ground and of entering, and where the agent must not be.
+//! [`ZoneCosts`]: the cost that zones add to the ground and to entering, and the cells that they close.
 
 use driftworld_spec::{World, Zone, ZoneEnd};
 
@@ -7,22 +7,21 @@ use crate::agents::grid::Grid;
 use crate::ground;
 use crate::polygon::{is_near_or_inside, to_f32};
 
-/// How far paths keep from zones that cost or fail, in metres, and the factor on the weights of nearer cells.
-const LIKED: f32 = 0.35;
-const NEAR: u16 = 8;
+/// Distance in metres that paths preferably keep from zones that cost or fail, and the factor on the weights of nearer cells.
+const PREFERRED_CLEARANCE: f32 = 0.35;
+const NEAR_FACTOR: u16 = 8;
 
-/// Maximum factor by which zones raise the cost of the ground. Worlds where time costs nothing use it for every zone that
-/// costs.
-const MOST: f64 = 100.0;
+/// Maximum factor by which zones raise the cost of the ground. Where time costs nothing, every zone that costs gets it.
+const MAX_FACTOR: f64 = 100.0;
 
 /// Maximum cost of entering, in fifths of a cell: 800 m of open ground with cells of 0.2 m.
-const MOST_ENTRY_COST: f64 = 20_000.0;
+const MAX_ENTRY_COST: f64 = 20_000.0;
 
-/// Maximum weight of a cell: sums over all cells stay far from overflow.
-const MOST_WEIGHT: f64 = 4000.0;
+/// Maximum weight of a cell, so that sums over all cells stay far from overflow.
+const MAX_WEIGHT: f64 = 4000.0;
 
 /// Below this speed factor an agent cannot leave a zone, so its cells are closed.
-const STUCK: f64 = 0.01;
+const MIN_SPEED_FACTOR: f64 = 0.01;
 
 /// Path costs due to zones, in addition to the weights of cells.
 #[derive(Clone, Debug, Default)]
@@ -35,7 +34,7 @@ pub(super) struct ZoneCosts {
 
 impl ZoneCosts {
     /// Raises the weights of cells in zones that cost, and closes zones that end an episode in failure.
-    pub(super) fn lay(world: &World, grid: Grid, weight: &mut [u16]) -> Self {
+    pub(super) fn new(world: &World, grid: Grid, weight: &mut [u16]) -> Self {
         let zones = &world.environment_params.zones;
         if zones.is_empty() {
             return Self::default();
@@ -50,20 +49,20 @@ impl ZoneCosts {
         for zone in zones {
             let fails = zone.ends == Some(ZoneEnd::Failure);
             if fails || zone.is_costly() {
-                shun(zone, fails, grid, weight);
+                avoid(zone, fails, grid, weight);
             }
             // Entering may also end the episode, or move the agent.
             let is_trap = zone.ends == Some(ZoneEnd::Success) || zone.teleport.is_some();
             let entry_cost = match -zone.reward_on_entering {
                 pay if pay <= 0.0 => 0.0,
-                pay if metre > 0.0 => (pay / metre / f64::from(grid.side()) * 5.0).min(MOST_ENTRY_COST),
-                _ => MOST_ENTRY_COST,
+                pay if metre > 0.0 => (pay / metre / f64::from(grid.side()) * 5.0).min(MAX_ENTRY_COST),
+                _ => MAX_ENTRY_COST,
             };
             if zone.is_costly() {
                 zone_costs.costs.resize(weight.len(), false);
                 cells(zone, 0.0, grid).for_each(|cell| zone_costs.costs[cell] = true);
             }
-            // A zone counts from where one more step could lead into it.
+            // A zone that costs also counts where one more step could lead into it.
             let margin = if zone.is_costly() { seal(grid) } else { 0.0 };
             for cell in cells(zone, margin, grid) {
                 pay[cell] -= zone.reward_per_second;
@@ -74,7 +73,7 @@ impl ZoneCosts {
                 if entry_cost > 0.0 {
                     zone_costs.entering.resize(weight.len(), 0);
                     zone_costs.entering[cell] =
-                        (zone_costs.entering[cell] + entry_cost as u32).min(MOST_ENTRY_COST as u32);
+                        (zone_costs.entering[cell] + entry_cost as u32).min(MAX_ENTRY_COST as u32);
                 }
             }
         }
@@ -82,19 +81,19 @@ impl ZoneCosts {
             let by_pay = match pay[cell] {
                 pay if pay <= 0.0 => 1.0,
                 pay if second > 0.0 => 1.0 + pay / second,
-                _ => MOST,
+                _ => MAX_FACTOR,
             };
-            let times = (by_pay / pace[cell].max(STUCK)).clamp(1.0, MOST);
-            *weight = if pace[cell] < STUCK {
+            let factor = (by_pay / pace[cell].max(MIN_SPEED_FACTOR)).clamp(1.0, MAX_FACTOR);
+            *weight = if pace[cell] < MIN_SPEED_FACTOR {
                 0
             } else {
-                (f64::from(*weight) * times).min(MOST_WEIGHT) as u16
+                (f64::from(*weight) * factor).min(MAX_WEIGHT) as u16
             };
         }
         zone_costs
     }
 
-    /// The cost of a step from one cell to the next beyond their weights, in fifths of a cell.
+    /// The cost of a step from one cell to the next in addition to their weights, in fifths of a cell.
     pub(super) fn of(&self, from: usize, to: usize) -> u32 {
         match (self.entering.get(from), self.entering.get(to)) {
             (Some(from), Some(to)) => to.saturating_sub(*from),
@@ -103,22 +102,22 @@ impl ZoneCosts {
     }
 
     /// Whether a cell is in a zone that costs.
-    pub(super) fn is_in_what_costs(&self, cell: usize) -> bool {
+    pub(super) fn is_in_costly_zone(&self, cell: usize) -> bool {
         self.costs.get(cell).is_some_and(|costs| *costs)
     }
 }
 
 /// Raises the weights in and around a zone; if the zone fails, closes its cells.
-fn shun(zone: &Zone, fails: bool, grid: Grid, weight: &mut [u16]) {
-    for cell in cells(zone, LIKED, grid) {
-        weight[cell] = weight[cell].saturating_mul(NEAR);
+fn avoid(zone: &Zone, fails: bool, grid: Grid, weight: &mut [u16]) {
+    for cell in cells(zone, PREFERRED_CLEARANCE, grid) {
+        weight[cell] = weight[cell].saturating_mul(NEAR_FACTOR);
     }
     if fails {
         cells(zone, seal(grid), grid).for_each(|cell| weight[cell] = 0);
     }
 }
 
-/// This far from a border, in metres, no step between cells crosses it.
+/// Distance from a border, in metres, at which no step between cells crosses it.
 fn seal(grid: Grid) -> f32 {
     0.71 * grid.side()
 }

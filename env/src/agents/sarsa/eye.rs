@@ -1,4 +1,4 @@
-//! The learner's features: how much of each colour is in each part of a small image.
+//! The learner's features: the share of each colour in each part of a small image.
 
 use std::sync::LazyLock;
 
@@ -26,7 +26,7 @@ pub(super) struct Eye {
 }
 
 impl Eye {
-    /// Square roots of the share of each cell that each colour covers, 0 to 1: the root gives small patches more weight.
+    /// Square roots of the shares of each cell that each colour covers, 0 to 1. The root gives small patches more weight.
     pub(super) fn look(&mut self, environment: &Environment) -> [f32; FEATURES] {
         let agent = &environment.world().agent_params;
         let state = environment.agent();
@@ -38,8 +38,8 @@ impl Eye {
         );
         self.rgb.resize(SIDE * SIDE * 3, 0);
         let mut target = Target::of_colors([SIDE as u32, SIDE as u32], &mut self.rgb);
-        let drawn = self.renderer.draw(environment.scene(), &camera, &mut target);
-        drawn.expect("the picture has a size that can be drawn");
+        let rendered = self.renderer.draw(environment.scene(), &camera, &mut target);
+        rendered.expect("the image size is valid");
         shares(&self.rgb)
     }
 }
@@ -72,7 +72,7 @@ fn color([r, g, b]: [u8; 3]) -> usize {
     static TABLE: LazyLock<Box<[u8]>> = LazyLock::new(|| {
         let level = |bits: usize| (bits & 31) as i32 * 8 + 4;
         (0..1 << 15)
-            .map(|k: usize| named([level(k >> 10), level(k >> 5), level(k)]))
+            .map(|k: usize| color_class([level(k >> 10), level(k >> 5), level(k)]))
             .collect()
     });
     let five = |byte: u8| usize::from(byte >> 3);
@@ -81,15 +81,15 @@ fn color([r, g, b]: [u8; 3]) -> usize {
 
 /// Hue in sixths of the circle, 0 to 5 around red, yellow, green, cyan, blue and magenta; colours with little hue are 6 if dark
 /// and 7 if bright.
-fn named([r, g, b]: [i32; 3]) -> u8 {
-    let (most, least) = (r.max(g).max(b), r.min(g).min(b));
-    let chroma = most - least;
-    if chroma * 5 < most * 2 || most < 16 {
-        return if most < 128 { 6 } else { 7 };
+fn color_class([r, g, b]: [i32; 3]) -> u8 {
+    let (max, min) = (r.max(g).max(b), r.min(g).min(b));
+    let chroma = max - min;
+    if chroma * 5 < max * 2 || max < 16 {
+        return if max < 128 { 6 } else { 7 };
     }
-    let degrees = if most == r {
+    let degrees = if max == r {
         60 * (g - b) / chroma
-    } else if most == g {
+    } else if max == g {
         60 * (b - r) / chroma + 120
     } else {
         60 * (r - g) / chroma + 240
@@ -105,7 +105,7 @@ mod tests {
 
     #[test]
     fn colours_are_classified_by_hue_and_greys_by_brightness() {
-        let seen = [
+        let pure = [
             [255, 0, 0],
             [255, 255, 0],
             [0, 255, 0],
@@ -115,7 +115,7 @@ mod tests {
             [60, 60, 60],
             [230, 230, 230],
         ];
-        assert_eq!(seen.map(color), [0, 1, 2, 3, 4, 5, 6, 7]);
+        assert_eq!(pure.map(color), [0, 1, 2, 3, 4, 5, 6, 7]);
         // In dim light the hue stays the same, down to the darkest.
         assert_eq!([[60, 0, 0], [0, 60, 0], [0, 0, 60]].map(color), [0, 2, 4]);
     }
@@ -133,14 +133,14 @@ mod tests {
             }
         }
 
-        /// A pixel changes only the cell that contains it.
+        /// A pixel affects only the cell that contains it.
         #[test]
         fn pixel_changes_only_its_own_cell(row in 0..SIDE, x in 0..SIDE) {
             let grey = vec![200_u8; SIDE * SIDE * 3];
-            let mut dotted = grey.clone();
-            dotted[(row * SIDE + x) * 3 + 1] = 0;
-            dotted[(row * SIDE + x) * 3 + 2] = 0;
-            let (without, with) = (shares(&grey), shares(&dotted));
+            let mut one_pixel_changed = grey.clone();
+            one_pixel_changed[(row * SIDE + x) * 3 + 1] = 0;
+            one_pixel_changed[(row * SIDE + x) * 3 + 2] = 0;
+            let (without, with) = (shares(&grey), shares(&one_pixel_changed));
             let band = [21, 27].iter().filter(|first| row >= **first).count();
             let cell = band * COLUMNS + x / 6;
             for k in 0..FEATURES {

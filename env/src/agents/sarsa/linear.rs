@@ -3,14 +3,14 @@
 use super::LEARNING_RATE;
 use super::eye::FEATURES;
 
-/// The features before an action.
-pub(super) type Seen = [f32; FEATURES];
+/// Features of an image.
+pub(super) type Features = [f32; FEATURES];
 
 /// Weights of `ACTIONS` actions, and their eligibility traces.
 #[derive(Clone)]
 pub(super) struct LinearSarsa<const ACTIONS: usize> {
-    weights: Box<[Seen; ACTIONS]>,
-    traces: Box<[Seen; ACTIONS]>,
+    weights: Box<[Features; ACTIONS]>,
+    traces: Box<[Features; ACTIONS]>,
 }
 
 impl<const ACTIONS: usize> LinearSarsa<ACTIONS> {
@@ -23,8 +23,8 @@ impl<const ACTIONS: usize> LinearSarsa<ACTIONS> {
     }
 
     /// The value of each action.
-    pub(super) fn values(&self, seen: &Seen) -> [f32; ACTIONS] {
-        std::array::from_fn(|action| self.weights[action].iter().zip(seen).map(|(w, x)| w * x).sum())
+    pub(super) fn values(&self, features: &Features) -> [f32; ACTIONS] {
+        std::array::from_fn(|action| self.weights[action].iter().zip(features).map(|(w, x)| w * x).sum())
     }
 
     /// Clears the traces and keeps the weights.
@@ -35,19 +35,19 @@ impl<const ACTIONS: usize> LinearSarsa<ACTIONS> {
     }
 
     /// Records an action: adds its features to the traces, after earlier traces have been multiplied by `decay`.
-    pub(super) fn done(&mut self, seen: &Seen, action: usize, decay: f32) {
+    pub(super) fn record(&mut self, features: &Features, action: usize, decay: f32) {
         for trace in self.traces.iter_mut().flatten() {
             *trace *= decay;
         }
-        for (trace, x) in self.traces[action].iter_mut().zip(seen) {
+        for (trace, x) in self.traces[action].iter_mut().zip(features) {
             *trace += x;
         }
     }
 
-    /// Learns that the last action was worth `error` more than predicted. `seen` are the features before it: the step is
-    /// divided by their squared norm, so the learning rate does not depend on how many features are on.
-    pub(super) fn learn(&mut self, seen: &Seen, error: f32) {
-        let size = seen.iter().map(|x| x * x).sum::<f32>().max(1.0);
+    /// Learns that the last action was worth `error` more than predicted, given the features before it. The step is divided by
+    /// their squared norm, so that the learning rate does not depend on how many features are active.
+    pub(super) fn learn(&mut self, features: &Features, error: f32) {
+        let size = features.iter().map(|x| x * x).sum::<f32>().max(1.0);
         let step = LEARNING_RATE * error / size;
         let traces = self.traces.iter().flatten();
         for (weight, trace) in self.weights.iter_mut().flatten().zip(traces) {
@@ -65,27 +65,27 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
 
-        /// The traces give the same weights as a plain sum over all errors and earlier actions.
+        /// Compares the traces with a plain sum over all errors and earlier actions.
         #[test]
         fn weights_equal_the_sum_over_errors_and_earlier_actions(
-            way in proptest::collection::vec((0_usize..FEATURES, 0.1_f32..2.0, 0_usize..3, -1.0_f32..1.0), 1..12),
+            steps in proptest::collection::vec((0_usize..FEATURES, 0.1_f32..2.0, 0_usize..3, -1.0_f32..1.0), 1..12),
             decay in 0.0_f32..1.0,
         ) {
             let mut learner = LinearSarsa::<3>::new();
-            let seen_at = |t: usize| {
-                let mut seen = [0.0; FEATURES];
-                seen[way[t].0] = way[t].1;
-                seen
+            let features_at = |t: usize| {
+                let mut features = [0.0; FEATURES];
+                features[steps[t].0] = steps[t].1;
+                features
             };
-            for (t, (_, _, action, error)) in way.iter().enumerate() {
-                learner.done(&seen_at(t), *action, decay);
-                learner.learn(&seen_at(t), *error);
+            for (t, (_, _, action, error)) in steps.iter().enumerate() {
+                learner.record(&features_at(t), *action, decay);
+                learner.learn(&features_at(t), *error);
             }
-            for (k, (feature, _, action, _)) in way.iter().enumerate() {
+            for (k, (feature, _, action, _)) in steps.iter().enumerate() {
                 let mut expected = 0.0_f64;
-                for (t, (_, x, _, error)) in way.iter().enumerate() {
+                for (t, (_, x, _, error)) in steps.iter().enumerate() {
                     let step = f64::from(LEARNING_RATE * error) / f64::from((x * x).max(1.0));
-                    for (earlier, other) in way.iter().enumerate().take(t + 1) {
+                    for (earlier, other) in steps.iter().enumerate().take(t + 1) {
                         if (other.0, other.2) == (*feature, *action) {
                             expected += step * f64::from(decay).powi((t - earlier) as i32) * f64::from(other.1);
                         }
@@ -100,15 +100,15 @@ mod tests {
     #[test]
     fn value_of_a_repeated_action_converges_to_its_reward() {
         let mut learner = LinearSarsa::<2>::new();
-        let mut seen = [0.0; FEATURES];
-        (seen[3], seen[FEATURES - 1]) = (0.5, 1.0);
+        let mut features = [0.0; FEATURES];
+        (features[3], features[FEATURES - 1]) = (0.5, 1.0);
         for _ in 0..500 {
             learner.begin();
-            learner.done(&seen, 1, 0.5);
-            learner.learn(&seen, 2.0 - learner.values(&seen)[1]);
+            learner.record(&features, 1, 0.5);
+            learner.learn(&features, 2.0 - learner.values(&features)[1]);
         }
-        let [other, own] = learner.values(&seen);
-        assert!((own - 2.0).abs() < 0.01, "{own}");
-        assert_eq!(other, 0.0);
+        let [unused, repeated] = learner.values(&features);
+        assert!((repeated - 2.0).abs() < 0.01, "{repeated}");
+        assert_eq!(unused, 0.0);
     }
 }

@@ -1,4 +1,4 @@
-//! [`SarsaAgent`]: a small built-in learner, so that a lifetime shows learning, transfer and forgetting in seconds.
+//! [`SarsaAgent`]: a small built-in learner that shows learning, transfer and forgetting within seconds.
 
 mod eye;
 mod linear;
@@ -10,7 +10,7 @@ use super::Agent;
 use super::steering::in_space;
 use crate::sim::{Action, Environment, Step};
 use eye::Eye;
-use linear::{LinearSarsa, Seen};
+use linear::{Features, LinearSarsa};
 
 /// The actions: fractions of the maximum speed and turn rate, and whether it interacts.
 const ACTIONS: [[f64; 3]; 5] = [
@@ -31,14 +31,14 @@ const DISCOUNT: f32 = 0.93;
 const LAMBDA: f32 = 0.8;
 /// Probability of a random action, in evaluations as well: a greedy agent without memory turns in circles.
 const EPSILON: f64 = 0.1;
-/// Rewards are divided by 100: touching a cube of the built-in tasks pays 1.
+/// Factor on rewards, so that touching a cube of the built-in tasks, worth 100 points, counts as 1.
 const UNIT: f32 = 0.01;
 
 /// Learns the values of five actions with linear Sarsa(λ): straight ahead, ahead to either side, turning on the spot.
 ///
-/// It sees the agent's camera view at 42 × 42 pixels, as the share of each cell of a 7 × 3 grid that each of eight colours
-/// covers: 169 features. It knows no map, state or label, and remembers nothing within an episode. It is small: it finds
-/// coloured things and shows how learning one task affects others, but cannot plan or open doors.
+/// It sees the agent's camera view at 42 × 42 pixels. Its 169 features are the share of each cell of a 7 × 3 grid that each of
+/// eight colours covers, and a constant. It knows no map, state or label, and remembers nothing within an episode. It finds
+/// coloured things and shows how learning one task affects others, but it cannot plan or open doors.
 ///
 /// Actions are ε-greedy (ε 0.1, in evaluations as well: [`SarsaAgent::POLICY`]) and held for 0.2 s. All its random numbers come
 /// from the seed of the episode, so a lifetime is reproducible bit for bit.
@@ -65,7 +65,7 @@ pub struct SarsaAgent {
     eye: Eye,
     rng: ChaCha8Rng,
     /// The last action, with the features before it.
-    last: Option<(Seen, usize)>,
+    last: Option<(Features, usize)>,
     /// Steps for which the action is still held.
     held: u32,
     /// Reward since the last action.
@@ -96,10 +96,10 @@ impl SarsaAgent {
         }
     }
 
-    /// Observes, learns from the result of the last action, and chooses the next.
-    fn decide(&mut self, environment: &Environment) -> (Seen, usize) {
-        let seen = self.eye.look(environment);
-        let values = self.learner.values(&seen);
+    /// Observes, learns from the result of the last action, and chooses the next one.
+    fn decide(&mut self, environment: &Environment) -> (Features, usize) {
+        let features = self.eye.look(environment);
+        let values = self.learner.values(&features);
         let action = if self.rng.random::<f64>() < EPSILON {
             self.rng.random_range(0..ACTIONS.len() as u32) as usize
         } else {
@@ -107,17 +107,17 @@ impl SarsaAgent {
         };
         if !self.is_frozen {
             self.learn_from_last(DISCOUNT * values[action]);
-            self.learner.done(&seen, action, DISCOUNT * LAMBDA);
+            self.learner.record(&features, action, DISCOUNT * LAMBDA);
         }
-        (seen, action)
+        (features, action)
     }
 
     /// Learns from the reward since the last action and the discounted value of the next one.
     fn learn_from_last(&mut self, next_value: f32) {
-        let paid = std::mem::take(&mut self.reward);
-        if let Some((seen, action)) = &self.last {
-            let error = paid + next_value - self.learner.values(seen)[*action];
-            self.learner.learn(seen, error);
+        let reward = std::mem::take(&mut self.reward);
+        if let Some((features, action)) = &self.last {
+            let error = reward + next_value - self.learner.values(features)[*action];
+            self.learner.learn(features, error);
         }
     }
 }
@@ -148,7 +148,7 @@ impl Agent for SarsaAgent {
         (self.last, self.held, self.reward) = (None, 0, 0.0);
     }
 
-    /// A truncated episode gives no value for its end state, so nothing is learned from the last action.
+    /// When an episode is truncated, the value of its last state is unknown, so nothing is learned from the last action.
     fn learn(&mut self, _environment: &Environment, step: &Step) {
         if self.is_frozen {
             return;

@@ -10,17 +10,17 @@ use super::refusal::{named, one_of, refuse};
 use crate::EnvError;
 use crate::assets::library::{MAX_MODEL_TRIANGLES, MAX_MODEL_VERTICES};
 
-/// What a list of numbers is for; decides which types it may have.
+/// The purpose of an accessor, which decides the types that it may have.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Use {
     Positions,
-    TexturePlaces,
+    TextureCoordinates,
     Colors,
     Indices,
 }
 
 /// A checked accessor.
-struct Sound<'a> {
+struct CheckedAccessor<'a> {
     accessor: &'a Accessor,
     place: String,
     component: ComponentType,
@@ -31,19 +31,19 @@ struct Sound<'a> {
 impl Buffers<'_> {
     /// Number of elements of an accessor; at most a million vertices, or indices for a million triangles.
     pub(super) fn count(&self, index: Index<Accessor>, for_use: Use, place: &str) -> Result<usize, EnvError> {
-        self.sound(index, for_use, place).map(|sound| sound.count)
+        self.checked(index, for_use, place).map(|checked| checked.count)
     }
 
     /// The first three numbers of each element of an accessor; missing ones are 0.
     pub(super) fn vectors(&self, index: Index<Accessor>, for_use: Use, place: &str) -> Result<Vec<[f32; 3]>, EnvError> {
-        let sound = self.sound(index, for_use, place)?;
-        let (bytes, stride, size) = sound.bytes(self)?;
-        let mut vectors = Vec::with_capacity(sound.count);
-        for element in 0..sound.count {
+        let checked = self.checked(index, for_use, place)?;
+        let (bytes, stride, size) = checked.bytes(self)?;
+        let mut vectors = Vec::with_capacity(checked.count);
+        for element in 0..checked.count {
             let bytes = &bytes[element * stride..];
             let mut vector = [0.0; 3];
-            for (k, number) in vector.iter_mut().enumerate().take(sound.width) {
-                *number = match (sound.component, &bytes[k * size..]) {
+            for (k, number) in vector.iter_mut().enumerate().take(checked.width) {
+                *number = match (checked.component, &bytes[k * size..]) {
                     (ComponentType::F32, [a, b, c, d, ..]) => f32::from_le_bytes([*a, *b, *c, *d]),
                     (ComponentType::U16, [a, b, ..]) => f32::from(u16::from_le_bytes([*a, *b])) / 65_535.0,
                     (_, [byte, ..]) => f32::from(*byte) / 255.0,
@@ -51,7 +51,7 @@ impl Buffers<'_> {
                 };
             }
             if !vector.iter().all(|number| number.is_finite()) {
-                let place = format!("{}, element {element}", sound.place);
+                let place = format!("{}, element {element}", checked.place);
                 return Err(refuse(place, format!("{vector:?}"), "finite numbers"));
             }
             vectors.push(vector);
@@ -66,18 +66,18 @@ impl Buffers<'_> {
         num_corners: usize,
         place: &str,
     ) -> Result<Vec<u32>, EnvError> {
-        let sound = self.sound(index, Use::Indices, place)?;
-        let (bytes, stride, _) = sound.bytes(self)?;
-        let mut indices = Vec::with_capacity(sound.count);
-        for element in 0..sound.count {
-            let corner = match (sound.component, &bytes[element * stride..]) {
+        let checked = self.checked(index, Use::Indices, place)?;
+        let (bytes, stride, _) = checked.bytes(self)?;
+        let mut indices = Vec::with_capacity(checked.count);
+        for element in 0..checked.count {
+            let corner = match (checked.component, &bytes[element * stride..]) {
                 (ComponentType::U32, [a, b, c, d, ..]) => u32::from_le_bytes([*a, *b, *c, *d]),
                 (ComponentType::U16, [a, b, ..]) => u32::from(u16::from_le_bytes([*a, *b])),
                 (_, [byte, ..]) => u32::from(*byte),
                 (_, []) => 0,
             };
             if corner as usize >= num_corners {
-                let place = format!("{}, element {element}", sound.place);
+                let place = format!("{}, element {element}", checked.place);
                 return Err(refuse(place, format!("corner {corner}"), one_of(num_corners)));
             }
             indices.push(corner);
@@ -85,7 +85,7 @@ impl Buffers<'_> {
         Ok(indices)
     }
 
-    fn sound(&self, index: Index<Accessor>, for_use: Use, from: &str) -> Result<Sound<'_>, EnvError> {
+    fn checked(&self, index: Index<Accessor>, for_use: Use, from: &str) -> Result<CheckedAccessor<'_>, EnvError> {
         let accessor = named(&self.root.accessors, index.value(), "accessor", from)?;
         let place = format!("/accessors/{}", index.value());
         if accessor.sparse.is_some() {
@@ -120,7 +120,7 @@ impl Buffers<'_> {
                 format!("at most {most}"),
             ));
         }
-        Ok(Sound {
+        Ok(CheckedAccessor {
             accessor,
             place,
             component,
@@ -130,8 +130,9 @@ impl Buffers<'_> {
     }
 }
 
-impl Sound<'_> {
-    /// The bytes from the first element on, the stride, and the size of a number. All elements are within bounds.
+impl CheckedAccessor<'_> {
+    /// The bytes from the first element on, the stride, and the size of a number. Guarantees that all elements are within
+    /// bounds.
     fn bytes<'b>(&self, buffers: &'b Buffers) -> Result<(&'b [u8], usize, usize), EnvError> {
         let Some(view) = self.accessor.buffer_view else {
             return Err(refuse(
@@ -149,7 +150,7 @@ impl Sound<'_> {
             return Err(refuse(self.place.as_str(), found, "a byteStride of their size or more"));
         }
         let offset = self.accessor.byte_offset.map_or(0, |offset| offset.0);
-        // Counts and strides are bounded by now; only the offset may be arbitrary.
+        // The count and the stride are bounded by now; only the offset may be arbitrary.
         let span = self.count.checked_sub(1).map_or(0, |last| last * stride + element) as u64;
         let fits = offset
             .checked_add(span)
@@ -166,11 +167,11 @@ impl Sound<'_> {
 impl Use {
     fn allows(self, component: ComponentType, shape: Type, normalized: bool) -> bool {
         use ComponentType::{F32, U8, U16, U32};
-        let share = component == F32 || (normalized && matches!(component, U8 | U16));
+        let is_fraction = component == F32 || (normalized && matches!(component, U8 | U16));
         match self {
             Self::Positions => component == F32 && shape == Type::Vec3,
-            Self::TexturePlaces => share && shape == Type::Vec2,
-            Self::Colors => share && matches!(shape, Type::Vec3 | Type::Vec4),
+            Self::TextureCoordinates => is_fraction && shape == Type::Vec2,
+            Self::Colors => is_fraction && matches!(shape, Type::Vec3 | Type::Vec4),
             Self::Indices => matches!(component, U8 | U16 | U32) && shape == Type::Scalar,
         }
     }
@@ -178,7 +179,9 @@ impl Use {
     fn expected(self) -> &'static str {
         match self {
             Self::Positions => "VEC3 of float for positions; export without quantization",
-            Self::TexturePlaces => "VEC2 of float, or of normalized unsigned bytes or shorts, for texture coordinates",
+            Self::TextureCoordinates => {
+                "VEC2 of float, or of normalized unsigned bytes or shorts, for texture coordinates"
+            }
             Self::Colors => "VEC3 or VEC4 of float, or of normalized unsigned bytes or shorts, for colours",
             Self::Indices => "SCALAR of unsigned bytes, shorts or ints for indices",
         }

@@ -1,22 +1,22 @@
-//! The colour of a triangle: its material, texture and corner colours, averaged as linear light.
+//! The colour of a triangle: the mean of its material, texture and vertex colours in linear light.
 
 use super::texture::Texture;
 
-/// Texture samples along each side of a triangle.
+/// Number of texture samples along each side of a triangle.
 const SAMPLES: usize = 5;
 
 /// Colours of a primitive's triangles.
 pub(super) struct Coloring<'a> {
     pub(super) factor: [f32; 4],
     pub(super) texture: Option<Texture<'a>>,
-    /// Texture coordinates of each corner; empty without a texture.
-    pub(super) places: Vec<[f32; 3]>,
-    /// Linear colour of each corner; empty without corner colours.
+    /// Texture coordinates of each vertex; empty without a texture.
+    pub(super) uvs: Vec<[f32; 3]>,
+    /// Linear colour of each vertex; empty without vertex colours.
     pub(super) colors: Vec<[f32; 3]>,
 }
 
 impl Coloring<'_> {
-    /// A triangle's mean linear colour: the product of the colours of its material, its texture and its corners.
+    /// A triangle's mean linear colour: the product of the colours of its material, texture and vertices.
     pub(super) fn of(&self, triangle: [u32; 3]) -> [f32; 3] {
         let [r, g, b, _] = self.factor;
         let factor = [r, g, b];
@@ -25,7 +25,7 @@ impl Coloring<'_> {
         }
         let (mut sum, mut weights) = ([0.0; 3], 0.0);
         for (i, j) in (0..SAMPLES).flat_map(|i| (0..SAMPLES - i).map(move |j| (i, j))) {
-            // Offset by a third, so that no sample is on an edge.
+            // The offset of a third keeps samples off the edges.
             let share = |k: usize| (k as f32 + 1.0 / 3.0) / SAMPLES as f32;
             let at = [1.0 - share(i) - share(j), share(i), share(j)];
             let mean = |list: &[[f32; 3]]| {
@@ -37,7 +37,7 @@ impl Coloring<'_> {
                 mean
             };
             let [r, g, b, weight] = self.texture.map_or([1.0; 4], |texture| {
-                let [u, v, _] = mean(&self.places);
+                let [u, v, _] = mean(&self.uvs);
                 texture.at([u, v])
             });
             let corner = if self.colors.is_empty() {

@@ -1,4 +1,4 @@
-//! Opens a file: GLB with its chunks, or plain JSON.
+//! Opens a glTF file: GLB with its chunks, or plain JSON.
 
 use super::refusal::refuse;
 use crate::EnvError;
@@ -6,7 +6,7 @@ use crate::EnvError;
 const JSON: u32 = 0x4E4F_534A;
 const BIN: u32 = 0x004E_4942;
 
-/// The JSON of a file, and for GLB the binary chunk.
+/// The JSON of a file, and the binary chunk of a GLB file.
 pub(super) fn open(bytes: &[u8]) -> Result<(&str, Option<&[u8]>), EnvError> {
     if !bytes.starts_with(b"glTF") {
         return Ok((text(bytes)?, None));
@@ -23,13 +23,13 @@ pub(super) fn open(bytes: &[u8]) -> Result<(&str, Option<&[u8]>), EnvError> {
         let found = format!("a file of {} bytes", bytes.len());
         return Err(refuse("GLB header", found, format!("{length}, as the header says")));
     }
-    let mut rest = &bytes[12..];
+    let mut remaining = &bytes[12..];
     let mut chunks = Vec::new();
     // Only the first two chunks have a meaning; others may follow.
-    while chunks.len() < 2 && !rest.is_empty() {
-        let (kind, data, behind) = chunk(rest, chunks.len())?;
+    while chunks.len() < 2 && !remaining.is_empty() {
+        let (kind, data, rest) = chunk(remaining, chunks.len())?;
         chunks.push((kind, data));
-        rest = behind;
+        remaining = rest;
     }
     let Some(&(JSON, json)) = chunks.first() else {
         return Err(refuse("GLB chunk 0", "no JSON", "the JSON chunk first"));
@@ -54,8 +54,8 @@ fn chunk(bytes: &[u8], index: usize) -> Result<(u32, &[u8], &[u8]), EnvError> {
             format!("at most the {} that are there", data.len()),
         ));
     }
-    let (data, behind) = data.split_at(length as usize);
-    Ok((kind, data, behind))
+    let (data, rest) = data.split_at(length as usize);
+    Ok((kind, data, rest))
 }
 
 fn number(bytes: &[u8], at: usize) -> Option<u32> {

@@ -1,5 +1,5 @@
-//! Parses the JSON of a glTF file. Checks its size before parsing, and its version and extensions afterwards. Indices in it are
-//! not checked here, but when they are followed.
+//! Parses the JSON of a glTF file. Checks its extent before parsing, and its version and extensions afterwards. Indices are
+//! checked later, where they are used.
 
 use std::fmt;
 
@@ -15,8 +15,8 @@ use crate::EnvError;
 /// Maximum number of objects and lists: each may take several hundred bytes of memory for two bytes of JSON.
 const MAX_ITEMS: usize = 200_000;
 
-/// Maximum number of characters shown of the parser's own message, which may quote a string as long as the file.
-const MAX_WORDS: usize = 200;
+/// Maximum number of characters to show of the parser's message, which may quote a string as long as the file.
+const MAX_MESSAGE_CHARS: usize = 200;
 
 /// Extensions that may be ignored even if a file requires them: they change no triangle.
 const HARMLESS: &[&str] = &[
@@ -41,13 +41,13 @@ pub(super) fn parse(json: &str) -> Result<Root, EnvError> {
         if is_version_1(json) {
             return refuse("file", "glTF 1.0", "glTF 2.0; export as that");
         }
-        // The position is given separately, so it is cut from the parser's message.
-        let said = error.to_string();
-        let words = said.split(" at line ").next().unwrap_or(&said);
+        // Cuts the position from the parser's message, because it is reported separately.
+        let message = error.to_string();
+        let words = message.split(" at line ").next().unwrap_or(&message);
         let place = format!("line {}, column {}", error.line(), error.column());
         refuse(
             place,
-            format!("a fault: {}", shortened(words, MAX_WORDS)),
+            format!("a fault: {}", shortened(words, MAX_MESSAGE_CHARS)),
             "glTF 2.0 JSON",
         )
     })?;
@@ -70,8 +70,7 @@ pub(super) fn parse(json: &str) -> Result<Root, EnvError> {
     Ok(root)
 }
 
-/// Whether JSON that is not glTF 2.0 is version 1, where meshes are referred to by name instead of index. Keeps nothing in
-/// memory.
+/// Whether JSON that is not glTF 2.0 is version 1, whose meshes are an object instead of a list. Keeps nothing in memory.
 fn is_version_1(json: &str) -> bool {
     gltf_json::deserialize::from_str::<Version1>(json).is_ok()
 }
@@ -139,7 +138,7 @@ fn check_extent(json: &str) -> Result<(), EnvError> {
     Ok(())
 }
 
-/// Index of the material that takes the object's colour: the one with the wanted name, by default `main`.
+/// Index of the material that takes the object's colour: the one with the given name, by default `main`.
 pub(super) fn main_material(root: &Root, wanted: Option<&str>) -> Result<Option<usize>, EnvError> {
     let named = |name: &str| {
         let is_it = |material: &gltf_json::Material| {

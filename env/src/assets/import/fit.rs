@@ -5,13 +5,14 @@ use std::f32::consts::PI;
 use super::surface::Surface;
 use crate::assets::{ColliderKind, ColliderShape};
 
-/// Only the part of a model below this height, in metres, determines its width: agents cannot bump into a tree's crown.
-const KNEE_TO_HEAD: f32 = 2.0;
+/// Only the part of a model below this height, in metres, determines its collider's width: agents cannot bump into a tree's
+/// crown.
+const MAX_WIDTH_HEIGHT: f32 = 2.0;
 
 /// Minimum half size of a collider in metres, so that flat sheets have one.
-const LEAST: f32 = 0.01;
+const MIN_HALF_SIZE: f32 = 0.01;
 
-/// Extents of a model around its upright axis.
+/// Extents of a model around its vertical axis.
 struct Extent {
     half: [f32; 2],
     radius: f32,
@@ -40,7 +41,7 @@ impl ColliderKind {
             Self::Cylinder => ColliderShape::Cylinder { radius, half_height },
             Self::Capsule => {
                 let radius = radius.min(half_height);
-                let half_height = (half_height - radius).max(LEAST);
+                let half_height = (half_height - radius).max(MIN_HALF_SIZE);
                 ColliderShape::Capsule { radius, half_height }
             }
             Self::Hull => hull(surface).unwrap_or_else(|| Self::Box.fit(surface)),
@@ -51,29 +52,29 @@ impl ColliderKind {
 impl Extent {
     fn of(surface: &Surface) -> Self {
         let mut extent = Self {
-            half: [LEAST; 2],
-            radius: LEAST,
-            height: 2.0 * LEAST,
+            half: [MIN_HALF_SIZE; 2],
+            radius: MIN_HALF_SIZE,
+            height: 2.0 * MIN_HALF_SIZE,
         };
         for face in &surface.faces {
             let corners = face.corners.map(|corner| surface.corners[corner as usize]);
             for k in 0..3 {
                 let (a, b) = (corners[k], corners[(k + 1) % 3]);
                 extent.height = extent.height.max(a[2]);
-                if a[2] <= KNEE_TO_HEAD {
-                    extent.take_in([a[0], a[1]]);
+                if a[2] <= MAX_WIDTH_HEIGHT {
+                    extent.include([a[0], a[1]]);
                 }
                 // Where an edge crosses the height limit.
-                if (a[2] <= KNEE_TO_HEAD) != (b[2] <= KNEE_TO_HEAD) {
-                    let share = (KNEE_TO_HEAD - a[2]) / (b[2] - a[2]);
-                    extent.take_in([0, 1].map(|axis| a[axis] + (b[axis] - a[axis]) * share));
+                if (a[2] <= MAX_WIDTH_HEIGHT) != (b[2] <= MAX_WIDTH_HEIGHT) {
+                    let share = (MAX_WIDTH_HEIGHT - a[2]) / (b[2] - a[2]);
+                    extent.include([0, 1].map(|axis| a[axis] + (b[axis] - a[axis]) * share));
                 }
             }
         }
         extent
     }
 
-    fn take_in(&mut self, [x, y]: [f32; 2]) {
+    fn include(&mut self, [x, y]: [f32; 2]) {
         self.half = [self.half[0].max(x.abs()), self.half[1].max(y.abs())];
         self.radius = self.radius.max((x * x + y * y).sqrt());
     }
@@ -90,14 +91,14 @@ impl Extent {
 
 /// The farthest corners in 64 evenly spread directions; `None` if they are nearly coplanar.
 fn hull(surface: &Surface) -> Option<ColliderShape> {
-    /// The golden angle, between neighbours on the spiral.
-    const TURN: f32 = 2.399_963_2;
+    /// The golden angle between neighbours on the spiral, in radians.
+    const GOLDEN_ANGLE: f32 = 2.399_963_2;
     const DIRECTIONS: usize = super::super::library::MAX_HULL_POINTS;
     let mut chosen: Vec<u32> = Vec::new();
     let mut thinnest = f32::INFINITY;
     for k in 0..DIRECTIONS {
         let z = 1.0 - (2.0 * k as f32 + 1.0) / DIRECTIONS as f32;
-        let (across, angle) = ((1.0 - z * z).sqrt(), TURN * k as f32);
+        let (across, angle) = ((1.0 - z * z).sqrt(), GOLDEN_ANGLE * k as f32);
         let direction = [across * libm::cosf(angle), across * libm::sinf(angle), z];
         let along = |corner: u32| -> f32 {
             let at = surface.corners[corner as usize];
@@ -116,7 +117,7 @@ fn hull(surface: &Surface) -> Option<ColliderShape> {
             .then(a[2].total_cmp(&b[2]))
     });
     points.dedup();
-    (thinnest > LEAST && points.len() >= 4).then_some(ColliderShape::Hull { points })
+    (thinnest > MIN_HALF_SIZE && points.len() >= 4).then_some(ColliderShape::Hull { points })
 }
 
 #[cfg(test)]

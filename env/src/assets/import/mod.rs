@@ -1,4 +1,4 @@
-//! Imports models from glTF 2.0 files. Each step refuses faulty input and names the location. Skins and animations are left
+//! Imports models from glTF 2.0 files. Each step refuses faulty input and names its location. Skins and animations are left
 //! out; compression extensions are refused.
 
 mod accessor;
@@ -36,16 +36,16 @@ use crate::EnvError;
 pub struct Imported {
     /// The model.
     pub model: LibraryModel,
-    /// Features of the file that could not be kept, each kind once.
+    /// Features of the file that were left out, each kind once.
     pub warnings: Vec<ImportWarning>,
 }
 
 impl LibraryModel {
     /// Converts the bytes of a `.glb` or `.gltf` file to a model.
     ///
-    /// The model is rotated so that glTF's up (+y) is up and its front (+z) faces +y, placed on the ground, centred above its
-    /// origin, and gets up to three coarser levels of detail. A triangle's colour is the mean of base colour, texture and
-    /// corner colours over it; at most 64 colours are kept.
+    /// The model is rotated so that glTF's up (+y) is up and its front (+z) faces +y, placed on the ground, and centred above
+    /// its origin. It gets up to three coarser levels of detail. A triangle has one colour, the mean over its base colour,
+    /// texture and vertex colours; at most 64 colours are kept.
     ///
     /// # Errors
     /// [`EnvError::BadModel`] if the file is not valid glTF within the limits: [`MAX_IMPORT_BYTES`], [`MAX_IMPORT_NODES`],
@@ -66,13 +66,13 @@ impl LibraryModel {
         nodes::visit(&root, &mut |mesh, pose, node| {
             surface.add(&mut reading, mesh, pose, node)
         })?;
-        surface.stand(options.size)?;
+        surface.place_on_ground(options.size)?;
         let groups = palette::groups(&surface, main);
         finish(options, &surface, groups, reading.warnings)
     }
 }
 
-/// Adds levels of detail, a collider and back faces to a surface that is already in place.
+/// Adds levels of detail, a collider and back faces to a surface that has its final size and position.
 fn finish(
     options: &ImportOptions,
     surface: &surface::Surface,

@@ -11,19 +11,19 @@ use crate::vector::cross;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pose([[f64; 4]; 3]);
 
-type Found<'a> = dyn FnMut(Index<Mesh>, &Pose, &str) -> Result<(), EnvError> + 'a;
+type Visitor<'a> = dyn FnMut(Index<Mesh>, &Pose, &str) -> Result<(), EnvError> + 'a;
 
-/// Visits every mesh of the default scene with its pose and the path of its node; without scenes, every mesh in the tree.
-pub(super) fn visit(root: &Root, found: &mut Found) -> Result<(), EnvError> {
+/// Visits every mesh of the default scene, or of the whole tree if there are no scenes, with its pose and the path of its node.
+pub(super) fn visit(root: &Root, visitor: &mut Visitor) -> Result<(), EnvError> {
     let mut walk = Walk {
         root,
         seen: vec![false; root.nodes.len()],
-        found,
+        visitor,
     };
     let scene = root.scene.map_or(0, |scene| scene.value());
     if let Some(scene_root) = root.scenes.get(scene) {
         for node in &scene_root.nodes {
-            walk.node(*node, &Pose::HERE, 1, &format!("/scenes/{scene}/nodes"))?;
+            walk.node(*node, &Pose::IDENTITY, 1, &format!("/scenes/{scene}/nodes"))?;
         }
         return Ok(());
     }
@@ -38,7 +38,7 @@ pub(super) fn visit(root: &Root, found: &mut Found) -> Result<(), EnvError> {
     }
     for (index, is_child) in is_child.iter().enumerate() {
         if !is_child {
-            walk.node(Index::new(index as u32), &Pose::HERE, 1, "/nodes")?;
+            walk.node(Index::new(index as u32), &Pose::IDENTITY, 1, "/nodes")?;
         }
     }
     Ok(())
@@ -47,7 +47,7 @@ pub(super) fn visit(root: &Root, found: &mut Found) -> Result<(), EnvError> {
 struct Walk<'a, 'b> {
     root: &'a Root,
     seen: Vec<bool>,
-    found: &'a mut Found<'b>,
+    visitor: &'a mut Visitor<'b>,
 }
 
 impl Walk<'_, '_> {
@@ -68,7 +68,7 @@ impl Walk<'_, '_> {
         }
         let pose = parent.then(&own);
         if let Some(mesh) = node.mesh {
-            (self.found)(mesh, &pose, &place)?;
+            (self.visitor)(mesh, &pose, &place)?;
         }
         for child in node.children.iter().flatten() {
             self.node(*child, &pose, depth + 1, &format!("{place}/children"))?;
@@ -78,7 +78,7 @@ impl Walk<'_, '_> {
 }
 
 impl Pose {
-    pub(super) const HERE: Self = Self([[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]]);
+    pub(super) const IDENTITY: Self = Self([[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]]);
 
     /// A node's local transform: its matrix, or scale, then rotation, then translation.
     fn of(node: &Node) -> Self {
@@ -135,7 +135,7 @@ impl Pose {
         self.0.map(|[a, b, c, d]| a * x + b * y + c * z + d)
     }
 
-    /// Whether the transform mirrors, so that the winding of triangles must be reversed.
+    /// Whether the transform is a reflection, so that the winding of triangles must be reversed.
     pub(super) fn mirrors(&self) -> bool {
         let [a, b, c] = self.0.map(|[x, y, z, _]| [x, y, z]);
         let cross = cross(b, c);
@@ -148,7 +148,7 @@ mod tests {
     use super::*;
 
     fn node(json: &str) -> Node {
-        gltf_json::deserialize::from_str(json).expect("the node is sound")
+        gltf_json::deserialize::from_str(json).expect("the node is valid JSON")
     }
 
     #[test]
@@ -156,8 +156,8 @@ mod tests {
         let half = std::f64::consts::FRAC_1_SQRT_2;
         let json = format!(r#"{{"translation": [1, 2, 3], "rotation": [0, 0, {half}, {half}], "scale": [2, 1, 1]}}"#);
         let found = Pose::of(&node(&json)).apply([1.0, 0.0, 0.0]);
-        let off: f64 = (0..3).map(|k| (found[k] - [1.0, 4.0, 3.0][k]).abs()).sum();
-        assert!(off < 1e-6, "{found:?}");
+        let error: f64 = (0..3).map(|k| (found[k] - [1.0, 4.0, 3.0][k]).abs()).sum();
+        assert!(error < 1e-6, "{found:?}");
     }
 
     #[test]
@@ -166,6 +166,6 @@ mod tests {
         assert_eq!(pose.apply([1.0, 0.0, 0.0]), [5.0, 7.0, 7.0]);
         assert!(!pose.mirrors());
         assert!(Pose::of(&node(r#"{"scale": [1, -1, 1]}"#)).mirrors());
-        assert_eq!(Pose::HERE.then(&pose), pose);
+        assert_eq!(Pose::IDENTITY.then(&pose), pose);
     }
 }

@@ -32,21 +32,21 @@ pub enum ImportSize {
 impl ImportSize {
     /// Metres per unit, for a file whose model is `height` units high.
     pub(super) fn factor(self, height: f64) -> Result<f64, EnvError> {
-        let (place, asked) = match self {
+        let (place, requested) = match self {
             Self::Scale(scale) => ("scale", f64::from(scale)),
             Self::Height(metres) => ("height", f64::from(metres)),
         };
-        if !(asked > 0.0 && asked.is_finite()) {
-            return Err(refuse(place, asked.to_string(), "a number above 0"));
+        if !(requested > 0.0 && requested.is_finite()) {
+            return Err(refuse(place, requested.to_string(), "a number above 0"));
         }
         match self {
-            Self::Scale(_) => Ok(asked),
-            Self::Height(_) if asked > f64::from(MAX_MODEL_REACH) => Err(refuse(
+            Self::Scale(_) => Ok(requested),
+            Self::Height(_) if requested > f64::from(MAX_MODEL_REACH) => Err(refuse(
                 place,
-                format!("{asked} m"),
+                format!("{requested} m"),
                 format!("at most {MAX_MODEL_REACH} m"),
             )),
-            Self::Height(_) if height > 0.0 => Ok(asked / height),
+            Self::Height(_) if height > 0.0 => Ok(requested / height),
             Self::Height(_) => Err(refuse(place, "a flat model, of no height", "a scale in its place")),
         }
     }

@@ -13,7 +13,7 @@ use super::warning::{ImportWarning, Warnings};
 use crate::EnvError;
 use crate::assets::library::{MAX_MODEL_TRIANGLES, MAX_MODEL_VERTICES};
 
-/// State of an import: the file, and everything that its meshes refer to.
+/// State of an import: the file's buffers and textures, and the warnings so far.
 pub(super) struct Reading<'a, 'b> {
     pub(super) buffers: &'a Buffers<'a>,
     pub(super) textures: Textures<'a, 'b>,
@@ -30,12 +30,12 @@ pub(super) struct ReadPrimitive {
 }
 
 impl Reading<'_, '_> {
-    /// Reads a primitive; `None` for points or lines. `taken`: vertices and triangles of the scene so far.
+    /// Reads a primitive; `None` for points or lines. `used` is the number of vertices and triangles of the scene so far.
     pub(super) fn primitive(
         &mut self,
         primitive: &Primitive,
         place: &str,
-        taken: [usize; 2],
+        used: [usize; 2],
     ) -> Result<Option<ReadPrimitive>, EnvError> {
         let mode = match primitive.mode {
             Checked::Valid(mode @ (Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)) => mode,
@@ -48,7 +48,7 @@ impl Reading<'_, '_> {
         if primitive.targets.is_some() {
             self.warnings.insert(ImportWarning::MorphTargets);
         }
-        let (corners, indices) = self.shape(primitive, mode, place, taken)?;
+        let (corners, indices) = self.shape(primitive, mode, place, used)?;
         let material = material_of(self.buffers.root, primitive, place)?;
         let opaque = Checked::Valid(material::AlphaMode::Opaque);
         if material.is_some_and(|material| material.alpha_mode != opaque) {
@@ -85,9 +85,9 @@ impl Reading<'_, '_> {
         };
         let count = self.buffers.count(positions, Use::Positions, &here)?;
         within("vertices", vertices + count, MAX_MODEL_VERTICES)?;
-        let of_indices = format!("{place}/indices");
+        let indices_place = format!("{place}/indices");
         let num_indices = match primitive.indices {
-            Some(indices) => self.buffers.count(indices, Use::Indices, &of_indices)?,
+            Some(indices) => self.buffers.count(indices, Use::Indices, &indices_place)?,
             None => count,
         };
         let more = match mode {
@@ -97,7 +97,7 @@ impl Reading<'_, '_> {
         within("triangles", triangles + more, MAX_MODEL_TRIANGLES)?;
         let corners = self.buffers.vectors(positions, Use::Positions, &here)?;
         let indices = match primitive.indices {
-            Some(indices) => self.buffers.indices(indices, count, &of_indices)?,
+            Some(indices) => self.buffers.indices(indices, count, &indices_place)?,
             None => (0..count as u32).collect(),
         };
         Ok((corners, indices))
@@ -139,24 +139,24 @@ impl Reading<'_, '_> {
             &here("COLOR_0"),
         )?;
         let metal = material.map(|material| &material.pbr_metallic_roughness);
-        let (places, texture) = match metal.and_then(|metal| metal.base_color_texture.as_ref()) {
+        let (uvs, texture) = match metal.and_then(|metal| metal.base_color_texture.as_ref()) {
             Some(texture::Info { index, tex_coord, .. }) => {
                 let (semantic, name) = (Semantic::TexCoords(*tex_coord), here(&format!("TEXCOORD_{tex_coord}")));
-                let places = self.attribute(primitive, semantic, Use::TexturePlaces, num_corners, &name)?;
+                let uvs = self.attribute(primitive, semantic, Use::TextureCoordinates, num_corners, &name)?;
                 let number = primitive.material.map_or(0, |material| material.value());
                 let from = format!("/materials/{number}/pbrMetallicRoughness/baseColorTexture/index");
                 let texture = self.textures.texture(*index, &from, &mut self.warnings)?;
-                if places.is_empty() && texture.is_some() {
+                if uvs.is_empty() && texture.is_some() {
                     self.warnings.insert(ImportWarning::NoTexturePlaces);
                 }
-                (places, texture)
+                (uvs, texture)
             }
             None => (Vec::new(), None),
         };
         Ok(Coloring {
             factor: metal.map_or([1.0; 4], |metal| metal.base_color_factor.0),
-            texture: texture.filter(|_| !places.is_empty()),
-            places,
+            texture: texture.filter(|_| !uvs.is_empty()),
+            uvs,
             colors,
         })
     }
@@ -186,11 +186,11 @@ fn triangles(mode: Mode, indices: &[u32]) -> Vec<[u32; 3]> {
     match mode {
         Mode::TriangleStrip => {
             let windows = indices.windows(3).enumerate();
-            let turned = |(k, window): (usize, &[u32])| match k % 2 {
+            let oriented = |(k, window): (usize, &[u32])| match k % 2 {
                 0 => [window[0], window[1], window[2]],
                 _ => [window[1], window[0], window[2]],
             };
-            windows.map(turned).collect()
+            windows.map(oriented).collect()
         }
         Mode::TriangleFan => {
             let Some((&hub, rim)) = indices.split_first() else {

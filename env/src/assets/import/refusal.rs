@@ -1,10 +1,10 @@
-//! Errors for glTF files.
+//! Builds errors for glTF files.
 
 use driftworld_text::shortened;
 
 use crate::EnvError;
 
-/// An error about what was found at a place in the file, and what was expected.
+/// An error about a place in the file: what was found there, and what was expected.
 pub(super) fn refuse(place: impl Into<String>, found: impl Into<String>, expected: impl Into<String>) -> EnvError {
     EnvError::BadModel {
         place: place.into(),

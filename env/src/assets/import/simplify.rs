@@ -1,32 +1,32 @@
-//! Simplifies a surface and measures the error. Done once, on import, and stored: the simplifier's arithmetic depends on its
-//! C++ compiler, so nothing that must be the same on every machine may call it.
+//! Simplifies a surface and measures the error. Runs only on import, and the result is stored: the simplifier's arithmetic
+//! depends on its C++ compiler, so nothing that must be the same on every machine may call it.
 
 use meshopt::SimplifyOptions;
 use rapier3d::math::Vector;
 
-use super::deviation::{Deviation, Looks};
+use super::deviation::{Deviation, TestBudget};
 use crate::assets::library::{Detail, MAX_MODEL_LEVELS};
 
 /// Minimum number of triangles worth simplifying: a few blocks of the renderer.
-const WORTH_IT: usize = 96;
+const MIN_TRIANGLES: usize = 96;
 
-/// Each level aims at the number of triangles of the level before, divided by this.
-const KEPT: usize = 4;
+/// Each level aims at the number of triangles of the previous level divided by this.
+const REDUCTION: usize = 4;
 
 /// Maximum error of a level, as a fraction of the surface's size.
-const MOST_ERROR: f32 = 0.2;
+const MAX_ERROR: f32 = 0.2;
 
-/// Maximum number of corners of the whole surface that are measured per level: if there are more, evenly chosen ones
-/// represent the rest.
-const MEASURED: usize = 20_000;
+/// Maximum number of corners of the whole surface that are measured per level. If there are more, evenly spread ones represent
+/// the rest.
+const MAX_MEASURED_CORNERS: usize = 20_000;
 
 /// Maximum number of pairs of triangles that share a corner, summed over all corners: the simplifier visits every pair.
 /// One corner shared by 63,000 triangles has about that many.
-const MOST_PAIRS: u64 = 4_000_000_000;
+const MAX_PAIRS: u64 = 4_000_000_000;
 
-/// Up to three coarser levels of a surface, with triangles grouped by colour; each level has at most two thirds of the
-/// triangles of the level before. Groups share no corners. Empty if so many triangles meet in one corner that simplifying would
-/// take minutes.
+/// Up to three coarser levels of a surface with triangles grouped by colour; groups share no corners. Each level has at most
+/// two thirds of the triangles of the previous one. Empty if so many triangles meet in one corner that simplifying would take
+/// minutes.
 pub(super) fn levels(corners: &[[f32; 3]], groups: &[Vec<[u32; 3]>]) -> Vec<Detail> {
     let mut group_of = vec![0_usize; corners.len()];
     for (group, triangles) in groups.iter().enumerate() {
@@ -36,29 +36,29 @@ pub(super) fn levels(corners: &[[f32; 3]], groups: &[Vec<[u32; 3]>]) -> Vec<Deta
             .for_each(|corner| group_of[*corner as usize] = group);
     }
     let whole: Vec<u32> = groups.iter().flatten().flatten().copied().collect();
-    if pairs(&whole, corners.len()) > MOST_PAIRS {
+    if pairs(&whole, corners.len()) > MAX_PAIRS {
         return Vec::new();
     }
-    let most_error = MOST_ERROR * size(|| corners.iter());
+    let max_error = MAX_ERROR * size(|| corners.iter());
     let mut levels: Vec<Detail> = Vec::new();
-    let mut before = whole.len() / 3;
+    let mut previous = whole.len() / 3;
     for _ in 1..MAX_MODEL_LEVELS {
-        if before < WORTH_IT {
+        if previous < MIN_TRIANGLES {
             break;
         }
-        let indices = simplified(&whole, corners, before / KEPT * 3, most_error);
+        let indices = simplified(&whole, corners, previous / REDUCTION * 3, max_error);
         let mut by_group = vec![Vec::new(); groups.len()];
         for three in indices.chunks_exact(3) {
             by_group[group_of[three[0] as usize]].push([three[0], three[1], three[2]]);
         }
         // Checked before measuring, because surfaces that cannot be simplified take longest to measure.
-        if indices.len() > before * 2 {
+        if indices.len() > previous * 2 {
             break;
         }
-        let Some(error) = error(corners, groups, &by_group, most_error) else {
+        let Some(error) = error(corners, groups, &by_group, max_error) else {
             break;
         };
-        before = indices.len() / 3;
+        previous = indices.len() / 3;
         let last = levels.last().map_or(0.0, |level: &Detail| level.error);
         levels.push(Detail {
             error: error.max(last),
@@ -70,17 +70,17 @@ pub(super) fn levels(corners: &[[f32; 3]], groups: &[Vec<[u32; 3]>]) -> Vec<Deta
 
 /// Number of pairs of triangles that share a corner, summed over all corners; each triangle is also paired with itself.
 fn pairs(whole: &[u32], corners: usize) -> u64 {
-    let mut around = vec![0_u64; corners];
+    let mut triangles_at = vec![0_u64; corners];
     for corner in whole {
-        around[*corner as usize] += 1;
+        triangles_at[*corner as usize] += 1;
     }
-    around.iter().map(|triangles| triangles * triangles).sum()
+    triangles_at.iter().map(|triangles| triangles * triangles).sum()
 }
 
-fn simplified(whole: &[u32], corners: &[[f32; 3]], wanted: usize, most_error: f32) -> Vec<u32> {
-    // Where two colours meet, each has its own corner at the same place: the simplifier treats that as a seam and keeps it.
+fn simplified(whole: &[u32], corners: &[[f32; 3]], wanted: usize, max_error: f32) -> Vec<u32> {
+    // Where two colours meet, each has its own corner at the same position; the simplifier treats that as a seam and keeps it.
     let options = SimplifyOptions::ErrorAbsolute | SimplifyOptions::Prune;
-    meshopt::simplify_decoder(whole, corners, wanted, most_error, options, None)
+    meshopt::simplify_decoder(whole, corners, wanted, max_error, options, None)
 }
 
 /// The largest extent of the points along any axis.
@@ -92,18 +92,18 @@ fn size<'a, I: Iterator<Item = &'a [f32; 3]>>(points: impl Fn() -> I) -> f32 {
     along(0).max(along(1)).max(along(2)).max(0.0)
 }
 
-/// Largest distance of the groups' corners from their coarser forms; for a group with nothing left, the group's size. `None` as
-/// soon as it exceeds `most`. Measures fewer corners where thousands of triangles intersect each other.
+/// Largest distance of the groups' corners from the coarser groups; for a group with no triangles left, the group's size.
+/// `None` as soon as it exceeds `most`. Measures fewer corners where thousands of triangles intersect each other.
 fn error(corners: &[[f32; 3]], fine: &[Vec<[u32; 3]>], coarse: &[Vec<[u32; 3]>], most: f32) -> Option<f32> {
     let used: Vec<Vec<u32>> = fine.iter().map(|triangles| used(triangles)).collect();
     // At least one corner of each group is measured, so rounding up may exceed the limit.
     let (total, at_most) = (
         used.iter().map(Vec::len).sum(),
-        MEASURED.saturating_sub(used.len()).max(1),
+        MAX_MEASURED_CORNERS.saturating_sub(used.len()).max(1),
     );
     let stride = usize::max(1, usize::div_ceil(total, at_most));
     let mut error = 0.0_f32;
-    let mut looks = Looks::new();
+    let mut budget = TestBudget::new();
     for (used, coarse) in used.iter().zip(coarse) {
         let Some(surface) = Deviation::new(corners, coarse) else {
             error = error.max(size(|| used.iter().map(|corner| &corners[*corner as usize])));
@@ -114,7 +114,7 @@ fn error(corners: &[[f32; 3]], fine: &[Vec<[u32; 3]>], coarse: &[Vec<[u32; 3]>],
             .step_by(stride)
             .map(|corner| point(corners, *corner))
             .collect();
-        error = surface.farthest(&measured, error, most, &mut looks)?;
+        error = surface.farthest(&measured, error, most, &mut budget)?;
     }
     (error <= most).then_some(error)
 }
@@ -149,7 +149,7 @@ mod tests {
             levels(&corners, &[triangles])
         };
         assert!(!fan(1_000).is_empty());
-        assert!(fan(200_000).is_empty(), "it would take a quarter of a minute");
+        assert!(fan(200_000).is_empty(), "simplifying would take a quarter of a minute");
     }
 
     #[test]
@@ -165,7 +165,7 @@ mod tests {
             );
             (triangles, error) = (level.triangles[0].len(), level.error);
         }
-        assert!(error < MOST_ERROR * 2.0, "{error} m for a ball of 2 m");
+        assert!(error < MAX_ERROR * 2.0, "{error} m for a ball of 2 m");
     }
 
     #[test]
@@ -200,17 +200,21 @@ mod tests {
     #[test]
     fn sampling_corners_hardly_changes_the_measured_error() {
         let ball = Mesh::ball(1.0, 1.0, 256, 256);
-        assert!(ball.corners.len() > 3 * MEASURED, "{} corners", ball.corners.len());
+        assert!(
+            ball.corners.len() > 3 * MAX_MEASURED_CORNERS,
+            "{} corners",
+            ball.corners.len()
+        );
         let coarse = Mesh::ball(1.0, 1.0, 16, 12);
         let both = ball.clone().with(&coarse);
         let coarse = [both.triangles[ball.triangles.len()..].to_vec()];
-        let surface = Deviation::new(&both.corners, &coarse[0]).expect("half a thousand triangles are a surface");
-        let far = (0..ball.corners.len() as u32).map(|corner| surface.distance(point(&both.corners, corner)));
-        let at_all = far.fold(0.0, f32::max);
+        let surface = Deviation::new(&both.corners, &coarse[0]).expect("the coarse ball has triangles");
+        let distances = (0..ball.corners.len() as u32).map(|corner| surface.distance(point(&both.corners, corner)));
+        let exact = distances.fold(0.0, f32::max);
         let found = error(&both.corners, &[ball.triangles], &coarse, 1.0);
         assert!(
-            found.is_some_and(|found| found <= at_all && found > 0.95 * at_all),
-            "{found:?} m of {at_all} m"
+            found.is_some_and(|found| found <= exact && found > 0.95 * exact),
+            "{found:?} m of {exact} m"
         );
     }
 }

@@ -50,8 +50,8 @@ impl Surface {
                 return Err(refuse("/meshes", format!("{} primitives", self.primitives), expected));
             }
             let place = format!("/meshes/{index}/primitives/{k}");
-            let taken = [self.corners.len(), self.faces.len()];
-            if let Some(part) = reading.primitive(primitive, &place, taken)? {
+            let used = [self.corners.len(), self.faces.len()];
+            if let Some(part) = reading.primitive(primitive, &place, used)? {
                 self.add_primitive(&part, pose, &place)?;
             }
         }
@@ -62,7 +62,7 @@ impl Surface {
         let first = self.corners.len() as u32;
         for corner in &part.corners {
             let [x, y, z] = pose.apply(*corner);
-            // Converts axes: glTF's up is ours, its front is our north, and its x points west.
+            // Converts axes: glTF's up (+y) is our +z, its front (+z) our +y (north), and its +x our −x (west).
             let corner = [-x, z, y].map(|metres| metres as f32);
             if !corner.iter().all(|metres| metres.abs() < 1e9) {
                 return Err(refuse(place, format!("a corner at {corner:?}"), "numbers below 1e9"));
@@ -71,8 +71,8 @@ impl Surface {
         }
         let mirrors = pose.mirrors();
         for &([a, b, c], color) in &part.triangles {
-            let turned = if mirrors { [a, c, b] } else { [a, b, c] };
-            let corners = turned.map(|corner| corner + first);
+            let oriented = if mirrors { [a, c, b] } else { [a, b, c] };
+            let corners = oriented.map(|corner| corner + first);
             if self.area(corners) > 0.0 {
                 self.faces.push(Face {
                     corners,
@@ -93,7 +93,7 @@ impl Surface {
     }
 
     /// Scales everything to the given size and centres it above the origin, with its lowest corner on the ground.
-    pub(super) fn stand(&mut self, size: ImportSize) -> Result<(), EnvError> {
+    pub(super) fn place_on_ground(&mut self, size: ImportSize) -> Result<(), EnvError> {
         if self.faces.is_empty() {
             let expected = "at least one triangle with an area";
             return Err(refuse("scene", "nothing to draw", expected));

@@ -1,4 +1,4 @@
-//! Reads PNG textures to look up colours. For other formats, the material keeps its plain colour.
+//! Reads PNG textures to look up colours. For other formats, materials keep their plain colour.
 
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
@@ -15,7 +15,7 @@ use super::uri::{self, ReadBeside};
 use super::warning::{ImportWarning, Warnings};
 use crate::EnvError;
 
-/// Maximum number of pixels of all textures of a model together: two of the largest.
+/// Maximum number of pixels in all textures of a model together: two textures of the maximum size.
 const MAX_PIXELS: usize = 2 * 4096 * 4096;
 
 /// Maximum number of images that are read.
@@ -173,8 +173,8 @@ impl Texture<'_> {
     /// Linear colour and opacity at texture coordinates, from the nearest pixel.
     pub(super) fn at(self, [u, v]: [f32; 2]) -> [f32; 4] {
         let Self { pixels, wrap } = self;
-        let index = |place: f32, wrap: WrappingMode, size: usize| {
-            ((within(place, wrap) * size as f32) as usize).min(size.saturating_sub(1))
+        let index = |coordinate: f32, wrap: WrappingMode, size: usize| {
+            ((within(coordinate, wrap) * size as f32) as usize).min(size.saturating_sub(1))
         };
         let (column, row) = (index(u, wrap[0], pixels.width), index(v, wrap[1], pixels.height));
         let [r, g, b, alpha] = pixels
@@ -188,13 +188,13 @@ impl Texture<'_> {
 }
 
 /// Wraps a coordinate into the image, 0 to 1.
-fn within(place: f32, wrap: WrappingMode) -> f32 {
+fn within(coordinate: f32, wrap: WrappingMode) -> f32 {
     match wrap {
-        WrappingMode::Repeat => place.rem_euclid(1.0),
-        WrappingMode::ClampToEdge => place.clamp(0.0, 1.0),
+        WrappingMode::Repeat => coordinate.rem_euclid(1.0),
+        WrappingMode::ClampToEdge => coordinate.clamp(0.0, 1.0),
         WrappingMode::MirroredRepeat => {
-            let place = place.rem_euclid(2.0);
-            place.min(2.0 - place)
+            let coordinate = coordinate.rem_euclid(2.0);
+            coordinate.min(2.0 - coordinate)
         }
     }
 }
@@ -206,16 +206,16 @@ mod tests {
     #[test]
     fn coordinates_beyond_the_image_are_wrapped() {
         #[track_caller]
-        fn check(place: f32, repeated: f32, clamped: f32, mirrored: f32) {
+        fn check(coordinate: f32, repeated: f32, clamped: f32, mirrored: f32) {
             let modes = [
                 WrappingMode::Repeat,
                 WrappingMode::ClampToEdge,
                 WrappingMode::MirroredRepeat,
             ];
             assert_eq!(
-                modes.map(|wrap| within(place, wrap)),
+                modes.map(|wrap| within(coordinate, wrap)),
                 [repeated, clamped, mirrored],
-                "{place}"
+                "{coordinate}"
             );
         }
         check(0.25, 0.25, 0.25, 0.25);

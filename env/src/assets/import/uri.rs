@@ -6,8 +6,8 @@ use super::limits::MAX_IMPORT_BYTES;
 use super::refusal::{at_most, quoted, refuse};
 use crate::EnvError;
 
-/// Reads a file beside the glTF file, or returns the reason why it cannot. Called only with relative paths inside the folder,
-/// separated by `/`; if it follows links, it must check that they stay inside as well.
+/// Reads a file in the folder of the glTF file, or returns the reason why it cannot. It is called only with relative paths
+/// inside that folder, separated by `/`. If it follows links, it must check that they stay inside as well.
 pub type ReadBeside<'a> = dyn FnMut(&str) -> Result<Vec<u8>, String> + 'a;
 
 /// The bytes behind a URI.
@@ -44,8 +44,8 @@ fn path_inside(uri: &str, place: &str) -> Result<String, EnvError> {
     let path = percent_decoded(uri).ok_or_else(outside)?;
     let leads_out = |part: &str| part == ".." || part.is_empty();
     let has_scheme = path.contains(':');
-    let strange = path.chars().any(|letter| letter == '\\' || letter.is_control());
-    if has_scheme || strange || path.len() > 1000 || path.split('/').any(leads_out) {
+    let has_bad_char = path.chars().any(|c| c == '\\' || c.is_control());
+    if has_scheme || has_bad_char || path.len() > 1000 || path.split('/').any(leads_out) {
         return Err(outside());
     }
     Ok(path)
@@ -54,17 +54,17 @@ fn path_inside(uri: &str, place: &str) -> Result<String, EnvError> {
 fn percent_decoded(text: &str) -> Option<String> {
     let mut bytes = Vec::with_capacity(text.len());
     let mut rest = text.as_bytes();
-    while let Some((&first, behind)) = rest.split_first() {
+    while let Some((&first, tail)) = rest.split_first() {
         if first == b'%' {
-            let digits = std::str::from_utf8(behind.get(..2)?).ok()?;
+            let digits = std::str::from_utf8(tail.get(..2)?).ok()?;
             if !digits.bytes().all(|digit| digit.is_ascii_hexdigit()) {
                 return None;
             }
             bytes.push(u8::from_str_radix(digits, 16).ok()?);
-            rest = &behind[2..];
+            rest = &tail[2..];
         } else {
             bytes.push(first);
-            rest = behind;
+            rest = tail;
         }
     }
     String::from_utf8(bytes).ok()

@@ -67,6 +67,6 @@ pub(super) fn left_out(root: &Root) -> Warnings {
             root.extensions_used.iter().any(transforms),
         ),
     ];
-    let there = kinds.into_iter().filter(|(_, is_there)| *is_there);
-    there.map(|(kind, _)| kind).collect()
+    let present = kinds.into_iter().filter(|(_, is_present)| *is_present);
+    present.map(|(kind, _)| kind).collect()
 }

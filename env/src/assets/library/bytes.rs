@@ -1,10 +1,8 @@
-//! Binary format of libraries: a header with a checksum, then the models.
-//!
-//! All numbers are little-endian. Header: `DRIFTLIB`, version (u32), length of the rest after the checksum (u64),
-//! SHA-256 of that rest. Then the number of models (u32), and each model: class and name (length u16, UTF-8), collider
-//! (a tag and its numbers), corners (count u32, three f32 each), colours (count u16; a tag and three f32 each), levels
-//! (count u8; an error as f32, then for each colour a count u32 and corner numbers, u16 each where the model has at
-//! most 65,536 corners, else u32).
+//! Binary format of libraries: a header with a checksum, then the models. All numbers are little-endian. Header: `DRIFTLIB`,
+//! version (u32), number of bytes after the header (u64), their SHA-256. Then the number of models (u32), and for each model:
+//! class and name (length u16, UTF-8), collider (a tag and its numbers), corners (count u32, three f32 each), colours (count
+//! u16; a tag and three f32 each), levels (count u8; an error as f32, then for each colour a count u32 of triangles and their
+//! corner indices: u16 if the model has at most 65,536 corners, else u32).
 
 use sha2::{Digest, Sha256};
 
@@ -17,11 +15,11 @@ use crate::assets::{ColliderShape, Paint};
 const MAGIC: &[u8; 8] = b"DRIFTLIB";
 const VERSION: u32 = 1;
 /// Bytes of the header.
-const HEADER: usize = 8 + 4 + 8 + 32;
+const HEADER_BYTES: usize = 8 + 4 + 8 + 32;
 /// Maximum number of corners of a model whose triangles are stored as 16-bit indices.
-pub(super) const SMALL: usize = 1 << 16;
+pub(super) const MAX_SMALL_CORNERS: usize = 1 << 16;
 /// Minimum size of a model in bytes.
-const LEAST_MODEL: usize = 32;
+const MIN_MODEL_BYTES: usize = 32;
 
 impl Library {
     /// Serialises the library; the same library gives the same bytes on every machine.
@@ -31,20 +29,19 @@ impl Library {
         for model in &self.models {
             write_model(model, &mut body);
         }
-        sealed(&body)
+        with_header(&body)
     }
 
-    /// Whether these bytes start like a library of any version, even an incomplete one.
+    /// Whether these bytes start like a library of any version, complete or not.
     pub fn is_meant(bytes: &[u8]) -> bool {
         bytes.starts_with(MAGIC)
     }
 
-    /// Parses the output of [`Library::to_bytes`].
-    ///
-    /// Accepts untrusted bytes; memory stays below a fixed multiple of their number.
+    /// Parses the output of [`Library::to_bytes`]. Accepts untrusted bytes; memory use stays below a fixed multiple of their
+    /// number.
     ///
     /// # Errors
-    /// [`EnvError::BadLibrary`] with the offset of the first fault.
+    /// [`EnvError::BadLibrary`], with the offset of the first fault, if the bytes are not a valid library.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, EnvError> {
         let mut reader = Reader::new(bytes);
         if reader.take(8).ok() != Some(MAGIC) {
@@ -57,10 +54,10 @@ impl Library {
         }
         let length = reader.u64()?;
         let digest = reader.take(32)?;
-        let body = &bytes[HEADER..];
+        let body = &bytes[HEADER_BYTES..];
         if length != body.len() as u64 {
             let found = format!("{} bytes of models", body.len());
-            return Err(bad(HEADER, &found, &format!("{length}, as the header says")));
+            return Err(bad(HEADER_BYTES, &found, &format!("{length}, as the header says")));
         }
         if Sha256::digest(body).as_slice() != digest {
             let found = "a checksum that does not fit";
@@ -76,7 +73,7 @@ impl Library {
             let found = format!("{count} models");
             return Err(bad(at, &found, &format!("at most {MAX_LIBRARY_MODELS}")));
         }
-        reader.expect_room(count, LEAST_MODEL, "models")?;
+        reader.expect_room(count, MIN_MODEL_BYTES, "models")?;
         let mut library = Self::default();
         for _ in 0..count {
             let at = reader.at;
@@ -93,8 +90,8 @@ impl Library {
 }
 
 /// Prepends the header to the models' bytes.
-fn sealed(body: &[u8]) -> Vec<u8> {
-    let mut bytes = Vec::with_capacity(HEADER + body.len());
+fn with_header(body: &[u8]) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(HEADER_BYTES + body.len());
     bytes.extend(MAGIC);
     bytes.extend(VERSION.to_le_bytes());
     bytes.extend((body.len() as u64).to_le_bytes());
@@ -126,7 +123,7 @@ fn write_model(model: &LibraryModel, out: &mut Vec<u8>) {
         for triangles in &level.triangles {
             out.extend((triangles.len() as u32).to_le_bytes());
             for corner in triangles.as_flattened() {
-                if model.corners.len() <= SMALL {
+                if model.corners.len() <= MAX_SMALL_CORNERS {
                     out.extend((*corner as u16).to_le_bytes());
                 } else {
                     out.extend(corner.to_le_bytes());
@@ -174,7 +171,7 @@ mod tests {
             vec![Paint::Main([0.5, 0.25, 1.0]), Paint::Fixed([0.0, 0.1, 0.2])],
             vec![level(0.0, &[[0, 2, 1], [0, 1, 3], [0, 3, 2]]), level(0.25, &[])],
         )
-        .expect("a tetrahedron is sound")
+        .expect("a tetrahedron is a valid model")
     }
 
     fn library() -> Library {
@@ -198,7 +195,7 @@ mod tests {
         let library = library();
         let bytes = library.to_bytes();
         assert_eq!(Library::from_bytes(&bytes), Ok(library));
-        assert_eq!(&bytes[..12], b"DRIFTLIB\x01\0\0\0", "the name, and version 1");
+        assert_eq!(&bytes[..12], b"DRIFTLIB\x01\0\0\0", "magic bytes and version 1");
     }
 
     #[test]
@@ -219,23 +216,23 @@ mod tests {
     fn errors_name_the_offset_and_the_fault() {
         #[track_caller]
         fn check(bytes: &[u8], expected: &str) {
-            let error = Library::from_bytes(bytes).expect_err("the bytes are no library");
+            let error = Library::from_bytes(bytes).expect_err("the bytes are not a library");
             assert_eq!(error.to_string(), expected);
         }
         check(
             b"GIF89a",
             "library, byte 0: found other bytes, expected DRIFTLIB, the beginning of a library",
         );
-        let many = sealed(&u32::MAX.to_le_bytes());
+        let many = with_header(&u32::MAX.to_le_bytes());
         check(
             &many,
             "library, byte 52: found 4294967295 models, expected at most 10000",
         );
-        let few = sealed(&9_u32.to_le_bytes());
+        let few = with_header(&9_u32.to_le_bytes());
         check(&few, "library, byte 56: found 9 models in 0 bytes, expected at most 0");
-        let mut body = library().to_bytes()[HEADER..].to_vec();
+        let mut body = library().to_bytes()[HEADER_BYTES..].to_vec();
         body.push(0);
-        let long = sealed(&body);
+        let long = with_header(&body);
         let end = long.len() - 1;
         check(
             &long,
@@ -246,13 +243,13 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
 
-        /// Fixes up the checksum, so that the corrupted models themselves are parsed.
+        /// Recomputes the checksum, so that the corrupted models themselves are parsed.
         #[test]
-        fn changed_models_are_refused_or_sound(
+        fn changed_models_are_refused_or_valid(
             changes in proptest::collection::vec((0_usize..2000, any::<u8>()), 1..8),
             length in 0_usize..2000,
         ) {
-            let mut body = library().to_bytes()[HEADER..].to_vec();
+            let mut body = library().to_bytes()[HEADER_BYTES..].to_vec();
             for (at, byte) in changes {
                 let at = at % body.len();
                 body[at] = byte;
@@ -260,8 +257,8 @@ mod tests {
             if length % 3 == 0 {
                 body.truncate(length);
             }
-            if let Ok(read) = Library::from_bytes(&sealed(&body)) {
-                prop_assert_eq!(read.to_bytes(), sealed(&body));
+            if let Ok(read) = Library::from_bytes(&with_header(&body)) {
+                prop_assert_eq!(read.to_bytes(), with_header(&body));
                 for model in read.models() {
                     let asset = model.asset();
                     prop_assert!(asset.height.is_finite() && asset.radius.is_finite());
@@ -272,7 +269,7 @@ mod tests {
         #[test]
         fn arbitrary_bytes_never_panic(body in proptest::collection::vec(any::<u8>(), 0..400)) {
             prop_assert!(Library::from_bytes(&body).is_err());
-            let _ = Library::from_bytes(&sealed(&body));
+            let _ = Library::from_bytes(&with_header(&body));
         }
     }
 }

@@ -47,7 +47,8 @@ impl Library {
     /// Adds a model.
     ///
     /// # Errors
-    /// [`EnvError::BadModel`] if the library already has a model with that class and name, or has [`MAX_LIBRARY_MODELS`].
+    /// [`EnvError::BadModel`] if the library already has a model with that class and name, or already has
+    /// [`MAX_LIBRARY_MODELS`] models.
     pub fn insert(&mut self, model: LibraryModel) -> Result<(), EnvError> {
         let refuse = |found: &str, expected: &str| {
             Err(EnvError::BadModel {

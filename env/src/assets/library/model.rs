@@ -5,7 +5,7 @@ use super::{
 };
 use crate::assets::{Asset, ColliderShape, Mesh, Paint, Part};
 
-/// A checked model of a library, in metres, on the ground, with levels of detail.
+/// A checked model of a library, in metres, standing on the ground, with levels of detail.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LibraryModel {
     pub(crate) class: String,
@@ -13,9 +13,9 @@ pub struct LibraryModel {
     pub(crate) collider: ColliderShape,
     /// Corners of all levels, in metres.
     pub(super) corners: Vec<[f32; 3]>,
-    /// The colours, each with triangles in every level.
+    /// The colours; every level has a list of triangles for each.
     pub(super) paints: Vec<Paint>,
-    /// From the full model to the coarsest level.
+    /// Levels of detail, from the full model to the coarsest.
     pub(super) levels: Vec<Detail>,
 }
 
@@ -29,10 +29,10 @@ pub(crate) struct Detail {
 }
 
 /// A fault in a model's parts: what was found, and what was expected.
-pub(crate) type Unsound = (String, String);
+pub(crate) type Fault = (String, String);
 
 impl LibraryModel {
-    /// Builds a model from these parts, or returns their fault.
+    /// Builds a model from these parts, or returns the first fault.
     pub(crate) fn checked(
         class: String,
         name: String,
@@ -40,7 +40,7 @@ impl LibraryModel {
         corners: Vec<[f32; 3]>,
         paints: Vec<Paint>,
         levels: Vec<Detail>,
-    ) -> Result<Self, Unsound> {
+    ) -> Result<Self, Fault> {
         for (what, text) in [("class", &class), ("model", &name)] {
             if text.trim().is_empty() || text.len() > MAX_NAME_BYTES || text.chars().any(char::is_control) {
                 let found = format!("a {what} of {} bytes", text.len());
@@ -94,7 +94,7 @@ impl LibraryModel {
                 return Err((found, "0 in level 0, then rising".into()));
             }
         }
-        if !is_sound(&collider) {
+        if !is_valid(&collider) {
             let expected = format!("sizes above 0, up to {MAX_MODEL_REACH} m");
             return Err((format!("a collider {collider:?}"), expected));
         }
@@ -113,7 +113,7 @@ impl LibraryModel {
         &self.class
     }
 
-    /// The model's name within its class: mostly "1", "2" and so on.
+    /// The model's name within its class, usually "1", "2" and so on.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -145,7 +145,7 @@ impl LibraryModel {
         let parts = self.parts(self.levels.get(level)?);
         let whole = self.asset();
         let asset = Asset::of_levels(vec![(0.0, parts)], self.collider.clone());
-        // Coarse levels may be smaller, so this keeps the full model's dimensions for placing it.
+        // Keeps the full model's dimensions for placing it, since coarse levels may be smaller.
         Some(Asset {
             height: whole.height,
             radius: whole.radius,
@@ -156,7 +156,7 @@ impl LibraryModel {
     /// A level's triangles by colour, each with only the corners it needs.
     fn parts(&self, level: &Detail) -> Vec<Part> {
         const UNUSED: u32 = u32::MAX;
-        let mut place = vec![UNUSED; self.corners.len()];
+        let mut new_index = vec![UNUSED; self.corners.len()];
         let mut parts = Vec::new();
         for (paint, triangles) in self.paints.iter().zip(&level.triangles) {
             if triangles.is_empty() {
@@ -165,20 +165,20 @@ impl LibraryModel {
             let mut mesh = Mesh::default();
             for triangle in triangles {
                 let corners = triangle.map(|corner| {
-                    let place = &mut place[corner as usize];
-                    if *place == UNUSED {
-                        *place = mesh.corners.len() as u32;
+                    let new_index = &mut new_index[corner as usize];
+                    if *new_index == UNUSED {
+                        *new_index = mesh.corners.len() as u32;
                         mesh.corners.push(self.corners[corner as usize]);
                     }
-                    *place
+                    *new_index
                 });
                 mesh.triangles.push(corners);
             }
-            // Clears only the used entries, so that many colours stay cheap.
+            // Clears only the entries in use, so that many colours stay cheap.
             triangles
                 .iter()
                 .flatten()
-                .for_each(|corner| place[*corner as usize] = UNUSED);
+                .for_each(|corner| new_index[*corner as usize] = UNUSED);
             parts.push(Part::new(mesh, *paint));
         }
         parts
@@ -186,7 +186,7 @@ impl LibraryModel {
 }
 
 /// Whether all dimensions of a collider are valid.
-fn is_sound(collider: &ColliderShape) -> bool {
+fn is_valid(collider: &ColliderShape) -> bool {
     let size = |metres: &f32| *metres > 0.0 && *metres <= 2.0 * MAX_MODEL_REACH;
     match collider {
         ColliderShape::Box { half } => half.iter().all(size),

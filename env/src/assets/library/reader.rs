@@ -1,7 +1,7 @@
-//! Parses models from untrusted bytes: never panics, and allocates only what the remaining bytes can fill.
+//! Parses models from untrusted bytes. Never panics, and allocates only what the remaining bytes can fill.
 
 use super::MAX_HULL_POINTS;
-use super::bytes::SMALL;
+use super::bytes::MAX_SMALL_CORNERS;
 use super::model::{Detail, LibraryModel};
 use crate::EnvError;
 use crate::assets::{ColliderShape, Paint};
@@ -140,7 +140,7 @@ impl<'a> Reader<'a> {
 
     fn triangles(&mut self, num_corners: usize) -> Result<Vec<[u32; 3]>, EnvError> {
         let count = self.u32()? as usize;
-        let is_small = num_corners <= SMALL;
+        let is_small = num_corners <= MAX_SMALL_CORNERS;
         self.expect_room(count, if is_small { 6 } else { 12 }, "triangles")?;
         let mut triangles = Vec::with_capacity(count);
         for _ in 0..count {
@@ -154,7 +154,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// An error about what was found at a byte, and what was expected.
+/// An error about the byte at an offset: what was found there, and what was expected.
 pub(super) fn bad(byte: usize, found: &str, expected: &str) -> EnvError {
     EnvError::BadLibrary {
         byte,

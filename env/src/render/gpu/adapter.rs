@@ -1,4 +1,4 @@
-//! Lists GPU adapters in order of preference, and explains why one cannot be used.
+//! Lists GPU adapters in order of preference, opens the first one that works, and explains why others do not.
 
 use crate::EnvError;
 
@@ -7,7 +7,7 @@ use super::device::{Clipping, Device};
 /// The adapters that a renderer may use.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum GpuChoice {
-    /// Any, GPUs first; software emulation, such as Mesa's llvmpipe, last.
+    /// Any: GPUs first, and software emulation, such as Mesa's llvmpipe, last.
     #[default]
     Any,
     /// Only GPUs.
@@ -18,35 +18,38 @@ pub enum GpuChoice {
 pub(super) fn all() -> Result<Vec<wgpu::Adapter>, String> {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
     descriptor.backends = wgpu::Backends::PRIMARY;
-    // No debug layers: they do not affect the image, and are slow.
+    // No debug layers, which are slow and do not affect the image.
     descriptor.flags = wgpu::InstanceFlags::empty();
     let instance = wgpu::Instance::new(descriptor);
     let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
     adapters.sort_by_key(|adapter| rank(adapter.get_info().device_type));
     if adapters.is_empty() {
         let options = wgpu::RequestAdapterOptions::default();
-        let said = pollster::block_on(instance.request_adapter(&options));
-        return Err(said.map_or_else(|error| shortened(&error.to_string()), |_| "no adapter".to_owned()));
+        let message = pollster::block_on(instance.request_adapter(&options));
+        return Err(message.map_or_else(|error| shortened(&error.to_string()), |_| "no adapter".to_owned()));
     }
     Ok(adapters)
 }
 
-/// wgpu's message about a machine without adapters, without the APIs that this system or build lacks.
-fn shortened(said: &str) -> String {
-    let (what, why) = said.split_once("; ").unwrap_or((said, ""));
-    let idle = |part: &&str| part.ends_with("not compiled in") || part.ends_with("not requested");
-    let why: Vec<&str> = why.split(", ").filter(|part| !part.is_empty() && !idle(part)).collect();
+/// wgpu's message about a machine without adapters, shortened to the APIs that this system and build support.
+fn shortened(message: &str) -> String {
+    let (what, why) = message.split_once("; ").unwrap_or((message, ""));
+    let is_irrelevant = |part: &&str| part.ends_with("not compiled in") || part.ends_with("not requested");
+    let why: Vec<&str> = why
+        .split(", ")
+        .filter(|part| !part.is_empty() && !is_irrelevant(part))
+        .collect();
     if why.is_empty() {
-        return said.to_owned();
+        return message.to_owned();
     }
     format!("{}: {}", what.to_lowercase(), why.join(", "))
 }
 
-/// Opens the first adapter for which `prove` succeeds.
+/// Opens the first adapter for which `test` succeeds.
 ///
 /// # Errors
-/// [`EnvError::NoGpu`] with the adapters that were tried.
-pub(super) fn first<T>(choice: GpuChoice, prove: impl Fn(Device) -> Result<T, EnvError>) -> Result<T, EnvError> {
+/// [`EnvError::NoGpu`], with the adapters that were tried, if none works.
+pub(super) fn open_first<T>(choice: GpuChoice, test: impl Fn(Device) -> Result<T, EnvError>) -> Result<T, EnvError> {
     let adapters = all().map_err(|reason| EnvError::NoGpu { tried: vec![reason] })?;
     let mut tried = Vec::new();
     for adapter in adapters {
@@ -55,10 +58,10 @@ pub(super) fn first<T>(choice: GpuChoice, prove: impl Fn(Device) -> Result<T, En
             Err("is software".to_owned())
         } else {
             Device::open(&adapter, Clipping::IfPossible)
-                .and_then(|device| prove(device).map_err(|error| error.to_string()))
+                .and_then(|device| test(device).map_err(|error| error.to_string()))
         };
         match outcome {
-            Ok(proven) => return Ok(proven),
+            Ok(tested) => return Ok(tested),
             Err(reason) => tried.push(format!("{} ({}): {reason}", info.name, info.backend)),
         }
     }
@@ -96,7 +99,7 @@ mod tests {
 
     #[test]
     fn error_names_only_apis_that_could_be_used() {
-        for (said, expected) in [
+        for (message, expected) in [
             (
                 "No suitable adapter found; noop not requested, vulkan drivers could not be loaded, metal support not compiled in",
                 "no suitable adapter found: vulkan drivers could not be loaded",
@@ -104,7 +107,7 @@ mod tests {
             ("Nothing; gl not requested", "Nothing; gl not requested"),
             ("Nothing", "Nothing"),
         ] {
-            assert_eq!(shortened(said), expected);
+            assert_eq!(shortened(message), expected);
         }
     }
 

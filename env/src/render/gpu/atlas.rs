@@ -1,4 +1,4 @@
-//! Atlases: textures that hold many tiles side by side, and buffers for reading them back.
+//! Atlases: textures with many tiles side by side, and buffers for reading them back.
 
 use super::device::Device;
 use super::pipelines::{DEPTH_FORMAT, WORD_FORMAT};
@@ -7,10 +7,10 @@ use super::pipelines::{DEPTH_FORMAT, WORD_FORMAT};
 const BYTES: u32 = 4;
 
 /// Alignment in pixels of rows that are copied from a texture.
-const ALIGNED: u32 = wgpu::COPY_BYTES_PER_ROW_ALIGNMENT / BYTES;
+const ROW_ALIGNMENT: u32 = wgpu::COPY_BYTES_PER_ROW_ALIGNMENT / BYTES;
 
 /// Maximum number of pixels in a pass, unless a single tile has more.
-const MOST_PIXELS: u32 = 1 << 24;
+const MAX_PASS_PIXELS: u32 = 1 << 24;
 
 /// The images that a pass reads back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -31,22 +31,22 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    /// A nearly square grid for up to `count` tiles, on a device with textures of at most `most` pixels per side; `None` if not
-    /// even one tile fits.
-    pub(super) fn new(tile: [u32; 2], count: usize, most: u32) -> Option<Self> {
+    /// A nearly square grid for up to `count` tiles, on a device with textures of at most `max_side` pixels per side; `None` if
+    /// not even one tile fits.
+    pub(super) fn new(tile: [u32; 2], count: usize, max_side: u32) -> Option<Self> {
         let [width, height] = tile;
         // Textures are padded to aligned rows.
-        let most_columns = most / ALIGNED * ALIGNED / width.max(1);
-        let most_rows = most / height.max(1);
-        if most_columns == 0 || most_rows == 0 {
+        let max_columns = max_side / ROW_ALIGNMENT * ROW_ALIGNMENT / width.max(1);
+        let max_rows = max_side / height.max(1);
+        if max_columns == 0 || max_rows == 0 {
             return None;
         }
         let count = u32::try_from(rounded(count))
             .unwrap_or(u32::MAX)
-            .min((MOST_PIXELS / (width * height)).max(1))
-            .min(most_columns.saturating_mul(most_rows));
+            .min((MAX_PASS_PIXELS / (width * height)).max(1))
+            .min(max_columns.saturating_mul(max_rows));
         let square = (f64::from(count) * f64::from(height) / f64::from(width)).sqrt().ceil() as u32;
-        let columns = square.max(count.div_ceil(most_rows)).clamp(1, most_columns).min(count);
+        let columns = square.max(count.div_ceil(max_rows)).clamp(1, max_columns).min(count);
         let rows = count.div_ceil(columns);
         Some(Self { tile, columns, rows })
     }
@@ -67,7 +67,7 @@ impl Grid {
 
     /// Width and height in pixels; the width is padded to aligned rows.
     fn size(self) -> [u32; 2] {
-        let width = (self.columns * self.tile[0]).next_multiple_of(ALIGNED);
+        let width = (self.columns * self.tile[0]).next_multiple_of(ROW_ALIGNMENT);
         [width, self.rows * self.tile[1]]
     }
 }
@@ -77,30 +77,30 @@ fn rounded(count: usize) -> usize {
     count.next_multiple_of((count.next_power_of_two() / 8).max(1))
 }
 
-/// Maximum number of atlases kept, and of pixels in all of them together.
-const MOST_KEPT: (usize, u64) = (16, 1 << 25);
+/// Maximum number of cached atlases, and of pixels in all of them together.
+const MAX_CACHED: (usize, u64) = (16, 1 << 25);
 
-/// Cached atlases of several sizes: depths can only be copied from whole textures, so each grid needs its own.
+/// Cached atlases of several sizes. Depths can only be copied from whole textures, so each grid needs its own atlas.
 #[derive(Debug, Default)]
 pub(super) struct Atlases(pub(super) Vec<Atlas>);
 
 impl Atlases {
     /// Takes an atlas for this grid, or creates one.
     pub(super) fn take(&mut self, device: &Device, grid: Grid, planes: Planes) -> Atlas {
-        let serves = |atlas: &Atlas| {
+        let fits = |atlas: &Atlas| {
             let room = atlas.back.size() >= bytes_back(grid, planes);
             atlas.size == grid.size() && room && (atlas.items.is_some() || !planes.items)
         };
-        if let Some(place) = self.0.iter().position(serves) {
-            return self.0.remove(place);
+        if let Some(index) = self.0.iter().position(fits) {
+            return self.0.remove(index);
         }
         let pixels = |size: [u32; 2]| u64::from(size[0]) * u64::from(size[1]);
-        let (most, most_pixels) = MOST_KEPT;
+        let (max_atlases, max_pixels) = MAX_CACHED;
         let mut total = pixels(grid.size());
         // Evicts the oldest first.
-        let kept = self.0.iter().rev().take(most - 1).take_while(|atlas| {
+        let kept = self.0.iter().rev().take(max_atlases - 1).take_while(|atlas| {
             total += pixels(atlas.size);
-            total <= most_pixels
+            total <= max_pixels
         });
         let count = kept.count();
         self.0.drain(..self.0.len() - count);
@@ -108,7 +108,7 @@ impl Atlases {
     }
 }
 
-/// Textures, and the buffer that they are copied to.
+/// Textures, and the buffer to which they are copied.
 #[derive(Debug)]
 pub(super) struct Atlas {
     /// Width and height in pixels.
@@ -263,9 +263,9 @@ fn attachment(view: &wgpu::TextureView) -> wgpu::RenderPassColorAttachment<'_> {
 mod tests {
     use super::*;
 
-    fn check(tile: [u32; 2], count: usize, most: u32, expected: Option<[u32; 2]>) {
-        let found = Grid::new(tile, count, most).map(|grid| [grid.columns, grid.rows]);
-        assert_eq!(found, expected, "{count} tiles of {tile:?} in at most {most}");
+    fn check(tile: [u32; 2], count: usize, max_side: u32, expected: Option<[u32; 2]>) {
+        let found = Grid::new(tile, count, max_side).map(|grid| [grid.columns, grid.rows]);
+        assert_eq!(found, expected, "{count} tiles of {tile:?} in at most {max_side}");
     }
 
     #[test]
@@ -286,7 +286,7 @@ mod tests {
 
     #[test]
     fn corners_follow_row_order() {
-        let grid = Grid::new([10, 20], 8, 4096).expect("it fits");
+        let grid = Grid::new([10, 20], 8, 4096).expect("the tiles fit");
         assert_eq!([grid.columns, grid.rows], [4, 2]);
         assert_eq!(grid.corner(5), [10, 20]);
         assert_eq!(grid.size(), [64, 40]);

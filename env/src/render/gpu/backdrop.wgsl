@@ -73,7 +73,7 @@ fn ground(whole: Whole, inverse: f32, offset: vec2f) -> vec3f {
     let across = whole.place_right.zw * metres / SQUARE;
     let furthest = abs(place) + abs(across) * whole.zenith_width.w;
     let squares = vec2u((place + SHIFT) + across * offset.x);
-    let is_seen = max(furthest.x, furthest.y) < MOST_SQUARES;
+    let is_seen = max(furthest.x, furthest.y) < MAX_SQUARES;
     let both = select(0u, squares.x ^ squares.y, is_seen);
     let fine = select(1.0 + change.x, 1.0 - change.x, (both & 1u) != 0u);
     let share = select(fine + change.y, fine - change.y, (both & 8u) != 0u);

@@ -1,4 +1,4 @@
-//! [`Device`]: a GPU device that never panics: errors are recorded and returned.
+//! [`Device`]: a GPU device that records and returns errors instead of panicking.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -13,33 +13,33 @@ pub(super) struct Device {
     pub(super) limits: wgpu::Limits,
     /// Whether triangles can be clipped at the edges of their tile; otherwise each tile is drawn separately.
     pub(super) has_clip_distances: bool,
-    complaints: Complaints,
+    errors: ErrorLog,
 }
 
 /// The first error since the last check, and the reason if the device is lost for good.
 #[derive(Clone, Debug, Default)]
-struct Complaints(Arc<Mutex<(Vec<String>, Option<String>)>>);
+struct ErrorLog(Arc<Mutex<(Vec<String>, Option<String>)>>);
 
-impl Complaints {
-    fn note(&self, text: String) {
+impl ErrorLog {
+    fn record(&self, text: String) {
         let (first, _) = &mut *self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        // Errors that follow from the first one explain nothing.
+        // Ignores later errors, which usually follow from the first one.
         if first.is_empty() {
             first.push(text);
         }
     }
 
-    fn note_loss(&self, text: String) {
+    fn record_loss(&self, text: String) {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).1 = Some(text);
     }
 
     /// The reason why the device was lost, or the first error since the last call.
     fn take(&self) -> Option<String> {
         let (first, lost) = &mut *self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let mistake = first.pop();
+        let first_error = first.pop();
         lost.as_ref()
             .map(|reason| format!("the device is lost ({reason}); make a new renderer"))
-            .or(mistake)
+            .or(first_error)
     }
 }
 
@@ -60,18 +60,18 @@ impl Device {
             ..Default::default()
         }));
         let (device, queue) = opened.map_err(|error| error.to_string())?;
-        let complaints = Complaints::default();
-        let noted = complaints.clone();
-        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| noted.note(explained(&error))));
-        let noted = complaints.clone();
-        device.set_device_lost_callback(move |reason, text| noted.note_loss(format!("{reason:?}: {text}")));
+        let errors = ErrorLog::default();
+        let log = errors.clone();
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| log.record(one_line(&error))));
+        let log = errors.clone();
+        device.set_device_lost_callback(move |reason, text| log.record_loss(format!("{reason:?}: {text}")));
         Ok(Self {
             card: device,
             queue,
             info: adapter.get_info(),
             limits,
             has_clip_distances: features.contains(clip),
-            complaints,
+            errors,
         })
     }
 
@@ -85,9 +85,9 @@ impl Device {
     }
 
     /// # Errors
-    /// [`EnvError::Gpu`] if anything went wrong since this was last called.
+    /// [`EnvError::Gpu`] if an error was recorded since the last call.
     pub(super) fn check(&self) -> Result<(), EnvError> {
-        self.complaints.take().map_or(Ok(()), |reason| Err(self.failed(reason)))
+        self.errors.take().map_or(Ok(()), |reason| Err(self.failed(reason)))
     }
 
     pub(super) fn failed(&self, reason: String) -> EnvError {
@@ -100,13 +100,13 @@ impl Device {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Clipping {
     IfPossible,
-    /// As on an adapter without support; for tests.
+    /// As on an adapter without support for clipping; for tests.
     #[cfg(test)]
     Never,
 }
 
 /// An error as one line.
-fn explained(error: &wgpu::Error) -> String {
+fn one_line(error: &wgpu::Error) -> String {
     let text = match error {
         wgpu::Error::OutOfMemory { .. } => "out of graphics memory".to_owned(),
         wgpu::Error::Validation { description, .. } | wgpu::Error::Internal { description, .. } => description.clone(),

@@ -1,4 +1,4 @@
-//! Collects the instances of one tile: one per visible object, and one per triangle of walls that are not drawn by formula.
+//! Collects the instances of one tile: one per visible object, and one per triangle of panels that are not drawn by formula.
 
 use std::sync::Arc;
 
@@ -27,7 +27,7 @@ pub(super) type InstanceWords = [u32; WORDS];
 pub(super) enum Shape {
     /// A triangle whose corners are in the instance itself.
     Triangle,
-    /// An asset and its level: the address of the level's materials, which is valid as long as the asset.
+    /// An asset, and the address of its level's materials, which is valid as long as the asset lives.
     Asset(Arc<Asset>, usize),
 }
 
@@ -42,8 +42,8 @@ pub(super) struct TileContents {
 }
 
 impl TileContents {
-    /// Collects everything that a camera sees of a scene in an image of this size. The tile's position is set later, by
-    /// [`TileContents::place`].
+    /// Collects everything in a scene that a camera sees in an image of this size. [`TileContents::place`] sets the tile's
+    /// position later.
     pub(super) fn gather(&mut self, scene: &Scene, camera: &Camera, size: [u32; 2], labels: Labels) {
         let view = View::new(camera, size[0] as usize, size[1] as usize);
         let shader = Shader::new(&scene.light);
@@ -94,9 +94,9 @@ impl TileContents {
         for (block, lane) in group.blocks.iter().flat_map(triangles) {
             let normal = normal(block, lane);
             let lit = (0..3).map(|axis| normal[axis] * at.sun[axis]).sum();
-            let of_corners = corners_as_rows(&at, corners(block, lane));
+            let placement = corners_as_rows(&at, corners(block, lane));
             self.instances
-                .push(instance(&of_corners, [lit, 0.0, 0.0], [r, g, b, 1.0], [label, 0]));
+                .push(instance(&placement, [lit, 0.0, 0.0], [r, g, b, 1.0], [label, 0]));
             self.shapes.push(Shape::Triangle);
         }
     }
@@ -105,7 +105,7 @@ impl TileContents {
 /// Contents of the highest byte of a pixel's word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Labels {
-    /// Only the category: the class follows from the item.
+    /// Only the category; the class follows from the item.
     CategoryOnly,
     /// Class and category.
     WithClass,
@@ -113,8 +113,8 @@ pub(super) enum Labels {
 
 /// The lanes of a block that contain a triangle.
 pub(super) fn triangles(block: &Block) -> impl Iterator<Item = (&Block, usize)> {
-    let real = |lane: &usize| normal(block, *lane) != [0.0; 3];
-    (0..BLOCK).filter(real).map(move |lane| (block, lane))
+    let has_triangle = |lane: &usize| normal(block, *lane) != [0.0; 3];
+    (0..BLOCK).filter(has_triangle).map(move |lane| (block, lane))
 }
 
 pub(super) fn normal(block: &Block, lane: usize) -> [f32; 3] {
@@ -125,8 +125,8 @@ pub(super) fn corners(block: &Block, lane: usize) -> [[f32; 3]; 3] {
     [0, 3, 6].map(|first| [0, 1, 2].map(|axis| block.corners[first + axis][lane]))
 }
 
-/// The projection of a triangle's corners, as rows for the corners (1, 0, 0), (0, 1, 0) and (0, 0, 1): neighbouring triangles
-/// then share their edges bit for bit.
+/// The projection of a triangle's corners, as rows for the corners (1, 0, 0), (0, 1, 0) and (0, 0, 1), so that neighbouring
+/// triangles share their edges bit for bit.
 fn corners_as_rows(at: &Placement, corners: [[f32; 3]; 3]) -> Placement {
     let row = |row: &[f32; 4]| {
         let [a, b, c] = corners.map(|[x, y, z]| x * row[0] + (y * row[1] + (z * row[2] + row[3])));

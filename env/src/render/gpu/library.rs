@@ -11,8 +11,9 @@ use crate::assets::{Asset, Material, Paint};
 /// Numbers per vertex: position, normal, colour, and whether the object's colour replaces it.
 pub(super) const VERTEX_LENGTH: usize = 10;
 
-/// Above this many vertices the cache is cleared, so that an endless series of new assets cannot fill the memory: 160 MiB.
-const MOST_VERTICES: usize = 1 << 22;
+/// Number of vertices, 160 MiB, above which the cache is cleared, so that an endless series of new assets cannot fill the
+/// memory.
+const MAX_VERTICES: usize = 1 << 22;
 
 /// Range of an asset's triangles among all vertices.
 pub(super) type Mesh = Range<u32>;
@@ -22,7 +23,7 @@ pub(super) type Mesh = Range<u32>;
 pub(super) struct Library {
     pub(super) meshes: Vec<Mesh>,
     /// Indices of meshes, by the address of their materials.
-    known: HashMap<usize, u32>,
+    mesh_of_materials: HashMap<usize, u32>,
     /// Keeps the assets alive, so that addresses are not reused.
     assets: Vec<Arc<Asset>>,
     vertices: Vec<f32>,
@@ -36,7 +37,7 @@ impl Library {
         let mut library = Self::default();
         for corner in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] {
             library.vertices.extend(corner);
-            // An upright face with its instance's colour.
+            // A vertical face with its instance's colour.
             library.vertices.extend([1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
         }
         library.meshes.push(0..3);
@@ -45,15 +46,15 @@ impl Library {
 
     /// Clears the cache if it is too large, which invalidates all mesh indices.
     pub(super) fn make_room(&mut self) {
-        if self.vertices.len() / VERTEX_LENGTH > MOST_VERTICES {
+        if self.vertices.len() / VERTEX_LENGTH > MAX_VERTICES {
             *self = Self::new();
         }
     }
 
-    /// The index of a shape's mesh; adds new ones.
+    /// The index of a shape's mesh; adds the mesh if it is new.
     pub(super) fn number(&mut self, shape: &Shape) -> u32 {
         let Shape::Asset(asset, address) = shape else { return 0 };
-        if let Some(&number) = self.known.get(address) {
+        if let Some(&number) = self.mesh_of_materials.get(address) {
             return number;
         }
         let number = self.meshes.len() as u32;
@@ -65,7 +66,7 @@ impl Library {
             self.add(material);
         }
         self.meshes.push(first..self.num_vertices());
-        self.known.insert(*address, number);
+        self.mesh_of_materials.insert(*address, number);
         self.assets.push(Arc::clone(asset));
         number
     }

@@ -22,7 +22,7 @@ pub(super) use survey::survey;
 use self::atlas::{Grid, Planes};
 use self::device::Device;
 use self::instances::{Labels, TileContents};
-use self::pass::{Pass, Stage, most_in_a_pass};
+use self::pass::{Pass, Stage, pass_limits};
 use super::compose::CATEGORY_BITS;
 use super::cpu::{CpuRenderer, average};
 use super::frame::Frame;
@@ -60,13 +60,13 @@ impl GpuRenderer {
     /// A renderer on the first adapter that renders a small test image.
     ///
     /// # Errors
-    /// [`EnvError::NoGpu`] with the adapters that were tried, and why each failed.
+    /// [`EnvError::NoGpu`], with the adapters that were tried and why each failed, if none works.
     pub fn new(choice: GpuChoice) -> Result<Self, EnvError> {
-        adapter::first(choice, Self::proven)
+        adapter::open_first(choice, Self::tested)
     }
 
     /// A renderer on this device, if it renders a small test image.
-    fn proven(device: Device) -> Result<Self, EnvError> {
+    fn tested(device: Device) -> Result<Self, EnvError> {
         let stage = Stage::new(&device);
         device.check()?;
         let mut renderer = Self {
@@ -98,7 +98,7 @@ impl GpuRenderer {
     /// Renders all images of a frame.
     ///
     /// # Errors
-    /// As [`GpuRenderer::draw_batch`].
+    /// The errors of [`GpuRenderer::draw_batch`].
     pub fn render(&mut self, scene: &Scene, camera: &Camera, frame: &mut Frame) -> Result<(), EnvError> {
         if frame.width == 0 || frame.height == 0 {
             return Ok(());
@@ -109,7 +109,7 @@ impl GpuRenderer {
     /// Renders the images that the target requests.
     ///
     /// # Errors
-    /// As [`GpuRenderer::draw_batch`].
+    /// The errors of [`GpuRenderer::draw_batch`].
     pub fn draw(&mut self, scene: &Scene, camera: &Camera, target: &mut Target<'_>) -> Result<(), EnvError> {
         self.draw_batch(&mut [Picture {
             scene,
@@ -118,17 +118,17 @@ impl GpuRenderer {
         }])
     }
 
-    /// Draws carried things onto the colours, on the CPU.
+    /// Draws carried things onto the colour image, on the CPU.
     pub(super) fn draw_carried(&mut self, scene: &Scene, carried: &[u32], target: &mut Target<'_>) {
         self.hand.draw(scene, carried, target);
     }
 
-    /// Renders many images, those of the same size together. The natural style is rendered on the CPU.
+    /// Renders many images; images of the same size are rendered together. The natural style is rendered on the CPU.
     ///
     /// # Errors
-    /// [`EnvError::PictureSize`] as for [`CpuRenderer::draw`](super::CpuRenderer::draw), and [`EnvError::GpuPicture`] for
-    /// images too large for this adapter, before anything is drawn; [`EnvError::Gpu`] if the device fails: some images may be
-    /// stale then.
+    /// Before anything is drawn, [`EnvError::PictureSize`] as for [`CpuRenderer::draw`](super::CpuRenderer::draw), and
+    /// [`EnvError::GpuPicture`] for images too large for this adapter. [`EnvError::Gpu`] if the device fails; some images may
+    /// be stale then.
     pub fn draw_batch(&mut self, pictures: &mut [Picture<'_>]) -> Result<(), EnvError> {
         let mut jobs = Vec::with_capacity(pictures.len());
         for (index, picture) in pictures.iter().enumerate() {
@@ -137,27 +137,27 @@ impl GpuRenderer {
                 jobs.extend(jobs_for(index, picture));
             }
         }
-        let most = self.device.limits.max_texture_dimension_2d;
+        let max_side = self.device.limits.max_texture_dimension_2d;
         for job in &jobs {
-            let single = Grid::new(job.size, 1, most);
+            let single = Grid::new(job.size, 1, max_side);
             let room = self.device.limits.max_buffer_size;
             if single.is_none_or(|grid| atlas::bytes_back(grid, job.planes) > room) {
                 let adapter = self.device.info.name.clone();
                 return Err(EnvError::GpuPicture {
                     width: job.size[0],
                     height: job.size[1],
-                    most,
+                    most: max_side,
                     adapter,
                 });
             }
         }
         jobs.sort_by_key(|job| (job.size, job.planes));
-        let [most_tiles, _] = most_in_a_pass(&self.device.limits);
+        let [max_tiles, _] = pass_limits(&self.device.limits);
         for alike in jobs.chunk_by(|a, b| (a.size, a.planes) == (b.size, b.planes)) {
             let mut rest = alike;
             while let Some(first) = rest.first() {
-                let grid = Grid::new(first.size, rest.len(), most);
-                let count = grid.map_or(1, Grid::capacity).min(rest.len()).min(most_tiles);
+                let grid = Grid::new(first.size, rest.len(), max_side);
+                let count = grid.map_or(1, Grid::capacity).min(rest.len()).min(max_tiles);
                 let (now, later) = rest.split_at(count);
                 self.draw_pass(now, pictures)?;
                 rest = later;
@@ -166,7 +166,7 @@ impl GpuRenderer {
         let is_natural = |picture: &&mut Picture<'_>| picture.scene.natural.is_some();
         let (mut natural, plain): (Vec<_>, Vec<_>) = pictures.iter_mut().partition(is_natural);
         for picture in plain {
-            picture.target.see_fog(&picture.scene.light);
+            picture.target.apply_fog_to_depth(&picture.scene.light);
         }
         natural
             .par_iter_mut()
@@ -191,15 +191,15 @@ impl GpuRenderer {
             .iter()
             .map(|content| content.instances.len())
             .sum();
-        let [_, most] = most_in_a_pass(&self.device.limits);
-        let outcome = if count <= most {
+        let [_, max_instances] = pass_limits(&self.device.limits);
+        let outcome = if count <= max_instances {
             self.draw_gathered(jobs, pictures, &mut contents[..jobs.len()])
         } else if jobs.len() > 1 {
             let (low, high) = jobs.split_at(jobs.len() / 2);
             self.draw_pass(low, pictures)
                 .and_then(|()| self.draw_pass(high, pictures))
         } else {
-            let reason = format!("found {count} objects in sight, expected at most {most}");
+            let reason = format!("found {count} objects in sight, expected at most {max_instances}");
             Err(self.device.failed(reason))
         };
         self.contents = contents;
@@ -213,8 +213,8 @@ impl GpuRenderer {
         contents: &mut [TileContents],
     ) -> Result<(), EnvError> {
         let Some(first) = jobs.first() else { return Ok(()) };
-        let most = self.device.limits.max_texture_dimension_2d;
-        let Some(grid) = Grid::new(first.size, jobs.len(), most) else {
+        let max_side = self.device.limits.max_texture_dimension_2d;
+        let Some(grid) = Grid::new(first.size, jobs.len(), max_side) else {
             return Ok(());
         };
         let fog = jobs
@@ -291,18 +291,18 @@ mod tests {
     use super::*;
 
     /// A renderer on each adapter of this machine, if any.
-    fn each(clipping: Clipping) -> Vec<GpuRenderer> {
+    fn renderers(clipping: Clipping) -> Vec<GpuRenderer> {
         let adapters = adapter::all().unwrap_or_default();
-        let open = |adapter: &wgpu::Adapter| Device::open(adapter, clipping).map(GpuRenderer::proven);
+        let open = |adapter: &wgpu::Adapter| Device::open(adapter, clipping).map(GpuRenderer::tested);
         adapters.iter().filter_map(|adapter| open(adapter).ok()?.ok()).collect()
     }
 
-    fn several(renderer: &mut GpuRenderer) -> Result<Vec<Frame>, EnvError> {
+    fn render_several(renderer: &mut GpuRenderer) -> Result<Vec<Frame>, EnvError> {
         let world = driftworld_spec::WorldDraft {
             objects: vec![driftworld_spec::Object::new("tree", [1.0, 4.0]); 3],
             ..Default::default()
         };
-        let scene = Scene::from_world(&world.check().expect("the world is sound"));
+        let scene = Scene::from_world(&world.check().expect("the world is valid"));
         let mut frames = vec![Frame::new(40, 30); 5];
         let mut pictures: Vec<_> = (0..)
             .zip(&mut frames)
@@ -319,13 +319,13 @@ mod tests {
 
     #[test]
     fn adapter_without_clipping_renders_the_same_images() {
-        let together = each(Clipping::IfPossible).into_iter();
-        for (mut clips, mut does_not) in together.zip(each(Clipping::Never)) {
+        let together = renderers(Clipping::IfPossible).into_iter();
+        for (mut clips, mut does_not) in together.zip(renderers(Clipping::Never)) {
             assert!(!does_not.device.has_clip_distances);
-            let pairs = several(&mut clips)
-                .expect("it draws")
+            let pairs = render_several(&mut clips)
+                .expect("the images render")
                 .into_iter()
-                .zip(several(&mut does_not).expect("it draws"));
+                .zip(render_several(&mut does_not).expect("the images render"));
             for (a, b) in pairs {
                 let differing = a.instance.iter().zip(&b.instance).filter(|(a, b)| a != b).count();
                 assert!(differing <= 2, "{differing} of 1200 pixels");
@@ -336,10 +336,10 @@ mod tests {
 
     #[test]
     fn lost_device_returns_an_error_without_panic() {
-        for mut renderer in each(Clipping::IfPossible) {
+        for mut renderer in renderers(Clipping::IfPossible) {
             renderer.device.card.destroy();
             for _ in 0..2 {
-                let error = several(&mut renderer).expect_err("there is no device any more");
+                let error = render_several(&mut renderer).expect_err("the device is lost");
                 assert_eq!(error.code(), "env/gpu", "{error}");
             }
         }

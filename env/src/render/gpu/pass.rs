@@ -17,8 +17,8 @@ pub(super) struct Stage {
     pipelines: Pipelines,
     library: Library,
     atlases: Atlases,
-    tiles: Growing,
-    instances: Growing,
+    tiles: GrowingBuffer,
+    instances: GrowingBuffer,
     sizes: wgpu::Buffer,
     /// Instances of all tiles, grouped by mesh.
     sorted: Vec<InstanceWords>,
@@ -28,7 +28,7 @@ pub(super) struct Stage {
     counts: Vec<u32>,
 }
 
-/// Instances of one mesh, drawn together; within one tile if triangles cannot be clipped at tiles' edges.
+/// Instances of one mesh, drawn together; of a single tile if triangles cannot be clipped at tiles' edges.
 #[derive(Clone, Debug)]
 struct Draw {
     mesh: Mesh,
@@ -38,13 +38,13 @@ struct Draw {
 
 /// A buffer that is replaced by a larger one when necessary.
 #[derive(Debug)]
-struct Growing {
+struct GrowingBuffer {
     label: &'static str,
     usage: wgpu::BufferUsages,
     buffer: Option<wgpu::Buffer>,
 }
 
-impl Growing {
+impl GrowingBuffer {
     fn new(label: &'static str, usage: wgpu::BufferUsages) -> Self {
         Self {
             label,
@@ -58,14 +58,14 @@ impl Growing {
         let (label, usage) = (self.label, self.usage);
         self.buffer.take_if(|buffer| buffer.size() < needed);
         let buffer = self.buffer.get_or_insert_with(|| {
-            let roomy = needed.next_power_of_two();
-            let most = device.limits.max_buffer_size;
-            let most = if usage.contains(wgpu::BufferUsages::STORAGE) {
-                most.min(device.limits.max_storage_buffer_binding_size)
+            let preferred = needed.next_power_of_two();
+            let max = device.limits.max_buffer_size;
+            let max = if usage.contains(wgpu::BufferUsages::STORAGE) {
+                max.min(device.limits.max_storage_buffer_binding_size)
             } else {
-                most
+                max
             };
-            device.buffer(label, roomy.min(most).max(needed), usage)
+            device.buffer(label, preferred.min(max).max(needed), usage)
         });
         if !bytes.is_empty() {
             device.queue.write_buffer(buffer, 0, bytes);
@@ -88,8 +88,8 @@ impl Stage {
             pipelines: Pipelines::new(device),
             library: Library::new(),
             atlases: Atlases::default(),
-            tiles: Growing::new("tiles", wgpu::BufferUsages::STORAGE),
-            instances: Growing::new("instances", wgpu::BufferUsages::VERTEX),
+            tiles: GrowingBuffer::new("tiles", wgpu::BufferUsages::STORAGE),
+            instances: GrowingBuffer::new("instances", wgpu::BufferUsages::VERTEX),
             sizes: device.buffer("atlas", 16, wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST),
             sorted: Vec::new(),
             tile_words: Vec::new(),
@@ -99,7 +99,7 @@ impl Stage {
         }
     }
 
-    /// Draws the tiles, and passes their bytes to `take`.
+    /// Draws the tiles, and passes the bytes of their images to `take`.
     ///
     /// # Errors
     /// [`EnvError::Gpu`] for any error of the device; the cached buffers are dropped then.
@@ -201,7 +201,7 @@ impl Stage {
         }
     }
 
-    /// Counting sort: mesh indices are small.
+    /// Sorts by counting, since mesh indices are small.
     fn sort_part(&mut self, contents: &[TileContents], first_tile: usize) {
         self.numbers.clear();
         for shape in contents.iter().flat_map(|content| &content.shapes) {
@@ -229,19 +229,19 @@ impl Stage {
         self.sorted.resize(start as usize, [0; WORDS]);
         let instances = contents.iter().flat_map(|content| &content.instances);
         for (instance, number) in instances.zip(&self.numbers) {
-            let place = &mut self.counts[*number as usize];
-            self.sorted[*place as usize] = *instance;
-            *place += 1;
+            let next = &mut self.counts[*number as usize];
+            self.sorted[*next as usize] = *instance;
+            *next += 1;
         }
     }
 }
 
 /// Maximum numbers of tiles and of instances per pass on this device.
-pub(super) fn most_in_a_pass(limits: &wgpu::Limits) -> [usize; 2] {
+pub(super) fn pass_limits(limits: &wgpu::Limits) -> [usize; 2] {
     let storage = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
     let tile = (QUADS * 16) as u64;
     let instance = (WORDS * size_of::<u32>()) as u64;
-    [storage / tile, limits.max_buffer_size / instance].map(|most| usize::try_from(most).unwrap_or(usize::MAX))
+    [storage / tile, limits.max_buffer_size / instance].map(|max| usize::try_from(max).unwrap_or(usize::MAX))
 }
 
 /// Waits for the images and passes them to `take`.
@@ -253,10 +253,10 @@ fn read(device: &Device, atlas: &Atlas, layout: Layout, take: impl FnOnce(&[u8],
             .unwrap_or_else(|| device.failed(format!("the images did not come back: {reason}")))
     };
     let done = Arc::new(OnceLock::new());
-    let noted = Arc::clone(&done);
+    let result = Arc::clone(&done);
     atlas.back.map_async(wgpu::MapMode::Read, ..layout.end, move |outcome| {
         // The callback runs once, so the cell is still empty.
-        let _ = noted.set(outcome);
+        let _ = result.set(outcome);
     });
     let waited = device.card.poll(wgpu::PollType::wait_indefinitely());
     waited.map_err(|error| failed(&error))?;

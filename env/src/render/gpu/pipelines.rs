@@ -1,7 +1,7 @@
-//! Compiles the shaders for a device: a pair of pipelines, for the background and for objects, per kind of pass.
+//! Compiles the shaders for a device: for each kind of pass, a pipeline for the background and one for objects.
 
 use super::super::backdrop::{CONTRAST, FADING, SQUARE};
-use super::super::compose::{MOST_SQUARES, SHIFT};
+use super::super::compose::{MAX_SQUARES, SHIFT};
 use super::super::frame::{CATEGORY_MAP, CATEGORY_SKY};
 use super::super::shade::{FULL_LEVEL, ROUNDING, SKY_SHARE};
 use super::super::view::NEAR;
@@ -12,10 +12,10 @@ use super::library::VERTEX_LENGTH;
 /// Colour bytes with a label, or an item's index.
 pub(super) const WORD_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
 
-/// Near plane / depth: floats are dense where depths are large.
+/// Stores near plane / depth, because floats are dense where depths are large.
 pub(super) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
-/// The kind of pass that a pair of pipelines is for.
+/// A kind of pass, which needs its own pair of pipelines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Kind {
     /// Whether items' indices are written as well.
@@ -36,7 +36,7 @@ pub(super) struct Pair {
 pub(super) struct Pipelines {
     program: Program,
     pub(super) bindings: wgpu::BindGroupLayout,
-    made: [Option<Pair>; 4],
+    pairs: [Option<Pair>; 4],
 }
 
 /// State shared by all pipelines.
@@ -67,14 +67,14 @@ impl Pipelines {
         Self {
             program: Program { module, layout },
             bindings,
-            made: [const { None }; 4],
+            pairs: [const { None }; 4],
         }
     }
 
     /// The pipelines for a kind of pass, created on first use.
     pub(super) fn pair(&mut self, device: &Device, kind: Kind) -> &Pair {
-        let place = usize::from(kind.items) + 2 * usize::from(kind.fog);
-        self.made[place].get_or_insert_with(|| Pair {
+        let index = usize::from(kind.items) + 2 * usize::from(kind.fog);
+        self.pairs[index].get_or_insert_with(|| Pair {
             backdrop: self.program.backdrop(device, kind),
             objects: self.program.objects(device, kind),
         })
@@ -85,7 +85,7 @@ impl Pipelines {
 fn source(has_clip_distances: bool) -> String {
     let constants = format!(
         "const NEAR: f32 = {NEAR:?};\nconst SQUARE: f32 = {SQUARE:?};\nconst CONTRAST: vec2f = vec2f({:?}, {:?});\n\
-         const FADING: vec2f = vec2f({:?}, {:?});\nconst MOST_SQUARES: f32 = {MOST_SQUARES:?};\nconst SHIFT: f32 = {SHIFT:?};\n\
+         const FADING: vec2f = vec2f({:?}, {:?});\nconst MAX_SQUARES: f32 = {MAX_SQUARES:?};\nconst SHIFT: f32 = {SHIFT:?};\n\
          const SKY_SHARE: f32 = {SKY_SHARE:?};\nconst FULL_LEVEL: f32 = {FULL_LEVEL:?};\nconst ROUNDING: f32 = {ROUNDING:?};\n\
          const SKY: u32 = {CATEGORY_SKY}u;\nconst MAP: u32 = {CATEGORY_MAP}u;\n",
         CONTRAST[0], CONTRAST[1], FADING[0], FADING[1],
@@ -130,7 +130,7 @@ struct Stages<'a> {
 }
 
 impl Program {
-    /// The background: drawn first, over anything left from before.
+    /// The background, drawn first, over leftovers of earlier passes.
     fn backdrop(&self, device: &Device, kind: Kind) -> wgpu::RenderPipeline {
         let stages = Stages {
             label: "backdrop",
@@ -143,7 +143,7 @@ impl Program {
         self.pipeline(device, kind, &stages)
     }
 
-    /// Objects: with depth test and back-face culling.
+    /// Objects, drawn with depth test and back-face culling.
     fn objects(&self, device: &Device, kind: Kind) -> wgpu::RenderPipeline {
         let corner = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x4];
         let instance = wgpu::vertex_attr_array![

@@ -13,9 +13,9 @@ use driftworld_spec::{Object, WorldDraft};
 const SIDE: u32 = 64;
 
 /// Share of colour bytes that must match the CPU's image, within a tolerance.
-const ALIKE: f64 = 0.98;
+const MIN_MATCHING_SHARE: f64 = 0.98;
 
-/// Every adapter with its test result; or the reason why there is none.
+/// Every adapter with its test result, or the reason why there is none.
 pub(in super::super) fn survey() -> Result<Vec<AdapterReport>, String> {
     Ok(adapter::all()?.iter().map(report).collect())
 }
@@ -28,28 +28,28 @@ fn report(adapter: &wgpu::Adapter) -> AdapterReport {
         kind: adapter::kind_name(&info).to_owned(),
         driver: format!("{} {}", info.driver, info.driver_info).trim().to_owned(),
         is_software: adapter::is_software(&info),
-        problem: prove(adapter).err(),
+        problem: check_rendering(adapter).err(),
     }
 }
 
-/// Renders a small image and checks it.
-fn prove(adapter: &wgpu::Adapter) -> Result<(), String> {
+/// Renders a small image and compares it with the CPU renderer's.
+fn check_rendering(adapter: &wgpu::Adapter) -> Result<(), String> {
     let device = Device::open(adapter, Clipping::IfPossible)?;
-    let mut renderer = GpuRenderer::proven(device).map_err(|error| error.to_string())?;
+    let mut renderer = GpuRenderer::tested(device).map_err(|error| error.to_string())?;
     let world = WorldDraft::with_objects(vec![Object::new("tree", [0.0, 8.0]), Object::new("cube", [2.0, 5.0])]);
     let scene = Scene::from_world(&world.check().map_err(|error| error.to_string())?);
     let camera = Camera::first_person([0.0, 0.0], 0.0, 1.0, 60.0);
-    let (mut drawn, mut expected) = (Frame::new(SIDE, SIDE), Frame::new(SIDE, SIDE));
+    let (mut rendered, mut expected) = (Frame::new(SIDE, SIDE), Frame::new(SIDE, SIDE));
     renderer
-        .render(&scene, &camera, &mut drawn)
+        .render(&scene, &camera, &mut rendered)
         .map_err(|error| error.to_string())?;
     CpuRenderer::new().render(&scene, &camera, &mut expected);
-    let pairs = drawn.rgb.iter().zip(&expected.rgb);
-    let alike = pairs.filter(|(a, b)| a.abs_diff(**b) <= 3).count() as f64 / drawn.rgb.len() as f64;
-    if alike < ALIKE {
+    let pairs = rendered.rgb.iter().zip(&expected.rgb);
+    let matching_share = pairs.filter(|(a, b)| a.abs_diff(**b) <= 3).count() as f64 / rendered.rgb.len() as f64;
+    if matching_share < MIN_MATCHING_SHARE {
         return Err(format!(
             "draws a different image: only {:.1} % of its colour bytes are as expected",
-            100.0 * alike
+            100.0 * matching_share
         ));
     }
     Ok(())

@@ -66,8 +66,8 @@ impl Lanes for Avx2 {
             _mm256_castsi256_ps(_mm256_cmpeq_epi32(_mm256_and_si256(value, only), only))
         };
         has_any(value: Word, bits: u32) -> Mask = {
-            let asked = _mm256_and_si256(value, _mm256_set1_epi32(bits as i32));
-            let none = _mm256_cmpeq_epi32(asked, _mm256_setzero_si256());
+            let masked = _mm256_and_si256(value, _mm256_set1_epi32(bits as i32));
+            let none = _mm256_cmpeq_epi32(masked, _mm256_setzero_si256());
             _mm256_castsi256_ps(_mm256_xor_si256(none, _mm256_set1_epi32(-1)))
         };
         modulate(a: Word, b: Word) -> Word = {
@@ -80,7 +80,7 @@ impl Lanes for Avx2 {
             )
         };
         mix(a: Word, b: Word, share: Word) -> Word = {
-            let (zero, most) = (_mm256_setzero_si256(), _mm256_set1_epi16(255));
+            let (zero, max) = (_mm256_setzero_si256(), _mm256_set1_epi16(255));
             let rest = _mm256_xor_si256(share, _mm256_set1_epi8(-1));
             let low = _mm256_add_epi16(
                 _mm256_mullo_epi16(_mm256_unpacklo_epi8(a, zero), _mm256_unpacklo_epi8(rest, zero)),
@@ -91,25 +91,25 @@ impl Lanes for Avx2 {
                 _mm256_mullo_epi16(_mm256_unpackhi_epi8(b, zero), _mm256_unpackhi_epi8(share, zero)),
             );
             _mm256_packus_epi16(
-                _mm256_srli_epi16::<8>(_mm256_add_epi16(low, most)),
-                _mm256_srli_epi16::<8>(_mm256_add_epi16(high, most)),
+                _mm256_srli_epi16::<8>(_mm256_add_epi16(low, max)),
+                _mm256_srli_epi16::<8>(_mm256_add_epi16(high, max)),
             )
         };
         gather(table: &[u32], at: Word) -> Word = {
-            assert!(!table.is_empty(), "a table has words");
+            assert!(!table.is_empty(), "the table is empty");
             let last = _mm256_set1_epi32((table.len() - 1).min(i32::MAX as usize) as i32);
-            // Clamped to the last word of the table.
+            // Clamps indices to the last word of the table.
             _mm256_i32gather_epi32::<4>(table.as_ptr().cast(), _mm256_min_epu32(at, last))
         };
-        gather_alike(table: &[u32], at: Word, alike: u32) -> Word = {
-            assert!(!table.is_empty(), "a table has words");
+        gather_grouped(table: &[u32], at: Word, group: u32) -> Word = {
+            assert!(!table.is_empty(), "the table is empty");
             let last = _mm256_set1_epi32((table.len() - 1).min(i32::MAX as usize) as i32);
-            // Clamped to the last word of the table.
+            // Clamps indices to the last word of the table.
             let at = _mm256_min_epu32(at, last);
-            if alike < 2 {
+            if group < 2 {
                 _mm256_i32gather_epi32::<4>(table.as_ptr().cast(), at)
             } else {
-                let (few, all) = if alike == 2 {
+                let (few, all) = if group == 2 {
                     (_mm256_setr_epi32(0, 2, 4, 6, 0, 2, 4, 6), _mm256_setr_epi32(0, 0, 1, 1, 2, 2, 3, 3))
                 } else {
                     (_mm256_setr_epi32(0, 4, 0, 4, 0, 4, 0, 4), _mm256_setr_epi32(0, 0, 0, 0, 1, 1, 1, 1))
@@ -124,7 +124,7 @@ impl Lanes for Avx2 {
         float(value: Word) -> Float = _mm256_cvtepi32_ps(value);
 
         store_rgb(value: Word, to: &mut [u8]) -> () = {
-            let to: &mut [u8; 3 * N] = to.first_chunk_mut().expect("callers hand in three bytes a lane");
+            let to: &mut [u8; 3 * N] = to.first_chunk_mut().expect("callers pass three bytes per lane");
             // Drops every fourth byte within each half, then joins the halves.
             let halves = _mm256_setr_epi8(
                 0, 1, 2, 4, 5, 6, 8, 9, 10, 12, 13, 14, -1, -1, -1, -1, 0, 1, 2, 4, 5, 6, 8, 9, 10, 12, 13, 14, -1, -1,

@@ -77,7 +77,7 @@ impl Lanes for Avx512 {
             )
         };
         mix(a: Word, b: Word, share: Word) -> Word = {
-            let (zero, most) = (_mm512_setzero_si512(), _mm512_set1_epi16(255));
+            let (zero, max) = (_mm512_setzero_si512(), _mm512_set1_epi16(255));
             let rest = _mm512_xor_si512(share, _mm512_set1_epi8(-1));
             let low = _mm512_add_epi16(
                 _mm512_mullo_epi16(_mm512_unpacklo_epi8(a, zero), _mm512_unpacklo_epi8(rest, zero)),
@@ -88,23 +88,23 @@ impl Lanes for Avx512 {
                 _mm512_mullo_epi16(_mm512_unpackhi_epi8(b, zero), _mm512_unpackhi_epi8(share, zero)),
             );
             _mm512_packus_epi16(
-                _mm512_srli_epi16::<8>(_mm512_add_epi16(low, most)),
-                _mm512_srli_epi16::<8>(_mm512_add_epi16(high, most)),
+                _mm512_srli_epi16::<8>(_mm512_add_epi16(low, max)),
+                _mm512_srli_epi16::<8>(_mm512_add_epi16(high, max)),
             )
         };
         gather(table: &[u32], at: Word) -> Word = {
-            assert!(!table.is_empty(), "a table has words");
+            assert!(!table.is_empty(), "the table is empty");
             let last = _mm512_set1_epi32((table.len() - 1).min(i32::MAX as usize) as i32);
-            // Clamped to the last word of the table.
+            // Clamps indices to the last word of the table.
             _mm512_i32gather_epi32::<4>(_mm512_min_epu32(at, last), table.as_ptr().cast())
         };
-        gather_alike(table: &[u32], at: Word, alike: u32) -> Word = {
-            assert!(!table.is_empty(), "a table has words");
+        gather_grouped(table: &[u32], at: Word, group: u32) -> Word = {
+            assert!(!table.is_empty(), "the table is empty");
             let last = _mm512_set1_epi32((table.len() - 1).min(i32::MAX as usize) as i32);
-            // Clamped to the last word of the table.
+            // Clamps indices to the last word of the table.
             let at = _mm512_min_epu32(at, last);
             let table = table.as_ptr().cast();
-            match alike {
+            match group {
                 4 => {
                     let few = _mm512_setr_epi32(0, 4, 8, 12, 0, 4, 8, 12, 0, 4, 8, 12, 0, 4, 8, 12);
                     let few = _mm512_castsi512_si128(_mm512_permutexvar_epi32(few, at));
@@ -130,7 +130,7 @@ impl Lanes for Avx512 {
         float(value: Word) -> Float = _mm512_cvtepi32_ps(value);
 
         store_rgb(value: Word, to: &mut [u8]) -> () = {
-            let to: &mut [u8; 3 * N] = to.first_chunk_mut().expect("callers hand in three bytes a lane");
+            let to: &mut [u8; 3 * N] = to.first_chunk_mut().expect("callers pass three bytes per lane");
             // Drops every fourth byte within each quarter, then joins the quarters.
             let quarter = _mm_setr_epi8(0, 1, 2, 4, 5, 6, 8, 9, 10, 12, 13, 14, -1, -1, -1, -1);
             let packed = _mm512_permutexvar_epi32(

@@ -1,10 +1,9 @@
 //! SIMD operations for the renderer, for each instruction set.
 //!
-//! Every set rounds the same way: no fused multiply-add, the same order, IEEE division and square root. So a scene gives the
-//! same pixels on every machine, and a test compares all sets that the CPU has.
-//!
-//! Code between these operations avoids closures: closures lack the target feature, so the compiler calls each operation
-//! instead of inlining it (measured: three times slower).
+//! All instruction sets round the same way: they use no fused multiply-add, the same order of operations, and IEEE division and
+//! square root. So a scene gives the same pixels on every machine. A test compares all sets that the CPU has. Code between
+//! these operations avoids closures. Closures lack the target feature, so the compiler calls each operation instead of inlining
+//! it, which is three times slower.
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
@@ -21,7 +20,7 @@ use operations::operations;
 pub(super) use portable::Portable;
 
 /// Maximum number of lanes of any set; buffers are padded to it.
-pub(super) const MOST_LANES: usize = crate::assets::BLOCK;
+pub(super) const MAX_LANES: usize = crate::assets::BLOCK;
 
 /// The first `N` elements of a slice, for reading.
 #[inline(always)]
@@ -35,7 +34,7 @@ fn first_mut<T, const N: usize>(to: &mut [T]) -> &mut [T; N] {
     to.first_chunk_mut().expect(TOO_SHORT)
 }
 
-const TOO_SHORT: &str = "callers hand in at least as much as a vector holds";
+const TOO_SHORT: &str = "callers pass at least one vector";
 
 /// Vectors of `N` numbers and their operations.
 ///
@@ -66,7 +65,7 @@ pub(super) trait Lanes: Copy {
     fn max(self, a: Self::Float, b: Self::Float) -> Self::Float;
     fn at_least(self, a: Self::Float, b: Self::Float) -> Self::Mask;
     fn above(self, a: Self::Float, b: Self::Float) -> Self::Mask;
-    /// Where both are equal.
+    /// Whether both are equal.
     fn same(self, a: Self::Float, b: Self::Float) -> Self::Mask;
     fn root(self, a: Self::Float) -> Self::Float;
     fn both(self, a: Self::Mask, b: Self::Mask) -> Self::Mask;
@@ -82,7 +81,7 @@ pub(super) trait Lanes: Copy {
     fn or(self, a: Self::Word, b: Self::Word) -> Self::Word;
     fn xor(self, a: Self::Word, b: Self::Word) -> Self::Word;
     fn and(self, a: Self::Word, b: Self::Word) -> Self::Word;
-    /// Where both are equal.
+    /// Whether both are equal.
     fn equal(self, a: Self::Word, b: Self::Word) -> Self::Mask;
     /// Shifts left by `bits`, less than 32.
     fn shift_left(self, value: Self::Word, bits: u32) -> Self::Word;
@@ -90,9 +89,9 @@ pub(super) trait Lanes: Copy {
     fn shift_right(self, value: Self::Word, bits: u32) -> Self::Word;
     /// Shifts left by one byte.
     fn shift_byte(self, value: Self::Word) -> Self::Word;
-    /// Where this bit is set.
+    /// Whether this bit is set.
     fn has_bit(self, value: Self::Word, bit: u32) -> Self::Mask;
-    /// Where any of these bits is set.
+    /// Whether any of these bits is set.
     fn has_any(self, value: Self::Word, bits: u32) -> Self::Mask;
     /// Multiplies bytes, where 128 in `b` means 1; capped at 255.
     fn modulate(self, a: Self::Word, b: Self::Word) -> Self::Word;
@@ -103,8 +102,8 @@ pub(super) trait Lanes: Copy {
     /// # Panics
     /// On an empty table.
     fn gather(self, table: &[u32], at: Self::Word) -> Self::Word;
-    /// Like `gather`, where each group of `alike` lanes, two or four, has the same index.
-    fn gather_alike(self, table: &[u32], at: Self::Word, alike: u32) -> Self::Word;
+    /// Like `gather`, where each group of `group` lanes (two or four) has the same index.
+    fn gather_grouped(self, table: &[u32], at: Self::Word, group: u32) -> Self::Word;
     /// The largest power of two up to each float, which must be above 0.
     fn power_of_two(self, value: Self::Float) -> Self::Float;
     /// Truncates floats to integers; they must be within ±2³¹.
@@ -121,7 +120,7 @@ pub(super) trait Lanes: Copy {
     /// Stores the lower half of each word, which must be less than 65,536.
     fn store_halves(self, value: Self::Word, to: &mut [u16]);
 
-    /// `a * b + c`, rounded twice.
+    /// `a * b + c`, rounded after the product and after the sum.
     #[inline(always)]
     fn mul_add(self, a: Self::Float, b: Self::Float, c: Self::Float) -> Self::Float {
         self.add(self.mul(a, b), c)
@@ -136,15 +135,15 @@ pub(super) trait Lanes: Copy {
     /// Stores where the mask holds and keeps the rest.
     #[inline(always)]
     fn store_where(self, mask: Self::Mask, value: Self::Float, to: &mut [f32]) {
-        let kept = self.load(to);
-        self.store(self.select(mask, value, kept), to);
+        let written = self.load(to);
+        self.store(self.select(mask, value, written), to);
     }
 
     /// Stores where the mask holds and keeps the rest.
     #[inline(always)]
     fn store_words_where(self, mask: Self::Mask, value: Self::Word, to: &mut [u32]) {
-        let kept = self.load_words(to);
-        self.store_words(self.select_words(mask, value, kept), to);
+        let written = self.load_words(to);
+        self.store_words(self.select_words(mask, value, written), to);
     }
 }
 
@@ -156,18 +155,21 @@ mod tests {
 
     const TABLE: [u32; 12] = [3, 1, 4, 1, 5, 9, 2, 6, 5, 3, 5, 8];
 
-    /// The first `count` numbers after a write, which must not change any others.
-    fn kept<T: Copy + PartialEq>(filler: T, count: usize, write: impl FnOnce(&mut [T])) -> Vec<T> {
-        let mut all = [filler; 3 * MOST_LANES + 1];
+    /// The first `count` numbers after a write; checks that the write changes no others.
+    fn written<T: Copy + PartialEq>(filler: T, count: usize, write: impl FnOnce(&mut [T])) -> Vec<T> {
+        let mut all = [filler; 3 * MAX_LANES + 1];
         write(&mut all);
-        assert!(all[count..].iter().all(|kept| *kept == filler), "no more is written");
+        assert!(
+            all[count..].iter().all(|written| *written == filler),
+            "nothing else is written"
+        );
         all[..count].to_vec()
     }
 
-    /// Results of every operation on these numbers, vector by vector: the same for all sets.
+    /// Results of every operation on these numbers, vector by vector, which must be the same for all sets.
     fn all_operations<L: Lanes>(lanes: L, a: &[f32], b: &[f32], words: &[u32]) -> Vec<Vec<u32>> {
-        let mut made: Vec<Vec<u32>> = Vec::new();
-        for first in (0..MOST_LANES).step_by(L::N) {
+        let mut all_results: Vec<Vec<u32>> = Vec::new();
+        for first in (0..MAX_LANES).step_by(L::N) {
             let mut results = Vec::new();
             let (a, b) = (lanes.load(&a[first..]), lanes.load(&b[first..]));
             let word = lanes.load_words(&words[first..]);
@@ -193,9 +195,9 @@ mod tests {
                 lanes.float(word),
                 lanes.power_of_two(lanes.max(a, lanes.splat(0.125))),
             ] {
-                results.push(of_bits(kept(7.0, L::N, |to| lanes.store(value, to))));
+                results.push(of_bits(written(7.0, L::N, |to| lanes.store(value, to))));
             }
-            results.push(of_bits(kept(7.0, L::N, |to| lanes.store_where(above, a, to))));
+            results.push(of_bits(written(7.0, L::N, |to| lanes.store_where(above, a, to))));
             for value in [
                 lanes.or(word, lanes.splat_word(0x0F0F_00FF)),
                 lanes.xor(word, lanes.truncate(small)),
@@ -207,9 +209,9 @@ mod tests {
                 lanes.modulate(word, lanes.xor(word, lanes.splat_word(0x8055_AAFF))),
                 lanes.mix(word, lanes.splat_word(0x00FF_8001), lanes.shift_byte(word)),
                 lanes.gather(&TABLE, lanes.and(word, lanes.splat_word(15))),
-                lanes.gather_alike(&TABLE, lanes.and(word, lanes.splat_word(15)), 1),
-                lanes.gather_alike(&TABLE, shared(0.5), 2),
-                lanes.gather_alike(&TABLE, shared(0.25), 4),
+                lanes.gather_grouped(&TABLE, lanes.and(word, lanes.splat_word(15)), 1),
+                lanes.gather_grouped(&TABLE, shared(0.5), 2),
+                lanes.gather_grouped(&TABLE, shared(0.25), 4),
                 lanes.select_words(
                     lanes.equal(lanes.and(word, lanes.splat_word(1)), lanes.splat_word(1)),
                     word,
@@ -218,23 +220,23 @@ mod tests {
                 lanes.three_times(lanes.and(word, lanes.splat_word(255))),
                 lanes.select_words(lanes.has_bit(word, 3), word, lanes.splat_word(1)),
             ] {
-                results.push(kept(7, L::N, |to| lanes.store_words(value, to)));
+                results.push(written(7, L::N, |to| lanes.store_words(value, to)));
             }
-            results.push(kept(7, L::N, |to| lanes.store_words_where(at_least, word, to)));
+            results.push(written(7, L::N, |to| lanes.store_words_where(at_least, word, to)));
             let bits = lanes.bits(above);
             results.push((0..L::N).map(|lane| bits >> lane & 1).collect());
-            let rgb = kept(7, 3 * L::N, |to| lanes.store_rgb(word, to));
-            let bytes = kept(7, L::N, |to| lanes.store_bytes(word, to));
+            let rgb = written(7, 3 * L::N, |to| lanes.store_rgb(word, to));
+            let bytes = written(7, L::N, |to| lanes.store_bytes(word, to));
             results.extend([rgb, bytes].map(|bytes| bytes.into_iter().map(u32::from).collect()));
             let low = lanes.and(word, lanes.splat_word(0xFFFF));
-            let halves = kept(7, L::N, |to| lanes.store_halves(low, to));
+            let halves = written(7, L::N, |to| lanes.store_halves(low, to));
             results.push(halves.into_iter().map(u32::from).collect());
-            made.resize(results.len(), Vec::new());
-            for (made, result) in made.iter_mut().zip(results) {
-                made.extend(result);
+            all_results.resize(results.len(), Vec::new());
+            for (all_results, result) in all_results.iter_mut().zip(results) {
+                all_results.extend(result);
             }
         }
-        made
+        all_results
     }
 
     #[test]
@@ -242,7 +244,11 @@ mod tests {
         let one = |word: [u32; 4]| word[0];
         let splat = |word: u32| Portable.splat_word(word);
         for byte in 0..=255 {
-            assert_eq!(one(Portable.modulate(splat(byte), splat(128))), byte, "a factor of 1");
+            assert_eq!(
+                one(Portable.modulate(splat(byte), splat(128))),
+                byte,
+                "a factor of 1 changes nothing"
+            );
             assert_eq!(
                 one(Portable.modulate(splat(byte), splat(255))),
                 ((byte * 255 + 64) / 128).min(255)
@@ -251,7 +257,11 @@ mod tests {
             assert_eq!((share(0), share(255)), (byte, 200));
             assert!(share(128).abs_diff(u32::midpoint(byte, 200)) <= 1);
         }
-        assert_eq!(one(Portable.gather(&TABLE, splat(u32::MAX))), 8, "the last word");
+        assert_eq!(
+            one(Portable.gather(&TABLE, splat(u32::MAX))),
+            8,
+            "indices are clamped to the last word"
+        );
         assert_eq!(Portable.power_of_two([1.0, 1.9, 2.0, 300.0]), [1.0, 1.0, 2.0, 256.0]);
     }
 
@@ -260,9 +270,9 @@ mod tests {
 
         #[test]
         fn operations_agree_between_instruction_sets(
-            a in prop::collection::vec(prop_oneof![-1e3..1e3_f32, Just(0.0), Just(-0.0)], MOST_LANES),
-            b in prop::collection::vec(prop_oneof![0.1..1e3_f32, -1e3..-0.1_f32], MOST_LANES),
-            words in prop::collection::vec(0..1_u32 << 30, MOST_LANES),
+            a in prop::collection::vec(prop_oneof![-1e3..1e3_f32, Just(0.0), Just(-0.0)], MAX_LANES),
+            b in prop::collection::vec(prop_oneof![0.1..1e3_f32, -1e3..-0.1_f32], MAX_LANES),
+            words in prop::collection::vec(0..1_u32 << 30, MAX_LANES),
         ) {
             let expected = all_operations(Portable, &a, &b, &words);
             #[cfg(target_arch = "x86_64")]
@@ -274,7 +284,7 @@ mod tests {
                     prop_assert_eq!(all_operations(lanes, &a, &b, &words), expected.clone(), "AVX-512");
                 }
             }
-            prop_assert_eq!(expected[0][MOST_LANES - 1], ((MOST_LANES - 1) as f32).to_bits());
+            prop_assert_eq!(expected[0][MAX_LANES - 1], ((MAX_LANES - 1) as f32).to_bits());
         }
     }
 }

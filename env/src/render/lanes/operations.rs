@@ -1,7 +1,7 @@
 //! A macro for listing the operations of an instruction set, one per line.
 
-/// Defines functions of an `impl` of [`Lanes`](super::Lanes) by their result. Those under `intrinsics` may use instructions
-/// that only some CPUs have, in a set whose values prove that the CPU has them.
+/// Defines functions of an `impl` of [`Lanes`](super::Lanes), each by an expression for its result. Functions under
+/// `intrinsics` may use instructions that only some CPUs have; the set's values prove that this CPU has them.
 macro_rules! operations {
     (plain: $($name:ident($($operand:ident: $from:ty),*) -> $to:ty = $made:expr;)*) => {
         $(

@@ -1,8 +1,8 @@
-//! Lanes as plain arrays, for any CPU; the compiler vectorises them where it can.
+//! Lanes as plain arrays for any CPU; the compiler vectorises them where it can.
 
 use super::{Lanes, first, first_mut, operations};
 
-/// Four lanes without instructions of a particular CPU.
+/// Four lanes that need no particular instructions.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Portable;
 
@@ -67,9 +67,9 @@ impl Lanes for Portable {
             byte(0) | byte(8) | byte(16) | byte(24)
         });
         gather(table: &[u32], at: Word) -> Word = at.map(|at| table[(at as usize).min(table.len() - 1)]);
-        gather_alike(table: &[u32], at: Word, alike: u32) -> Word = {
+        gather_grouped(table: &[u32], at: Word, group: u32) -> Word = {
             let word = |lane: usize| table[(at[lane] as usize).min(table.len() - 1)];
-            match alike {
+            match group {
                 4 => [word(0); N],
                 2 => {
                     let [low, high] = [word(0), word(2)];

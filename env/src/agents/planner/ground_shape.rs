@@ -1,24 +1,24 @@
-//! [`Leaf`]: the area of ground that a body covers, as plans see it.
+//! [`GroundShape`]: the area of ground that a body covers, simplified for planning.
 
 use crate::assets::ColliderShape;
 use crate::sim::SimRef;
 
-/// The area of ground that a body covers: a rectangle, or a disc.
+/// The area of ground that a body covers: a rectangle or a disc.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Leaf {
+pub(super) struct GroundShape {
     pub(super) at: [f32; 2],
     /// Sine and cosine of its heading.
     turn: [f32; 2],
-    /// Half its width and depth.
+    /// Half its width and depth; 0 for a disc.
     pub(super) half: [f32; 2],
-    rounding: f32,
+    radius: f32,
 }
 
-impl Leaf {
+impl GroundShape {
     pub(super) fn of(sim: SimRef, object: usize) -> Self {
         let (item, own) = (&sim.scene().items[object], &sim.objects()[object]);
         let heading = own.heading_deg.to_radians();
-        let (half, rounding) = match &item.body.collider {
+        let (half, radius) = match &item.body.collider {
             ColliderShape::Box { half: [x, y, _] } => ([x * item.scale, y * item.scale], 0.0),
             other => ([0.0; 2], other.radius() * item.scale),
         };
@@ -26,13 +26,13 @@ impl Leaf {
             at: own.position,
             turn: [libm::sinf(heading), libm::cosf(heading)],
             half,
-            rounding,
+            radius,
         }
     }
 
     /// Largest distance of its outline from its centre, in metres.
     pub(super) fn reach(&self) -> f32 {
-        (self.half[0] * self.half[0] + self.half[1] * self.half[1]).sqrt() + self.rounding
+        (self.half[0] * self.half[0] + self.half[1] * self.half[1]).sqrt() + self.radius
     }
 
     /// Whether it is much wider than deep, as doors are.
@@ -40,20 +40,20 @@ impl Leaf {
         self.half[0] > 3.0 * self.half[1] && self.half[0] > 0.3
     }
 
-    /// A place in the body's own axes: metres to the right of its centre, and ahead of it.
+    /// A position in the body's own axes: metres to the right of its centre and ahead of it.
     pub(super) fn own_axes(&self, at: [f32; 2]) -> [f32; 2] {
         let [dx, dy] = [at[0] - self.at[0], at[1] - self.at[1]];
         let [sine, cosine] = self.turn;
         [dx * cosine - dy * sine, dx * sine + dy * cosine]
     }
 
-    /// How far a place is from it, in metres.
+    /// Distance of a position from its outline in metres; for a disc, negative inside.
     pub(super) fn distance(&self, at: [f32; 2]) -> f32 {
         let [along, across] = self.own_axes(at);
         let out = [
             (along.abs() - self.half[0]).max(0.0),
             (across.abs() - self.half[1]).max(0.0),
         ];
-        (out[0] * out[0] + out[1] * out[1]).sqrt() - self.rounding
+        (out[0] * out[0] + out[1] * out[1]).sqrt() - self.radius
     }
 }
