@@ -1,4 +1,4 @@
-//! [`Scene`]: the visible state of a world: the arena, its light, and an item for each object.
+//! [`Scene`]: the visible state of a world, which consists of the arena, its light, and an item for each object.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use crate::looks::{Finish, NaturalLooks};
 use crate::polygon::to_f32;
 use crate::wall_tops::tops;
 
-/// Everything that an image of a world depends on, except the camera.
+/// Everything on which an image of a world depends, except the camera.
 #[derive(Clone, Debug)]
 pub struct Scene {
     /// One item per object of the world, in its order.
@@ -21,10 +21,10 @@ pub struct Scene {
     pub(crate) natural: Option<NaturalLooks>,
     /// Colour of the ground, sRGB.
     pub ground_color: [f32; 3],
-    /// Walls: the arena's own, and regions that cannot be entered.
+    /// Panels of all walls: the arena's own, regions that cannot be entered, the world's walls, and those of its layout.
     pub walls: Vec<WallPanel>,
     arena_size: [f32; 2],
-    /// Geometry of the walls: the arena's four, then one group per region, then the zones on the ground.
+    /// Geometry: the arena's four walls, then one group per region or wall, then the zones on the ground.
     pub(crate) panels: Vec<PanelGroup>,
     /// The highest class number among its items; 0 without items.
     pub(crate) highest_class: u16,
@@ -36,8 +36,8 @@ pub struct Scene {
 /// The first walls of a scene are the arena's own: west, north, east, south.
 pub(crate) const ARENA_WALLS: usize = 4;
 
-/// Walls with more corners get no tops in the agent's view, because triangulating them takes long.
-const MOST_CORNERS: usize = 64;
+/// Maximum number of corners of walls that get tops in the agent's view, because triangulating more takes long.
+const MAX_TOP_CORNERS: usize = 64;
 
 /// Panels that are drawn together: one wall of the arena, a whole region, or a zone on the ground.
 #[derive(Clone, Debug)]
@@ -46,11 +46,11 @@ pub(crate) struct PanelGroup {
     pub(crate) middle: [f32; 3],
     /// Its radius.
     pub(crate) radius: f32,
-    /// Their colour, sRGB.
+    /// The panels' colour, sRGB.
     pub(crate) color: [f32; 3],
-    /// Extra height at which they are drawn, as a fraction of the camera's height: 0 for upright panels.
+    /// Extra height at which flat panels are drawn, as a fraction of the camera's height; 0 for upright panels.
     pub(crate) lift: f32,
-    /// Base edges of upright panels on the ground, each from and to; empty for flat panels.
+    /// Base edges of upright panels on the ground, each as its two ends; empty for flat panels.
     pub(crate) edges: Vec<[[f32; 2]; 2]>,
     /// Height in metres of upright panels, or of the tops of walls; 0 for panels on the ground.
     pub(crate) height: f32,
@@ -62,7 +62,7 @@ pub(crate) struct PanelGroup {
 pub struct Item {
     /// Its look.
     pub asset: Arc<Asset>,
-    /// The asset that provides the collider: nearly always the same as the look.
+    /// The asset that provides the collider; nearly always the same as `asset`.
     pub body: Arc<Asset>,
     /// Its position, in metres.
     pub position: [f32; 2],
@@ -87,8 +87,8 @@ pub struct Item {
 }
 
 impl Item {
-    /// Opens a closed door: rotates it by 90 degrees around its left end; hides it if its collider is not a box.
-    pub(crate) fn swing(&mut self) {
+    /// Shows a closed door as open: rotates it by 90 degrees around its left end, or hides it if its collider is not a box.
+    pub(crate) fn open_door(&mut self) {
         let ColliderShape::Box { half: [half_width, ..] } = self.body.collider else {
             self.visible = false;
             return;
@@ -116,7 +116,7 @@ pub struct Light {
     pub ambient: f32,
     /// Colour of the sky at the zenith, sRGB.
     pub sky_color: [f32; 3],
-    /// Distance in metres at which fog hides half of what is seen; `None` for no fog.
+    /// Distance in metres at which fog has half its effect; `None` for no fog.
     pub fog_distance: Option<f32>,
     /// Whether depth images include the fog.
     pub fog_in_depth: bool,
@@ -141,13 +141,13 @@ impl Scene {
         let mut scene = Self::from_world_with(world, &Catalogue::default());
         for (item, object) in scene.items.iter_mut().zip(&world.objects) {
             if object.door.as_ref().is_some_and(|door| door.open) {
-                item.swing();
+                item.open_door();
             }
         }
         scene
     }
 
-    /// The scene of a world at its start, with assets from a catalogue. Doors are drawn closed: an environment opens them.
+    /// The scene of a world at its start, with assets from a catalogue. All doors are drawn closed; an environment opens them.
     pub fn from_world_with(world: &World, catalogue: &Catalogue) -> Self {
         let environment = &world.environment_params;
         let mut scene = Self {
@@ -167,7 +167,7 @@ impl Scene {
         if scene.natural.is_some() {
             // The walls whose tops the agent can see.
             let eye = world.agent_params.agent_height as f32;
-            let is_seen = |ring: &[WallPanel]| ring[0].height < eye && ring.len() <= MOST_CORNERS;
+            let is_seen = |ring: &[WallPanel]| ring[0].height < eye && ring.len() <= MAX_TOP_CORNERS;
             scene.panels.extend(tops(&scene.walls, is_seen));
         }
         for object in &world.objects {
@@ -205,14 +205,14 @@ impl Scene {
         });
     }
 
-    /// The same scene with tops on all walls, for images from above.
+    /// Adds tops to all walls, for images from above.
     #[must_use]
     pub fn with_wall_tops(mut self) -> Self {
         self.panels.extend(tops(&self.walls, |_| true));
         self
     }
 
-    /// The same scene; in the natural style, with different ground around its arena, for images from outside.
+    /// In the natural style, adds different ground around the arena, for images from outside.
     #[must_use]
     pub fn with_surroundings(mut self) -> Self {
         if self.natural.is_some() {
@@ -221,7 +221,7 @@ impl Scene {
         self
     }
 
-    /// The same scene in even white daylight without fog, for readable maps: ignores the world's light.
+    /// Replaces the world's light with even white daylight without fog, for readable maps.
     #[must_use]
     pub fn in_neutral_light(mut self) -> Self {
         self.light.direction = [0.0, 0.0, 1.0];
@@ -257,16 +257,16 @@ impl Scene {
         }
         let walls = environment.walls.iter();
         let walls = walls.map(|wall| (&wall.polygon, wall.height, wall.color));
-        let planned = world.plan().into_iter().flat_map(|plan| &plan.walls);
-        let planned = planned.map(|wall| (&wall.polygon, wall.height, wall.color));
-        for (polygon, own_height, own_color) in walls.chain(planned) {
+        let layout_walls = world.plan().into_iter().flat_map(|plan| &plan.walls);
+        let layout_walls = layout_walls.map(|wall| (&wall.polygon, wall.height, wall.color));
+        for (polygon, own_height, own_color) in walls.chain(layout_walls) {
             let height = own_height.map_or(height, |metres| metres as f32);
             let color = own_color.map_or(color, driftworld_spec::Color::to_f32);
             self.add_region(polygon, height, color);
         }
     }
 
-    /// Adds a region, which is seen from outside: orders its corners counter-clockwise.
+    /// Adds a region that is seen from outside, with its corners in counter-clockwise order.
     fn add_region(&mut self, corners: &[[f64; 2]], height: f32, color: [f32; 3]) {
         let mut corners = to_f32(corners);
         let next = corners.iter().cycle().skip(1);
@@ -307,10 +307,10 @@ impl Scene {
     }
 }
 
-/// The limit of the exposure for ever stronger light, and the intensity that gives half of it: an intensity of 2.3 is daylight,
-/// with an exposure of 1. Below, brightness falls with the intensity; above, it rises ever more slowly.
-const BRIGHTEST: f32 = 1.72;
-const HALF_BRIGHT: f32 = 1.65;
+/// The limit of the exposure for ever stronger light, and the intensity that gives half of it. An intensity of 2.3 is daylight,
+/// with an exposure of 1. Below it, brightness falls with the intensity; above it, brightness rises ever more slowly.
+const MAX_EXPOSURE: f32 = 1.72;
+const HALF_INTENSITY: f32 = 1.65;
 
 fn light(world: &World) -> Light {
     let environment = &world.environment_params;
@@ -320,7 +320,7 @@ fn light(world: &World) -> Light {
     Light {
         direction: direction.map(|part| part / length),
         color: environment.light_color.to_f32(),
-        exposure: BRIGHTEST * intensity / (intensity + HALF_BRIGHT),
+        exposure: MAX_EXPOSURE * intensity / (intensity + HALF_INTENSITY),
         ambient: environment.ambient_light as f32,
         sky_color: environment.sky_color.to_f32(),
         fog_distance: environment.fog_distance.map(|metres| metres as f32),

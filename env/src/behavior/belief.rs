@@ -45,12 +45,12 @@ impl Belief {
 
     /// The believed world in the state of the true one.
     pub(super) fn at(&mut self, truth: &Environment) -> &Environment {
-        self.environment.take_state_of(truth);
+        self.environment.copy_state_from(truth);
         for (index, tried) in self.tried.iter_mut().enumerate() {
             // Objects that left and came back can be tried again.
             *tried &= truth.objects()[index].present;
             if *tried {
-                self.environment.take_reward_of(index);
+                self.environment.clear_reward(index);
             }
         }
         &self.environment

@@ -78,7 +78,7 @@ impl<'a> Run<'a> {
                 break;
             }
             let moment = Moment { policy, step };
-            self.follow.take_state_of(&self.lead);
+            self.follow.copy_state_from(&self.lead);
             if step % self.experiment.look_every.max(1) == 0 {
                 self.compare_observations(moment, found)?;
             }
@@ -160,10 +160,10 @@ impl<'a> Run<'a> {
         let limited = [self.lead.world().clone(), self.follow.world().clone()];
         for world in &limited {
             self.rewind();
-            if !self.lead.wind_to_limit_of(world) {
+            if !self.lead.advance_clock_to_limit_of(world) {
                 continue;
             }
-            self.follow.take_state_of(&self.lead);
+            self.follow.copy_state_from(&self.lead);
             let policy = Policy::Still;
             let action = policy.agent(self.lead.world(), 0).act(&self.lead);
             let step = self.lead.num_steps();

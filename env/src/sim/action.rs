@@ -1,10 +1,10 @@
-//! [`Action`]: what an agent can do, and its conversion to a motion of the body.
+//! [`Action`]: an agent's action in one step, and its conversion to a motion of the body.
 
 use driftworld_spec::{ActionModel, ActionSpace, AgentParams, World};
 
 use crate::EnvError;
 
-/// An agent's action for one step. It is held for all time steps of the step; an interaction happens only in the first.
+/// An agent's action for one step. It is held for all time steps of the step; an interaction happens only in the first one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Action {
     /// Three numbers: in the units of the world's action model, or in −1..1 if its actions are normalised.
@@ -30,14 +30,15 @@ impl Action {
     /// The three numbers of the action, in the units of the world's action model.
     ///
     /// # Errors
-    /// [`EnvError`] for a row that does not exist, and for numbers that are not finite.
+    /// [`EnvError::NotDiscrete`] or [`EnvError::NoSuchAction`] for a row that does not exist, [`EnvError::NotFinite`] for
+    /// numbers that are not finite.
     pub(crate) fn numbers(self, world: &World) -> Result<[f64; 3], EnvError> {
         let agent = &world.agent_params;
         match self {
             Self::Continuous(found) if !found.iter().all(|number| number.is_finite()) => {
                 Err(EnvError::NotFinite { found })
             }
-            Self::Continuous(shares) if agent.actions == ActionSpace::Normalized => Ok(in_units(shares, world)),
+            Self::Continuous(fractions) if agent.actions == ActionSpace::Normalized => Ok(in_units(fractions, world)),
             Self::Continuous(numbers) => Ok(numbers),
             Self::Discrete(found) => {
                 let rows = agent.num_actions().ok_or(EnvError::NotDiscrete { found })?;
@@ -45,7 +46,7 @@ impl Action {
                     found,
                     last: rows.saturating_sub(1),
                 })?;
-                // A table that was built in code may contain anything.
+                // A table that was built in code may contain any numbers.
                 if row.iter().all(|number| number.is_finite()) {
                     Ok(row)
                 } else {
@@ -57,9 +58,9 @@ impl Action {
 }
 
 /// Converts numbers in −1..1 to the units of the action model.
-pub(crate) fn in_units(shares: [f64; 3], world: &World) -> [f64; 3] {
+pub(crate) fn in_units(fractions: [f64; 3], world: &World) -> [f64; 3] {
     let agent = &world.agent_params;
-    let [a, b, c] = shares.map(|share| share.clamp(-1.0, 1.0));
+    let [a, b, c] = fractions.map(|share| share.clamp(-1.0, 1.0));
     match agent.action_model {
         ActionModel::ByWaypoint => {
             let [x, y] = world.environment_params.arena_size();

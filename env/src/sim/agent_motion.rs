@@ -35,8 +35,8 @@ pub(super) fn apply_action(
     let mut budget = Budget::new(budget::AGENTS);
     let position = slide(&mut views.bodies, start, by, &mut budget);
     #[cfg(test)]
-    (encounters.looked += budget::AGENTS - budget.left());
-    // Contacts with moving ghosts depend on both paths, and are found once the ghosts have moved.
+    (encounters.num_queries += budget::AGENTS - budget.left());
+    // Contacts with moving ghosts depend on both paths, so they are found after the ghosts have moved.
     let moves = |object: u32| {
         let movers = &state.movers;
         movers
@@ -44,10 +44,12 @@ pub(super) fn apply_action(
             .is_ok()
     };
     let skipped = |object: u32| !world.objects[object as usize].solid && moves(object);
-    views.bodies.note_passed(&mut encounters.met, skipped);
+    views
+        .bodies
+        .record_touched_on_path(&mut encounters.met_objects, skipped);
     let contacts = state.contacts.iter().copied();
-    let lasting = contacts.filter(|index| views.bodies.is_still_touched(*index, position));
-    encounters.kept.extend(lasting);
+    let still_touched = contacts.filter(|index| views.bodies.is_still_touched(*index, position));
+    encounters.lasting.extend(still_touched);
     state.agent.position = position;
     let seconds = world.agent_params.time_step as f32;
     state.agent.velocity = [0, 1].map(|axis| (position[axis] - start[axis]) / seconds);
@@ -55,7 +57,7 @@ pub(super) fn apply_action(
 
 /// Moves the agent's body as far as solid objects allow, sliding along them; returns its new position.
 ///
-/// It passes through nothing, at any speed. Stores the path for [`CollisionWorld::path`].
+/// At no speed does it pass through anything. Stores the path for [`CollisionWorld::path`].
 fn slide(bodies: &mut CollisionWorld, from: [f32; 2], by: [f32; 2], budget: &mut Budget) -> [f32; 2] {
     let start = from.map(f64::from);
     let way = by.map(f64::from);

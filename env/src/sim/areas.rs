@@ -1,11 +1,11 @@
-//! [`Zones`]: where the zones of a world are.
+//! [`Zones`]: the geometry of a world's zones.
 
 use driftworld_spec::{World, Zone};
 
 use super::footprint::{Point, squared_distance};
 use super::state::SimState;
 
-/// The zones of a world, in an order that does not depend on that of the list, so that sums and products over them are the
+/// The zones of a world, in an order that does not depend on the order of the list, so that sums and products over them are the
 /// same, bit for bit.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Zones(pub(super) Vec<Area>);
@@ -43,7 +43,7 @@ impl Zones {
         Self(areas)
     }
 
-    /// Marks the zones that the agent is in as known, without events.
+    /// Marks the zones that the agent is in as entered, without events.
     pub(super) fn locate(&self, state: &mut SimState) {
         let here = state.agent.position.map(f64::from);
         state.inside.clear();
@@ -67,12 +67,12 @@ impl Zones {
     }
 
     /// Whether a path enters one of the chosen zones from outside.
-    pub(crate) fn are_entered(&self, path: &[Point], is_meant: impl Fn(&Zone) -> bool) -> bool {
+    pub(crate) fn are_entered(&self, path: &[Point], is_chosen: impl Fn(&Zone) -> bool) -> bool {
         let (Some(start), Some(end)) = (path.first(), path.last()) else {
             return false;
         };
         let is_entered = |area: &Area| !area.contains(*start) && (area.contains(*end) || area.is_crossed(path));
-        self.0.iter().any(|area| is_meant(&area.zone) && is_entered(area))
+        self.0.iter().any(|area| is_chosen(&area.zone) && is_entered(area))
     }
 
     /// The zones that contain a position.
@@ -97,12 +97,12 @@ impl Area {
                 let [from, to] = [ends[0][axis], ends[1][axis]];
                 from.max(to) < low[axis] || from.min(to) > high[axis]
             };
-            !is_past(0) && !is_past(1) && (self.zone.contains(ends[0]) || self.is_cut(ends[0], ends[1]))
+            !is_past(0) && !is_past(1) && (self.zone.contains(ends[0]) || self.crosses_border(ends[0], ends[1]))
         })
     }
 
     /// Whether a straight path between two positions crosses its border.
-    fn is_cut(&self, from: Point, to: Point) -> bool {
+    fn crosses_border(&self, from: Point, to: Point) -> bool {
         if let Some(disc) = &self.zone.disc {
             return squared_distance(disc.center, from, to) < disc.radius * disc.radius;
         }

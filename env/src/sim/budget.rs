@@ -1,24 +1,24 @@
-//! Limits the work of a time step, so that no crowd of bodies can freeze it. Users of a budget define what happens when it is
-//! used up: `slide.rs`, `moving_body.rs`, `motion.rs` and `pushing.rs`.
+//! Limits the work of a time step, so that no crowd of bodies can freeze it. The users of a budget (`slide.rs`,
+//! `moving_body.rs`, `motion.rs` and `pushing.rs`) define what happens when it is used up.
 //!
 //! The unit is a query about one corner of one body. Queries are counted, not timed, so that a world runs the same on every
-//! machine, alone or in a batch. Counts depend only on where objects are, so that a saved world resumes exactly. Worlds
+//! machine, alone or in a batch. Counts depend only on the positions of objects, so that a saved world resumes exactly. Worlds
 //! with a few thousand bodies that are not crowded use a small part of the budget.
 
-/// Queries for the agent's path in one time step; when they are used up, its path ends there.
+/// Queries for the agent's path in one time step. When they are used up, the path ends.
 pub(super) const AGENTS: u64 = 4_000_000;
 
 /// Queries per time step for all objects that move by themselves: a shared amount, plus an amount for each. Objects for which
 /// too little is left wait.
 pub(super) const MOVERS: u64 = 1_000_000;
-pub(super) const EACH_MOVER: u64 = 100;
+pub(super) const PER_MOVER: u64 = 100;
 
 /// Queries per time step for all objects that respawn: a shared amount, plus an amount for each. Objects for which nothing is
 /// left respawn in a later time step.
 pub(super) const RETURNS: u64 = 500_000;
-pub(super) const EACH_RETURN: u64 = 20;
+pub(super) const PER_RETURN: u64 = 20;
 
-/// A number of remaining queries.
+/// The number of remaining queries.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Budget {
     left: u64,
@@ -42,12 +42,12 @@ impl Budget {
     }
 }
 
-/// Queries for a queue that is always in the same order. Half of them are reserved for the positions from a certain one
-/// on, which changes with every time step, so that nobody waits forever behind the same crowd.
+/// Queries for a queue whose order never changes. Half of them are reserved for the positions from a certain one on, which
+/// changes with every time step, so that no body waits forever behind the same crowd.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SharedBudget {
     budget: Budget,
-    kept: u64,
+    reserved: u64,
     /// Position from which the reserved half is available.
     from: usize,
 }
@@ -55,21 +55,21 @@ pub(super) struct SharedBudget {
 impl SharedBudget {
     /// `count` queries for `waiting` in the queue, in this time step.
     pub(super) fn new(count: u64, waiting: usize, tick: u64) -> Self {
-        /// A prime, so that every position gets its turn, and neighbours do not get theirs in succession.
+        /// A prime, so that every position gets its turn, and neighbours do not follow each other.
         const TURN: u64 = 7919;
         let waiting = waiting.max(1) as u64;
         let turn = if waiting.is_multiple_of(TURN) { 1 } else { TURN };
         Self {
             budget: Budget::new(count - count / 2),
-            kept: count / 2,
+            reserved: count / 2,
             from: (tick % waiting * turn % waiting) as usize,
         }
     }
 
     /// The budget for a position in the queue; positions must be requested in ascending order.
-    pub(super) fn at(&mut self, place: usize) -> &mut Budget {
-        if place >= self.from {
-            self.budget.left += std::mem::take(&mut self.kept);
+    pub(super) fn at(&mut self, position: usize) -> &mut Budget {
+        if position >= self.from {
+            self.budget.left += std::mem::take(&mut self.reserved);
         }
         &mut self.budget
     }
@@ -77,7 +77,7 @@ impl SharedBudget {
     /// The total number of remaining queries.
     #[cfg(test)]
     pub(super) fn left(self) -> u64 {
-        self.budget.left + self.kept
+        self.budget.left + self.reserved
     }
 }
 
@@ -89,7 +89,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
 
-        /// Whatever each takes, the total is never exceeded, and over several time steps everyone gets some.
+        /// The total is never exceeded, and over several time steps everyone gets some queries.
         #[test]
         fn shared_budget_is_never_exceeded_and_starves_nobody(
             count in 2u64..500,
@@ -99,17 +99,17 @@ mod tests {
             for tick in 0..wants.len() as u64 * 20 {
                 let mut shared = SharedBudget::new(count, wants.len(), tick);
                 let mut taken = 0;
-                for (place, want) in wants.iter().enumerate() {
-                    if shared.at(place).take(*want) {
+                for (position, want) in wants.iter().enumerate() {
+                    if shared.at(position).take(*want) {
                         taken += *want as u64;
-                        served[place] = true;
+                        served[position] = true;
                     }
                 }
                 prop_assert!(taken + shared.left() <= count);
             }
-            let most = count / 2;
+            let reserved = count / 2;
             for (want, served) in wants.iter().zip(served) {
-                prop_assert!(served || *want as u64 > most, "{want} of {count}");
+                prop_assert!(served || *want as u64 > reserved, "{want} of {count}");
             }
         }
     }

@@ -1,9 +1,9 @@
-//! [`CollisionWorld`]: the bodies on the ground that the agent bumps into, slides along and touches.
+//! [`CollisionWorld`]: the bodies on the ground that the agent collides with, slides along and touches.
 
 use driftworld_spec::World;
 use rapier3d::prelude::*;
 
-use super::body_shape::{area_of, body_shape, shows_heading};
+use super::body_shape::{body_shape, bounding_box, shows_heading};
 use super::broad_phase::BroadPhase;
 use super::budget::Budget;
 use super::footprint::{Footprint, Point};
@@ -14,20 +14,20 @@ use crate::polygon::to_f32;
 use crate::prefetch::prefetch;
 use crate::scene::{Item, Scene};
 
-/// Boundary for bodies that start outside the arena, in metres from the origin: documents allow no positions beyond it.
+/// Boundary for bodies that start outside the arena, in metres from the origin. Documents allow no positions beyond it.
 pub(super) const EDGE: f32 = 300.0;
 
-/// All bodies of a world. Nothing moves by forces, so there are no time steps here, only queries about shapes.
+/// All bodies of a world. They are not moved by forces, so there are no physics steps here, only queries about shapes.
 pub(crate) struct CollisionWorld {
     pub(super) colliders: ColliderSet,
     /// Positions of colliders, by handle number.
-    pub(super) places: BroadPhase,
+    pub(super) broad_phase: BroadPhase,
     pub(super) engine: Box<Engine>,
     /// For each object, its collider while it is present.
     pub(super) handles: Vec<Option<ColliderHandle>>,
-    /// Colliders of carried things, removed from the trees: kept so that they can be put back without allocating.
-    pub(super) put_by: Vec<(u32, ColliderHandle)>,
-    /// The agent's own collider, if objects move and may meet it.
+    /// Colliders of carried things, which are removed from the trees but kept so that they can be put back without allocating.
+    pub(super) set_aside: Vec<(u32, ColliderHandle)>,
+    /// The agent's own collider, if moving objects may meet it.
     pub(super) agent_handle: Option<ColliderHandle>,
     pub(super) agent: SharedShape,
     /// Half the agent's width.
@@ -36,7 +36,7 @@ pub(crate) struct CollisionWorld {
     /// Half the arena's sides.
     pub(super) half: [f32; 2],
     /// Static data of each body, by handle number of its collider.
-    pub(super) standing: Vec<Standing>,
+    pub(super) body_data: Vec<BodyData>,
     /// Footprint of each body up to the agent's height.
     pub(super) low: Vec<Footprint>,
     /// Whole footprint of each body.
@@ -44,7 +44,7 @@ pub(crate) struct CollisionWorld {
     pub(super) scratch: Scratch,
 }
 
-/// Parts of the engine that queries and removals take as arguments. They stay empty.
+/// Parts of the engine that queries and removals need as arguments. They stay empty.
 #[derive(Default)]
 pub(super) struct Engine {
     bodies: RigidBodySet,
@@ -53,8 +53,8 @@ pub(super) struct Engine {
     pub(super) narrow_phase: NarrowPhase,
 }
 
-/// One body, for queries about the ground.
-pub(super) struct Standing {
+/// Static data of one body, for queries about the ground.
+pub(super) struct BodyData {
     /// Its outline before rotation and translation.
     pub(super) outline: Outline,
     /// Its object; `None` for walls and the agent.
@@ -69,12 +69,12 @@ pub(super) struct Scratch {
     /// The bodies around a motion, by handle number.
     pub(super) numbers: Vec<u32>,
     pub(super) touched: Vec<Gap>,
-    /// The points where the agent's path of this time step began, bent and ended.
+    /// The points where the agent's path in this time step starts, bends and ends.
     pub(super) path: Vec<Point>,
     /// The path of an object that moves by itself.
     pub(super) strides: Vec<Point>,
     /// Indices of widened footprints.
-    pub(super) places: Vec<u32>,
+    pub(super) indices: Vec<u32>,
     /// The rotated body of an object that moves.
     pub(super) body: Footprint,
     /// Positions at which bodies would overlap a door.
@@ -87,20 +87,20 @@ impl CollisionWorld {
     pub(crate) fn new(world: &World, scene: &Scene) -> Self {
         let agent = &world.agent_params;
         let (radius, height) = (agent.agent_width as f32 / 2.0, agent.agent_height as f32);
-        // An upright cylinder for everything on the ground: the round ends are below the ground and above the head.
+        // For everything on the ground this is an upright cylinder: the round ends are below the ground and above the head.
         let capsule = |radius: f32| SharedShape::capsule(Vector::ZERO, Vector::new(0.0, 0.0, height), radius);
         let mut bodies = Self {
             colliders: ColliderSet::new(),
-            places: BroadPhase::default(),
+            broad_phase: BroadPhase::default(),
             engine: Box::default(),
             handles: vec![None; scene.items.len()],
-            put_by: Vec::new(),
+            set_aside: Vec::new(),
             agent_handle: None,
             agent: capsule(radius),
             radius: f64::from(radius),
             height,
             half: scene.arena_size().map(|side| side / 2.0),
-            standing: Vec::new(),
+            body_data: Vec::new(),
             low: Vec::new(),
             whole: Vec::new(),
             scratch: Scratch::default(),
@@ -108,7 +108,7 @@ impl CollisionWorld {
         let edges = world.obstacles().map(<[_]>::len).sum::<usize>();
         let count = 4 + edges + scene.items.len();
         bodies.colliders = ColliderSet::with_capacity(count + 1);
-        bodies.standing.reserve(count);
+        bodies.body_data.reserve(count);
         bodies.low.reserve(count);
         bodies.whole.reserve(count);
         bodies.add_arena(scene.arena_size());
@@ -121,9 +121,9 @@ impl CollisionWorld {
         bodies
     }
 
-    /// Prefetches what the next motion reads.
+    /// Prefetches the memory that the next motion reads.
     pub(super) fn prefetch(&self) {
-        self.places.prefetch();
+        self.broad_phase.prefetch();
         prefetch(self.low.as_slice());
         prefetch(self.scratch.numbers.as_slice());
         prefetch(self.scratch.path.as_slice());
@@ -147,33 +147,33 @@ impl CollisionWorld {
         let handle = self.colliders.insert(collider.collision_groups(groups));
         let slot = slot(handle);
         let user_data = self.colliders[handle].user_data as u64;
-        let standing = Standing {
+        let body_data = BodyData {
             outline,
             object: (group == SOLID || group == GHOST).then_some(user_data as u32),
             rank: user_data | u64::from(group == WALL) << 32 | u64::from(group == AGENT) << 33,
         };
-        // A new handle has the next number, or that of a removed body.
-        if let Some(place) = self.standing.get_mut(slot) {
-            *place = standing;
+        // A new handle has the next number or the number of a removed body.
+        if let Some(old) = self.body_data.get_mut(slot) {
+            *old = body_data;
         } else {
-            self.standing.push(standing);
+            self.body_data.push(body_data);
             self.low.push(Footprint::default());
             self.whole.push(Footprint::default());
         }
-        self.note_place(handle, heading_deg);
+        self.record_position(handle, heading_deg);
         handle
     }
 
     /// Records a body's current position and heading.
-    pub(super) fn note_place(&mut self, handle: ColliderHandle, heading_deg: f32) {
+    pub(super) fn record_position(&mut self, handle: ColliderHandle, heading_deg: f32) {
         let collider = &self.colliders[handle];
-        let area = area_of(collider.shape(), collider.position());
+        let area = bounding_box(collider.shape(), collider.position());
         let slot = slot(handle);
-        self.places
+        self.broad_phase
             .put(collider.collision_groups().memberships, slot as u32, area);
         let at = collider.translation();
         let at = [f64::from(at.x), f64::from(at.y)];
-        let outline = &self.standing[slot].outline;
+        let outline = &self.body_data[slot].outline;
         outline.place_into(heading_deg, at, &mut self.low[slot], &mut self.whole[slot]);
     }
 
@@ -193,12 +193,12 @@ impl CollisionWorld {
         }
     }
 
-    /// Walls extend beyond the agent: above its head and below its feet.
+    /// Walls extend above the agent's head and below its feet.
     fn wall_half_height(&self) -> f32 {
         self.height + 1.0
     }
 
-    /// Adds a thin wall along every edge of a polygon: unlike a triangulation, this works for every polygon.
+    /// Adds a thin wall along every edge of a polygon. Unlike a triangulation, this works for every polygon.
     fn add_region(&mut self, corners: &[[f64; 2]]) {
         let corners = to_f32(corners);
         for (from, to) in corners.iter().zip(corners.iter().cycle().skip(1)) {
@@ -218,7 +218,7 @@ impl CollisionWorld {
     /// Adds an object's body at its item's position.
     pub(super) fn add_object(&mut self, index: u32, item: &Item, solid: bool) {
         let (shape, from_ground) = body_shape(item);
-        // Composed by hand: a product of poses would make the rounding of the height depend on the heading.
+        // Composed by hand, because a product of poses would make the rounding of the height depend on the heading.
         let at = from_ground.translation + Vector::new(item.position[0], item.position[1], 0.0);
         let pose = if shows_heading(&shape) {
             // Headings are clockwise.
@@ -248,7 +248,7 @@ impl CollisionWorld {
         }
         (pose.translation.x, pose.translation.y) = (at[0], at[1]);
         self.colliders[handle].set_position(pose);
-        self.note_place(handle, heading_deg);
+        self.record_position(handle, heading_deg);
     }
 
     /// Removes an object's body.
@@ -262,20 +262,20 @@ impl CollisionWorld {
                 &mut self.engine.soft_bodies,
                 false,
             );
-            self.places.remove(group, slot(handle) as u32);
+            self.broad_phase.remove(group, slot(handle) as u32);
         }
     }
 
-    /// Queries about bodies of these groups, except one body: one query for each tree that contains them.
-    pub(super) fn queries_but(
+    /// Queries about bodies of these groups, except one body; one query for each tree that contains such bodies.
+    pub(super) fn queries_except(
         &self,
         groups: Group,
-        but: Option<ColliderHandle>,
+        except: Option<ColliderHandle>,
     ) -> impl Iterator<Item = QueryPipeline<'_>> {
         let interaction = InteractionGroups::new(Group::ALL, groups, InteractionTestMode::And);
         let mut filter = QueryFilter::default().groups(interaction);
-        filter.exclude_collider = but;
-        self.places.of(groups).map(move |bvh| QueryPipeline {
+        filter.exclude_collider = except;
+        self.broad_phase.of(groups).map(move |bvh| QueryPipeline {
             dispatcher: self.engine.narrow_phase.query_dispatcher(),
             bvh,
             bodies: &self.engine.bodies,
@@ -284,76 +284,76 @@ impl CollisionWorld {
         })
     }
 
-    /// The bodies of these groups, except one, whose bounding boxes meet a rectangle on the ground.
+    /// The bodies of these groups, except one, whose bounding boxes intersect a rectangle on the ground.
     pub(super) fn around(
         &self,
         groups: Group,
-        but: Option<ColliderHandle>,
+        except: Option<ColliderHandle>,
         area: [[f32; 2]; 2],
     ) -> impl Iterator<Item = ColliderHandle> {
         let interaction = InteractionGroups::new(Group::ALL, groups, InteractionTestMode::And);
-        let numbers = self.places.around(groups, area);
+        let numbers = self.broad_phase.around(groups, area);
         numbers.filter_map(move |number| {
             let (collider, handle) = self.colliders.get_unknown_gen(number)?;
-            let asked_for = collider.collision_groups().test(interaction) && Some(handle) != but;
-            asked_for.then_some(handle)
+            let matches = collider.collision_groups().test(interaction) && Some(handle) != except;
+            matches.then_some(handle)
         })
     }
 
-    /// Collects in `scratch.numbers` the bodies of these groups, except one, around the path from one place to another, and
+    /// Collects in `scratch.numbers` the bodies of these groups, except one, around the path from one position to another, and
     /// returns their total number of corners.
     ///
-    /// `None`, with an incomplete list, if there are more bodies than queries in the budget; each body takes one.
+    /// `None`, with an incomplete list, if there are more bodies than queries in the budget; each body takes one query.
     pub(super) fn gather(
         &mut self,
         groups: Group,
-        but: Option<ColliderHandle>,
+        except: Option<ColliderHandle>,
         [from, to]: [Point; 2],
         reach: f64,
         budget: &mut Budget,
     ) -> Option<usize> {
         let mut numbers = std::mem::take(&mut self.scratch.numbers);
         numbers.clear();
-        // Room for what most paths meet, so that steps do not allocate.
+        // Capacity for what most paths meet, so that steps do not allocate.
         numbers.reserve(64);
         self.scratch.touched.reserve(16);
         self.scratch.path.reserve(64);
         self.scratch.strides.reserve(64);
-        self.scratch.places.reserve(64);
-        let least = [0, 1].map(|axis| (from[axis].min(to[axis]) - reach) as f32);
-        let most = [0, 1].map(|axis| (from[axis].max(to[axis]) + reach) as f32);
-        // One body more than the budget shows that there are too many, whatever the order of the tree.
-        let at_most = usize::try_from(budget.left()).unwrap_or(usize::MAX).saturating_add(1);
-        let around = self.around(groups, but, [least, most]).take(at_most);
+        self.scratch.indices.reserve(64);
+        let low = [0, 1].map(|axis| (from[axis].min(to[axis]) - reach) as f32);
+        let high = [0, 1].map(|axis| (from[axis].max(to[axis]) + reach) as f32);
+        // One body more than the budget is enough to know that there are too many, in whichever order the tree lists them.
+        let max_bodies = usize::try_from(budget.left()).unwrap_or(usize::MAX).saturating_add(1);
+        let around = self.around(groups, except, [low, high]).take(max_bodies);
         numbers.extend(around.map(|handle| slot(handle) as u32));
-        let is_whole = budget.take(numbers.len());
-        if is_whole {
-            // The tree's order depends on its history, which a saved world does not have.
-            numbers.sort_unstable_by_key(|number| self.standing[*number as usize].rank);
+        let is_complete = budget.take(numbers.len());
+        if is_complete {
+            // The tree's order depends on its history, which a saved world does not contain.
+            numbers.sort_unstable_by_key(|number| self.body_data[*number as usize].rank);
         }
         let corners = || numbers.iter().map(|number| self.whole[*number as usize].corners.len());
-        let num_corners = is_whole.then(|| corners().sum());
+        let num_corners = is_complete.then(|| corners().sum());
         self.scratch.numbers = numbers;
         num_corners
     }
 
     /// The outline of an object while it is present.
     pub(super) fn outline_of(&self, object: u32) -> Option<&Outline> {
-        self.handles[object as usize].map(|handle| &self.standing[slot(handle)].outline)
+        self.handles[object as usize].map(|handle| &self.body_data[slot(handle)].outline)
     }
 
-    /// The points where the agent's path of this time step began, bent and ended.
+    /// The points where the agent's path in this time step starts, bends and ends.
     pub(super) fn path(&self) -> &[Point] {
         &self.scratch.path
     }
 
-    /// The agent's position at the beginning of this time step.
-    pub(super) fn began(&self) -> [f32; 2] {
+    /// The agent's position at the start of this time step.
+    pub(super) fn path_start(&self) -> [f32; 2] {
         let start = self.scratch.path.first().copied().unwrap_or_default();
         start.map(|metres| metres as f32)
     }
 
-    /// The solid objects that the agent's body would overlap at a place, in order of index.
+    /// The solid objects that the agent's body would overlap at a position, in order of index.
     pub(crate) fn blocking(&self, at: [f32; 2], found: &mut Vec<u32>) {
         found.clear();
         let radius = self.radius as f32;
@@ -361,7 +361,7 @@ impl CollisionWorld {
         for handle in self.around(SOLID, None, area) {
             let slot = slot(handle);
             let inside = self.low[slot].gap(at.map(f64::from)).distance < self.radius;
-            found.extend(self.standing[slot].object.filter(|_| inside));
+            found.extend(self.body_data[slot].object.filter(|_| inside));
         }
         found.sort_unstable();
     }
@@ -373,7 +373,7 @@ impl CollisionWorld {
         let ahead = self.radius as f32 + 0.5;
         let centre = Vector::new(at[0] + forward[0] * ahead, at[1] + forward[1] * ahead, 0.5);
         let pose = Pose::new(centre, Vector::new(0.0, 0.0, libm::atan2f(forward[1], forward[0])));
-        for query in self.queries_but(SOLID | GHOST, None) {
+        for query in self.queries_except(SOLID | GHOST, None) {
             found.extend(
                 query
                     .intersect_shape(pose, &cube)

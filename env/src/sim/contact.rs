@@ -1,36 +1,37 @@
-//! Defines when a touch begins and ends.
+//! Defines when contacts begin and end.
 //!
-//! A contact begins when the gap between the agent and an object is at most [`TOUCH`] anywhere along their paths, and ends when
-//! it exceeds [`RELEASE`], both after the agent and after the objects have moved: an agent that closely follows an object stays
-//! in touch. These are distances, not times: the number of touches while passing does not depend on speed or time step.
+//! A contact begins when the gap between the agent and an object is at most [`TOUCH`] anywhere along their paths. It ends when
+//! the gap exceeds [`RELEASE`] both after the agent and after the objects have moved, so that an agent that closely follows an
+//! object stays in contact. These are distances, not times, so the number of contacts while passing depends neither on speed
+//! nor on the time step.
 
 use super::budget::Budget;
 use super::collision_world::{CollisionWorld, slot};
 use super::footprint::Point;
 use super::groups::{GHOST, SOLID};
 
-/// Maximum gap that counts as a touch, in metres: slightly more than the skin.
+/// Maximum gap that counts as a touch, in metres; slightly more than the skin.
 const TOUCH: f64 = 0.03;
 
-/// Maximum gap at which a contact continues, in metres; a range ends the same distance beyond its edge.
+/// Maximum gap at which a contact continues, in metres. Leaving a range takes the same distance beyond its edge.
 pub(super) const RELEASE: f64 = 0.25;
 
 impl CollisionWorld {
-    /// Records the objects that the agent touched along its path of this time step, each once, except `skipped` ones.
-    pub(super) fn note_passed(&mut self, met: &mut Vec<u32>, skipped: impl Fn(u32) -> bool) {
-        let Some((mut least, mut most)) = self.path().first().map(|&start| (start, start)) else {
+    /// Records the objects that the agent touched along its path in this time step, each once, except `skipped` ones.
+    pub(super) fn record_touched_on_path(&mut self, met_objects: &mut Vec<u32>, skipped: impl Fn(u32) -> bool) {
+        let Some((mut low, mut high)) = self.path().first().map(|&start| (start, start)) else {
             return;
         };
         for point in self.path() {
             for axis in 0..2 {
-                least[axis] = least[axis].min(point[axis]);
-                most[axis] = most[axis].max(point[axis]);
+                low[axis] = low[axis].min(point[axis]);
+                high[axis] = high[axis].max(point[axis]);
             }
         }
         let reach = self.radius + TOUCH;
-        self.gather(SOLID | GHOST, None, [least, most], reach, &mut Budget::new(u64::MAX));
+        self.gather(SOLID | GHOST, None, [low, high], reach, &mut Budget::new(u64::MAX));
         for &number in &self.scratch.numbers {
-            let Some(object) = self.standing[number as usize].object else {
+            let Some(object) = self.body_data[number as usize].object else {
                 continue;
             };
             let footprint = &self.low[number as usize];
@@ -39,14 +40,20 @@ impl CollisionWorld {
                 footprint.time_within(ends[0], by, reach).is_some()
             });
             if touched && !skipped(object) {
-                note(met, object);
+                record(met_objects, object);
             }
         }
     }
 
-    /// Records an object if it touched the agent while it moved by `by` metres to its current position, and the agent between
-    /// these positions.
-    pub(super) fn note_passing(&self, object: u32, by: [f32; 2], agent: [[f32; 2]; 2], met: &mut Vec<u32>) {
+    /// Records an object if it touched the agent while the object moved by `by` metres to its current position, and the agent
+    /// from one position to the other.
+    pub(super) fn record_if_touched_in_motion(
+        &self,
+        object: u32,
+        by: [f32; 2],
+        agent: [[f32; 2]; 2],
+        met_objects: &mut Vec<u32>,
+    ) {
         let Some(handle) = self.handles[object as usize] else {
             return;
         };
@@ -56,20 +63,20 @@ impl CollisionWorld {
         let from = [0, 1].map(|axis| start[axis] + f64::from(by[axis]));
         let way = [0, 1].map(|axis| end[axis] - from[axis]);
         if footprint.time_within(from, way, self.radius + TOUCH).is_some() {
-            note(met, object);
+            record(met_objects, object);
         }
     }
 
-    /// Records the objects that the agent's body touches at its current place.
-    pub(super) fn note_touching(&mut self, at: [f32; 2], met: &mut Vec<u32>) {
+    /// Records the objects that the agent's body touches at its current position.
+    pub(super) fn record_touched_now(&mut self, at: [f32; 2], met_objects: &mut Vec<u32>) {
         let at: Point = at.map(f64::from);
         let reach = self.radius + TOUCH;
         self.gather(SOLID | GHOST, None, [at, at], reach, &mut Budget::new(u64::MAX));
         for &number in &self.scratch.numbers {
             if self.low[number as usize].gap(at).distance <= reach
-                && let Some(object) = self.standing[number as usize].object
+                && let Some(object) = self.body_data[number as usize].object
             {
-                note(met, object);
+                record(met_objects, object);
             }
         }
     }
@@ -82,7 +89,7 @@ impl CollisionWorld {
         };
         let footprint = &self.low[slot(handle)];
         let reach = self.radius + TOUCH + metres;
-        // An agent that is already nearer may move away.
+        // An agent that is already nearer may still move away.
         let reach = path
             .first()
             .map_or(reach, |at| reach.min(footprint.gap(*at).distance - 1e-9));
@@ -101,9 +108,9 @@ impl CollisionWorld {
     }
 }
 
-/// Duplicates are removed when the list is sorted.
-fn note(met: &mut Vec<u32>, object: u32) {
-    // Room for what most steps touch, so that steps do not allocate.
-    met.reserve(64);
-    met.push(object);
+/// Adds an object to a list. Duplicates are removed when the list is sorted.
+fn record(met_objects: &mut Vec<u32>, object: u32) {
+    // Capacity for what most steps touch, so that steps do not allocate.
+    met_objects.reserve(64);
+    met_objects.push(object);
 }

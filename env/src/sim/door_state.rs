@@ -1,4 +1,4 @@
-//! [`DoorState`]: what a door remembers.
+//! [`DoorState`]: the state of a door besides being open or closed.
 
 use driftworld_spec::Door;
 
@@ -9,7 +9,7 @@ pub(super) struct DoorState {
     pub(super) object: usize,
     /// Whether its key was used.
     pub(super) unlocked: bool,
-    /// The time step from which it closes as soon as nothing stands in it.
+    /// The time step from which on it closes as soon as nothing stands in it.
     pub(super) closes_at: Option<u64>,
 }
 
@@ -28,6 +28,6 @@ impl DoorState {
 
 /// Number of time steps until `seconds` have passed: at least one.
 pub(super) fn ticks_of(seconds: f64, time_step: f64) -> u64 {
-    // Slightly less, because 0.1 is inexact in binary: 60 s are 600 time steps of 0.1 s.
+    // Subtracts a little, because 0.1 is inexact in binary, but 60 s must be 600 time steps of 0.1 s.
     ((seconds / time_step - 1e-6).ceil() as u64).max(1)
 }

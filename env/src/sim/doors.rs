@@ -1,4 +1,4 @@
-//! Opens and closes doors, by events and by their clocks.
+//! Opens and closes doors in response to events and by their clocks.
 
 use driftworld_spec::{Door, MotionModel, World};
 
@@ -8,7 +8,7 @@ use super::groups::{GHOST, SOLID};
 use super::state::SimState;
 use super::views::Views;
 
-/// Overlap in metres from which a body counts as standing in a door.
+/// Minimum overlap in metres at which a body counts as standing in a door.
 const INSIDE: f64 = 1e-6;
 
 /// Opens a door. Opening an open door restarts its closing timer.
@@ -25,23 +25,23 @@ pub(super) fn open(world: &World, state: &mut SimState, views: &mut Views, index
 
 /// Makes an open door close at the end of this time step, or as soon as nothing stands in it.
 pub(super) fn close_soon(state: &mut SimState, index: usize) {
-    // Due since the last time step, so it already waits to close; a door whose timer expires now does not yet.
+    // Due since the last time step, so it already waits to close, unlike a door whose timer expires now.
     let due = state.ticks.saturating_sub(1);
     if let Some(door) = state.doors.iter_mut().find(|door| door.object == index) {
         door.closes_at = Some(door.closes_at.map_or(due, |tick| tick.min(due)));
     }
 }
 
-/// Whether an open door was due to close before, and waits until nothing stands in it.
+/// Whether an open door was due to close in an earlier time step, and waits until nothing stands in it.
 pub(super) fn waits_to_close(state: &SimState, index: usize) -> bool {
     let closes_at = state.door_of(index).and_then(|door| door.closes_at);
     state.objects[index].open && closes_at.is_some_and(|tick| tick < state.ticks)
 }
 
-/// Advances doors at the end of a time step: first the clocks, then doors that are due to close and can.
+/// Advances doors at the end of a time step: first their clocks, then closes doors that are due and free.
 pub(super) fn advance_doors(world: &World, state: &mut SimState, views: &mut Views) {
-    for place in 0..state.doors.len() {
-        let index = state.doors[place].object;
+    for number in 0..state.doors.len() {
+        let index = state.doors[number].object;
         let Some(door) = world.objects[index]
             .door
             .as_ref()
@@ -56,9 +56,9 @@ pub(super) fn advance_doors(world: &World, state: &mut SimState, views: &mut Vie
                 (false, false) => {}
             }
         }
-        let is_due = state.doors[place].closes_at.is_some_and(|tick| tick <= state.ticks);
-        if is_due && state.objects[index].open && !is_stood_in(world, state, views, index) {
-            state.doors[place].closes_at = None;
+        let is_due = state.doors[number].closes_at.is_some_and(|tick| tick <= state.ticks);
+        if is_due && state.objects[index].open && !is_obstructed(world, state, views, index) {
+            state.doors[number].closes_at = None;
             state.objects[index].open = false;
             views.sync_object(index, &world.objects[index], &state.objects[index]);
         }
@@ -74,7 +74,7 @@ fn clock(door: &Door, ticks: u64, time_step: f64) -> Option<bool> {
 }
 
 /// Whether the agent or a movable body stands in a door.
-fn is_stood_in(world: &World, state: &SimState, views: &mut Views, index: usize) -> bool {
+fn is_obstructed(world: &World, state: &SimState, views: &mut Views, index: usize) -> bool {
     if !world.objects[index].solid {
         return false;
     }
@@ -102,18 +102,18 @@ fn is_stood_in(world: &World, state: &SimState, views: &mut Views, index: usize)
         ((far + bodies.whole[own].rounding) * sign) as f32
     };
     let area = [-1.0, 1.0].map(|sign| [side(0, sign), side(1, sign)]);
-    let is_stood_in = bodies.around(SOLID | GHOST, Some(handle), area).any(|other| {
+    let is_obstructed = bodies.around(SOLID | GHOST, Some(handle), area).any(|other| {
         let number = slot(other);
-        let moves = bodies.standing[number]
+        let moves = bodies.body_data[number]
             .object
             .is_some_and(|object| moves(object as usize));
         moves && {
-            bodies.whole[own].widened_into(&bodies.whole[number], &mut overlap);
+            bodies.whole[own].widen_into(&bodies.whole[number], &mut overlap);
             overlap.gap([0.0; 2]).distance < -INSIDE
         }
     });
     bodies.scratch.doorway = overlap;
-    is_stood_in
+    is_obstructed
 }
 
 #[cfg(test)]

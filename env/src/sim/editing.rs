@@ -1,4 +1,4 @@
-//! Changes a running world from outside: adds and removes objects, and moves the agent.
+//! Edits a running world: adds and removes objects, and moves the agent.
 
 use std::sync::Arc;
 
@@ -13,33 +13,34 @@ use crate::EnvError;
 impl Environment {
     /// The index of the object with this `unique_name`, whether it is present or not.
     pub fn find(&self, unique_name: &str) -> Option<usize> {
-        let named = |object: &Object| object.unique_name.as_deref() == Some(unique_name);
-        self.world.objects.iter().position(named)
+        let has_name = |object: &Object| object.unique_name.as_deref() == Some(unique_name);
+        self.world.objects.iter().position(has_name)
     }
 
-    /// Adds a new object to the running world and returns its index: the next number, because existing indices do not change.
+    /// Adds a new object to the running world and returns its index, the next free number. Existing indices do not change.
     ///
-    /// It is placed as given, even in a wall. If it is at the agent's position, contact begins in the next step.
+    /// The object is placed at its coordinates, even in a wall. If it touches the agent, contact begins in the next step.
     ///
     /// # Errors
-    /// [`EnvError::BadObject`] if a document with this object would be refused, [`EnvError::NameTaken`], and
-    /// [`EnvError::TooManyObjects`] beyond [`MAX_OBJECTS`], which counts destroyed ones. On error nothing is changed.
+    /// [`EnvError::BadObject`] if a document containing this object would be rejected, [`EnvError::NameTaken`] if another
+    /// object has its `unique_name`, and [`EnvError::TooManyObjects`] beyond [`MAX_OBJECTS`], where destroyed objects count as
+    /// well. On error nothing is changed.
     pub fn spawn(&mut self, object: Object) -> Result<usize, EnvError> {
         let index = self.world.objects.len();
         if index >= MAX_OBJECTS {
             return Err(EnvError::TooManyObjects { limit: MAX_OBJECTS });
         }
         if let Some(name) = &object.unique_name
-            && let Some(first) = self.find(name)
+            && let Some(existing) = self.find(name)
             && object.check().is_ok()
         {
             let name = name.clone();
-            return Err(EnvError::NameTaken { name, object: first });
+            return Err(EnvError::NameTaken { name, object: existing });
         }
-        // Without a seed, random numbers depend on the initial places of the objects. If that seed is not known yet, nothing
-        // has drawn from it, so it is computed before the new object is added.
+        // Without a seed, random numbers depend on the initial positions of the objects. If that seed is not known yet, nothing
+        // has used it, so it is computed before the new object is added.
         let mut seed = self.seed.clone();
-        seed.learn(&self.world);
+        seed.resolve(&self.world);
         let refused = |problem| EnvError::BadObject { problem };
         Arc::make_mut(&mut self.world).push(object).map_err(refused)?;
         self.seed = seed;
@@ -53,26 +54,26 @@ impl Environment {
         Ok(index)
     }
 
-    /// Removes an object from the running world for good: it pays nothing and does not respawn.
-    ///
-    /// It counts as collected, so that a sequence that it was part of can continue. Its index is not reused.
+    /// Removes an object from the running world for good: it pays nothing and does not respawn. It counts as collected, so that
+    /// its sequence, if any, can continue. Its index is not reused.
     ///
     /// # Errors
-    /// [`EnvError::NoSuchObject`], and [`EnvError::AlreadyGone`] if it is already gone; nothing is changed then.
+    /// [`EnvError::NoSuchObject`] if there is no such object, and [`EnvError::AlreadyGone`] if it is already gone. On error
+    /// nothing is changed.
     pub fn destroy(&mut self, object: usize) -> Result<(), EnvError> {
         let count = self.state.objects.len();
         if object >= count {
             return Err(EnvError::NoSuchObject { found: object, count });
         }
-        let comes_back = |(index, _): &(usize, u64)| *index == object;
+        let is_pending = |(index, _): &(usize, u64)| *index == object;
         let state = &mut self.state;
         let is_carried = state.objects[object].carried;
-        if !state.objects[object].present && !is_carried && !state.returning.iter().any(comes_back) {
+        if !state.objects[object].present && !is_carried && !state.returning.iter().any(is_pending) {
             return Err(EnvError::AlreadyGone { object });
         }
         state.carried.retain(|carried| *carried as usize != object);
         state.objects[object].carried = false;
-        state.returning.retain(|pending| !comes_back(pending));
+        state.returning.retain(|pending| !is_pending(pending));
         (state.objects[object].present, state.objects[object].collected) = (false, true);
         state.advance_sequence();
         state.contacts.retain(|contact| *contact as usize != object);
@@ -81,14 +82,15 @@ impl Environment {
         Ok(())
     }
 
-    /// Moves the agent to another place, with a heading in degrees clockwise from +y, which may exceed a full turn.
+    /// Moves the agent to another position, with a heading in degrees clockwise from +y (values beyond a full turn are
+    /// allowed).
     ///
-    /// It arrives at rest. Objects and zones that it touches, is near or is inside on arrival cause no events: only
-    /// what it meets by its own motion pays.
+    /// It arrives at rest. Objects and zones that it touches, is near or is inside on arrival trigger no events: only contacts
+    /// made by the agent's own motion give rewards.
     ///
     /// # Errors
-    /// [`EnvError::NoRoom`] for places outside the arena, in walls, in regions that cannot be entered and in solid objects;
-    /// [`EnvError::NoHeading`] for a heading that is not finite. On error it stays where it is.
+    /// [`EnvError::NoRoom`] for positions outside the arena, in walls, in regions that cannot be entered and in solid objects;
+    /// [`EnvError::NoHeading`] for a heading that is not finite. On error the agent stays where it is.
     pub fn teleport(&mut self, position: [f64; 2], heading_deg: f64) -> Result<(), EnvError> {
         if !heading_deg.is_finite() {
             return Err(EnvError::NoHeading { found: heading_deg });

@@ -1,11 +1,11 @@
-//! The agent's energy: consumption by time and distance, and gains from objects.
+//! The agent's energy: changes with time and distance, and gains from objects.
 
 use driftworld_spec::{Energy, World};
 
 use super::state::SimState;
 use super::views::Views;
 
-/// Subtracts the consumption of a time step and of the agent's path in it.
+/// Applies the change of energy in a time step and along the agent's path in it.
 pub(super) fn use_energy(world: &World, state: &mut SimState, views: &Views) {
     let Some(energy) = &world.agent_params.energy else {
         return;

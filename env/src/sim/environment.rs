@@ -6,7 +6,7 @@ use driftworld_spec::{ActionModel, GameMode, Object, World};
 
 use super::encounters::Encounters;
 use super::interactions::Stimuli;
-use super::neighbours::heap;
+use super::neighbours::heap_warning;
 use super::progress::ResumeState;
 use super::pushed::is_pushed;
 use super::rng::{Identities, Seed};
@@ -22,10 +22,10 @@ use crate::prefetch::prefetch;
 use crate::render::{Frame, Renderer, RendererKind};
 use crate::scene::Scene;
 
-/// Number of walls whose geometry is prefetched: enough for an arena with a few walls.
-const MOST_WALLS_PREFETCHED: usize = 8;
+/// Maximum number of walls whose geometry is prefetched, enough for an arena with a few walls.
+const MAX_PREFETCHED_WALLS: usize = 8;
 
-/// A running world: reset, step, observe.
+/// A running world with an agent.
 ///
 /// Deterministic: the same world and the same actions give the same rewards, poses and pixels.
 ///
@@ -59,12 +59,12 @@ pub struct Environment {
 }
 
 impl Environment {
-    /// A world with built-in assets at its start: every checked world can start.
+    /// A world at its start, with built-in assets. Every checked world can start.
     pub fn new(world: World) -> Self {
         Self::with_catalogue(world, Catalogue::default())
     }
 
-    /// A world at its start, with assets from a catalogue, which later worlds use as well.
+    /// A world at its start, with assets from a catalogue, which later worlds will use as well.
     ///
     /// Objects unknown to the catalogue are drawn as placeholders, with a warning.
     #[expect(
@@ -95,10 +95,10 @@ impl Environment {
         self.views.bodies.prefetch();
     }
 
-    /// Prefetches what those lists point to.
+    /// Prefetches the data to which those lists point.
     pub(crate) fn prefetch_contents(&self) {
         self.world.objects.first().inspect(|object| prefetch(*object));
-        for group in self.views.scene.panels.iter().take(MOST_WALLS_PREFETCHED) {
+        for group in self.views.scene.panels.iter().take(MAX_PREFETCHED_WALLS) {
             prefetch(group.edges.as_slice());
             group.blocks.first().inspect(|block| prefetch(*block));
         }
@@ -114,7 +114,7 @@ impl Environment {
         self.renderer = renderer;
     }
 
-    /// Resets to another world, or to the same one; keeps the image buffers.
+    /// Resets to another world or to the same one.
     pub fn reset(&mut self, world: World) {
         let catalogue = self.views.scene.catalogue().clone();
         self.start_with(Arc::new(world), &catalogue);
@@ -133,8 +133,8 @@ impl Environment {
     }
 
     fn build(mut world: Arc<World>, catalogue: &Catalogue, renderer: Renderer, frame: Frame) -> Self {
-        // A world that was saved while running is first taken back to its start, and then resumed.
-        let resume = world.progress.is_some().then(|| ResumeState::out_of(&mut world));
+        // A world that was saved while running is first restored to its start, and then resumed.
+        let resume = world.progress.is_some().then(|| ResumeState::extract_from(&mut world));
         let mut views = Views::new(&world, catalogue);
         let seed = Seed::of(&world, resume.as_ref().and_then(|resume| resume.progress.seed.clone()));
         let mut identities = Identities::default();
@@ -217,7 +217,7 @@ impl Environment {
         self.world.agent_params.energy.map(|_| self.state.energy)
     }
 
-    /// Whether the episode has ended, so that it must be reset before the next step.
+    /// Whether the episode has ended, so that a reset must come before the next step.
     pub fn ended(&self) -> bool {
         self.state.ended
     }
@@ -235,7 +235,7 @@ impl Environment {
         }
         let objects = 0..self.world.objects.len();
         warnings.extend(objects.flat_map(|index| self.warnings_of(index)));
-        warnings.extend(heap(self.sim()));
+        warnings.extend(heap_warning(self.sim()));
         warnings
     }
 

@@ -1,10 +1,10 @@
-//! Results of a step: events, rewards, and the cause of an end.
+//! Results of a step: events, rewards, and the cause of the episode's end.
 
 use std::sync::Arc;
 
 use driftworld_spec::Stimulus;
 
-/// An event that happened to one object.
+/// An event at one object.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Event {
     /// Index of the object in the world.
@@ -17,21 +17,21 @@ pub struct Event {
     pub reward: f64,
     /// Whether it destroyed the object.
     pub destroyed: bool,
-    /// The object's reaction, if it is a door, a switch or a thing that can be carried.
+    /// The object's reaction, if it is a door, a switch or a portable thing.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub effect: Option<Effect>,
 }
 
-/// The reaction of a door, a switch or a carriable thing to a stimulus.
+/// The reaction of a door, a switch or a portable thing to a stimulus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, strum::IntoStaticStr)]
 #[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "snake_case")]
 pub enum Effect {
     /// The door opened.
     Opened,
-    /// The door received a command to close: it closes at the end of the time step, or as soon as nothing stands in it.
+    /// The door was told to close; it closes at the end of the time step, or as soon as nothing stands in it.
     Closed,
-    /// The switch moved its doors.
+    /// The switch opened or closed its doors.
     Switched,
     /// The agent picked the thing up.
     PickedUp,
@@ -54,7 +54,7 @@ impl Effect {
 pub enum EndedBy {
     /// No object with a positive reward is left.
     AllCollected,
-    /// The agent touched, or interacted with, an object that ends the episode.
+    /// The agent touched or interacted with an object that ends the episode.
     Touch,
     /// A door was opened.
     Opened,
@@ -66,7 +66,7 @@ pub enum EndedBy {
     Return,
     /// The agent's energy was used up.
     Energy,
-    /// A zone ended it.
+    /// A zone ended the episode.
     Zone,
     /// The step limit was reached.
     Steps,
@@ -86,7 +86,7 @@ impl EndedBy {
 pub struct Step {
     /// The step's total reward.
     pub reward: f64,
-    /// Whether the episode ended by itself.
+    /// Whether the episode ended by the world's rules.
     pub terminated: bool,
     /// Whether the episode was cut off by a step limit or a limit of simulated time.
     pub truncated: bool,

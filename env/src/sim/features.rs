@@ -8,7 +8,7 @@ use super::state::{ObjectState, SimState};
 use super::termination::pays_now;
 
 impl Environment {
-    /// The numbers of the requested features, in the world's order, followed by its instruction. The default features are
+    /// The numbers of the requested features, in the world's order, followed by the instruction. The default features are
     /// position, heading and velocity.
     pub fn state_vector(&self) -> Vec<f32> {
         let mut state = vec![0.0; self.world.agent_params.state_len()];
@@ -19,7 +19,7 @@ impl Environment {
     /// Writes the state vector into a buffer.
     ///
     /// # Errors
-    /// [`EnvError::StateLength`](crate::EnvError::StateLength) unless the buffer has exactly its length.
+    /// [`EnvError::StateLength`](crate::EnvError::StateLength) unless the buffer has exactly the vector's length.
     pub fn write_state(&self, state: &mut [f32]) -> Result<(), crate::EnvError> {
         let expected = self.world.agent_params.state_len();
         if state.len() != expected {
@@ -35,7 +35,7 @@ impl Environment {
         for feature in &self.world.agent_params.state_features {
             let mut numbers = values(&self.world, &self.state, &self.views.zones, *feature);
             if *feature == StateFeature::Carrying {
-                // Class numbers are those of the scene.
+                // Uses the scene's class numbers.
                 let last = self.state.carried.last().map(|index| *index as usize);
                 let class = last.map_or(0, |index| self.views.scene.items[index].class_id);
                 numbers[1] = f32::from(class);
@@ -44,8 +44,8 @@ impl Environment {
             own.copy_from_slice(&numbers[..own.len()]);
             rest = others;
         }
-        for (place, number) in rest.iter_mut().zip(&self.world.agent_params.instruction) {
-            *place = *number as f32;
+        for (value, number) in rest.iter_mut().zip(&self.world.agent_params.instruction) {
+            *value = *number as f32;
         }
     }
 }
@@ -67,10 +67,12 @@ fn values(world: &World, state: &SimState, zones: &Zones, feature: StateFeature)
             let [ahead, right] = own_axes(state, agent.velocity);
             [ahead, right, 0.0]
         }
-        StateFeature::Goal => way_in_own_axes(state, state.nearest(world, |object, own| is_goal(world, object, own))),
+        StateFeature::Goal => {
+            offset_in_own_axes(state, state.nearest(world, |object, own| is_goal(world, object, own)))
+        }
         StateFeature::NearestTarget => {
             let due = |object: &Object, own: &ObjectState| pays_now(object, own) && state.is_due(object.order);
-            way_in_own_axes(state, state.nearest(world, due))
+            offset_in_own_axes(state, state.nearest(world, due))
         }
         StateFeature::Counts => {
             let objects = || world.objects.iter().zip(&state.objects);
@@ -98,14 +100,15 @@ fn values(world: &World, state: &SimState, zones: &Zones, feature: StateFeature)
             [zones().count() as f32, rate as f32, 0.0]
         }
         StateFeature::StepsLeft => {
-            let most = world.step_limit().unwrap_or(0);
-            let left = f64::from(most.saturating_sub(state.steps)) / f64::from(most.max(1));
-            [if most == 0 { 1.0 } else { left as f32 }, 0.0, 0.0]
+            let limit = world.step_limit().unwrap_or(0);
+            let left = f64::from(limit.saturating_sub(state.steps)) / f64::from(limit.max(1));
+            [if limit == 0 { 1.0 } else { left as f32 }, 0.0, 0.0]
         }
     }
 }
 
-/// Whether the goal feature may point to an object: it has the shaping's tag or, without one, touching it is a success.
+/// Whether the goal feature may point to an object: it has the shaping's tag or, if shaping has no tag, touching it is a
+/// success.
 fn is_goal(world: &World, object: &Object, own: &ObjectState) -> bool {
     let Some(tag) = &object.tag else { return false };
     let rules = &world.rules;
@@ -115,9 +118,9 @@ fn is_goal(world: &World, object: &Object, own: &ObjectState) -> bool {
 }
 
 /// The vector to an object, ahead and to the right in metres, and 1; all 0 without an object.
-fn way_in_own_axes(state: &SimState, index: Option<usize>) -> [f32; 3] {
+fn offset_in_own_axes(state: &SimState, index: Option<usize>) -> [f32; 3] {
     index.map_or([0.0; 3], |index| {
-        let [ahead, right] = own_axes(state, state.way_to(index));
+        let [ahead, right] = own_axes(state, state.offset_to(index));
         [ahead, right, 1.0]
     })
 }

@@ -1,11 +1,10 @@
-//! [`Footprint`]: the ground that a body covers, as a disc or a convex polygon.
-//!
-//! All bodies are upright and move in the plane, so collisions are a two-dimensional problem. Gaps are exact: closed
-//! forms in `f64`. The search for the time of a contact iterates, but its result is never late.
+//! [`Footprint`]: the area of ground that a body covers, as a disc or a convex polygon. All bodies are upright and move in the
+//! plane, so collisions are a two-dimensional problem. Gaps are computed exactly, by closed forms in `f64`. The time of a
+//! contact is found by iteration, but the result is never late.
 
 use smallvec::{SmallVec, smallvec};
 
-use super::gap::{Gap, away_from, gap_to_line, gap_to_polygon};
+use super::gap::{Gap, gap_to_line, gap_to_point, gap_to_polygon};
 
 /// A point or a vector on the ground, in metres.
 pub(super) type Point = [f64; 2];
@@ -13,17 +12,17 @@ pub(super) type Point = [f64; 2];
 /// A convex polygon, a line segment or a point, widened by a radius.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Footprint {
-    /// One for a disc, two for a wall with round ends; otherwise more, counter-clockwise and distinct.
+    /// One for a disc, two for a wall with round ends, otherwise more: counter-clockwise and distinct.
     pub(super) corners: SmallVec<[Point; 4]>,
     /// The radius by which corners and edges are widened, in metres.
     pub(super) rounding: f64,
 }
 
-/// Distance from the target, in metres, at which the search for a time stops.
+/// Distance from the target, in metres, at which the search for the time of a contact stops.
 const NEAR_ENOUGH: f64 = 1e-7;
 
-/// Maximum number of iterations of the search for the first time; it needs about five, or twenty if a path only grazes.
-const MOST_ROUNDS: usize = 64;
+/// Maximum number of iterations of that search. It needs about five, or twenty if the path only grazes the footprint.
+const MAX_ITERATIONS: usize = 64;
 
 impl Footprint {
     /// A disc.
@@ -35,15 +34,15 @@ impl Footprint {
     }
 
     /// An empty footprint, with capacity for the corners of two rectangles.
-    pub(super) fn with_room() -> Self {
+    pub(super) fn with_capacity() -> Self {
         Self {
             corners: SmallVec::with_capacity(8),
             rounding: 0.0,
         }
     }
 
-    /// A segment with this half length along x around the origin, widened: its ends are round, so that two walls meet in a
-    /// corner without a notch.
+    /// A segment along x around the origin with this half length, widened by a radius. Its ends are round, so that two walls
+    /// meet in a corner without a notch.
     pub(super) fn line(half_length: f64, radius: f64) -> Self {
         Self {
             corners: smallvec![[-half_length, 0.0], [half_length, 0.0]],
@@ -87,9 +86,9 @@ impl Footprint {
         self.corners.iter().map(far).fold(0.0, f64::max) + self.rounding
     }
 
-    /// The Minkowski sum: all positions of a body's centre at which it touches or overlaps this footprint; `body` is around the
-    /// origin.
-    pub(super) fn widened_into(&self, body: &Self, widened: &mut Self) {
+    /// Writes to `widened` all positions of a body's centre at which it touches or overlaps this footprint: a Minkowski sum.
+    /// `body` is around the origin.
+    pub(super) fn widen_into(&self, body: &Self, widened: &mut Self) {
         widened.rounding = self.rounding + body.rounding;
         widened.corners.clear();
         if let [own] = body.corners.as_slice() {
@@ -106,7 +105,7 @@ impl Footprint {
                 .extend(corners.map(|corner| [middle[0] - corner[0], middle[1] - corner[1]]));
             return;
         }
-        // The edges of both, ordered by angle; those of the body are rotated by 180 degrees.
+        // Merges the edges of both, ordered by angle; the body's edges are rotated by 180 degrees.
         let lowest = |corners: &[Point], sign: f64| {
             let key = |index: &usize| corners[*index].map(|part| part * sign);
             let below = |a: &usize, b: &usize| {
@@ -138,10 +137,10 @@ impl Footprint {
 
     /// The gap between this footprint and a point.
     ///
-    /// The distance is a convex function of the point, even inside: along a straight path it first falls and then rises.
+    /// The distance is a convex function of the point, even inside, so along a straight path it first falls and then rises.
     pub(super) fn gap(&self, at: Point) -> Gap {
         let gap = match self.corners.as_slice() {
-            [middle] => away_from(*middle, at),
+            [middle] => gap_to_point(*middle, at),
             [from, to] => gap_to_line(*from, *to, at),
             corners => gap_to_polygon(corners, at),
         };
@@ -153,11 +152,11 @@ impl Footprint {
 
     /// The first time, 0..1, at which a point on a straight path is within `reach` of this footprint.
     ///
-    /// Never late: along a straight path the distance is convex, so each tangent reaches `reach` no later than the distance
-    /// does.
+    /// The result is never late. Along a straight path the distance is convex, so each tangent reaches `reach` no later than
+    /// the distance itself.
     pub(super) fn time_within(&self, from: Point, by: Point, reach: f64) -> Option<f64> {
         let mut time = 0.0;
-        for _ in 0..MOST_ROUNDS {
+        for _ in 0..MAX_ITERATIONS {
             let gap = self.gap([from[0] + by[0] * time, from[1] + by[1] * time]);
             let above = gap.distance - reach;
             if above <= NEAR_ENOUGH {
@@ -233,19 +232,19 @@ mod tests {
         prop_oneof![disc, polygon, line]
     }
 
-    /// The distance to the nearest of many points on the boundary: a cross-check, accurate to a few millimetres.
+    /// The distance to the nearest of many points on the boundary, as a cross-check; accurate to a few millimetres.
     fn sampled_distance(footprint: &Footprint, at: Point) -> f64 {
         let corners = &footprint.corners;
-        let mut least = f64::INFINITY;
+        let mut nearest = f64::INFINITY;
         for (from, to) in corners.iter().zip(corners.iter().cycle().skip(1)) {
             for k in 0..=2000 {
                 let share = f64::from(k) / 2000.0;
                 let x = from[0] + (to[0] - from[0]) * share - at[0];
                 let y = from[1] + (to[1] - from[1]) * share - at[1];
-                least = least.min(libm::hypot(x, y));
+                nearest = nearest.min(libm::hypot(x, y));
             }
         }
-        least - footprint.rounding
+        nearest - footprint.rounding
     }
 
     fn is_inside(corners: &[Point], [x, y]: Point) -> bool {
@@ -290,9 +289,9 @@ mod tests {
             let sampled = (0..=steps).map(|k| f64::from(k) / f64::from(steps)).find(|time| at(*time) <= reach);
             match (found, sampled) {
                 (Some(time), Some(sampled)) => prop_assert!(time <= sampled + 1e-6 && at(time) <= reach + 1e-5),
-                // The path grazes between two samples.
+                // The path grazes the footprint between two samples.
                 (Some(time), None) => prop_assert!(at(time) <= reach + 1e-5),
-                (None, Some(_)) => prop_assert!(false, "missed"),
+                (None, Some(_)) => prop_assert!(false, "the contact was missed"),
                 (None, None) => {}
             }
         }
@@ -305,7 +304,7 @@ mod tests {
         ) {
             let Some(body) = Footprint::around(points) else { return Ok(()) };
             let mut widened = Footprint::disc([0.0; 2], 0.0);
-            standing.widened_into(&body, &mut widened);
+            standing.widen_into(&body, &mut widened);
             // The distance of two convex shapes is the minimum over the boundary of one of them.
             let mut least = f64::INFINITY;
             for (from, to) in body.corners.iter().zip(body.corners.iter().cycle().skip(1)) {

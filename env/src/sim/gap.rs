@@ -1,22 +1,22 @@
-//! [`Gap`]: distance and direction from a point, a line segment or a convex polygon. Tested in `footprint.rs`, which widens all
-//! three.
+//! [`Gap`]: distance and direction from a point, a line segment or a convex polygon. The tests are in `footprint.rs`, which
+//! widens all three.
 
 use super::footprint::Point;
 
 /// The gap between a footprint and a point.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Gap {
-    /// In metres; below 0 inside.
+    /// Distance in metres; below 0 inside.
     pub(super) distance: f64,
     /// Direction of the shortest way out, or farther away: a unit vector away from the footprint.
     pub(super) out: Point,
 }
 
 /// The gap between two points.
-pub(super) fn away_from(middle: Point, at: Point) -> Gap {
+pub(super) fn gap_to_point(middle: Point, at: Point) -> Gap {
     let way = [at[0] - middle[0], at[1] - middle[1]];
     let distance = (way[0] * way[0] + way[1] * way[1]).sqrt();
-    // At the exact centre all directions are equally short.
+    // At the exact centre, all ways out are equally short.
     let out = if distance > 0.0 {
         way.map(|part| part / distance)
     } else {
@@ -32,10 +32,10 @@ pub(super) fn gap_to_line(from: Point, to: Point, at: Point) -> Gap {
     let squared = line[0] * line[0] + line[1] * line[1];
     let along = line[0] * way[0] + line[1] * way[1];
     if along <= 0.0 || squared == 0.0 {
-        return away_from(from, at);
+        return gap_to_point(from, at);
     }
     if along >= squared {
-        return away_from(to, at);
+        return gap_to_point(to, at);
     }
     let length = squared.sqrt();
     // Twice the area between the line and the point: positive on its right.
@@ -80,9 +80,9 @@ pub(super) fn gap_to_polygon(corners: &[Point], at: Point) -> Gap {
         let corner = if along < 0.0 { from } else { to };
         let way = [at[0] - corner[0], at[1] - corner[1]];
         let far = way[0] * way[0] + way[1] * way[1];
-        if nearest.is_none_or(|(least, _)| far < least) {
+        if nearest.is_none_or(|(nearest_so_far, _)| far < nearest_so_far) {
             nearest = Some((far, *corner));
         }
     }
-    nearest.map_or(inside, |(_, corner)| away_from(corner, at))
+    nearest.map_or(inside, |(_, corner)| gap_to_point(corner, at))
 }

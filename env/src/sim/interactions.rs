@@ -1,4 +1,4 @@
-//! Turns encounters into stimuli, and applies their effects: rewards and destruction.
+//! Turns encounters into stimuli, and applies their effects: rewards, destruction and reactions.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ use super::footprint::squared_distance;
 use super::rng::ObjectRng;
 use super::sim_ref::SimRef;
 use super::state::SimState;
-use super::things::{answering, apply_effect, effect_of, follow, listens, put_down, put_down_place};
+use super::things::{apply_effect, effect_of, follow, put_down, put_down_place, reacting_object, reacts_to_stimulus};
 use super::views::Views;
 
 /// Lists reused by each time step.
@@ -54,35 +54,35 @@ pub(super) fn apply_stimuli(
             .in_reach(state.agent.position, state.agent.forward(), reached);
         triggered.extend(reached.iter().map(|index| (*index, Stimulus::AgentInteract)));
     }
-    // An interaction moves one thing: the one in front, otherwise the carried one.
+    // An interaction affects one thing: the one in front or, if there is none, the carried one.
     let mut put_down_now = None;
-    let hand = (intent.interact && state.has_things)
+    let hand_target = (intent.interact && state.has_things)
         .then(|| {
             let sim = SimRef { world, state, views };
-            let answers = answering(sim, reached);
-            put_down_now = answers.is_none().then(|| put_down_place(sim)).flatten();
-            answers
+            let reacting = reacting_object(sim, reached);
+            put_down_now = reacting.is_none().then(|| put_down_place(sim)).flatten();
+            reacting
         })
         .flatten();
-    for place in 0..state.ranged.len() {
-        let index = state.ranged[place] as usize;
+    for number in 0..state.ranged.len() {
+        let index = state.ranged[number] as usize;
         let object = &world.objects[index];
         let reach = object.range_stimulus_distance;
         let sim = SimRef { world, state, views };
-        let was = state.objects[index].in_range;
+        let was_in_range = state.objects[index].in_range;
         let is_level = object.range_trigger == Trigger::Level;
-        let enters = (!was || is_level) && comes_near(sim, index, encounters);
+        let enters = (!was_in_range || is_level) && enters_range(sim, index, encounters);
         if enters {
             triggered.push((index as u32, Stimulus::AgentInRange));
         }
-        let is_in_range = (was || enters) && is_within(sim, index, reach + RELEASE);
+        let is_in_range = (was_in_range || enters) && is_within(sim, index, reach + RELEASE);
         state.objects[index].in_range = is_in_range;
     }
     triggered.sort_unstable();
     triggered.dedup();
     let num_returning = state.returning.len();
     for &(index, stimulus) in triggered.iter() {
-        if let Some(event) = trigger(objects, state, views, (index as usize, hand), stimulus) {
+        if let Some(event) = trigger(objects, state, views, (index as usize, hand_target), stimulus) {
             step.reward += event.reward;
             step.events.push(event);
         }
@@ -91,7 +91,7 @@ pub(super) fn apply_stimuli(
         if let Some((index, place)) = put_down_now {
             put_down(world, state, views, index, place);
             let sim = SimRef { world, state, views };
-            // Being near the place where it is put down is not an event.
+            // Being near the thing after putting it down is not an event.
             state.objects[index as usize].in_range = is_in_range(sim, index as usize);
             step.events.push(Event {
                 object: index as usize,
@@ -112,10 +112,12 @@ pub(super) fn apply_stimuli(
     state.contacts.retain(|contact| states[*contact as usize].present);
 }
 
-/// Marks everything that is touched or near now as known, without events.
+/// Marks everything that is touched or near now as already met, without events.
 pub(super) fn init_contacts(world: &World, state: &mut SimState, views: &mut Views) {
     state.contacts.clear();
-    views.bodies.note_touching(state.agent.position, &mut state.contacts);
+    views
+        .bodies
+        .record_touched_now(state.agent.position, &mut state.contacts);
     state.contacts.sort_unstable();
     for index in 0..state.objects.len() {
         state.objects[index].in_range = is_in_range(SimRef { world, state, views }, index);
@@ -131,14 +133,19 @@ fn update_contacts(
     triggered: &mut Vec<(u32, Stimulus)>,
 ) {
     let here = state.agent.position;
-    let Encounters { met, kept, moved, .. } = encounters;
-    views.bodies.note_touching(here, met);
-    met.sort_unstable();
-    met.dedup();
+    let Encounters {
+        met_objects,
+        lasting,
+        moved,
+        ..
+    } = encounters;
+    views.bodies.record_touched_now(here, met_objects);
+    met_objects.sort_unstable();
+    met_objects.dedup();
     let contacts = &mut state.contacts;
-    contacts.reserve(met.len().max(16));
+    contacts.reserve(met_objects.len().max(16));
     let known = contacts.len();
-    for index in met.drain(..) {
+    for index in met_objects.drain(..) {
         if contacts[..known].binary_search(&index).is_err() {
             triggered.push((index, Stimulus::AgentCollide));
             contacts.push(index);
@@ -148,31 +155,31 @@ fn update_contacts(
     }
     contacts.sort_unstable();
     let stays = |index: &u32| {
-        // A newly met object that has moved on since was in contact after the agent's motion.
+        // A newly met object that has since moved on was in contact after the agent's motion.
         let is_new = triggered.binary_search_by_key(index, |(other, _)| *other).is_ok();
         let has_moved = || {
             moved
                 .binary_search_by_key(&(*index as usize), |(other, _)| *other)
                 .is_ok()
         };
-        is_new && has_moved() || kept.binary_search(index).is_ok() || views.bodies.is_still_touched(*index, here)
+        is_new && has_moved() || lasting.binary_search(index).is_ok() || views.bodies.is_still_touched(*index, here)
     };
     contacts.retain(stays);
 }
 
-/// Whether the agent is in an object's range anywhere along their paths of this time step.
-fn comes_near(sim: SimRef, index: usize, encounters: &Encounters) -> bool {
+/// Whether the agent is in an object's range anywhere along their paths in this time step.
+fn enters_range(sim: SimRef, index: usize, encounters: &Encounters) -> bool {
     if encounters.returned.binary_search(&index).is_ok() || is_in_range(sim, index) {
         return is_in_range(sim, index);
     }
     let to = sim.objects()[index].position.map(f64::from);
     let bodies = &sim.views.bodies;
     let moved = &encounters.moved;
-    let nearest = if let Ok(place) = moved.binary_search_by_key(&index, |(other, _)| *other) {
+    let nearest = if let Ok(found) = moved.binary_search_by_key(&index, |(other, _)| *other) {
         // In the agent's frame, the object moves from its old to its new relative position.
-        let from = moved[place].1.map(f64::from);
-        let (began, ends) = (bodies.began(), sim.agent().position);
-        let then = [0, 1].map(|axis| from[axis] - f64::from(began[axis]));
+        let from = moved[found].1.map(f64::from);
+        let (path_start, ends) = (bodies.path_start(), sim.agent().position);
+        let then = [0, 1].map(|axis| from[axis] - f64::from(path_start[axis]));
         let now = [0, 1].map(|axis| to[axis] - f64::from(ends[axis]));
         squared_distance([0.0; 2], then, now)
     } else {
@@ -180,16 +187,15 @@ fn comes_near(sim: SimRef, index: usize, encounters: &Encounters) -> bool {
         path.map(|ends| squared_distance(to, ends[0], ends[1]))
             .fold(f64::INFINITY, f64::min)
     };
-    is_range(sim, index, nearest, sim.world.objects[index].range_stimulus_distance)
+    is_covered(sim, index, nearest, sim.world.objects[index].range_stimulus_distance)
 }
 
-/// Applies one stimulus to one object: its reward, its destruction. No event if the object is gone. `hand` is the object that
-/// an interaction moves.
+/// Applies one stimulus to one object. `None` if the object is gone. `hand_target` is the object that an interaction affects.
 fn trigger(
     objects: Objects,
     state: &mut SimState,
     views: &mut Views,
-    (index, hand): (usize, Option<u32>),
+    (index, hand_target): (usize, Option<u32>),
     stimulus: Stimulus,
 ) -> Option<Event> {
     let (world, object) = (objects.world, &objects.world.objects[index]);
@@ -198,19 +204,19 @@ fn trigger(
     }
     let once = object.reward_once_stimulus.contains(&stimulus);
     let would_pay = once || object.reward_stimulus.contains(&stimulus);
-    // Out of turn an object neither pays nor disappears: otherwise the sequence could not be finished.
+    // Out of turn, an object neither pays nor disappears; otherwise the sequence could not be finished.
     let due = state.is_due(object.order);
     let destroyed = due && object.destroy_stimulus.contains(&stimulus);
-    let is_hand = stimulus != Stimulus::AgentInteract || hand == Some(index as u32);
-    let effect = (object.is_used() && !destroyed && is_hand)
+    let concerns_hand = stimulus != Stimulus::AgentInteract || hand_target == Some(index as u32);
+    let effect = (object.is_used() && !destroyed && concerns_hand)
         .then(|| effect_of(world, state, index, stimulus))
         .flatten();
-    // An object that a stimulus is meant to move pays for it only if it moves; a door does not pay for being closed.
+    // An object that should react to a stimulus pays for it only if it does react; closing a door does not pay.
     let is_moved = effect.is_some_and(|effect| effect != Effect::Closed);
-    let would_pay = would_pay && (is_moved || destroyed || !due || !listens(object, stimulus));
-    let odds = object.reward_probability;
-    // An arm that always pays draws nothing.
-    let pull = |rng: &mut ObjectRng| rng.pull(odds);
+    let would_pay = would_pay && (is_moved || destroyed || !due || !reacts_to_stimulus(object, stimulus));
+    let probability = object.reward_probability;
+    // An object that always pays draws no random number.
+    let pull = |rng: &mut ObjectRng| rng.pull(probability);
     let pays = would_pay && due && state.rng_of(index).is_none_or(pull);
     let own = &mut state.objects[index];
     let reward = if pays {
@@ -221,7 +227,7 @@ fn trigger(
         0.0
     };
     let gives_energy = destroyed || pays && !(once && own.collected);
-    // An object that pays nothing takes its turn in a sequence by moving.
+    // An object that pays nothing takes its turn in a sequence by reacting.
     own.collected |= pays || destroyed || (is_moved && object.order.is_some());
     own.present = !destroyed;
     if pays && once {
@@ -251,18 +257,18 @@ fn trigger(
     })
 }
 
-/// Whether the agent is in an object's range: centre to centre in 3D, with both centres at half of the height.
+/// Whether the agent is in an object's range, measured between the centres in 3D, each at half of its body's height.
 fn is_in_range(sim: SimRef, index: usize) -> bool {
     is_within(sim, index, sim.world.objects[index].range_stimulus_distance)
 }
 
 fn is_within(sim: SimRef, index: usize, reach: f64) -> bool {
-    let [x, y] = sim.state.way_to(index).map(f64::from);
-    is_range(sim, index, x * x + y * y, reach)
+    let [x, y] = sim.state.offset_to(index).map(f64::from);
+    is_covered(sim, index, x * x + y * y, reach)
 }
 
 /// Whether `reach` covers a distance on the ground, given as its square.
-fn is_range(sim: SimRef, index: usize, squared: f64, reach: f64) -> bool {
+fn is_covered(sim: SimRef, index: usize, squared: f64, reach: f64) -> bool {
     if reach <= 0.0 || !sim.objects()[index].present {
         return false;
     }

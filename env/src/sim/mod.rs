@@ -1,4 +1,4 @@
-//! Simulation of a world: one state, the systems that change it, and the views on it.
+//! Simulates a world: one state, the systems that change it, and the views derived from it.
 
 mod action;
 mod agent_motion;
@@ -58,7 +58,7 @@ pub use obstacle::Obstacle;
 pub(crate) use sim_ref::SimRef;
 pub use snapshot::Snapshot;
 pub use state::{AgentState, ObjectState};
-pub(crate) use things::{answering, put_down_place};
+pub(crate) use things::{put_down_place, reacting_object};
 pub(crate) use transplant::Difference;
 
 pub use warning::Warning;

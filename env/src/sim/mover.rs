@@ -1,4 +1,4 @@
-//! [`Mover`]: decides where an object that moves by itself wants to go.
+//! [`Mover`] decides where an object that moves by itself goes.
 
 use driftworld_spec::{MotionModel, Object};
 
@@ -7,7 +7,7 @@ use super::rng::{Purpose, Seed, Stream};
 /// Distance at which a waypoint counts as reached, in metres.
 const REACHED: f32 = 0.3;
 
-/// A wanderer gives up its goal if it moved less than this fraction of the intended distance.
+/// A wanderer gives up its goal if it moves less than this fraction of the intended distance.
 const STUCK: f32 = 0.2;
 
 /// State of an object that moves by itself.
@@ -25,7 +25,7 @@ pub(super) struct Mover {
     goals: u64,
 }
 
-/// What a mover knows when it decides.
+/// The information on which a mover bases its decision.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct View {
     /// Its position, in metres.
@@ -79,14 +79,14 @@ impl Mover {
         let wanted = self.direction(object, view)?;
         let bearing = libm::atan2f(wanted[0], wanted[1]).to_degrees();
         let turn = (bearing - view.heading_deg + 180.0).rem_euclid(360.0) - 180.0;
-        let most = object.turn_rate.map_or(180.0, |rate| rate as f32 * view.seconds);
-        let heading_deg = (view.heading_deg + turn.clamp(-most, most)).rem_euclid(360.0);
+        let max_turn = object.turn_rate.map_or(180.0, |rate| rate as f32 * view.seconds);
+        let heading_deg = (view.heading_deg + turn.clamp(-max_turn, max_turn)).rem_euclid(360.0);
         let mut metres = object.speed as f32 * view.seconds;
-        // Stops at waypoints, so that they are reached; fleeing and hunting have no such end.
+        // Stops at waypoints instead of overshooting; fleeing and hunting have no such end.
         if matches!(object.motion_model, MotionModel::Patrol | MotionModel::RandomWaypoint) {
             metres = metres.min(length(wanted));
-            // Slows down while facing elsewhere, so that it does not circle around a waypoint that it cannot turn to in time.
-            metres *= libm::cosf((turn - turn.clamp(-most, most)).to_radians()).max(0.0);
+            // Slows down while facing elsewhere, so that it does not circle around a waypoint to which it cannot turn in time.
+            metres *= libm::cosf((turn - turn.clamp(-max_turn, max_turn)).to_radians()).max(0.0);
         }
         let heading = heading_deg.to_radians();
         Some(Stride {
@@ -95,14 +95,14 @@ impl Mover {
         })
     }
 
-    /// The vector to where the object wants to be, in metres; for prey, away from the agent.
+    /// The vector to the object's goal, in metres; for prey, away from the agent.
     fn direction(&mut self, object: &Object, view: View) -> Option<[f32; 2]> {
         let to = |point: [f32; 2]| [point[0] - view.position[0], point[1] - view.position[1]];
         let to_agent = to(view.agent);
-        let seen = object.sight_range.is_none_or(|range| length(to_agent) <= range as f32);
-        let way = match object.motion_model {
-            MotionModel::Predator if seen => to_agent,
-            MotionModel::Prey if seen => to_agent.map(|metres| -metres),
+        let sees_agent = object.sight_range.is_none_or(|range| length(to_agent) <= range as f32);
+        let direction = match object.motion_model {
+            MotionModel::Predator if sees_agent => to_agent,
+            MotionModel::Prey if sees_agent => to_agent.map(|metres| -metres),
             MotionModel::Stationary | MotionModel::Predator | MotionModel::Prey => return None,
             MotionModel::Patrol => {
                 let point = |number: usize| object.waypoints[number].map(|metres| metres as f32);
@@ -124,12 +124,12 @@ impl Mover {
                 to(self.goal?)
             }
         };
-        (length(way) > 1e-4).then_some(way)
+        (length(direction) > 1e-4).then_some(direction)
     }
 
-    /// Reports how far it moved: a wanderer that hardly moved chooses a new goal.
-    pub(super) fn moved(&mut self, meant: [f32; 2], came: [f32; 2]) {
-        if length(came) < STUCK * length(meant) {
+    /// Records how far the object moved. A wanderer that hardly moved chooses a new goal.
+    pub(super) fn report_motion(&mut self, intended: [f32; 2], actual: [f32; 2]) {
+        if length(actual) < STUCK * length(intended) {
             self.goal = None;
         }
     }

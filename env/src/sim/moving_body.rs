@@ -1,4 +1,4 @@
-//! Moves the bodies of objects that move by themselves until they meet something, and finds places for respawning.
+//! Moves the bodies of objects that move by themselves, and checks positions for respawning.
 
 use rapier3d::prelude::*;
 
@@ -9,18 +9,18 @@ use super::groups::{AGENT, SOLID, WALL};
 use super::outline::Outline;
 use super::slide::{Obstacles, SKIN};
 
-/// Maximum displacement, in metres, that makes room for a body that turns beside a wall.
+/// Maximum displacement in metres that makes room for a body that turns beside a wall.
 const TURN_ROOM: f64 = 0.25;
 
-/// With this many bodies around it, a place counts as taken.
-const MOST_NEAR: usize = 256;
+/// Number of bodies around a position from which on it counts as occupied.
+const MAX_NEARBY: usize = 256;
 
-/// Queries that a test of two shapes costs.
-const LOOKS_PER_SHAPE: usize = 16;
+/// Cost of testing two shapes against each other, in queries.
+const QUERIES_PER_SHAPE: usize = 16;
 
-/// Queries per corner before a body with corners moves: its corners are added to those of every other body at most
-/// twice, and up to eight attempts are made to find room.
-const LOOKS_TO_TURN: usize = 12;
+/// Cost per corner of moving a body with corners, in queries: its corners are added to those of every other body at most twice,
+/// and finding room takes up to eight attempts.
+const QUERIES_TO_TURN: usize = 12;
 
 impl CollisionWorld {
     /// Updates the agent's collider, so that objects stop in front of it.
@@ -34,13 +34,13 @@ impl CollisionWorld {
         self.agent_handle = Some(handle);
         let pose = Pose::from_translation(Vector::new(at[0], at[1], 0.0));
         self.colliders[handle].set_position(pose);
-        self.note_place(handle, 0.0);
+        self.record_position(handle, 0.0);
     }
 
-    /// Moves an object's body that turns from one heading in degrees to another; it stops at walls, solid objects and the
-    /// agent, and slides along them. A body with corners turns only if it finds room for them; otherwise it slides on without
-    /// turning. Returns its position and heading; `None` for an absent object, and for one with more around it than the budget
-    /// allows, which waits.
+    /// Moves an object's body and turns it from one heading in degrees to another. It stops at walls, solid objects and the
+    /// agent, and slides along them. A body with corners turns only if there is room; otherwise it slides on without turning.
+    /// Returns its new position and heading. `None` for an absent object, and for one that has to wait because there are more
+    /// bodies around it than the budget allows.
     pub(crate) fn push(
         &mut self,
         index: u32,
@@ -55,18 +55,20 @@ impl CollisionWorld {
         let [facing, mut heading_deg] = turn_deg;
         let length = (way[0] * way[0] + way[1] * way[1]).sqrt();
         let mut body = std::mem::take(&mut self.scratch.body);
-        let outline = &self.standing[slot(handle)].outline;
-        outline.turned_into(heading_deg, &mut body);
+        let outline = &self.body_data[slot(handle)].outline;
+        outline.rotate_into(heading_deg, &mut body);
         let reach = length + TURN_ROOM + body.reach() + 2.0 * SKIN;
         let around = self.gather(SOLID | WALL | AGENT, Some(handle), [from, from], reach, budget);
-        // The body's corners are added to those of each obstacle, and room has to be found.
-        let given = if body.as_disc().is_some() {
+        // The body's corners are added to those of each obstacle, and finding room costs queries.
+        let extra_corners = if body.as_disc().is_some() {
             0
         } else {
             body.corners.len()
         };
-        let num_corners = around.map(|corners| corners + given * self.scratch.numbers.len());
-        let Some(num_corners) = num_corners.filter(|corners| given == 0 || budget.take(LOOKS_TO_TURN * corners)) else {
+        let num_corners = around.map(|corners| corners + extra_corners * self.scratch.numbers.len());
+        let Some(num_corners) =
+            num_corners.filter(|corners| extra_corners == 0 || budget.take(QUERIES_TO_TURN * corners))
+        else {
             self.scratch.body = body;
             return None;
         };
@@ -80,37 +82,44 @@ impl CollisionWorld {
             };
             obstacles.slide(from, way, radius, budget, &mut scratch.touched, &mut scratch.strides);
         } else {
-            // The obstacles are widened by the body, so that the body becomes a point.
+            // Widens the obstacles by the body, so that the body becomes a point.
             let count = scratch.numbers.len();
-            scratch.places.clear();
-            scratch.places.extend(0..count as u32);
-            // Room for what most paths meet, so that steps do not allocate.
+            scratch.indices.clear();
+            scratch.indices.extend(0..count as u32);
+            // Capacity for what most paths meet, so that steps do not allocate.
             while scratch.widened.len() < count.max(16) {
-                scratch.widened.push(Footprint::with_room());
+                scratch.widened.push(Footprint::with_capacity());
             }
             self.widen(&scratch.numbers, &body, &mut scratch.widened);
-            let mut begun = from;
+            let mut start_of_slide = from;
             if heading_deg != facing {
                 let turned = Obstacles {
                     footprints: &scratch.widened,
-                    numbers: &scratch.places,
+                    numbers: &scratch.indices,
                     num_corners,
                 };
                 if let Some(room) = turned.room_near(from, TURN_ROOM) {
-                    begun = room;
+                    start_of_slide = room;
                 } else {
                     heading_deg = facing;
-                    self.standing[slot(handle)].outline.turned_into(facing, &mut body);
+                    self.body_data[slot(handle)].outline.rotate_into(facing, &mut body);
                     self.widen(&scratch.numbers, &body, &mut scratch.widened);
                 }
             }
             let obstacles = Obstacles {
                 footprints: &scratch.widened,
-                numbers: &scratch.places,
+                numbers: &scratch.indices,
                 num_corners,
             };
-            scratch.strides.push(begun);
-            obstacles.slide(begun, way, 0.0, budget, &mut scratch.touched, &mut scratch.strides);
+            scratch.strides.push(start_of_slide);
+            obstacles.slide(
+                start_of_slide,
+                way,
+                0.0,
+                budget,
+                &mut scratch.touched,
+                &mut scratch.strides,
+            );
         }
         let end = scratch.strides.last().copied().unwrap_or(from);
         scratch.body = body;
@@ -130,12 +139,12 @@ impl CollisionWorld {
     /// Widens the footprints with these numbers by a body.
     fn widen(&self, numbers: &[u32], body: &Footprint, widened: &mut [Footprint]) {
         for (number, widened) in numbers.iter().zip(widened) {
-            self.whole[*number as usize].widened_into(body, widened);
+            self.whole[*number as usize].widen_into(body, widened);
         }
     }
 
-    /// Whether an object's body, which was removed before, has room at a place. False if there is more around it than the
-    /// budget allows.
+    /// Whether an object's body, which has been removed before, fits at a position. False if there are more bodies around it
+    /// than the budget allows.
     pub(crate) fn is_free(&self, at: [f32; 2], radius: f32, budget: &mut Budget) -> bool {
         let [x, y] = [0, 1].map(|axis| self.half[axis] - radius - SKIN as f32 - at[axis].abs());
         if x < 0.0 || y < 0.0 {
@@ -145,17 +154,17 @@ impl CollisionWorld {
         let pose = Pose::from_translation(Vector::new(at[0], at[1], radius.max(0.05) + 0.01));
         let around = ball.compute_aabb(&pose);
         let area = [around.mins, around.maxs].map(|corner| [corner.x, corner.y]);
-        let mut near: Vec<ColliderHandle> = self.around(SOLID | WALL | AGENT, None, area).take(MOST_NEAR).collect();
-        // The tree's order depends on its history, which a saved world does not have.
-        near.sort_unstable_by_key(|handle| self.standing[slot(*handle)].rank);
+        let mut near: Vec<ColliderHandle> = self.around(SOLID | WALL | AGENT, None, area).take(MAX_NEARBY).collect();
+        // The tree's order depends on its history, which a saved world does not contain.
+        near.sort_unstable_by_key(|handle| self.body_data[slot(*handle)].rank);
         let meets = |handle: &ColliderHandle| {
             let collider = &self.colliders[*handle];
             let between = pose.inv_mul(collider.position());
             let dispatcher = self.engine.narrow_phase.query_dispatcher();
             dispatcher
                 .intersection_test(&between, &ball, collider.shape())
-                .is_ok_and(|met| met.intersecting)
+                .is_ok_and(|result| result.intersecting)
         };
-        budget.take(LOOKS_PER_SHAPE * near.len()) && near.len() < MOST_NEAR && !near.iter().any(meets)
+        budget.take(QUERIES_PER_SHAPE * near.len()) && near.len() < MAX_NEARBY && !near.iter().any(meets)
     }
 }

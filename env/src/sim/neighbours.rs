@@ -1,8 +1,8 @@
-//! Chooses the pushable bodies that move in a time step: those that the agent may meet or that are moving, and those that these
+//! Chooses the pushable bodies that move in a time step: those that are moving or that the agent may meet, and those that these
 //! may meet in turn.
 //!
-//! The cost of physics grows with the number of contacts, and in a heap everything touches. So the number of contacts per time
-//! step is limited; bodies beyond the limit stand still in this time step, and are at rest after it.
+//! The cost of physics grows with the number of contacts, and in a heap all bodies are in contact. So the number of contacts
+//! per time step is limited. Bodies beyond the limit stand still in this time step, and are at rest after it.
 
 use rapier3d::prelude::ColliderHandle;
 
@@ -12,43 +12,45 @@ use super::groups::{SOLID, WALL};
 use super::sim_ref::SimRef;
 use super::warning::Warning;
 
-/// Distance in metres within which bodies count as able to meet, in addition to their paths.
+/// Margin in metres, added to the bodies' paths, within which they count as able to meet.
 pub(super) const MARGIN: f32 = 0.2;
 
 /// Maximum number of bodies checked around all bodies that may move.
-const LOOKS: u64 = 200_000;
+const MAX_QUERIES: u64 = 200_000;
 
 /// Maximum number of possible encounters of all moving bodies with other bodies on their paths in a time step.
-const MAY_MEET: u64 = 40_000;
+const MAX_ENCOUNTERS: u64 = 40_000;
 
 /// Maximum number of moving bodies, times the number of physics steps in the time step.
-const MOVE: u64 = 36_000;
+const MAX_MOVES: u64 = 36_000;
 
-/// Maximum number of initial overlaps of moving bodies, by bounding boxes, times these steps; and its lower bound.
-const OVERLAP: u64 = 30_000;
-const FEWEST_OVERLAPS: u64 = 1_500;
+/// Maximum number of initial overlaps of moving bodies, by bounding boxes, times the number of physics steps; and a lower bound
+/// of that maximum.
+const MAX_OVERLAPS: u64 = 30_000;
+const MIN_OVERLAP_LIMIT: u64 = 1_500;
 
-/// Maximum number of pairs of bodies near each other while they move, times these steps; and its lower bound.
-const PAIRS: u64 = 60_000;
-const FEWEST_PAIRS: u64 = 4_000;
+/// Maximum number of pairs of bodies near each other while they move, times the number of physics steps; and a lower bound of
+/// that maximum.
+const MAX_PAIRS: u64 = 60_000;
+const MIN_PAIR_LIMIT: u64 = 4_000;
 
-/// Per body, maximum numbers of bodies checked around it, that it may meet, and that it overlaps: a body held by many
-/// at once costs more than its share.
-const ONE_LOOKS: usize = 8192;
-const ONE_MAY_MEET: usize = 1024;
-const ONE_OVERLAPS: usize = 256;
+/// Maximum number of bodies checked around one body, that it may meet, and that it overlaps. A body held by many others at once
+/// would cost more than its share.
+const MAX_QUERIES_PER_BODY: usize = 8192;
+const MAX_ENCOUNTERS_PER_BODY: usize = 1024;
+const MAX_OVERLAPS_PER_BODY: usize = 256;
 
 /// The bodies that move in a time step.
 pub(super) struct Chosen {
     /// Indices among the pushed bodies, in ascending order.
     pub(super) indices: Vec<usize>,
-    /// Whether all bodies that should move do.
-    pub(super) is_whole: bool,
+    /// Whether the list contains all bodies that should move.
+    pub(super) is_complete: bool,
     /// Maximum number of pairs that may be near each other while they move.
-    pub(super) most_pairs: usize,
+    pub(super) max_pairs: usize,
     /// Number of bodies checked.
     #[cfg(test)]
-    pub(super) looked: u64,
+    pub(super) num_queries: u64,
 }
 
 /// The surroundings of one body.
@@ -62,33 +64,33 @@ struct Around {
     overlaps: usize,
 }
 
-/// The bodies that move in a time step of `parts` physics steps: `first`, and those that they may meet.
+/// The bodies that move in a time step of `parts` physics steps: those in `first`, and those that these may meet.
 pub(super) fn with_neighbours(sim: SimRef, first: Vec<usize>, seconds: f32, parts: u32) -> Chosen {
     let pushed = &sim.state.pushed;
     let radii = pushed.iter().map(|body| sim.body_radius(body.object));
     let widest = radii.fold(0.0, f32::max);
-    let mut budget = Budget::new(LOOKS);
+    let mut budget = Budget::new(MAX_QUERIES);
     let parts = u64::from(parts);
-    let mut may_meet = Budget::new(MAY_MEET);
-    let mut overlap = Budget::new(FEWEST_OVERLAPS.max(OVERLAP / parts));
-    let most = (MOVE / parts) as usize;
+    let mut may_meet = Budget::new(MAX_ENCOUNTERS);
+    let mut overlap = Budget::new(MIN_OVERLAP_LIMIT.max(MAX_OVERLAPS / parts));
+    let max_moving = (MAX_MOVES / parts) as usize;
     let mut seen = vec![false; pushed.len()];
     for index in &first {
         seen[*index] = true;
     }
-    let (mut waiting, mut next) = (first, 0);
+    let (mut queue, mut next) = (first, 0);
     let mut indices = Vec::new();
-    while let Some(&index) = waiting.get(next) {
+    while let Some(&index) = queue.get(next) {
         next += 1;
         let Some(around) = around_pushed(sim, index, seconds, widest, &mut budget) else {
             continue;
         };
         let fits = |left: Budget, count: usize| count as u64 <= left.left();
-        if around.may_meet > ONE_MAY_MEET || around.overlaps > ONE_OVERLAPS {
+        if around.may_meet > MAX_ENCOUNTERS_PER_BODY || around.overlaps > MAX_OVERLAPS_PER_BODY {
             continue;
         }
-        let is_one_too_many = indices.len() >= most;
-        if is_one_too_many || !fits(may_meet, around.may_meet) || !fits(overlap, around.overlaps) {
+        let is_full = indices.len() >= max_moving;
+        if is_full || !fits(may_meet, around.may_meet) || !fits(overlap, around.overlaps) {
             continue;
         }
         may_meet.take(around.may_meet);
@@ -96,17 +98,17 @@ pub(super) fn with_neighbours(sim: SimRef, first: Vec<usize>, seconds: f32, part
         indices.push(index);
         for other in around.neighbours {
             if !std::mem::replace(&mut seen[other], true) {
-                waiting.push(other);
+                queue.push(other);
             }
         }
     }
     indices.sort_unstable();
     Chosen {
-        is_whole: indices.len() == waiting.len(),
+        is_complete: indices.len() == queue.len(),
         indices,
-        most_pairs: FEWEST_PAIRS.max(PAIRS / parts) as usize,
+        max_pairs: MIN_PAIR_LIMIT.max(MAX_PAIRS / parts) as usize,
         #[cfg(test)]
-        looked: LOOKS - budget.left(),
+        num_queries: MAX_QUERIES - budget.left(),
     }
 }
 
@@ -117,32 +119,32 @@ fn around_pushed(sim: SimRef, index: usize, seconds: f32, widest: f32, budget: &
     let own = sim.views.bodies.handles[object]?;
     let at = sim.objects()[object].position;
     let radius = sim.body_radius(object);
-    let reach = pushed_way(sim, index, seconds) + MARGIN;
+    let reach = max_path_length(sim, index, seconds) + MARGIN;
     let box_around = |half: f32| [at.map(|metres| metres - half), at.map(|metres| metres + half)];
     let area = box_around(radius.max(0.05) + reach + 2.0 * widest);
     let own_box = sim.views.bodies.box_of(own);
-    let surroundings = box_around(standing_reach(sim, index, seconds));
+    let surroundings = box_around(static_reach(sim, index, seconds));
     let mut around = Around::default();
     for (count, handle) in sim.views.bodies.around(SOLID | WALL, Some(own), area).enumerate() {
-        if !budget.take(1) || count > ONE_LOOKS {
+        if !budget.take(1) || count > MAX_QUERIES_PER_BODY {
             return None;
         }
-        let other = sim.views.bodies.standing[slot(handle)].object;
-        let place = other.and_then(|other| {
+        let other = sim.views.bodies.body_data[slot(handle)].object;
+        let pushed_index = other.and_then(|other| {
             let other = other as usize;
             pushed.binary_search_by_key(&other, |body| body.object).ok()
         });
         let other_box = sim.views.bodies.box_of(handle);
         around.overlaps += usize::from(overlap(other_box, own_box));
-        let may_be_met = if let Some(place) = place {
-            let other = pushed[place].object;
+        let may_be_met = if let Some(pushed_index) = pushed_index {
+            let other = pushed[pushed_index].object;
             let to = sim.objects()[other].position;
             let distance = ((to[0] - at[0]).powi(2) + (to[1] - at[1]).powi(2)).sqrt();
-            // In this order, because the sum is rounded.
-            let way = pushed_way(sim, index, seconds);
+            // The order of the sum matters for rounding.
+            let way = max_path_length(sim, index, seconds);
             let is_near = distance < radius + sim.body_radius(other) + way + MARGIN;
             if is_near {
-                around.neighbours.push(place);
+                around.neighbours.push(pushed_index);
             }
             is_near
         } else {
@@ -150,13 +152,13 @@ fn around_pushed(sim: SimRef, index: usize, seconds: f32, widest: f32, budget: &
         };
         around.may_meet += usize::from(may_be_met);
     }
-    // The tree's order depends on its history, which a saved world does not have.
+    // The tree's order depends on its history, which a saved world does not contain.
     around.neighbours.sort_unstable();
     Some(around)
 }
 
 /// A warning about the first pushable object that overlaps with more bodies than allowed.
-pub(super) fn heap(sim: SimRef) -> Option<Warning> {
+pub(super) fn heap_warning(sim: SimRef) -> Option<Warning> {
     let others = |object: usize| {
         let own = sim.views.bodies.handles[object];
         let area = own.map(|own| sim.views.bodies.box_of(own));
@@ -164,25 +166,25 @@ pub(super) fn heap(sim: SimRef) -> Option<Warning> {
             .flat_map(move |area| sim.views.bodies.around(SOLID | WALL, own, area))
     };
     let mut objects = sim.state.pushed.iter().map(|body| body.object);
-    let object = objects.find(|object| others(*object).nth(ONE_OVERLAPS).is_some())?;
+    let object = objects.find(|object| others(*object).nth(MAX_OVERLAPS_PER_BODY).is_some())?;
     Some(Warning::Heap {
         object,
         bodies: others(object).count(),
-        limit: ONE_OVERLAPS,
+        limit: MAX_OVERLAPS_PER_BODY,
     })
 }
 
-/// Longest path of a pushed body in a time step, in metres.
-pub(super) fn pushed_way(sim: SimRef, index: usize, seconds: f32) -> f32 {
+/// Upper bound of the path length of a pushed body in a time step, in metres.
+pub(super) fn max_path_length(sim: SimRef, index: usize, seconds: f32) -> f32 {
     let agent_speed = sim.world.agent_params.max_linear_speed as f32;
     let [vx, vy] = sim.state.pushed[index].velocity;
     (vx * vx + vy * vy).sqrt().max(agent_speed) * seconds
 }
 
-/// Largest distance from a pushed body's centre to static bodies that it may meet, in metres along each axis.
-pub(super) fn standing_reach(sim: SimRef, index: usize, seconds: f32) -> f32 {
+/// Maximum distance from a pushed body's centre to static bodies that it may meet, in metres along each axis.
+pub(super) fn static_reach(sim: SimRef, index: usize, seconds: f32) -> f32 {
     let radius = sim.body_radius(sim.state.pushed[index].object).max(0.05);
-    radius + pushed_way(sim, index, seconds) + MARGIN
+    radius + max_path_length(sim, index, seconds) + MARGIN
 }
 
 impl CollisionWorld {

@@ -19,7 +19,7 @@ impl Environment {
             frame = Frame::new(width, height);
         }
         if self.draw_into(frame.target()).is_err() {
-            // The CPU renderer fails only if no buffer can hold the samples; then it uses one per pixel.
+            // With several samples per pixel, drawing may fail; `render` uses one sample per pixel.
             let mut renderer = CpuRenderer::new();
             renderer.render(self.scene(), &self.camera(), &mut frame);
             self.draw_carried(&mut renderer, &mut frame.target());
@@ -36,18 +36,18 @@ impl Environment {
         };
         let camera = self.camera();
         self.renderer.draw(&self.views.scene, &camera, &mut target)?;
-        let carried = shown(&self.world, &self.state);
+        let carried = carried_to_show(&self.world, &self.state);
         self.renderer.draw_carried(&self.views.scene, carried, &mut target);
         Ok(())
     }
 
-    /// The indices of the carried things to show in images from the agent's view: empty unless the world shows them.
+    /// The indices of the carried things to show in images of the agent's view; empty unless the world shows them.
     pub(crate) fn shown_carried(&self) -> &[u32] {
-        shown(&self.world, &self.state)
+        carried_to_show(&self.world, &self.state)
     }
 
-    /// Draws what the agent carries onto an image of its view, if the world shows it: at the bottom of the target's colour
-    /// image. Other images stay unchanged.
+    /// If the world shows carried things, draws them at the bottom of the target's colour image, which shows the agent's view.
+    /// Other images stay unchanged.
     pub fn draw_carried(&self, renderer: &mut CpuRenderer, target: &mut Target<'_>) {
         renderer.draw_carried(&self.views.scene, self.shown_carried(), target);
     }
@@ -55,10 +55,10 @@ impl Environment {
     /// The agent's current view, at any size, with one sample per pixel.
     ///
     /// # Errors
-    /// As [`Environment::render`].
+    /// The errors of [`Environment::render`].
     pub fn observe_at(&mut self, width: u32, height: u32) -> Result<Frame, EnvError> {
         let mut frame = self.render(&self.camera(), width, height)?;
-        let carried = shown(&self.world, &self.state);
+        let carried = carried_to_show(&self.world, &self.state);
         self.renderer
             .draw_carried(&self.views.scene, carried, &mut frame.target());
         Ok(frame)
@@ -78,7 +78,7 @@ impl Environment {
     /// An image of any size from any camera.
     ///
     /// # Errors
-    /// [`EnvError::PictureSize`] unless both sides are 1 to 4096 pixels; on a GPU, as
+    /// [`EnvError::PictureSize`] unless both sides are 1 to 4096 pixels; on a GPU, also the errors of
     /// [`Renderer::draw_batch`](crate::Renderer::draw_batch).
     pub fn render(&mut self, camera: &Camera, width: u32, height: u32) -> Result<Frame, EnvError> {
         if !(1..=4096).contains(&width) || !(1..=4096).contains(&height) {
@@ -91,7 +91,7 @@ impl Environment {
 }
 
 /// The carried things, if the world shows them.
-fn shown<'a>(world: &World, state: &'a SimState) -> &'a [u32] {
+fn carried_to_show<'a>(world: &World, state: &'a SimState) -> &'a [u32] {
     if world.agent_params.show_carried {
         state.carried()
     } else {

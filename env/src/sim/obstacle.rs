@@ -1,6 +1,6 @@
-//! [`Obstacle`]: what is in the way of a body.
+//! [`Obstacle`]: the reason why a body does not fit somewhere.
 
-/// An obstacle where the agent should stand.
+/// An obstacle at the position where the agent should stand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, strum::Display)]
 #[non_exhaustive]
 pub enum Obstacle {

@@ -1,15 +1,13 @@
-//! [`Outline`]: the ground that an asset's body covers, before rotation and translation: in total, and up to the agent's
-//! height.
-//!
-//! The agent is an upright cylinder: the parts of balls, capsules and hulls above its head do not stop it. Boxes and cylinders
-//! are equally wide at every height. Other bodies collide by their whole footprints.
+//! [`Outline`]: the area of ground that an asset's body covers, in total and up to the agent's height, before rotation and
+//! translation. The agent is an upright cylinder, so the parts of balls, capsules and hulls above its head do not stop it.
+//! Boxes and cylinders are equally wide at every height. Bodies other than the agent collide with whole footprints.
 
 use rapier3d::prelude::{SharedShape, Vector};
 
 use super::footprint::{Footprint, Point};
 use crate::assets::ColliderShape;
 
-/// A body's footprints in its own frame: around the origin, facing +y.
+/// A body's footprints in its own frame, around the origin and facing +y.
 pub(super) struct Outline {
     /// Up to the agent's height; `None` if it is the same as the whole.
     low: Option<Footprint>,
@@ -42,17 +40,17 @@ impl Outline {
 
     /// The outline of an asset's body at a scale, for an agent of this height in metres.
     pub(super) fn of(shape: &ColliderShape, scale: f32, agent_height: f32) -> Self {
-        let least = |metres: f32| f64::from((metres * scale).max(0.005));
+        let scaled = |metres: f32| f64::from((metres * scale).max(0.005));
         let agent_height = f64::from(agent_height);
         match shape {
             ColliderShape::Box { half: [x, y, _] } => Self {
                 low: None,
-                whole: Footprint::rectangle([least(*x), least(*y)]),
+                whole: Footprint::rectangle([scaled(*x), scaled(*y)]),
             },
-            ColliderShape::Cylinder { radius, .. } => Self::disc(least(*radius) as f32),
-            // Both stand on a half ball, which a low agent meets below its centre.
+            ColliderShape::Cylinder { radius, .. } => Self::disc(scaled(*radius) as f32),
+            // Both have a half ball at the bottom, which a low agent touches below its centre.
             ColliderShape::Ball { radius } | ColliderShape::Capsule { radius, .. } => {
-                let radius = least(*radius);
+                let radius = scaled(*radius);
                 let below = (radius - agent_height).max(0.0);
                 let low = (radius * radius - below * below).max(0.0).sqrt();
                 Self {
@@ -66,7 +64,7 @@ impl Outline {
                     .map(|point| point.map(|metres| f64::from(metres * scale)))
                     .collect();
                 let Some(whole) = Footprint::around(corners.iter().map(|&[x, y, _]| [x, y]).collect()) else {
-                    return Self::disc(least(shape.radius()) as f32);
+                    return Self::disc(scaled(shape.radius()) as f32);
                 };
                 let is_taller = corners.iter().any(|corner| corner[2] > agent_height);
                 let low = is_taller.then(|| Footprint::around(points_below(&corners, agent_height)));
@@ -82,37 +80,34 @@ impl Outline {
         self.whole.as_disc().is_some()
     }
 
-    /// The whole outline as a shape for the physics of pushed bodies, around the origin: a ball, or a prism.
-    ///
-    /// All of them meet at the height of their centres, where contacts are exactly those of their outlines.
+    /// The whole outline as a shape for the physics of pushed bodies, around the origin: a ball, or a prism. All such shapes
+    /// touch at the height of their centres, where their contacts are exactly those of their outlines.
     pub(super) fn upright(&self) -> SharedShape {
         /// Half the height of prisms, in metres.
-        const TALL: f32 = 4.0;
+        const HALF_PRISM_HEIGHT: f32 = 4.0;
         if let Some(radius) = self.whole.as_disc() {
             return SharedShape::ball(radius as f32);
         }
         if let [from, to] = self.whole.corners.as_slice() {
             let half_length = (to[0] - from[0]) / 2.0;
-            return SharedShape::cuboid(half_length as f32, self.whole.rounding as f32, TALL);
+            return SharedShape::cuboid(half_length as f32, self.whole.rounding as f32, HALF_PRISM_HEIGHT);
         }
         let corners = self.whole.corners.iter();
         let corners: Vec<Vector> = corners
-            .flat_map(|&[x, y]| [TALL, -TALL].map(|z| Vector::new(x as f32, y as f32, z)))
+            .flat_map(|&[x, y]| [HALF_PRISM_HEIGHT, -HALF_PRISM_HEIGHT].map(|z| Vector::new(x as f32, y as f32, z)))
             .collect();
-        let reach = |axis: usize| {
-            corners
-                .iter()
-                .fold(0.0_f32, |most, corner| most.max(corner[axis].abs()))
-        };
+        let reach = |axis: usize| corners.iter().fold(0.0_f32, |max, corner| max.max(corner[axis].abs()));
         let (x, y) = (reach(0), reach(1));
         let is_rectangle =
             corners.len() == 8 && corners.iter().all(|corner| corner.x.abs() == x && corner.y.abs() == y);
         let prism = (!is_rectangle).then(|| SharedShape::convex_hull(&corners));
-        prism.flatten().unwrap_or_else(|| SharedShape::cuboid(x, y, TALL))
+        prism
+            .flatten()
+            .unwrap_or_else(|| SharedShape::cuboid(x, y, HALF_PRISM_HEIGHT))
     }
 
     /// The whole outline around the origin, rotated to a heading in degrees.
-    pub(super) fn turned_into(&self, heading_deg: f32, whole: &mut Footprint) {
+    pub(super) fn rotate_into(&self, heading_deg: f32, whole: &mut Footprint) {
         self.whole.place_into(turn(heading_deg), [0.0; 2], whole);
     }
 
@@ -134,7 +129,8 @@ fn turn(heading_deg: f32) -> Point {
     [sine, cosine]
 }
 
-/// The part of a convex body below a height, seen from above: its corners there, and the points where its edges are cut.
+/// The part of a convex body below a height, seen from above: its corners there, and the points where its edges cross that
+/// height.
 fn points_below(corners: &[[f64; 3]], height: f64) -> Vec<Point> {
     let is_low = |corner: &&[f64; 3]| corner[2] <= height;
     let mut points: Vec<Point> = corners.iter().filter(is_low).map(|&[x, y, _]| [x, y]).collect();
@@ -177,7 +173,7 @@ mod tests {
         let tent = Outline::of(&ColliderShape::Hull { points: points.clone() }, 1.0, 1.0);
         let [low, whole] = reach(&tent, 90.0, [10.0, 0.0]);
         assert!((whole - 8.0).abs() < 1e-9 && (low - 8.0).abs() < 1e-9);
-        // Upside down, it is a quarter as wide up to a quarter of its height.
+        // Upside down, a quarter of its height up it is a quarter as wide.
         let upside_down = points.iter().map(|&[x, y, z]| [x, y, 4.0 - z]).collect();
         let funnel = Outline::of(&ColliderShape::Hull { points: upside_down }, 1.0, 1.0);
         let [low, whole] = reach(&funnel, 0.0, [10.0, 0.0]);

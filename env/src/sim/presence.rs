@@ -1,4 +1,4 @@
-//! Keeps an object's body up to date: its position, its presence, and whether it is solid.
+//! Keeps the bodies of objects up to date: their position, their presence, and whether they are solid.
 
 use rapier3d::prelude::*;
 
@@ -17,14 +17,14 @@ impl CollisionWorld {
             }
             (Some(handle), false) if is_portable => {
                 self.handles[index as usize] = None;
-                self.put_by.push((index, handle));
+                self.set_aside.push((index, handle));
                 let group = self.colliders[handle].collision_groups().memberships;
-                self.places.remove(group, slot(handle) as u32);
+                self.broad_phase.remove(group, slot(handle) as u32);
             }
             (Some(_), false) => self.remove(index),
             (None, true) => {
-                if let Some(place) = self.put_by.iter().position(|(other, _)| *other == index) {
-                    let (_, handle) = self.put_by.swap_remove(place);
+                if let Some(number) = self.set_aside.iter().position(|(other, _)| *other == index) {
+                    let (_, handle) = self.set_aside.swap_remove(number);
                     self.handles[index as usize] = Some(handle);
                     self.put(handle, item.position, item.heading_deg);
                 } else {
@@ -35,12 +35,12 @@ impl CollisionWorld {
         }
     }
 
-    /// Makes a body solid, or a ghost.
+    /// Makes a body solid or a ghost.
     fn set_solid(&mut self, handle: ColliderHandle, solid: bool) {
         let group = if solid { SOLID } else { GHOST };
         let groups = self.colliders[handle].collision_groups();
         if groups.memberships != group {
-            self.places.remove(groups.memberships, slot(handle) as u32);
+            self.broad_phase.remove(groups.memberships, slot(handle) as u32);
             let groups = InteractionGroups::new(group, Group::ALL, InteractionTestMode::And);
             self.colliders[handle].set_collision_groups(groups);
         }

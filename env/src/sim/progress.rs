@@ -1,4 +1,4 @@
-//! Saves a running world as a document of its progress, and resumes from one.
+//! Saves a running world as a document with its progress, and resumes from such a document.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use super::sim_ref::SimRef;
 use super::state::{SimState, wrapped};
 use super::views::Views;
 
-/// The progress of a saved world, once the world itself has been taken back to its start.
+/// The progress of a saved world, after the world itself has been restored to its start.
 pub(super) struct ResumeState {
     pub(super) progress: Progress,
     agent: ([f32; 2], f32),
@@ -18,7 +18,7 @@ pub(super) struct ResumeState {
     objects: Vec<([f32; 2], f32, f64)>,
 }
 
-/// The current state of a world as a document: see [`Environment::state`](super::Environment::state).
+/// The current state of a world as a document; see [`Environment::state`](super::Environment::state).
 pub(super) fn to_world(sim: SimRef, seed: &Seed, rails: Option<RailsProgress>) -> World {
     let mut world = sim.world.clone().into_draft();
     let agent = sim.agent();
@@ -34,7 +34,7 @@ pub(super) fn to_world(sim: SimRef, seed: &Seed, rails: Option<RailsProgress>) -
         .objects
         .iter_mut()
         .enumerate()
-        .map(|(index, object)| note_object(sim, index, object))
+        .map(|(index, object)| save_object(sim, index, object))
         .collect();
     let state = sim.state;
     world.progress = Some(Progress {
@@ -55,18 +55,16 @@ pub(super) fn to_world(sim: SimRef, seed: &Seed, rails: Option<RailsProgress>) -
         objects,
         carried: state.carried.clone(),
     });
-    world
-        .check_in_range()
-        .expect("steps keep the rules that the world started with")
+    world.check_in_range().expect("a step keeps a valid world valid")
 }
 
-/// The world's agent at its current position and heading; if these are its start, exactly as in the world, bit for bit.
+/// The world's agent at its current position and heading; bit for bit as in the world if these are its start.
 pub(super) fn agent_now(sim: SimRef) -> AgentParams {
     let agent = sim.agent();
     let mut now = sim.world.agent_params.clone();
-    let stands = now.coordinates.map(|metres| metres as f32) == agent.position
+    let is_unchanged = now.coordinates.map(|metres| metres as f32) == agent.position
         && wrapped(now.heading as f32) == agent.heading_deg;
-    if !stands {
+    if !is_unchanged {
         now.coordinates = agent.position.map(f64::from);
         now.heading = f64::from(agent.heading_deg);
     }
@@ -76,22 +74,22 @@ pub(super) fn agent_now(sim: SimRef) -> AgentParams {
 /// A world's object at its current position, with its remaining reward.
 pub(super) fn object_now(sim: SimRef, index: usize) -> Object {
     let mut now = sim.world.objects[index].clone();
-    put_where_it_is(sim, index, &mut now);
+    apply_current_state(sim, index, &mut now);
     now
 }
 
-/// Gives an object its current position, heading and reward; returns the original ones if any differs.
-fn put_where_it_is(sim: SimRef, index: usize, object: &mut Object) -> Option<Origin> {
+/// Sets an object's current position, heading and reward; returns the original ones if any of them differs.
+fn apply_current_state(sim: SimRef, index: usize, object: &mut Object) -> Option<Origin> {
     let own = &sim.objects()[index];
-    let stands = object.coordinates.map(|metres| metres as f32) == own.position
+    let is_unchanged = object.coordinates.map(|metres| metres as f32) == own.position
         && object.heading as f32 == own.heading_deg
         && object.reward == own.reward;
-    let origin = (!stands).then_some(Origin {
+    let origin = (!is_unchanged).then_some(Origin {
         coordinates: object.coordinates,
         heading: object.heading,
         reward: object.reward,
     });
-    if !stands {
+    if !is_unchanged {
         object.coordinates = own.position.map(f64::from);
         object.heading = f64::from(own.heading_deg);
         object.reward = own.reward;
@@ -99,20 +97,20 @@ fn put_where_it_is(sim: SimRef, index: usize, object: &mut Object) -> Option<Ori
     origin
 }
 
-/// The progress of an object, which is moved to its current position.
-fn note_object(sim: SimRef, index: usize, object: &mut Object) -> ObjectProgress {
+/// The progress of an object; sets its current position, heading and reward.
+fn save_object(sim: SimRef, index: usize, object: &mut Object) -> ObjectProgress {
     let own = &sim.objects()[index];
-    let origin = put_where_it_is(sim, index, object);
+    let origin = apply_current_state(sim, index, object);
     let state = sim.state;
     // All of these lists are sorted.
     let mover = state.movers.binary_search_by_key(&index, |mover| mover.object);
     let pushed = state.pushed.binary_search_by_key(&index, |body| body.object);
     let returns = state.returning.binary_search_by_key(&index, |(other, _)| *other);
     let rng = state.rngs.binary_search_by_key(&index, |rng| rng.object);
-    let mover = mover.ok().map(|place| &state.movers[place]);
-    let pushed = pushed.ok().map(|place| &state.pushed[place]);
-    let returns = returns.ok().map(|place| state.returning[place]);
-    let rng = rng.ok().map(|place| &state.rngs[place]);
+    let mover = mover.ok().map(|found| &state.movers[found]);
+    let pushed = pushed.ok().map(|found| &state.pushed[found]);
+    let returns = returns.ok().map(|found| state.returning[found]);
+    let rng = rng.ok().map(|found| &state.rngs[found]);
     let (waypoint, goal, goals) = mover.map_or((0, None, 0), Mover::progress);
     ObjectProgress {
         present: own.present,
@@ -143,12 +141,12 @@ fn note_object(sim: SimRef, index: usize, object: &mut Object) -> ObjectProgress
 }
 
 impl ResumeState {
-    /// Extracts a world's progress, and takes the world back to its start.
-    pub(super) fn out_of(world: &mut Arc<World>) -> Self {
+    /// Extracts a world's progress, and restores the world to its start.
+    pub(super) fn extract_from(world: &mut Arc<World>) -> Self {
         let mut draft = Arc::unwrap_or_clone(std::mem::take(world)).into_draft();
         let progress = draft.progress.take().unwrap_or_default();
         let agent = &mut draft.agent_params;
-        let place = (
+        let pose = (
             agent.coordinates.map(|metres| metres as f32),
             wrapped(agent.heading as f32),
         );
@@ -170,16 +168,16 @@ impl ResumeState {
         }
         let start = draft
             .check_in_range()
-            .expect("origins are in the ranges of what they stand for");
+            .expect("origins are in the ranges of the values that they replace");
         *world = Arc::new(start);
         Self {
             progress,
-            agent: place,
+            agent: pose,
             objects,
         }
     }
 
-    /// Whether the world ran before it was saved: progress with only a seed is that of a world at its start.
+    /// Whether the world ran before it was saved. A world at its start has no progress except a seed.
     pub(super) fn has_begun(&self) -> bool {
         let only_seed = Progress {
             seed: self.progress.seed.clone(),
@@ -189,7 +187,7 @@ impl ResumeState {
         self.progress != only_seed
     }
 
-    /// Resumes a saved world: the state and the views must be at its start.
+    /// Resumes a saved world; the state and the views must be those of its start.
     pub(super) fn apply(&self, world: &World, state: &mut SimState, views: &mut Views) {
         let progress = &self.progress;
         (state.agent.position, state.agent.heading_deg) = self.agent;

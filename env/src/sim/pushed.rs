@@ -1,4 +1,4 @@
-//! Motion of pushable objects.
+//! [`Pushed`]: the motion of a pushable object.
 
 use driftworld_spec::{MotionModel, Object};
 
@@ -7,9 +7,9 @@ use driftworld_spec::{MotionModel, Object};
 pub(super) struct Pushed {
     /// The object's index in the world.
     pub(super) object: usize,
-    /// In metres per second.
+    /// Velocity in metres per second.
     pub(super) velocity: [f32; 2],
-    /// In degrees per second, clockwise.
+    /// Spin in degrees per second, clockwise.
     pub(super) spin_deg: f32,
 }
 

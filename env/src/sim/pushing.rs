@@ -1,7 +1,7 @@
-//! Pushes bodies: rigid bodies on the ground, simulated by rapier.
+//! Simulates pushed bodies as rigid bodies on the ground, with rapier.
 //!
-//! Each time step creates its own physics world from the pushed bodies that may move, their surroundings and the agent; only
-//! positions and velocities carry over to the next time step. So a saved world resumes exactly, and a world at rest costs
+//! Each time step creates its own physics world from the pushed bodies that may move, their surroundings and the agent. Only
+//! positions and velocities carry over to the next time step, so a saved world resumes exactly, and a world at rest costs
 //! nothing.
 
 use driftworld_spec::World;
@@ -11,7 +11,7 @@ use super::body_shape::body_shape;
 use super::collision_world::{CollisionWorld, EDGE, slot};
 use super::encounters::Encounters;
 use super::groups::{SOLID, WALL};
-use super::neighbours::{MARGIN, standing_reach, with_neighbours};
+use super::neighbours::{MARGIN, static_reach, with_neighbours};
 use super::outline::Outline;
 use super::pushed::Pushed;
 use super::sim_ref::SimRef;
@@ -19,17 +19,17 @@ use super::slide::SKIN;
 use super::state::{SimState, wrapped};
 use super::views::Views;
 
-/// The agent's mass in kilograms. In each time step it meets the bodies that it pushes with this mass and its speed.
+/// The agent's mass in kilograms, with which it pushes bodies.
 const AGENT_MASS: f32 = 80.0;
 
 /// Maximum duration of a physics step in seconds.
-const LONGEST: f32 = 1.0 / 60.0;
+const MAX_PHYSICS_SECONDS: f32 = 1.0 / 60.0;
 
-/// Minimum number of physics steps in a time step: the first step of a new physics world ignores existing contacts.
-const FEWEST_PARTS: u32 = 2;
+/// Minimum number of physics steps in a time step. The first step of a new physics world ignores existing contacts.
+const MIN_PHYSICS_STEPS: u32 = 2;
 
-/// Maximum number of physics steps in a time step: longer time steps use longer physics steps.
-const MOST_PARTS: u32 = 60;
+/// Maximum number of physics steps in a time step. Longer time steps use longer physics steps.
+const MAX_PHYSICS_STEPS: u32 = 60;
 
 /// Standard gravity in metres per second squared, for friction with the ground.
 const GRAVITY: f32 = 9.806_65;
@@ -43,8 +43,8 @@ struct Active {
     friction: f32,
 }
 
-/// Lets the agent push what is in its way, and lets pushed bodies slide on. Returns the agent's displacement: less than
-/// `by` if what it pushes holds it up. Records what it pushed.
+/// Lets the agent push bodies in its way, and lets pushed bodies slide on. Returns the agent's displacement, which is less than
+/// `by` if pushing slows it down. Records the bodies that it pushed.
 pub(super) fn push_bodies(
     world: &World,
     state: &mut SimState,
@@ -62,13 +62,13 @@ pub(super) fn push_bodies(
     let pushed = || sim.state.pushed.iter();
     let agent_pushes = pushed().any(|body| present(body) && may_meet_agent(sim, body, by));
     let first = (0..).zip(pushed()).filter(|(_, body)| may_move(body));
-    let parts = ((seconds / LONGEST).ceil() as u32).clamp(FEWEST_PARTS, MOST_PARTS);
+    let parts = ((seconds / MAX_PHYSICS_SECONDS).ceil() as u32).clamp(MIN_PHYSICS_STEPS, MAX_PHYSICS_STEPS);
     let chosen = with_neighbours(sim, first.map(|(index, _)| index).collect(), seconds, parts);
-    if !chosen.is_whole {
+    if !chosen.is_complete {
         stop_all_but(&mut state.pushed, &chosen.indices);
     }
     #[cfg(test)]
-    (encounters.looked += chosen.looked);
+    (encounters.num_queries += chosen.num_queries);
     let mut physics = PhysicsWorld {
         gravity: Vector::ZERO,
         ..PhysicsWorld::default()
@@ -83,14 +83,14 @@ pub(super) fn push_bodies(
     for _ in 0..parts {
         physics.step();
         if let Some((_, collider)) = agent {
-            note_contacts(&state.pushed, &physics, collider, &mut encounters.met);
+            record_contacts(&state.pushed, &physics, collider, &mut encounters.met_objects);
         }
-        rub(&mut physics, &active);
+        apply_friction(&mut physics, &active);
         let num_pairs = physics.narrow_phase.contact_pairs().count();
         #[cfg(test)]
-        (encounters.looked += num_pairs as u64);
-        if num_pairs > chosen.most_pairs {
-            // More bodies have met on their paths than allowed: they stop there.
+        (encounters.num_queries += num_pairs as u64);
+        if num_pairs > chosen.max_pairs {
+            // More bodies have met on their paths than allowed, so they stop.
             is_jammed = true;
             break;
         }
@@ -108,7 +108,7 @@ pub(super) fn push_bodies(
 /// Whether the agent's path may lead to a pushed body.
 fn may_meet_agent(sim: SimRef, body: &Pushed, by: [f32; 2]) -> bool {
     let reach = (by[0] * by[0] + by[1] * by[1]).sqrt() + sim.world.agent_params.agent_width as f32 / 2.0;
-    let [x, y] = sim.state.way_to(body.object);
+    let [x, y] = sim.state.offset_to(body.object);
     (x * x + y * y).sqrt() < reach + sim.body_radius(body.object) + MARGIN
 }
 
@@ -125,28 +125,27 @@ fn add_active(sim: SimRef, physics: &mut PhysicsWorld, index: usize) -> Active {
     let body = sim.state.pushed[index];
     let [vx, vy] = body.velocity;
     let agent_speed = sim.world.agent_params.max_linear_speed as f32;
-    let farthest = (vx * vx + vy * vy).sqrt().max(agent_speed) * LONGEST + MARGIN;
+    let farthest = (vx * vx + vy * vy).sqrt().max(agent_speed) * MAX_PHYSICS_SECONDS + MARGIN;
     let own = &sim.objects()[body.object];
     let (mass, friction) = sim.world.objects[body.object]
         .pushable
         .map_or((1.0, 0.5), |pushable| (pushable.mass as f32, pushable.friction as f32));
     let (shape, from_ground) = body_shape(&sim.scene().items[body.object]);
     let turn = Vector::new(0.0, 0.0, -own.heading_deg.to_radians());
-    let place = Pose::new(Vector::new(own.position[0], own.position[1], 0.0), turn);
+    let pose = Pose::new(Vector::new(own.position[0], own.position[1], 0.0), turn);
     let handle = physics.bodies.insert(
         RigidBodyBuilder::dynamic()
-            .pose(place)
+            .pose(pose)
             .linvel(Vector::new(body.velocity[0], body.velocity[1], 0.0))
             .angvel(Vector::new(0.0, 0.0, -body.spin_deg.to_radians()))
             .enabled_translations(true, true, false)
             .enabled_rotations(false, false, true)
             .ccd_enabled(true)
-            // Contacts are predicted: otherwise a body would stand still for the rest of the physics step in which it meets a
-            // wall.
+            // Predicts contacts; otherwise a body would stand still for the rest of the physics step in which it meets a wall.
             .soft_ccd_prediction(farthest)
             .can_sleep(false),
     );
-    // Its mass and inertia are those of the solid; its contacts are those of its outline.
+    // Mass and inertia are those of the solid shape; contacts are those of the outline.
     let mut mass_properties = shape.mass_properties(1.0);
     mass_properties.set_mass(mass, true);
     let outline = sim.views.bodies.outline_of(body.object as u32);
@@ -169,35 +168,35 @@ fn add_active(sim: SimRef, physics: &mut PhysicsWorld, index: usize) -> Active {
 /// Adds walls and static objects around the bodies, in an order that does not depend on the world's history.
 fn add_surroundings(sim: SimRef, physics: &mut PhysicsWorld, active: &[Active], seconds: f32) {
     let mut around: Vec<(u64, ColliderHandle)> = Vec::new();
-    // Both are sorted: indices among the pushed bodies, and their objects.
+    // Both the indices among the pushed bodies and their objects are sorted.
     let moves = |object: u32| {
         let own = |body: &Active| sim.state.pushed[body.index].object;
         active.binary_search_by_key(&(object as usize), own).is_ok()
     };
     for body in active {
         let at = sim.objects()[sim.state.pushed[body.index].object].position;
-        let reach = standing_reach(sim, body.index, seconds);
+        let reach = static_reach(sim, body.index, seconds);
         let area = [at.map(|metres| metres - reach), at.map(|metres| metres + reach)];
         for handle in sim.views.bodies.around(SOLID | WALL, None, area) {
-            let standing = &sim.views.bodies.standing[slot(handle)];
-            if !standing.object.is_some_and(moves) {
-                around.push((standing.rank, handle));
+            let body_data = &sim.views.bodies.body_data[slot(handle)];
+            if !body_data.object.is_some_and(moves) {
+                around.push((body_data.rank, handle));
             }
         }
     }
     around.sort_unstable_by_key(|(rank, _)| *rank);
     around.dedup_by_key(|(rank, _)| *rank);
     for (_, handle) in around {
-        let standing = &sim.views.bodies.colliders[handle];
-        let mut place = *standing.position();
-        place.translation.z = 0.0;
-        let outline = &sim.views.bodies.standing[slot(handle)].outline;
+        let original = &sim.views.bodies.colliders[handle];
+        let mut pose = *original.position();
+        pose.translation.z = 0.0;
+        let outline = &sim.views.bodies.body_data[slot(handle)].outline;
         if outline.is_disc() {
-            place.rotation = Rotation::IDENTITY;
+            pose.rotation = Rotation::IDENTITY;
         }
-        let collider = ColliderBuilder::new(outline.upright()).position(place);
-        // Everything slides along walls without friction, as the agent does: motion along them is kept.
-        let is_wall = standing.collision_groups().memberships == WALL;
+        let collider = ColliderBuilder::new(outline.upright()).position(pose);
+        // Everything slides along walls without friction, as the agent does, so motion along them is kept.
+        let is_wall = original.collision_groups().memberships == WALL;
         let collider = if is_wall {
             collider
                 .friction(0.0)
@@ -220,8 +219,7 @@ fn add_agent(sim: SimRef, physics: &mut PhysicsWorld, by: [f32; 2], seconds: f32
         .ccd_enabled(true)
         .can_sleep(false);
     let body = physics.bodies.insert(body);
-    // Its radius includes the skin, at which it meets pushed bodies.
-    // Neither pushed bodies nor walls slow it by friction.
+    // Its radius includes the skin, at which it touches pushed bodies. Neither they nor walls slow it down by friction.
     let collider = ColliderBuilder::ball((sim.views.bodies.radius + SKIN) as f32)
         .mass(AGENT_MASS)
         .friction(0.0)
@@ -233,7 +231,7 @@ fn add_agent(sim: SimRef, physics: &mut PhysicsWorld, by: [f32; 2], seconds: f32
     (body, collider)
 }
 
-fn note_contacts(pushed: &[Pushed], physics: &PhysicsWorld, agent: ColliderHandle, met: &mut Vec<u32>) {
+fn record_contacts(pushed: &[Pushed], physics: &PhysicsWorld, agent: ColliderHandle, met_objects: &mut Vec<u32>) {
     for pair in physics.narrow_phase.contact_pairs_with(agent) {
         let other = if pair.collider1 == agent {
             pair.collider2
@@ -244,12 +242,12 @@ fn note_contacts(pushed: &[Pushed], physics: &PhysicsWorld, agent: ColliderHandl
         // Static objects have no rigid body.
         if body.parent().is_some() && pair.has_any_active_contact() {
             let index = body.user_data as usize;
-            met.push(pushed[index].object as u32);
+            met_objects.push(pushed[index].object as u32);
         }
     }
 }
 
-/// Copies positions back from the physics; a body that went through a wall stays where it was, at rest.
+/// Copies positions back from the physics. A body that passed through a wall stays where it was, at rest.
 fn read_back(
     physics: &PhysicsWorld,
     active: &[Active],
@@ -266,8 +264,8 @@ fn read_back(
         let (at, turn) = (moved.translation(), moved.rotation());
         let position = [at.x, at.y].map(|metres| metres.clamp(-EDGE, EDGE));
         let [x, y, turn_speed] = [moved.linvel().x, moved.linvel().y, moved.angvel().z];
-        let sound = (at.x + at.y + x + y + turn_speed).is_finite();
-        if !sound || leads_through(&views.bodies, own.position, position, object as u32) {
+        let is_finite = (at.x + at.y + x + y + turn_speed).is_finite();
+        if !is_finite || crosses_wall(&views.bodies, own.position, position, object as u32) {
             pushed.stop();
             continue;
         }
@@ -275,7 +273,7 @@ fn read_back(
         pushed.spin_deg = -turn_speed.to_degrees();
         let yaw = 2.0 * libm::atan2f(turn.z, turn.w);
         let heading_deg = wrapped(-yaw.to_degrees());
-        // A body at rest keeps its exact position, whatever the solver does.
+        // A body at rest keeps its exact position, regardless of the solver's rounding.
         if position != own.position || pushed.moves() {
             encounters.moved.push((object, own.position));
             (own.position, own.heading_deg) = (position, heading_deg);
@@ -285,16 +283,16 @@ fn read_back(
 }
 
 /// Whether the straight path of an object's body between two positions crosses a wall.
-fn leads_through(bodies: &CollisionWorld, from: [f32; 2], to: [f32; 2], object: u32) -> bool {
+fn crosses_wall(bodies: &CollisionWorld, from: [f32; 2], to: [f32; 2], object: u32) -> bool {
     let way = Vector::new(to[0] - from[0], to[1] - from[1], 0.0);
     let ray = Ray::new(Vector::new(from[0], from[1], 0.05), way);
     let own = bodies.handles.get(object as usize).copied().flatten();
     let hit = |query: QueryPipeline| query.cast_ray(&ray, 1.0, false).is_some();
-    bodies.queries_but(WALL, own).any(hit)
+    bodies.queries_except(WALL, own).any(hit)
 }
 
-/// Friction with the ground: slows sliding and rotating bodies until they are at rest.
-fn rub(physics: &mut PhysicsWorld, active: &[Active]) {
+/// Applies friction with the ground, which slows sliding and rotating bodies until they are at rest.
+fn apply_friction(physics: &mut PhysicsWorld, active: &[Active]) {
     let seconds = physics.integration_parameters.dt;
     for body in active {
         let moved = &mut physics.bodies[body.handle];

@@ -1,5 +1,5 @@
-//! Rewards by the world's rules: per step, per second, and by the shaping's potential. `step.rs` adds them to what objects
-//! (`interactions.rs`) and zones (`zones.rs`) pay.
+//! Rewards by the world's rules: per step, per second, and by the shaping's potential. `step.rs` adds them to the rewards of
+//! objects (`interactions.rs`) and zones (`zones.rs`).
 
 use driftworld_spec::World;
 
@@ -23,7 +23,7 @@ pub(super) fn shaping(world: &World, state: &SimState, before: f64, terminated: 
     Some(shaping.discount * after - before)
 }
 
-/// The shaping potential of the current state; 0 without shaping, and without an object to approach.
+/// The shaping potential of the current state; 0 without shaping or without an object to approach.
 pub(super) fn potential(world: &World, state: &SimState) -> f64 {
     let Some(shaping) = &world.rules.shaping else {
         return 0.0;
@@ -33,7 +33,7 @@ pub(super) fn potential(world: &World, state: &SimState) -> f64 {
         None => state.nearest(world, |object, own| pays_now(object, own) && state.is_due(object.order)),
     };
     nearest.map_or(0.0, |index| {
-        let [x, y] = state.way_to(index).map(f64::from);
+        let [x, y] = state.offset_to(index).map(f64::from);
         -shaping.scale * (x * x + y * y).sqrt()
     })
 }

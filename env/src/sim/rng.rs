@@ -1,7 +1,7 @@
 //! Random numbers of a running world: a stream per object and purpose.
 //!
-//! Every draw has an index, and does not depend on the draws before it: an object's third draw depends only on the world's
-//! seed, the object's identity and the 3, and on nothing else that is in the world or happens there.
+//! Every draw has an index, and does not depend on earlier draws. An object's third draw depends only on the world's seed, the
+//! object's identity and the index 3, and on nothing else in the world.
 
 use std::collections::BTreeMap;
 
@@ -12,22 +12,21 @@ use rand_chacha::ChaCha8Rng;
 /// Padding of the key of a world with a seed.
 const DOMAIN: [u8; 24] = *b"driftworld chance 1\0\0\0\0\0";
 
-/// The seed of all random numbers of a world: its `seed`, or the hash of the initial places.
-///
-/// Hashing costs as much as reading the world, so it is postponed until something draws.
+/// The seed of all random numbers of a world: its `seed`, or the hash of the initial positions. Hashing takes as long as
+/// reading the world, so it is postponed until a random number is needed.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) enum Seed {
-    /// A world without a seed in which nothing has drawn yet.
+    /// A world without a seed, in which no random number has been needed yet.
     #[default]
     Unknown,
     /// The world's own seed.
     Own(u64),
-    /// The hash of its places, 64 hexadecimal digits.
+    /// The hash of its initial positions, 64 hexadecimal digits.
     Places(String),
 }
 
 impl Seed {
-    /// The seed of a world at its start: known if it has one, or if one of its objects needs it.
+    /// The seed of a world at its start. It is known if the world or its progress contains one, or if an object needs it.
     pub(super) fn of(world: &World, written: Option<String>) -> Self {
         let needed = || world.objects.iter().any(Object::takes_chances);
         match (world.seed, written) {
@@ -38,7 +37,7 @@ impl Seed {
         }
     }
 
-    /// The hash of the places, if that is the seed.
+    /// The hash of the positions, if that is the seed.
     pub(super) fn hash(&self) -> Option<&str> {
         match self {
             Self::Places(hash) => Some(hash),
@@ -47,7 +46,7 @@ impl Seed {
     }
 
     /// Computes the seed if it is not known yet; `start` is the world before anything was spawned.
-    pub(super) fn learn(&mut self, start: &World) {
+    pub(super) fn resolve(&mut self, start: &World) {
         if *self == Self::Unknown {
             *self = Self::Places(start.hash_of_places());
         }
@@ -61,11 +60,8 @@ impl Seed {
                 key[..8].copy_from_slice(&seed.to_le_bytes());
                 key[8..].copy_from_slice(&DOMAIN);
             }
-            // The digits, not the bytes that they encode: half of them make a good enough key.
-            Self::Places(hash) => key
-                .iter_mut()
-                .zip(hash.bytes())
-                .for_each(|(byte, letter)| *byte = letter),
+            // Uses the first 32 digits as bytes, which make a good enough key.
+            Self::Places(hash) => key.iter_mut().zip(hash.bytes()).for_each(|(byte, digit)| *byte = digit),
         }
         key
     }
@@ -78,17 +74,16 @@ pub(super) enum Purpose {
     Goals = 1,
     /// Whether a bandit arm pays.
     Pulls = 2,
-    /// Places for respawning.
+    /// Positions for respawning.
     Returns = 3,
 }
 
-/// Identities of a world's objects, independent of their position in the list.
-///
-/// Objects with the same seed, or without one at the same place, are distinguished by their order among themselves.
+/// Identities of a world's objects, independent of their position in the list. Objects with the same seed, or without a seed at
+/// the same position, are distinguished by their relative order.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Identities {
     /// Number of objects so far with each base identity.
-    taken: BTreeMap<u64, u64>,
+    counts: BTreeMap<u64, u64>,
 }
 
 impl Identities {
@@ -102,9 +97,9 @@ impl Identities {
                 // 0 and −0 are the same.
                 .fold(mix(2), |mixed, metres| mix(mixed ^ (metres + 0.0).to_bits())),
         };
-        let before = self.taken.entry(own).or_insert(0);
-        *before += 1;
-        mix(own ^ *before)
+        let count = self.counts.entry(own).or_insert(0);
+        *count += 1;
+        mix(own ^ *count)
     }
 }
 
@@ -128,7 +123,7 @@ impl Stream {
         self.redraw(draw, 0)
     }
 
-    /// The `attempt`th replacement of draw number `draw`; 0 is the draw itself.
+    /// Replacement number `attempt` of draw number `draw`; 0 is the draw itself.
     pub(super) fn redraw(&self, draw: u64, attempt: u64) -> [f64; 2] {
         /// 32-bit words per draw.
         const WORDS: u128 = 4;
@@ -140,7 +135,7 @@ impl Stream {
     }
 }
 
-/// The random numbers of a bandit arm, or of a respawning object, with their positions.
+/// The random numbers of a bandit arm or a respawning object, and the number of draws so far.
 #[derive(Clone, Debug)]
 pub(super) struct ObjectRng {
     /// The object's index in the world.
@@ -151,7 +146,7 @@ pub(super) struct ObjectRng {
     pub(super) pulls: u64,
     /// Returns so far.
     pub(super) returns: u64,
-    /// Places tried for the next respawn.
+    /// Positions tried for the next respawn.
     pub(super) tries: u64,
 }
 
@@ -168,7 +163,7 @@ impl ObjectRng {
         })
     }
 
-    /// Whether the next pull pays, with this probability. The same number decides at every probability, so a lower probability
+    /// Whether the next pull pays, with this probability. The draw does not depend on the probability, so a lower probability
     /// only removes payments.
     pub(super) fn pull(&mut self, probability: f64) -> bool {
         let [unit, _] = self.pulling.draw(self.pulls);
@@ -176,15 +171,15 @@ impl ObjectRng {
         unit < probability
     }
 
-    /// Two numbers for the next place to try.
-    pub(super) fn draw_place(&mut self) -> [f64; 2] {
+    /// Two numbers for the next position to try.
+    pub(super) fn draw_position(&mut self) -> [f64; 2] {
         let place = self.returning.redraw(self.returns, self.tries);
         self.tries += 1;
         place
     }
 
     /// Records that the object has respawned.
-    pub(super) fn note_return(&mut self) {
+    pub(super) fn record_return(&mut self) {
         self.returns += 1;
         self.tries = 0;
     }
@@ -249,7 +244,7 @@ mod tests {
         assert_eq!(identities(&[3]), [(3, all[&3])].into());
     }
 
-    /// Pinned: a change would affect every world that draws.
+    /// Pinned, because a change would affect every world with random numbers.
     #[test]
     fn random_numbers_are_stable() {
         let identity = Identities::default().take(&at([3.0, 4.0], Some(7)));
@@ -272,8 +267,8 @@ mod tests {
             units.sort_unstable_by(f64::total_cmp);
             // Kolmogorov–Smirnov: 1.95 / √n is α = 0.001.
             let gap = |(number, unit): (usize, &f64)| (unit - (number as f64 + 0.5) / 20_000.0).abs();
-            let most = units.iter().enumerate().map(gap).fold(0.0, f64::max);
-            assert!(most < 1.95 / 20_000_f64.sqrt(), "{most}");
+            let largest = units.iter().enumerate().map(gap).fold(0.0, f64::max);
+            assert!(largest < 1.95 / 20_000_f64.sqrt(), "{largest}");
         }
     }
 }

@@ -1,13 +1,13 @@
-//! [`Sequence`]: whose turn it is in a scavenger sequence.
+//! [`Sequence`]: the order in which objects must be collected, and which one is due.
 
 use driftworld_spec::Object;
 
-/// The places of a sequence in order, and how many from the first on have been collected.
+/// The objects of a sequence in order, and how many of them, from the first one on, have been collected.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sequence {
-    /// Place and object, in ascending order.
-    places: Vec<(u32, u32)>,
-    /// All places before this one have been collected.
+    /// Order number and object, in ascending order.
+    entries: Vec<(u32, u32)>,
+    /// Index of the first entry that has not been collected.
     next: usize,
 }
 
@@ -15,33 +15,33 @@ impl Sequence {
     /// The sequence of a world at its start.
     pub(super) fn of(objects: &[Object]) -> Self {
         let ordered = objects.iter().zip(0..);
-        let mut places: Vec<(u32, u32)> = ordered
+        let mut entries: Vec<(u32, u32)> = ordered
             .filter_map(|(object, index)| object.order.map(|order| (order, index)))
             .collect();
-        places.sort_unstable();
-        Self { places, next: 0 }
+        entries.sort_unstable();
+        Self { entries, next: 0 }
     }
 
-    /// Adds an uncollected object, if it has a place.
+    /// Adds an uncollected object, if it has an order number.
     pub(super) fn add(&mut self, index: usize, order: Option<u32>) {
         let Some(order) = order else { return };
         let own = (order, index as u32);
-        let place = self.places.partition_point(|other| *other < own);
-        self.places.insert(place, own);
-        self.next = self.next.min(place);
+        let index = self.entries.partition_point(|other| *other < own);
+        self.entries.insert(index, own);
+        self.next = self.next.min(index);
     }
 
-    /// Updates the sequence after objects were collected; nothing ever becomes uncollected.
+    /// Updates the sequence after objects were collected. Objects never become uncollected.
     pub(super) fn advance(&mut self, is_collected: impl Fn(usize) -> bool) {
         let is_done = |(_, index): &(u32, u32)| is_collected(*index as usize);
-        while self.places.get(self.next).is_some_and(is_done) {
+        while self.entries.get(self.next).is_some_and(is_done) {
             self.next += 1;
         }
     }
 
-    /// Whether all objects with a lower place have been collected.
+    /// Whether all objects with a lower order number have been collected.
     pub(super) fn is_due(&self, order: Option<u32>) -> bool {
-        let first = self.places.get(self.next);
+        let first = self.entries.get(self.next);
         order.is_none_or(|own| first.is_none_or(|(first, _)| own <= *first))
     }
 }
@@ -54,9 +54,9 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
 
-        /// Compared with the definition: every lower place has been collected.
+        /// Compares with the definition: every object with a lower order number has been collected.
         #[test]
-        fn object_is_due_once_all_lower_places_are_collected(
+        fn object_is_due_once_all_lower_numbers_are_collected(
             orders in prop::collection::vec(prop::option::of(1u32..6), 1..12),
             spawned in prop::collection::vec((0usize..30, prop::option::of(1u32..6)), 0..6),
             collected in prop::collection::vec(0usize..18, 0..30),

@@ -1,4 +1,4 @@
-//! [`SimRef`]: a borrowed, read-only view of a running world, for policies that know the map and for queries.
+//! [`SimRef`]: a read-only view of a running world, for queries and for policies that know the map.
 
 use driftworld_spec::World;
 
@@ -31,7 +31,7 @@ impl<'a> SimRef<'a> {
         &self.views.scene
     }
 
-    /// Finds the objects that an interaction would reach now, in order of index.
+    /// Finds the objects within reach of an interaction now, in order of index.
     pub(crate) fn reached_by_hand(self, found: &mut Vec<u32>) {
         let agent = self.agent();
         self.views.bodies.in_reach(agent.position, agent.forward(), found);

@@ -1,29 +1,30 @@
-//! Sliding: the path of a body that is driven in one direction among footprints, without friction.
+//! Computes the path of a body that is driven in one direction and slides along footprints without friction.
 //!
-//! At each moment the body moves as it is driven, minus the component into anything that it touches. So along a wall it keeps
-//! the component of its velocity parallel to the wall, whatever the wall's length, the body's width or the time step.
+//! At each moment the body moves in the driven direction, minus the component into anything that it touches. So along a wall it
+//! keeps the component of its velocity parallel to the wall, regardless of the wall's length, the body's width and the time
+//! step.
 
 use super::budget::Budget;
 use super::footprint::{Footprint, Point};
 use super::gap::Gap;
 
-/// Gap that a body keeps from what it slides along, in metres.
+/// Gap in metres between a body and the obstacles along which it slides.
 pub(super) const SKIN: f64 = 0.01;
 
-/// How much wider than the skin a gap may be to count as contact, in metres: more than the rounding to `f32` at the edge of the
-/// world.
+/// Maximum excess of a gap over the skin, in metres, at which it counts as contact. Exceeds the rounding to `f32` at the edge
+/// of the world.
 const SLACK: f64 = 2e-4;
 
-/// How far a section of the path may depart from a round edge before it is corrected, in metres.
+/// Maximum deviation of a section of the path from a round edge, in metres, before it is corrected.
 const SAGITTA: f64 = 1e-3;
 
-/// Maximum number of sections of a path, each straight along one obstacle. 1 km along a thousand bodies ends early.
-const MOST_PARTS: usize = 4096;
+/// Maximum number of sections of a path, each straight along one obstacle. A path of 1 km along a thousand bodies ends early.
+const MAX_SECTIONS: usize = 4096;
 
-/// Queries per corner in a section of a path: whether its body is touched, when it will be, and whether it is followed.
-const LOOKS_PER_PART: usize = 4;
+/// Queries per corner in a section of a path: whether its footprint is touched, when it will be, and whether it is followed.
+const QUERIES_PER_SECTION: usize = 4;
 
-/// Potential obstacles: the footprints of these numbers.
+/// Potential obstacles: the footprints with certain numbers.
 #[derive(Clone, Copy)]
 pub(super) struct Obstacles<'a> {
     /// The footprints by number.
@@ -39,7 +40,7 @@ impl Obstacles<'_> {
         self.numbers.iter().map(|number| &self.footprints[*number as usize])
     }
 
-    /// The first time, 0..1, at which a body of this radius comes within the skin of something that it does not touch already.
+    /// The first time, 0..1, at which a body of this radius comes within the skin of an obstacle that it does not touch yet.
     fn first_time(&self, from: Point, by: Point, radius: f64) -> Option<f64> {
         self.footprints()
             .filter(|footprint| footprint.gap(from).distance - radius > SKIN + SLACK)
@@ -47,7 +48,7 @@ impl Obstacles<'_> {
             .min_by(f64::total_cmp)
     }
 
-    /// Whether a straight path stays outside the skin of everything.
+    /// Whether a straight path stays outside the skin of all obstacles.
     pub(super) fn is_clear(&self, from: Point, by: Point, radius: f64) -> bool {
         self.footprints()
             .all(|footprint| footprint.time_within(from, by, radius + SKIN).is_none())
@@ -61,9 +62,8 @@ impl Obstacles<'_> {
             .min_by(|a, b| a.distance.total_cmp(&b.distance))
     }
 
-    /// Moves a round body out of overlaps, in at most three moves of up to half a metre, and never through anything else.
-    ///
-    /// If that would lead just as deep into other obstacles, it stays.
+    /// Moves a round body out of overlaps, in at most three moves of up to half a metre, but never through other obstacles. The
+    /// body stays if that would lead just as deep into other obstacles.
     pub(super) fn out_of_overlap(&self, start: Point, radius: f64) -> Point {
         let mut at = start;
         for _ in 0..3 {
@@ -82,8 +82,8 @@ impl Obstacles<'_> {
         if depth(at) < depth(start) { at } else { start }
     }
 
-    /// A place at most `most` away where a body without radius overlaps nothing; `None` if none is found.
-    pub(super) fn room_near(&self, start: Point, most: f64) -> Option<Point> {
+    /// A position at most `max_distance` away where a body without radius overlaps nothing; `None` if none is found.
+    pub(super) fn room_near(&self, start: Point, max_distance: f64) -> Option<Point> {
         let mut at = start;
         for _ in 0..8 {
             let gaps = self.footprints().map(|footprint| footprint.gap(at));
@@ -93,17 +93,17 @@ impl Obstacles<'_> {
             }
             at = add(at, deepest.out, 1e-6 - deepest.distance);
             let off = add(at, start, -1.0);
-            if dot(off, off) > most * most {
+            if dot(off, off) > max_distance * max_distance {
                 return None;
             }
         }
         None
     }
 
-    /// Slides a round body that is driven in a direction for a unit of time; stores its bends and its end in `path`.
+    /// Slides a round body that is driven in a direction for a unit of time; stores the path's bends and end in `path`.
     ///
-    /// A footprint that contains its centre does not hold it: if something was put onto it, it can walk out in any direction.
-    /// Its path ends when the budget does.
+    /// A footprint that contains its centre does not hold it, so that it can leave in any direction if an object was placed
+    /// onto it. The path ends when the budget is used up.
     pub(super) fn slide(
         &self,
         from: Point,
@@ -114,14 +114,14 @@ impl Obstacles<'_> {
         path: &mut Vec<Point>,
     ) {
         let (mut at, mut left) = (from, 1.0);
-        for _ in 0..MOST_PARTS {
-            if !budget.take(LOOKS_PER_PART * self.num_corners) {
+        for _ in 0..MAX_SECTIONS {
+            if !budget.take(QUERIES_PER_SECTION * self.num_corners) {
                 break;
             }
             touched.clear();
             let gaps = self.footprints().map(|footprint| footprint.gap(at));
-            touched.extend(gaps.filter(|gap| is_touched(gap, radius)));
-            let Some((way, held_by)) = allowed(by, touched, budget) else {
+            touched.extend(gaps.filter(|gap| is_in_contact(gap, radius)));
+            let Some((way, deflector)) = allowed_direction(by, touched, budget) else {
                 break;
             };
             let mut time = left;
@@ -129,7 +129,7 @@ impl Obstacles<'_> {
             if let Some(share) = self.first_time(at, whole, radius) {
                 time = left * share;
             }
-            match held_by {
+            match deflector {
                 Some(out) => (at, time) = self.along(at, by, way, time, out, radius),
                 None => at = add(at, way, time),
             }
@@ -143,41 +143,39 @@ impl Obstacles<'_> {
         }
     }
 
-    /// Follows the edge of the obstacle for this much time, or less if the edge bends away; returns the place and the time.
+    /// Follows the edge of an obstacle for at most `most` time, less if the edge bends away; returns the position and the time.
     fn along(&self, at: Point, by: Point, way: Point, most: f64, out: Point, radius: f64) -> (Point, f64) {
         // The obstacle being followed is touched now, and has this outward direction.
         let holds = |footprint: &&Footprint| {
             let gap = footprint.gap(at);
-            is_touched(&gap, radius) && gap.out == out
+            is_in_contact(&gap, radius) && gap.out == out
         };
-        let Some(held) = self.footprints().find(holds) else {
+        let Some(followed) = self.footprints().find(holds) else {
             return (add(at, way, most), most);
         };
-        let kept = held.gap(at).distance.max(radius + SKIN);
+        let kept = followed.gap(at).distance.max(radius + SKIN);
         let mut time = most;
         loop {
             let end = add(at, way, time);
-            let gap = held.gap(end);
-            let apart = gap.distance - kept;
-            if apart <= SAGITTA {
-                // If driven away from the edge, the body leaves it.
+            let gap = followed.gap(end);
+            let deviation = gap.distance - kept;
+            if deviation <= SAGITTA {
+                // A body that is driven away from the edge leaves it.
                 let into = dot(by, gap.out).min(0.0);
-                let back = if into < 0.0 { apart.max(0.0) } else { 0.0 };
+                let back = if into < 0.0 { deviation.max(0.0) } else { 0.0 };
                 let onward = add(by, gap.out, -into);
-                let taken = time * share_of_time(dot(way, way).sqrt(), dot(onward, onward).sqrt());
+                let taken = time * time_fraction(dot(way, way).sqrt(), dot(onward, onward).sqrt());
                 return (add(end, gap.out, -back), taken);
             }
             // Beyond a bend, the edge recedes with the square of the distance.
-            time *= (0.9 * (SAGITTA / apart).sqrt()).clamp(0.05, 0.9);
+            time *= (0.9 * (SAGITTA / deviation).sqrt()).clamp(0.05, 0.9);
         }
     }
 }
 
-/// The fraction of the time that a section of the path takes at its initial speed, if the speed grows linearly with the
-/// distance.
-///
-/// Around a corner it does, up to the third order in the angle.
-fn share_of_time(first: f64, last: f64) -> f64 {
+/// The time that a section of the path takes if the speed grows linearly with the distance, as a fraction of the time at its
+/// initial speed. Around a corner the speed does grow like this, up to the third order in the angle.
+fn time_fraction(first: f64, last: f64) -> f64 {
     let growth = last / first - 1.0;
     if growth > 1e-6 {
         libm::log1p(growth) / growth
@@ -186,15 +184,15 @@ fn share_of_time(first: f64, last: f64) -> f64 {
     }
 }
 
-/// Whether something holds a body of this radius. A body without radius is a point among widened footprints, which hold
-/// it from inside as well.
-fn is_touched(gap: &Gap, radius: f64) -> bool {
+/// Whether an obstacle at this gap holds a body of this radius. A body without radius is a point among widened footprints,
+/// which hold it from inside as well.
+fn is_in_contact(gap: &Gap, radius: f64) -> bool {
     gap.distance - radius <= SKIN + SLACK && (gap.distance >= 0.0 || radius == 0.0)
 }
 
-/// The part of a direction that leads into nothing that is touched, and the outward direction of the obstacle that deflected
-/// it; `None` if no direction is left.
-fn allowed(by: Point, touched: &[Gap], budget: &mut Budget) -> Option<(Point, Option<Point>)> {
+/// The part of a direction that leads into no touched obstacle, and the outward direction of the obstacle that deflected it;
+/// `None` if no direction is left.
+fn allowed_direction(by: Point, touched: &[Gap], budget: &mut Budget) -> Option<(Point, Option<Point>)> {
     let length = dot(by, by).sqrt();
     // The next direction is likely to be blocked by the same obstacle as the last.
     let mut suspect = 0;
@@ -213,9 +211,9 @@ fn allowed(by: Point, touched: &[Gap], budget: &mut Budget) -> Option<(Point, Op
     if free(by, 0.0) {
         return Some((by, None));
     }
-    // Among the directions along a single obstacle that lead into no other, chooses the one nearest to the intended
-    // one. The change must be at least as large as the part of the intended one that leads into the deepest obstacle,
-    // minus the slack: directions with smaller changes need not be checked.
+    // Among the directions along a single obstacle that lead into no other, chooses the one nearest to the intended direction.
+    // The change must be at least as large as the part of the intended direction that leads into the deepest obstacle, minus
+    // the slack; directions with smaller changes need not be checked.
     let deepest = touched.iter().map(|gap| -dot(by, gap.out)).fold(0.0, f64::max);
     let mut best: Option<(f64, Point, Point)> = None;
     for gap in touched {
@@ -248,8 +246,8 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// The definition: every direction along every obstacle, against all obstacles.
-    fn allowed_by_all(by: Point, touched: &[Gap]) -> Option<(Point, Option<Point>)> {
+    /// The definition: tests every direction along every obstacle against all obstacles.
+    fn allowed_by_definition(by: Point, touched: &[Gap]) -> Option<(Point, Option<Point>)> {
         let length = dot(by, by).sqrt();
         let free = |way: Point, slack: f64| touched.iter().all(|gap| dot(way, gap.out) >= -slack);
         if length <= 1e-9 {
@@ -290,8 +288,8 @@ mod tests {
         ) {
             let by = by.map(|part| part * length);
             let touched: Vec<Gap> = outs.into_iter().map(|out| Gap { distance: 0.0, out }).collect();
-            let found = allowed(by, &touched, &mut Budget::new(u64::MAX));
-            prop_assert_eq!(found, allowed_by_all(by, &touched));
+            let found = allowed_direction(by, &touched, &mut Budget::new(u64::MAX));
+            prop_assert_eq!(found, allowed_by_definition(by, &touched));
         }
     }
 }

@@ -1,4 +1,4 @@
-//! [`Snapshot`]: saves a moment of a running world in memory and restores it, or saves it as a world document.
+//! Saves the state of a running world, in memory as a [`Snapshot`] or as a world document, and restores snapshots.
 
 use std::fmt;
 use std::sync::Arc;
@@ -12,9 +12,9 @@ use super::state::SimState;
 use crate::agents::OnRailsAgent;
 use crate::assets::Catalogue;
 
-/// A moment of a running world, in memory.
+/// The state of a running world at one moment, in memory.
 ///
-/// Taking one copies what changes and shares the rest, so it is much cheaper than [`Environment::state`], which saves
+/// Taking a snapshot copies what changes and shares the rest, so it is much cheaper than [`Environment::state`], which saves
 /// everything as a document.
 #[derive(Clone)]
 pub struct Snapshot {
@@ -36,7 +36,7 @@ impl fmt::Debug for Snapshot {
 }
 
 impl Environment {
-    /// Saves this moment, for [`Environment::restore`].
+    /// Saves the current state for [`Environment::restore`].
     ///
     /// # Example
     /// ```
@@ -59,19 +59,19 @@ impl Environment {
         }
     }
 
-    /// Restores a moment of this environment or of another one; everything afterwards is the same, bit for bit.
-    pub fn restore(&mut self, moment: &Snapshot) {
-        if !Arc::ptr_eq(&self.world, &moment.world) {
-            self.start_with(Arc::clone(&moment.world), &moment.catalogue);
+    /// Restores a snapshot of this environment or of another one; everything after it is the same, bit for bit.
+    pub fn restore(&mut self, snapshot: &Snapshot) {
+        if !Arc::ptr_eq(&self.world, &snapshot.world) {
+            self.start_with(Arc::clone(&snapshot.world), &snapshot.catalogue);
         }
-        self.seed.clone_from(&moment.seed);
-        self.state.clone_from(&moment.state);
-        self.rails.clone_from(&moment.rails);
+        self.seed.clone_from(&snapshot.seed);
+        self.state.clone_from(&snapshot.state);
+        self.rails.clone_from(&snapshot.rails);
         self.views.sync_objects(&self.world, &self.state);
     }
 
-    /// The current state of the world as a document: objects at their places with their remaining rewards, and in `progress`
-    /// everything else that a reset to it needs to resume.
+    /// The current state of the world as a document: objects at their current positions with their remaining rewards, and in
+    /// `progress` everything else that a reset needs to resume.
     ///
     /// Includes destroyed objects, so that indices stay the same; their progress marks them as absent.
     ///
@@ -81,8 +81,8 @@ impl Environment {
     /// use driftworld_spec::World;
     /// let mut environment = Environment::new(World::default());
     /// environment.step(Action::Continuous([10.0, 90.0, 0.0]))?;
-    /// let written = environment.state().to_json();
-    /// let read = World::from_json("state", &written).expect("a state is a sound world");
+    /// let json = environment.state().to_json();
+    /// let read = World::from_json("state", &json).expect("a state is a valid world");
     /// assert_eq!(Environment::new(read).agent(), environment.agent());
     /// # Ok::<(), driftworld_env::EnvError>(())
     /// ```
@@ -90,7 +90,7 @@ impl Environment {
         to_world(self.sim(), &self.seed, self.rails.as_ref().map(OnRailsAgent::progress))
     }
 
-    /// The world's agent at its current position and heading; if these are its start, exactly as in the world, bit for bit.
+    /// The world's agent at its current position and heading; bit for bit as in the world if these are its start.
     pub(crate) fn agent_now(&self) -> AgentParams {
         agent_now(self.sim())
     }

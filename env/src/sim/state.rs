@@ -1,4 +1,4 @@
-//! [`SimState`]: everything that changes while a world runs, as one value for snapshots and documents of progress.
+//! [`SimState`]: everything that changes while a world runs, in one value, for snapshots and saved worlds.
 
 use driftworld_spec::{LastEvent, Object, World};
 
@@ -29,24 +29,21 @@ impl AgentState {
 
 /// The state of one object in a running world.
 #[derive(Clone, Debug, PartialEq)]
-#[expect(
-    clippy::struct_excessive_bools,
-    reason = "facts that have nothing to do with each other"
-)]
+#[expect(clippy::struct_excessive_bools, reason = "the flags are independent of each other")]
 pub struct ObjectState {
-    /// Position in metres; for an absent object, the last one.
+    /// Position in metres; for an absent object, its last position.
     pub position: [f32; 2],
     /// Heading in degrees, clockwise from +y.
     pub heading_deg: f32,
-    /// Current reward of a stimulus; 0 once a reward that is paid only once has been paid.
+    /// Current reward of a stimulus; 0 after a reward that is paid only once.
     pub reward: f64,
     /// Whether it is present.
     pub present: bool,
-    /// Whether it has paid, or was destroyed: sequences depend on it.
+    /// Whether it has paid or was destroyed, which advances sequences.
     pub collected: bool,
-    /// Whether it is an open door, which blocks nothing.
+    /// Whether it is an open door, which does not block anything.
     pub open: bool,
-    /// Whether the agent carries it: it is absent then, and its position is the agent's.
+    /// Whether the agent carries it. If so, it is absent, and its position is the agent's.
     pub carried: bool,
     pub(super) in_range: bool,
 }
@@ -73,7 +70,7 @@ pub(super) fn wrapped(heading_deg: f32) -> f32 {
     if heading_deg < 360.0 { heading_deg } else { 0.0 }
 }
 
-/// The state of a running world: the single source for where objects are, whether they are present and what they pay.
+/// The state of a running world: the single source for the positions, the presence and the rewards of objects.
 #[derive(Clone, Default)]
 pub(crate) struct SimState {
     pub(super) agent: AgentState,
@@ -95,13 +92,13 @@ pub(crate) struct SimState {
     pub(super) contacts: Vec<u32>,
     /// The objects that move by themselves, in ascending order.
     pub(super) movers: Vec<Mover>,
-    /// The objects that notice the agent from a distance, in ascending order.
+    /// The objects that react to the agent from a distance, in ascending order.
     pub(super) ranged: Vec<u32>,
     /// The pushable objects, in ascending order.
     pub(super) pushed: Vec<Pushed>,
     /// Destroyed objects that will respawn, in ascending order, with the time step in which they are due.
     pub(super) returning: Vec<(usize, u64)>,
-    /// The sequence, if objects are in one.
+    /// The sequence; empty if no object has an order number.
     pub(super) sequence: Sequence,
     /// For each of the views' zones, whether the agent has entered it and is still inside.
     pub(super) inside: Vec<bool>,
@@ -109,7 +106,7 @@ pub(crate) struct SimState {
     pub(super) doors: Vec<DoorState>,
     /// The objects that the agent carries, in the order in which it picked them up.
     pub(super) carried: Vec<u32>,
-    /// Whether any object is a door, a switch or a carriable thing.
+    /// Whether any object is a door, a switch or a portable thing.
     pub(crate) has_things: bool,
     /// Duration of a time step in seconds.
     time_step: f64,
@@ -118,7 +115,8 @@ pub(crate) struct SimState {
 }
 
 impl SimState {
-    /// The start of a world. Nothing is touched or near yet: contacts at the agent's start count as new in the first step.
+    /// The state at the start of a world. Nothing is touched or near yet, so contacts at the agent's start count as new in the
+    /// first step.
     pub(super) fn new(world: &World, seed: &Seed, identities: &mut Identities) -> Self {
         let start = &world.agent_params;
         let mut state = Self {
@@ -137,16 +135,16 @@ impl SimState {
             state.add_object(object, seed, identities);
         }
         if state.has_things {
-            // Room for everything that may be picked up, so that steps do not allocate.
+            // Capacity for everything that may be picked up, so that steps do not allocate.
             state.carried.reserve_exact(start.carry_limit as usize);
         }
         state
     }
 
-    /// Adds an object in its initial state, except its place in the sequence.
+    /// Adds an object in its initial state, but not to the sequence.
     pub(super) fn add_object(&mut self, object: &Object, seed: &Seed, identities: &mut Identities) {
         let index = self.objects.len();
-        // Most objects draw nothing, so they need no identity.
+        // Most objects need no random numbers, so they need no identity.
         let identity = if object.takes_chances() {
             identities.take(object)
         } else {
@@ -191,7 +189,7 @@ impl SimState {
         self.pushed.get_mut(found)
     }
 
-    /// An object's random numbers, if it draws for pulls or respawning.
+    /// An object's random numbers, if it needs any for pulls or respawning.
     pub(super) fn rng_of(&mut self, object: usize) -> Option<&mut ObjectRng> {
         let found = self.rngs.binary_search_by_key(&object, |rng| rng.object).ok()?;
         self.rngs.get_mut(found)
@@ -202,7 +200,7 @@ impl SimState {
         self.contacts.binary_search(&(index as u32)).is_ok()
     }
 
-    /// Whether all objects with a lower place in the sequence have been collected.
+    /// Whether all objects with a lower order number have been collected.
     pub(crate) fn is_due(&self, order: Option<u32>) -> bool {
         self.sequence.is_due(order)
     }
@@ -214,7 +212,7 @@ impl SimState {
     }
 
     /// The vector from the agent to an object along x and y, in metres.
-    pub(super) fn way_to(&self, index: usize) -> [f32; 2] {
+    pub(super) fn offset_to(&self, index: usize) -> [f32; 2] {
         let (to, from) = (self.objects[index].position, self.agent.position);
         [to[0] - from[0], to[1] - from[1]]
     }
@@ -223,7 +221,7 @@ impl SimState {
     pub(super) fn nearest(&self, world: &World, holds: impl Fn(&Object, &ObjectState) -> bool) -> Option<usize> {
         let objects = world.objects.iter().zip(&self.objects).enumerate();
         let distance = |index: usize| {
-            let [x, y] = self.way_to(index);
+            let [x, y] = self.offset_to(index);
             x * x + y * y
         };
         objects

@@ -1,4 +1,4 @@
-//! [`Environment::step`]: the action, its time steps, the reward and the end.
+//! [`Environment::step`]: applies an action over its time steps, and computes the reward and the end of the episode.
 
 use driftworld_spec::{ActionModel, LastEvent, ZoneEnd};
 
@@ -20,7 +20,7 @@ impl Environment {
     /// Steps the agent: in each time step it turns and moves, and the objects that it meets react.
     ///
     /// # Errors
-    /// [`EnvError`] for an invalid action, or after the end; nothing is changed then.
+    /// [`EnvError`] if the action is invalid or the episode has ended; nothing is changed then.
     pub fn step(&mut self, action: Action) -> Result<Step, EnvError> {
         let mut step = Step::default();
         self.step_into(action, &mut step)?;
@@ -30,7 +30,7 @@ impl Environment {
     /// Like [`Environment::step`], but reuses the memory of `step`.
     ///
     /// # Errors
-    /// Those of [`Environment::step`]; `step` is unchanged then.
+    /// The errors of [`Environment::step`]; `step` is unchanged then.
     pub fn step_into(&mut self, action: Action, step: &mut Step) -> Result<(), EnvError> {
         let numbers = self.numbers(action)?;
         let intent = self.intent(numbers);
@@ -38,7 +38,7 @@ impl Environment {
         Ok(())
     }
 
-    /// Takes one step with a command for the body, whatever action it comes from.
+    /// Takes one step with a command for the body, independent of the action space.
     pub(crate) fn step_by(&mut self, mut intent: Intent, step: &mut Step) {
         step.clear();
         let potential_before = reward::potential(&self.world, &self.state);
@@ -79,7 +79,7 @@ impl Environment {
     /// Checks whether the action could be carried out now.
     ///
     /// # Errors
-    /// Those of [`Environment::step`].
+    /// The errors of [`Environment::step`].
     pub fn check(&self, action: Action) -> Result<(), EnvError> {
         self.numbers(action).map(drop)
     }
@@ -92,7 +92,7 @@ impl Environment {
         action.numbers(&self.world)
     }
 
-    /// The agent's command: in a world on rails, the policy's instead of the action's.
+    /// The agent's command. In a world on rails, the policy gives it instead of the action.
     pub(super) fn intent(&mut self, numbers: [f64; 3]) -> Intent {
         let Self {
             world, state, views, ..

@@ -1,12 +1,12 @@
-//! Checks what ends an episode: conditions of success and failure, and zones.
+//! Checks whether an episode ends: by conditions of success and failure, and by zones.
 
 use driftworld_spec::{Delivery, EndCondition, Object, Stimulus, World, ZoneEnd};
 
 use super::event::{Effect, EndedBy, Event, Step};
 use super::state::{ObjectState, SimState};
 
-/// Records whether the step ended the episode by itself, and how. `had_targets`: whether there ever was a target; `zone`: how a
-/// zone ends it.
+/// Records whether the step ended the episode by the world's rules, and how. `had_targets` is whether there ever was a target;
+/// `zone` is how a zone ends the episode.
 pub(super) fn check_termination(
     world: &World,
     state: &SimState,
@@ -81,12 +81,12 @@ fn is_delivered(world: &World, state: &SimState, delivery: &Delivery) -> bool {
         };
         own.present && of_tag(world, state, &delivery.to).any(near)
     };
-    let mut left = of_tag(world, state, &delivery.tag).filter(|own| own.present || own.carried);
-    let all = left.all(|own| {
+    let mut remaining = of_tag(world, state, &delivery.tag).filter(|own| own.present || own.carried);
+    let all_delivered = remaining.all(|own| {
         count += 1;
         lies_there(own)
     });
-    all && count > 0
+    all_delivered && count > 0
 }
 
 /// Whether an object is a present target that still pays.

@@ -1,4 +1,4 @@
-//! Crowds: the work of a time step grows at most linearly with the number of bodies, wherever they are.
+//! Tests that the work of a time step grows at most linearly with the number of bodies, even in crowds.
 
 use driftworld_spec::{MotionModel, Object, Pushable, Respawn, Stimulus, WorldDraft};
 use proptest::prelude::*;
@@ -58,7 +58,7 @@ fn body(kind: Kind, class: &str, at: [f64; 2]) -> Object {
     object
 }
 
-/// Bodies within `spread` metres of a place in front of the agent, placed by the golden angle.
+/// Bodies within `spread` metres of a point in front of the agent, arranged by the golden angle.
 fn crowd(kinds: &[Kind], class: &str, count: usize, spread: f64, time_step: f64) -> WorldDraft {
     let at = |k: usize| {
         let out = spread * (k as f64 / count as f64).sqrt();
@@ -76,23 +76,23 @@ fn crowd(kinds: &[Kind], class: &str, count: usize, spread: f64, time_step: f64)
 }
 
 /// The largest number of queries in any of several steps.
-fn looked(world: WorldDraft) -> u64 {
-    let world = world.check().expect("the world is sound");
+fn max_queries_per_step(world: WorldDraft) -> u64 {
+    let world = world.check().expect("the world is valid");
     let mut environment = Environment::new(world);
-    let mut most = 0;
+    let mut max = 0;
     for step in 0..4 {
-        let before = environment.encounters.looked;
+        let before = environment.encounters.num_queries;
         environment
             .step(Action::Continuous([2.0, f64::from(step) * 10.0, 0.0]))
-            .expect("the episode goes on");
-        most = most.max(environment.encounters.looked - before);
+            .expect("the episode continues");
+        max = max.max(environment.encounters.num_queries - before);
     }
-    most
+    max
 }
 
 /// Upper bound for a time step with `count` objects of any kind: queries, and sixty physics steps.
 fn bound(count: usize) -> u64 {
-    let each = (budget::EACH_MOVER + budget::EACH_RETURN + 4) * count as u64;
+    let each = (budget::PER_MOVER + budget::PER_RETURN + 4) * count as u64;
     budget::AGENTS + budget::MOVERS + budget::RETURNS + 1_000_000 + each
 }
 
@@ -109,8 +109,8 @@ proptest! {
         time_step in prop_oneof![Just(0.1), 0.01..2.0],
     ) {
         let world = crowd(&[KINDS[first], KINDS[second]], class, count, spread, time_step);
-        let looked = looked(world);
-        prop_assert!(looked <= bound(count), "{looked} for {count}");
+        let num_queries = max_queries_per_step(world);
+        prop_assert!(num_queries <= bound(count), "{num_queries} for {count}");
     }
 }
 
@@ -118,8 +118,9 @@ proptest! {
 fn doubling_a_crowd_at_most_doubles_the_work() {
     for kind in KINDS {
         for spread in [0.0, 1.0] {
-            let [some, more] = [4000, 8000].map(|count| looked(crowd(&[kind], "cube", count, spread, 0.1)));
-            // Where limits apply, work beyond them does not count; below them, twice as many bodies cause twice the work.
+            let [some, more] =
+                [4000, 8000].map(|count| max_queries_per_step(crowd(&[kind], "cube", count, spread, 0.1)));
+            // Below the limits, twice as many bodies cause twice the work; beyond them, additional work is cut off.
             let fixed = budget::MOVERS + budget::RETURNS;
             assert!(
                 more <= 2 * some + fixed / 2,

@@ -1,4 +1,4 @@
-//! Doors, switches and carriable things: which of them reacts to a stimulus, and how.
+//! Reactions of doors, switches and portable things to stimuli.
 
 use driftworld_spec::{Object, Stimulus, SwitchAction, World};
 
@@ -11,11 +11,11 @@ use super::sim_ref::SimRef;
 use super::state::SimState;
 use super::views::Views;
 
-/// Gap in metres between the agent's body and a thing that it puts down: within reach, but more than a touch.
-const APART: f32 = 0.1;
+/// Gap in metres between the agent's body and a thing that it puts down. The thing is within reach, but not touched.
+const PUT_DOWN_GAP: f32 = 0.1;
 
-/// Whether an object reacts to a stimulus at all: opens, closes, moves doors, or is picked up.
-pub(super) fn listens(object: &Object, stimulus: Stimulus) -> bool {
+/// Whether an object can react to a stimulus by opening, closing, switching doors, or being picked up.
+pub(super) fn reacts_to_stimulus(object: &Object, stimulus: Stimulus) -> bool {
     let door = object.door.as_ref();
     let door = door.is_some_and(|door| door.opens_on.contains(&stimulus) || door.closes_on.contains(&stimulus));
     door || is_set_off(object, stimulus) || is_picked_up(object, stimulus)
@@ -39,11 +39,11 @@ pub(crate) fn effect_of(world: &World, state: &SimState, index: usize, stimulus:
     }
     if let Some(door) = &object.door {
         // A door that is waiting to close reacts like a closed one.
-        let is_as_closed = !own.open || waits_to_close(state, index);
-        if is_as_closed && door.opens_on.contains(&stimulus) && !is_locked(world, state, index) {
+        let counts_as_closed = !own.open || waits_to_close(state, index);
+        if counts_as_closed && door.opens_on.contains(&stimulus) && !is_locked(world, state, index) {
             return Some(Effect::Opened);
         }
-        if !is_as_closed && door.closes_on.contains(&stimulus) {
+        if !counts_as_closed && door.closes_on.contains(&stimulus) {
             return Some(Effect::Closed);
         }
     }
@@ -57,43 +57,49 @@ pub(crate) fn effect_of(world: &World, state: &SimState, index: usize, stimulus:
 /// Whether a door is locked, given what the agent carries.
 fn is_locked(world: &World, state: &SimState, index: usize) -> bool {
     let key = world.objects[index].door.as_ref().and_then(|door| door.key.as_ref());
-    key.is_some_and(|key| !state.is_unlocked(index) && carried_of_tag(world, state, key).is_none())
+    key.is_some_and(|key| !state.is_unlocked(index) && carried_with_tag(world, state, key).is_none())
 }
 
 /// The position of the first carried thing with a tag.
-fn carried_of_tag(world: &World, state: &SimState, tag: &str) -> Option<usize> {
+fn carried_with_tag(world: &World, state: &SimState, tag: &str) -> Option<usize> {
     let tag_of = |index: u32| world.objects[index as usize].tag.as_deref();
     state.carried.iter().position(|index| tag_of(*index) == Some(tag))
 }
 
-/// The object in reach that reacts to an interaction: the one whose body is nearest to the point of the agent's rim that faces
-/// ahead; ties go to the first.
-pub(crate) fn answering(sim: SimRef, reached: &[u32]) -> Option<u32> {
+/// The object in reach that reacts to an interaction: the one whose body is nearest to the foremost point of the agent's body;
+/// ties go to the first.
+pub(crate) fn reacting_object(sim: SimRef, reached: &[u32]) -> Option<u32> {
     let agent = sim.agent();
     let (radius, [east, north]) = (sim.world.agent_params.agent_width / 2.0, agent.forward());
     let front = [
         f64::from(agent.position[0]) + radius * f64::from(east),
         f64::from(agent.position[1]) + radius * f64::from(north),
     ];
-    let answers = |index: &&u32| effect_of(sim.world, sim.state, **index as usize, Stimulus::AgentInteract).is_some();
+    let reacts = |index: &&u32| effect_of(sim.world, sim.state, **index as usize, Stimulus::AgentInteract).is_some();
     let distance = |index: u32| sim.views.bodies.distance_of(index, front).unwrap_or(f64::INFINITY);
-    let of_all = reached.iter().filter(answers).map(|index| (*index, distance(*index)));
-    of_all.min_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(index, _)| index)
+    let candidates = reached.iter().filter(reacts).map(|index| (*index, distance(*index)));
+    candidates
+        .min_by(|(_, a), (_, b)| a.total_cmp(b))
+        .map(|(index, _)| index)
 }
 
-/// The thing that an interaction without any reaction puts down, and its place: the last one that was picked up, directly in
-/// front of the agent. `None` if nothing is carried or there is no room.
+/// The thing that an interaction puts down if nothing reacts to it, and its position. This is the thing picked up last,
+/// directly in front of the agent. `None` if nothing is carried or there is no room.
 pub(crate) fn put_down_place(sim: SimRef) -> Option<(u32, [f32; 2])> {
     let index = *sim.state.carried.last()?;
     let agent = sim.agent();
     let radius = sim.body_radius(index as usize);
-    let ahead = sim.world.agent_params.agent_width as f32 / 2.0 + radius + APART;
+    let ahead = sim.world.agent_params.agent_width as f32 / 2.0 + radius + PUT_DOWN_GAP;
     let [east, north] = agent.forward();
-    let place = [agent.position[0] + east * ahead, agent.position[1] + north * ahead];
-    // Documents allow no positions beyond the edge of worlds.
-    let is_inside = place.iter().all(|metres| metres.abs() <= EDGE);
-    let is_free = is_inside && sim.views.bodies.is_way_free(agent.position, place, f64::from(radius));
-    is_free.then_some((index, place))
+    let position = [agent.position[0] + east * ahead, agent.position[1] + north * ahead];
+    // Documents allow no positions beyond this edge.
+    let is_inside = position.iter().all(|metres| metres.abs() <= EDGE);
+    let is_free = is_inside
+        && sim
+            .views
+            .bodies
+            .is_path_free(agent.position, position, f64::from(radius));
+    is_free.then_some((index, position))
 }
 
 /// Applies an object's reaction.
@@ -107,10 +113,10 @@ pub(super) fn apply_effect(world: &World, state: &mut SimState, views: &mut View
         Effect::Closed => close_soon(state, index),
         Effect::Switched => {
             if let Some(switch) = &object.switch {
-                for place in 0..state.doors.len() {
-                    let door = state.doors[place].object;
+                for number in 0..state.doors.len() {
+                    let door = state.doors[number].object;
                     if world.objects[door].tag.as_ref() == Some(&switch.target) && state.objects[door].present {
-                        set_going(world, state, views, door, switch.action);
+                        operate_door(world, state, views, door, switch.action);
                     }
                 }
             }
@@ -121,17 +127,17 @@ pub(super) fn apply_effect(world: &World, state: &mut SimState, views: &mut View
             views.sync_object(index, object, own);
             state.carried.push(index as u32);
         }
-        // Things do not put themselves down.
+        // Putting down is the agent's action, not a thing's reaction.
         Effect::PutDown => {}
     }
 }
 
-fn set_going(world: &World, state: &mut SimState, views: &mut Views, door: usize, action: SwitchAction) {
-    let is_as_closed = !state.objects[door].open || waits_to_close(state, door);
+fn operate_door(world: &World, state: &mut SimState, views: &mut Views, door: usize, action: SwitchAction) {
+    let counts_as_closed = !state.objects[door].open || waits_to_close(state, door);
     match action {
         SwitchAction::Open => open(world, state, views, door),
-        SwitchAction::Toggle if is_as_closed => open(world, state, views, door),
-        SwitchAction::Close | SwitchAction::Toggle if !is_as_closed => close_soon(state, door),
+        SwitchAction::Toggle if counts_as_closed => open(world, state, views, door),
+        SwitchAction::Close | SwitchAction::Toggle if !counts_as_closed => close_soon(state, door),
         SwitchAction::Close | SwitchAction::Toggle => {}
     }
 }
@@ -146,16 +152,16 @@ fn unlock(world: &World, state: &mut SimState, index: usize) {
         return;
     }
     state.doors[door].unlocked = true;
-    let Some(place) = carried_of_tag(world, state, key) else {
+    let Some(slot) = carried_with_tag(world, state, key) else {
         return;
     };
-    let thing = state.carried[place] as usize;
+    let thing = state.carried[slot] as usize;
     if world.objects[thing]
         .portable
         .as_ref()
         .is_some_and(|portable| portable.consumed)
     {
-        state.carried.remove(place);
+        state.carried.remove(slot);
         (state.objects[thing].carried, state.objects[thing].collected) = (false, true);
     }
 }
@@ -185,8 +191,8 @@ impl CollisionWorld {
         self.handles[object as usize].map(|handle| self.low[slot(handle)].gap(at).distance)
     }
 
-    /// Whether a round body can move straight from one place to another without meeting a wall or a solid object.
-    pub(super) fn is_way_free(&self, from: [f32; 2], to: [f32; 2], radius: f64) -> bool {
+    /// Whether a round body can move straight from one position to another without touching a wall or a solid object.
+    pub(super) fn is_path_free(&self, from: [f32; 2], to: [f32; 2], radius: f64) -> bool {
         let reach = radius as f32 + 0.01;
         let area = [
             [0, 1].map(|axis| from[axis].min(to[axis]) - reach),

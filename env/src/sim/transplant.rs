@@ -1,5 +1,5 @@
-//! For two worlds with the same objects: copies the state of one into the other, steps both with one command, and finds
-//! differences between their states.
+//! Operations on two worlds with the same objects: copies the state of one into the other, converts a command for both, and
+//! finds differences between their states.
 
 use driftworld_spec::{World, Zone};
 use driftworld_text::shortened;
@@ -12,8 +12,8 @@ use super::state::SimState;
 use super::walls::agent_obstacle;
 use crate::EnvError;
 
-/// Maximum number of characters of a value in a message: lists of corners may be arbitrarily long.
-const MOST_CHARACTERS: usize = 200;
+/// Maximum number of characters of a value in a message, because lists of corners may be arbitrarily long.
+const MAX_CHARACTERS: usize = 200;
 
 /// A difference, as text, with the value on each side.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,7 +25,7 @@ pub(crate) struct Difference {
 
 impl Difference {
     pub(crate) fn new(what: impl Into<String>, own: impl std::fmt::Debug, other: impl std::fmt::Debug) -> Self {
-        let [own, other] = [format!("{own:?}"), format!("{other:?}")].map(|text| shortened(&text, MOST_CHARACTERS));
+        let [own, other] = [format!("{own:?}"), format!("{other:?}")].map(|text| shortened(&text, MAX_CHARACTERS));
         Self {
             what: what.into(),
             own,
@@ -40,20 +40,20 @@ impl Difference {
 }
 
 impl Environment {
-    /// Copies from another environment the states of the agent and the objects, their random numbers and the clock. Rewards,
+    /// Copies the states of the agent and the objects, their random numbers and the clock from another environment. Rewards,
     /// bodies and rules stay this world's own.
     ///
     /// Both worlds must have the same number of objects, with counterparts at the same index.
-    pub(crate) fn take_state_of(&mut self, other: &Self) {
+    pub(crate) fn copy_state_from(&mut self, other: &Self) {
         let (theirs, seconds) = (&other.state, self.world.agent_params.time_step);
         let has_same_zones = have_same_zones(&self.world, &other.world);
         let own = &mut self.state;
-        let of_theirs = other.world.agent_params.time_step;
+        let their_time_step = other.world.agent_params.time_step;
         let ticks = |theirs: u64| {
-            if seconds == of_theirs {
+            if seconds == their_time_step {
                 theirs
             } else {
-                (theirs as f64 * of_theirs / seconds).round() as u64
+                (theirs as f64 * their_time_step / seconds).round() as u64
             }
         };
         own.agent = theirs.agent;
@@ -89,21 +89,21 @@ impl Environment {
         own.returning.clear();
         own.returning
             .extend(theirs.returning.iter().map(|(index, tick)| (*index, ticks(*tick))));
-        take_over(&mut own.movers, &theirs.movers, |mover| mover.object);
-        take_over(&mut own.rngs, &theirs.rngs, |rng| rng.object);
-        take_over(&mut own.pushed, &theirs.pushed, |body| body.object);
+        copy_matching(&mut own.movers, &theirs.movers, |mover| mover.object);
+        copy_matching(&mut own.rngs, &theirs.rngs, |rng| rng.object);
+        copy_matching(&mut own.pushed, &theirs.pushed, |body| body.object);
         own.sequence = Sequence::of(&self.world.objects);
         own.advance_sequence();
         self.views.sync_objects(&self.world, &self.state);
     }
 
     /// Sets an object's reward to 0.
-    pub(crate) fn take_reward_of(&mut self, object: usize) {
+    pub(crate) fn clear_reward(&mut self, object: usize) {
         self.state.objects[object].reward = 0.0;
     }
 
     /// Sets the clock to the last step before a world's step or time limit; returns whether it has one.
-    pub(crate) fn wind_to_limit_of(&mut self, limited: &World) -> bool {
+    pub(crate) fn advance_clock_to_limit_of(&mut self, limited: &World) -> bool {
         let Some(limit) = limited.step_limit().filter(|limit| *limit > 0) else {
             return false;
         };
@@ -114,12 +114,12 @@ impl Environment {
         true
     }
 
-    /// Whether the agent's body has room where it stands.
+    /// Whether the agent's body fits at its current position.
     pub(crate) fn agent_has_room(&self) -> bool {
         agent_obstacle(self.sim(), self.state.agent.position.map(f64::from)).is_none()
     }
 
-    /// The body's commands for an action: in this world, and in one with its action space and time steps of `seconds`.
+    /// The body's commands for an action: in this world, and in a world with the same action space but time steps of `seconds`.
     pub(crate) fn commands(&mut self, action: Action, seconds: f64) -> Result<[Intent; 2], EnvError> {
         let numbers = self.numbers(action)?;
         let own = self.intent(numbers);
@@ -145,10 +145,10 @@ impl Environment {
             .or_else(|| Difference::of("the agent's heading in degrees", &agent.heading_deg, &its.heading_deg))
             .or_else(|| Difference::of("the agent's velocity in m/s", &agent.velocity, &its.velocity))
             .or_else(|| Difference::of("the seconds gone by", &self.seconds(), &other.seconds()))
-            .or_else(|| (0..own.objects.len()).find_map(|index| self.object_unlike(other, index)))
+            .or_else(|| (0..own.objects.len()).find_map(|index| self.object_difference(other, index)))
             .or_else(|| Difference::of("the objects that the agent touches", &own.contacts, &their.contacts))
             .or_else(|| {
-                // If the zones differ, being inside one follows from the agent's position, and is not a state of its own.
+                // If the zones differ, being inside one follows from the agent's position instead of being part of the state.
                 let [own, their] = [self, other].map(|one| one.views.zones.entered(&one.state));
                 let difference = Difference::of("the zones that the agent is in", &own, &their);
                 difference.filter(|_| have_same_zones(&self.world, &other.world))
@@ -172,12 +172,12 @@ impl Environment {
         Some(ticks as f64 * self.world.agent_params.time_step)
     }
 
-    fn object_unlike(&self, other: &Self, index: usize) -> Option<Difference> {
+    fn object_difference(&self, other: &Self, index: usize) -> Option<Difference> {
         let (own, their) = (&self.state.objects[index], &other.state.objects[index]);
         let is_ordered = |world: &World| world.objects[index].order.is_some();
         let counts = is_ordered(&self.world) || is_ordered(&other.world);
         let of = |what: &str| format!("{what} of object {index} ({})", name(&self.world, index));
-        let of_mover = |state: &SimState| {
+        let mover_progress = |state: &SimState| {
             let place = state.movers.binary_search_by_key(&index, |mover| mover.object);
             place.ok().map(|place| Mover::progress(&state.movers[place]))
         };
@@ -198,14 +198,14 @@ impl Environment {
                 collected.filter(|_| counts)
             })
             .or_else(|| {
-                let (own, their) = (of_mover(&self.state)?, of_mover(&other.state)?);
+                let (own, their) = (mover_progress(&self.state)?, mover_progress(&other.state)?);
                 Difference::of(of("the next goal"), &own, &their)
             })
     }
 }
 
 /// Copies the other list's entries for the same objects; both lists are sorted by object.
-fn take_over<T: Clone>(own: &mut [T], theirs: &[T], object: impl Fn(&T) -> usize) {
+fn copy_matching<T: Clone>(own: &mut [T], theirs: &[T], object: impl Fn(&T) -> usize) {
     for one in own {
         if let Ok(place) = theirs.binary_search_by_key(&object(one), &object) {
             one.clone_from(&theirs[place]);

@@ -8,7 +8,7 @@ use super::state::{ObjectState, SimState};
 use crate::assets::Catalogue;
 use crate::scene::Scene;
 
-/// The views on a state.
+/// Data derived from a state.
 pub(crate) struct Views {
     pub(crate) scene: Scene,
     pub(super) bodies: CollisionWorld,
@@ -27,8 +27,8 @@ impl Views {
         }
     }
 
-    /// Updates an object's item and body from its state. Must be called after every change of a state; nothing else changes the
-    /// views.
+    /// Updates an object's item and body from its state. Must be called after every change of the state; nothing else changes
+    /// the views.
     pub(super) fn sync_object(&mut self, index: usize, object: &Object, state: &ObjectState) {
         let item = &mut self.scene.items[index];
         (item.position, item.heading_deg) = (state.position, state.heading_deg);
@@ -37,7 +37,7 @@ impl Views {
         self.bodies
             .sync_object(index as u32, item, solid, object.portable.is_some());
         if state.open {
-            item.swing();
+            item.open_door();
         }
     }
 

@@ -1,4 +1,4 @@
-//! Checks whether walls and solid objects leave room for a body.
+//! Checks whether a body fits between walls and solid objects.
 
 use driftworld_spec::World;
 
@@ -6,7 +6,7 @@ use super::obstacle::Obstacle;
 use super::sim_ref::SimRef;
 use crate::polygon::is_near_or_inside;
 
-/// The part of the arena's boundary or walls that is in the way of a round body with this radius in metres.
+/// The obstacle to a round body with this radius in metres: the arena's boundary or a wall.
 pub(super) fn obstacle(world: &World, position: [f64; 2], radius: f64) -> Option<Obstacle> {
     let environment = &world.environment_params;
     if !position.iter().all(|metres| metres.is_finite()) || !environment.contains(position) {
@@ -43,12 +43,12 @@ mod tests {
             height: None,
             color: None,
         }];
-        let world = world.check().expect("the world is sound");
+        let world = world.check().expect("the world is valid");
         assert_eq!(obstacle(&world, position, 0.5), expected, "{position:?}");
     }
 
     #[test]
-    fn body_has_room_if_no_wall_is_within_its_radius() {
+    fn body_fits_if_no_wall_is_within_its_radius() {
         check([0.0, 0.0], None);
         check([9.6, 0.0], Some(Obstacle::Wall));
         check([10.1, 0.0], Some(Obstacle::Outside));

@@ -8,7 +8,7 @@ use super::obstacle::Obstacle;
 #[derive(Clone, Debug, PartialEq, Eq, strum::Display)]
 #[non_exhaustive]
 pub enum Warning {
-    /// The class or model is unknown: a placeholder is shown.
+    /// The class or model is unknown; a placeholder is shown.
     #[strum(to_string = "/objects/{object}: class {class:?} model {model:?} is not known; a placeholder stands there")]
     UnknownAsset {
         /// Index of the object.
@@ -48,8 +48,8 @@ pub enum Warning {
         /// Index of the object.
         object: usize,
     },
-    /// A pushable object is in a heap: more bodies overlap it than a time step can separate. It is stuck until there
-    /// are fewer. Only the first such object of a world is reported.
+    /// A pushable object is in a heap: more bodies overlap it than a time step can separate, so it stays put until there are
+    /// fewer. Only the first such object of a world is reported.
     #[strum(
         to_string = "/objects/{object}/coordinates: found {bodies} bodies in the place of one that can be pushed, expected at \
         most {limit}; it stands fast until there are fewer: spread them"

@@ -25,8 +25,8 @@ pub(super) fn slowed(intent: Intent, state: &SimState, zones: &Zones) -> Intent 
     }
 }
 
-/// Pays for the zones that the agent is in and for those that it entered in this time step, and teleports it if one of them
-/// does. Returns how they end the episode.
+/// Pays the rewards of zones that the agent is in or entered in this time step, and teleports it if one of them does so.
+/// Returns how they end the episode.
 pub(super) fn apply_zones(world: &World, state: &mut SimState, views: &Views, step: &mut Step) -> Option<ZoneEnd> {
     let zones = &views.zones;
     if zones.0.is_empty() {
@@ -53,39 +53,39 @@ pub(super) fn apply_zones(world: &World, state: &mut SimState, views: &Views, st
                 .or(teleport);
         }
         if enters || *inside {
-            end = first_of(end, zone.ends);
+            end = prefer_success(end, zone.ends);
         }
     }
     let Some((_, to)) = teleport.filter(|_| end.is_none()) else {
         return end;
     };
     let sim = SimRef { world, state, views };
-    let place = free_place(sim, to)?;
+    let position = free_position(sim, to)?;
     let agent = &mut state.agent;
-    agent.position = place.map(|metres| metres as f32);
+    agent.position = position.map(|metres| metres as f32);
     agent.velocity = [0.0; 2];
     let here = agent.position.map(f64::from);
     for (area, inside) in zones.0.iter().zip(&mut state.inside) {
         let was_inside = std::mem::replace(inside, area.contains(here));
         if *inside && !was_inside {
             step.reward += area.zone.reward_on_entering;
-            end = first_of(end, area.zone.ends);
+            end = prefer_success(end, area.zone.ends);
         }
     }
     end
 }
 
 /// Of two endings in one time step, a success takes precedence.
-fn first_of(a: Option<ZoneEnd>, b: Option<ZoneEnd>) -> Option<ZoneEnd> {
+fn prefer_success(a: Option<ZoneEnd>, b: Option<ZoneEnd>) -> Option<ZoneEnd> {
     match (a, b) {
         (Some(ZoneEnd::Success), _) | (_, Some(ZoneEnd::Success)) => Some(ZoneEnd::Success),
         (a, b) => a.or(b),
     }
 }
 
-/// The nearest position with room for the agent's body, among some on rings around the wanted one; `None` if there is none.
-fn free_place(sim: SimRef, wanted: Point) -> Option<Point> {
-    /// Number of rings, each wider than the last by half the agent's width.
+/// The nearest position where the agent's body fits, among candidates on rings around the target; `None` if there is none.
+fn free_position(sim: SimRef, target: Point) -> Option<Point> {
+    /// Number of rings; the radius grows by half the agent's width from ring to ring.
     const RINGS: u32 = 8;
     const DIAGONAL: f64 = std::f64::consts::FRAC_1_SQRT_2;
     const DIRECTIONS: [Point; 8] = [
@@ -101,8 +101,8 @@ fn free_place(sim: SimRef, wanted: Point) -> Option<Point> {
     let step = sim.world.agent_params.agent_width / 2.0;
     let around = (1..=RINGS).flat_map(|ring| {
         let by = f64::from(ring) * step;
-        DIRECTIONS.map(|[x, y]| [wanted[0] + by * x, wanted[1] + by * y])
+        DIRECTIONS.map(|[x, y]| [target[0] + by * x, target[1] + by * y])
     });
-    let mut places = std::iter::once(wanted).chain(around);
-    places.find(|place| agent_obstacle(sim, *place).is_none())
+    let mut positions = std::iter::once(target).chain(around);
+    positions.find(|position| agent_obstacle(sim, *position).is_none())
 }

@@ -8,7 +8,7 @@ use super::ground_shape::GroundShape;
 use super::plan::can_interact;
 use super::ways::{Delivery, is_to_collect};
 use crate::agents::steering::{angle_to, distance, is_narrow, seconds, step_to};
-use crate::sim::{SimRef, answering, put_down_place};
+use crate::sim::{SimRef, put_down_place, reacting_object};
 
 /// Maximum angle in degrees between the agent's heading and an object that it faces.
 const MAX_HEADING_ERROR: f32 = 8.0;
@@ -97,7 +97,7 @@ impl Subgoal {
         let reached = reached(sim);
         match self.act {
             Act::Use => reached.contains(&self.object),
-            _ => answering(sim, &reached) == Some(self.object),
+            _ => reacting_object(sim, &reached) == Some(self.object),
         }
     }
 
@@ -113,7 +113,7 @@ impl Subgoal {
         let gap = distance(sim.agent().position, at) - sim.world.agent_params.agent_width as f32 / 2.0;
         let is_thing = |index: u32| sim.world.objects[index as usize].portable.is_some();
         let is_near = reached.contains(&self.object) && gap < 0.3 && is_facing(sim, at);
-        is_near && answering(sim, &reached).is_some_and(is_thing)
+        is_near && reacting_object(sim, &reached).is_some_and(is_thing)
     }
 
     /// Walks to a zone, and into it.
@@ -163,7 +163,7 @@ impl Subgoal {
         floor.lead_to_delivery(sim, delivery);
         let next = floor.next(sim.agent().position);
         if let Some((_, place)) = put_down_place(sim)
-            && answering(sim, &reached(sim)).is_none()
+            && reacting_object(sim, &reached(sim)).is_none()
             && (!is_deliverable
                 || distance(place, to) < within - 0.02 && (next.is_none() || !is_crowded(sim, delivery, place)))
         {
@@ -209,7 +209,8 @@ fn is_crowded(sim: SimRef, delivery: Delivery, place: [f32; 2]) -> bool {
 /// Puts something down, after turning until there is room in front and the wanted thing is out of reach.
 fn put_down(sim: SimRef, wanted: u32) -> [f64; 3] {
     let reached = reached(sim);
-    let is_free = answering(sim, &reached).is_none() && put_down_place(sim).is_some() && !reached.contains(&wanted);
+    let is_free =
+        reacting_object(sim, &reached).is_none() && put_down_place(sim).is_some() && !reached.contains(&wanted);
     if is_free {
         return [0.0, 0.0, 1.0];
     }
@@ -241,7 +242,7 @@ pub(super) fn is_blocked_by_a_thing(sim: SimRef) -> bool {
         let object = &world.objects[index as usize];
         object.portable.is_some() && object.door.is_none() && object.switch.is_none() && object.solid
     };
-    answering(sim, &reached(sim)).is_some_and(is_thing)
+    reacting_object(sim, &reached(sim)).is_some_and(is_thing)
 }
 
 /// The objects within reach of an interaction now.

@@ -5,7 +5,7 @@ use std::collections::BinaryHeap;
 
 use super::floor::{BESIDE, Floor, FloorObject, Room, squared};
 use super::ground_shape::GroundShape;
-use crate::sim::{SimRef, answering};
+use crate::sim::{SimRef, reacting_object};
 
 /// Cells still to be expanded, the cheapest first.
 pub(super) type Queue = BinaryHeap<Reverse<(u32, u32)>>;
@@ -59,7 +59,7 @@ impl Floor {
         } = delivery;
         let at = sim.objects()[to as usize].position;
         // The nearest thing reacts to an interaction, so nothing else that reacts or must be picked up may be within reach.
-        let answers = |index: &u32| answering(sim, &[*index]).is_some() || is_to_collect(sim, delivery, *index);
+        let answers = |index: &u32| reacting_object(sim, &[*index]).is_some() || is_to_collect(sim, delivery, *index);
         let others: Vec<GroundShape> = (0..sim.objects().len() as u32)
             .filter(answers)
             .map(|index| GroundShape::of(sim, index as usize))
