@@ -195,7 +195,8 @@ def page(name: str, task: dict[str, Any], measured: dict[str, Any], told: dict[s
             f"| {100 * each['success']:.0f} % |"
         )
     lines += [
-        "", "*differs in*: the elements in which the variant differs from the first, found by experiment (`driftworld elements`).",
+        "", "*differs in*: the elements in which the variant differs from the first, found by experiment (`driftworld elements`);",
+        "`p`: where things are at the start, `phi`: how a state looks.",
         "*distance*: from the first, by worlds (`driftworld distance A B --worlds 20`), not by parameters as without `--worlds`.",
         f"*random*, *planner*: mean reward in {WORLDS} worlds. *succeeds*: how often the planner does.", "",
         *(f"`{each}`: {REASONS[f'{name}#{each}']}\n" for each in measured if f"{name}#{each}" in REASONS),

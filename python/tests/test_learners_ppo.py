@@ -268,8 +268,40 @@ def test_border_hooks_without_borders_are_refused(learners: Any) -> None:
 
 
 @needs_torch
+def test_method_is_named_and_noted_after_its_class(learners: Any, tmp_path: Path) -> None:
+    class OwnMethod(learners.PPO):  # type: ignore[misc, name-defined]
+        pull = 1.0
+
+    log = tmp_path / "log"
+    assert live(small(OwnMethod), log, "left").report()["learner"] == "own_method"
+    with pytest.raises(driftworld.CurriculumError, match=r'/agent: found "own_method", expected "ppo"'):
+        live(small(), log, "left")
+    OwnMethod.pull = 2.0
+    with pytest.raises(driftworld.CurriculumError, match=r"/made_from/agent/pull: found 1\.0, expected 2\.0"):
+        live(small(OwnMethod), log, "left")
+
+
+@needs_torch
+def test_arguments_of_any_kind_are_noted(learners: Any) -> None:
+    class Odd(learners.PPO):  # type: ignore[misc, name-defined]
+        def __init__(self, *arguments: Any, weights: Any = None, ratio: float = float("nan"), **options: Any) -> None:
+            super().__init__(*arguments, **options)
+
+    noted = Odd(5, 4, weights=sys.modules["torch"].ones(3)).made_with
+    assert (noted["weights"], noted["ratio"]) == ("Tensor", "nan")
+
+
+@needs_torch
+def test_seeds_of_learners_differ_between_lifetimes(learners: Any, tmp_path: Path) -> None:
+    logs = [tmp_path / str(seed) for seed in (1, 2)]
+    for seed, log in enumerate(logs):
+        live(small(seed=seed), log, "left", "right")
+    assert driftworld.metrics(logs).varied["run_seed"] is True
+
+
+@needs_torch
 def test_action_table_of_another_length_is_refused(learners: Any, tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match="actions: found 4 rows, expected 5 as in the agent's num_actions"):
+    with pytest.raises(ValueError, match="actions: found 4 rows, expected 5 rows as in the agent's num_actions"):
         live(small(), tmp_path / "log", "left", actions=OPTIONS["actions"][:4])
     assert not (tmp_path / "log").exists()
 

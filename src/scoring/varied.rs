@@ -28,7 +28,7 @@ pub struct Varied {
     pub evaluation_worlds: Option<bool>,
     /// The agent, by its name in logs.
     pub agent: bool,
-    /// The run seed, which determines the agent's own random numbers.
+    /// The run seed or the learner's own seed, which determine the agent's random numbers.
     pub run_seed: bool,
 }
 
@@ -49,7 +49,9 @@ impl Makeup {
             learned: worlds(log, BlockType::Train),
             evaluated: worlds(log, BlockType::Test),
             agent: text(said("agent")),
-            run_seed: text(said("made_from").and_then(|fingerprints| fingerprints.get("run_seed"))),
+            run_seed: ["/run_seed", "/agent/seed"]
+                .map(|place| text(said("made_from").and_then(|fingerprints| fingerprints.pointer(place))))
+                .join(" "),
         }
     }
 }

@@ -431,6 +431,8 @@ class Curriculum(Sequence[Block]):
             TypeError: If the agent lacks a method.
             ValueError: If an option is wrong; no log is started.
         """
+        if isinstance(getattr(agent, "num_envs", None), int):
+            raise TypeError("agent: found a learner of several environments, expected one of a single; use run_vector(…, num_envs=…)")
         plan = self._own_plan(skip_undrawable, seed)
 
         def rollout(save: Callable[[int], None]) -> Rollout:

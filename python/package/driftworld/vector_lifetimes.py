@@ -122,8 +122,9 @@ class VectorRollout(Rollout):
         )
         super().__init__(agent, envs, experience, options, paired_chance, watch, save)
         rows, expected = getattr(envs.single_action_space, "n", None), getattr(agent, "num_actions", None)
-        if rows is not None and isinstance(expected, int) and expected != rows:
-            raise ValueError(f"actions: found {rows} rows, expected {expected} as in the agent's num_actions")
+        if isinstance(expected, int) and expected != rows:
+            found = "no table" if rows is None else f"{rows} rows"
+            raise ValueError(f"actions: found {found}, expected {expected} rows as in the agent's num_actions; pass actions=[[…], …]")
         self._plan, self._num_envs, self._full = plan, num_envs, options.get("info") == "full"
         label = plan.experience_spec(0)["label"]
         self._labelled, self._observed = label is not None, is_observed(label, envs.single_observation_space)

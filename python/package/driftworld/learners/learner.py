@@ -5,6 +5,8 @@ from __future__ import annotations
 import dataclasses
 import hashlib
 import inspect
+import math
+import re
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from os import PathLike
@@ -46,7 +48,8 @@ class Learner:
         seconds: Processor seconds spent in acting while learning, in learning, and at borders.
         task: Label of the current task, if it has one.
         tasks: Number of tasks started; 1 without borders.
-        made_with: The arguments that it was made with, by name: a log can only be resumed with the same ones.
+        made_with: The arguments that it was made with, and numbers and words of a method's class, by name: a log can
+            only be resumed with the same ones.
 
     Raises:
         ValueError: If ``policy``, ``borders`` or ``size`` is not one of those above; or if the method overrides
@@ -56,6 +59,12 @@ class Learner:
     name = "learner"
     #: The meaning of ``borders=None``.
     own_borders = "none"
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        """Names a method after its class, unless it has a name."""
+        super().__init_subclass__(**options)
+        if "name" not in vars(cls):
+            cls.name = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", cls.__name__).lower()
 
     def __new__(cls, *arguments: Any, **options: Any) -> Self:
         """Makes it, and notes the arguments."""
@@ -254,11 +263,24 @@ def _arguments(kind: type, arguments: tuple[Any, ...], options: dict[str, Any]) 
         if parameter.default is not parameter.empty
     }
     given |= {**dict(zip(names, arguments, strict=False)), **options}
-    return {
-        name: dataclasses.asdict(value) if dataclasses.is_dataclass(value) and not isinstance(value, type) else value
-        for name, value in given.items()
-        if value is not None
-    }
+    for each in reversed(kind.__mro__):
+        # A method's own constants, such as a strength.
+        if not each.__module__.startswith("driftworld."):
+            given |= {name: value for name, value in vars(each).items() if name[0] != "_" and isinstance(value, (int, float, str))}
+    return {name: _plain(value) for name, value in given.items() if value is not None}
+
+
+def _plain(value: Any) -> Any:
+    """A value as JSON can hold it; other objects by the names of their classes."""
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        return _plain(dataclasses.asdict(value))
+    if isinstance(value, Mapping):
+        return {str(name): _plain(each) for name, each in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(each) for each in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return str(value)
+    return value if isinstance(value, (str, int, float, type(None))) else type(value).__name__
 
 
 def leaves(value: Any, name: str = "") -> Iterator[tuple[str, Any]]:

@@ -234,9 +234,12 @@ class PPO(Learner):
         """
         extra = self.extra_loss()
         for what, value in (("loss", loss), ("extra_loss", extra)):
-            found = value.detach().squeeze().tolist() if isinstance(value, torch.Tensor) else value
+            is_tensor = isinstance(value, torch.Tensor)
+            found = value.item() if is_tensor and value.numel() == 1 else f"shape {tuple(value.shape)}" if is_tensor else value
             if not isinstance(found, (int, float)) or not math.isfinite(found):
                 raise ValueError(f"{self.name}: {what}: found {found} in update {self.updates + 1}, expected a finite number")
+        if not isinstance(loss, torch.Tensor):
+            raise TypeError(f"{self.name}: loss: found the number {loss}, expected a tensor with gradients")
         self.optimizer.zero_grad()
         (loss + extra).backward()
         self.mask_gradients()
