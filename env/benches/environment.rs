@@ -10,7 +10,7 @@ use driftworld_spec::{Layout, Looks, Maze, Style, World};
 const CURVE: Action = Action::Continuous([5.0, 15.0, 0.0]);
 
 fn arena() -> World {
-    World::from_json("arena_20.json", include_str!("../../src/throughput/arena_20.json")).expect("the scene is sound")
+    World::from_json("arena_20.json", include_str!("../../src/throughput/arena_20.json")).expect("the scene is valid")
 }
 
 fn simulation(c: &mut Criterion) {
@@ -26,16 +26,16 @@ fn simulation(c: &mut Criterion) {
 
 fn pictures(c: &mut Criterion) {
     draw(c, "a picture", arena());
-    draw(c, "a natural picture", naturally(arena()));
-    draw(c, "a natural picture of a maze", naturally(maze()));
+    draw(c, "a natural picture", in_natural_style(arena()));
+    draw(c, "a natural picture of a maze", in_natural_style(maze()));
 }
 
 /// The same world in the natural style: with surfaces, shadows, and clouds or a ceiling.
-fn naturally(world: World) -> World {
+fn in_natural_style(world: World) -> World {
     let looks = Looks::of(Style::Natural);
     world
         .edit(|world| world.environment_params.looks = looks)
-        .expect("looks are sound")
+        .expect("looks are valid")
 }
 
 /// A maze of 8 × 8 cells, with the agent in the middle.
@@ -52,7 +52,7 @@ fn maze() -> World {
             world.environment_params.layout = Some(layout);
             world.agent_params.coordinates = [1.5, 1.5];
         })
-        .expect("the maze is sound")
+        .expect("the maze is valid")
 }
 
 /// Renders images along a circle.
@@ -81,7 +81,7 @@ fn draw(c: &mut Criterion, name: &str, world: World) {
                 };
                 renderer
                     .draw(environment.scene(), camera, &mut target)
-                    .expect("the sizes are sound");
+                    .expect("the sizes are valid");
             });
         });
     }

@@ -1,5 +1,5 @@
-//! Cost of the built-in expert: a step among moving objects, a step of plans with doors, keys, things and zones, and a choice
-//! among two hundred targets.
+//! Cost of the built-in expert: a step among moving objects, a step of plans with doors, keys, carriable objects and zones, and
+//! a choice among two hundred targets.
 
 use std::hint::black_box;
 
@@ -11,7 +11,7 @@ use driftworld_spec::{MotionModel, Object, Stimulus, World, WorldDraft};
 /// A world of the built-in task `moving_object#wandering`, whose balls have the given motion.
 fn moving_object(motion: MotionModel) -> World {
     let text = include_str!("scenes/moving_object.json");
-    let world = World::from_json("moving_object.json", text).expect("the scene is sound");
+    let world = World::from_json("moving_object.json", text).expect("the scene is valid");
     let moved = world.edit(|world| {
         for ball in &mut world.objects {
             if ball.motion_model != MotionModel::Stationary {
@@ -19,7 +19,7 @@ fn moving_object(motion: MotionModel) -> World {
             }
         }
     });
-    moved.expect("the scene is sound")
+    moved.expect("the scene is valid")
 }
 
 /// Two hundred solid cubes that pay, scattered deterministically over an arena of 100 × 100 m.
@@ -34,17 +34,17 @@ fn crowd() -> World {
         cube
     };
     let world = WorldDraft::with_objects((1..=200).map(cube).collect());
-    world.check().expect("the scene is sound")
+    world.check().expect("the scene is valid")
 }
 
-/// Measures a step of the expert in a world that begins again whenever an episode ends.
-fn acts(group: &mut BenchmarkGroup<WallTime>, name: &str, start: &World) {
+/// Measures a step of the expert in a world that is reset when an episode ends.
+fn bench_agent(group: &mut BenchmarkGroup<WallTime>, name: &str, start: &World) {
     let mut environment = Environment::new(start.clone());
     let mut agent = OnRailsAgent::new();
     group.bench_function(name, |bench| {
         bench.iter(|| {
             let action = agent.act(&environment);
-            if environment.step(action).expect("the action is sound").ended() {
+            if environment.step(action).expect("the action is valid").ended() {
                 environment.reset(start.clone());
                 agent.begin(0);
             }
@@ -60,7 +60,7 @@ fn steps(c: &mut Criterion) {
         ("balls flee", MotionModel::Prey),
         ("balls come", MotionModel::Predator),
     ] {
-        acts(&mut group, name, &moving_object(motion));
+        bench_agent(&mut group, name, &moving_object(motion));
     }
     group.finish();
 }
@@ -75,10 +75,10 @@ fn errands(c: &mut Criterion) {
         ("put_next#three", include_str!("scenes/put_next.json")),
         ("lava_crossing#lava", include_str!("scenes/lava_crossing.json")),
     ] {
-        acts(
+        bench_agent(
             &mut group,
             name,
-            &World::from_json(name, text).expect("the scene is sound"),
+            &World::from_json(name, text).expect("the scene is valid"),
         );
     }
     group.finish();

@@ -1,4 +1,4 @@
-//! Success rate of the agent on rails, and its steps per second on one core, for files with one world per line, as written by
+//! Success rate of the expert, and its steps per second on one core, for files with one world per line, as written by
 //! `driftworld sample TASK#VARIANT --count 1000 --jsonl -o FILE`. `driftworld render --view episode` shows a single world.
 //!
 //! ```sh

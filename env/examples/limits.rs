@@ -72,7 +72,7 @@ fn measure(name: &str, world: WorldDraft) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Renders everything that a camera of 84 × 84 pixels sees.
+/// Renders all images of a camera of 84 × 84 pixels.
 fn draw(environment: &mut Environment) -> Result<(), Box<dyn Error>> {
     const SIZE: u32 = 84;
     let pixels = (SIZE * SIZE) as usize;
@@ -112,11 +112,11 @@ fn world(objects: Vec<Object>) -> WorldDraft {
     world
 }
 
-/// Positions on a square grid around the origin, `apart` metres apart, with room for the agent.
-fn field(count: usize, apart: f64) -> impl Iterator<Item = [f64; 2]> {
+/// Positions on a square grid around the origin, `spacing` metres apart, with room for the agent.
+fn field(count: usize, spacing: f64) -> impl Iterator<Item = [f64; 2]> {
     let side = (count as f64).sqrt().ceil() as usize + 2;
     let middle = side as f64 / 2.0;
-    let place = move |k: usize| [(k % side) as f64 - middle, (k / side) as f64 - middle].map(|cells| cells * apart);
+    let place = move |k: usize| [(k % side) as f64 - middle, (k / side) as f64 - middle].map(|cells| cells * spacing);
     (0..).map(place).filter(|[x, y]| x * x + y * y > 0.8).take(count)
 }
 
@@ -140,7 +140,7 @@ fn pushable_field(count: usize) -> WorldDraft {
     world(field(count, 1.1).map(|at| pushable(at, 0.5)).collect())
 }
 
-/// Everything slides without friction and never comes to rest.
+/// All objects slide without friction and never come to rest.
 fn pushable_ice(count: usize) -> WorldDraft {
     let mut world = world(field(count, 0.02).map(|at| pushable(at, 0.0)).collect());
     world.agent_params.max_linear_speed = 100.0;
@@ -207,7 +207,7 @@ fn ranges(count: usize) -> WorldDraft {
     world(field(count, 0.2).map(at).collect())
 }
 
-/// Everything has been collected, and respawns where something else stands.
+/// All objects have been collected, and respawn where others stand.
 fn returning(count: usize) -> WorldDraft {
     let mut world = ranges(count);
     for object in &mut world.objects {

@@ -21,10 +21,10 @@ fn button() -> Object {
     }
 }
 
-/// Total reward of this many steps ahead, or backwards for a negative speed.
+/// Total reward of this many steps forwards, or backwards if the speed is negative.
 fn drive(environment: &mut Environment, speed: f64, steps: usize) -> f64 {
     let mut step = || environment.step(Action::Continuous([speed, 0.0, 0.0]));
-    (0..steps).map(|_| step().expect("the episode goes on").reward).sum()
+    (0..steps).map(|_| step().expect("the episode continues").reward).sum()
 }
 
 fn with_actions(actions: ActionSpace) -> WorldDraft {
@@ -38,7 +38,7 @@ fn normalised_actions_scale_to_the_agents_limits() {
     let mut environment = start(with_actions(ActionSpace::Normalized));
     environment
         .step(Action::Continuous([0.5, 1.0, -1.0]))
-        .expect("the action is sound");
+        .expect("the action is valid");
     let agent = environment.agent();
     assert_eq!(agent.heading_deg, 9.0);
     let speed = (agent.velocity[0].powi(2) + agent.velocity[1].powi(2)).sqrt();
@@ -58,7 +58,7 @@ fn normalised_waypoints_scale_to_the_arena() {
     let mut environment = start(world);
     environment
         .step(Action::Continuous([0.5, -0.25, 0.0]))
-        .expect("the action is sound");
+        .expect("the action is valid");
     assert_eq!(environment.agent().position, [1.0, -2.5]);
 }
 
@@ -67,12 +67,12 @@ fn default_table_has_six_moves_and_interact() {
     let mut environment = start(with_actions(ActionSpace::DefaultDiscrete));
     for (row, turn) in [(1, -9.0), (2, 9.0), (3, -9.0), (4, 9.0)] {
         let before = environment.agent().heading_deg;
-        environment.step(Action::Discrete(row)).expect("the row is there");
+        environment.step(Action::Discrete(row)).expect("the row exists");
         let turned = (environment.agent().heading_deg - before + 540.0).rem_euclid(360.0) - 180.0;
         assert!((turned - turn).abs() < 1e-3, "row {row} turns {turned}");
     }
     let place = environment.agent().position;
-    environment.step(Action::Discrete(0)).expect("the row is there");
+    environment.step(Action::Discrete(0)).expect("the row exists");
     assert!((environment.agent().position[1] - place[1] - 1.0).abs() < 1e-4);
     environment.step(Action::Discrete(6)).expect("interact is the seventh");
     assert_eq!(
@@ -94,7 +94,7 @@ fn third_number_has_no_effect_without_interact() {
         world.agent_params.interact = interact;
         start(world)
             .step(Action::Continuous([0.0, 0.0, 1.0]))
-            .expect("the action is sound")
+            .expect("the action is valid")
             .reward
     };
     assert_eq!((paid(true), paid(false)), (1.0, 0.0));
@@ -114,7 +114,7 @@ fn held_action_lasts_several_time_steps_of_one_step() {
         for _ in 0..steps {
             environment
                 .step(Action::Continuous([5.0, 10.0, 0.0]))
-                .expect("the episode goes on");
+                .expect("the episode continues");
         }
         (
             environment.agent().position,
@@ -138,7 +138,7 @@ fn held_action_interacts_once() {
     world.agent_params.frame_skip = 5;
     let step = start(world)
         .step(Action::Continuous([0.0, 0.0, 1.0]))
-        .expect("the action is sound");
+        .expect("the action is valid");
     assert_eq!(step.reward, 1.0);
 }
 
@@ -180,7 +180,7 @@ fn total_shaping_does_not_depend_on_how_an_episode_terminates() {
             };
             environment
                 .step(Action::Continuous([1.0, home * 10.0, 0.0]))
-                .expect("the episode goes on");
+                .expect("the episode continues");
             steps += 1;
         }
         assert!(environment.ended(), "the goal is reached");
@@ -193,7 +193,7 @@ fn total_shaping_does_not_depend_on_how_an_episode_terminates() {
     let counted = total(0.0, vec![EndCondition::ReturnAtLeast(1.0)]);
     assert!(
         (counted - 3.0).abs() < 1e-5,
-        "shaping is no part of what is counted: {counted}"
+        "the counted rewards exclude shaping: {counted}"
     );
 }
 
@@ -234,7 +234,7 @@ fn state_vector_contains_the_requested_features() {
     for _ in 0..3 {
         environment
             .step(Action::Continuous([10.0, 0.0, 0.0]))
-            .expect("the episode goes on");
+            .expect("the episode continues");
         if environment.episode_return() > 0.0 {
             break;
         }
@@ -291,7 +291,7 @@ fn destroyed_key_opens_its_door_and_a_door_out_of_turn_stays_shut() {
     assert_eq!(
         drive(&mut environment, -10.0, 3),
         0.0,
-        "the door first: nothing, and it stays"
+        "the door out of turn has no effect and stays in place"
     );
     assert_eq!(drive(&mut environment, 10.0, 6), 0.0, "the key");
     assert_eq!(drive(&mut environment, -10.0, 6), 5.0, "the door");
@@ -307,7 +307,7 @@ fn arm_that_did_not_pay_may_pay_later() {
         let speed = if step % 6 < 3 { 10.0 } else { -10.0 };
         paid += environment
             .step(Action::Continuous([speed, 0.0, 0.0]))
-            .expect("the episode goes on")
+            .expect("the episode continues")
             .reward;
     }
     assert_eq!(paid, 1.0, "once, however often it is touched");

@@ -1,5 +1,5 @@
-//! Stepping a batch does not allocate, and heaps of bodies allocate only in proportion. A separate binary, because it counts
-//! for the whole process.
+//! Stepping a batch does not allocate, and heaps of bodies allocate memory in proportion to their size. A separate binary,
+//! because the counters are those of the whole process.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::Arc;
@@ -13,7 +13,7 @@ use driftworld_spec::{
 /// The system's allocator with counters.
 struct Counting;
 
-static TAKEN: AtomicU64 = AtomicU64::new(0);
+static ALLOCATIONS: AtomicU64 = AtomicU64::new(0);
 /// Bytes in use, and their maximum so far.
 static LIVE: AtomicU64 = AtomicU64::new(0);
 static PEAK: AtomicU64 = AtomicU64::new(0);
@@ -30,7 +30,7 @@ fn grows_by(bytes: usize) {
 // SAFETY: every call is passed on to the system's allocator unchanged.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        TAKEN.fetch_add(1, Ordering::Relaxed);
+        ALLOCATIONS.fetch_add(1, Ordering::Relaxed);
         grows_by(layout.size());
         // SAFETY: the caller's guarantees are those of the system's allocator.
         unsafe { System.alloc(layout) }
@@ -43,7 +43,7 @@ unsafe impl GlobalAlloc for Counting {
     }
 
     unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        TAKEN.fetch_add(1, Ordering::Relaxed);
+        ALLOCATIONS.fetch_add(1, Ordering::Relaxed);
         LIVE.fetch_sub(layout.size() as u64, Ordering::Relaxed);
         grows_by(size);
         // SAFETY: as above.
@@ -57,7 +57,7 @@ static ALLOCATOR: Counting = Counting;
 /// The benchmark's scene, in which every object pays when touched, approached or used, and every fourth one wanders.
 fn world() -> World {
     let text = include_str!("../../src/throughput/arena_20.json");
-    let scene = World::from_json("arena_20.json", text).expect("the bench's scene is sound");
+    let scene = World::from_json("arena_20.json", text).expect("the benchmark's scene is valid");
     let mut world = scene.into_draft();
     world.agent_params.modalities = vec![
         Modality::Rgb,
@@ -78,23 +78,23 @@ fn world() -> World {
             (object.motion_model, object.speed) = (MotionModel::RandomWaypoint, 3.0);
         }
     }
-    world.check().expect("the world is sound")
+    world.check().expect("the world is valid")
 }
 
 /// The benchmark's scene, with a pushable object at rest and out of reach.
 fn world_with_a_far_body() -> World {
     let text = include_str!("../../src/throughput/arena_20.json");
-    let mut world = World::from_json("arena_20.json", text).expect("the bench's scene is sound");
+    let mut world = World::from_json("arena_20.json", text).expect("the benchmark's scene is valid");
     let mut far = Object::new("cube", [45.0, 45.0]);
     far.pushable = Some(Pushable {
         mass: 10.0,
         friction: 0.5,
     });
-    world.push(far).expect("the body is sound");
+    world.push(far).expect("the body is valid");
     world
 }
 
-/// Doors of all kinds, a switch and carriable things, in a room small enough to meet all of them.
+/// Doors of all kinds, a switch and carriable objects, in a room so small that the agent touches all of them.
 fn world_with_things() -> World {
     let both = || vec![Stimulus::AgentCollide, Stimulus::AgentInteract];
     let mut objects = Vec::new();
@@ -129,11 +129,11 @@ fn world_with_things() -> World {
     // The agent walks in circles past all of them.
     world.agent_params.max_linear_speed = 0.6;
     world.agent_params.state_features = vec![StateFeature::Position, StateFeature::Carrying];
-    world.check().expect("the world is sound")
+    world.check().expect("the world is valid")
 }
 
 /// Number of allocations in this many steps of a warmed-up batch, and the steps' total reward.
-fn taken(world: World, num_threads: usize, steps: usize) -> (u64, f64) {
+fn count_allocations(world: World, num_threads: usize, steps: usize) -> (u64, f64) {
     const NUM_ENVS: usize = 8;
     let source = Arc::new(move |_| Ok(world.clone()));
     let options = BatchOptions {
@@ -146,36 +146,36 @@ fn taken(world: World, num_threads: usize, steps: usize) -> (u64, f64) {
         std::array::from_fn(|env| Action::Continuous([4.0 + env as f64, 20.0 - 3.0 * env as f64, 1.0]));
     // Lists reach their final size in the first steps.
     for _ in 0..300 {
-        batch.step(&actions).expect("the batch goes on");
+        batch.step(&actions).expect("the batch continues");
     }
-    let before = TAKEN.load(Ordering::Relaxed);
+    let before = ALLOCATIONS.load(Ordering::Relaxed);
     let mut paid = 0.0;
     for _ in 0..steps {
-        batch.step(&actions).expect("the batch goes on");
+        batch.step(&actions).expect("the batch continues");
         paid += batch.outputs().rewards.iter().sum::<f64>();
     }
-    (TAKEN.load(Ordering::Relaxed) - before, paid)
+    (ALLOCATIONS.load(Ordering::Relaxed) - before, paid)
 }
 
 #[test]
 fn steps_do_not_allocate() {
-    let (taken_alone, paid) = taken(world(), 1, 300);
+    let (taken_alone, paid) = count_allocations(world(), 1, 300);
     assert!(paid > 10.0, "things happen in these steps: {paid}");
     assert_eq!(taken_alone, 0, "on one thread");
-    let (taken_beside_a_body, _) = taken(world_with_a_far_body(), 1, 300);
+    let (taken_beside_a_body, _) = count_allocations(world_with_a_far_body(), 1, 300);
     assert_eq!(taken_beside_a_body, 0, "what can be pushed costs nothing until it is");
-    let (taken_by_things, paid) = taken(world_with_things(), 1, 600);
+    let (taken_by_things, paid) = count_allocations(world_with_things(), 1, 600);
     assert!(paid > 20.0, "doors open and things are picked up: {paid}");
     assert_eq!(taken_by_things, 0, "doors, switches and things");
     let seen = world_with_things().edit(|world| {
         world.agent_params.show_carried = true;
         world.agent_params.modalities = vec![Modality::Rgb];
     });
-    let (taken_by_hands, _) = taken(seen.expect("the world is sound"), 1, 600);
+    let (taken_by_hands, _) = count_allocations(seen.expect("the world is valid"), 1, 600);
     assert_eq!(taken_by_hands, 0, "pictures of what is carried");
     // Passing work to another thread allocates one block, and one more for the pool's queue once every 63 times, whatever the
     // number of environments.
-    let (taken_by_two, _) = taken(world(), 2, 300);
+    let (taken_by_two, _) = count_allocations(world(), 2, 300);
     assert!(taken_by_two <= 310, "on two threads: {taken_by_two} in 300 steps");
     heaps_take_memory_in_proportion();
 }
@@ -192,13 +192,13 @@ fn heaps_take_memory_in_proportion() {
             body
         };
         let world = WorldDraft::with_objects((0..count).map(body).collect());
-        let mut environment = Environment::new(world.check().expect("the world is sound"));
+        let mut environment = Environment::new(world.check().expect("the world is valid"));
         let before = LIVE.load(Ordering::Relaxed);
         PEAK.store(before, Ordering::Relaxed);
         for _ in 0..3 {
             environment
                 .step(Action::Continuous([2.0, 10.0, 0.0]))
-                .expect("the episode goes on");
+                .expect("the episode continues");
         }
         let taken = PEAK.load(Ordering::Relaxed) - before;
         // The maximum number of contacts in a time step, and the lists of bodies.

@@ -9,7 +9,7 @@ use driftworld_spec::{Modality, MotionModel, Object, Stimulus, World, WorldDraft
 
 const NUM_ENVS: usize = 5;
 
-/// A small world that depends on the episode: obstacles, a hunter, and an end by limit or touch.
+/// A small world that depends on the episode: obstacles, a predator, and an end by step limit or touch.
 fn draft(episode: Episode) -> WorldDraft {
     let shift = (episode.env * 3 + episode.index as usize * 7) as f64;
     let mut target = Object::new("cube", [0.0, 2.0 + shift % 5.0]);
@@ -37,7 +37,7 @@ fn draft(episode: Episode) -> WorldDraft {
 }
 
 fn world(episode: Episode) -> World {
-    draft(episode).check().expect("the world is sound")
+    draft(episode).check().expect("the world is valid")
 }
 
 fn source() -> WorldSource {
@@ -59,7 +59,7 @@ fn batch(autoreset: Autoreset, num_threads: usize) -> Batch {
             ..BatchOptions::default()
         },
     )
-    .expect("the worlds are sound")
+    .expect("the worlds are valid")
 }
 
 /// An environment's view, rendered separately.
@@ -70,7 +70,7 @@ fn picture(environment: &Environment) -> Frame {
 }
 
 /// Compares one environment's images and state in `outputs` with those of a separate environment.
-fn same(outputs: &driftworld_env::Outputs, env: usize, alone: &Environment) {
+fn assert_matches(outputs: &driftworld_env::Outputs, env: usize, alone: &Environment) {
     let frame = picture(alone);
     let pixels = 24 * 24;
     let images = &outputs.images;
@@ -95,7 +95,7 @@ fn same(outputs: &driftworld_env::Outputs, env: usize, alone: &Environment) {
 }
 
 #[test]
-fn a_batch_is_so_many_environments() {
+fn batch_equals_separate_environments() {
     for autoreset in [Autoreset::NextStep, Autoreset::SameStep] {
         for num_threads in [1, 2, 3] {
             let mut batch = batch(autoreset, num_threads);
@@ -105,7 +105,7 @@ fn a_batch_is_so_many_environments() {
             let mut episodes = [0; NUM_ENVS];
             for step in 0..60 {
                 let actions: Vec<Action> = (0..NUM_ENVS).map(|env| action(step, env)).collect();
-                batch.step(&actions).expect("the actions are sound");
+                batch.step(&actions).expect("the actions are valid");
                 for env in 0..NUM_ENVS {
                     let next = |episodes: &mut [u64; NUM_ENVS]| {
                         episodes[env] += 1;
@@ -121,19 +121,19 @@ fn a_batch_is_so_many_environments() {
                         assert_eq!((outputs.rewards[env], outputs.terminated[env]), (0.0, false));
                         assert!(!outputs.truncated[env]);
                     } else {
-                        let found = alone[env].step(actions[env]).expect("the action is sound");
+                        let found = alone[env].step(actions[env]).expect("the action is valid");
                         assert_eq!(outputs.rewards[env], found.reward, "step {step} of {env}");
                         assert_eq!(outputs.terminated[env], found.terminated);
                         assert_eq!(outputs.truncated[env], found.truncated);
                         assert_eq!(outputs.success[env], found.success);
                         if found.ended() && autoreset == Autoreset::SameStep {
                             let last = batch.final_outputs().expect("same-step autoreset keeps them");
-                            same(last, env, &alone[env]);
+                            assert_matches(last, env, &alone[env]);
                             assert_eq!(last.rewards[env], found.reward);
                             alone[env] = next(&mut episodes);
                         }
                     }
-                    same(outputs, env, &alone[env]);
+                    assert_matches(outputs, env, &alone[env]);
                     assert_eq!(batch.episode(env).map(|episode| episode.index), Some(episodes[env]));
                 }
             }
@@ -166,12 +166,12 @@ fn ended_episode_without_autoreset_waits_for_its_reset() {
     assert_eq!(
         batch.environment(1).map(Environment::num_steps),
         Some(9),
-        "the others go on"
+        "the others continue"
     );
-    batch.step(&still).expect("environment 0 has begun again");
+    batch.step(&still).expect("environment 0 has restarted");
     assert!(
         batch.reset_where_while(&[true], &|| true).is_err(),
-        "one answer for five environments"
+        "one action for five environments"
     );
     batch.reset().expect("the source has worlds");
     assert!((0..NUM_ENVS).all(|env| batch.environment(env).map(Environment::num_steps) == Some(0)));
@@ -200,14 +200,14 @@ fn missing_world_stops_only_its_environment() {
         Episode { env: 1 | 60, index: 1 } => Err("the well is dry".to_owned()),
         _ => Ok(world(episode)
             .edit(|world| world.max_steps = 1)
-            .expect("one step is sound")),
+            .expect("one step is valid")),
     });
     for num_threads in [1, 3] {
         let options = BatchOptions {
             num_threads,
             ..options(Autoreset::NextStep)
         };
-        let mut batch = Batch::new(64, Arc::clone(&source), options).expect("first episodes are there");
+        let mut batch = Batch::new(64, Arc::clone(&source), options).expect("the first episodes have worlds");
         let still = [Action::Continuous([0.0; 3]); 64];
         batch.step(&still).expect("all step");
         for _ in 0..2 {
@@ -223,28 +223,28 @@ fn missing_world_stops_only_its_environment() {
     }
 }
 
-/// A batch that does not fit into a processor's cache is stepped in other ways than a small one.
+/// A batch that does not fit into a processor's cache is stepped differently from a small one.
 #[test]
-fn large_batch_gives_what_its_environments_give_alone() {
+fn large_batch_equals_its_environments_alone() {
     const MANY: usize = 150;
     for num_threads in [1, 3] {
         let options = BatchOptions {
             num_threads,
             ..options(Autoreset::NextStep)
         };
-        let mut batch = Batch::new(MANY, source(), options).expect("the worlds are sound");
+        let mut batch = Batch::new(MANY, source(), options).expect("the worlds are valid");
         let mut alone: Vec<Environment> = (0..MANY)
             .map(|env| Environment::new(world(Episode { env, index: 0 })))
             .collect();
         for step in 0..4 {
             let actions: Vec<Action> = (0..MANY).map(|env| action(step, env)).collect();
-            batch.step(&actions).expect("the actions are sound");
+            batch.step(&actions).expect("the actions are valid");
             for (env, alone) in alone.iter_mut().enumerate() {
-                // Targets are reached at different times; what follows an end is tested with few environments.
+                // Targets are reached at different times; episodes after the first are tested with few environments.
                 if !alone.ended() {
-                    let found = alone.step(actions[env]).expect("the action is sound");
+                    let found = alone.step(actions[env]).expect("the action is valid");
                     assert_eq!(batch.outputs().rewards[env], found.reward, "step {step} of {env}");
-                    same(batch.outputs(), env, alone);
+                    assert_matches(batch.outputs(), env, alone);
                 }
             }
         }
@@ -257,7 +257,7 @@ fn worlds_with_different_images_are_refused() {
     let source: WorldSource = Arc::new(|episode| {
         let mut world = draft(episode);
         world.agent_params.observation_size = 24 + episode.env as u32;
-        Ok(world.check().expect("the world is sound"))
+        Ok(world.check().expect("the world is valid"))
     });
     let Err(error) = Batch::new(2, source, BatchOptions::default()) else {
         panic!("the images differ");
@@ -266,7 +266,7 @@ fn worlds_with_different_images_are_refused() {
     let source: WorldSource = Arc::new(|episode| {
         let mut world = draft(episode);
         world.agent_params.instruction = vec![1.0; episode.env];
-        Ok(world.check().expect("the world is sound"))
+        Ok(world.check().expect("the world is valid"))
     });
     let Err(error) = Batch::new(2, source, BatchOptions::default()) else {
         panic!("the instructions differ");
@@ -287,7 +287,7 @@ fn too_large_outputs_are_refused_before_allocating() {
     let large = |episode: Episode| {
         let mut world = draft(episode);
         world.agent_params.observation_size = 4096;
-        world.check().expect("the world is sound")
+        world.check().expect("the world is valid")
     };
     // Colour, metres, categories and objects: 12 bytes per pixel, 201 MB per environment; 85 of them take 17.1 GB, and 16 GiB
     // are 17.18 GB.
@@ -341,9 +341,9 @@ fn stopped_reset_leaves_the_rest_to_the_next_reset() {
     ));
     batch
         .reset_where_while(&[false, false, true, true, true], &|| true)
-        .expect("the worlds are sound");
+        .expect("the worlds are valid");
     assert_eq!(episodes(&batch), [1; NUM_ENVS]);
-    batch.step(&actions).expect("all have begun");
+    batch.step(&actions).expect("all episodes have started");
     let made = Batch::with_catalogue_while(
         NUM_ENVS,
         source(),

@@ -18,7 +18,7 @@ const ALL: [Modality; 5] = [
 const SIDE: usize = 12;
 
 /// A world with the modalities in this bit mask.
-fn world(asked: u8) -> World {
+fn world(requested: u8) -> World {
     let mut world = WorldDraft {
         max_steps: 3,
         objects: vec![Object::new("cube", [0.0, 3.0]), Object::new("tree", [2.0, 6.0])],
@@ -26,8 +26,11 @@ fn world(asked: u8) -> World {
     };
     world.environment_params.map_size = [20.0, 20.0];
     world.agent_params.observation_size = SIDE as u32;
-    world.agent_params.modalities = (0..5).filter(|bit| asked >> bit & 1 == 1).map(|bit| ALL[bit]).collect();
-    world.check().expect("it is sound")
+    world.agent_params.modalities = (0..5)
+        .filter(|bit| requested >> bit & 1 == 1)
+        .map(|bit| ALL[bit])
+        .collect();
+    world.check().expect("the world is valid")
 }
 
 /// Every image of an environment as numbers; empty if there is none.
@@ -47,8 +50,8 @@ fn numbers(images: &Images, env: usize) -> [Vec<f64>; 5] {
     ]
 }
 
-fn drawn_alone(batch: &Batch, env: usize) -> [Vec<f64>; 5] {
-    let environment = batch.environment(env).expect("there is one");
+fn rendered_separately(batch: &Batch, env: usize) -> [Vec<f64>; 5] {
+    let environment = batch.environment(env).expect("there is such an environment");
     let mut frame = Frame::new(SIDE as u32, SIDE as u32);
     CpuRenderer::new().render(environment.scene(), &environment.camera(), &mut frame);
     [
@@ -65,10 +68,10 @@ proptest! {
 
     #[test]
     fn each_environment_has_the_images_of_its_world(
-        asked in prop::collection::vec(prop::array::uniform4(0_u8..32), 3), there in 0_u8..32, threads in 1_usize..3,
+        requested in prop::collection::vec(prop::array::uniform4(0_u8..32), 3), there in 0_u8..32, threads in 1_usize..3,
     ) {
-        let there = asked.iter().flatten().fold(there, |all, one| all | one);
-        let episodes = asked.clone();
+        let there = requested.iter().flatten().fold(there, |all, one| all | one);
+        let episodes = requested.clone();
         let source: WorldSource = Arc::new(move |episode| Ok(world(episodes[episode.env][episode.index as usize % 4])));
         let options = BatchOptions {
             autoreset: Autoreset::NextStep,
@@ -77,11 +80,11 @@ proptest! {
             depth: DepthForm::Millimetres,
             ..BatchOptions::default()
         };
-        let mut batch = Batch::new(3, source, options).expect("all have their place");
+        let mut batch = Batch::new(3, source, options).expect("every object has a position");
         for step in 0..14 {
             for env in 0..3 {
-                let own = asked[env][batch.episode(env).expect("there is one").index as usize % 4];
-                let (found, expected) = (numbers(&batch.outputs().images, env), drawn_alone(&batch, env));
+                let own = requested[env][batch.episode(env).expect("there is such an environment").index as usize % 4];
+                let (found, expected) = (numbers(&batch.outputs().images, env), rendered_separately(&batch, env));
                 for bit in 0..5 {
                     if there >> bit & 1 == 0 {
                         prop_assert!(found[bit].is_empty());
@@ -97,7 +100,7 @@ proptest! {
                     prop_assert_eq!(millimetres.iter().all(|depth| *depth == 0), own >> 1 & 1 == 0);
                 }
             }
-            batch.step(&[Action::Continuous([3.0, 20.0, 0.0]); 3]).expect("they go on");
+            batch.step(&[Action::Continuous([3.0, 20.0, 0.0]); 3]).expect("the episodes continue");
         }
     }
 }

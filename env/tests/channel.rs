@@ -1,4 +1,4 @@
-//! The three channels from a client's side: the original's own messages, and hostile ones that must change nothing.
+//! The three channels as a client uses them: the original's own messages, and hostile ones, which must not change anything.
 
 use driftworld_env::Channel::{Debug, Reset, State};
 use driftworld_env::{Action, Category, Channel, Channels, Environment, MAX_MESSAGE_BYTES, Outgoing};
@@ -13,14 +13,14 @@ fn start() -> (Environment, Channels) {
     let mut tree = Object::new("tree", [3.0, 4.0]);
     tree.unique_name = Some("oak".to_owned());
     let world = WorldDraft::with_objects(vec![tree]);
-    let world = world.check().expect("the world is sound");
+    let world = world.check().expect("the world is valid");
     let channels = Channels::new(&world);
     (Environment::new(world), channels)
 }
 
 fn ask(environment: &mut Environment, channels: &mut Channels, message: &Value) -> Vec<Outgoing> {
     let action = message["action"].as_str().unwrap_or_default();
-    let channel = Channel::for_action(action).expect("the test asks for what there is");
+    let channel = Channel::for_action(action).expect("the requested buffers exist");
     channels
         .receive(environment, channel, &message.to_string(), NOW)
         .messages
@@ -68,7 +68,7 @@ fn every_message_of_the_original_is_understood() {
     assert!(channels.is_active(Category::Agent) && !channels.is_active(Category::Academy));
     let step = environment
         .step(Action::Continuous([1.0, 0.0, 0.0]))
-        .expect("the world goes on");
+        .expect("the episode continues");
     let told = channels.after_step(&environment, &step, NOW);
     assert_eq!(told.len(), 1);
     let state = told[0].payload.as_ref().expect("a state has its parts");
@@ -94,7 +94,7 @@ fn answers_have_every_key_that_clients_look_up() {
     assert_eq!(read["payload"], Value::Null);
     assert_eq!(
         read["req_token"], "00000000-0000-0000-0000-000000000000",
-        "the question had no token"
+        "the request had no token"
     );
 }
 
@@ -105,12 +105,12 @@ fn reported_objects_are_present_and_named() {
         let spawn = json!({ "action": "object_create", "payload": { "class": "rock", "coordinates": [9, 9] } });
         ask(&mut environment, &mut channels, &spawn);
     }
-    environment.destroy(1).expect("the first rock is there");
+    environment.destroy(1).expect("the first rock exists");
     let watch = json!({ "action": "set_active_observers", "payload": { "state": ["objects", "game_mode"] } });
     ask(&mut environment, &mut channels, &watch);
     let step = environment
         .step(Action::Continuous([0.0; 3]))
-        .expect("the world goes on");
+        .expect("the episode continues");
     let told = channels.after_step(&environment, &step, NOW);
     let state = told[0].payload.as_ref().expect("a state has its parts");
     assert_eq!(state["game_mode"], "learn");
@@ -228,7 +228,7 @@ fn observed_parts_are_sent_each_step_without_absent_objects() {
     let told = |environment: &mut Environment, channels: &mut Channels| {
         let step = environment
             .step(Action::Continuous([0.0; 3]))
-            .expect("the world goes on");
+            .expect("the episode continues");
         channels.after_step(environment, &step, NOW)
     };
     assert_eq!(told(&mut environment, &mut channels), [], "nobody has asked yet");
@@ -240,7 +240,7 @@ fn observed_parts_are_sent_each_step_without_absent_objects() {
     };
     let first = told(&mut environment, &mut channels);
     assert_eq!((first[0].action, objects(&first)), ("state", 1));
-    environment.destroy(0).expect("the oak is there");
+    environment.destroy(0).expect("the oak exists");
     assert_eq!(objects(&told(&mut environment, &mut channels)), 0);
     let nothing = json!({ "action": "set_active_observers", "payload": { "state": [] } });
     ask(&mut environment, &mut channels, &nothing);

@@ -1,4 +1,4 @@
-//! Touching and coming near: the stimuli of one pass do not depend on speed or time step.
+//! Touching and approaching: the stimuli of a pass depend neither on the speed nor on the time step.
 
 #![expect(clippy::disallowed_methods, reason = "compared within a tolerance")]
 
@@ -17,7 +17,7 @@ fn count(mut world: WorldDraft, legs: &[(f64, f64)], speed: f64, seconds: f64) -
     let mut act = |ahead: f64, turn: f64| {
         let step = environment
             .step(Action::Continuous([ahead / seconds, turn / seconds, 0.0]))
-            .expect("it goes on");
+            .expect("the episode continues");
         for event in &step.events {
             match event.stimulus {
                 Stimulus::AgentCollide => counts[0] += 1,
@@ -125,7 +125,9 @@ fn stimuli_at_the_start_occur_once_in_the_first_step() {
     (zone.solid, zone.range_stimulus_distance) = (false, 4.0);
     let mut environment = start(WorldDraft::with_objects(vec![zone]));
     let mut step = || {
-        let step = environment.step(Action::Continuous([0.0; 3])).expect("it goes on");
+        let step = environment
+            .step(Action::Continuous([0.0; 3]))
+            .expect("the episode continues");
         step.events.iter().map(|event| event.stimulus).collect::<Vec<_>>()
     };
     assert_eq!(step(), [Stimulus::AgentCollide, Stimulus::AgentInRange]);
@@ -135,7 +137,7 @@ fn stimuli_at_the_start_occur_once_in_the_first_step() {
 #[test]
 fn contact_ends_at_a_gap_of_a_quarter_metre() {
     let world = WorldDraft::with_objects(vec![touchable("cube", [0.0, 3.0])]);
-    // There, back by this much, and there again.
+    // Towards the object, back by this distance, and towards it again.
     for (back, expected) in [(0.1, 1), (0.2, 1), (0.3, 2), (1.0, 2)] {
         for (speed, seconds) in [(1.0, 0.1), (10.0, 0.1), (5.0, 0.02)] {
             let found = count(
@@ -164,7 +166,9 @@ fn fast_mover_touches_and_comes_near_once() {
         let mut environment = start(WorldDraft::with_objects(vec![ghost]));
         let mut counts = [0; 2];
         for _ in 0..(700.0 / speed) as usize + 10 {
-            let step = environment.step(Action::Continuous([0.0; 3])).expect("it goes on");
+            let step = environment
+                .step(Action::Continuous([0.0; 3]))
+                .expect("the episode continues");
             counts[0] += step
                 .events
                 .iter()
@@ -194,7 +198,7 @@ fn meeting(mut object: Object, agent: ([f64; 2], f64, f64), seconds: f64, total:
     for _ in 0..(total / seconds).round() as usize {
         let step = environment
             .step(Action::Continuous([speed, 0.0, 0.0]))
-            .expect("it goes on");
+            .expect("the episode continues");
         for event in &step.events {
             counts[usize::from(event.stimulus == Stimulus::AgentInRange)] += 1;
         }

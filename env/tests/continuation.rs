@@ -10,9 +10,9 @@ use proptest::prelude::*;
 
 use crate::fixtures::{key, thing};
 
-const MOST: f64 = 100.0;
+const MAX_ENERGY: f64 = 100.0;
 
-/// Indices of the locked door and its key among the objects.
+/// Indices of the locked door and of its key in the list of objects.
 const LOCKED: usize = 0;
 const KEY: usize = 1;
 
@@ -101,11 +101,11 @@ fn corridor(start: usize, lies: usize, model: ActionModel, frame_skip: u32) -> W
 }
 
 fn begin(world: &WorldDraft) -> Environment {
-    Environment::new(world.clone().check().expect("the world is sound"))
+    Environment::new(world.clone().check().expect("the world is valid"))
 }
 
 /// Runs the expert until the locked door is open while the agent carries the key; returns the time in seconds.
-fn to_the_open_door(environment: &mut Environment) -> f64 {
+fn run_until_door_is_open(environment: &mut Environment) -> f64 {
     let mut expert = OnRailsAgent::new();
     loop {
         let own = environment.objects();
@@ -113,7 +113,7 @@ fn to_the_open_door(environment: &mut Environment) -> f64 {
             return environment.seconds();
         }
         let action = expert.act(environment);
-        let step = environment.step(action).expect("the episode goes on");
+        let step = environment.step(action).expect("the episode continues");
         assert!(
             !step.ended(),
             "the episode ended by {:?} before the door was opened",
@@ -124,12 +124,12 @@ fn to_the_open_door(environment: &mut Environment) -> f64 {
 
 /// The same world with energy, half of which is used up when the door opens.
 fn with_half_the_energy(mut world: WorldDraft) -> WorldDraft {
-    let seconds = to_the_open_door(&mut begin(&world));
+    let seconds = run_until_door_is_open(&mut begin(&world));
     world.agent_params.energy = Some(Energy {
-        start: MOST,
-        per_second: -MOST / 2.0 / seconds,
+        start: MAX_ENERGY,
+        per_second: -MAX_ENERGY / 2.0 / seconds,
         per_metre: 0.0,
-        most: MOST,
+        most: MAX_ENERGY,
     });
     world
 }
@@ -201,9 +201,9 @@ proptest! {
         let model = if on_rails { ActionModel::OnRails } else { ActionModel::ByVelocity };
         let world = with_half_the_energy(corridor(start, lies, model, frame_skip));
         let mut environment = begin(&world);
-        to_the_open_door(&mut environment);
+        run_until_door_is_open(&mut environment);
         let energy = f64::from(environment.state_vector()[6]);
-        prop_assert!((energy - MOST / 2.0).abs() < 1e-3, "{energy} is half of the energy");
+        prop_assert!((energy - MAX_ENERGY / 2.0).abs() < 1e-3, "{energy} is half of the energy");
 
         let text = environment.state().to_json();
         let read = World::from_json("state", &text).map_err(|error| TestCaseError::fail(error.to_string()))?;
@@ -219,8 +219,8 @@ proptest! {
         loop {
             // One agent acts in both: only the worlds are compared.
             let action = agent.act(&environment);
-            let step = environment.step(action).expect("the episode goes on");
-            let other = resumed.step(action).expect("the episode goes on");
+            let step = environment.step(action).expect("the episode continues");
+            let other = resumed.step(action).expect("the episode continues");
             let (here, there) = (moment(&mut environment, step), moment(&mut resumed, other));
             prop_assert_eq!(&here, &there, "after {} s", environment.seconds());
             if let Some(end) = here.step.ended_by {
@@ -240,13 +240,17 @@ proptest! {
 fn door_key_and_energy_each_affect_the_resumed_world() {
     let world = with_half_the_energy(corridor(0, 0, ActionModel::ByVelocity, 1));
     let mut environment = begin(&world);
-    to_the_open_door(&mut environment);
+    run_until_door_is_open(&mut environment);
     let state = environment.state();
     let progress = state.progress.as_ref().expect("a state has progress");
     assert_eq!(progress.objects[LOCKED].open, Some(true));
     assert!(progress.objects[LOCKED].unlocked && progress.objects[LOCKED].closes_at.is_some());
     assert_eq!(progress.carried, [KEY as u32]);
-    assert!(progress.energy.is_some_and(|energy| (energy - MOST / 2.0).abs() < 1e-6));
+    assert!(
+        progress
+            .energy
+            .is_some_and(|energy| (energy - MAX_ENERGY / 2.0).abs() < 1e-6)
+    );
     let course = |change: fn(&mut WorldDraft)| {
         let mut draft = state.clone().into_draft();
         change(&mut draft);
@@ -255,7 +259,7 @@ fn door_key_and_energy_each_affect_the_resumed_world() {
         let mut course = Vec::new();
         while !environment.ended() {
             let action = expert.act(&environment);
-            let step = environment.step(action).expect("the episode goes on");
+            let step = environment.step(action).expect("the episode continues");
             course.push((environment.state_vector().clone(), step.ended_by));
         }
         course

@@ -1,4 +1,4 @@
-//! Heaps and crowds can be stepped, do not depend on the world's history, and give a warning.
+//! Heaps and crowds of objects can be stepped, do not depend on the world's history, and give a warning.
 
 use driftworld_env::{Action, Environment, Warning};
 use driftworld_spec::{MotionModel, Object, Pushable, Respawn, Stimulus, World, WorldDraft};
@@ -40,7 +40,7 @@ fn wanderer(at: [f64; 2]) -> Object {
     object
 }
 
-/// Respawns near the same place as all others.
+/// Respawns near the same point as all others.
 fn returning(at: [f64; 2]) -> Object {
     let mut object = Object::new("barrel", at);
     object.range_stimulus_distance = 50.0;
@@ -52,7 +52,7 @@ fn returning(at: [f64; 2]) -> Object {
     object
 }
 
-/// Bodies within `spread` metres of a place in front of the agent.
+/// Bodies within `spread` metres of a point in front of the agent.
 fn crowd(makes: &[Make], count: usize, spread: f64) -> WorldDraft {
     let at = |k: usize| {
         let share = |step: f64| spread * ((k as f64 * step).fract() - 0.5);
@@ -71,7 +71,7 @@ fn go(environment: &mut Environment, steps: u32) -> f64 {
     let mut paid = 0.0;
     for step in 0..steps {
         let action = Action::Continuous([2.0, f64::from(step % 5) * 20.0 - 40.0, 0.0]);
-        paid += environment.step(action).expect("the episode goes on").reward;
+        paid += environment.step(action).expect("the episode continues").reward;
     }
     paid
 }
@@ -100,7 +100,7 @@ fn heap_is_pushed_apart_or_holds_and_stops_the_agent() {
     for _ in 0..30 {
         environment
             .step(Action::Continuous([2.0, 0.0, 0.0]))
-            .expect("the episode goes on");
+            .expect("the episode continues");
     }
     let [_, y] = environment.agent().position;
     assert!(y < 1.0, "it came to {y}");
@@ -119,21 +119,21 @@ fn heap_gives_a_warning_with_place_and_size() {
         heaps
     };
     assert!(heaps(200).is_empty());
-    let said = heaps(1000);
-    assert_eq!(said.len(), 1, "the first of them stands for all");
+    let warnings = heaps(1000);
+    assert_eq!(warnings.len(), 1, "the first of them stands for all");
     assert!(
-        said[0].starts_with(
+        warnings[0].starts_with(
             "/objects/0/coordinates: found 999 bodies in the place of one that can be pushed, expected at most 256"
         ),
-        "{said:?}"
+        "{warnings:?}"
     );
 }
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(5, 12)))]
 
-    /// Limits depend only on where objects are: a world that was saved in the middle of a crowd, and whose trees were built in
-    /// a different order, resumes bit for bit, and so does one restored from a snapshot.
+    /// Limits depend only on the objects' positions: a world that was saved in the middle of a crowd, and whose trees were
+    /// built in a different order, resumes bit for bit, and so does one restored from a snapshot.
     #[test]
     fn crowd_resumes_from_its_state_and_from_a_snapshot(
         first in 0usize..5,
@@ -147,7 +147,7 @@ proptest! {
         let written = here.state().to_json();
         let moment = here.snapshot();
         let paid = go(&mut here, 3);
-        let there = World::from_json("state", &written).expect("a state is a sound world");
+        let there = World::from_json("state", &written).expect("a state is a valid world");
         let mut there = start(there.into_draft());
         prop_assert_eq!(go(&mut there, 3), paid);
         prop_assert!(places(&there) == places(&here), "after a state");

@@ -1,4 +1,5 @@
-//! A door obeys its last order, whatever stands in it in the meantime: compares the simulator with a reference door of a few lines.
+//! A door obeys its last order, even if something blocks it in the meantime. The simulator is compared with a reference door of
+//! a few lines.
 
 use driftworld_env::{Action, Effect, Environment};
 use driftworld_spec::{Door, Object, Stimulus, Switch, SwitchAction, World, WorldDraft};
@@ -26,7 +27,7 @@ fn doorway(door: Door, pads: &[([f64; 2], SwitchAction)]) -> World {
     }
     (world.agent_params.coordinates, world.agent_params.agent_width) = ([0.0, -1.0], 0.6);
     world.agent_params.time_step = TIME_STEP;
-    world.check().expect("it is sound")
+    world.check().expect("the world is valid")
 }
 
 /// A reference door, driven only by its orders.
@@ -51,7 +52,7 @@ impl Orders {
         }
     }
 
-    fn set_going(&mut self, action: SwitchAction, door: &Door, tick: u64) {
+    fn apply(&mut self, action: SwitchAction, door: &Door, tick: u64) {
         let is_to_be_open = self.is_open && self.due.is_none_or(|due| due >= tick);
         match action {
             SwitchAction::Close => self.close(tick),
@@ -61,8 +62,8 @@ impl Orders {
     }
 }
 
-/// Distance of the agent's body from the closed door's leaf, negative inside.
-fn to_leaf(environment: &Environment) -> f64 {
+/// Distance from the agent's body to the leaf of the closed door, negative inside.
+fn distance_to_leaf(environment: &Environment) -> f64 {
     let [x, y] = environment.agent().position.map(f64::from);
     libm::hypot((x.abs() - 1.0).max(0.0), (y.abs() - 0.195).max(0.0)) - 0.3
 }
@@ -91,12 +92,12 @@ proptest! {
         let mut orders = Orders { is_open: open, due: closes_after.filter(|_| open).map(ticks) };
         for (number, action) in actions.into_iter().enumerate() {
             let tick = number as u64 + 1;
-            let step = environment.step(action).expect("it has no end");
+            let step = environment.step(action).expect("the episode has no end");
             for event in &step.events {
                 match event.effect {
                     Some(Effect::Opened) => orders.open(&door, tick),
                     Some(Effect::Closed) => orders.close(tick),
-                    Some(Effect::Switched) => orders.set_going(pads[event.object - 1].1, &door, tick),
+                    Some(Effect::Switched) => orders.apply(pads[event.object - 1].1, &door, tick),
                     _ => {}
                 }
             }
@@ -107,7 +108,7 @@ proptest! {
                 }
             }
             let found = environment.objects()[DOOR].open;
-            let apart = to_leaf(&environment);
+            let apart = distance_to_leaf(&environment);
             if orders.is_open && orders.due.is_some_and(|due| due <= tick) {
                 // If the leaf just touches the agent, either is correct.
                 let is_clear = if apart.abs() < 0.02 { !found } else { apart > 0.0 };

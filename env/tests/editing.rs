@@ -1,4 +1,4 @@
-//! Changing a running world from outside: spawning, destroying, teleporting, and restoring a moment.
+//! Changes to a running world from outside: spawning, destroying, teleporting, and restoring a snapshot.
 
 use driftworld_env::{Action, EnvError, Environment, Obstacle};
 use driftworld_spec::{Object, Respawn, Stimulus, WorldDraft};
@@ -8,7 +8,7 @@ const STAY: Action = Action::Continuous([0.0; 3]);
 
 fn start(objects: Vec<Object>) -> Environment {
     let world = WorldDraft::with_objects(objects);
-    Environment::new(world.check().expect("the world is sound"))
+    Environment::new(world.check().expect("the world is valid"))
 }
 
 fn coin(metres: f64) -> Object {
@@ -20,13 +20,13 @@ fn coin(metres: f64) -> Object {
 }
 
 fn reward(environment: &mut Environment, action: Action) -> f64 {
-    environment.step(action).expect("the episode goes on").reward
+    environment.step(action).expect("the episode continues").reward
 }
 
 #[test]
 fn spawned_object_is_present_and_pays() {
     let mut environment = start(vec![Object::new("tree", [3.0, 12.0])]);
-    let index = environment.spawn(coin(1.8)).expect("the coin is sound");
+    let index = environment.spawn(coin(1.8)).expect("the coin is valid");
     assert_eq!((index, environment.find("coin 1.8")), (1, Some(1)));
     assert!(environment.observe().instance.contains(&2), "and is seen");
     assert_eq!(reward(&mut environment, AHEAD), 3.0);
@@ -35,7 +35,7 @@ fn spawned_object_is_present_and_pays() {
 #[test]
 fn spawning_onto_the_agent_is_a_new_contact() {
     let mut environment = start(Vec::new());
-    environment.spawn(coin(0.0)).expect("the coin is sound");
+    environment.spawn(coin(0.0)).expect("the coin is valid");
     assert_eq!(reward(&mut environment, STAY), 3.0);
 }
 
@@ -69,7 +69,7 @@ fn destroyed_object_is_gone_and_its_sequence_continues() {
     let mut second = coin(1.8);
     second.order = Some(2);
     let mut environment = start(vec![first, second]);
-    environment.destroy(0).expect("it is there");
+    environment.destroy(0).expect("the object is present");
     assert_eq!(environment.destroy(0), Err(EnvError::AlreadyGone { object: 0 }));
     assert_eq!(
         environment.destroy(2),
@@ -104,28 +104,28 @@ fn teleport_requires_room() {
 #[test]
 fn teleporting_beside_an_object_is_not_a_contact() {
     let mut environment = start(vec![coin(5.0)]);
-    // 0.4 m of barrel and 0.5 m of agent.
+    // The radii: 0.4 m for the barrel and 0.5 m for the agent.
     environment.teleport([0.0, 4.075], 0.0).expect("there is room");
     assert_eq!(reward(&mut environment, STAY), 0.0);
 }
 
 /// A fresh environment of the same world.
-trait Again {
+trait Restart {
     fn clone_of_start(&self) -> Environment;
 }
 
-impl Again for Environment {
+impl Restart for Environment {
     fn clone_of_start(&self) -> Environment {
         Environment::new(self.world().clone())
     }
 }
 
 #[test]
-fn restoring_a_moment_undoes_spawns_and_destructions() {
+fn restoring_a_snapshot_undoes_spawns_and_destructions() {
     let mut environment = start(vec![coin(1.8), Object::new("tree", [3.0, 12.0])]);
     let moment = environment.snapshot();
-    environment.spawn(coin(1.0)).expect("the coin is sound");
-    environment.destroy(1).expect("it is there");
+    environment.spawn(coin(1.0)).expect("the coin is valid");
+    environment.destroy(1).expect("the object is present");
     reward(&mut environment, AHEAD);
     environment.restore(&moment);
     assert_eq!(environment.objects().len(), 2);
@@ -141,7 +141,7 @@ fn agent_walks_out_of_an_object_spawned_onto_it() {
     let mut environment = start(Vec::new());
     let mut cube = Object::new("cube", [0.1, 0.3]);
     cube.scale = 3.0;
-    environment.spawn(cube).expect("the cube is sound");
+    environment.spawn(cube).expect("the cube is valid");
     for _ in 0..30 {
         reward(&mut environment, AHEAD);
     }

@@ -1,4 +1,5 @@
-//! The agent's energy: consumption, gains, and the end when it is used up; and stimuli that occur in every time step.
+//! The agent's energy: consumption, gains, and the end of the episode when it is used up; and stimuli that occur in every time
+//! step.
 
 use driftworld_env::{Action, Agent, EndedBy, Environment, RandomAgent};
 use driftworld_spec::{EndCondition, Energy, Object, StateFeature, Stimulus, Trigger, WorldDraft, Zone, ZoneEnd};
@@ -22,7 +23,7 @@ fn start(change: impl FnOnce(&mut WorldDraft)) -> Environment {
     world.agent_params.state_features = vec![StateFeature::Energy, StateFeature::Zone];
     world.rules.failure = vec![EndCondition::OutOfEnergy];
     change(&mut world);
-    Environment::new(world.check().expect("the world is sound"))
+    Environment::new(world.check().expect("the world is valid"))
 }
 
 fn has(environment: &Environment) -> f32 {
@@ -39,7 +40,7 @@ fn thing(at: [f64; 2]) -> Object {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 64)))]
 
-    /// Energy falls with seconds and metres, and ends the episode at the same time, whatever the time step.
+    /// Energy decreases per second and per metre, and ends the episode at the same time with every time step.
     #[test]
     fn energy_falls_with_time_and_distance_and_ends_the_episode(
         begin in 1.0..50.0f64,
@@ -69,7 +70,7 @@ proptest! {
         prop_assert!((environment.seconds() - begin / used).abs() <= time_step + 1e-2);
     }
 
-    /// Whatever the agent does and finds, its energy stays between 0 and its capacity.
+    /// Energy stays between 0 and its capacity for all actions and objects.
     #[test]
     fn energy_never_exceeds_its_capacity(
         most in 1.0..20.0f64,

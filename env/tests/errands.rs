@@ -1,4 +1,4 @@
-//! The agent that knows the map, in worlds with doors, keys, switches and things: it finds out what has to be done first.
+//! The expert in worlds with doors, keys, switches and carriable objects: it works out the necessary order of its subgoals.
 
 use driftworld_env::Environment;
 use driftworld_spec::{
@@ -54,12 +54,12 @@ fn touch() -> EndCondition {
 }
 
 /// Number of steps of the expert until success; `None` without success.
-fn solved(world: &World) -> Option<u32> {
+fn steps_to_success(world: &World) -> Option<u32> {
     let (environment, last) = by_expert(world.clone(), |_, _| ());
     last.success.then(|| environment.num_steps())
 }
 
-/// Checks that the expert succeeds wherever objects are and in every action space.
+/// Checks that the expert succeeds with the objects at various positions and in every action space.
 fn check(name: &str, make: impl Fn([f64; 2], &dyn Fn(usize) -> f64) -> WorldDraft) {
     let mut failed = Vec::new();
     for number in 0..60_usize {
@@ -75,8 +75,8 @@ fn check(name: &str, make: impl Fn([f64; 2], &dyn Fn(usize) -> f64) -> WorldDraf
         if number % 6 == 5 {
             (world.agent_params.frame_skip, world.agent_params.time_step) = (2, 0.05);
         }
-        let world = world.check().expect("the world is sound");
-        if solved(&world).is_none() {
+        let world = world.check().expect("the world is valid");
+        if steps_to_success(&world).is_none() {
             failed.push(number);
         }
     }
@@ -250,9 +250,9 @@ fn expert_opens_doors_in_sequence_and_collects_rewards_first() {
 fn world_in_the_docs_is_solved() {
     let page = include_str!("../../docs/worlds.md");
     let text = page.split("```").find_map(|part| part.strip_prefix("json\n"));
-    let world = World::from_json("docs/worlds.md", text.expect("the page has a world")).expect("it is sound");
+    let world = World::from_json("docs/worlds.md", text.expect("the page has a world")).expect("the world is valid");
     assert_eq!(world.remarks("docs/worlds.md", text.unwrap_or_default()), []);
-    assert!(solved(&world).is_some_and(|steps| steps < 300));
+    assert!(steps_to_success(&world).is_some_and(|steps| steps < 300));
 }
 
 /// The expert does not attempt the impossible: the agent stands still, and the episode ends at its limit.
@@ -277,7 +277,7 @@ fn expert_stands_still_if_nothing_can_be_done() {
         ));
         world.rules.success = vec![touch()];
         change(&mut world);
-        let world = world.check().expect("the world is sound");
+        let world = world.check().expect("the world is valid");
         let start = Environment::new(world.clone()).agent().position;
         let (environment, _) = by_expert(world, |_, step| assert!(step.events.is_empty(), "{:?}", step.events));
         assert_eq!((environment.agent().position, environment.num_steps()), (start, 200));
@@ -327,17 +327,17 @@ proptest! {
             key("ball", [6.0, unit]),
         ];
         world.rules.success = vec![EndCondition::Carried("ball".to_owned())];
-        let mut environment = Environment::new(world.check().expect("the world is sound"));
+        let mut environment = Environment::new(world.check().expect("the world is valid"));
         let action = driftworld_env::Action::Continuous([0.0; 3]);
         let mut other = None;
         while !environment.ended() {
             if environment.num_steps() == written_at {
                 let text = environment.state().to_json();
-                other = Some(Environment::new(World::from_json("state", &text).expect("it is a sound world")));
+                other = Some(Environment::new(World::from_json("state", &text).expect("the world is valid")));
             }
-            let step = environment.step(action).expect("it goes on");
+            let step = environment.step(action).expect("the episode continues");
             if let Some(other) = &mut other {
-                prop_assert_eq!(&other.step(action).expect("it goes on"), &step);
+                prop_assert_eq!(&other.step(action).expect("the episode continues"), &step);
                 prop_assert_eq!(other.state().to_json(), environment.state().to_json());
             }
         }

@@ -1,5 +1,5 @@
-//! The agent that knows the map, in puzzles in which a step can be an irreversible mistake: keys that open only one door. The
-//! test determines by exhaustive search whether a puzzle is solvable.
+//! The expert in puzzles in which a step can be an irreversible mistake, because keys open only one door. The test determines
+//! by exhaustive search whether a puzzle is solvable.
 
 use driftworld_env::{EndedBy, Environment};
 use driftworld_spec::{Delivery, Door, EndCondition, Object, Portable, Stimulus, World, WorldDraft, Zone, ZoneEnd};
@@ -34,10 +34,10 @@ const NEIGHBOURS: [[usize; 2]; 7] = [[0, 1], [2, 3], [4, 5], [0, 2], [1, 3], [2,
 impl Puzzle {
     /// Whether the goal can be reached from room 0, by exhaustive search over doors and keys.
     fn can_be_solved(&self) -> bool {
-        self.can_go_on([false; 7], &vec![false; self.keys.len()])
+        self.is_solvable_from([false; 7], &vec![false; self.keys.len()])
     }
 
-    fn can_go_on(&self, opened: [bool; 7], used: &[bool]) -> bool {
+    fn is_solvable_from(&self, opened: [bool; 7], used: &[bool]) -> bool {
         let mut reached = [false; 6];
         reached[0] = true;
         for _ in 0..6 {
@@ -63,7 +63,7 @@ impl Puzzle {
                 let (mut opened, mut used) = (opened, used.to_vec());
                 opened[number] = true;
                 used[key] = self.consumed;
-                self.can_go_on(opened, &used)
+                self.is_solvable_from(opened, &used)
             })
         })
     }
@@ -120,7 +120,7 @@ impl Puzzle {
         let mut numbers: Vec<usize> = (0..objects.len()).collect();
         numbers.sort_by_key(|number| (order.get(*number).copied().unwrap_or(*number), *number));
         world.objects = numbers.into_iter().map(|number| objects[number].clone()).collect();
-        world.check().expect("the world is sound")
+        world.check().expect("the world is valid")
     }
 }
 
@@ -135,7 +135,7 @@ fn thing(class: &str, tag: &str, [x, y]: [f64; 2], [dx, dy]: [f64; 2]) -> Object
 }
 
 /// Runs an episode and returns whether it was a success. Checks the carry limit.
-fn lives(world: World) -> bool {
+fn succeeds(world: World) -> bool {
     let most = world.agent_params.carry_limit as usize;
     let (_, last) = by_expert(world, |environment, _| {
         assert!(environment.objects().iter().filter(|own| own.carried).count() <= most);
@@ -192,7 +192,7 @@ fn carried_past_lava([ford, key_x, thickness]: [f64; 3], fails: bool, is_discret
     let (tag, to) = ("ball".to_owned(), "box".to_owned());
     world.rules.success = vec![EndCondition::Delivered(Delivery { tag, to, within: 2.0 })];
     let mut paid = 0.0;
-    let (_, last) = by_expert(world.check().expect("the world is sound"), |_, step| {
+    let (_, last) = by_expert(world.check().expect("the world is valid"), |_, step| {
         paid += step.reward;
     });
     (paid, last.ended_by)
@@ -207,7 +207,7 @@ proptest! {
         puzzle in puzzle().prop_filter("solvable", Puzzle::can_be_solved),
         order in prop::collection::vec(0..100_usize, 12),
     ) {
-        prop_assert!(lives(puzzle.world(&order)));
+        prop_assert!(succeeds(puzzle.world(&order)));
     }
 }
 
@@ -224,20 +224,20 @@ fn key_is_not_used_on_the_wrong_door() {
             consumed: true,
             goal,
         };
-        assert!(puzzle.can_be_solved() && lives(puzzle.world(&[])), "{goal}");
+        assert!(puzzle.can_be_solved() && succeeds(puzzle.world(&[])), "{goal}");
         // A reward behind the other door is worth less than the success.
         let coin_too = puzzle.world(&[]).edit(|world| {
             let mut coin = thing("geometric", "coin", middle(3 - goal), [0.0, 0.5]);
             (coin.reward, coin.reward_once_stimulus) = (1.0, vec![Stimulus::AgentCollide]);
             world.objects.insert(0, coin);
         });
-        assert!(lives(coin_too.expect("the world is sound")), "{goal}");
+        assert!(succeeds(coin_too.expect("the world is valid")), "{goal}");
         // Two keys, the second behind one of the doors: that door comes first.
         let more = Puzzle {
             keys: vec![(0, 0), (3 - goal, 0)],
             ..puzzle
         };
-        assert!(more.can_be_solved() && lives(more.world(&[])), "{goal}");
+        assert!(more.can_be_solved() && succeeds(more.world(&[])), "{goal}");
     }
 }
 
@@ -255,7 +255,7 @@ fn hall() -> WorldDraft {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// An agent that can carry several things collects them before it goes to the box, and then goes there only once.
+    /// An agent that can carry several objects collects them before it goes to the box, so that it goes there only once.
     #[test]
     fn things_are_collected_before_delivery(
         places in prop::collection::vec(prop::array::uniform2(-5.0..5.0_f64), 2..5),
@@ -276,7 +276,7 @@ proptest! {
         let (tag, to) = ("ball".to_owned(), "box".to_owned());
         world.rules.success = vec![EndCondition::Delivered(Delivery { tag, to, within: 3.0 })];
         let (mut carried, mut most, mut trips) = (0_usize, 0, 0);
-        let (_, last) = by_expert(world.check().expect("the world is sound"), |environment, _| {
+        let (_, last) = by_expert(world.check().expect("the world is valid"), |environment, _| {
             let now = environment.objects().iter().filter(|own| own.carried).count();
             trips += usize::from(carried > 0 && now == 0);
             (carried, most) = (now, most.max(now));
@@ -315,7 +315,7 @@ proptest! {
         prop_assert_eq!(came_of_it, (0.0, Some(EndedBy::Steps)), "who is shut in stays there");
     }
 
-    /// With only a zone as a goal, behind a door, the expert gets there and stays.
+    /// If the only goal is a zone behind a door, the expert goes there and stays.
     #[test]
     fn zone_behind_a_locked_door_is_reached(x in -5.0..5.0_f64, ends in any::<bool>()) {
         let mut between = [Between::Wall; 7];
@@ -329,7 +329,7 @@ proptest! {
             world.environment_params.zones.push(zone);
             world.max_steps = 400;
         });
-        let (environment, last) = by_expert(world.expect("the world is sound"), |_, _| ());
+        let (environment, last) = by_expert(world.expect("the world is valid"), |_, _| ());
         prop_assert!(!ends || last.success);
         prop_assert!(ends || environment.episode_return() > 15.0, "{}", environment.episode_return());
     }
@@ -360,7 +360,7 @@ fn saved_plan_resumes_bit_for_bit() {
         (coin.reward, coin.reward_once_stimulus) = (1.0, vec![Stimulus::AgentCollide]);
         world.objects.push(coin);
     });
-    let world = world.expect("the world is sound");
+    let world = world.expect("the world is valid");
     let action = driftworld_env::Action::Continuous([0.0; 3]);
     let mut length = 400;
     let mut written_at = 0;
@@ -370,11 +370,17 @@ fn saved_plan_resumes_bit_for_bit() {
         while !environment.ended() {
             if environment.num_steps() == written_at {
                 let text = environment.state().to_json();
-                other = Some(Environment::new(World::from_json("state", &text).expect("it is sound")));
+                other = Some(Environment::new(
+                    World::from_json("state", &text).expect("the world is valid"),
+                ));
             }
-            let step = environment.step(action).expect("it goes on");
+            let step = environment.step(action).expect("the episode continues");
             if let Some(other) = &mut other {
-                assert_eq!(other.step(action).expect("it goes on"), step, "written at {written_at}");
+                assert_eq!(
+                    other.step(action).expect("the episode continues"),
+                    step,
+                    "written at {written_at}"
+                );
             }
         }
         assert!(environment.num_steps() < 4000, "it has its success");

@@ -1,5 +1,6 @@
-//! The expert does what it can: unreachable objects do not keep it from others, and it touches nothing that ends the episode as
-//! a failure. With doors and things it uses the planner, otherwise the tour; both are tested.
+//! The expert completes every subgoal that it can: unreachable objects do not keep it from others, and it does not touch
+//! objects that end the episode as a failure. In worlds with doors or carriable objects it uses the planner, otherwise the
+//! tour; both are tested.
 
 use driftworld_env::EndedBy;
 use driftworld_spec::{EndCondition, Object, Portable, Stimulus, Wall, World, WorldDraft};
@@ -51,7 +52,7 @@ fn cell([x, y]: [f64; 2]) -> Vec<Wall> {
 }
 
 /// How an episode of the expert ends, and its return.
-fn lived(world: World) -> (Option<EndedBy>, bool, f64) {
+fn run_expert(world: World) -> (Option<EndedBy>, bool, f64) {
     let mut earned = 0.0;
     let (_, last) = by_expert(world, |_, step| earned += step.reward);
     (last.ended_by, last.success, earned)
@@ -79,7 +80,7 @@ proptest! {
         if let Some(x) = open {
             world.objects.push(cube("gem", [x, -9.0], 5.0));
         }
-        let (ended_by, success, earned) = lived(world.check().expect("it is sound"));
+        let (ended_by, success, earned) = run_expert(world.check().expect("the world is valid"));
         prop_assert!(success, "{ended_by:?} after {earned}");
         let expected = pays + if open.is_some() { 5.0 } else { 0.0 };
         prop_assert_eq!(earned, expected);
@@ -99,7 +100,7 @@ proptest! {
         }));
         world.rules.failure = vec![EndCondition::Touch("lava".to_owned())];
         world.agent_params.heading = heading;
-        let (ended_by, success, earned) = lived(world.check().expect("it is sound"));
+        let (ended_by, success, earned) = run_expert(world.check().expect("the world is valid"));
         prop_assert!(success, "{ended_by:?} after {earned}");
     }
 }
@@ -107,7 +108,7 @@ proptest! {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 60)))]
 
-    /// Things that block no path stay where they are, anywhere on open ground, however many there are.
+    /// Carriable objects on open ground that block no path are not moved, whatever their number.
     #[test]
     fn thing_beside_the_path_is_left_alone(
         things in prop::collection::vec(prop::array::uniform2(-8.0..8.0_f64), 1..6), heading in 0.0..360.0_f64,
@@ -121,14 +122,14 @@ proptest! {
             key.portable = Some(Portable::default());
             key
         }));
-        let (_, last) = by_expert(world.check().expect("it is sound"), |environment, _| {
+        let (_, last) = by_expert(world.check().expect("the world is valid"), |environment, _| {
             assert!(environment.objects().iter().all(|own| !own.carried));
         });
         prop_assert!(last.success, "{:?}", last.ended_by);
     }
 }
 
-/// A thing right behind a doorway that leaves no way around: an agent that may carry it takes it out of the way.
+/// An object right behind a doorway, which leaves no way around it: an agent that may carry it moves it out of the way.
 #[test]
 fn thing_in_the_way_is_picked_up() {
     let behind = |carry_limit: u32, at: f64| {
@@ -139,7 +140,7 @@ fn thing_in_the_way_is_picked_up() {
         key.portable = Some(Portable::default());
         world.objects.push(key);
         world.agent_params.carry_limit = carry_limit;
-        lived(world.check().expect("it is sound"))
+        run_expert(world.check().expect("the world is valid"))
     };
     for at in [0.7, 0.8, 0.9] {
         assert_eq!(

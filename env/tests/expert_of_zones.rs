@@ -1,4 +1,4 @@
-//! The agent on rails knows the zones: it avoids those that cost, and visits those that pay when nothing else does.
+//! The expert takes zones into account: it avoids those that cost, and visits those that pay if nothing else does.
 
 use driftworld_env::{Action, EndedBy, Environment};
 use driftworld_spec::{ActionModel, EndCondition, Object, Stimulus, WorldDraft, Zone, ZoneEnd};
@@ -14,15 +14,15 @@ fn start(zones: Vec<Zone>, at: [f64; 2], change: impl FnOnce(&mut WorldDraft)) -
     let agent = &mut world.agent_params;
     (agent.coordinates, agent.action_model) = (at, ActionModel::OnRails);
     change(&mut world);
-    Environment::new(world.check().expect("the world is sound"))
+    Environment::new(world.check().expect("the world is valid"))
 }
 
 /// The cause of the end, whether it was a success, and the return.
-fn live(environment: &mut Environment) -> (Option<EndedBy>, bool, f64) {
+fn run_episode(environment: &mut Environment) -> (Option<EndedBy>, bool, f64) {
     loop {
         let step = environment
             .step(Action::Continuous([0.0; 3]))
-            .expect("the episode goes on");
+            .expect("the episode continues");
         if step.ended() {
             return (step.ended_by, step.success, environment.episode_return());
         }
@@ -54,7 +54,7 @@ proptest! {
             lava([[ford + width / 2.0, -1.0], [15.0, 1.0]]),
         ];
         for ([x, y], radius) in pools {
-            // Neither in the ford, nor on the agent or the goal.
+            // Pools cover neither the ford, nor the agent, nor the goal.
             let y = if y > 0.0 { 6.0 + y / 5.0 } else { y / 5.0 - 5.0 };
             let mut pool = Zone::disc([x, y], radius);
             pool.reward_per_second = -10.0;
@@ -66,7 +66,7 @@ proptest! {
             world.objects.push(goal);
             world.rules.success = vec![EndCondition::AllCollected];
         });
-        prop_assert_eq!(live(&mut environment), (Some(EndedBy::AllCollected), true, 1.0));
+        prop_assert_eq!(run_episode(&mut environment), (Some(EndedBy::AllCollected), true, 1.0));
     }
 
     /// If nothing else pays, it goes to the zone that does, and stays there.
@@ -83,7 +83,7 @@ proptest! {
         let mut poor = Zone::disc([-zone[0], zone[1]], 0.8);
         poor.reward_on_entering = 0.001;
         let mut environment = start(vec![poor, wanted], at, |_| ());
-        let (ended_by, success, paid) = live(&mut environment);
+        let (ended_by, success, paid) = run_episode(&mut environment);
         if ends {
             prop_assert_eq!((ended_by, success), (Some(EndedBy::Zone), true));
         } else {

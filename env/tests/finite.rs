@@ -1,4 +1,4 @@
-//! Worlds in which any number may be at a limit of its range: everything in a step is finite, and the saved world resumes.
+//! Worlds in which any number may be at a limit of its range: all numbers in a step are finite, and the saved world resumes.
 
 use driftworld_env::{Action, Environment};
 use driftworld_spec::World;
@@ -25,7 +25,7 @@ const WORDS: &str = "a b tree geometric door switch rock animal red 2";
 
 fn resolved<'a>(root: &'a Value, mut node: &'a Value) -> &'a Value {
     while let Some(target) = node["$ref"].as_str() {
-        node = root.pointer(&target[1..]).expect("the schema has what it refers to");
+        node = root.pointer(&target[1..]).expect("the schema's references resolve");
     }
     node
 }
@@ -92,7 +92,7 @@ fn world(dice: &mut Dice) -> World {
         } else {
             (&mut next[part], resolved(root, &root["properties"][part]))
         };
-        let properties = node["properties"].as_object().expect("it has keys");
+        let properties = node["properties"].as_object().expect("the schema has properties");
         let keys: Vec<&String> = properties
             .keys()
             .filter(|key| !["$schema", "version", "progress"].contains(&key.as_str()))
@@ -119,7 +119,7 @@ fn world(dice: &mut Dice) -> World {
         world.agent_params.supersampling = 1;
         world.agent_params.frame_skip = world.agent_params.frame_skip.min(20);
     });
-    small.expect("looks are not what makes it sound")
+    small.expect("the looks do not affect validity")
 }
 
 /// Number of worlds to try; `DRIFTWORLD_FINITE` overrides it.
@@ -154,7 +154,7 @@ proptest! {
             let written = environment.state();
             let read = World::from_json("state", &written.to_json());
             prop_assert!(read.is_ok(), "{}\n{shown}", read.unwrap_err());
-            let read = read.expect("it was checked");
+            let read = read.expect("the document is valid");
             prop_assert_eq!(&read, &written);
             prop_assert_eq!(Environment::new(read).state().to_json(), written.to_json(), "{}", shown);
         }

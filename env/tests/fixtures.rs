@@ -5,17 +5,17 @@ use driftworld_spec::{Object, Portable, Wall, World, WorldDraft};
 
 /// An environment at the start of its first episode.
 pub(crate) fn start(world: WorldDraft) -> Environment {
-    Environment::new(world.check().expect("the world is sound"))
+    Environment::new(world.check().expect("the world is valid"))
 }
 
 /// One step, before the episode has ended.
 pub(crate) fn step(environment: &mut Environment, action: Action) -> Step {
     environment
         .step(action)
-        .expect("the episode is not over and the action is sound")
+        .expect("the episode is not over and the action is valid")
 }
 
-/// A wall with these corners and the arena's height and colour.
+/// A wall with these corners, and with the height and colour of the arena's walls.
 pub(crate) fn wall_of(corners: impl Into<Vec<[f64; 2]>>) -> Wall {
     Wall {
         polygon: corners.into(),
@@ -43,7 +43,7 @@ pub(crate) fn by_expert(world: World, mut look: impl FnMut(&Environment, &Step))
     expert.begin(0);
     loop {
         let action = expert.act(&environment);
-        let step = environment.step(action).expect("the expert's actions are sound");
+        let step = environment.step(action).expect("the expert's actions are valid");
         look(&environment, &step);
         if step.ended() {
             return (environment, step);

@@ -32,7 +32,7 @@ fn import(bytes: &[u8]) -> Result<Imported, EnvError> {
 }
 
 /// A tetrahedron of 1 m in glTF's axes; every case is a broken variant of it.
-fn sound() -> Value {
+fn valid_document() -> Value {
     let corners: [[f32; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let indices: [u16; 12] = [0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3];
     document(&corners, &indices)
@@ -79,17 +79,17 @@ fn data_uri(bytes: &[u8]) -> String {
     uri
 }
 
-/// The valid document with one place changed.
+/// The valid document with one value changed.
 fn with(pointer: &str, value: Value) -> Vec<u8> {
     changed(&[(pointer, value)])
 }
 
-/// The valid document with several places changed; missing places are created.
+/// The valid document with several values changed; missing ones are created.
 fn changed(changes: &[(&str, Value)]) -> Vec<u8> {
-    let mut document = sound();
+    let mut document = valid_document();
     for (pointer, value) in changes {
         let (parent, key) = pointer.rsplit_once('/').expect("a pointer has a slash");
-        match document.pointer_mut(parent).expect("the parent is there") {
+        match document.pointer_mut(parent).expect("the parent exists") {
             Value::Array(list) => {
                 let at: usize = key.parse().expect("lists have numbers");
                 if at < list.len() {
@@ -153,7 +153,7 @@ fn textured(png: &[u8]) -> Vec<u8> {
     ])
 }
 
-/// The valid document with texture 1, which repeats as sampler 0 says, and one place changed.
+/// The valid document with texture 1, which repeats as specified by sampler 0, and with one value changed.
 fn textured_with(pointer: &str, value: Value) -> Vec<u8> {
     changed(&[
         (
@@ -167,7 +167,7 @@ fn textured_with(pointer: &str, value: Value) -> Vec<u8> {
     ])
 }
 
-/// Valid documents with places changed: in each line the file's name, then each place with its new value.
+/// Valid documents with changed values: each line has the file's name, then the pointer and the new value of each change.
 const CHANGED: &str = r#"version_1_names.gltf | /meshes {"box": {"primitives": []}}
 version_1.gltf | /asset/version "1.0"
 extension_unknown.gltf | /extensionsRequired ["VENDOR_secret_sauce"]
@@ -228,7 +228,7 @@ scaled_to_nothing.gltf | /nodes/0/scale [0, 0, 0]
 scaled_beyond.gltf | /nodes/0/scale [1e38, 1e38, 1e38]
 color_above_1.gltf | /materials/0/pbrMetallicRoughness/baseColorFactor [2.0, 0.0, 0.0, 1.0]"#;
 
-fn changed_places(row: &'static str) -> (&'static str, Vec<u8>) {
+fn changed_values(row: &'static str) -> (&'static str, Vec<u8>) {
     let mut parts = row.split(" | ");
     let name = parts.next().expect("a row has a name");
     let change = |part: &'static str| {
@@ -240,12 +240,12 @@ fn changed_places(row: &'static str) -> (&'static str, Vec<u8>) {
 
 /// All cases: file name and bytes.
 fn cases() -> Vec<(&'static str, Vec<u8>)> {
-    let changed = CHANGED.lines().map(changed_places).collect();
+    let changed = CHANGED.lines().map(changed_values).collect();
     [changed, containers(), documents(), triangles()].concat()
 }
 
 fn containers() -> Vec<(&'static str, Vec<u8>)> {
-    let json = text(&sound());
+    let json = text(&valid_document());
     let mut overrun = glb(2, &json, 0);
     overrun[12..16].copy_from_slice(&u32::MAX.to_le_bytes());
     let mut binary_first = glb(2, &json, 0);
@@ -275,10 +275,10 @@ fn containers() -> Vec<(&'static str, Vec<u8>)> {
 
 fn documents() -> Vec<(&'static str, Vec<u8>)> {
     let chain = (1..=70).map(|next| json!({"children": [next]}));
-    let sound = String::from_utf8(with("/nodes/0/scale", json!([123, 1, 1]))).expect("JSON is UTF-8");
+    let valid_document = String::from_utf8(with("/nodes/0/scale", json!([123, 1, 1]))).expect("JSON is UTF-8");
     let other_source = |texture: Value| textured_with("/textures", json!([{"source": 0}, texture]));
     vec![
-        ("json_cut.gltf", text(&self::sound())[..300].to_vec()),
+        ("json_cut.gltf", text(&self::valid_document())[..300].to_vec()),
         ("json_nested.gltf", [b"[".repeat(2000), b"]".repeat(2000)].concat()),
         ("json_other.gltf", b"{\"task\": \"find_objects\"}\n".to_vec()),
         ("json_long_text.gltf", with("/nodes", json!("x".repeat(2000)))),
@@ -293,7 +293,10 @@ fn documents() -> Vec<(&'static str, Vec<u8>)> {
         ("png_huge.gltf", textured(&png_header(100_000, 100_000))),
         ("png_cut.gltf", textured(&png_header(8, 8))),
         ("matrix_overflow.gltf", with("/nodes/0/matrix", json!(vec![1e30; 16]))),
-        ("number_too_large.gltf", sound.replace("123", "1e999").into_bytes()),
+        (
+            "number_too_large.gltf",
+            valid_document.replace("123", "1e999").into_bytes(),
+        ),
     ]
 }
 
@@ -346,7 +349,7 @@ fn every_hostile_file_is_refused_with_its_message() {
 
 #[test]
 fn unbroken_document_is_valid() {
-    let model = import(&text(&sound())).expect("the base of all cases is sound");
+    let model = import(&text(&valid_document())).expect("the base of all cases is valid");
     assert_eq!(model.warnings, []);
     assert_eq!(model.model.level(0), Some((4, 0.0)));
     let pixels = [[255, 0, 0], [0, 255, 0]].concat();
@@ -368,7 +371,7 @@ fn unbroken_document_is_valid() {
 fn large_input_is_refused_before_allocating() {
     #[track_caller]
     fn check(bytes: &[u8], expected: &str) {
-        let error = import(bytes).expect_err("it is too large").to_string();
+        let error = import(bytes).expect_err("the file is too large").to_string();
         assert!(error.contains(expected), "{error}");
     }
     let many = format!(
@@ -411,7 +414,7 @@ fn invalid_options_are_refused() {
     ] {
         let mut options = options();
         change(&mut options);
-        let error = LibraryModel::from_gltf(&text(&sound()), &options, &mut |_| Err(String::new()));
+        let error = LibraryModel::from_gltf(&text(&valid_document()), &options, &mut |_| Err(String::new()));
         let error = error.expect_err(expected).to_string();
         assert!(error.starts_with(expected), "{error}");
     }
@@ -420,10 +423,10 @@ fn invalid_options_are_refused() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 512)))]
 
-    /// Any bytes of a valid file may change to anything.
+    /// Any bytes of a valid file are replaced with random ones.
     #[test]
     fn changed_bytes_never_panic(changes in proptest::collection::vec((any::<usize>(), any::<u8>()), 1..12)) {
-        let mut bytes = text(&sound());
+        let mut bytes = text(&valid_document());
         for (at, byte) in changes {
             let at = at % bytes.len();
             bytes[at] = byte;
@@ -431,13 +434,13 @@ proptest! {
         let _ = import(&bytes);
     }
 
-    /// The same in a GLB file, which also has binary lengths and numbers.
+    /// The same for a GLB file, which also has binary lengths and numbers.
     #[test]
     fn changed_bytes_of_a_glb_never_panic(
         changes in proptest::collection::vec((any::<usize>(), any::<u8>()), 1..8),
         cut in any::<usize>(),
     ) {
-        let mut bytes = glb(2, &text(&sound()), 0);
+        let mut bytes = glb(2, &text(&valid_document()), 0);
         for (at, byte) in changes {
             // Half of the changes are in the headers.
             let at = if at % 2 == 0 { at / 2 % 20 } else { at % bytes.len() };
@@ -449,13 +452,13 @@ proptest! {
         let _ = import(&bytes);
     }
 
-    /// Any number of a valid file may change to any number.
+    /// Any number of a valid file is replaced with another one.
     #[test]
     fn changed_numbers_never_panic(
         at in any::<prop::sample::Index>(),
         number in prop_oneof![Just(0_i64), Just(-1), Just(1), Just(i64::MAX), Just(65_536), any::<i64>(), 0_i64..200],
     ) {
-        let text = serde_json::to_string(&sound()).expect("the document is JSON");
+        let text = serde_json::to_string(&valid_document()).expect("the document is JSON");
         let digits: Vec<(usize, usize)> = {
             let bytes = text.as_bytes();
             let is_digit = |k: usize| bytes.get(k).is_some_and(u8::is_ascii_digit);

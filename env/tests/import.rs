@@ -1,4 +1,4 @@
-//! Valid glTF files become the models that they describe: upright, with the right size and colours; and worlds find them.
+//! Valid glTF files become the models that they describe: upright, with the right size and colours; and worlds can use them.
 #![cfg(feature = "gltf")]
 
 use std::path::Path;
@@ -68,7 +68,7 @@ impl Quad {
 
     fn set(mut self, pointer: &str, value: Value) -> Self {
         let (parent, key) = pointer.rsplit_once('/').expect("a pointer has a slash");
-        self.json.pointer_mut(parent).expect("the parent is there")[key] = value;
+        self.json.pointer_mut(parent).expect("the parent exists")[key] = value;
         self
     }
 
@@ -163,7 +163,7 @@ fn nested_nodes_multiply_and_height_is_kept() {
     assert_eq!(
         (imported.height, imported.radius),
         (2.0, 2.0),
-        "on the ground and centred, wherever it was"
+        "on the ground and centred, regardless of its original position"
     );
     let tall = ImportOptions {
         size: ImportSize::Height(3.0),
@@ -243,7 +243,7 @@ fn triangles_take_their_colour_from_the_texture() {
 }
 
 #[test]
-fn textures_wrap_as_their_sampler_says() {
+fn textures_wrap_as_specified_by_their_sampler() {
     /// The colour of the first triangle, the only one with glTF's corner (2, 0, 0), then that of the second.
     #[track_caller]
     fn check(wrap: u32, expected: [[i32; 3]; 2]) {
@@ -340,7 +340,7 @@ fn libraries_override_built_in_models() {
         !triangles("tree", "oak").0 && !triangles("dragon", "1").0,
         "a placeholder"
     );
-    let read = Library::from_bytes(&library.to_bytes()).expect("it is whole");
+    let read = Library::from_bytes(&library.to_bytes()).expect("the bytes are a valid library");
     assert_eq!(read, library);
 }
 
@@ -348,7 +348,7 @@ fn libraries_override_built_in_models() {
 fn batches_and_spawned_objects_use_the_library() {
     let (_, catalogue) = catalogue("screen");
     let world = WorldDraft::with_objects(vec![Object::new("screen", [0.0, 5.0])]);
-    let world = world.check().expect("the world is sound");
+    let world = world.check().expect("the world is valid");
     let mut alone = Environment::with_catalogue(world.clone(), catalogue.clone());
     let index = alone.spawn(Object::new("screen", [3.0, 3.0])).expect("there is room");
     assert!(alone.scene().items[index].asset.known);
@@ -359,13 +359,13 @@ fn batches_and_spawned_objects_use_the_library() {
         ..BatchOptions::default()
     };
     let mut batch = Batch::with_catalogue(2, source, options, &catalogue).expect("the worlds start");
-    // The quad is 2 m wide and in the way at 5 m: minus the agent's half metre and the skin.
+    // The quad is 2 m wide and blocks the path at 5 m: the agent stops half a metre and a skin before it.
     for _ in 0..20 {
         let ahead = Action::Continuous([10.0, 0.0, 0.0]);
-        batch.step(&[ahead; 2]).expect("the episodes go on");
-        alone.step(ahead).expect("the episode goes on");
+        batch.step(&[ahead; 2]).expect("the episodes continue");
+        alone.step(ahead).expect("the episode continues");
     }
-    let seen = batch.environment(1).expect("there are two");
+    let seen = batch.environment(1).expect("there are two objects");
     assert_eq!(seen.agent().position, alone.agent().position);
     assert!(
         (4.4..4.5).contains(&alone.agent().position[1]),
@@ -377,11 +377,13 @@ fn batches_and_spawned_objects_use_the_library() {
 #[test]
 fn built_in_model_files_are_imported_without_warnings() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/models");
-    let files = std::fs::read_dir(folder).expect("it is part of the repository");
-    let paths: Vec<_> = files.map(|file| file.expect("it can be listed").path()).collect();
+    let files = std::fs::read_dir(folder).expect("the folder is part of the repository");
+    let paths: Vec<_> = files
+        .map(|file| file.expect("the folder can be listed").path())
+        .collect();
     assert_eq!(paths.len(), 35);
     for path in paths {
-        let bytes = std::fs::read(&path).expect("it can be read");
+        let bytes = std::fs::read(&path).expect("the file can be read");
         let imported = LibraryModel::from_gltf(&bytes, &options("row"), &mut |_| Err("one file".into()));
         let imported = imported.unwrap_or_else(|error| panic!("{}: {error}", path.display()));
         assert_eq!(imported.warnings, [], "{}", path.display());

@@ -85,9 +85,9 @@ fn with_single_walls(world: &World) -> World {
     single.unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Everything that an agent can observe in a step.
-fn told(environment: &mut Environment, action: Action) -> (String, Vec<u8>, Vec<u32>) {
-    let step = environment.step(action).expect("the action is sound");
+/// All observations of an agent in a step.
+fn observe_step(environment: &mut Environment, action: Action) -> (String, Vec<u8>, Vec<u32>) {
+    let step = environment.step(action).expect("the action is valid");
     let said = format!("{:?} {} {}", environment.agent(), step.reward, step.terminated);
     let frame = environment.observe();
     let depth = frame.depth.iter().map(|metres| metres.to_bits()).collect();
@@ -108,7 +108,7 @@ proptest! {
         for _ in 0..40 {
             let [single, layout] = [0, 1].map(|k| {
                 let action = agents[k].act(&environments[k]);
-                told(&mut environments[k], action)
+                observe_step(&mut environments[k], action)
             });
             prop_assert!(single == layout, "{} {}", single.0, layout.0);
         }
@@ -130,14 +130,14 @@ proptest! {
         agent.begin(seed);
         for _ in 0..15 {
             let action = agent.act(&environment);
-            told(&mut environment, action);
+            observe_step(&mut environment, action);
         }
         let text = environment.state().to_json();
         let mut again = Environment::new(World::from_json("state.json", &text).unwrap());
         prop_assert_eq!(again.world().plan(), environment.world().plan());
         for _ in 0..15 {
             let action = agent.act(&environment);
-            prop_assert!(told(&mut again, action) == told(&mut environment, action));
+            prop_assert!(observe_step(&mut again, action) == observe_step(&mut environment, action));
         }
     }
 
@@ -151,7 +151,7 @@ proptest! {
         agent.begin(seed);
         for _ in 0..80 {
             let action = agent.act(&environment);
-            told(&mut environment, action);
+            observe_step(&mut environment, action);
             let at = environment.agent().position;
             for wall in &walls {
                 let beyond = [0, 1].map(|axis| {
@@ -165,14 +165,14 @@ proptest! {
     }
 }
 
-/// Whether the on-rails agent collects the goal within 1500 steps.
+/// Whether the expert collects the goal within 1500 steps.
 fn expert_arrives(world: World) -> bool {
     let mut environment = Environment::new(world);
     let mut agent = OnRailsAgent::new();
     agent.begin(0);
     for _ in 0..1500 {
         let action = agent.act(&environment);
-        environment.step(action).expect("the action is sound");
+        environment.step(action).expect("the action is valid");
         if !environment.objects()[0].present {
             return true;
         }

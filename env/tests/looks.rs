@@ -1,5 +1,5 @@
-//! Images in the natural style: the same objects at the same places as in the plain style, the same pixels with every
-//! instruction set, and surfaces with their plain colour from a distance.
+//! Images in the natural style: objects are at the same positions as in the plain style, pixels are the same with every
+//! instruction set, and distant surfaces have their plain colour.
 
 use driftworld_env::{Camera, CpuRenderer, FAR_DEPTH, Frame, Scene, Target};
 use driftworld_spec::{Covering, Layout, Looks, Maze, Object, Rooms, Style, Surface, Wall, World, WorldDraft, Zone};
@@ -10,7 +10,7 @@ fn natural() -> Looks {
 }
 
 fn checked(world: &WorldDraft) -> World {
-    world.clone().check().expect("the world is sound")
+    world.clone().check().expect("the world is valid")
 }
 
 fn draw_with(renderer: &mut CpuRenderer, world: &WorldDraft, camera: &Camera, [width, height]: [u32; 2]) -> Frame {
@@ -104,7 +104,9 @@ fn instruction_sets_render_the_same_natural_pixels() {
                         class: has_classes.then_some(&mut other.class[..]),
                         ..Target::default()
                     };
-                    renderer.draw(&scene, &eyes(heading), &mut target).expect("it draws");
+                    renderer
+                        .draw(&scene, &eyes(heading), &mut target)
+                        .expect("the image renders");
                     assert_eq!(other.rgb, frame.rgb, "{place}: without instances");
                     if has_classes {
                         assert_eq!(
@@ -177,7 +179,7 @@ fn ground(surface: Surface) -> WorldDraft {
 
 fn surfaces() -> [Surface; 9] {
     let names = r#"["stone", "plaster", "cobbles", "noise", "brick", "plank", "tile", "stripes", "checker"]"#;
-    serde_json::from_str(names).expect("they are surfaces")
+    serde_json::from_str(names).expect("the names are surfaces")
 }
 
 #[test]
@@ -210,7 +212,7 @@ fn surfaces_do_not_shimmer() {
         let most = changes.into_iter().max();
         assert!(
             mean < 1.5 && most < Some(40),
-            "{surface:?}: {mean} on the whole, {most:?} at most"
+            "{surface:?}: {mean} on average, {most:?} at most"
         );
     }
 }
@@ -218,7 +220,8 @@ fn surfaces_do_not_shimmer() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 96)))]
 
-    /// Where a wall or an object meets the ground, both are darker than a metre away: in flat colours, without shadows.
+    /// A wall or an object and the ground are darker where they meet than a metre away. Tested in flat colours, without
+    /// shadows.
     #[test]
     fn ground_contacts_have_a_dark_line(away in 2.6..3.6_f64, eye in 0.9..1.6_f32, is_wall in any::<bool>(), ceiling in any::<bool>()) {
         let mut world = ground(Surface::Plain);
@@ -275,8 +278,8 @@ fn ground_below_a_walls_leaning_edge_stays_bright() {
     assert!(count(500..540) > 400);
 }
 
-/// Doors, keys, cubes and switches show a pattern, however many there are, and only that: depth, categories and objects are
-/// those of the plain style.
+/// Doors, keys, cubes and switches show a pattern, regardless of their number; depth, categories and objects are those of the
+/// plain style.
 #[test]
 fn doors_keys_cubes_and_switches_have_a_finish() {
     for class in ["door", "key", "cube", "switch"] {
@@ -354,7 +357,7 @@ fn shadows_darken_only_the_ground() {
 }
 
 /// Whether the segment from a to b enters a convex polygon, by clipping it at each edge.
-fn comes_into([a, b]: [[f32; 2]; 2], polygon: &[[f32; 2]]) -> bool {
+fn enters([a, b]: [[f32; 2]; 2], polygon: &[[f32; 2]]) -> bool {
     let (mut first, mut last) = (0.0_f32, 1.0_f32);
     for (k, from) in polygon.iter().enumerate() {
         let to = polygon[(k + 1) % polygon.len()];
@@ -411,8 +414,8 @@ proptest! {
                 let (right, down) = (offset(pixel % SIDE), offset(pixel / SIDE));
                 let depth = without.depth[pixel];
                 let at = [right * depth, depth - 2.0];
-                let is_ground = (EYE - down * depth).abs() < 1e-2 && !comes_into([at, at], &polygon);
-                is_ground.then(|| comes_into([at, [at[0] + reach[0], at[1] + reach[1]]], &polygon))
+                let is_ground = (EYE - down * depth).abs() < 1e-2 && !enters([at, at], &polygon);
+                is_ground.then(|| enters([at, [at[0] + reach[0], at[1] + reach[1]]], &polygon))
             })
             .collect();
         for pixel in (1..SIDE - 1).flat_map(|row| (1..SIDE - 1).map(move |column| row * SIDE + column)) {

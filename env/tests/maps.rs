@@ -42,8 +42,8 @@ fn world(layout: Layout) -> World {
     world.environment_params.layout = Some(layout);
     world.environment_params.bounding_wall_color = Color([1.0, 0.0, 0.0]);
     world.environment_params.ground_color = Color([0.0, 1.0, 0.0]);
-    world.agent_params.coordinates = world.plan().expect("it has a layout").cells[0].center;
-    world.check().expect("the world is sound")
+    world.agent_params.coordinates = world.plan().expect("the world has a layout").cells[0].center;
+    world.check().expect("the world is valid")
 }
 
 /// The pixel at a position on a square map.
@@ -67,12 +67,12 @@ fn middle(polygon: &[[f64; 2]]) -> [f64; 2] {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 32)))]
 
-    /// The centre of each wall is red, and that of each free cell is not: a maze can be read.
+    /// The centre of each wall is red, and that of each free cell is not.
     #[test]
     fn walls_are_filled_and_cells_are_free(layout in layouts()) {
         let world = world(layout);
         let image = top_down(&Scene::from_world(&world), SIZE, SIZE, None);
-        let plan = world.plan().expect("it has a layout");
+        let plan = world.plan().expect("the world has a layout");
         for wall in &plan.walls {
             let [red, green, _] = pixel(&world, &image, middle(&wall.polygon));
             prop_assert!(red > 60 && green == 0, "{red} {green} in {:?}", wall.polygon);
@@ -87,7 +87,7 @@ proptest! {
     #[test]
     fn tops_are_not_seen_from_below(layout in layouts(), cell in any::<prop::sample::Index>(), heading in 0.0..360.0_f32) {
         let world = world(layout);
-        let cells = &world.plan().expect("it has a layout").cells;
+        let cells = &world.plan().expect("the world has a layout").cells;
         let place = cells[cell.index(cells.len())].center.map(|metres| metres as f32);
         let camera = Camera::first_person(place, heading, 1.0, 60.0);
         let draw = |scene: &Scene| {
@@ -112,7 +112,7 @@ fn door_is_a_bar_along_its_leaf() {
         let mut world = WorldDraft::with_objects(vec![door]);
         world.environment_params.map_size = [12.0, 12.0];
         world.agent_params.coordinates = [-4.0, -4.0];
-        let environment = Environment::new(world.check().expect("the world is sound"));
+        let environment = Environment::new(world.check().expect("the world is valid"));
         let image = top_down(environment.scene(), SIZE, SIZE, None);
         [[0.7, 0.0], [-1.5, -0.7]].map(|place| pixel(environment.world(), &image, place)[2] > 200)
     };
@@ -124,7 +124,7 @@ fn door_is_a_bar_along_its_leaf() {
 fn path_is_a_line_through_its_positions() {
     let mut world = WorldDraft::default();
     world.environment_params.map_size = [12.0, 12.0];
-    let world = world.check().expect("the world is sound");
+    let world = world.check().expect("the world is valid");
     let scene = Scene::from_world(&world);
     let way = [[-4.0, -4.0], [-4.0, 3.0], [5.0, 3.0]];
     let with = top_down_with_way(&scene, SIZE, SIZE, None, &way);

@@ -35,7 +35,7 @@ fn every_model_stands_on_the_ground_and_fills_its_collider() {
         };
         assert!(
             body_height <= high + 0.01 && body_height > 0.6 * high,
-            "{name}: a body of {body_height} m for {high} m"
+            "{name}: the body is {body_height} m high, the model {high} m"
         );
         for axis in [0, 1] {
             let seen = |axis: usize| {
@@ -52,7 +52,7 @@ fn every_model_stands_on_the_ground_and_fills_its_collider() {
             let beyond = most - half[axis];
             assert!(
                 beyond > -0.03 && beyond < 0.30 * most + 0.15,
-                "{name}, axis {axis}: {most} m seen, {} m felt",
+                "{name}, axis {axis}: the model measures {most} m, the collider {} m",
                 half[axis]
             );
         }
@@ -70,10 +70,7 @@ fn animals_face_their_heading_and_have_natural_sizes() {
         let face = animal.parts.last().expect("a face is drawn last");
         assert!(face.mesh.corners.iter().all(|[_, y, _]| *y > 0.05), "{name} looks back");
         let (left, right) = extent(&animal, 0);
-        assert!(
-            (left + right).abs() < 0.02,
-            "{name} is the same on both sides: {left} {right}"
-        );
+        assert!((left + right).abs() < 0.02, "{name} is symmetric: {left} {right}");
         let (back, front) = extent(&animal, 1);
         assert!(front - back > 1.2 * (right - left), "{name} is longer than wide");
     }

@@ -21,7 +21,7 @@ fn start(objects: Vec<Object>) -> Environment {
 }
 
 fn begin(world: &WorldDraft) -> Environment {
-    let world = world.clone().check().expect("the world is sound");
+    let world = world.clone().check().expect("the world is valid");
     Environment::new(world)
 }
 
@@ -148,7 +148,7 @@ fn wanderers_cover_the_arena_stay_in_it_and_out_of_walls() {
     assert_ne!(
         places,
         walk(&world),
-        "where a thing more stands, a world without a seed has another chance"
+        "an additional object changes the random numbers of a world without a seed"
     );
     world.seed = Some(1);
     let seeded = walk(&world);
@@ -195,7 +195,7 @@ fn destroyed_object_respawns_after_its_delay_and_pays_again() {
     let first = position(&environment, 0);
     assert!(
         distance(first, [0.0, 3.5]) <= 0.4 + 1e-4,
-        "within 0.4 m of its first place: {first:?}"
+        "within 0.4 m of its original position: {first:?}"
     );
 }
 

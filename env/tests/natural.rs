@@ -8,7 +8,7 @@ fn world(objects: Vec<Object>, style: Style) -> World {
     let mut world = WorldDraft::with_objects(objects);
     world.environment_params.looks = Looks::of(style);
     world.environment_params.wall_height = 0.0;
-    world.check().expect("the world is sound")
+    world.check().expect("the world is valid")
 }
 
 fn of_model(class: &str, number: u32, coordinates: [f64; 2]) -> Object {
@@ -162,11 +162,11 @@ fn looks_do_not_change_trajectories() {
             ..Maze::default()
         }),
     ] {
-        looks_change_no_way_in(layout.as_ref());
+        check_trajectories(layout.as_ref());
     }
 }
 
-fn looks_change_no_way_in(maze: Option<&Maze>) {
+fn check_trajectories(maze: Option<&Maze>) {
     let objects = || {
         let place = |k: u32| [f64::from(k * 37 % 19) - 9.0, f64::from(k * 53 % 17) + 1.5 - 8.0];
         let of = |(k, class): (u32, &str)| {
@@ -188,12 +188,12 @@ fn looks_change_no_way_in(maze: Option<&Maze>) {
             ..Layout::default()
         });
         let world = world(objects(), style).edit(|world| world.environment_params.layout = layout);
-        let mut environment = Environment::new(world.expect("the world is sound"));
+        let mut environment = Environment::new(world.expect("the world is valid"));
         let mut bits = Vec::new();
         for k in 0..400_u32 {
             let turn = [0.0, 40.0, -20.0, 0.0, 15.0][k as usize / 20 % 5];
             let step = environment.step(Action::Continuous([4.0, turn, 0.0]));
-            let step = step.expect("the episode goes on");
+            let step = step.expect("the episode continues");
             let agent = environment.agent();
             bits.extend([agent.position[0], agent.position[1], agent.heading_deg].map(f32::to_bits));
             bits.extend([step.reward.to_bits() as u32, step.events.len() as u32]);

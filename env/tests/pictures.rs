@@ -11,7 +11,7 @@ use crate::fixtures::wall_of;
 fn draw(world: &WorldDraft, camera: &Camera, width: u32, height: u32) -> Frame {
     let mut frame = Frame::new(width, height);
     CpuRenderer::new().render(
-        &Scene::from_world(&world.clone().check().expect("the world is sound")),
+        &Scene::from_world(&world.clone().check().expect("the world is valid")),
         camera,
         &mut frame,
     );
@@ -121,7 +121,7 @@ fn odd_sizes_and_places_never_panic() {
         ..WorldDraft::default()
     };
     top_down(
-        &Scene::from_world(&flat.check().expect("the world is sound")),
+        &Scene::from_world(&flat.check().expect("the world is valid")),
         33,
         20,
         Some(([0.0, 0.0], 10.0)),
@@ -217,7 +217,7 @@ fn golden_image_is_unchanged() {
         let found = std::env::temp_dir().join("driftworld-picture-found.png");
         write_png(&found, &frame);
         panic!(
-            "{different} pixels differ from {}; what was drawn is in {}",
+            "{different} pixels differ from {}; the rendered image is in {}",
             path.display(),
             found.display()
         );
@@ -268,7 +268,7 @@ fn crowded() -> Scene {
     });
     let mut world = WorldDraft::with_objects(objects.collect());
     world.environment_params.predefined_map = 2;
-    Scene::from_world(&world.check().expect("the world is sound"))
+    Scene::from_world(&world.check().expect("the world is valid"))
 }
 
 #[test]
@@ -299,7 +299,7 @@ fn instruction_sets_render_the_same_pixels() {
                 };
                 renderer
                     .draw(&scene, &camera, &mut target)
-                    .expect("the sizes are sound");
+                    .expect("the sizes are valid");
                 assert_eq!((&rgb, &category), (&frame.rgb, &frame.category), "{name}, picture {k}");
                 (name, frame)
             });
@@ -361,7 +361,7 @@ fn supersampling_averages_colours_and_nothing_else() {
         };
         CpuRenderer::new()
             .draw(&scene, &camera, &mut target)
-            .expect("the sizes are sound");
+            .expect("the sizes are valid");
         frame
     };
     let (plain, smooth, large) = (draw(60, 40, 1), draw(60, 40, 2), draw(120, 80, 1));

@@ -1,4 +1,4 @@
-//! Pushing objects: how far they go, what stops them, and that nothing is pushed through a wall.
+//! Pushed objects: how far they go, which obstacles stop them, and that none is pushed through a wall.
 
 use driftworld_env::{Action, Environment, Warning};
 use driftworld_spec::{MotionModel, Object, Pushable, Stimulus, WorldDraft};
@@ -16,12 +16,12 @@ fn body(at: [f64; 2], mass: f64, friction: f64) -> Object {
 fn start(objects: Vec<Object>) -> Environment {
     let mut world = WorldDraft::with_objects(objects);
     world.environment_params.map_size = [20.0, 20.0];
-    Environment::new(world.check().expect("the world is sound"))
+    Environment::new(world.check().expect("the world is valid"))
 }
 
 fn go(environment: &mut Environment, action: Action, steps: usize) {
     for _ in 0..steps {
-        environment.step(action).expect("the episode goes on");
+        environment.step(action).expect("the episode continues");
     }
 }
 
@@ -127,9 +127,9 @@ proptest! {
         let mut world = WorldDraft::with_objects(vec![body([side, 2.0], mass, friction), body([side, 3.5], mass, friction)]);
         world.environment_params.map_size = [12.0, 12.0];
         world.agent_params.max_linear_speed = 40.0;
-        let mut environment = Environment::new(world.check().expect("the world is sound"));
+        let mut environment = Environment::new(world.check().expect("the world is valid"));
         for turn in turns {
-            environment.step(Action::Continuous([speed, turn, 0.0])).expect("the episode goes on");
+            environment.step(Action::Continuous([speed, turn, 0.0])).expect("the episode continues");
             for index in 0..2 {
                 let [x, y] = place(&environment, index);
                 prop_assert!(x.abs() < 6.0 && y.abs() < 6.0, "pushed to {x}, {y}");
@@ -158,13 +158,13 @@ fn pushed_distance_does_not_depend_on_the_time_step() {
             let mut world = WorldDraft::with_objects(vec![body]);
             world.agent_params.coordinates = [0.0, -1.2];
             world.agent_params.time_step = seconds;
-            let mut environment = Environment::new(world.check().expect("the world is sound"));
+            let mut environment = Environment::new(world.check().expect("the world is valid"));
             let first = f64::from(environment.agent().position[1]);
             let steps = (4.0 / seconds).round() as usize;
             for _ in 0..steps {
                 environment
                     .step(Action::Continuous([speed, 0.0, 0.0]))
-                    .expect("it goes on");
+                    .expect("the episode continues");
             }
             let walked = f64::from(environment.agent().position[1]) - first;
             let pushed = f64::from(environment.scene().items[0].position[1]);

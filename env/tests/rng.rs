@@ -13,7 +13,7 @@ fn start(seed: u64, objects: Vec<Object>) -> Environment {
         objects,
         ..WorldDraft::default()
     };
-    Environment::new(world.check().expect("the world is sound"))
+    Environment::new(world.check().expect("the world is valid"))
 }
 
 fn arm(at: [f64; 2], odds: f64) -> Object {
@@ -26,7 +26,7 @@ fn arm(at: [f64; 2], odds: f64) -> Object {
 /// Which pulls of an arm in front of the agent pay.
 fn pulls(seed: u64, objects: Vec<Object>, count: usize) -> Vec<bool> {
     let mut environment = start(seed, objects);
-    let mut pull = || environment.step(INTERACT).expect("it goes on").reward > 0.0;
+    let mut pull = || environment.step(INTERACT).expect("the episode continues").reward > 0.0;
     (0..count).map(|_| pull()).collect()
 }
 
@@ -73,7 +73,7 @@ proptest! {
         let walk = |objects: Vec<Object>, index: usize| {
             let mut environment = start(seed, objects);
             (0..200).map(|_| {
-                environment.step(STAND).expect("it goes on");
+                environment.step(STAND).expect("the episode continues");
                 environment.scene().items[index].position
             }).collect::<Vec<_>>()
         };
@@ -89,9 +89,9 @@ proptest! {
 fn seeded_object_keeps_its_random_numbers_at_any_place() {
     let first_goal = |at| {
         let mut environment = start(4, vec![wanderer(at, Some(11))]);
-        environment.step(STAND).expect("it goes on");
+        environment.step(STAND).expect("the episode continues");
         let progress = environment.state().into_draft().progress.expect("a state has progress");
-        progress.objects[0].goal.expect("it wanders")
+        progress.objects[0].goal.expect("the wanderer has a goal")
     };
     assert_eq!(first_goal([3.0, 4.0]), first_goal([-20.0, 1.0]));
 }
@@ -113,7 +113,7 @@ fn respawn_places_do_not_depend_on_rewards_or_other_objects() {
         let mut environment = start(8, objects);
         (0..100)
             .map(|_| {
-                environment.step(INTERACT).expect("it goes on");
+                environment.step(INTERACT).expect("the episode continues");
                 environment.scene().items[index].position
             })
             .collect::<Vec<_>>()

@@ -22,7 +22,7 @@ fn field(number: u64) -> World {
             ..Object::new("geometric", [x, y])
         });
     }
-    draft.check().expect("the field is a sound world")
+    draft.check().expect("the field is a valid world")
 }
 
 fn episode(agent: &mut dyn Agent, number: u64, learns: bool) -> f64 {
@@ -30,7 +30,7 @@ fn episode(agent: &mut dyn Agent, number: u64, learns: bool) -> f64 {
     agent.begin(number);
     while !environment.ended() {
         let action = agent.act(&environment);
-        let step = environment.step(action).expect("the agent's actions are sound");
+        let step = environment.step(action).expect("the agent's actions are valid");
         if learns {
             agent.learn(&environment, &step);
         }
@@ -42,7 +42,7 @@ fn mean(agent: &mut dyn Agent) -> f64 {
     (1000..1020).map(|number| episode(agent, number, false)).sum::<f64>() / 20.0
 }
 
-fn taught(episodes: u64) -> SarsaAgent {
+fn trained_agent(episodes: u64) -> SarsaAgent {
     let mut agent = SarsaAgent::new();
     for number in 0..episodes {
         episode(&mut agent, number, true);
@@ -53,8 +53,8 @@ fn taught(episodes: u64) -> SarsaAgent {
 #[test]
 fn learner_learns_to_find_rewards() {
     let floor = mean(&mut RandomAgent::new(0));
-    let before = mean(SarsaAgent::new().frozen().expect("it has copies").as_mut());
-    let after = mean(taught(600).frozen().expect("it has copies").as_mut());
+    let before = mean(SarsaAgent::new().frozen().expect("the agent can be copied").as_mut());
+    let after = mean(trained_agent(600).frozen().expect("the agent can be copied").as_mut());
     assert!(
         after > 2.0 * floor && after > before + 100.0,
         "before {before}, after {after}, random {floor}"
@@ -63,7 +63,7 @@ fn learner_learns_to_find_rewards() {
 
 #[test]
 fn same_seeds_give_the_same_learner() {
-    let [mut first, mut second] = [taught(10), taught(10)];
+    let [mut first, mut second] = [trained_agent(10), trained_agent(10)];
     for number in 50..60 {
         assert_eq!(episode(&mut first, number, true), episode(&mut second, number, true));
     }
@@ -71,8 +71,8 @@ fn same_seeds_give_the_same_learner() {
 
 #[test]
 fn evaluations_do_not_change_copy_or_learner() {
-    let (mut evaluated, mut left_alone) = (taught(10), taught(10));
-    let mut copy = evaluated.frozen().expect("it has copies");
+    let (mut evaluated, mut left_alone) = (trained_agent(10), trained_agent(10));
+    let mut copy = evaluated.frozen().expect("the agent can be copied");
     let earned = mean(copy.as_mut());
     // This holds even if a caller lets a copy learn.
     episode(copy.as_mut(), 5, true);

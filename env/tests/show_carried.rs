@@ -1,4 +1,4 @@
-//! Carried things are shown at the bottom of the agent's colour image, if the world enables it, and nowhere else.
+//! Carried objects are shown at the bottom of the agent's colour image, if the world enables it, and nowhere else.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use crate::fixtures::{key, thing};
 
 const USE: Action = Action::Continuous([0.0, 0.0, 1.0]);
 
-/// Things of several classes within reach, to be carried up to this limit.
+/// Carriable objects of several classes within reach, with this carry limit.
 fn draft(size: [u32; 2], limit: u32, colors: &[[f64; 3]]) -> WorldDraft {
     let mut world = WorldDraft::default();
     let place = |number: usize| [0.25 * number as f64 - 0.4, 1.1 + 0.1 * number as f64];
@@ -43,7 +43,7 @@ fn pair(world: &WorldDraft) -> [Environment; 2] {
     [false, true].map(|shown| {
         let mut world = world.clone();
         world.agent_params.show_carried = shown;
-        Environment::new(world.check().expect("the world is sound"))
+        Environment::new(world.check().expect("the world is valid"))
     })
 }
 
@@ -95,7 +95,7 @@ proptest! {
             prop_assert_eq!(changed.is_empty(), count == 0, "{} are carried", count);
             // Other cameras do not show it.
             let camera = Camera::overview(bare.scene());
-            let [a, b] = [&mut bare, &mut shows].map(|each| each.render(&camera, 40, 30).expect("the size is sound"));
+            let [a, b] = [&mut bare, &mut shows].map(|each| each.render(&camera, 40, 30).expect("the size is valid"));
             prop_assert_eq!(a.rgb, b.rgb);
         }
     }
@@ -106,11 +106,11 @@ proptest! {
         let world = draft([60, 50], 3, &colors);
         let [_, mut environment] = pair(&world);
         for _ in 0..colors.len().min(2) {
-            environment.step(USE).expect("the episode goes on");
+            environment.step(USE).expect("the episode continues");
         }
         prop_assert!(num_carried(&environment) > 0);
         let expected = environment.observe().clone();
-        prop_assert_eq!(&environment.observe_at(60, 50).expect("the size is sound").rgb, &expected.rgb);
+        prop_assert_eq!(&environment.observe_at(60, 50).expect("the size is valid").rgb, &expected.rgb);
         let (scene, camera) = (environment.scene(), environment.camera());
         for (name, mut renderer) in CpuRenderer::each_instruction_set() {
             let mut frame = Frame::new(60, 50);
@@ -124,7 +124,7 @@ proptest! {
         };
         batch.reset().expect("there are worlds");
         prop_assert_eq!(&batch.outputs().images.rgb[..expected.rgb.len()], &expected.rgb[..]);
-        // Without colours there is nothing to draw on.
+        // Without colour images, carried objects are not shown.
         let mut depth = vec![0.0; 60 * 50];
         let mut target = Target { width: 60, height: 50, depth: Some(&mut depth), ..Target::default() };
         environment.draw_carried(&mut CpuRenderer::new(), &mut target);
@@ -139,7 +139,7 @@ fn carried_thing_appears_in_its_colour_and_disappears() {
         let mut differences = Vec::new();
         for _ in 0..3 {
             for each in [&mut bare, &mut shows] {
-                each.step(USE).expect("the episode goes on");
+                each.step(USE).expect("the episode continues");
             }
             let (one, other) = (bare.observe().clone(), shows.observe().clone());
             differences.push(changed(&one, &other));
@@ -165,10 +165,10 @@ fn carried_thing_appears_in_its_colour_and_disappears() {
 fn saved_world_shows_the_same_things() {
     let [_, mut environment] = pair(&draft([50, 50], 2, &[[0.9, 0.1, 0.1], [0.1, 0.9, 0.1]]));
     for _ in 0..2 {
-        environment.step(USE).expect("the episode goes on");
+        environment.step(USE).expect("the episode continues");
     }
     assert_eq!(num_carried(&environment), 2);
     let text = environment.state().to_json();
-    let mut again = Environment::new(World::from_json("state", &text).expect("a state is a sound world"));
+    let mut again = Environment::new(World::from_json("state", &text).expect("a state is a valid world"));
     assert_eq!(again.observe().rgb, environment.observe().rgb);
 }

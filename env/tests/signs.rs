@@ -16,10 +16,10 @@ fn world(text: &str, metres: f64, turn: f64, color: Option<&str>) -> World {
     let mut sign = Object::new("sign", [0.0, metres]);
     sign.text = Some(text.to_owned());
     sign.heading = 180.0 + turn;
-    sign.color = color.map(|name| Color::from_name(name).expect("it is a colour"));
+    sign.color = color.map(|name| Color::from_name(name).expect("the value is a colour"));
     let mut world = WorldDraft::with_objects(vec![sign]);
     world.environment_params.wall_height = 0.0;
-    world.check().expect("the world is sound")
+    world.check().expect("the world is valid")
 }
 
 fn picture(world: &World, x: f32, side: u32) -> Frame {
@@ -152,7 +152,7 @@ fn signs_have_text_only_in_front_and_other_classes_have_none() {
         let mut object = Object::new("furniture", [0.0, 3.0]);
         object.text = text.map(str::to_owned);
         let world = WorldDraft::with_objects(vec![object]);
-        picture(&world.check().expect("the world is sound"), 0.0, SIDE).rgb
+        picture(&world.check().expect("the world is valid"), 0.0, SIDE).rgb
     };
     assert_eq!(of_class(Some("SOFA")), of_class(None));
 }

@@ -1,4 +1,4 @@
-//! Touching, interacting and coming near; walls; ends of episodes; and exact reproducibility.
+//! Touching, interacting and approaching; walls; ends of episodes; and exact reproducibility.
 
 use driftworld_env::{Action, Agent, EnvError, Environment, OnRailsAgent, RandomAgent, Warning};
 use driftworld_spec::{ActionModel, ActionSpace, EndCondition, MotionModel, Object, Shaping, Stimulus, WorldDraft};
@@ -64,7 +64,7 @@ fn destroyed_object_neither_blocks_nor_shows() {
     rewards(&mut environment, &[AHEAD, AHEAD]);
     assert!(
         environment.agent().position[1] > 3.0,
-        "the agent walks through where it stood"
+        "the agent walks through its former position"
     );
 }
 
@@ -368,7 +368,7 @@ fn bits(environment: &Environment) -> Vec<u32> {
     environment.state_vector().into_iter().map(f32::to_bits).collect()
 }
 
-/// A small world with a bit of everything.
+/// A small world with many kinds of objects.
 fn arena() -> WorldDraft {
     let mut objects = vec![
         cube(4.0),
@@ -388,10 +388,10 @@ fn arena() -> WorldDraft {
 }
 
 #[test]
-fn resetting_is_starting_anew() {
+fn reset_equals_a_fresh_start() {
     let mut used = start(WorldDraft::default());
     rewards(&mut used, &[AHEAD; 5]);
-    used.reset(arena().check().expect("the world is sound"));
+    used.reset(arena().check().expect("the world is valid"));
     let mut fresh = start(arena());
     for action in [AHEAD; 12] {
         assert_eq!(step(&mut used, action), step(&mut fresh, action));
@@ -400,7 +400,8 @@ fn resetting_is_starting_anew() {
     assert_eq!(used.observe().rgb, fresh.observe().rgb);
 }
 
-/// Actions in, rewards and poses out. `DRIFTWORLD_UPDATE_GOLDEN=1` rewrites the file: a value-breaking change.
+/// Rewards and poses of a sequence of actions. `DRIFTWORLD_UPDATE_GOLDEN=1` rewrites the file, which is a value-breaking
+/// change.
 #[test]
 fn golden_episode_is_unchanged() {
     let mut environment = start(arena());

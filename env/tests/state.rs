@@ -1,4 +1,4 @@
-//! A running world that was saved as a document, or kept in memory, resumes bit for bit, including its images.
+//! A running world that was saved as a document, or as a snapshot in memory, resumes bit for bit, including its images.
 
 use driftworld_env::{Action, Agent, EnvError, Environment, RandomAgent};
 use driftworld_spec::{
@@ -9,7 +9,7 @@ use proptest::prelude::*;
 
 use crate::fixtures::wall_of;
 
-/// A small world with a bit of everything that has progress.
+/// A small world with all kinds of progress.
 fn world(action_model: ActionModel, frame_skip: u32) -> World {
     let object = |class: &str, at: [f64; 2]| Object::new(class, at);
     let mut coin = object("geometric", [2.0, 2.5]);
@@ -85,14 +85,14 @@ fn world(action_model: ActionModel, frame_skip: u32) -> World {
         discount: 0.95,
     });
     world.rules.success = vec![EndCondition::ReturnAtLeast(60.0)];
-    world.check().expect("the world is sound")
+    world.check().expect("the world is valid")
 }
 
 fn start(world: World) -> Environment {
     Environment::new(world)
 }
 
-/// Everything observable in a step and in the moment after it, as exact strings.
+/// All observations of a step and of the state after it, as exact strings.
 type Trace = Vec<Vec<String>>;
 
 /// The first step in which two traces differ, and how.
@@ -120,7 +120,7 @@ fn expect_scene_of_state(environment: &Environment) {
     }
 }
 
-fn go_on(environment: &mut Environment, actions: &[Action]) -> Trace {
+fn run(environment: &mut Environment, actions: &[Action]) -> Trace {
     let mut trace = Vec::new();
     for action in actions {
         let step = match environment.step(*action) {
@@ -175,32 +175,32 @@ proptest! {
         own_seed in prop::option::of(0u64..4),
     ) {
         let begun = world(model, frame_skip).edit(|world| world.seed = own_seed);
-        let mut environment = start(begun.expect("every seed is sound"));
+        let mut environment = start(begun.expect("every seed is valid"));
         let actions = actions(seed, &environment, before + after);
-        go_on(&mut environment, &actions[..before]);
+        run(&mut environment, &actions[..before]);
         if before % 2 == 1 && !environment.ended() {
             let mut spawned = Object::new("mushroom", [-0.8, -1.2]);
             spawned.reward = 1.0;
             spawned.reward_stimulus = vec![Stimulus::AgentCollide];
             (spawned.motion_model, spawned.speed) = (MotionModel::RandomWaypoint, 1.0);
-            environment.spawn(spawned).expect("the mushroom is sound");
-            environment.destroy(3).expect("the second barrel is there");
+            environment.spawn(spawned).expect("the mushroom is valid");
+            environment.destroy(3).expect("the second barrel exists");
         }
         let snapshot = environment.snapshot();
         let text = environment.state().to_json();
         let picture = environment.observe().rgb.clone();
-        let uninterrupted = go_on(&mut environment, &actions[before..]);
+        let uninterrupted = run(&mut environment, &actions[before..]);
 
         let read = World::from_json("state", &text).map_err(|error| TestCaseError::fail(error.to_string()))?;
         let mut resumed = start(read);
         prop_assert_eq!(resumed.state().to_json(), text, "the state of a state is that state");
         prop_assert_eq!(&resumed.observe().rgb, &picture);
-        let resumed = go_on(&mut resumed, &actions[before..]);
+        let resumed = run(&mut resumed, &actions[before..]);
         prop_assert_eq!(difference(&resumed, &uninterrupted), None, "from the state");
 
         environment.restore(&snapshot);
         prop_assert_eq!(&environment.observe().rgb, &picture);
-        let restored = go_on(&mut environment, &actions[before..]);
+        let restored = run(&mut environment, &actions[before..]);
         prop_assert_eq!(difference(&restored, &uninterrupted), None, "from the snapshot");
     }
 }
@@ -210,7 +210,7 @@ fn state_has_current_values_and_keeps_initial_ones() {
     let mut environment = start(world(ActionModel::ByVelocity, 1));
     let begun = environment.world().clone();
     for action in actions(7, &environment, 60) {
-        environment.step(action).expect("the episode goes on");
+        environment.step(action).expect("the episode continues");
     }
     let state = environment.state();
     assert_eq!(
@@ -230,7 +230,7 @@ fn state_has_current_values_and_keeps_initial_ones() {
 #[test]
 fn ended_episode_stays_ended() {
     let short = world(ActionModel::ByVelocity, 1).edit(|world| world.max_steps = 1);
-    let mut environment = start(short.expect("one step is sound"));
+    let mut environment = start(short.expect("one step is valid"));
     environment
         .step(Action::Continuous([0.0; 3]))
         .expect("the first step is allowed");
@@ -245,11 +245,11 @@ fn objects_far_outside_round_trip_through_a_state() {
     let mut outside = WorldDraft::with_objects(vec![prey]);
     outside.agent_params.coordinates = [280.0, 0.0];
     outside.agent_params.heading = 90.0;
-    let mut environment = start(outside.check().expect("the world is sound"));
+    let mut environment = start(outside.check().expect("the world is valid"));
     for _ in 0..60 {
         environment
             .step(Action::Continuous([10.0, 0.0, 0.0]))
-            .expect("the episode goes on");
+            .expect("the episode continues");
     }
     let read = World::from_json("state", &environment.state().to_json());
     assert!(read.is_ok(), "{read:?}");
@@ -276,12 +276,12 @@ fn state_without_a_seed_uses_its_worlds_seed() {
             objects: vec![wanderer],
             ..WorldDraft::default()
         };
-        let mut state = start(world.check().expect("the world is sound")).state().into_draft();
+        let mut state = start(world.check().expect("the world is valid")).state().into_draft();
         state.progress.as_mut().expect("a state has progress").seed = None;
-        let mut environment = start(state.check().expect("the world is sound"));
+        let mut environment = start(state.check().expect("the world is valid"));
         environment
             .step(Action::Continuous([0.0; 3]))
-            .expect("the episode goes on");
+            .expect("the episode continues");
         environment.scene().items[0].heading_deg
     };
     assert_eq!(heading("a", None), heading("b", None), "its places are the same");
@@ -295,7 +295,9 @@ fn old_state_without_per_object_random_numbers_resumes() {
         "progress": { "seed": "SEED", "steps": 2, "ticks": 2, "chance": 14, "objects": [{ "chance": 6, "goal": [1, 2] }] } }"#
         .replace("SEED", &"3a".repeat(32));
     let mut environment = start(World::from_json("old", &text).expect("old states are read"));
-    environment.step(Action::Continuous([0.0; 3])).expect("it goes on");
+    environment
+        .step(Action::Continuous([0.0; 3]))
+        .expect("the episode continues");
     let written = environment.state().to_json();
     assert!(!written.contains("\"chance\""), "{written}");
 }
@@ -310,7 +312,7 @@ fn world_with_only_a_seed_as_progress_is_at_its_start() {
         let mut wanderer = Object::new("rock", [5.0, 5.0]);
         (wanderer.motion_model, wanderer.speed) = (MotionModel::RandomWaypoint, 2.0);
         let world = WorldDraft::with_objects(vec![barrel, wanderer]);
-        world.check().expect("the world is sound")
+        world.check().expect("the world is valid")
     };
     let with_seed = |seed: String| {
         let seeded = touched().edit(|world| {
@@ -326,7 +328,12 @@ fn world_with_only_a_seed_as_progress_is_at_its_start() {
     let live = |world: World| {
         let mut environment = start(world);
         let rewards: Vec<f64> = (0..5)
-            .map(|_| environment.step(Action::Continuous([0.0; 3])).expect("goes on").reward)
+            .map(|_| {
+                environment
+                    .step(Action::Continuous([0.0; 3]))
+                    .expect("the episode continues")
+                    .reward
+            })
             .collect();
         (rewards, environment.scene().items[1].position)
     };

@@ -1,4 +1,4 @@
-//! Doors, switches and carriable things: opening, picking up and putting down, and saved worlds that resume.
+//! Doors, switches and carriable objects: opening, picking up and putting down, and saved worlds that resume.
 
 use driftworld_env::{Action, Effect, Environment, Event};
 use driftworld_spec::{
@@ -28,7 +28,7 @@ fn draft(door: Door) -> WorldDraft {
 fn steps(environment: &mut Environment, action: Action, count: usize) -> Vec<Event> {
     let mut events = Vec::new();
     for _ in 0..count {
-        events.extend(environment.step(action).expect("the episode goes on").events);
+        events.extend(environment.step(action).expect("the episode continues").events);
     }
     events
 }
@@ -59,7 +59,7 @@ fn closed_door_stops_the_agent_and_opens_by_interaction() {
     assert_eq!(
         effects(&steps(&mut environment, USE, 1)),
         [],
-        "an open door has no more to do"
+        "an open door does not react"
     );
     steps(&mut environment, AHEAD, 20);
     assert!(north(&environment) > 6.0, "nobody stops it: {}", north(&environment));
@@ -132,7 +132,7 @@ fn key_unlocks_its_door_and_disappears_if_consumed() {
             (vec![], 0.0),
             "locked doors pay nothing"
         );
-        // Turns around, to the key behind the agent.
+        // Turns around to the key behind the agent.
         steps(&mut environment, Action::Continuous([0.0, 90.0, 0.0]), 20);
         assert_eq!(effects(&steps(&mut environment, USE, 1)), [(2, Effect::PickedUp)]);
         assert_eq!(environment.state_vector(), [1.0, 25.0, 3.0]);
@@ -225,7 +225,7 @@ fn held_action_interacts_once_and_rules_end_the_episode() {
     let ends = |world: &WorldDraft, success: EndCondition| {
         let mut world = world.clone();
         world.rules.success = vec![success];
-        start(world).step(USE).expect("it is sound").success
+        start(world).step(USE).expect("the world is valid").success
     };
     assert!(ends(&world, EndCondition::Opened("gate".to_owned())));
     assert!(!ends(&world, EndCondition::Opened("other".to_owned())));
@@ -252,7 +252,7 @@ fn delivery_requires_all_objects_with_the_tag() {
     steps(&mut environment, USE, 1);
     steps(&mut environment, Action::Continuous([0.0, 90.0, 0.0]), 20);
     assert!(!environment.ended(), "what is carried is not there yet");
-    assert!(environment.step(USE).expect("it goes on").success);
+    assert!(environment.step(USE).expect("the episode continues").success);
 }
 
 #[test]
@@ -265,13 +265,13 @@ fn carried_target_counts_only_once_put_down() {
     world.agent_params.state_features = vec![StateFeature::Counts];
     let mut environment = start(world);
     assert_eq!(environment.state_vector()[0], 1.0);
-    let step = environment.step(USE).expect("it is sound");
+    let step = environment.step(USE).expect("the world is valid");
     assert_eq!(
         (step.reward, environment.state_vector()[0]),
         (2.0, 0.0),
         "it pays for being picked up"
     );
-    let step = environment.step(USE).expect("it is sound");
+    let step = environment.step(USE).expect("the world is valid");
     assert_eq!(
         (step.reward, environment.state_vector()[0]),
         (0.0, 1.0),

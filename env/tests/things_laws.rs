@@ -1,5 +1,5 @@
-//! Properties of doors and carriable things under random actions: nothing is lost, nothing is put into walls, no door closes on
-//! the agent, and a saved world resumes.
+//! Properties of doors and carriable objects under random actions: no object is lost or put into a wall, no door closes on the
+//! agent, and a saved world resumes.
 
 use driftworld_env::{Action, Effect, Environment};
 use driftworld_spec::{Door, Portable, Pushable, StateFeature, Stimulus, Switch, World, WorldDraft};
@@ -102,7 +102,7 @@ fn action() -> impl Strategy<Value = Action> {
 }
 
 /// Distance of a point from the nearest wall of the house, negative inside.
-fn room_at(world: &World, [x, y]: [f32; 2]) -> f64 {
+fn distance_to_wall(world: &World, [x, y]: [f32; 2]) -> f64 {
     let (x, y) = (f64::from(x), f64::from(y));
     let walls = world.environment_params.walls.iter().map(|wall| {
         let (low, high) = (wall.polygon[0], wall.polygon[2]);
@@ -118,7 +118,7 @@ fn room_at(world: &World, [x, y]: [f32; 2]) -> f64 {
 }
 
 /// A lower bound on the distance of the agent's centre from a closed door's leaf.
-fn to_leaf(world: &World, environment: &Environment, door: usize) -> f64 {
+fn distance_to_leaf(world: &World, environment: &Environment, door: usize) -> f64 {
     let [x, y] = environment.agent().position.map(f64::from);
     let [dx, dy] = [
         x - world.objects[door].coordinates[0],
@@ -134,11 +134,11 @@ proptest! {
 
     #[test]
     fn things_are_never_lost_or_in_walls_and_doors_never_close_on_the_agent(actions in prop::collection::vec(action(), 200..500)) {
-        let world = house().check().expect("it is sound");
+        let world = house().check().expect("the world is valid");
         let mut environment = Environment::new(world.clone());
         for action in actions {
             let before: Vec<bool> = environment.objects().iter().map(|own| own.open).collect();
-            let step = environment.step(action).expect("it has no end");
+            let step = environment.step(action).expect("the episode has no end");
             for (index, own) in environment.objects().iter().enumerate() {
                 if world.objects[index].portable.is_some() {
                     prop_assert!(own.present != own.carried, "{index} is lost, or twice");
@@ -147,13 +147,13 @@ proptest! {
                     prop_assert_eq!(own.position, environment.agent().position);
                 }
                 if world.objects[index].door.is_some() && !own.open {
-                    let apart = to_leaf(&world, &environment, index);
+                    let apart = distance_to_leaf(&world, &environment, index);
                     prop_assert!(apart > 0.3 - 1e-3, "the agent is {apart} from closed door {index}, before {:?}", before[index]);
                 }
             }
             for event in step.events.iter().filter(|event| event.effect == Some(Effect::PutDown)) {
                 let own = &environment.objects()[event.object];
-                prop_assert!(room_at(&world, own.position) > 0.14, "{:?}", own.position);
+                prop_assert!(distance_to_wall(&world, own.position) > 0.14, "{:?}", own.position);
                 let lies = |other: &usize| *other != event.object && environment.objects()[*other].present;
                 for other in (4..10).filter(lies) {
                     let there = environment.objects()[other].position;
@@ -171,20 +171,20 @@ proptest! {
         actions in prop::collection::vec(action(), 50..300),
         share in 0.0..1.0_f64,
     ) {
-        let mut environment = Environment::new(house().check().expect("it is sound"));
+        let mut environment = Environment::new(house().check().expect("the world is valid"));
         let written_at = (actions.len() as f64 * share) as usize;
         let mut other = None;
         for (number, action) in actions.into_iter().enumerate() {
             if number == written_at {
                 let text = environment.state().to_json();
-                let read = World::from_json("state", &text).expect("a state is a sound world");
+                let read = World::from_json("state", &text).expect("a state is a valid world");
                 let went_on = Environment::new(read);
                 prop_assert_eq!(went_on.state().to_json(), text);
                 other = Some((went_on, environment.snapshot()));
             }
-            let step = environment.step(action).expect("it has no end");
+            let step = environment.step(action).expect("the episode has no end");
             if let Some((other, _)) = &mut other {
-                prop_assert_eq!(other.step(action).expect("it has no end"), step);
+                prop_assert_eq!(other.step(action).expect("the episode has no end"), step);
                 prop_assert_eq!(other.state().to_json(), environment.state().to_json());
                 prop_assert_eq!(other.observe().rgb.clone(), environment.observe().rgb.clone());
             }

@@ -1,6 +1,6 @@
-//! Compares a thousand straight walks among walls and objects with those of a frictionless disc computed independently: in
-//! steps of two millimetres, each moved back to the skin of what it overlaps, with distances of boxes and discs in their own
-//! frames.
+//! Compares a thousand straight walks among walls and objects with those of a frictionless disc, computed independently: it
+//! moves in steps of two millimetres, after each of which it is moved out of obstacles to a skin's distance. Distances to boxes
+//! and discs are computed in their own frames.
 
 #![expect(clippy::disallowed_methods, reason = "compared within a tolerance")]
 
@@ -173,7 +173,7 @@ fn world(rng: &mut ChaCha8Rng, number: usize) -> World {
     world.agent_params.agent_width = uniform(0.4, 1.4);
     world.agent_params.coordinates = [uniform(-48.0, 48.0), uniform(-48.0, 48.0)];
     world.agent_params.heading = uniform(0.0, 360.0);
-    world.check().expect("the world is sound")
+    world.check().expect("the world is valid")
 }
 
 #[test]
@@ -197,7 +197,7 @@ fn thousand_walks_end_where_a_frictionless_disc_does() {
         for _ in 0..STEPS {
             environment
                 .step(Action::Continuous([SPEED, 0.0, 0.0]))
-                .expect("it goes on");
+                .expect("the episode continues");
         }
         let found = environment.agent().position.map(f64::from);
         let expected = walk_of_a_disc(&all, agent.coordinates, agent.heading, radius);

@@ -1,5 +1,5 @@
-//! Sliding: along any obstacle, the agent, a mover or a pushed body keeps the component of its velocity parallel to it, and
-//! passes through nothing.
+//! Sliding: along any obstacle, the agent, a mover or a pushed body keeps the velocity component parallel to it, and passes
+//! through nothing.
 
 #![expect(clippy::disallowed_methods, reason = "compared within a tolerance")]
 
@@ -36,7 +36,7 @@ fn arena(metres: f64) -> WorldDraft {
 fn go(environment: &mut Environment, speed: f64) -> [f64; 2] {
     environment
         .step(Action::Continuous([speed, 0.0, 0.0]))
-        .expect("it goes on");
+        .expect("the episode continues");
     environment.agent().position.map(f64::from)
 }
 
@@ -83,14 +83,14 @@ proptest! {
         let mut last = begun;
         for step in 1..=steps {
             let now = go(&mut environment, speed);
-            let won = dot(minus(now, last), along) * sign;
-            prop_assert!(won > 0.0 || meant.abs() < 1e-3, "step {step} of {steps}: {won}");
+            let progress = dot(minus(now, last), along) * sign;
+            prop_assert!(progress > 0.0 || meant.abs() < 1e-3, "step {step} of {steps}: {progress}");
             prop_assert!(dot(minus(now, [at.0, at.1]), normal) > 0.12 + width / 2.0, "step {step} is in the wall");
             last = now;
         }
-        let won = dot(minus(last, begun), along);
+        let progress = dot(minus(last, begun), along);
         let expected = meant * steps as f64;
-        prop_assert!((won - expected).abs() <= 0.01 * expected.abs() + 1e-3, "{won} of {expected} in {steps} steps");
+        prop_assert!((progress - expected).abs() <= 0.01 * expected.abs() + 1e-3, "{progress} of {expected} in {steps} steps");
     }
 
     #[test]
@@ -120,7 +120,7 @@ proptest! {
         let place = |environment: &Environment| environment.scene().items[0].position.map(f64::from);
         let mut last = place(&environment);
         for _ in 0..100 {
-            environment.step(Action::Continuous([0.0; 3])).expect("it goes on");
+            environment.step(Action::Continuous([0.0; 3])).expect("the episode continues");
             let now = place(&environment);
             let moved = minus(now, last);
             let way = minus(to, last);
@@ -185,7 +185,7 @@ proptest! {
 }
 
 #[test]
-fn walks_from_the_audit_do_not_get_stuck() {
+fn agent_does_not_get_stuck_at_an_oblique_wall() {
     let mut world = arena(200.0);
     world.environment_params.walls = vec![wall_of([[-30.0, -30.0], [30.0, 30.0], [29.0, 31.0], [-31.0, -29.0]])];
     world.agent_params.coordinates = [-14.0, -18.0];
@@ -223,7 +223,7 @@ fn sliding_body_keeps_the_parallel_velocity_at_a_wall() {
             for _ in 0..4 {
                 go(&mut environment, 8.0);
             }
-            // From here on it slides by itself, until some time after it has met the wall.
+            // From here on the body slides by itself, until some time after it has hit the wall.
             go(&mut environment, 0.0);
             let before = place(&environment);
             go(&mut environment, 0.0);
@@ -236,10 +236,10 @@ fn sliding_body_keeps_the_parallel_velocity_at_a_wall() {
                 last = place(&environment);
                 nearest = nearest.max(last[1]);
             }
-            let won = last[0] - begun[0];
+            let progress = last[0] - begun[0];
             assert!(
-                (won / 120.0 - meant).abs() < 0.01 * meant,
-                "{class} {heading}°: {won} of {}",
+                (progress / 120.0 - meant).abs() < 0.01 * meant,
+                "{class} {heading}°: {progress} of {}",
                 120.0 * meant
             );
             // A cube swings away again when its second corner hits.
@@ -307,7 +307,7 @@ proptest! {
         let mut environment = start(world);
         let mut least = f64::INFINITY;
         for _ in 0..(60.0 / speed * 10.0) as usize + 50 {
-            environment.step(Action::Continuous([0.0; 3])).expect("it goes on");
+            environment.step(Action::Continuous([0.0; 3])).expect("the episode continues");
             let [x, y] = environment.scene().items[0].position.map(f64::from);
             if x.abs() < 14.0 {
                 least = least.min(y);

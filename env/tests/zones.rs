@@ -13,7 +13,7 @@ fn start(zones: Vec<Zone>, change: impl FnOnce(&mut WorldDraft)) -> Environment 
     let mut world = WorldDraft::default();
     world.environment_params.zones = zones;
     change(&mut world);
-    Environment::new(world.check().expect("the world is sound"))
+    Environment::new(world.check().expect("the world is valid"))
 }
 
 /// A square around a centre.
@@ -61,7 +61,7 @@ fn zone() -> impl Strategy<Value = Zone> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 64)))]
 
-    /// Standing in zones pays per second, whatever the time step, and once for entering, in the first step.
+    /// Standing in zones pays per second, independently of the time step, and once for entering, in the first step.
     #[test]
     fn standing_in_zones_pays_by_the_second(
         zones in prop::collection::vec(zone(), 0..5),
@@ -194,7 +194,7 @@ fn zones_that_teleport_to_each_other_work_both_ways() {
     let into = step(&mut environment, Action::Continuous([0.9, 0.0, 0.0]));
     assert_eq!(into.reward, 11.0, "arriving is entering");
     assert!((-19.5..-19.0).contains(&environment.agent().position[1]));
-    // Out of the second, and back into it: to the first.
+    // Leaving the second zone and entering it again teleports to the first.
     assert_eq!(step(&mut environment, Action::Continuous([5.0, 0.0, 0.0])).reward, 0.0);
     assert_eq!(
         step(&mut environment, Action::Continuous([-8.0, 0.0, 0.0])).reward,

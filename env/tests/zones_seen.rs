@@ -11,7 +11,7 @@ fn scene(zones: &[Zone]) -> Scene {
     world.environment_params.map_size = [60.0, 60.0];
     world.environment_params.zones = zones.to_vec();
     world.objects = vec![Object::new("cube", [0.5, 6.0]), Object::new("tree", [-3.0, 9.0])];
-    Scene::from_world(&world.check().expect("the world is sound"))
+    Scene::from_world(&world.check().expect("the world is valid"))
 }
 
 fn draw(scene: &Scene, camera: &Camera) -> Frame {
@@ -45,7 +45,7 @@ fn zone() -> impl Strategy<Value = Zone> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// A pixel of the ground is red where the zone is, and only the colour of the ground depends on zones.
+    /// Pixels of the ground inside the zone are red, and only the colour of the ground depends on zones.
     #[test]
     fn zone_colours_only_its_ground(
         zone in zone(),
@@ -86,8 +86,8 @@ proptest! {
             }
         }
         // A pixel on the seam of two triangles may be in neither because of rounding, and a seam may run along a row of pixels:
-        // this happens once in thousands of images. And the foot of an object is as far away as the ground, which is slightly
-        // raised here.
+        // this happens once in thousands of images. The foot of an object is as far away as the ground, which zones raise
+        // slightly.
         prop_assert!(wrong.len() <= 14, "{} pixels: {:?}", wrong.len(), &wrong[..3]);
     }
 
@@ -134,7 +134,7 @@ fn map_shows_the_zones() {
     let mut world = WorldDraft::default();
     world.environment_params.map_size = [60.0, 60.0];
     world.environment_params.zones = vec![red(Zone::disc([15.0, 15.0], 5.0))];
-    let environment = Environment::new(world.check().expect("the world is sound"));
+    let environment = Environment::new(world.check().expect("the world is valid"));
     let image = top_down(environment.scene(), 200, 200, None);
     let at = |x: f64, y: f64| {
         let pixel = |metres: f64| (100.0 + metres * 200.0 / (60.0 * 1.06)) as usize;

@@ -10,7 +10,7 @@ const PIXELS: usize = (SIZE * SIZE) as usize;
 /// An environment, and cameras on a circle between its objects.
 fn circle() -> (Environment, Vec<Camera>) {
     let text = include_str!("../../../src/throughput/arena_20.json");
-    let world = World::from_json("arena_20.json", text).expect("the scene is sound");
+    let world = World::from_json("arena_20.json", text).expect("the scene is valid");
     let mut environment = Environment::new(world);
     let mut cameras = Vec::new();
     for _ in 0..240 {
@@ -32,7 +32,7 @@ fn batches(c: &mut Criterion) {
             let mut images = vec![(vec![0; 3 * PIXELS], vec![0.0; depths], vec![0; depths]); count];
             group.bench_function(format!("{count} pictures of 84 × 84"), |bench| {
                 bench.iter(|| {
-                    // Spread evenly around the circle, whatever the batch size.
+                    // Spread evenly around the circle for every batch size.
                     let around = (0..count).map(|k| &cameras[k * cameras.len() / count]);
                     let views = images.iter_mut().zip(around);
                     let mut pictures: Vec<_> = views
@@ -49,7 +49,7 @@ fn batches(c: &mut Criterion) {
                             },
                         })
                         .collect();
-                    gpu.draw_batch(&mut pictures).expect("the adapter draws");
+                    gpu.draw_batch(&mut pictures).expect("the adapter renders");
                 });
             });
             group.finish();
@@ -70,7 +70,7 @@ fn processor(c: &mut Criterion) {
                 let mut target = Target::of_colors([SIZE, SIZE], &mut rgb);
                 renderer
                     .draw(environment.scene(), camera, &mut target)
-                    .expect("the sizes are sound");
+                    .expect("the sizes are valid");
             }
         });
     });

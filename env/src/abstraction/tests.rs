@@ -18,7 +18,7 @@ fn draft() -> WorldDraft {
 fn abstracted(change: impl FnOnce(&mut WorldDraft)) -> WorldAbstraction {
     let mut world = draft();
     change(&mut world);
-    let world = world.check().expect("the world is sound");
+    let world = world.check().expect("the world is valid");
     Abstraction::default().of(&world).expect("the world is small")
 }
 

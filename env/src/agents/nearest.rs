@@ -316,7 +316,7 @@ mod tests {
                 world.environment_params.map_size = size;
                 world.environment_params.walls = walls;
                 world.agent_params.agent_width = width;
-                world.check().expect("the world is sound")
+                world.check().expect("the world is valid")
             })
     }
 

@@ -227,7 +227,7 @@ mod tests {
             }
             world.objects.push(object);
         }
-        world.check().expect("the world is sound")
+        world.check().expect("the world is valid")
     }
 
     /// Return and final position after playing a script for this many steps.
@@ -271,7 +271,7 @@ mod tests {
     #[test]
     fn walks_fit_a_world_with_an_action_table() {
         let table = world().edit(|world| world.agent_params.actions = ActionSpace::DefaultDiscrete);
-        assert_eq!(play(table.expect("the world is sound"), "touch coin", 120).0, 1.0);
+        assert_eq!(play(table.expect("the world is valid"), "touch coin", 120).0, 1.0);
     }
 
     #[test]

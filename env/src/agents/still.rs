@@ -55,7 +55,7 @@ mod tests {
                     ..AgentParams::default()
                 };
             });
-            let mut environment = Environment::new(world.expect("a sound world"));
+            let mut environment = Environment::new(world.expect("the world is valid"));
             let start = environment.sim().agent();
             for _ in 0..20 {
                 let action = StillAgent.act(&environment);

@@ -241,7 +241,7 @@ mod tests {
                 |(index, class): (usize, &&str)| driftworld_spec::Object::new(*class, [3.0 * index as f64 - 3.0, 8.0]);
             let mut world = driftworld_spec::WorldDraft::with_objects(objects.map(at).collect());
             world.agent_params.modalities = vec![driftworld_spec::Modality::Class];
-            let world = world.check().expect("the world is sound");
+            let world = world.check().expect("the world is valid");
             let mut environment = crate::Environment::with_catalogue(world, catalogue.clone());
             let mut seen = environment.observe().class.clone();
             seen.sort_unstable();

@@ -15,7 +15,7 @@ pub(crate) fn gpu() -> Option<GpuRenderer> {
             panic!("DRIFTWORLD_REQUIRE_GPU=1: {error}")
         }
         Err(error) => {
-            // Not with println, which the test harness hides for passing tests.
+            // `println` is not used, because the test harness hides its output for passing tests.
             let _ = writeln!(std::io::stderr(), "skipped: {error}");
             None
         }
@@ -79,6 +79,8 @@ pub(crate) fn write_difference(name: &str, found: &Frame, expected: &Frame) -> s
     let mut encoder = png::Encoder::new(file, 3 * width as u32, height as u32);
     encoder.set_color(png::ColorType::Rgb);
     let mut writer = encoder.write_header().expect("a header");
-    writer.write_image_data(&rgb).expect("as many pixels as said");
+    writer
+        .write_image_data(&rgb)
+        .expect("the buffer has the announced size");
     path
 }

@@ -21,7 +21,7 @@ use likeness::{gpu, likeness, share, write_difference};
 fn world(file: &str) -> World {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(file);
     let text = std::fs::read_to_string(&path).expect("the file is part of the repository");
-    World::from_json(file, &text).expect("it holds a world")
+    World::from_json(file, &text).expect("the file contains a world")
 }
 
 /// Worlds of all kinds: many objects, additional walls, fog, dusk, more classes than fit into a label.
@@ -50,7 +50,7 @@ fn worlds() -> Vec<(String, World)> {
         .to_vec();
     worlds.push((
         "fog, dusk, walls".to_owned(),
-        foggy.check().expect("the world is sound"),
+        foggy.check().expect("the world is valid"),
     ));
     let mut zoo = WorldDraft::default();
     let classes: Vec<_> = driftworld_env::classes().map(|(class, _)| class.to_owned()).collect();
@@ -63,7 +63,7 @@ fn worlds() -> Vec<(String, World)> {
         object.scale = 2.0;
         zoo.objects.push(object);
     }
-    worlds.push(("every class".to_owned(), zoo.check().expect("the world is sound")));
+    worlds.push(("every class".to_owned(), zoo.check().expect("the world is valid")));
     worlds
 }
 
@@ -98,7 +98,7 @@ fn check_likeness(size: u32) {
         let scene = Scene::from_world(world);
         for (c, camera) in cameras(world, &scene).iter().enumerate() {
             let (mut found, mut expected) = (Frame::new(size, size), Frame::new(size, size));
-            gpu.render(&scene, camera, &mut found).expect("the adapter draws");
+            gpu.render(&scene, camera, &mut found).expect("the adapter renders");
             cpu.render(&scene, camera, &mut expected);
             let like = likeness(&found, &expected);
             let is_good = like.colors >= 0.99
@@ -146,7 +146,7 @@ fn stepped(autoreset: Autoreset, num_threads: usize, renderer: RendererKind) -> 
             Modality::Class,
             Modality::Instance,
         ];
-        Ok(world.check().expect("the world is sound"))
+        Ok(world.check().expect("the world is valid"))
     });
     let options = BatchOptions {
         autoreset,
@@ -154,16 +154,16 @@ fn stepped(autoreset: Autoreset, num_threads: usize, renderer: RendererKind) -> 
         renderer,
         ..BatchOptions::default()
     };
-    let mut batch = Batch::new(6, source, options).expect("the worlds are sound");
+    let mut batch = Batch::new(6, source, options).expect("the worlds are valid");
     for _ in 0..5 {
         let actions = [Action::Continuous([3.0, 9.0, 0.0]); 6];
-        batch.step(&actions).expect("the actions are sound");
+        batch.step(&actions).expect("the actions are valid");
     }
     batch
 }
 
 /// Share of values that are similar.
-fn alike<T: Copy>(found: &[T], expected: &[T], near: impl Fn(T, T) -> bool) -> f64 {
+fn matching_share<T: Copy>(found: &[T], expected: &[T], near: impl Fn(T, T) -> bool) -> f64 {
     assert_eq!(found.len(), expected.len());
     share(
         found.iter().zip(expected).filter(|(a, b)| near(**a, **b)).count(),
@@ -173,11 +173,11 @@ fn alike<T: Copy>(found: &[T], expected: &[T], near: impl Fn(T, T) -> bool) -> f
 
 fn check_images(found: &Images, expected: &Images) {
     let all = [
-        alike(&found.rgb, &expected.rgb, |a, b| a.abs_diff(b) <= 3),
-        alike(&found.depth, &expected.depth, |a, b| (a - b).abs() <= 0.01 * b),
-        alike(&found.category, &expected.category, |a, b| a == b),
-        alike(&found.class, &expected.class, |a, b| a == b),
-        alike(&found.instance, &expected.instance, |a, b| a == b),
+        matching_share(&found.rgb, &expected.rgb, |a, b| a.abs_diff(b) <= 3),
+        matching_share(&found.depth, &expected.depth, |a, b| (a - b).abs() <= 0.01 * b),
+        matching_share(&found.category, &expected.category, |a, b| a == b),
+        matching_share(&found.class, &expected.class, |a, b| a == b),
+        matching_share(&found.instance, &expected.instance, |a, b| a == b),
     ];
     assert!(all.iter().all(|share| *share >= 0.995), "{all:?}");
 }
@@ -226,10 +226,10 @@ fn images_rendered_together_match_those_rendered_separately() {
             target: frame.target(),
         })
         .collect();
-    gpu.draw_batch(&mut pictures).expect("the adapter draws");
+    gpu.draw_batch(&mut pictures).expect("the adapter renders");
     for (k, (frame, camera)) in together.iter().zip(&cameras).enumerate() {
         let mut alone = Frame::new(size(k), size(k));
-        gpu.render(&scene, camera, &mut alone).expect("the adapter draws");
+        gpu.render(&scene, camera, &mut alone).expect("the adapter renders");
         // A corner on the edge of a pixel may fall on either side, depending on the image's position in the target.
         let like = likeness(frame, &alone);
         assert!(like.colors >= 0.999 && like.instances >= 0.999, "picture {k}: {like:?}");
@@ -277,11 +277,11 @@ fn environment_renders_on_the_requested_gpu() {
     assert_eq!(
         report.auto == RendererKind::Gpu,
         takes_it,
-        "auto takes cards, never software"
+        "auto selects graphics cards, never software"
     );
 }
 
-/// A world in which the first interaction picks up a red thing; carried things are shown or not.
+/// A world in which the first interaction picks up a red object; carried objects are shown or not.
 fn carrying(shown: bool) -> World {
     let mut thing = Object::new("cube", [0.0, 1.0]);
     (thing.scale, thing.color) = (0.3, Some(Color([0.9, 0.1, 0.1])));
@@ -289,7 +289,7 @@ fn carrying(shown: bool) -> World {
     let mut world = WorldDraft::with_objects(vec![thing, Object::new("tree", [1.0, 7.0])]);
     (world.agent_params.carry_limit, world.agent_params.show_carried) = (1, shown);
     world.agent_params.modalities = vec![Modality::Rgb, Modality::Depth, Modality::Instance];
-    world.check().expect("the world is sound")
+    world.check().expect("the world is valid")
 }
 
 #[test]
@@ -300,7 +300,7 @@ fn carried_things_look_the_same_alone_and_in_a_batch() {
     let used = Action::Continuous([0.0, 0.0, 1.0]);
     let drawn = |kind: RendererKind, shown: bool| {
         let mut environment = Environment::with_renderer(carrying(shown), kind).expect("there is an adapter");
-        environment.step(used).expect("the episode goes on");
+        environment.step(used).expect("the episode continues");
         environment.observe().clone()
     };
     let [bare, shows] = [false, true].map(|shown| drawn(RendererKind::Cpu, shown));
@@ -314,7 +314,7 @@ fn carried_things_look_the_same_alone_and_in_a_batch() {
     batch.reset().expect("there are worlds");
     batch
         .step(&[used, Action::Continuous([0.0; 3])])
-        .expect("the batch goes on");
+        .expect("the batch continues");
     let images = &batch.outputs().images;
     let pixels = |rgb: &[u8]| rgb.chunks(3).map(<[u8]>::to_vec).collect::<Vec<_>>();
     let [bare_pixels, shown_pixels, card_pixels] = [&bare, &shows, &on_card].map(|frame| pixels(&frame.rgb));
@@ -328,7 +328,7 @@ fn carried_things_look_the_same_alone_and_in_a_batch() {
         assert_ne!(
             batch_pixels[shown_pixels.len() + pixel],
             shown_pixels[pixel],
-            "the other carries nothing"
+            "the other agent carries nothing"
         );
     }
     let like = likeness(&shows, &on_card);
@@ -345,7 +345,7 @@ fn natural_images_of_a_batch_are_rendered_on_the_cpu() {
         world.environment_params.looks = Looks::of(style);
         world.environment_params.looks.fog_in_depth = true;
         world.environment_params.fog_distance = Some(40.0);
-        Scene::from_world(&world.check().expect("the world is sound"))
+        Scene::from_world(&world.check().expect("the world is valid"))
     });
     let camera = Camera::first_person([0.1, -0.2], 20.0, 1.0, 70.0);
     let mut found = styles.map(|_| Frame::new(48, 40));
@@ -357,11 +357,11 @@ fn natural_images_of_a_batch_are_rendered_on_the_cpu() {
             target: frame.target(),
         })
         .collect();
-    gpu.draw_batch(&mut pictures).expect("the adapter draws");
+    gpu.draw_batch(&mut pictures).expect("the adapter renders");
     for ((style, scene), found) in styles.iter().zip(&scenes).zip(&found) {
         let mut expected = Frame::new(48, 40);
         let drawn = CpuRenderer::new().draw(scene, &camera, &mut expected.target());
-        drawn.expect("it draws");
+        drawn.expect("the image renders");
         let like = likeness(found, &expected);
         let least = if *style == Style::Natural { 1.0 } else { 0.99 };
         assert!(like.colors >= least && like.depths >= least, "{style:?}: {like:?}");

@@ -26,7 +26,7 @@ fn actions(agent: &mut dyn Agent, seed: u64, edit: impl FnOnce(&mut driftworld_s
         world.objects.push(driftworld_spec::Object::new("tree", [2.0, 9.0]));
         edit(world);
     });
-    let mut environment = Environment::new(world.expect("a sound world"));
+    let mut environment = Environment::new(world.expect("the world is valid"));
     agent.begin(seed);
     let step = |_| {
         let action = agent.act(&environment);
@@ -64,7 +64,7 @@ fn image_matches_an_environment_of_the_same_size() {
         world.agent_params.observation_size = 16;
         world.agent_params.supersampling = 2;
     });
-    let mut environment = Environment::new(world.expect("a sound world"));
+    let mut environment = Environment::new(world.expect("the world is valid"));
     let mut agent = agent(|_| {});
     agent.look(&environment);
     assert_eq!(agent.image, environment.observe().rgb);
