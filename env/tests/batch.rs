@@ -95,7 +95,7 @@ fn assert_matches(outputs: &driftworld_env::Outputs, env: usize, alone: &Environ
 }
 
 #[test]
-fn batch_equals_separate_environments() {
+fn a_batch_is_so_many_environments() {
     for autoreset in [Autoreset::NextStep, Autoreset::SameStep] {
         for num_threads in [1, 2, 3] {
             let mut batch = batch(autoreset, num_threads);

@@ -388,7 +388,7 @@ fn arena() -> WorldDraft {
 }
 
 #[test]
-fn reset_equals_a_fresh_start() {
+fn resetting_is_starting_anew() {
     let mut used = start(WorldDraft::default());
     rewards(&mut used, &[AHEAD; 5]);
     used.reset(arena().check().expect("the world is valid"));
