@@ -59,6 +59,7 @@ class Learner:
     name = "learner"
     #: The meaning of ``borders=None``.
     own_borders = "none"
+    made_with: dict[str, Any]
 
     def __init_subclass__(cls, **options: Any) -> None:
         """Names a method after its class, unless it has a name."""
@@ -253,7 +254,7 @@ class Learner:
 
 def _arguments(kind: type, arguments: tuple[Any, ...], options: dict[str, Any]) -> dict[str, Any]:
     """The arguments of a learner, with the defaults of its class and of those that it passes ``**options`` on to."""
-    own = [inspect.signature(each.__init__) for each in kind.__mro__ if "__init__" in vars(each) and each is not object]
+    own = [inspect.signature(vars(each)["__init__"]) for each in kind.__mro__ if "__init__" in vars(each) and each is not object]
     named = ([name for name, each in signature.parameters.items() if each.kind is each.POSITIONAL_OR_KEYWORD] for signature in own)
     names = next(names[1:] for names in named if len(names) > 1)
     given = {

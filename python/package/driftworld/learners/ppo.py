@@ -234,8 +234,9 @@ class PPO(Learner):
         """
         extra = self.extra_loss()
         for what, value in (("loss", loss), ("extra_loss", extra)):
-            is_tensor = isinstance(value, torch.Tensor)
-            found = value.item() if is_tensor and value.numel() == 1 else f"shape {tuple(value.shape)}" if is_tensor else value
+            found: Any = value
+            if isinstance(value, torch.Tensor):
+                found = value.item() if value.numel() == 1 else f"shape {tuple(value.shape)}"
             if not isinstance(found, (int, float)) or not math.isfinite(found):
                 raise ValueError(f"{self.name}: {what}: found {found} in update {self.updates + 1}, expected a finite number")
         if not isinstance(loss, torch.Tensor):
