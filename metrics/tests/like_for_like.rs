@@ -11,7 +11,7 @@ use proptest::prelude::*;
 /// A block: its type, its task, the seed and first index of its worlds, its length, and whether it is before deployment.
 #[derive(Debug, Clone)]
 struct Block {
-    block_type: BlockType,
+    kind: BlockType,
     task: &'static str,
     seed: u64,
     first: u32,
@@ -21,7 +21,7 @@ struct Block {
 
 fn learning(task: &'static str, seed: u64, first: u32, count: u32) -> Block {
     Block {
-        block_type: Train,
+        kind: Train,
         task,
         seed,
         first,
@@ -45,7 +45,7 @@ fn log_of(blocks: &[Block], agent: Option<&str>) -> Log {
         }
         for index in block.first..block.first + block.count {
             let when = Timestamp::from_unix_micros(number as i64).unwrap();
-            let record = Record::new(place, number, block.block_type, block.task, when)
+            let record = Record::new(place, number, block.kind, block.task, when)
                 .with_metric("reward", f64::from(index % 7))
                 .with_metric("world_index", f64::from(index))
                 .with_task_params(params.clone());
@@ -134,7 +134,7 @@ proptest! {
     ) {
         let mut life: Vec<Block> = (life.into_iter())
             .map(|(is_a, is_test, seed, first, count)| Block {
-                block_type: if is_test { Test } else { Train },
+                kind: if is_test { Test } else { Train },
                 ..learning(if is_a { "f_a" } else { "f_b" }, seed, first, count)
             })
             .collect();
@@ -144,7 +144,7 @@ proptest! {
             .collect();
         let (found, _) = fit(&life, None, &expert, None);
         let rows = |blocks: &[Block]| -> Vec<(u64, u32)> {
-            let learned = blocks.iter().filter(|block| block.block_type == Train && block.task == "f_a");
+            let learned = blocks.iter().filter(|block| block.kind == Train && block.task == "f_a");
             learned.flat_map(|block| (block.first..block.first + block.count).map(|index| (block.seed, index))).collect()
         };
         let (own, other) = (rows(&life), rows(&expert));

@@ -12,8 +12,8 @@ const ROUNDING: f64 = 1e-12;
 /// `u` the rewards of the same action in the same state of both. The mean is over all actions of the counted states; outcomes
 /// are compared state by state, so swapping the effects of two actions is noticed.
 ///
-/// `rewards`: for each process, `(states · actions,)`, state by state, then action by action. `unit`: the reward that counts as
-/// 1. `counted`: `(states,)`, at least one of them true. `ground(row)`: the distance between the successors of a state and an
+/// `rewards`: for each process, `(states · actions,)`, state by state, then action by action. `unit`: the reward that is
+/// one unit. `counted`: `(states,)`, at least one of them true. `ground(row)`: the distance between the successors of a state and an
 /// action, by their index in `rewards`. With a metric between successors it is a metric on the processes' counted states; a
 /// shift of both rewards does not change it.
 ///

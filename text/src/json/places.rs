@@ -88,7 +88,7 @@ fn pointer(open: &[Level]) -> String {
             Level::Object(_, key) => pointer.extend(["/", &escape(key)]),
             // Includes the item being read.
             Level::List(items) => {
-                write!(pointer, "/{}", items.saturating_sub(1)).expect("writing to a String does not fail")
+                write!(pointer, "/{}", items.saturating_sub(1)).expect("writing to a String does not fail");
             }
         }
         pointer

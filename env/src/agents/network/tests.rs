@@ -1,4 +1,4 @@
-//! The network matches PyTorch, the agent holds its actions, and bad files are refused.
+//! The network matches `PyTorch`, the agent holds its actions, and bad files are refused.
 
 use std::sync::Arc;
 
@@ -77,7 +77,7 @@ fn action_is_held_and_interacts_only_in_its_first_time_step() {
     let later = Action::Continuous([4.0, 9.0, 0.0]);
     for (frame_skip, held) in [(1, 5), (2, 3), (5, 1), (7, 1)] {
         let done = actions(&mut agent(always), 0, |world| {
-            world.agent_params.frame_skip = frame_skip
+            world.agent_params.frame_skip = frame_skip;
         });
         for (step, action) in done.into_iter().enumerate() {
             let expected = if step % held == 0 { first } else { later };
