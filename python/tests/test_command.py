@@ -33,7 +33,7 @@ def test_output_is_printed() -> None:
 def test_wrong_input_exits_with_1() -> None:
     said = run("sample", "find_object#red")
     assert said.returncode == 1 and said.stdout == ""
-    assert said.stderr.startswith("error: found task") and 'did you mean "find_objects"?' in said.stderr
+    assert said.stderr.startswith("error: found task") and 'did you mean "find_objects"?' in " ".join(said.stderr.split())
 
 
 @pytest.mark.parametrize("argv", [["sampel"], ["sample", "find_objects", "--sed", "3"], ["order"]])
