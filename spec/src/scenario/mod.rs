@@ -58,7 +58,7 @@ pub struct Scenario {
     /// How hard its tasks are, in l2logger's terms; recorded in logs. Not recorded if absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub difficulty: Option<ScenarioDifficulty>,
-    /// Whether the learner is told which task it is in; not told by default.
+    /// Whether the learner gets the label of the task that it is in; by default it does not.
     #[serde(default, skip_serializing_if = "is_default")]
     pub task_label: TaskLabel,
     /// Experimental evidence that its variants differ in one element only; for scenarios that probe an element.
@@ -121,7 +121,7 @@ pub enum ScenarioDifficulty {
     Hard,
 }
 
-/// Whether the learner is told which task it is in.
+/// Whether the learner gets the label of the task that it is in.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum TaskLabel {
