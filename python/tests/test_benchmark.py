@@ -205,7 +205,8 @@ def test_smoke_sequence_is_learned_and_forgotten(tmp_path: Path) -> None:
     (report,) = run_cells([Cell("smoke", "finetuning", 0)], tmp_path)
     assert report is not None and report["decisions"] >= 4 * 33_000
     (run,) = Results(Sequence.load("smoke"), tmp_path / "smoke").runs["finetuning"]
-    assert run.sampled.learned().mean() > 0.3, run.sampled.values
+    # Processors round differently, and one of the four tasks is not always learned.
+    assert np.median(run.sampled.learned()) > 0.6, run.sampled.values
     assert run.sampled.forgetting() > 0.3, run.sampled.values
 
 

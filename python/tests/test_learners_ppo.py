@@ -255,6 +255,20 @@ def test_loss_that_is_not_finite_ends_the_run(learners: Any, value: Any) -> None
 
 
 @needs_torch
+def test_step_takes_a_tensor_of_one_number(learners: Any) -> None:
+    with pytest.raises(TypeError, match=r"ppo: loss: found the number 0\.5, expected a tensor with gradients"):
+        small().step(0.5)
+    with pytest.raises(ValueError, match=r"ppo: loss: found shape \(3,\) in update 1"):
+        small().step(sys.modules["torch"].ones(3))
+
+
+@needs_torch
+def test_learner_of_several_environments_is_refused_by_run(learners: Any) -> None:
+    with pytest.raises(TypeError, match=r"agent: found a learner of several environments.*use run_vector"):
+        curriculum("left", learn=1).run(small(), **OPTIONS)
+
+
+@needs_torch
 def test_border_hooks_without_borders_are_refused(learners: Any) -> None:
     class Own(learners.PPO):  # type: ignore[misc, name-defined]
         name = "own"
@@ -289,6 +303,8 @@ def test_arguments_of_any_kind_are_noted(learners: Any) -> None:
 
     noted = Odd(5, 4, weights=sys.modules["torch"].ones(3)).made_with
     assert (noted["weights"], noted["ratio"]) == ("Tensor", "nan")
+    noted = Odd(5, 4, weights=np.arange(2), ratio=np.float32(0.5)).made_with
+    assert (noted["weights"], noted["ratio"]) == ([0, 1], 0.5)
 
 
 @needs_torch
@@ -303,6 +319,8 @@ def test_seeds_of_learners_differ_between_lifetimes(learners: Any, tmp_path: Pat
 def test_action_table_of_another_length_is_refused(learners: Any, tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="actions: found 4 rows, expected 5 rows as in the agent's num_actions"):
         live(small(), tmp_path / "log", "left", actions=OPTIONS["actions"][:4])
+    with pytest.raises(ValueError, match=r"actions: found no table, expected 5 rows.*pass actions="):
+        live(small(), tmp_path / "log", "left", actions="normalized")
     assert not (tmp_path / "log").exists()
 
 

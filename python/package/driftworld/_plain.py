@@ -1,8 +1,11 @@
-"""Converts NumPy values and paths to JSON, for documents that are passed to the native module."""
+"""Converts values to JSON, for documents that are passed to the native module."""
 
 from __future__ import annotations
 
+import dataclasses
+import math
 import os
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -24,3 +27,20 @@ def plain(value: Any) -> Any:
     raise TypeError(
         f"found a value of type {found}, expected what JSON can express: numbers, strings, lists, dictionaries"
     )
+
+
+def described(value: Any) -> Any:
+    """A setting as JSON: numbers, words, lists, mappings and dataclasses by value, any other object by the name of its
+    class, and NaN and infinities as words.
+    """
+    if isinstance(value, (np.generic, np.ndarray, os.PathLike)):
+        value = plain(value)
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        value = dataclasses.asdict(value)
+    if isinstance(value, Mapping):
+        return {str(name): described(each) for name, each in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [described(each) for each in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return str(value)
+    return value if isinstance(value, (str, int, float, type(None))) else type(value).__name__

@@ -144,7 +144,7 @@ class Summary:
             )
             for regime in self.regimes
         ]
-        return table(head, rows, f"{self.experiences} experiences, {self.steps} steps{self._from_before()}")
+        return table(head, rows, f"{self.experiences} experiences, {self.steps} steps{self._from_before('; ')}")
 
     def __str__(self) -> str:
         rows = [("block", "kind", "variant", "experiences", "mean reward", "success")]
@@ -155,16 +155,15 @@ class Summary:
         lines = [
             "  ".join(f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows
         ]
-        return "\n".join(lines) + self._from_before()
+        return "\n".join(lines) + self._from_before("\n")
 
-    def _from_before(self) -> str:
-        """How much of it an earlier run had logged, in words."""
-        total = self.experiences + self.skipped
+    def _from_before(self, separator: str) -> str:
+        """How much of it an earlier run had logged, in words after a separator; nothing for a new log."""
         if self.resumed == 0:
             return ""
-        if self.resumed < total:
-            return f"\nresumed {self.log} after {self.resumed} experiences"
-        return f"\nnothing was run: {self.log} is already finished; for another lifetime, pass another folder"
+        if self.resumed < self.experiences + self.skipped:
+            return f"{separator}resumed {self.log} after {self.resumed} experiences"
+        return f"{separator}nothing was run: {self.log} is already finished; for another lifetime, pass another folder"
 
 
 class Lifetime:

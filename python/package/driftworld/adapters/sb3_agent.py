@@ -28,6 +28,7 @@ from stable_baselines3.common.save_util import load_from_pkl, save_to_pkl
 from stable_baselines3.common.utils import obs_as_tensor, should_collect_more_steps
 from stable_baselines3.common.vec_env import VecEnvWrapper, VecMonitor, VecTransposeImage
 
+from driftworld._plain import described
 from driftworld.lifetimes import Transition
 
 #: Attributes that a model keeps when another one is loaded into it.
@@ -77,11 +78,10 @@ class Agent:
         self.policy = policy or ("sampled" if kind is OnPolicyAlgorithm else "greedy")
         if self.policy not in ("sampled", "greedy"):
             raise ValueError(f"policy: found {policy!r}, expected sampled or greedy")
-        arguments = {name: getattr(model, name, None) for name in inspect.signature(type(model).__init__).parameters}
-        #: The model's arguments, where they are plain: a log can only be resumed with the same ones.
-        self.made_with = {
-            name: value for name, value in arguments.items() if isinstance(value, (int, float)) and name not in ("verbose", "device")
-        } | {"total_timesteps": total_timesteps}  # fmt: skip
+        arguments = {name: described(getattr(model, name, None)) for name in inspect.signature(type(model).__init__).parameters}
+        numbers = {name: value for name, value in arguments.items() if isinstance(value, (int, float)) and name != "verbose"}
+        #: The model's arguments that are numbers: a log can only be resumed with the same ones.
+        self.made_with = {**numbers, "total_timesteps": total_timesteps}
         if not model.verbose and model.tensorboard_log is None and not model._custom_logger:
             # Stable-Baselines3's own logger creates a temporary folder and never removes it, even if it writes nothing.
             model.set_logger(Logger(folder=None, output_formats=[]))

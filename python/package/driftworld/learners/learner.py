@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import dataclasses
 import hashlib
 import inspect
-import math
 import re
 import time
 from collections.abc import Iterator, Mapping, Sequence
@@ -17,6 +15,7 @@ import numpy as np
 import torch
 from torch import nn
 
+from driftworld._plain import described
 from driftworld.learners.export import write_network
 from driftworld.learners.networks import PatchNetwork
 
@@ -268,20 +267,7 @@ def _arguments(kind: type, arguments: tuple[Any, ...], options: dict[str, Any]) 
         # A method's own constants, such as a strength.
         if not each.__module__.startswith("driftworld."):
             given |= {name: value for name, value in vars(each).items() if name[0] != "_" and isinstance(value, (int, float, str))}
-    return {name: _plain(value) for name, value in given.items() if value is not None}
-
-
-def _plain(value: Any) -> Any:
-    """A value as JSON can hold it; other objects by the names of their classes."""
-    if dataclasses.is_dataclass(value) and not isinstance(value, type):
-        return _plain(dataclasses.asdict(value))
-    if isinstance(value, Mapping):
-        return {str(name): _plain(each) for name, each in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [_plain(each) for each in value]
-    if isinstance(value, float) and not math.isfinite(value):
-        return str(value)
-    return value if isinstance(value, (str, int, float, type(None))) else type(value).__name__
+    return {name: described(value) for name, value in given.items() if value is not None}
 
 
 def leaves(value: Any, name: str = "") -> Iterator[tuple[str, Any]]:

@@ -105,7 +105,7 @@ class PPO(Learner):
         self.reset_optimizer()
 
     def extra_loss(self) -> torch.Tensor | float:
-        """A scalar to add to the loss in each optimiser step, computed from the weights; a loss on experience belongs into
+        """A scalar to add to the loss in each optimiser step, computed from the weights; a loss on experience belongs in
         :meth:`after_update`.
         """
         return 0.0
