@@ -92,7 +92,7 @@ proptest! {
         let mut environment = Environment::new(world.clone().check().expect("the world is valid"));
         let mut session = session(world, Catalogue::default(), is_new);
         let first = answer(&mut session, CommandProto::Reset, None);
-        let behavior = &first.rl_initialization_output.expect("the behaviour is told").brain_parameters[0];
+        let behavior = &first.rl_initialization_output.expect("the reply initialises").brain_parameters[0];
         prop_assert_eq!(behavior.vector_action_space_type, i32::from(SpaceTypeProto::Discrete));
         prop_assert_eq!(&behavior.vector_action_size, &vec![count as i32]);
         prop_assert_eq!(behavior.action_spec.is_some(), is_new);

@@ -129,7 +129,7 @@ impl Image {
         self.line(ends, more, darkened(item.color.or(own).unwrap_or([0.5; 3]), 255.0));
     }
 
-    /// Draws a line, because walls are thin from above. Its thickness is relative to the image, at least two pixels, plus
+    /// Draws a thick line: walls are thin from above. Its thickness is relative to the image, at least two pixels, plus
     /// `more` pixels.
     fn line(&mut self, [from, to]: [[f32; 2]; 2], more: i32, rgb: [u8; 3]) {
         let thick = (self.height as i32 / 150).max(1) + more;

@@ -29,7 +29,7 @@ pub struct Event {
 pub enum Effect {
     /// The door opened.
     Opened,
-    /// The door was told to close; it closes at the end of the time step, or as soon as nothing stands in it.
+    /// Something asked the door to close; it closes at the end of the time step, or as soon as nothing stands in it.
     Closed,
     /// The switch opened or closed its doors.
     Switched,

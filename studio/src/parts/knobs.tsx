@@ -67,7 +67,7 @@ function Knob({ parameter, value, set }: { parameter: WrittenParameter; value: V
   );
 }
 
-/** Controls for all parameters that can be set: those with role `variant`, in the shown variant, and fixed numbers. */
+/** Controls for all parameters that can be set: the shown variant's, and fixed numbers and booleans. */
 export function Knobs({ parameters, variant, set }: {
   parameters: WrittenParameter[];
   variant: Variant | null;
