@@ -10,7 +10,7 @@ use driftworld_text::ShownPath;
 use crate::checksum::checksum;
 use crate::{Failure, documents};
 
-/// The built-in agents.
+/// An agent named on the command line.
 #[derive(Clone, Debug, PartialEq, Eq, strum::AsRefStr)]
 #[strum(serialize_all = "lowercase")]
 pub(crate) enum AgentArg {
@@ -74,7 +74,7 @@ pub(crate) struct NamedAgent {
     /// Its name in logs.
     pub(crate) name: String,
     pub(crate) agent: Box<dyn Agent>,
-    /// The agent's part of the plan's fingerprint: the checksum of its file, or how it chooses actions while learning.
+    /// Entry for the plan's fingerprint, with its key: the checksum of the agent's file, or its policy while learning.
     pub(crate) fingerprint: Option<(&'static str, String)>,
 }
 
@@ -87,7 +87,7 @@ impl FromStr for AgentArg {
             Some(("net", file)) if !file.is_empty() => Ok(Self::Net(file.into())),
             None if text == "random" => Ok(Self::Random),
             None if text == "still" => Ok(Self::Still),
-            // The name in tables.
+            // Tables call it "planner" and "expert".
             None if ["onrails", "planner", "expert"].contains(&text) => Ok(Self::Onrails),
             None if text == "sarsa" => Ok(Self::Sarsa),
             _ => {
@@ -110,7 +110,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn agents_are_parsed_and_scripts_are_named_by_their_file() {
+    fn agent_parses_from_its_name_and_keeps_the_file() {
         assert_eq!("random".parse(), Ok(AgentArg::Random));
         assert_eq!("onrails".parse(), Ok(AgentArg::Onrails));
         assert_eq!("expert".parse(), Ok(AgentArg::Onrails));
@@ -123,16 +123,16 @@ mod tests {
 
     #[test]
     fn misspelt_agent_error_lists_the_agents() {
-        let said = |text: &str| text.parse::<AgentArg>().expect_err("there is no such agent");
+        let error = |text: &str| text.parse::<AgentArg>().expect_err("there is no such agent");
         let expected = "expected random, still, onrails, sarsa, scripted:FILE or net:FILE; did you mean";
-        assert_eq!(said("onrail"), format!("found \"onrail\", {expected} \"onrails\"?"));
+        assert_eq!(error("onrail"), format!("found \"onrail\", {expected} \"onrails\"?"));
         assert_eq!(
-            said("scripted"),
+            error("scripted"),
             format!("found \"scripted\", {expected} \"scripted:FILE\"?")
         );
-        assert_eq!(said("net"), format!("found \"net\", {expected} \"net:FILE\"?"));
+        assert_eq!(error("net"), format!("found \"net\", {expected} \"net:FILE\"?"));
         assert_eq!(
-            said("bot"),
+            error("bot"),
             "found \"bot\", expected random, still, onrails, sarsa, scripted:FILE or net:FILE"
         );
     }

@@ -45,13 +45,13 @@ pub(crate) struct Audit {
 
 impl Audit {
     pub(crate) fn run(self) -> Result<(), Failure> {
-        output::answers_by_code();
+        output::run_to_end_for_exit_code();
         let options = AuditOptions {
             lifetimes: self.lifetimes,
             repeats: self.repeats,
         };
         let (mut failed, mut untested) = (0, 0);
-        let mut all = Vec::new();
+        let mut reports = Vec::new();
         for path in &self.scenarios {
             let file = ScenarioFile::read(path, &mut output::warning)?;
             let folder = ScratchFolder::new(".driftworld-audit-", &std::env::temp_dir())?;
@@ -64,13 +64,13 @@ impl Audit {
             failed += count(Some(false));
             untested += count(None);
             if self.json {
-                all.push(json!({ "scenario": path, "agents": rows }));
+                reports.push(json!({ "scenario": path, "agents": rows }));
             } else {
-                output::line(format!("{}\n{}\n", path.shown(), shown(&rows)))?;
+                output::line(format!("{}\n{}\n", path.shown(), verdict_table(&rows)))?;
             }
         }
         if self.json {
-            output::json(&all)?;
+            output::json(&reports)?;
         }
         if failed > 0 {
             return Err(Failure::input(format!(
@@ -88,7 +88,7 @@ impl Audit {
     }
 }
 
-fn shown(rows: &[AuditRow]) -> String {
+fn verdict_table(rows: &[AuditRow]) -> String {
     let verdict = |row: &AuditRow| match row.passed {
         Some(true) => "ok",
         Some(false) => "FAILED",

@@ -1,4 +1,4 @@
-//! `driftworld bench`: measures the speed of this build on this machine, one core at a time.
+//! `driftworld bench`: measures the speed of this build on this machine.
 
 use std::time::Duration;
 

@@ -12,8 +12,8 @@ use crate::{Failure, documents};
 
 use super::output;
 
-/// Longest line, in bytes: a message may hold a whole world.
-const LONGEST_LINE: u64 = 64 << 20;
+/// Maximum length of a line in bytes: a message may contain a whole world.
+const MAX_LINE_BYTES: u64 = 64 << 20;
 
 /// Step through a world by hand: act, observe, edit it.
 ///
@@ -78,7 +78,7 @@ impl Console {
             output::line(format!("> {line}"))?;
             match session.execute(line) {
                 Ok(Reply::Quit) => break,
-                Ok(reply) => say(&reply)?,
+                Ok(reply) => print_reply(&reply)?,
                 Err(text) => {
                     output::line(format!("error: {text}"))?;
                     failed += 1;
@@ -95,21 +95,21 @@ impl Console {
     }
 }
 
-/// Executes lines from a terminal until the user leaves.
+/// Executes lines from a terminal until the user quits.
 fn converse(session: &mut Session) -> Result<(), Failure> {
     let mut editor = Editor::new()?;
     while let Some(line) = editor.read(session.names())? {
         match session.execute(&line) {
             Ok(Reply::Quit) => break,
-            Ok(reply) => say(&reply)?,
+            Ok(reply) => print_reply(&reply)?,
             Err(text) => output::line(format!("error: {text}"))?,
         }
     }
     Ok(())
 }
 
-fn say(reply: &Reply) -> Result<(), Failure> {
-    let (Reply::Said(text) | Reply::Json(text) | Reply::Picture(text)) = reply else {
+fn print_reply(reply: &Reply) -> Result<(), Failure> {
+    let (Reply::Text(text) | Reply::Json(text) | Reply::Picture(text)) = reply else {
         return Ok(());
     };
     if text.is_empty() {
@@ -119,22 +119,22 @@ fn say(reply: &Reply) -> Result<(), Failure> {
     match reply {
         Reply::Json(_) => output::print_json(&text),
         Reply::Picture(_) => output::print_as_is(&text),
-        Reply::Said(_) | Reply::Quit => output::print(&text),
+        Reply::Text(_) | Reply::Quit => output::print(&text),
     }
 }
 
-/// The lines of standard input, each as soon as it arrives.
+/// The lines of standard input, each returned as soon as it arrives.
 fn lines_of_standard_input() -> impl Iterator<Item = Result<String, Failure>> {
     let mut number = 0;
     std::iter::from_fn(move || {
         number += 1;
         let failed = |what: String| Some(Err(Failure::input(format!("standard input:{number}: {what}"))));
         let mut bytes = Vec::new();
-        let mut input = std::io::stdin().lock().take(LONGEST_LINE + 1);
+        let mut input = std::io::stdin().lock().take(MAX_LINE_BYTES + 1);
         match input.read_until(b'\n', &mut bytes) {
             Ok(0) => None,
-            Ok(length) if length as u64 > LONGEST_LINE => {
-                failed(format!("found a longer line, expected at most {LONGEST_LINE} bytes"))
+            Ok(length) if length as u64 > MAX_LINE_BYTES => {
+                failed(format!("found a longer line, expected at most {MAX_LINE_BYTES} bytes"))
             }
             Ok(_) => match String::from_utf8(bytes) {
                 Ok(line) => Some(Ok(line)),

@@ -51,7 +51,7 @@ impl Convert {
         )
     }
 
-    /// Warns about world files that the output names by paths which do not resolve from its folder.
+    /// Warns about world files whose relative paths do not resolve from the output's folder.
     fn warn_of_lost_worlds(&self, scenario: &Scenario) {
         if self.output == Path::new("-") {
             return;

@@ -144,7 +144,7 @@ fn by_element(distance: &Measured) -> String {
     table(["element", "distance"], rows, &[1])
 }
 
-/// Every part that differs, largest share first, and one line for all that do not.
+/// A table of the parts that differ, largest share first, and one line that lists the equal ones.
 fn parts(distance: &Measured) -> String {
     let (mut parts, equal): (Vec<&Part>, Vec<&Part>) = distance.parts.iter().partition(|part| part.raw != 0.0);
     parts.sort_by(|a, b| b.share.total_cmp(&a.share));

@@ -1,4 +1,4 @@
-//! `driftworld doctor`: which renderers work on this machine, with hints on what to install.
+//! `driftworld doctor`: reports which renderers work on this machine, with hints on what to install.
 
 use std::path::Path;
 
@@ -25,7 +25,7 @@ pub(crate) struct Doctor {
 
 impl Doctor {
     pub(crate) fn run(self) -> Result<(), Failure> {
-        output::answers_by_code();
+        output::run_to_end_for_exit_code();
         let report = RendererReport::make();
         let missing = missing(&report);
         if self.json {
@@ -66,7 +66,7 @@ const LOADER_FOLDERS: [&str; 6] = [
     "/usr/local/lib",
 ];
 
-/// Folders where drivers register with the loader.
+/// Folders where Vulkan drivers register with the loader.
 const DRIVER_FOLDERS: [&str; 3] = [
     "/usr/share/vulkan/icd.d",
     "/etc/vulkan/icd.d",

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use crate::env::MAX_EXPERT_STEPS;
-use crate::episode_frames::recorded;
+use crate::episode_frames::record_episode;
 use crate::film::{FilmOptions, expect_film};
 use crate::worlds::WorldRequest;
 use clap::Args;
@@ -12,12 +12,12 @@ use serde_json::json;
 
 use super::agent::AgentArg;
 use super::assets::LibraryChoice;
-use super::film_choice::{self, summary, tell};
+use super::film_choice::{self, report_film, summary};
 use super::output;
 use crate::Failure;
 
 /// Default maximum number of steps of a film in a world without a step limit: 5 minutes at 0.1 s per step.
-const MOST_WITHOUT_LIMIT: u32 = 3000;
+const MAX_STEPS_WITHOUT_LIMIT: u32 = 3000;
 
 /// Let an agent act in a world, and film it.
 #[derive(Args)]
@@ -43,7 +43,7 @@ pub(crate) struct Film {
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
     #[command(flatten)]
-    #[expect(clippy::struct_field_names, reason = "what a film is like, as replay has it")]
+    #[expect(clippy::struct_field_names, reason = "the film options, called so in `replay`, too")]
     film: FilmOptions,
     #[command(flatten)]
     libraries: LibraryChoice,
@@ -60,17 +60,17 @@ impl Film {
         let catalogue = self.libraries.catalogue()?;
         let mut agent = self.agent.agent()?.agent;
         let has_limit = world.step_limit().is_some_and(|limit| limit > 0);
-        let unsaid = if has_limit {
+        let default_max = if has_limit {
             MAX_EXPERT_STEPS
         } else {
-            MOST_WITHOUT_LIMIT
+            MAX_STEPS_WITHOUT_LIMIT
         };
-        let most = self.max_steps.unwrap_or(unsaid);
-        let mut recording = recorded(&world, &catalogue, agent.as_mut(), self.agent_seed, most)?;
+        let max_steps = self.max_steps.unwrap_or(default_max);
+        let mut recording = record_episode(&world, &catalogue, agent.as_mut(), self.agent_seed, max_steps)?;
         recording.origin = self.choice.origin();
-        if self.max_steps.is_none() && !has_limit && recording.actions.len() == most as usize {
+        if self.max_steps.is_none() && !has_limit && recording.actions.len() == max_steps as usize {
             output::warning(format!(
-                "the world has no limit of steps: the film ends after {most}; --max-steps takes more"
+                "the world has no limit of steps: the film ends after {max_steps}; --max-steps takes more"
             ));
         }
         let film = film_choice::write(&self.output, &recording, &catalogue, &self.film)?;
@@ -84,7 +84,7 @@ impl Film {
             }));
         }
         output::line(summary(&recording))?;
-        tell(&self.output, &film)?;
+        report_film(&self.output, &film)?;
         self.record
             .as_ref()
             .map_or(Ok(()), |path| output::line(format!("wrote {}", path.shown())))

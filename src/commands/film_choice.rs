@@ -1,4 +1,4 @@
-//! Writes films and recordings, and reports what was filmed.
+//! Writes films and recordings, and reports what they contain.
 
 use std::path::Path;
 
@@ -32,7 +32,7 @@ pub(super) fn record(path: &Path, recordings: &[Recording]) -> Result<(), Failur
 }
 
 /// Reports the written file with its properties.
-pub(crate) fn tell(path: &Path, film: &FilmSummary) -> Result<(), Failure> {
+pub(crate) fn report_film(path: &Path, film: &FilmSummary) -> Result<(), Failure> {
     let FilmSummary {
         frames,
         width,
@@ -40,12 +40,12 @@ pub(crate) fn tell(path: &Path, film: &FilmSummary) -> Result<(), Failure> {
         seconds,
         sheet,
     } = film;
-    let more = match sheet {
+    let details = match sheet {
         Some([wide, high]) => format!(", on a sheet of {wide} × {high}"),
         None => format!(", {seconds:.1} s"),
     };
     output::line(format!(
-        "wrote {}: {frames} frames of {width} × {height} pixels{more}",
+        "wrote {}: {frames} frames of {width} × {height} pixels{details}",
         path.shown()
     ))
 }

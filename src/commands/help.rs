@@ -51,7 +51,7 @@ pub(super) fn grouped(command: Command) -> Command {
     )
 }
 
-/// The groups with their commands, and commands without a group.
+/// The groups with their commands, then commands without a group under "Others".
 fn groups(command: &Command) -> String {
     let known: Vec<(&str, String)> = command
         .get_subcommands()
@@ -64,11 +64,11 @@ fn groups(command: &Command) -> String {
         })
         .chain([("help", "Say more of a command".to_owned())])
         .collect();
-    let is_grouped = |name: &str| GROUPS.iter().any(|(_, names)| names.contains(&name));
+    let has_group = |name: &str| GROUPS.iter().any(|(_, names)| names.contains(&name));
     let others: Vec<&str> = known
         .iter()
         .map(|(name, _)| *name)
-        .filter(|name| !is_grouped(name))
+        .filter(|name| !has_group(name))
         .collect();
     let width = known.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
     let mut text = String::new();

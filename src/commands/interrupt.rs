@@ -1,8 +1,7 @@
 //! Signal handling: long work polls for a signal and stops by itself; work that cannot poll, or does not stop in time, is
-//! terminated. Either way no partial files remain, and the exit code is that of a program ended by the signal: 130 for an
-//! interrupt.
+//! terminated. Either way no partial files remain, and the exit code is 128 plus the signal's number: 130 for an interrupt.
 //!
-//! Active only if the command runs as a separate program ([`watch`]): a host program handles signals itself.
+//! Signals are handled only after [`watch`].
 
 use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
 use std::sync::{Arc, LazyLock, Mutex, MutexGuard, OnceLock, PoisonError};
@@ -11,9 +10,9 @@ use crate::Failure;
 use system::follow_signals;
 
 /// Set by the first signal while a command listens.
-static ASKED: LazyLock<Arc<AtomicBool>> = LazyLock::new(Arc::default);
+static CANCELLED: LazyLock<Arc<AtomicBool>> = LazyLock::new(Arc::default);
 
-/// The number of the first signal that arrived while a command listened; that of SIGINT if unknown.
+/// The number of the first signal that arrived while a command listened; SIGINT's number if unknown.
 static SIGNAL: AtomicU8 = AtomicU8::new(INTERRUPT);
 
 /// The number of SIGINT.
@@ -23,14 +22,14 @@ const INTERRUPT: u8 = 2;
 static GAVE_UP: AtomicBool = AtomicBool::new(false);
 
 /// The message printed if a listening command does not stop by itself; `None` while no command listens.
-static PARTING: Mutex<Option<String>> = Mutex::new(None);
+static EXIT_MESSAGE: Mutex<Option<String>> = Mutex::new(None);
 
 /// Whether no command listens.
 #[cfg(not(unix))]
 static IDLE: LazyLock<Arc<AtomicBool>> = LazyLock::new(|| Arc::new(AtomicBool::new(true)));
 
-fn parting() -> MutexGuard<'static, Option<String>> {
-    PARTING.lock().unwrap_or_else(PoisonError::into_inner)
+fn exit_message() -> MutexGuard<'static, Option<String>> {
+    EXIT_MESSAGE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Tells long work whether a signal has arrived, so that it can stop. Dropping it stops listening.
@@ -40,34 +39,34 @@ impl Interrupt {
     /// Turns the first interrupt, termination or hang-up into a cancellation request; after 1.5 seconds, or at the next signal,
     /// the process exits with this message and the signal's exit code.
     pub(crate) fn listen(words: impl Into<String>) -> Self {
-        *parting() = Some(words.into());
+        *exit_message() = Some(words.into());
         #[cfg(not(unix))]
         IDLE.store(false, Ordering::SeqCst);
         Self(())
     }
 
-    pub(crate) fn is_asked(&self) -> bool {
+    pub(crate) fn is_cancelled(&self) -> bool {
         self.flag().load(Ordering::Relaxed)
     }
 
     /// The failure of a command that was cancelled: its exit code is the signal's.
-    #[expect(clippy::unused_self, reason = "only who listens was asked")]
+    #[expect(clippy::unused_self, reason = "only a listening command can be cancelled")]
     pub(crate) fn failure(&self, text: impl Into<String>) -> Failure {
         GAVE_UP.store(true, Ordering::SeqCst);
         Failure::input(text)
     }
 
     /// The same flag, for other threads.
-    #[expect(clippy::unused_self, reason = "only who listens may ask")]
+    #[expect(clippy::unused_self, reason = "only a listening command may read the flag")]
     pub(crate) fn flag(&self) -> &'static AtomicBool {
-        &ASKED
+        &CANCELLED
     }
 }
 
 impl Drop for Interrupt {
     fn drop(&mut self) {
         // After a signal, the message is kept until the work has ended.
-        if !self.is_asked() {
+        if !self.is_cancelled() {
             silence();
         }
     }
@@ -81,12 +80,12 @@ pub(super) fn exit_code() -> Option<u8> {
 
 /// Stops listening.
 fn silence() {
-    parting().take();
+    exit_message().take();
     #[cfg(not(unix))]
     IDLE.store(true, Ordering::SeqCst);
 }
 
-/// Marks that a command runs as a program. Dropping it cancels a pending exit; later signals have their default action.
+/// Handles signals while a command runs. Dropping it cancels a pending exit; later signals have their default action.
 pub(super) struct Watch(());
 
 /// Starts signal handling.
@@ -102,7 +101,7 @@ pub(super) fn watch() -> Result<Watch, Failure> {
 impl Drop for Watch {
     fn drop(&mut self) {
         silence();
-        ASKED.store(false, Ordering::SeqCst);
+        CANCELLED.store(false, Ordering::SeqCst);
     }
 }
 
@@ -121,13 +120,13 @@ mod system {
     use signal_hook::low_level;
 
     use super::super::output;
-    use super::{ASKED, INTERRUPT, SIGNAL, parting};
+    use super::{CANCELLED, INTERRUPT, SIGNAL, exit_message};
 
-    /// How long work has to stop by itself.
+    /// Time that work gets to stop by itself.
     const GRACE: Duration = Duration::from_millis(1500);
 
     /// Time limit for removing partial files and printing the message: the disk or the terminal may be blocked.
-    const LAST: Duration = Duration::from_millis(300);
+    const CLEAN_UP_TIME: Duration = Duration::from_millis(300);
 
     pub(super) fn follow_signals() -> io::Result<()> {
         // Writing beyond the file size limit then becomes an error, reported and cleaned up like a full disk.
@@ -137,7 +136,7 @@ mod system {
         thread.spawn(move || follow(signals)).map(drop)
     }
 
-    /// A hang-up is ignored if the parent process ignored it, as with `nohup`.
+    /// The signals to handle; not SIGHUP if the parent process ignored it, as with `nohup`.
     fn signals() -> Vec<i32> {
         let mut signals = vec![SIGINT, SIGTERM];
         // A file of the system, not by driftworld-files: no user names it.
@@ -152,28 +151,28 @@ mod system {
 
     fn follow(mut signals: Signals) {
         for signal in signals.forever() {
-            let words = parting().clone();
+            let words = exit_message().clone();
             match words {
                 // No command listens: the process ends as if signals had their default action.
                 None => {
-                    leave(None);
+                    clean_up(None);
                     let _ = low_level::emulate_default_handler(signal);
                     low_level::exit(128 + signal);
                 }
-                Some(words) if ASKED.load(Ordering::SeqCst) => end(&words, signal),
+                Some(words) if CANCELLED.load(Ordering::SeqCst) => end(&words, signal),
                 Some(_) => {
                     // Stored before cancelling: the command reads the number when it gives up.
                     SIGNAL.store(u8::try_from(signal).unwrap_or(INTERRUPT), Ordering::SeqCst);
-                    ASKED.store(true, Ordering::SeqCst);
+                    CANCELLED.store(true, Ordering::SeqCst);
                     let waits = thread::Builder::new().spawn(move || {
                         thread::sleep(GRACE);
                         // By then the command may be finished, in a program that continues.
-                        if let Some(words) = parting().clone() {
+                        if let Some(words) = exit_message().clone() {
                             end(&words, signal);
                         }
                     });
                     if waits.is_err() {
-                        end(&parting().clone().unwrap_or_default(), signal);
+                        end(&exit_message().clone().unwrap_or_default(), signal);
                     }
                 }
             }
@@ -181,22 +180,22 @@ mod system {
     }
 
     fn end(words: &str, signal: i32) -> ! {
-        leave(Some(format!("error: {words}")));
+        clean_up(Some(format!("error: {words}")));
         low_level::exit(128 + signal)
     }
 
     /// Removes partial files and prints the message, as far as time allows.
-    fn leave(words: Option<String>) {
+    fn clean_up(words: Option<String>) {
         let (done, wait) = mpsc::channel();
-        let leaving = thread::Builder::new().spawn(move || {
+        let cleaning = thread::Builder::new().spawn(move || {
             remove_unfinished();
             if let Some(words) = words {
                 output::note(words);
             }
             let _ = done.send(());
         });
-        if leaving.is_ok() {
-            let _ = wait.recv_timeout(LAST);
+        if cleaning.is_ok() {
+            let _ = wait.recv_timeout(CLEAN_UP_TIME);
         }
     }
 }
@@ -210,14 +209,14 @@ mod system {
     use signal_hook::consts::{SIGINT, SIGTERM};
     use signal_hook::flag::{register, register_conditional_default, register_conditional_shutdown};
 
-    use super::{ASKED, IDLE};
+    use super::{CANCELLED, IDLE};
 
     pub(super) fn follow_signals() -> io::Result<()> {
         for signal in [SIGINT, SIGTERM] {
             // Order matters: the exit handler must check the flag before the first signal sets it.
-            register_conditional_shutdown(signal, 128 + signal, Arc::clone(&ASKED))?;
+            register_conditional_shutdown(signal, 128 + signal, Arc::clone(&CANCELLED))?;
             register_conditional_default(signal, Arc::clone(&IDLE))?;
-            register(signal, Arc::clone(&ASKED))?;
+            register(signal, Arc::clone(&CANCELLED))?;
         }
         Ok(())
     }

@@ -72,12 +72,12 @@ pub fn run(args: impl IntoIterator<Item = OsString>) -> u8 {
     documents::accept_standard_input();
     let args: Vec<OsString> = args.into_iter().map(variant_of_standard_input).collect();
     WORDS.lock().unwrap_or_else(PoisonError::into_inner).clone_from(&args);
-    style::follow(asked_color(&args));
+    style::follow(requested_color(&args));
     match parse(&args) {
         Ok((command, outputs)) => {
             let done = overwrite::refuse_same(&outputs).and_then(|()| interrupt::watch());
             let done = done.and_then(|_watch| command.run());
-            let reported = output::tell_what_was_written();
+            let reported = output::report_written_files();
             done.and(reported).map_or_else(|failure| report(&failure), |()| 0)
         }
         Err(help) => {
@@ -85,7 +85,7 @@ pub fn run(args: impl IntoIterator<Item = OsString>) -> u8 {
                 output::note(help.render().to_string().trim_end());
             } else {
                 let printed = help.print().and_then(|()| std::io::stdout().flush());
-                // A reader that has gone needs no message.
+                // If the reader has gone, there is no one to report the error to.
                 if let Err(error) = printed.or_else(|error| match error.kind() {
                     std::io::ErrorKind::BrokenPipe => Ok(()),
                     _ => Err(error),
@@ -98,61 +98,57 @@ pub fn run(args: impl IntoIterator<Item = OsString>) -> u8 {
     }
 }
 
-/// The command as clap knows it.
+/// The command's definition for clap.
 fn command() -> clap::Command {
     help::grouped(Driftworld::command())
 }
 
 /// The value of `--color`, read before everything else: argument errors are coloured, too.
-fn asked_color(args: &[OsString]) -> ColorChoice {
+fn requested_color(args: &[OsString]) -> ColorChoice {
     let mut args = args
         .iter()
         .filter_map(|arg| arg.to_str())
         .take_while(|arg| *arg != "--");
-    let mut asked = ColorChoice::Auto;
+    let mut requested = ColorChoice::Auto;
     while let Some(arg) = args.next() {
         let word = match arg.strip_prefix("--color") {
             Some("") => args.next(),
             Some(rest) => rest.strip_prefix('='),
             None => None,
         };
-        asked = word
+        requested = word
             .and_then(|word| ColorChoice::from_str(word, false).ok())
-            .unwrap_or(asked);
+            .unwrap_or(requested);
     }
-    asked
+    requested
 }
 
-/// The options that name output files, with the files.
+/// The output files of a command, each with the option that names it.
 type Outputs = Vec<(&'static str, PathBuf)>;
 
 /// Parses arguments. Error messages quote them on one line each, with control characters escaped.
 fn parse(args: &[OsString]) -> Result<(Command, Outputs), clap::Error> {
     let read = |args: Vec<OsString>| {
-        let mut command = command().color(asked_color(&args));
+        let mut command = command().color(requested_color(&args));
         let matches = command.try_get_matches_from_mut(args)?;
         let read = Driftworld::from_arg_matches(&matches).map_err(|error| error.format(&mut command))?;
         Ok((read.command, outputs(&matches)))
     };
-    read(args.to_vec()).map_err(|said| {
-        let said = with_printable_words(said);
-        if !said
-            .render()
-            .to_string()
-            .contains(|letter| letter != '\n' && is_unprintable(letter))
-        {
-            return removed_word(args, &said).unwrap_or(said);
+    read(args.to_vec()).map_err(|error| {
+        let error = with_printable_words(error);
+        if !error.render().to_string().contains(|c| c != '\n' && is_unprintable(c)) {
+            return removed_word(args, &error).unwrap_or(error);
         }
         let shown = |arg: &OsString| match arg.to_str().map(printable) {
             Some(Cow::Owned(shown)) => shown.into(),
             _ => arg.clone(),
         };
-        let said = read(args.iter().map(shown).collect()).err().unwrap_or(said);
-        removed_word(args, &said).unwrap_or(said)
+        let error = read(args.iter().map(shown).collect()).err().unwrap_or(error);
+        removed_word(args, &error).unwrap_or(error)
     })
 }
 
-/// The output files of a command, by the option that names each.
+/// Finds the output files among parsed arguments.
 fn outputs(matches: &clap::ArgMatches) -> Outputs {
     let mut leaf = matches;
     while let Some((_, below)) = leaf.subcommand() {
@@ -169,9 +165,9 @@ fn outputs(matches: &clap::ArgMatches) -> Outputs {
         .collect()
 }
 
-/// The error with quoted arguments on one line each; our own parsers' messages are escaped already.
-fn with_printable_words(mut said: clap::Error) -> clap::Error {
-    let shown = said.context().filter_map(|(kind, value)| match value {
+/// Escapes the arguments quoted in an error so that each stays on one line; messages of our own parsers are escaped already.
+fn with_printable_words(mut error: clap::Error) -> clap::Error {
+    let shown = error.context().filter_map(|(kind, value)| match value {
         ContextValue::String(text) => match printable(text) {
             Cow::Owned(shown) => Some((kind, ContextValue::String(shown))),
             Cow::Borrowed(_) => None,
@@ -179,27 +175,27 @@ fn with_printable_words(mut said: clap::Error) -> clap::Error {
         _ => None,
     });
     for (kind, value) in shown.collect::<Vec<_>>() {
-        said.insert(kind, value);
+        error.insert(kind, value);
     }
-    said
+    error
 }
 
 /// The error for an option, command or format that was removed, in place of clap's.
-fn removed_word(args: &[OsString], said: &clap::Error) -> Option<clap::Error> {
-    let text = |kind| match said.get(kind)? {
+fn removed_word(args: &[OsString], error: &clap::Error) -> Option<clap::Error> {
+    let text = |kind| match error.get(kind)? {
         ContextValue::String(text) => Some(text.as_str()),
         _ => None,
     };
     let mut root = command();
     let below_command = |word: &str| format!("{} {word}", command_path(&root, args)).trim_start().to_owned();
-    let (kind, word) = match said.kind() {
+    let (kind, word) = match error.kind() {
         ErrorKind::InvalidSubcommand => (WordKind::Command, below_command(text(ContextKind::InvalidSubcommand)?)),
         ErrorKind::UnknownArgument => (WordKind::Option, below_command(text(ContextKind::InvalidArg)?)),
         ErrorKind::InvalidValue => (WordKind::Format, text(ContextKind::InvalidValue)?.to_owned()),
         _ => return None,
     };
     let message = removed(kind, &word)?;
-    Some(root.error(said.kind(), format!("{word}: {message}")))
+    Some(root.error(error.kind(), format!("{word}: {message}")))
 }
 
 /// The subcommands named by arguments, such as `logs aggregate`.
@@ -237,7 +233,7 @@ macro_rules! subcommands {
     ($($module:ident::$command:ident),+ $(,)?) => {
         // No doc comments here: they would replace the long ones of the commands.
         #[derive(Subcommand)]
-        #[expect(clippy::large_enum_variant, reason = "there is one, for one run")]
+        #[expect(clippy::large_enum_variant, reason = "only one value exists per run")]
         enum Command {
             $($command($module::$command),)+
         }
@@ -275,10 +271,7 @@ fn translate_panics() {
     std::panic::set_hook(Box::new(move |info| {
         let text = info.payload_as_str().unwrap_or_default();
         if text.starts_with("failed printing to std") && text.contains("Broken pipe") {
-            #[expect(
-                clippy::exit,
-                reason = "the reader of our output has gone: there is nobody left to tell"
-            )]
+            #[expect(clippy::exit, reason = "nobody reads the output any more")]
             std::process::exit(0);
         }
         if text.starts_with("The global thread pool has not been initialized") {
@@ -287,7 +280,7 @@ fn translate_panics() {
                 "error: threads: could not start any, expected one per processor; end other programs, or allow more \
                  (`ulimit -u`)",
             );
-            #[expect(clippy::exit, reason = "the work cannot go on, and was not begun")]
+            #[expect(clippy::exit, reason = "no work was started, and none can be")]
             std::process::exit(1);
         }
         default(info);

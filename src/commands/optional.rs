@@ -1,4 +1,4 @@
-//! Optional parts of a build, which few users need and which are slow to compile: each is a Cargo feature.
+//! Optional features of a build: few users need them, and they are slow to compile.
 
 #[cfg(any(test, not(feature = "gltf")))]
 use crate::Failure;
@@ -10,7 +10,7 @@ pub(crate) const FEATURES: [(&str, bool); 3] = [
     ("line-editor", cfg!(feature = "line-editor")),
 ];
 
-/// The error if a build lacks a feature; `instead` names an alternative.
+/// The error for a feature that this build lacks; `instead` suggests an alternative.
 #[cfg(any(test, not(feature = "gltf")))]
 pub(crate) fn missing(feature: &str, what: &str, instead: &str) -> Failure {
     Failure::input(format!(
@@ -24,9 +24,9 @@ mod tests {
 
     #[test]
     fn missing_feature_names_the_cargo_feature() {
-        let said = format!("{:?}", missing("no-such", "reading glTF", ", or do without"));
+        let error = format!("{:?}", missing("no-such", "reading glTF", ", or do without"));
         let expected = "reading glTF is not in this build: it lacks the feature `no-such`; build with `--features no-such` (or \
                         `full`), or do without";
-        assert!(said.contains(expected), "{said}");
+        assert!(error.contains(expected), "{error}");
     }
 }

@@ -1,5 +1,5 @@
-//! Output of commands: standard output, or files that appear whole or not at all. Escapes control characters and other text
-//! that a terminal would interpret or hide.
+//! Output of commands: to standard output, or to files that are written whole or not at all. Escapes control characters and
+//! other text that a terminal would interpret or hide.
 
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -22,11 +22,11 @@ use crate::wrap::{columns_of_stderr, columns_of_stdout, wrap_lines};
 static IS_DATA: AtomicBool = AtomicBool::new(false);
 
 /// Whether the exit code is a result, which counts even if nobody reads the output.
-static ANSWERS_BY_CODE: AtomicBool = AtomicBool::new(false);
+static EXIT_CODE_IS_RESULT: AtomicBool = AtomicBool::new(false);
 
 /// Makes the command run to its end even if the reader of its output has gone, because its exit code is a result.
-pub(crate) fn answers_by_code() {
-    ANSWERS_BY_CODE.store(true, Ordering::Relaxed);
+pub(crate) fn run_to_end_for_exit_code() {
+    EXIT_CODE_IS_RESULT.store(true, Ordering::Relaxed);
 }
 
 /// Written files that have not been reported yet, with their descriptions.
@@ -39,16 +39,16 @@ fn written() -> MutexGuard<'static, Vec<(PathBuf, String)>> {
 /// Records that a file or a folder was written; `what` is a short description, or empty. A line `wrote FILE` is printed at the
 /// end of the command.
 pub(crate) fn wrote(path: &Path, what: impl Into<String>) {
-    // Standard output has been seen already; a device is not a file, and may be another name for standard output.
+    // Standard output needs no report. A device is not a file, and may be another name for standard output.
     if !is_stdout(path) && !path.starts_with("/dev") {
         written().push((path.to_owned(), what.into()));
     }
 }
 
 /// Reports the written files: on standard output, or on standard error if standard output carries data.
-pub(crate) fn tell_what_was_written() -> Result<(), Failure> {
+pub(crate) fn report_written_files() -> Result<(), Failure> {
     let is_data = IS_DATA.swap(false, Ordering::Relaxed);
-    ANSWERS_BY_CODE.store(false, Ordering::Relaxed);
+    EXIT_CODE_IS_RESULT.store(false, Ordering::Relaxed);
     for (path, what) in std::mem::take(&mut *written()) {
         let what = if what.is_empty() { what } else { format!(" ({what})") };
         let text = format!("wrote {}{what}", path.shown());
@@ -105,22 +105,19 @@ pub(crate) fn carries_data() {
     IS_DATA.store(true, Ordering::Relaxed);
 }
 
-/// Prints our own text unchanged, with colours.
+/// Prints text unchanged, including any colour codes.
 pub(crate) fn print_as_is(text: &str) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Ok(()) => Ok(()),
-        // Input not checked yet may be wrong, which the exit code must show.
-        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe && ANSWERS_BY_CODE.load(Ordering::Relaxed) => {
+        // Later input may still turn out to be invalid, and the exit code must say so.
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe && EXIT_CODE_IS_RESULT.load(Ordering::Relaxed) => {
             Ok(())
         }
-        // As with `| head`: the reader has seen enough.
+        // The reader has seen enough, as with `| head`.
         Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe =>
         {
-            #[expect(
-                clippy::exit,
-                reason = "the reader of our output has gone: there is nobody left to tell"
-            )]
+            #[expect(clippy::exit, reason = "nobody reads the output any more")]
             std::process::exit(0)
         }
         Err(error) => Err(Failure::input(format!("standard output: {error}"))),
@@ -167,7 +164,7 @@ pub(crate) fn write_or_print(path: &Path, json: &str) -> Result<(), Failure> {
 }
 
 /// Writes a picture as PNG or SVG, and reports it with its size.
-pub(crate) fn write_picture_and_tell(path: &Path, picture: &Drawing) -> Result<(), Failure> {
+pub(crate) fn write_and_report_picture(path: &Path, picture: &Drawing) -> Result<(), Failure> {
     write_picture(path, picture)?;
     wrote(path, format!("{} × {} pixels", picture.width, picture.height));
     Ok(())

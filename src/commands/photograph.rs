@@ -17,8 +17,8 @@ use crate::modality::{self, metres_per_level};
 use crate::numbers::documented;
 use crate::worlds::WorldRequest;
 
-/// Maximum length of each part of a file name that comes from the document.
-const LONGEST_NAME: usize = 40;
+/// Maximum number of characters of each part of a file name that comes from the document.
+const MAX_NAME_PART: usize = 40;
 
 /// Photograph every object of a world from all sides.
 ///
@@ -47,7 +47,7 @@ pub(crate) struct Photograph {
     json: bool,
 }
 
-/// The properties that the pictures in a folder share, and a list of the pictures.
+/// The manifest of a folder: properties shared by all pictures, and a list of the pictures.
 #[derive(Serialize)]
 struct Manifest<'a> {
     world: String,
@@ -110,7 +110,7 @@ impl Photograph {
                 },
             )?;
             for kind in &kinds {
-                entries.push(self.keep(&world, view, *kind, &frame)?);
+                entries.push(self.save(&world, view, *kind, &frame)?);
             }
             bar.inc(1);
         }
@@ -144,8 +144,8 @@ impl Photograph {
         Ok(kinds)
     }
 
-    /// Writes one image of a view.
-    fn keep<'a>(&self, world: &'a World, view: &View, kind: Modality, frame: &Frame) -> Result<Entry<'a>, Failure> {
+    /// Writes one image of a view, and returns its entry in the manifest.
+    fn save<'a>(&self, world: &'a World, view: &View, kind: Modality, frame: &Frame) -> Result<Entry<'a>, Failure> {
         let object = &world.objects[view.object];
         let file = file_name(view, object, kind, world.objects.len());
         let metres_per_level = (kind == Modality::Depth).then(|| metres_per_level(view.distance));
@@ -213,7 +213,7 @@ fn file_name(view: &View, object: &Object, kind: Modality, objects: usize) -> St
     )
 }
 
-/// Whole degrees without decimals, others with two: no two views are closer than that.
+/// An angle without decimals if it is whole, otherwise with two: no two views are closer than that.
 fn degrees(angle: f32, digits: usize) -> String {
     if angle.fract() == 0.0 {
         return format!("{angle:0digits$}");
@@ -221,16 +221,16 @@ fn degrees(angle: f32, digits: usize) -> String {
     format!("{angle:0width$.2}", width = digits + 3)
 }
 
-/// A string from the document as part of a file name: anything but letters, digits and `-` becomes `-`.
+/// Turns a string from the document into part of a file name: anything but ASCII letters and digits becomes `-`.
 fn safe(text: &str) -> String {
-    let plain = |letter: char| {
-        if letter.is_ascii_alphanumeric() {
-            letter.to_ascii_lowercase()
+    let replace = |c: char| {
+        if c.is_ascii_alphanumeric() {
+            c.to_ascii_lowercase()
         } else {
             '-'
         }
     };
-    let text: String = text.chars().take(LONGEST_NAME).map(plain).collect();
+    let text: String = text.chars().take(MAX_NAME_PART).map(replace).collect();
     match text.trim_matches('-') {
         "" => "x".to_owned(),
         trimmed => trimmed.to_owned(),
@@ -243,7 +243,7 @@ mod tests {
     use crate::spec::{ImageParams, WorldDraft};
 
     #[test]
-    fn document_names_cannot_leave_the_folder() {
+    fn file_names_stay_inside_the_folder() {
         let check = |class: &str, expected: &str| {
             let view = View {
                 object: 7,

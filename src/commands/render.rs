@@ -10,8 +10,8 @@ use super::agent::AgentArg;
 use super::assets::LibraryChoice;
 use super::output;
 use crate::Failure;
-use crate::contact_sheet::ways;
-use crate::episode_frames::{recorded, rows};
+use crate::contact_sheet::paths;
+use crate::episode_frames::{record_episode, rows};
 use crate::film::{FilmModality, FilmOptions, FilmView};
 use crate::report::picture::{Drawing, SheetRow, sheet};
 use crate::views::Views;
@@ -96,17 +96,17 @@ impl Render {
         let world = self.choice.world(&|text| output::warning(text))?;
         let catalogue = self.libraries.catalogue()?;
         warn(&world, &catalogue);
-        output::write_picture_and_tell(&self.output, &self.picture(&world, &catalogue)?)?;
+        output::write_and_report_picture(&self.output, &self.picture(&world, &catalogue)?)?;
         output::json_of_what_was_written(self.json)
     }
 
     fn picture(&self, world: &World, catalogue: &Catalogue) -> Result<Drawing, Failure> {
         let views = Views::with_catalogue(world, catalogue, self.size, self.turn as f32)
-            .drawn_by(Renderer::new(self.renderer)?);
+            .with_renderer(Renderer::new(self.renderer)?);
         Ok(match self.view {
             View::Overview => views.overview((self.size * 16 / 9).min(4096))?.into(),
             View::TopDown if self.plain => views.top_down().into(),
-            View::TopDown => views.map_with_legend(&ways(world)?),
+            View::TopDown => views.map_with_legend(&paths(world)?),
             View::Rgb => views.first_person()?.rgb.into(),
             View::Depth if self.plain => views.first_person()?.depth.into(),
             View::Depth => views.first_person()?.depth_with_legend(),
@@ -118,7 +118,7 @@ impl Render {
         })
     }
 
-    /// The agent's view in both styles: at the learner's resolution, and large with smooth edges.
+    /// The agent's view in both styles: large with smooth edges, and at the resolution of learners.
     fn looks(&self, world: &World, catalogue: &Catalogue) -> Result<Drawing, Failure> {
         let row = |style: Style, title: &str| -> Result<SheetRow, Failure> {
             let world = world.clone().edit(|draft| {
@@ -126,7 +126,7 @@ impl Render {
                 looks.style = style;
             })?;
             let views = Views::with_catalogue(&world, catalogue, self.size, self.turn as f32)
-                .drawn_by(Renderer::new(self.renderer)?);
+                .with_renderer(Renderer::new(self.renderer)?);
             let large = views.smoothly([640, 360])?;
             let mut small = Drawing::blank(160, large.height);
             let mut top = 0;
@@ -157,8 +157,8 @@ impl Render {
             )));
         }
         let mut agent = self.agent.as_ref().unwrap_or(&AgentArg::Onrails).agent()?.agent;
-        let recording = recorded(world, catalogue, agent.as_mut(), 0, MAX_EXPERT_STEPS)?;
-        let most = usize::from(self.frames.unwrap_or(8));
+        let recording = record_episode(world, catalogue, agent.as_mut(), 0, MAX_EXPERT_STEPS)?;
+        let max_rows = usize::from(self.frames.unwrap_or(8));
         let options = FilmOptions {
             view: FilmView::Both,
             size: self.size,
@@ -168,11 +168,11 @@ impl Render {
             captions: true,
             renderer: self.renderer,
         };
-        Ok(sheet(&rows(&recording, catalogue, &options, most)?, 2))
+        Ok(sheet(&rows(&recording, catalogue, &options, max_rows)?, 2))
     }
 
     fn sheet(&self, world: &World, views: &Views) -> Result<Drawing, Failure> {
-        let small = views.of_size((self.size * 2 / 3).max(1));
+        let small = views.with_size((self.size * 2 / 3).max(1));
         let seen = views.first_person()?;
         let close_ups = small.close_ups(5)?;
         let (classes, close_ups): (Vec<String>, Vec<Drawing>) = close_ups
@@ -185,7 +185,7 @@ impl Render {
                 "from outside, and from above: the arrow is the agent, small things are drawn larger",
                 vec![
                     views.overview((self.size * 16 / 9).min(4096))?.into(),
-                    views.map_with_legend(&ways(world)?),
+                    views.map_with_legend(&paths(world)?),
                 ],
             ),
             SheetRow::new(
@@ -211,15 +211,15 @@ impl Render {
 }
 
 /// Maximum number of warnings that are printed.
-const MOST_WARNINGS: usize = 10;
+const MAX_WARNINGS: usize = 10;
 
 /// Warns about parts of the world that may surprise its author.
 fn warn(world: &World, catalogue: &Catalogue) {
     let warnings = Environment::with_catalogue(world.clone(), catalogue.clone()).warnings();
-    for warning in warnings.iter().take(MOST_WARNINGS) {
+    for warning in warnings.iter().take(MAX_WARNINGS) {
         output::warning(warning.to_string());
     }
-    if warnings.len() > MOST_WARNINGS {
-        output::note(format!("warning: and {} more", warnings.len() - MOST_WARNINGS));
+    if warnings.len() > MAX_WARNINGS {
+        output::note(format!("warning: and {} more", warnings.len() - MAX_WARNINGS));
     }
 }

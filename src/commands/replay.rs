@@ -10,7 +10,7 @@ use driftworld_text::ShownPath;
 use serde_json::json;
 
 use super::assets::LibraryChoice;
-use super::film_choice::{self, summary, tell};
+use super::film_choice::{self, report_film, summary};
 use super::output;
 use crate::Failure;
 
@@ -47,7 +47,7 @@ pub(crate) struct Replay {
 
 impl Replay {
     pub(crate) fn run(self) -> Result<(), Failure> {
-        output::answers_by_code();
+        output::run_to_end_for_exit_code();
         if let Some(path) = &self.output {
             expect_film(path)?;
             self.film.check()?;
@@ -81,17 +81,17 @@ impl Replay {
             "episode {number}: {}; comes out as recorded",
             summary(&recording)
         ))?;
-        written.map_or(Ok(()), |(path, film)| tell(path, &film))
+        written.map_or(Ok(()), |(path, film)| report_film(path, &film))
     }
 
     fn all(&self, episodes: &mut RecordedEpisodes, catalogue: &Catalogue) -> Result<(), Failure> {
-        let all = episodes.all();
-        let bar = output::progress(all.len() as u64, "replaying");
+        let numbers = episodes.all();
+        let bar = output::progress(numbers.len() as u64, "replaying");
         let (mut checked, mut steps, mut unrecorded) = (0_u64, 0_u64, Vec::new());
         let mut failures: Vec<Failure> = episodes.damage().into_iter().map(Failure::from).collect();
-        for (number, worker) in all {
+        for (number, worker) in numbers {
             let worker = worker.as_deref();
-            let checked_one = episodes
+            let outcome = episodes
                 .recording(number, worker)
                 .and_then(|recording| match recording {
                     Some(recording) => {
@@ -100,7 +100,7 @@ impl Replay {
                     }
                     None => Ok(None),
                 });
-            match checked_one {
+            match outcome {
                 Ok(Some(count)) => {
                     checked += 1;
                     steps += count as u64;
@@ -115,8 +115,8 @@ impl Replay {
             return output::json(&json!({ "checked": checked, "steps": steps, "not_recorded": unrecorded }));
         }
         if !failures.is_empty() {
-            const SHOWN: usize = 10;
-            let shown: Vec<&Failure> = failures.iter().take(SHOWN).collect();
+            const MAX_LISTED: usize = 10;
+            let shown: Vec<&Failure> = failures.iter().take(MAX_LISTED).collect();
             output::note(format!(
                 "{checked} episodes come out as recorded, {} do not",
                 failures.len()
@@ -126,12 +126,12 @@ impl Replay {
         if checked == 0 {
             return Err(episodes.unrecorded(unrecorded.first().copied().unwrap_or(0)));
         }
-        let without = match unrecorded.len() {
+        let skipped = match unrecorded.len() {
             0 => String::new(),
             count => format!("; {count} were not recorded"),
         };
         output::line(format!(
-            "{}: {checked} {} of {steps} steps in all {} as recorded{without}",
+            "{}: {checked} {} of {steps} steps in all {} as recorded{skipped}",
             self.log.shown(),
             if checked == 1 { "episode" } else { "episodes" },
             if checked == 1 { "comes out" } else { "come out" },

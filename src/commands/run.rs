@@ -98,15 +98,15 @@ fn jobs(text: &str) -> Result<NonZeroUsize, String> {
 }
 
 impl Run {
-    /// Refuses the name of a task in place of a scenario file; a task file is recognised when it is read.
+    /// Refuses the name of a built-in task in place of a scenario file; a task file is recognised when it is read.
     fn refuse_task(&self) -> Result<(), Failure> {
-        let called = self.scenario.to_str().unwrap_or_default();
-        let is_task = !self.scenario.exists() && tasks::variants(called).is_ok();
+        let name = self.scenario.to_str().unwrap_or_default();
+        let is_task = !self.scenario.exists() && tasks::variants(name).is_ok();
         if !is_task {
             return Ok(());
         }
         Err(Failure::input(format!(
-            "{called}: found a task, expected a scenario; `driftworld curriculum {called} -o scenario.json` makes one from \
+            "{name}: found a task, expected a scenario; `driftworld curriculum {name} -o scenario.json` makes one from \
              its variants"
         )))
     }
@@ -115,8 +115,8 @@ impl Run {
         self.refuse_task()?;
         let file = ScenarioFile::read(&self.scenario, &mut output::warning)?;
         // L2Explorer's own scenario names a map that L2Explorer does not include, and must run unchanged.
-        let may = self.stand_in || (file.original && !self.no_stand_in);
-        let missing = Missing::may_stand_in(may);
+        let stand_in = self.stand_in || (file.original && !self.no_stand_in);
+        let missing = Missing::may_stand_in(stand_in);
         let undrawable = if self.skip_undrawable {
             Undrawable::Skipped
         } else {
@@ -136,7 +136,7 @@ impl Run {
         }
         plan.set_run_seed(self.seed);
         let agent = self.agent.as_ref().unwrap_or(&AgentArg::Onrails).agent()?;
-        let unasked = when(self.agent.is_none(), || {
+        let agent_note = when(self.agent.is_none(), || {
             format!(", by {} as no --agent was given", agent.name)
         });
         if let Some((what, fingerprint)) = &agent.fingerprint {
@@ -159,7 +159,7 @@ impl Run {
         output::wrote(
             &self.output,
             format!(
-                "a log of {} experiences, {} steps{unasked}",
+                "a log of {} experiences, {} steps{agent_note}",
                 summary.experiences, summary.steps
             ),
         );
@@ -177,7 +177,7 @@ impl Run {
     }
 }
 
-/// Counts of what ended experiences, the most frequent first; `None` if none was run.
+/// How often experiences ended in each way, the most frequent first; `None` if no experience was run.
 fn endings(summary: &Summary) -> Option<String> {
     let mut counts: Vec<(&str, u64)> = summary
         .ended_by
@@ -191,16 +191,16 @@ fn endings(summary: &Summary) -> Option<String> {
 
 /// The skipped experiences and why; `None` if all were run.
 fn skipped(summary: &Summary) -> Option<String> {
-    const SHOWN: usize = 10;
+    const MAX_LISTED: usize = 10;
     if summary.skipped == 0 {
         return None;
     }
-    let shown = summary.left_out.iter().take(SHOWN).map(|left_out| {
-        let way = when(left_out.progress != 0.0, || {
+    let shown = summary.left_out.iter().take(MAX_LISTED).map(|left_out| {
+        let progress = when(left_out.progress != 0.0, || {
             format!(" at {} of its way", left_out.progress)
         });
         format!(
-            "  block {}, experience {}, {}{way}: {}",
+            "  block {}, experience {}, {}{progress}: {}",
             left_out.block, left_out.experience, left_out.variant, left_out.reason
         )
     });
@@ -209,21 +209,22 @@ fn skipped(summary: &Summary) -> Option<String> {
         summary.skipped
     )];
     lines.extend(shown);
-    if summary.skipped > SHOWN as u64 {
+    if summary.skipped > MAX_LISTED as u64 {
         lines.push(format!(
             "  and {} more; the log lists them all",
-            summary.skipped - SHOWN as u64
+            summary.skipped - MAX_LISTED as u64
         ));
     }
     Some(lines.join("\n"))
 }
 
+/// The number of processors, at most [`MAX_JOBS`].
 pub(crate) fn processors() -> NonZeroUsize {
     let jobs = std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
     jobs.min(NonZeroUsize::new(MAX_JOBS).unwrap_or(NonZeroUsize::MIN))
 }
 
-/// What to do about an undrawable world once there is a log.
+/// Advice on an undrawable world, for when a log exists already.
 const UNDRAWABLE: &str = "this one cannot be run: to skip such experiences, repeat the command with --resume and \
      --skip-undrawable; or fix the task and start a new log";
 
@@ -241,10 +242,10 @@ pub(crate) struct LifetimeRun<'a> {
 }
 
 impl LifetimeRun<'_> {
-    /// Runs it, with a progress bar on a terminal. Whatever stops it, the log holds whole experiences, and the message says how
-    /// to continue.
+    /// Runs the lifetime, with a progress bar on a terminal. If it stops early, the log contains only complete experiences, and
+    /// the message says how to continue.
     pub(crate) fn run(mut self) -> Result<Summary, Failure> {
-        // Listens before the log exists: a process that sees the log can already stop this one.
+        // Listen before the log exists: another process may send a signal as soon as it sees the log.
         let interrupt = Interrupt::listen(format!(
             "interrupted in the middle of a step\n{}: all experiences in it are complete; continue with the same \
              command and --resume",
@@ -269,8 +270,8 @@ impl LifetimeRun<'_> {
             watch: &mut |progress: &Progress| {
                 bar.set_position(progress.done);
                 bar.set_message(printable(&progress.variant).into_owned());
-                // Nothing is left to stop after the last one.
-                if interrupt.is_asked() && progress.done < progress.total {
+                // After the last experience there is nothing to stop.
+                if interrupt.is_cancelled() && progress.done < progress.total {
                     ControlFlow::Break(())
                 } else {
                     ControlFlow::Continue(())
@@ -285,7 +286,7 @@ impl LifetimeRun<'_> {
         let done = journal.num_experiences();
         // A complete log needs no agent.
         let to_relearn = if done < self.plan.num_experiences() { done } else { 0 };
-        let ran = relearn(self.plan, agent, to_relearn, &mut context).and_then(|flow| match flow {
+        let outcome = relearn(self.plan, agent, to_relearn, &mut context).and_then(|flow| match flow {
             ControlFlow::Continue(()) => run(self.plan, agent, &mut journal, &mut context),
             ControlFlow::Break(()) => Ok(journal.summary().clone()),
         });
@@ -297,12 +298,12 @@ impl LifetimeRun<'_> {
         {
             return Err(Failure::input(error.to_string()));
         }
-        match ran {
+        match outcome {
             Ok(summary) if summary.finished => finished
                 .map(|()| summary)
                 .map_err(|error| self.stopped(&error.to_string(), done)),
             Ok(_) => Err(interrupt.failure(self.stopping("interrupted", done))),
-            // The same command would stop there again.
+            // The same command would stop at the same world again.
             Err(error @ CurriculumError::World { .. }) => Err(Failure::input(format!(
                 "{error}\n{}: holds {done} of {} experiences, all complete; {}",
                 self.logs.shown(),
@@ -339,7 +340,7 @@ impl LifetimeRun<'_> {
     }
 }
 
-/// Whether the log was lost, so that there is nothing intact to continue.
+/// Whether the log itself was lost or damaged, so that it cannot be continued.
 fn is_loss(error: &CurriculumError) -> bool {
     matches!(
         error,
@@ -355,7 +356,7 @@ fn is_loss(error: &CurriculumError) -> bool {
 /// The results of each regime.
 pub(crate) fn regimes(summary: &Summary) -> String {
     let rows = summary.regimes.iter().map(|regime| {
-        // If all experiences were skipped, there are no results.
+        // There are no results if all experiences were skipped.
         let shown = |number: f64, show: fn(f64) -> String| {
             if regime.experiences == 0 {
                 "-".to_owned()

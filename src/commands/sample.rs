@@ -1,4 +1,4 @@
-//! `driftworld sample`: draws worlds of a variant, one or many, or a shard of them.
+//! `driftworld sample`: draws one or many worlds of a variant, or a shard of them.
 
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -20,10 +20,10 @@ use super::output;
 use crate::overwrite;
 
 /// Maximum number of worlds drawn at once while streaming.
-const CHUNK: u64 = 1024;
+const MAX_CHUNK: u64 = 1024;
 
-/// Approximate limit of objects in memory while streaming: worlds with many objects are drawn in smaller chunks.
-const OBJECTS: u64 = 100_000;
+/// Approximate maximum number of objects per chunk: worlds with many objects are drawn in smaller chunks.
+const MAX_CHUNK_OBJECTS: u64 = 100_000;
 
 /// Draw worlds from a variant of a task.
 ///
@@ -121,7 +121,7 @@ impl std::str::FromStr for Shard {
 }
 
 impl Shard {
-    /// Its part of `first..first + count`; some parts are longer by one if `count` does not divide evenly.
+    /// The shard's part of `first..first + count`; some parts are longer by one if `count` does not divide evenly.
     fn of(self, first: u64, count: u64) -> std::ops::Range<u64> {
         let start = |part: u64| first + (u128::from(count) * u128::from(part) / u128::from(self.parts)) as u64;
         start(self.part - 1)..start(self.part)
@@ -191,7 +191,7 @@ impl Sample {
             let sampler = sampler(variant);
             return Ok(Box::new(move |index| sampler.world(index)));
         };
-        // The target variant belongs to the same task if its name has no task.
+        // A target variant named without a task belongs to the same task.
         let (_, own) = tasks::split(name);
         let to = match own {
             Some(_) => tasks::variant(name)?,
@@ -223,16 +223,16 @@ impl Sample {
         let count = range.end - range.start;
         if output::is_stdout(&self.output) {
             output::carries_data();
-            return each(draw, range, REMOVED, |_, world| {
+            return for_each_world(draw, range, OUTPUT_REMOVED, |_, world| {
                 output::print_json(&(world.to_json() + "\n"))
             });
         }
         let file = output::create(&self.output)?;
-        let is_read_now = file.is_straight();
+        let is_pipe_or_device = file.is_straight();
         let mut file = BufWriter::new(file);
-        each(draw, range, REMOVED, |_, world| {
+        for_each_world(draw, range, OUTPUT_REMOVED, |_, world| {
             let written = file.write_all((world.to_json() + "\n").as_bytes());
-            let written = written.and_then(|()| if is_read_now { file.flush() } else { Ok(()) });
+            let written = written.and_then(|()| if is_pipe_or_device { file.flush() } else { Ok(()) });
             written.map_err(|error| self.failed(&error))
         })?;
         self.commit(file)?;
@@ -242,7 +242,7 @@ impl Sample {
 
     fn files(&self, draw: &Draw, range: std::ops::Range<u64>) -> Result<(), Failure> {
         let count = range.end - range.start;
-        each(draw, range, "what was written is whole and stays", |index, world| {
+        for_each_world(draw, range, "what was written is whole and stays", |index, world| {
             let path = self.output.join(format!("{index:08}.json"));
             output::write(&path, world.to_json_pretty().as_bytes())
         })?;
@@ -251,17 +251,16 @@ impl Sample {
     }
 }
 
-const REMOVED: &str = "incomplete output was removed";
+const OUTPUT_REMOVED: &str = "incomplete output was removed";
 
-/// Passes on the worlds with their indices, in order; draws a chunk at a time on all cores. `left` describes what an interrupt
-/// leaves behind.
-fn each(
+/// Passes each world with its index to `take`, in order; draws a chunk at a time on all cores. `left` describes what remains
+/// after an interrupt.
+fn for_each_world(
     draw: &Draw,
     range: std::ops::Range<u64>,
     left: &str,
     mut take: impl FnMut(u64, World) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
-    // On cancellation, incomplete output is removed.
     let interrupt = Interrupt::listen(format!("interrupted; {left}"));
     let bar = output::progress(range.end - range.start, "sampling");
     let mut first = range.start;
@@ -274,7 +273,7 @@ fn each(
             let world = world?;
             objects += world.objects.len() as u64;
             take(index, world)?;
-            if interrupt.is_asked() && index + 1 < range.end {
+            if interrupt.is_cancelled() && index + 1 < range.end {
                 let done = index + 1 - range.start;
                 return Err(interrupt.failure(format!(
                     "interrupted after {done} of {} worlds; {left}",
@@ -283,8 +282,8 @@ fn each(
             }
         }
         bar.inc(next - first);
-        let each = (objects / (next - first)).max(1);
-        chunk = (OBJECTS / each).clamp(4, CHUNK);
+        let objects_per_world = (objects / (next - first)).max(1);
+        chunk = (MAX_CHUNK_OBJECTS / objects_per_world).clamp(4, MAX_CHUNK);
         first = next;
     }
     bar.finish_and_clear();

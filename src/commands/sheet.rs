@@ -9,14 +9,14 @@ use driftworld_text::ShownPath;
 
 use super::output;
 use crate::Failure;
-use crate::contact_sheet::{Look, Shown, contact_sheet};
+use crate::contact_sheet::{Item, Options, contact_sheet};
 use crate::contents::Contents;
 use crate::documents;
 use crate::scenarios::is_original;
 use crate::sheet_words::Worlds;
 
 /// Maximum number of variants in one picture.
-const MOST_VARIANTS: usize = 60;
+const MAX_VARIANTS: usize = 60;
 
 /// Draw a world of each of several variants in one picture.
 ///
@@ -66,7 +66,7 @@ impl Sheet {
             Some(file) => learned(file)?,
             None => tasks::variants_of(&self.tasks)?
                 .into_iter()
-                .map(|(_, variant)| Shown::declared(variant, 0))
+                .map(|(_, variant)| Item::declared(variant, 0))
                 .collect(),
         };
         if let Some(seed) = self.seed {
@@ -74,13 +74,13 @@ impl Sheet {
                 shown.seed = seed;
             }
         }
-        if variants.is_empty() || variants.len() > MOST_VARIANTS {
+        if variants.is_empty() || variants.len() > MAX_VARIANTS {
             return Err(Failure::input(format!(
-                "found {} variants, expected 1 to {MOST_VARIANTS} in one picture; name some as TASK#VARIANT",
+                "found {} variants, expected 1 to {MAX_VARIANTS} in one picture; name some as TASK#VARIANT",
                 variants.len()
             )));
         }
-        let look = Look {
+        let look = Options {
             index: self.index,
             turn: self.turn.map(|degrees| degrees as f32),
             size: self.size,
@@ -89,24 +89,24 @@ impl Sheet {
         let bar = output::progress(variants.len() as u64, "drawing");
         let drawing = contact_sheet(&variants, look, &|| bar.inc(1))?;
         bar.finish_and_clear();
-        output::write_picture_and_tell(&self.output, &drawing)?;
+        output::write_and_report_picture(&self.output, &drawing)?;
         output::json_of_what_was_written(self.json)
     }
 }
 
-/// A regime's caption: a variant that no task declares is described by its values.
-fn of_regime<'a>(
+/// A regime's variant with its caption: the description of a declared variant, or the values of one made by the scenario.
+fn shown_regime<'a>(
     variant: Variant,
     values: impl IntoIterator<Item = (&'a String, &'a Value)>,
     regime: &Regime,
     index: u64,
-) -> Shown {
+) -> Item {
     let listed: Vec<String> = values
         .into_iter()
         .map(|(name, value)| format!("{name} {value}"))
         .collect();
-    let declared = Shown::declared(variant, regime.seed);
-    Shown {
+    let declared = Item::declared(variant, regime.seed);
+    Item {
         words: if listed.is_empty() {
             declared.words
         } else {
@@ -119,8 +119,8 @@ fn of_regime<'a>(
     }
 }
 
-/// The variants learned in a scenario, including repeats; for a drift, both ends.
-fn learned(file: &Path) -> Result<Vec<Shown>, Failure> {
+/// The variants learned in a scenario, in order and including repeats; both ends of a drift.
+fn learned(file: &Path) -> Result<Vec<Item>, Failure> {
     let text = documents::text_of(file, &[Contents::Scenario])?;
     if is_original(&text) {
         return Err(Failure::input(format!(
@@ -144,7 +144,7 @@ fn learned(file: &Path) -> Result<Vec<Shown>, Failure> {
                 )));
             }
             let task = tasks::task(&regime.task)?;
-            shown.push(of_regime(
+            shown.push(shown_regime(
                 regime.resolve(&task)?,
                 &regime.values,
                 regime,
@@ -153,10 +153,10 @@ fn learned(file: &Path) -> Result<Vec<Shown>, Failure> {
             let end_task = tasks::task(regime.end_task())?;
             if let (Some(end), Some(drift)) = (regime.resolve_end(&end_task)?, &regime.drift) {
                 let last = regime.first_index + u64::from(regime.count) - 1;
-                shown.push(Shown {
+                shown.push(Item {
                     count: 1,
                     worlds: Worlds::EndOfDrift,
-                    ..of_regime(end, &drift.values, regime, last)
+                    ..shown_regime(end, &drift.values, regime, last)
                 });
             }
         }

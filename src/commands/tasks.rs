@@ -1,4 +1,4 @@
-//! `driftworld tasks`: lists the built-in tasks, and what varies in one.
+//! `driftworld tasks`: lists the built-in tasks, or shows what varies in one.
 
 use std::sync::Arc;
 
@@ -59,7 +59,7 @@ impl Tasks {
 }
 
 /// Maximum number of variants per task in the list of tasks.
-const LISTED: usize = 6;
+const MAX_LISTED: usize = 6;
 
 fn list(as_json: bool) -> Result<(), Failure> {
     if as_json {
@@ -82,7 +82,7 @@ fn list(as_json: bool) -> Result<(), Failure> {
         [
             task.name().to_owned(),
             task.description().to_owned(),
-            first_of(&names, LISTED),
+            first_of(&names, MAX_LISTED),
         ]
     });
     output::line(table(["task", "what it is", "variants"], rows, &[]))?;
@@ -104,13 +104,13 @@ fn show(task: &Arc<TaskSpec>, own: Option<&str>, as_json: bool) -> Result<(), Fa
             .iter()
             .map(|variant| (variant.name().to_owned(), json!(variant.values())))
             .collect();
-        let described = |variant: &Variant| {
+        let description = |variant: &Variant| {
             Some((
                 variant.name().to_owned(),
                 json!(task.variant_description(variant.name())?),
             ))
         };
-        let descriptions: serde_json::Map<_, _> = variants.iter().filter_map(described).collect();
+        let descriptions: serde_json::Map<_, _> = variants.iter().filter_map(description).collect();
         return output::json(&json!({
             "task": task.name(), "description": task.description(), "parameters": task.parameters(), "variants": values,
             "descriptions": descriptions,
@@ -125,12 +125,12 @@ fn show(task: &Arc<TaskSpec>, own: Option<&str>, as_json: bool) -> Result<(), Fa
             let affects: Vec<&str> = parameter.affects.iter().map(|element| element.letter()).collect();
             let domain = parameter
                 .domain()
-                .map_or_else(String::new, |domain| in_words(&domain, parameter));
+                .map_or_else(String::new, |domain| domain_caption(&domain, parameter));
             [
                 name.clone(),
                 role(parameter.role).to_owned(),
                 affects.join(" "),
-                usual(variants.first(), name, parameter),
+                default_value(variants.first(), name, parameter),
                 domain,
             ]
         });
@@ -138,8 +138,8 @@ fn show(task: &Arc<TaskSpec>, own: Option<&str>, as_json: bool) -> Result<(), Fa
         output::line(format!("\n{}", table(headings, rows, &[])))?;
     }
     let rows = variants.iter().map(|variant| {
-        let said = task.variant_description(variant.name()).unwrap_or_default();
-        [variant.name().to_owned(), differing(variant), said.to_owned()]
+        let description = task.variant_description(variant.name()).unwrap_or_default();
+        [variant.name().to_owned(), differing(variant), description.to_owned()]
     });
     output::line(format!(
         "\n{}",
@@ -148,11 +148,11 @@ fn show(task: &Arc<TaskSpec>, own: Option<&str>, as_json: bool) -> Result<(), Fa
 }
 
 /// A parameter's usual value: its default, its fixed value, or its distribution.
-fn usual(variant: Option<&Variant>, name: &str, parameter: &Parameter) -> String {
+fn default_value(variant: Option<&Variant>, name: &str, parameter: &Parameter) -> String {
     let value = parameter.default.as_ref().or(parameter.value.as_ref());
     let drawn = variant.and_then(|variant| variant.distribution(name));
     match (value, drawn) {
-        (Some(value), _) => in_few_words(value, parameter),
+        (Some(value), _) => value_caption(value, parameter),
         (None, Some(distribution)) => distribution.to_string(),
         (None, None) => String::new(),
     }
@@ -164,29 +164,29 @@ fn differing(variant: &Variant) -> String {
     let differing = parameters.filter_map(|(name, parameter)| {
         let default = parameter.default.as_ref().and_then(|default| parameter.typed(default));
         let own = variant.value(name).filter(|own| default.as_ref() != Some(*own))?;
-        (parameter.role == Role::Variant).then(|| whole(&format!("{name} = ")) + &in_few_words(own, parameter))
+        (parameter.role == Role::Variant).then(|| whole(&format!("{name} = ")) + &value_caption(own, parameter))
     });
     differing.collect::<Vec<_>>().join(", ")
 }
 
-/// A value as in captions, without line breaks beside numbers or after the commas of a list.
-fn in_few_words(value: &Value, parameter: &Parameter) -> String {
+/// A value as in captions. Lines do not break beside its numbers or after the commas of a list.
+fn value_caption(value: &Value, parameter: &Parameter) -> String {
     let typed = parameter.typed(value);
     let value = typed.as_ref().unwrap_or(value);
     let words = parameter.name_of(value).map_or_else(|| short(value), str::to_owned);
     if words.starts_with('[') {
         return whole(&words);
     }
-    let is_of_number = |letter: char| letter.is_ascii_digit() || "×%-".contains(letter);
-    let mut bound = String::new();
+    let numeric = |c: char| c.is_ascii_digit() || "×%-".contains(c);
+    let mut caption = String::new();
     for word in words.split(' ') {
-        if !bound.is_empty() {
-            let is_bound = bound.ends_with(is_of_number) || (word.starts_with(is_of_number) && !bound.ends_with(','));
-            bound.push(if is_bound { NO_BREAK } else { ' ' });
+        if !caption.is_empty() {
+            let is_kept = caption.ends_with(numeric) || (word.starts_with(numeric) && !caption.ends_with(','));
+            caption.push(if is_kept { NO_BREAK } else { ' ' });
         }
-        bound.push_str(word);
+        caption.push_str(word);
     }
-    bound
+    caption
 }
 
 fn role(role: Role) -> &'static str {
@@ -197,11 +197,11 @@ fn role(role: Role) -> &'static str {
     }
 }
 
-/// Maximum number of choices listed.
-const MOST_CHOICES: usize = 8;
+/// Maximum number of choices listed per parameter.
+const MAX_CHOICES: usize = 8;
 
 /// Short description of a parameter's domain.
-fn in_words(domain: &Domain, parameter: &Parameter) -> String {
+fn domain_caption(domain: &Domain, parameter: &Parameter) -> String {
     let unit = parameter
         .unit
         .as_ref()
@@ -215,19 +215,19 @@ fn in_words(domain: &Domain, parameter: &Parameter) -> String {
             format!("{} distributions", choices.len())
         }
         Domain::Choices(choices) => {
-            let words: Vec<String> = choices.iter().map(|choice| in_few_words(choice, parameter)).collect();
+            let words: Vec<String> = choices.iter().map(|choice| value_caption(choice, parameter)).collect();
             // Words that contain commas need another separator.
-            let between = if words.iter().any(|words| words.contains(',')) {
+            let separator = if words.iter().any(|words| words.contains(',')) {
                 "; "
             } else {
                 ", "
             };
-            let more = match words.get(MOST_CHOICES..) {
-                Some(more) if !more.is_empty() => format!("{between}and {} more", more.len()),
+            let more = match words.get(MAX_CHOICES..) {
+                Some(more) if !more.is_empty() => format!("{separator}and {} more", more.len()),
                 _ => String::new(),
             };
-            let listed = words.iter().take(MOST_CHOICES).map(String::as_str).collect::<Vec<_>>();
-            listed.join(between) + &more + &whole(&unit)
+            let listed = words.iter().take(MAX_CHOICES).map(String::as_str).collect::<Vec<_>>();
+            listed.join(separator) + &more + &whole(&unit)
         }
     }
 }

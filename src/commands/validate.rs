@@ -70,11 +70,11 @@ pub(crate) struct Validate {
     json: bool,
 }
 
-/// The kinds that are checked. Other recognised kinds are refused.
+/// The kinds of documents that are checked. Other recognised kinds are refused.
 const DOCUMENTS: [Contents; 4] = [Contents::Task, Contents::World, Contents::Scenario, Contents::Maps];
 
 /// Maximum number of worlds per variant that the planner tries.
-const MOST_TRIED: u64 = 100;
+const MAX_TRIED_WORLDS: u64 = 100;
 
 /// The result for one file.
 struct Verdict {
@@ -86,10 +86,10 @@ struct Verdict {
 /// The result for a document that could be read.
 struct Found {
     checked: Checked,
-    /// A problem that is not in `checked.error`, with its code.
+    /// A problem not reported in `checked.error`, with its code.
     failure: Option<(&'static str, String)>,
     trials: Vec<Trial>,
-    /// Remarks on the worlds of a task, as sentences.
+    /// Remarks on the worlds of a task or on a world, as sentences.
     remarks: Vec<String>,
     /// The measured effects of variants of the task, or of a scenario's tasks, if requested.
     elements: Vec<ElementsOutcome>,
@@ -97,7 +97,7 @@ struct Found {
 
 impl Validate {
     pub(crate) fn run(self) -> Result<(), Failure> {
-        output::answers_by_code();
+        output::run_to_end_for_exit_code();
         let classes = tasks::classes(&self.libraries.catalogue()?);
         let verdicts: Vec<Verdict> = self.files.iter().flat_map(|path| self.judge(path, &classes)).collect();
         if self.json {
@@ -116,7 +116,7 @@ impl Validate {
     /// The verdicts on a file, or on the files of a folder, including unreadable ones.
     fn judge(&self, path: &Path, classes: &Classes) -> Vec<Verdict> {
         let files = match Contents::of_folder(path) {
-            // Files inside a log are not documents to check here; `logs validate` checks them.
+            // `logs validate` checks the files inside a log.
             Some(Contents::Log) => Ok(vec![path.to_owned()]),
             _ => worlds::json_files(path),
         };
@@ -194,20 +194,23 @@ impl Validate {
             // L2Explorer's scenarios, worlds and maps make no claims about elements.
             Kind::L2ExplorerScenario | Kind::World | Kind::Maps | Kind::L2ExplorerWorld => Vec::new(),
         };
-        let tried = tasks.iter().map(|task| {
+        let outcomes = tasks.iter().map(|task| {
             let request = ElementsRequest {
                 seed: self.seed,
                 steps: self.steps,
                 libraries: self.libraries.paths().to_vec(),
-                // A file name may contain `#`; all variants are meant.
+                // The task's own name: a file name may contain `#`, but all variants are to be tested.
                 ..ElementsRequest::of(task.name())
             };
             elements_of(task, &request)
         });
-        tried.collect()
+        outcomes.collect()
     }
 
-    /// Draws some worlds of a valid document; otherwise returns why that is impossible, with the error's code.
+    /// Draws some worlds of a valid document.
+    ///
+    /// # Errors
+    /// The code and the text of the error, if the document cannot be read or planned.
     fn try_worlds(
         &self,
         path: &Path,
@@ -227,13 +230,13 @@ impl Validate {
                 let worlds = u64::from(self.worlds);
                 let tried = variants.par_iter().map(|variant| {
                     let mut trial = try_worlds(variant, self.seed, worlds);
-                    trial.expert = Some(try_expert(variant, self.seed, worlds.min(MOST_TRIED), &catalogue));
+                    trial.expert = Some(try_expert(variant, self.seed, worlds.min(MAX_TRIED_WORLDS), &catalogue));
                     trial
                 });
                 Ok(tried.collect())
             }
             Kind::Scenario | Kind::L2ExplorerScenario => {
-                // Warnings were given when the document was checked.
+                // Warnings were already given when the document was checked.
                 let warn = &mut |_| {};
                 let file =
                     ScenarioFile::from_text(path, text, warn).map_err(|error| (error.code(), error.to_string()))?;

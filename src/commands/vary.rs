@@ -74,7 +74,7 @@ impl Vary {
         };
         let measured = VariantMeasure::new(from.task(), Weights::of_task(from.task()));
         let measure = |other: &Variant| {
-            // Distributions of unbounded numbers have no finite distance: they count as farther than any requested.
+            // Distributions of unbounded numbers have no finite distance: they count as infinitely far.
             let distance = measured.between(&from, other);
             distance.map_or(f64::INFINITY, |distance| distance.within(self.element))
         };
@@ -111,7 +111,7 @@ impl Vary {
         }
         output::line(format!("{} from {}:", rounded(found.distance), from.id()))?;
         let entry = serde_json::to_string_pretty(&json!({ self.name: declared }))?;
-        // Without the outer braces it can be pasted between two variants.
+        // Without the outer braces, the entry can be pasted between two variants.
         let inner: Vec<&str> = entry.lines().skip(1).collect();
         output::print_json(&(inner[..inner.len() - 1].join("\n") + "\n"))?;
         if held.is_empty() {
@@ -125,13 +125,13 @@ impl Vary {
     }
 }
 
-/// The document of a variant's task with that variant appended. Its declaration reproduces the same variant.
+/// The task's document with a new variant appended, declared so that it equals `found`.
 fn with_variant(found: &Variant, name: &str, declared: &Map<String, Value>) -> Result<String, Failure> {
     let mut document: Value = serde_json::from_str(&found.task().to_json())?;
     document["variants"][name] = Value::Object(declared.clone());
     let text = serde_json::to_string_pretty(&document)? + "\n";
-    let again = TaskSpec::from_json(name, &text)?.variant(name)?;
-    debug_assert_eq!(again.values(), found.values(), "it extends where the search began");
+    let parsed = TaskSpec::from_json(name, &text)?.variant(name)?;
+    debug_assert_eq!(parsed.values(), found.values(), "same values");
     Ok(text)
 }
 

@@ -4,7 +4,7 @@ use crate::similarity::{MAX_WEIGHT, SimilarityError, Weights};
 use crate::spec::Element;
 use clap::Args;
 
-/// The weights of elements; shared by the commands that measure.
+/// The option for weights of elements, shared by the commands that measure distances.
 #[derive(Args, Clone, Default)]
 pub(crate) struct WeightArgs {
     /// Weight of an element in the total distance, such as reward=2. Repeatable.

@@ -15,21 +15,21 @@ pub(super) enum Picture {
 }
 
 /// Maximum number of steps per command.
-const MOST_STEPS: u32 = 100_000;
+const MAX_STEPS: u32 = 100_000;
 
 /// Splits a line at spaces; quoted text is one word.
 pub(super) fn words(text: &str) -> Result<Vec<String>, String> {
     let mut words = Vec::new();
     let (mut word, mut quote) = (None::<String>, None);
-    for letter in text.chars() {
+    for c in text.chars() {
         match quote {
-            Some(open) if letter == open => quote = None,
-            None if letter == '"' || letter == '\'' => {
-                quote = Some(letter);
+            Some(open) if c == open => quote = None,
+            None if c == '"' || c == '\'' => {
+                quote = Some(c);
                 word.get_or_insert_default();
             }
-            None if letter.is_whitespace() => words.extend(word.take()),
-            _ => word.get_or_insert_default().push(letter),
+            None if c.is_whitespace() => words.extend(word.take()),
+            _ => word.get_or_insert_default().push(c),
         }
     }
     if let Some(open) = quote {
@@ -45,8 +45,8 @@ pub(super) fn number(word: &str) -> Result<f64, String> {
 }
 
 fn count(word: &str) -> Result<u32, String> {
-    let count = word.parse().ok().filter(|count| (1..=MOST_STEPS).contains(count));
-    count.ok_or_else(|| format!("found {word:?}, expected how many steps, 1 to {MOST_STEPS}"))
+    let count = word.parse().ok().filter(|count| (1..=MAX_STEPS).contains(count));
+    count.ok_or_else(|| format!("found {word:?}, expected how many steps, 1 to {MAX_STEPS}"))
 }
 
 pub(super) fn columns(word: &str) -> Result<u32, String> {
@@ -77,7 +77,7 @@ pub(super) fn step(words: &[&str]) -> Result<(Action, u32), String> {
     };
     let action = match numbers {
         [] => Action::Continuous([0.0; 3]),
-        numbers => an_action("step", numbers)?,
+        numbers => parse_action("step", numbers)?,
     };
     Ok((action, count))
 }
@@ -91,11 +91,11 @@ pub(super) fn action(words: &[&str]) -> Result<(Action, u32), String> {
     let ["-a", numbers @ ..] = words else {
         return Err(misused("action"));
     };
-    Ok((an_action("action", numbers)?, count))
+    Ok((parse_action("action", numbers)?, count))
 }
 
-/// Three numbers, or one row.
-fn an_action(command: &str, words: &[&str]) -> Result<Action, String> {
+/// Parses an action: three numbers, or the number of a row in the action table.
+fn parse_action(command: &str, words: &[&str]) -> Result<Action, String> {
     match words {
         [row] => {
             let found = row.parse().map(Action::Discrete);
@@ -115,9 +115,9 @@ fn picture(word: &str) -> Result<Picture, String> {
         .ok_or_else(|| not_one_of("modality", word, &modality::NAMES))
 }
 
-/// A picture and its width on the screen.
+/// A picture and its width in columns.
 pub(super) fn show(words: &[&str]) -> Result<(Picture, Option<u32>), String> {
-    let is_number = |word: &str| word.starts_with(|letter: char| letter.is_ascii_digit());
+    let is_number = |word: &str| word.starts_with(|c: char| c.is_ascii_digit());
     let (kind, width) = match words {
         [width] if is_number(width) => (None, Some(*width)),
         words => (words.first().copied(), words.get(1).copied()),
@@ -130,7 +130,7 @@ pub(super) fn show(words: &[&str]) -> Result<(Picture, Option<u32>), String> {
 pub(super) fn screenshot(words: &[&str]) -> Result<(Picture, Option<[u32; 2]>), String> {
     let (mut kind, mut size) = (Picture::Seen(Modality::Rgb), None);
     for word in words {
-        if word.starts_with(|letter: char| letter.is_ascii_digit()) {
+        if word.starts_with(|c: char| c.is_ascii_digit()) {
             let sides = word
                 .split_once('x')
                 .and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
@@ -143,7 +143,7 @@ pub(super) fn screenshot(words: &[&str]) -> Result<(Picture, Option<[u32; 2]>), 
     Ok((kind, size))
 }
 
-/// An object as JSON, from `key=value` words.
+/// An object as JSON, from its class, position and `key=value` words.
 pub(super) fn object(class: &str, coordinates: [f64; 2], keys: &[&str]) -> Result<String, String> {
     let mut object = Map::new();
     object.insert("class".into(), json!(class));
@@ -159,7 +159,7 @@ pub(super) fn object(class: &str, coordinates: [f64; 2], keys: &[&str]) -> Resul
     Ok(Value::Object(object).to_string())
 }
 
-/// A typed value: JSON, a list with commas, or a plain word.
+/// A value as JSON: parsed as JSON, as a list separated by commas, or as a plain word.
 fn value(key: &str, text: &str) -> Value {
     let one = |text: &str| serde_json::from_str(text).unwrap_or_else(|_| json!(text));
     match one(text) {
@@ -176,7 +176,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn actions_can_be_given_both_ways() {
+    fn step_and_action_parse_the_same_actions() {
         let twenty = (Action::Continuous([2.0, 0.0, 1.0]), 20);
         assert_eq!(action(&["-c", "20", "-a", "2", "0", "1"]), Ok(twenty));
         assert_eq!(action(&["-a", "2", "0", "1", "-c", "20"]), Ok(twenty));
@@ -186,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn object_is_spawned_from_words() {
+    fn object_from_key_value_words_is_json() {
         let words = words(
             "color=1,0,0 reward=1 reward_stimulus=AgentCollide model=2 tag='red things' \
              solid=false",

@@ -25,7 +25,7 @@ impl Editor {
         Ok(Self(editor))
     }
 
-    /// The next line that is neither empty nor a comment; `None` if the user leaves. Ctrl-C discards the line.
+    /// Reads the next line that is neither empty nor a comment; `None` if the user quits. Ctrl-C discards the line.
     pub(crate) fn read(&mut self, names: Names) -> Result<Option<String>, Failure> {
         self.0.set_helper(Some(Completions(names)));
         loop {
@@ -44,7 +44,7 @@ impl Editor {
 struct Completions(Names);
 
 impl Completions {
-    /// The words that may follow the given ones.
+    /// The candidates for the word after the given ones.
     fn after(&self, before: &[&str]) -> Vec<String> {
         let owned = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect();
         let modalities = || modality::NAMES.map(str::to_owned);
@@ -121,7 +121,7 @@ mod tests {
             let history = MemHistory::new();
             let found = words
                 .complete(line, line.len(), &Context::new(&history))
-                .expect("there is no way to fail");
+                .expect("completion does not fail");
             assert_eq!(found.1, expected, "{line}");
         };
         check("sta", &["state "]);

@@ -57,7 +57,7 @@ pub(super) const COMMANDS: [(&str, &str, &str); 19] = [
     ("exit", "", "the same"),
 ];
 
-/// Help on all commands, or on one of them.
+/// Help on one command, by default on all.
 pub(super) fn help(command: Option<&str>) -> Result<String, String> {
     let line = |(name, usage, what): &(&str, &str, &str)| format!("{:<48} {what}", format!("{name} {usage}"));
     let Some(command) = command else {

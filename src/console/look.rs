@@ -5,8 +5,8 @@ use driftworld_text::ShownPath;
 
 use super::arguments::Picture;
 use super::map;
-use super::screen::{color_of, half_blocks, letters};
-use super::session::{Session, plain};
+use super::screen::{ascii_picture, color_of, half_blocks};
+use super::session::{Session, to_text};
 use crate::map_drawing::{self, Moves};
 use crate::modality::{self, to_rgb};
 use crate::report::picture;
@@ -17,10 +17,10 @@ const METRES_PER_LEVEL: f32 = 0.01;
 
 impl Session<'_> {
     /// The agent's view, with smooth edges if the world asks for them.
-    fn seen(&mut self, kind: Modality, [width, height]: [u32; 2]) -> Result<Frame, String> {
-        let wanted = self.environment.world().agent_params.supersampling;
-        // Reduces the smoothing if the picture would have too many samples.
-        let samples = (1..=wanted).rev().find(|samples| width.max(height) * samples <= 8192);
+    fn view(&mut self, kind: Modality, [width, height]: [u32; 2]) -> Result<Frame, String> {
+        let limit = self.environment.world().agent_params.supersampling;
+        // Supersample less if the picture would have too many samples.
+        let samples = (1..=limit).rev().find(|samples| width.max(height) * samples <= 8192);
         let mut frame = Frame::new(width, height);
         let mut target = Target {
             supersampling: samples.unwrap_or(1),
@@ -29,7 +29,7 @@ impl Session<'_> {
         let camera = self.environment.camera();
         self.renderer
             .draw(self.environment.scene(), &camera, &mut target)
-            .map_err(plain)?;
+            .map_err(to_text)?;
         self.environment.draw_carried(&mut self.renderer, &mut target);
         Ok(frame)
     }
@@ -38,7 +38,7 @@ impl Session<'_> {
     fn bird_view(&self, width: u32, height: u32) -> Image {
         let agent = self.environment.agent();
         let agent = Some((agent.position, agent.heading_deg));
-        // In even light, so that the map of a dark world is readable.
+        // Neutral light makes the map of a dark world readable.
         let scene = self.environment.scene().clone().in_neutral_light();
         top_down(&scene, width, height, agent)
     }
@@ -51,9 +51,9 @@ impl Session<'_> {
         let size = self.screen.size(width as f32 / height as f32, columns);
         Ok(match (picture, self.screen.colors) {
             (Picture::Map, true) => half_blocks(size[0], &self.bird_view(size[0], size[1]).rgb),
-            (Picture::Map, false) => map::letters(&self.environment, size[0]),
-            (Picture::Seen(kind), true) => half_blocks(size[0], &to_rgb(kind, &self.seen(kind, size)?, color_of)),
-            (Picture::Seen(kind), false) => letters(&self.seen(kind, size)?, kind),
+            (Picture::Map, false) => map::ascii_map(&self.environment, size[0]),
+            (Picture::Seen(kind), true) => half_blocks(size[0], &to_rgb(kind, &self.view(kind, size)?, color_of)),
+            (Picture::Seen(kind), false) => ascii_picture(&self.view(kind, size)?, kind),
         })
     }
 
@@ -72,8 +72,10 @@ impl Session<'_> {
             return Err(format!("found {width} × {height} pixels, expected 1 to 4096 each way"));
         }
         let bytes = match picture {
-            Picture::Seen(kind) => modality::to_png(kind, &self.seen(kind, size)?, METRES_PER_LEVEL).map_err(plain)?,
-            // Square maps have a scale, north, triggers and signs.
+            Picture::Seen(kind) => {
+                modality::to_png(kind, &self.view(kind, size)?, METRES_PER_LEVEL).map_err(to_text)?
+            }
+            // Only square maps are annotated with a scale, north, triggers and signs.
             Picture::Map if width == height => {
                 let agent = self.environment.agent();
                 let moves = Moves {
@@ -81,11 +83,11 @@ impl Session<'_> {
                     ..Moves::default()
                 };
                 let drawing = map_drawing::map(self.environment.world(), self.environment.scene(), &moves, width);
-                drawing.to_png().map_err(plain)?
+                drawing.to_png().map_err(to_text)?
             }
             Picture::Map => {
                 let Image { width, height, rgb } = self.bird_view(width, height);
-                picture::Picture { width, height, rgb }.to_png().map_err(plain)?
+                picture::Picture { width, height, rgb }.to_png().map_err(to_text)?
             }
         };
         let path = self.folder.write(file, "png", &bytes)?;

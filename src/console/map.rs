@@ -1,10 +1,10 @@
-//! The map as text: walls are `#`, zones a sign for their effect, objects the first letter of their class, and the agent an
-//! arrow.
+//! Draws the map as text: walls are `#`, a zone is a sign for its effect, an object the first letter of its class, and the agent
+//! an arrow.
 
 use crate::env::Environment;
 use crate::spec::Zone;
 
-/// The sign of an open door; a closed one has a letter like other objects.
+/// The sign of an open door; a closed door has a letter like other objects.
 const OPEN_DOOR: (char, &str) = ('\'', "an open door");
 
 /// The sign of a zone on the map, with its meaning.
@@ -24,9 +24,9 @@ fn sign(zone: &Zone) -> (char, &'static str) {
     }
 }
 
-/// The world from above, north at the top: objects that pay have capital letters. Below it, a legend of the zones and open doors
-/// on the map, if any.
-pub(super) fn letters(environment: &Environment, columns: u32) -> String {
+/// The world from above, north at the top, with capital letters for rewarding objects. Below it, a legend of the zones and open
+/// doors on the map, if any.
+pub(super) fn ascii_map(environment: &Environment, columns: u32) -> String {
     let scene = environment.scene();
     let [width, depth] = scene.arena_size();
     let span = [width.max(1.0), depth.max(1.0)];
@@ -36,9 +36,9 @@ pub(super) fn letters(environment: &Environment, columns: u32) -> String {
     let cell = |[x, y]: [f32; 2]| {
         let column = (x / span[0] + 0.5) * columns as f32;
         let line = (0.5 - y / span[1]) * lines as f32;
-        // Objects on or beyond the edge go to the nearest cell.
-        let at = |value: f32, count: usize| (value.max(0.0) as usize).min(count - 1);
-        (at(line, lines), at(column, columns))
+        // Objects on or beyond the edge are drawn in the nearest cell.
+        let clamped = |value: f32, count: usize| (value.max(0.0) as usize).min(count - 1);
+        (clamped(line, lines), clamped(column, columns))
     };
     let middle = |line: usize, column: usize| {
         let share = |at: usize, count: usize| (at as f64 + 0.5) / count as f64 - 0.5;
@@ -47,14 +47,14 @@ pub(super) fn letters(environment: &Environment, columns: u32) -> String {
             -share(line, lines) * f64::from(span[1]),
         ]
     };
-    // Fills the cells whose centre lies in an area, testing only within its bounds.
-    let mut fill = |area: &Zone, letter: char| {
+    // Fill the cells whose centre lies in an area, testing only within its bounds.
+    let mut fill = |area: &Zone, symbol: char| {
         let Some([low, high]) = area.bounds() else { return };
         let [low, high] = [low, high].map(|corner| cell(corner.map(|metres| metres as f32)));
         for (line, row) in grid.iter_mut().enumerate().take(low.0 + 1).skip(high.0) {
             for (column, sign) in row.iter_mut().enumerate().take(high.1 + 1).skip(low.1) {
                 if area.contains(middle(line, column)) {
-                    *sign = letter;
+                    *sign = symbol;
                 }
             }
         }
@@ -99,7 +99,7 @@ pub(super) fn letters(environment: &Environment, columns: u32) -> String {
                 .filter(char::is_ascii_graphic)
                 .unwrap_or('?');
             let pays = object.is_target() && state.reward > 0.0;
-            // An open door is drawn at its closed position, not at its leaf.
+            // Draw an open door at its doorway, not at its leaf.
             let (line, column) = cell(if state.open { state.position } else { item.position });
             grid[line][column] = if state.open {
                 signs.push(OPEN_DOOR);
@@ -124,7 +124,7 @@ pub(super) fn letters(environment: &Environment, columns: u32) -> String {
     if !signs.is_empty() {
         let listed: Vec<String> = signs
             .iter()
-            .map(|(letter, meaning)| format!("{letter} {meaning}"))
+            .map(|(symbol, meaning)| format!("{symbol} {meaning}"))
             .collect();
         map += &listed.join(", ");
         map.push('\n');
@@ -162,7 +162,7 @@ mod tests {
             "#                  #",
             "####################\n",
         ];
-        assert_eq!(letters(&environment, 20), expected.join("\n"));
+        assert_eq!(ascii_map(&environment, 20), expected.join("\n"));
     }
 
     #[test]
@@ -211,6 +211,6 @@ mod tests {
             "############################",
             "! costs or fails, ' an open door, ~ slows\n",
         ];
-        assert_eq!(letters(&environment, 28), expected.join("\n"));
+        assert_eq!(ascii_map(&environment, 28), expected.join("\n"));
     }
 }

@@ -7,12 +7,12 @@ use crate::spec::nearest;
 use serde_json::Value;
 
 use super::arguments::Picture;
-use super::session::{Session, plain};
+use super::session::{Session, to_text};
 use crate::documents;
 use crate::spec::Modality;
 
-/// Longest message shown in full, in characters.
-const LONGEST: usize = 600;
+/// Maximum number of characters of a message that is shown in full.
+const MAX_SHOWN: usize = 600;
 
 impl Session<'_> {
     /// Sends the messages in a text, or in the file that it names.
@@ -24,7 +24,7 @@ impl Session<'_> {
             documents::text(Path::new(text))
         };
         let (mut lines, mut refused) = (Vec::new(), None);
-        for (channel, message) in messages(&read.map_err(plain)?) {
+        for (channel, message) in messages(&read.map_err(to_text)?) {
             let time = self.time();
             let received = self.channels.receive(&mut self.environment, channel, &message, &time);
             if received.reset {
@@ -42,7 +42,7 @@ impl Session<'_> {
         }
         match refused {
             None => Ok(lines.join("\n")),
-            // Successful answers are shown all the same.
+            // The answers to accepted messages are shown, too.
             Some(text) => Err(format!("the message was refused: {text}\n{}", lines.join("\n"))),
         }
     }
@@ -51,7 +51,7 @@ impl Session<'_> {
 /// The messages of a text: one message, a message with its channel (`{"channel", "message"}`), or a list of these under `tests`.
 ///
 /// A message without a channel goes to the channel that knows its action. Text that is not a message is passed on
-/// unchanged, and is then refused.
+/// unchanged; its channel refuses it.
 fn messages(text: &str) -> Vec<(Channel, String)> {
     let Ok(mut json) = serde_json::from_str::<Value>(text) else {
         return vec![(Channel::Reset, text.to_owned())];
@@ -71,10 +71,10 @@ fn message(mut json: Value) -> (Channel, String) {
     let action = json.get("action").and_then(Value::as_str).unwrap_or_default();
     let action = action.trim().to_lowercase();
     // A misspelt action goes to the intended channel, whose answer then shows the spelling.
-    let meant = || nearest(&action, Channel::ALL.iter().flat_map(|channel| channel.actions()));
+    let corrected = || nearest(&action, Channel::ALL.iter().flat_map(|channel| channel.actions()));
     let channel = named
         .or_else(|| Channel::for_action(&action))
-        .or_else(|| Channel::for_action(&meant()?));
+        .or_else(|| Channel::for_action(&corrected()?));
     (channel.unwrap_or(Channel::Reset), json.to_string())
 }
 
@@ -86,10 +86,10 @@ pub(super) fn shown(message: &Outgoing) -> String {
     }
     let json = message.to_json();
     let length = json.chars().count();
-    if length <= LONGEST {
+    if length <= MAX_SHOWN {
         return format!("<- {} {json}", message.channel.name());
     }
-    let first: String = json.chars().take(LONGEST).collect();
+    let first: String = json.chars().take(MAX_SHOWN).collect();
     format!("<- {} {first}… ({length} characters in all)", message.channel.name())
 }
 
@@ -98,7 +98,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn messages_find_their_channel() {
+    fn messages_go_to_the_channel_of_their_action() {
         let check = |text: &str, expected: &[Channel]| {
             let found: Vec<Channel> = messages(text).into_iter().map(|(channel, _)| channel).collect();
             assert_eq!(found, expected, "{text}");

@@ -1,10 +1,10 @@
-//! Confines the console's output files to one folder, whatever name is given.
+//! Confines the console's output files to one folder, whatever file name is given.
 
 use std::path::{Component, Path, PathBuf};
 
 use driftworld_text::ShownPath;
 
-use super::session::said;
+use super::session::failure_text;
 use crate::output_file;
 
 /// The folder for files whose names come from commands and messages.
@@ -18,7 +18,7 @@ impl Folder {
     /// Writes a file inside the folder, and returns its path. Adds a missing extension.
     pub(super) fn write(&self, name: &str, ending: &str, bytes: &[u8]) -> Result<PathBuf, String> {
         let path = self.inside(name, ending)?;
-        output_file::write(&path, bytes).map_err(said)?;
+        output_file::write(&path, bytes).map_err(failure_text)?;
         Ok(path)
     }
 
@@ -34,8 +34,8 @@ impl Folder {
         if relative.extension().is_none() {
             relative.set_extension(ending);
         }
-        let normal = relative.components().all(|part| matches!(part, Component::Normal(_)));
-        if !normal || relative.file_name().is_none() || name.contains(['\0', '\\', ':']) || name.len() > 255 {
+        let is_normal = relative.components().all(|part| matches!(part, Component::Normal(_)));
+        if !is_normal || relative.file_name().is_none() || name.contains(['\0', '\\', ':']) || name.len() > 255 {
             return refuse("which leads elsewhere");
         }
         if !relative
@@ -65,7 +65,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nothing_is_written_outside() {
+    fn names_outside_the_folder_are_refused() {
         let root = tempfile::tempdir().expect("the machine has a folder for temporary files");
         let folder = Folder::new(&root.path().join("out"));
         for name in [
@@ -83,7 +83,7 @@ mod tests {
             assert!(folder.write(name, "png", b"x").is_err(), "{name:?}");
         }
         let count = std::fs::read_dir(root.path()).expect("the folder is there").count();
-        assert_eq!(count, 0, "not even the folder was made");
+        assert_eq!(count, 0, "the folder was not created either");
         let path = folder.write("deep/a", "png", b"x").expect("the name is inside");
         assert!(path.ends_with("out/deep/a.png") && path.is_file());
         assert!(folder.write("deep.png/../../b.png", "png", b"x").is_err());
@@ -102,6 +102,6 @@ mod tests {
         let folder = Folder::new(&out);
         assert!(folder.write("a.png", "png", b"x").is_err());
         assert!(folder.write("up/b.png", "png", b"x").is_err());
-        assert_eq!(std::fs::read_to_string(&outside).expect("it is there still"), "mine");
+        assert_eq!(std::fs::read_to_string(&outside).expect("the file is intact"), "mine");
     }
 }

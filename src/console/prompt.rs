@@ -9,13 +9,13 @@ use crate::Failure;
 pub(crate) struct Editor(());
 
 impl Editor {
-    #[expect(clippy::unnecessary_wraps, reason = "as where there is the feature")]
+    #[expect(clippy::unnecessary_wraps, reason = "same signature as with the feature")]
     pub(crate) fn new() -> Result<Self, Failure> {
         Ok(Self(()))
     }
 
-    /// The next line that is neither empty nor a comment; `None` if the user leaves.
-    #[expect(clippy::unused_self, reason = "as where there is the feature")]
+    /// Reads the next line that is neither empty nor a comment; `None` if the user quits.
+    #[expect(clippy::unused_self, reason = "same signature as with the feature")]
     pub(crate) fn read(&mut self, _: Names) -> Result<Option<String>, Failure> {
         let failed = |error: io::Error| Failure::input(format!("terminal: {error}"));
         loop {

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use crate::spec::{EnvironmentParams, Layout};
 use driftworld_text::{amount, joined_or};
 
-use super::session::{MOST_LINES, Session};
+use super::session::{MAX_LINES, Session};
 use crate::modality;
 use crate::table::table;
 
@@ -30,7 +30,7 @@ impl Session<'_> {
     pub(super) fn info(&self) -> String {
         let world = self.environment.world();
         let agent = &world.agent_params;
-        let there = self
+        let num_present = self
             .environment
             .objects()
             .iter()
@@ -45,7 +45,7 @@ impl Session<'_> {
         };
         let mut text = format!(
             "world      {}\nsteps      {}, {limit}\nreturn     {}{}\narena      {:?} m, {}\nobjects    {}, of \
-             which {there} are there\n\
+             which {num_present} are there\n\
              actions    {:?}, {} s each\npictures   {width} × {height} pixels: {}\nwatched    {}\nsnapshots  {}",
             world.hash(),
             self.environment.num_steps(),
@@ -69,7 +69,7 @@ impl Session<'_> {
     pub(super) fn objects(&self) -> String {
         let world = self.environment.world();
         let states = self.environment.objects().iter().zip(&self.environment.scene().items);
-        let rows = world.objects.iter().zip(states).enumerate().take(MOST_LINES);
+        let rows = world.objects.iter().zip(states).enumerate().take(MAX_LINES);
         let rows = rows.map(|(index, (object, (state, item)))| {
             let [x, y] = item.position.map(short);
             let name = object.unique_name.as_ref().or(object.tag.as_ref());
@@ -86,8 +86,8 @@ impl Session<'_> {
         });
         let headings = ["object", "class", "name or tag", "x", "y", "heading", "reward", ""];
         let mut text = table(headings, rows, &[0, 3, 4, 5, 6]);
-        if world.objects.len() > MOST_LINES {
-            write!(text, "\nand {} more", world.objects.len() - MOST_LINES).expect("writing to a String does not fail");
+        if world.objects.len() > MAX_LINES {
+            write!(text, "\nand {} more", world.objects.len() - MAX_LINES).expect("writing to a String does not fail");
         }
         text
     }
@@ -97,6 +97,7 @@ impl Session<'_> {
 pub(super) fn short(number: f32) -> String {
     driftworld_text::short(f64::from(number), 2)
 }
+
 /// The layout or map of the arena, and the number of zones, if any.
 fn ground(environment: &EnvironmentParams) -> String {
     let kind = environment.layout.as_ref().map(|layout| match layout {

@@ -8,9 +8,9 @@ use crate::env::{CATEGORY_BUILDING, CATEGORY_MAP, CATEGORY_NEGATIVE, CATEGORY_NE
 use crate::spec::Modality;
 
 /// Width in columns if the terminal's width is unknown.
-const USUAL_COLUMNS: u32 = 80;
+const DEFAULT_COLUMNS: u32 = 80;
 
-/// From dark to bright.
+/// Characters from dark to bright.
 const SHADES: &[u8] = b" .:-=+*#%@";
 
 /// The terminal's capabilities.
@@ -25,7 +25,7 @@ impl Screen {
     /// Monochrome characters, 80 per line: for anything but a terminal.
     pub(super) const PLAIN: Self = Self {
         colors: false,
-        columns: USUAL_COLUMNS,
+        columns: DEFAULT_COLUMNS,
         rows: u32::MAX,
     };
 
@@ -37,7 +37,7 @@ impl Screen {
         let set = |name: &str| std::env::var(name).is_ok_and(|value| !value.is_empty());
         let dumb = std::env::var("TERM").is_ok_and(|term| term == "dumb");
         let size = terminal_size::terminal_size();
-        let (columns, rows) = size.map_or((USUAL_COLUMNS, u32::MAX), |(width, height)| {
+        let (columns, rows) = size.map_or((DEFAULT_COLUMNS, u32::MAX), |(width, height)| {
             (u32::from(width.0).max(8), u32::from(height.0).max(4))
         });
         Self {
@@ -47,15 +47,15 @@ impl Screen {
         }
     }
 
-    /// Width and height, in pixels, of a picture of this aspect (width over height): a column is one pixel wide, a line two
-    /// high.
-    pub(super) fn size(&self, aspect: f32, wanted: Option<u32>) -> [u32; 2] {
-        let most = match wanted {
+    /// Width and height, in pixels, of a picture with this aspect ratio (width over height). A character cell is one pixel wide
+    /// and two pixels high.
+    pub(super) fn size(&self, aspect: f32, requested: Option<u32>) -> [u32; 2] {
+        let max_columns = match requested {
             Some(columns) => columns as f32,
             // One line is reserved for the prompt.
             None => (self.columns as f32).min(self.rows.saturating_sub(1) as f32 * 2.0 * aspect),
         };
-        let columns = most.clamp(1.0, 4096.0);
+        let columns = max_columns.clamp(1.0, 4096.0);
         let lines = (columns / aspect / 2.0).round().clamp(1.0, 2048.0);
         [columns as u32, lines as u32 * 2]
     }
@@ -81,12 +81,12 @@ pub(super) fn half_blocks(width: u32, rgb: &[u8]) -> String {
     text
 }
 
-/// A colour for a number: neighbours differ strongly, 0 is black.
+/// A colour for an id: consecutive ids get very different colours, 0 is black.
 pub(super) fn color_of(id: u32) -> [u8; 3] {
     if id == 0 {
         return [0; 3];
     }
-    // Rotates the hue by the golden angle per number.
+    // Rotate the hue by the golden angle per id.
     let hue = (id as f32 * 0.618_034).fract() * 6.0;
     [5.0, 3.0, 1.0].map(|shift| {
         let k = (shift + hue) % 6.0;
@@ -96,9 +96,9 @@ pub(super) fn color_of(id: u32) -> [u8; 3] {
 
 /// A frame as text. Colours and depth are shades; categories are ` .B+o-` for sky, map, building, positive, zero and
 /// negative reward; classes and instances are the last digit of their ids.
-pub(super) fn letters(frame: &Frame, kind: Modality) -> String {
+pub(super) fn ascii_picture(frame: &Frame, kind: Modality) -> String {
     let width = frame.width as usize;
-    let letter = |at: usize| match kind {
+    let character = |at: usize| match kind {
         Modality::Rgb | Modality::Depth => {
             shade(brightness(frame, kind, at).midpoint(brightness(frame, kind, at + width)))
         }
@@ -115,7 +115,7 @@ pub(super) fn letters(frame: &Frame, kind: Modality) -> String {
     };
     let mut text = String::new();
     for row in (0..frame.height as usize / 2 * 2).step_by(2) {
-        let line: String = (0..width).map(|column| letter(row * width + column)).collect();
+        let line: String = (0..width).map(|column| character(row * width + column)).collect();
         text.push_str(line.trim_end());
         text.push('\n');
     }
@@ -129,7 +129,7 @@ fn digit(id: u32) -> char {
     }
 }
 
-/// 0 to 255.
+/// The brightness of a pixel, 0 to 255.
 fn brightness(frame: &Frame, kind: Modality, at: usize) -> u32 {
     if kind == Modality::Depth {
         return (frame.depth[at] * 2.55).min(255.0) as u32;
@@ -158,9 +158,9 @@ mod tests {
         frame.rgb = vec![
             0, 0, 0, 128, 128, 128, 255, 255, 255, 0, 0, 0, 128, 128, 128, 255, 255, 255,
         ];
-        assert_eq!(letters(&frame, Modality::Rgb), " +@\n");
+        assert_eq!(ascii_picture(&frame, Modality::Rgb), " +@\n");
         frame.category = vec![0, 1, 3, 0, 0, 0];
-        assert_eq!(letters(&frame, Modality::Segmentation), " .+\n");
+        assert_eq!(ascii_picture(&frame, Modality::Segmentation), " .+\n");
     }
 
     #[test]
@@ -172,7 +172,7 @@ mod tests {
         };
         assert_eq!(screen.size(1.0, None), [40, 40], "20 lines of two pixels");
         assert_eq!(screen.size(4.0, None), [100, 26], "100 columns");
-        assert_eq!(screen.size(1.0, Some(30)), [30, 30], "as wished");
+        assert_eq!(screen.size(1.0, Some(30)), [30, 30], "the requested width");
         assert_eq!(Screen::PLAIN.size(1.0, None), [80, 80]);
     }
 
@@ -180,8 +180,8 @@ mod tests {
     fn neighbouring_numbers_have_distant_colours() {
         for id in 1..50 {
             let (a, b) = (color_of(id), color_of(id + 1));
-            let apart: i32 = a.iter().zip(b).map(|(a, b)| (i32::from(*a) - i32::from(b)).abs()).sum();
-            assert!(apart > 100, "{id}: {a:?} {b:?}");
+            let difference: i32 = a.iter().zip(b).map(|(a, b)| (i32::from(*a) - i32::from(b)).abs()).sum();
+            assert!(difference > 100, "{id}: {a:?} {b:?}");
         }
     }
 }

@@ -17,10 +17,10 @@ use crate::Warn;
 use crate::worlds::WorldRequest;
 
 /// Maximum number of snapshots kept.
-const MOST_SNAPSHOTS: usize = 100;
+const MAX_SNAPSHOTS: usize = 100;
 
 /// Maximum number of output lines per command.
-pub(super) const MOST_LINES: usize = 500;
+pub(super) const MAX_LINES: usize = 500;
 
 /// A running world with the console's state.
 pub(crate) struct Session<'a> {
@@ -39,21 +39,21 @@ pub(crate) struct Session<'a> {
 
 /// The result of executing a line.
 pub(crate) enum Reply {
-    Said(String),
+    Text(String),
     /// A JSON document.
     Json(String),
-    /// A picture made of characters, or of our own colour codes.
+    /// A picture made of characters or colour codes.
     Picture(String),
     Quit,
 }
 
 /// A failure as one sentence.
-#[expect(clippy::needless_pass_by_value, reason = "it is what `map_err` hands over")]
-pub(super) fn said(failure: Failure) -> String {
+#[expect(clippy::needless_pass_by_value, reason = "`map_err` passes it by value")]
+pub(super) fn failure_text(failure: Failure) -> String {
     failure.text().for_command()
 }
 
-pub(super) fn plain(error: impl std::error::Error) -> String {
+pub(super) fn to_text(error: impl std::error::Error) -> String {
     error.to_string()
 }
 
@@ -79,7 +79,7 @@ impl<'a> Session<'a> {
         format!("world {hash:.12}, {objects} objects; help lists the commands")
     }
 
-    /// Names for completion.
+    /// The names offered for completion.
     pub(crate) fn names(&self) -> Names {
         let objects = &self.environment.world().objects;
         Names {
@@ -92,15 +92,15 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Executes a line. An error changes nothing, except that the accepted messages of a file still take effect.
+    /// Executes a line. If it fails, nothing is changed, except by messages of a file that were accepted before the failure.
     pub(crate) fn execute(&mut self, line: &str) -> Result<Reply, String> {
         let line = line.trim();
         let (name, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
         let rest = rest.trim();
         if rest.starts_with(['{', '[']) {
             match name {
-                "send_message" => return self.send(rest).map(Reply::Said),
-                "spawn" => return self.spawn(rest).map(Reply::Said),
+                "send_message" => return self.send(rest).map(Reply::Text),
+                "spawn" => return self.spawn(rest).map(Reply::Text),
                 _ => {}
             }
         }
@@ -125,7 +125,7 @@ impl<'a> Session<'a> {
                 let position = [number(x)?, number(y)?];
                 let heading = rest.first().map(|heading| number(heading)).transpose()?;
                 let heading = heading.unwrap_or(f64::from(self.environment.agent().heading_deg));
-                self.environment.teleport(position, heading).map_err(plain)?;
+                self.environment.teleport(position, heading).map_err(to_text)?;
                 self.agent()
             }
             ("show", words) if words.len() <= 2 => return self.show(show(words)?).map(Reply::Picture),
@@ -145,10 +145,10 @@ impl<'a> Session<'a> {
             ("quit" | "exit", []) => return Ok(Reply::Quit),
             (name, _) => return Err(misused(name)),
         };
-        Ok(Reply::Said(text))
+        Ok(Reply::Text(text))
     }
 
-    /// Simulated time since the start, formatted as a date, so that scripts give the same output each time.
+    /// Simulated time since the start, formatted as a date: scripts then print the same in every run.
     pub(super) fn time(&self) -> String {
         let agent = &self.environment.world().agent_params;
         let seconds = f64::from(self.environment.num_steps()) * agent.time_step * f64::from(agent.frame_skip);
@@ -165,14 +165,14 @@ impl<'a> Session<'a> {
     }
 
     fn act(&mut self, (action, count): (Action, u32)) -> Result<String, String> {
-        self.environment.check(action).map_err(plain)?;
+        self.environment.check(action).map_err(to_text)?;
         let (mut lines, mut left_out, mut reward, mut steps) = (Vec::new(), 0, 0.0, 0);
         let mut last = Step::default();
         while steps < count && !last.ended() {
-            last = self.environment.step(action).map_err(plain)?;
+            last = self.environment.step(action).map_err(to_text)?;
             steps += 1;
             reward += last.reward;
-            left_out += self.tell(&last, &mut lines);
+            left_out += self.add_event_lines(&last, &mut lines);
         }
         if left_out > 0 {
             lines.push(format!("… and {left_out} lines more"));
@@ -191,8 +191,8 @@ impl<'a> Session<'a> {
         Ok(lines.join("\n"))
     }
 
-    /// Adds lines about the events of a step while there is room; returns how many did not fit.
-    fn tell(&mut self, step: &Step, lines: &mut Vec<String>) -> usize {
+    /// Adds lines about the events of a step, up to [`MAX_LINES`] lines in all; returns how many were left out.
+    fn add_event_lines(&mut self, step: &Step, lines: &mut Vec<String>) -> usize {
         let number = self.environment.num_steps();
         let world = self.environment.world();
         let event = |event: &Event| {
@@ -208,11 +208,11 @@ impl<'a> Session<'a> {
                 event.object
             )
         };
-        let room = MOST_LINES.saturating_sub(lines.len());
+        let room = MAX_LINES.saturating_sub(lines.len());
         lines.extend(step.events.iter().take(room).map(event));
         let time = self.time();
         let messages = self.channels.after_step(&self.environment, step, &time);
-        let rest = MOST_LINES.saturating_sub(lines.len());
+        let rest = MAX_LINES.saturating_sub(lines.len());
         lines.extend(messages.iter().take(rest).map(shown));
         step.events.len().saturating_sub(room) + messages.len().saturating_sub(rest)
     }
@@ -221,8 +221,8 @@ impl<'a> Session<'a> {
         let world = match to {
             None => self.start.clone(),
             Some(text) => match text.parse() {
-                Ok(index) => self.choice.numbered(index).map_err(said)?,
-                Err(_) => self.choice.named(text, self.warn).map_err(said)?,
+                Ok(index) => self.choice.numbered(index).map_err(failure_text)?,
+                Err(_) => self.choice.named(text, self.warn).map_err(failure_text)?,
             },
         };
         self.environment.reset(world.clone());
@@ -234,9 +234,9 @@ impl<'a> Session<'a> {
     }
 
     fn spawn(&mut self, json: &str) -> Result<String, String> {
-        let object = Object::from_json("spawn", json).map_err(plain)?;
+        let object = Object::from_json("spawn", json).map_err(to_text)?;
         let class = object.class.clone();
-        let index = self.environment.spawn(object).map_err(plain)?;
+        let index = self.environment.spawn(object).map_err(to_text)?;
         let remark = self.remark(Category::Worldmaker, format!("object {index} is a {class}"));
         Ok(format!("{remark}object {index}"))
     }
@@ -249,7 +249,7 @@ impl<'a> Session<'a> {
                 format!("found object {object:?}, expected an index or a unique_name{near}")
             })?,
         };
-        self.environment.destroy(index).map_err(plain)?;
+        self.environment.destroy(index).map_err(to_text)?;
         let remark = self.remark(Category::Worldmaker, format!("object {index} was taken away"));
         Ok(format!("{remark}object {index} is gone"))
     }
@@ -259,21 +259,19 @@ impl<'a> Session<'a> {
             let names: Vec<&str> = self.snapshots.keys().map(String::as_str).collect();
             return Ok(joined_or(&names, ", ", "no moments yet"));
         };
-        if self.snapshots.len() >= MOST_SNAPSHOTS && !self.snapshots.contains_key(name) {
-            return Err(format!(
-                "found {MOST_SNAPSHOTS} snapshots, expected fewer; reuse a name"
-            ));
+        if self.snapshots.len() >= MAX_SNAPSHOTS && !self.snapshots.contains_key(name) {
+            return Err(format!("found {MAX_SNAPSHOTS} snapshots, expected fewer; reuse a name"));
         }
         self.snapshots.insert(name.to_owned(), self.environment.snapshot());
         Ok(format!("{name}: step {}", self.environment.num_steps()))
     }
 
     fn restore(&mut self, name: &str) -> Result<String, String> {
-        let Some(moment) = self.snapshots.get(name) else {
+        let Some(snapshot) = self.snapshots.get(name) else {
             let near = did_you_mean(name, self.snapshots.keys());
             return Err(format!("found snapshot {name:?}, expected an existing one{near}"));
         };
-        self.environment.restore(moment);
+        self.environment.restore(snapshot);
         Ok(self.agent())
     }
 
@@ -286,11 +284,11 @@ impl<'a> Session<'a> {
     }
 }
 
-/// Names in the current world.
+/// Names of objects in the current world, and of snapshots.
 #[derive(Default)]
 #[cfg_attr(
     not(feature = "line-editor"),
-    expect(dead_code, reason = "read where there is the feature")
+    expect(dead_code, reason = "only read with the feature")
 )]
 pub(crate) struct Names {
     pub(super) objects: Vec<String>,
@@ -303,7 +301,7 @@ mod tests {
     use crate::spec::WorldDraft;
 
     #[test]
-    fn error_for_an_unknown_line_says_what_was_expected() {
+    fn error_for_a_wrong_line_says_what_was_expected() {
         let choice = WorldRequest {
             world: String::new(),
             seed: 0,
@@ -331,10 +329,10 @@ mod tests {
             ("log agnet on", "did you mean \"agent\"?"),
             ("destroy 'oak", "found ' once"),
         ] {
-            let said = session.execute(line).err().unwrap_or_default();
-            assert!(said.contains(expected), "{line}: {said}");
+            let error = session.execute(line).err().unwrap_or_default();
+            assert!(error.contains(expected), "{line}: {error}");
         }
         let spawned = session.execute(r#"spawn  { "class": "tree", "coordinates": [1, 2], "tag": "a b" }"#);
-        assert!(matches!(spawned, Ok(Reply::Said(text)) if text == "object 0"));
+        assert!(matches!(spawned, Ok(Reply::Text(text)) if text == "object 0"));
     }
 }

@@ -1,4 +1,4 @@
-//! Reads glTF files from disk, within size limits, and nothing outside a model's own folder.
+//! Reads glTF files up to a size limit, and never a file outside the model's own folder.
 
 use std::fs;
 use std::io::Read;
@@ -10,7 +10,7 @@ use crate::Failure;
 
 /// Refuses to overwrite a file that is not a library, such as a model.
 pub(super) fn check_output(path: &Path) -> Result<(), Failure> {
-    // A missing file, a pipe or a device is not opened: it has nothing to lose.
+    // Do not open a missing file, a pipe or a device: there is nothing to overwrite.
     if !fs::metadata(path).is_ok_and(|about| about.is_file() && about.len() > 0) {
         return Ok(());
     }
@@ -27,22 +27,22 @@ pub(super) fn check_output(path: &Path) -> Result<(), Failure> {
     Err(Failure::in_file(path, found))
 }
 
-/// The bytes of a glTF file.
+/// Reads a glTF file.
 pub(super) fn model(path: &Path) -> Result<Vec<u8>, Failure> {
     Ok(driftworld_files::read(path, MAX_IMPORT_BYTES as u64)?)
 }
 
 /// Reads files beside a glTF file, provided that they lie in its folder after resolving all links.
-pub(super) fn beside(path: &Path) -> impl FnMut(&str) -> Result<Vec<u8>, String> {
+pub(super) fn read_beside(path: &Path) -> impl FnMut(&str) -> Result<Vec<u8>, String> {
     let folder = crate::documents::folder_of(path).to_owned();
     move |relative| {
-        let whole = |path: &Path| path.canonicalize().map_err(|error| error.to_string());
-        let (folder, file) = (whole(&folder)?, whole(&folder.join(relative))?);
+        let resolve = |path: &Path| path.canonicalize().map_err(|error| error.to_string());
+        let (folder, file) = (resolve(&folder)?, resolve(&folder.join(relative))?);
         if !file.starts_with(&folder) {
             return Err("it leads out of the model's folder".to_owned());
         }
         let bytes = driftworld_files::read(&file, MAX_IMPORT_BYTES as u64);
-        // The model names the file.
+        // The importer's message already names the file.
         bytes.map_err(|error| error.without_path())
     }
 }

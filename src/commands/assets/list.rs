@@ -27,7 +27,7 @@ pub(crate) struct List {
 impl List {
     pub(crate) fn run(self) -> Result<(), Failure> {
         if self.json {
-            return output::json(&self.described()?);
+            return output::json(&self.to_json()?);
         }
         if self.libraries.is_empty() {
             return output::line(built_in());
@@ -41,8 +41,8 @@ impl List {
 }
 
 impl List {
-    /// The contents of the tables, for programs.
-    fn described(&self) -> Result<Vec<Value>, Failure> {
+    /// The contents of the tables as JSON.
+    fn to_json(&self) -> Result<Vec<Value>, Failure> {
         if self.libraries.is_empty() {
             let catalogue = Catalogue::default();
             let class =

@@ -1,4 +1,4 @@
-//! `driftworld assets`: makes, lists and draws libraries of models.
+//! `driftworld assets`: packs, lists and draws libraries of models.
 
 #[cfg(feature = "gltf")]
 mod gltf;

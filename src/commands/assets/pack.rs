@@ -54,7 +54,7 @@ pub(crate) struct Pack {
     json: bool,
 }
 
-/// The colliders that models can get.
+/// The kinds of colliders, with help texts.
 const COLLIDERS: [&str; 6] = [
     "auto: A ball if the model is round, else the smaller of box and cylinder",
     "box: A box around the part below 2 m",
@@ -66,7 +66,7 @@ const COLLIDERS: [&str; 6] = [
 
 #[cfg(not(feature = "gltf"))]
 impl Pack {
-    #[expect(clippy::unused_self, reason = "as where there is the feature")]
+    #[expect(clippy::unused_self, reason = "same signature as with the feature")]
     pub(crate) fn run(self) -> Result<(), Failure> {
         let instead = ", or use a library that was packed elsewhere";
         Err(super::super::optional::missing("gltf", "reading glTF", instead))
@@ -110,7 +110,7 @@ impl Pack {
             main: self.main.clone(),
         };
         let bytes = gltf::model(path)?;
-        let imported = LibraryModel::from_gltf(&bytes, &options, &mut gltf::beside(path)).map_err(in_file)?;
+        let imported = LibraryModel::from_gltf(&bytes, &options, &mut gltf::read_beside(path)).map_err(in_file)?;
         for warning in &imported.warnings {
             output::note(format!("warning: {}: {warning}", path.shown()));
         }
@@ -118,13 +118,13 @@ impl Pack {
     }
 }
 
-/// The first number from 1 that is not the name of a model of the class.
+/// The smallest number, from 1, that no model of the class has as its name.
 #[cfg(feature = "gltf")]
 fn free_name(library: &Library, class: &str) -> String {
-    let taken = |name: &String| {
-        let is_it = |model: &LibraryModel| model.class() == class && model.name() == name;
-        library.models().iter().any(is_it)
+    let is_taken = |name: &String| {
+        let has_name = |model: &LibraryModel| model.class() == class && model.name() == name;
+        library.models().iter().any(has_name)
     };
     let mut names = (1_u32..).map(|number| number.to_string());
-    names.find(|name| !taken(name)).unwrap_or_default()
+    names.find(|name| !is_taken(name)).unwrap_or_default()
 }

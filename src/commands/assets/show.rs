@@ -1,7 +1,7 @@
 //! `driftworld assets show`: pictures of a class's models, of one model from all sides in all levels of detail, or of every
 //! class.
 
-#![expect(clippy::disallowed_methods, reason = "where a camera stands for a picture")]
+#![expect(clippy::disallowed_methods, reason = "only camera positions for pictures")]
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -42,7 +42,7 @@ pub(crate) struct Show {
     json: bool,
 }
 
-/// Height and width in metres at which a model is drawn, whatever its own size.
+/// Larger of height and width, in metres, to which every model is scaled in its picture.
 const SHOWN_SIZE: f32 = 4.0;
 
 /// Pixels along each side of a picture: for the models of one class, and in the overview of all classes.
@@ -53,25 +53,25 @@ const ALBUM_SIZE: u32 = 44;
 const ALBUM_MODELS: usize = 7;
 const ALBUM_COLUMNS: usize = 2;
 
-/// Pictures side by side.
+/// Number of pictures per row.
 const COLUMNS: usize = 7;
 
 /// Maximum number of models per sheet.
-const MOST_MODELS: usize = 210;
+const MAX_MODELS: usize = 210;
 
 impl Show {
     pub(crate) fn run(self) -> Result<(), Failure> {
         if let Some(class) = &self.class {
             let rows = self.of_class(&class.to_lowercase())?;
-            output::write_picture_and_tell(&self.output, &sheet(&rows, 1))?;
+            output::write_and_report_picture(&self.output, &sheet(&rows, 1))?;
         } else {
-            output::write_picture_and_tell(&self.output, &sheet(&self.all(), ALBUM_COLUMNS))?;
+            output::write_and_report_picture(&self.output, &sheet(&self.overview(), ALBUM_COLUMNS))?;
         }
         output::json_of_what_was_written(self.json)
     }
 
     /// Some models of every built-in class.
-    fn all(&self) -> Vec<SheetRow> {
+    fn overview(&self) -> Vec<SheetRow> {
         let row = |(class, models): (&str, u32)| {
             let names: Vec<String> = built_in(class).collect();
             let is_named = names.iter().any(|name| name.parse::<u32>().is_err());
@@ -110,13 +110,13 @@ impl Show {
     /// All models of a class, several per row.
     fn models(&self, class: &str, names: &[String]) -> Result<Vec<SheetRow>, Failure> {
         let catalogue = self.libraries.catalogue()?;
-        if names.len() > MOST_MODELS {
+        if names.len() > MAX_MODELS {
             output::note(format!(
-                "note: the first {MOST_MODELS} of {} models are drawn",
+                "note: the first {MAX_MODELS} of {} models are drawn",
                 names.len()
             ));
         }
-        let shown = &names[..names.len().min(MOST_MODELS)];
+        let shown = &names[..names.len().min(MAX_MODELS)];
         let rows = shown.chunks(COLUMNS).map(|names| {
             let assets: Vec<Arc<Asset>> = names
                 .iter()
@@ -136,7 +136,7 @@ impl Show {
     /// One model from four sides, in each of its levels of detail.
     fn levels(&self, class: &str, name: &str, libraries: &[Library]) -> Result<Vec<SheetRow>, Failure> {
         let is_it = |model: &&LibraryModel| model.class().to_lowercase() == class && model.name() == name;
-        // As in a catalogue, the last library has priority.
+        // The last library has priority, as in a catalogue.
         let own = libraries
             .iter()
             .rev()
@@ -162,11 +162,11 @@ impl Show {
                     asset.height
                 )
             } else {
-                let near = error / asset.height.max(asset.radius);
+                let share = error / asset.height.max(asset.radius);
                 format!(
                     "off by up to {:.1} mm, {:.1} % of its size",
                     1000.0 * error,
-                    100.0 * near
+                    100.0 * share
                 )
             },
             pictures: [180.0, 270.0, 0.0, 90.0]
@@ -185,7 +185,7 @@ impl Show {
         item.scale = SHOWN_SIZE / asset.height.max(2.0 * asset.radius);
         item.asset = Arc::clone(asset);
         item.heading_deg = heading_deg;
-        let camera = towards(item, [1.65 * SHOWN_SIZE, 0.62 * SHOWN_SIZE], 44.0);
+        let camera = camera_towards(item, [1.65 * SHOWN_SIZE, 0.62 * SHOWN_SIZE], 44.0);
         let size = self.size.unwrap_or(SIZE);
         let mut frame = Frame::new(2 * size, 2 * size);
         CpuRenderer::new().render(&scene, &camera, &mut frame);
@@ -194,7 +194,7 @@ impl Show {
     }
 }
 
-/// A built-in model in natural looks on white, as large as fits.
+/// A built-in model in natural looks on a white background, filling the picture.
 fn cut_out(class: &str, name: &str, size: u32) -> Picture {
     let mut object = Object::new(class, [0.0, 0.0]);
     object.model = Model(name.to_owned());
@@ -202,13 +202,13 @@ fn cut_out(class: &str, name: &str, size: u32) -> Picture {
     let mut world = WorldDraft::with_objects(vec![object]);
     world.environment_params.wall_height = 0.0;
     world.environment_params.looks.style = Style::Natural;
-    // From behind the camera, to its left.
+    // The light comes from behind the camera, to its left.
     world.environment_params.sun_direction = [-0.5, -0.6, 0.6];
     let mut scene = Scene::from_world(&world.check().expect("a model on open ground is sound"));
     let item = &mut scene.items[0];
     item.heading_deg = 210.0;
     let reach = item.asset.height.max(2.0 * item.asset.radius) * item.scale;
-    let camera = towards(item, [2.6 * reach, 0.9 * reach], 32.0);
+    let camera = camera_towards(item, [2.6 * reach, 0.9 * reach], 32.0);
     let side = 4 * size;
     let (mut rgb, mut instances) = (vec![0; 3 * (side * side) as usize], vec![0; (side * side) as usize]);
     let mut target = Target {
@@ -226,8 +226,8 @@ fn cut_out(class: &str, name: &str, size: u32) -> Picture {
     large.halved().halved()
 }
 
-/// A camera this far south of an item and this high, pointed at its middle.
-fn towards(item: &Item, [back, height]: [f32; 2], field_of_view_deg: f32) -> Camera {
+/// A camera `back` metres south of an item and `height` metres up, pointed at the item's middle.
+fn camera_towards(item: &Item, [back, height]: [f32; 2], field_of_view_deg: f32) -> Camera {
     let middle = item.asset.height * item.scale / 2.0;
     Camera {
         position: [0.0, -back, height],
@@ -262,11 +262,11 @@ mod tests {
         for (class, _) in classes() {
             for name in built_in(class).step_by(5) {
                 let picture = cut_out(class, &name, 24);
-                let inked = |at: usize| picture.rgb[3 * at..3 * at + 3] != [255; 3];
-                let all = (0..24 * 24).filter(|at| inked(*at)).count();
-                assert!(all >= 20, "{class} {name}: {all} pixels");
+                let is_drawn = |at: usize| picture.rgb[3 * at..3 * at + 3] != [255; 3];
+                let count = (0..24 * 24).filter(|at| is_drawn(*at)).count();
+                assert!(count >= 20, "{class} {name}: {count} pixels");
                 let rim = (0..24).flat_map(|k| [k, 23 * 24 + k, 24 * k, 24 * k + 23]);
-                assert_eq!(rim.filter(|at| inked(*at)).count(), 0, "{class} {name} is cut off");
+                assert_eq!(rim.filter(|at| is_drawn(*at)).count(), 0, "{class} {name} is cut off");
             }
         }
     }

@@ -26,7 +26,7 @@ impl LibraryChoice {
         libraries::catalogue(&self.libraries)
     }
 
-    /// Their files.
+    /// The chosen libraries' files.
     pub(crate) fn paths(&self) -> &[PathBuf] {
         &self.libraries
     }

@@ -1,13 +1,13 @@
-//! Summarises what was learned, transferred and forgotten in a lifetime, from the evaluations around its learning blocks.
+//! Summarises learning, transfer and forgetting in a lifetime, from the evaluations around its learning blocks.
 
 use crate::curriculum::{RegimeSummary, Summary};
 use crate::spec::BlockKind;
 use crate::table::table;
 use crate::tasks;
 
-/// The mean reward of a variant before and after a different variant was learned.
+/// The mean reward of a variant before and after learning a different variant.
 struct Change {
-    /// The variant that was learned.
+    /// The variant learned in between.
     learned: String,
     variant: String,
     before: f64,
@@ -29,8 +29,8 @@ impl Change {
     }
 }
 
-/// One row per variant: its first reward, how much of it was transferred, learned and forgotten, its last reward, and the
-/// reward of each agent in `beside`. Sentences below it name the largest transfer and the largest forgetting.
+/// A table with one row per variant: its first reward, the changes by transfer, learning and forgetting, its last reward, and
+/// the reward of each agent in `beside`. Sentences below it state the largest transfer and the largest forgetting.
 pub(super) fn effects_table(summary: &Summary, beside: &[(String, Summary)]) -> String {
     let mut headings = vec![
         "variant",
@@ -52,14 +52,14 @@ pub(super) fn effects_table(summary: &Summary, beside: &[(String, Summary)]) -> 
     ];
     let (known, new): (Vec<Change>, Vec<Change>) = changes(summary).into_iter().partition(|change| change.was_learned);
     let by_gain = |a: &Change, b: &Change| a.gain().total_cmp(&b.gain());
-    let rose = new.into_iter().filter(|change| change.gain() > 0.0).max_by(by_gain);
-    let fell = known.into_iter().filter(|change| change.gain() < 0.0).min_by(by_gain);
-    parts.extend(rose.map(|rose| {
-        let (from_to, variant) = (rose.in_words("raised"), &rose.variant);
+    let largest_rise = new.into_iter().filter(|change| change.gain() > 0.0).max_by(by_gain);
+    let largest_fall = known.into_iter().filter(|change| change.gain() < 0.0).min_by(by_gain);
+    parts.extend(largest_rise.map(|largest_rise| {
+        let (from_to, variant) = (largest_rise.in_words("raised"), &largest_rise.variant);
         format!("Transfer: {from_to}, before {variant} was ever learned.")
     }));
-    parts.extend(fell.map(|fell| {
-        let (from_to, variant) = (fell.in_words("lowered"), &fell.variant);
+    parts.extend(largest_fall.map(|largest_fall| {
+        let (from_to, variant) = (largest_fall.in_words("lowered"), &largest_fall.variant);
         format!("Forgetting: {from_to}, although {variant} had been learned.")
     }));
     parts.join("\n")
@@ -186,7 +186,7 @@ mod tests {
             &[("a", 3.0), ("b", 20.0), ("c", 8.0)],
         ]);
         let planner = summary(&[&[("b", 30.0), ("a", 11.4)]]);
-        let said = effects_table(&lifetime, &[("planner".to_owned(), planner)]);
+        let text = effects_table(&lifetime, &[("planner".to_owned(), planner)]);
         let expected = "\
 variant  at first  transferred  learned  forgotten  at the end  planner
 a               0            0      +10         -7           3       11
@@ -199,7 +199,7 @@ Each row adds up to its end.
 Transfer: learning a raised c from 2 to 9, before c was ever learned.
 Forgetting: learning b lowered a from 10 to 3, although a had been learned.";
         let lines = |text: &str| text.lines().map(|line| line.trim_end().to_owned()).collect::<Vec<_>>();
-        assert_eq!(lines(&said), lines(expected));
+        assert_eq!(lines(&text), lines(expected));
     }
 
     proptest! {
@@ -218,9 +218,9 @@ Forgetting: learning b lowered a from 10 to 3, although a had been learned.";
                 blocks.extend([&evaluations[number][..], &learned[number][..]]);
             }
             blocks.push(&evaluations[3]);
-            let said = effects_table(&summary(&blocks), &[]);
+            let text = effects_table(&summary(&blocks), &[]);
             for (number, name) in NAMES.into_iter().enumerate() {
-                let line = said.lines().find(|line| line.starts_with(&format!("{name} "))).unwrap();
+                let line = text.lines().find(|line| line.starts_with(&format!("{name} "))).unwrap();
                 let shown: Vec<i64> = line.split_whitespace().skip(1).map(|cell| cell.parse().unwrap()).collect();
                 let level = |block: usize| rewards[block][number].round() as i64;
                 prop_assert_eq!(shown[0], level(0));
@@ -235,7 +235,7 @@ Forgetting: learning b lowered a from 10 to 3, although a had been learned.";
     #[test]
     fn unchanging_agent_neither_transfers_nor_forgets() {
         let same: &[(&str, f64)] = &[("a", 1.0), ("b", 1.0)];
-        let said = effects_table(&summary(&[same, &[("a", 1.0)], same, &[("b", 1.0)], same]), &[]);
-        assert!(!said.contains("Transfer") && !said.contains("Forgetting"), "{said}");
+        let text = effects_table(&summary(&[same, &[("a", 1.0)], same, &[("b", 1.0)], same]), &[]);
+        assert!(!text.contains("Transfer") && !text.contains("Forgetting"), "{text}");
     }
 }

@@ -1,4 +1,4 @@
-//! `driftworld demo`: runs the whole pipeline once on `find_objects`, and keeps all its output. Each step is also a separate
+//! `driftworld demo`: runs the whole pipeline once on `find_objects`, and keeps all output. Each step is also available as a
 //! subcommand.
 
 mod effects;
@@ -25,7 +25,7 @@ use effects::effects_table;
 use super::output;
 use super::run::{LifetimeRun, processors};
 use crate::Failure;
-use crate::contact_sheet::{self, ways};
+use crate::contact_sheet::{self, paths};
 use crate::report::picture::heat_map;
 use crate::table::table;
 use crate::views::Views;
@@ -36,10 +36,10 @@ const TASK: &str = "find_objects";
 /// The demo's variants.
 const VARIANTS: [&str; 3] = ["blue", "huddle", "turned"];
 
-/// Episodes of each learning block.
+/// Number of episodes in each learning block.
 const LEARN: u32 = 150;
 
-/// Contents of the folder at the end.
+/// What the output folder contains, as printed at the end.
 const CONTENTS: &str = "  report.html        the lifetime on one page: metrics, curves, worlds
   contact-sheet.png  each variant as the agent sees it, and from above; alone in maps/ and worlds/
   distances.png      how far apart the variants are; the numbers in distances.csv
@@ -119,11 +119,11 @@ impl Demo {
             let world = Sampler::new(variant, self.seed).world(0)?;
             let path = self.output.join("worlds").join(format!("{name}.json"));
             output::write(&path, world.to_json_pretty().as_bytes())?;
-            let map = Views::new(&world, 480, 0.0).map_with_legend(&ways(&world)?);
+            let map = Views::new(&world, 480, 0.0).map_with_legend(&paths(&world)?);
             output::write_picture(&self.output.join("maps").join(format!("{name}.png")), &map)?;
-            cells.push(contact_sheet::Shown::declared(variant.clone(), self.seed));
+            cells.push(contact_sheet::Item::declared(variant.clone(), self.seed));
         }
-        let look = contact_sheet::Look {
+        let look = contact_sheet::Options {
             index: None,
             turn: None,
             size: 240,
@@ -149,13 +149,13 @@ impl Demo {
 
 /// The variants in order, each with its distance from the one before it.
 fn variants_table(variants: &[(String, Variant)], matrix: &DistanceMatrix, ordering: &Ordering) -> String {
-    let mut before = None;
+    let mut previous = None;
     let rows = ordering.indices.iter().map(|&index| {
         let variant = &variants[index].1;
-        let step = before.replace(index).map(|before| matrix.get(before, index));
-        let said = variant.task().variant_description(variant.name()).unwrap_or_default();
+        let step = previous.replace(index).map(|previous| matrix.get(previous, index));
+        let description = variant.task().variant_description(variant.name()).unwrap_or_default();
         let step = step.map_or_else(String::new, |step| format!("{step:.2}"));
-        vec![variant.name().to_owned(), step, said.to_owned()]
+        vec![variant.name().to_owned(), step, description.to_owned()]
     });
     table(["variant", "distance", "what it is"], rows.collect::<Vec<_>>(), &[1])
 }
@@ -180,7 +180,7 @@ fn run_lifetime(scenario: &Scenario, agent: &AgentArg, logs: &Path) -> Result<Su
     run.run()
 }
 
-/// The demo may be repeated: it replaces its own log, but nothing else.
+/// Removes the log of an earlier demo; refuses to remove anything else.
 fn remove_old_log(logs: &Path) -> Result<(), Failure> {
     let failed = |error| Failure::in_file(logs, format!("cannot be removed: {error}"));
     if !logs.exists() {

@@ -54,7 +54,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn counts_are_readable() {
+    fn count_groups_thousands_and_uses_the_plural() {
         let check = |number: u64, expected: &str| assert_eq!(count(number, "row"), expected);
         check(0, "0 rows");
         check(1, "1 row");

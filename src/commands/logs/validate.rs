@@ -43,21 +43,21 @@ struct Verdict {
 
 impl Validate {
     pub(crate) fn run(self) -> Result<(), Failure> {
-        output::answers_by_code();
+        output::run_to_end_for_exit_code();
         let logs = log_folders::found(&self.logs, self.recursive)?;
         let (mut wrong, total) = (0, logs.len());
-        let mut listed = Vec::new();
+        let mut verdicts = Vec::new();
         for log in logs {
             let verdict = Verdict::of(log);
             wrong += usize::from(!verdict.found.is_valid());
             if self.json {
-                listed.push(verdict.to_json());
+                verdicts.push(verdict.to_json());
             } else {
                 verdict.print()?;
             }
         }
         if self.json {
-            output::json(&listed)?;
+            output::json(&verdicts)?;
         }
         match (wrong, total) {
             (0, _) => Ok(()),

@@ -1,4 +1,4 @@
-//! `driftworld new` and `driftworld export`: writes a task spec to start from, a small one or a built-in one.
+//! `driftworld new` and `driftworld export`: write a task spec to start from, either a small one or a built-in one.
 
 use std::path::{Path, PathBuf};
 
@@ -65,7 +65,7 @@ impl New {
         if self.json || output::is_stdout(&file) {
             return Ok(());
         }
-        output::tell_what_was_written()?;
+        output::report_written_files()?;
         let file = file.shown();
         output::line(format!(
             "Try it, change it, try it again:\n  \
@@ -84,9 +84,9 @@ impl Export {
         let (task, _) = tasks::split(&self.task);
         let mut known = tasks::groups().flat_map(|(_, tasks)| tasks);
         let Some(&built_in) = known.find(|(name, _)| *name == task) else {
-            let ours = tasks::one_of_ours(task);
+            let known = tasks::known_tasks(task);
             return Err(Failure::input(format!(
-                "found {task:?}, expected a built-in task, {ours}"
+                "found {task:?}, expected a built-in task, {known}"
             )));
         };
         let name = self.name.as_deref().unwrap_or(built_in.0);
@@ -96,7 +96,7 @@ impl Export {
     }
 }
 
-/// A task's text under another name, without the schema's path, which does not exist beside the new file.
+/// Renames a task in its text, and removes the path of its schema, which would not resolve from the new file.
 fn renamed((old, text): (&str, &str), name: &str) -> Result<String, Failure> {
     let lines = text
         .lines()
@@ -104,7 +104,7 @@ fn renamed((old, text): (&str, &str), name: &str) -> Result<String, Failure> {
     let mut text = lines.collect::<Vec<_>>().join("\n");
     text.push('\n');
     let text = text.replacen(&format!("\"name\": \"{old}\""), &format!("\"name\": \"{name}\""), 1);
-    // Descriptions name the file, too.
+    // Descriptions mention the file name, too.
     let text = text.replace(&format!("{old}.json#"), &format!("{name}.json#"));
     TaskSpec::from_json(&format!("{name}.json"), &text)?;
     Ok(text)

@@ -17,8 +17,8 @@ impl Comparison {
             (method, found)
         };
         // Target steps are compared only if a length is given.
-        let is_meant = |method: &Method| *method != Method::TargetStep || options.target_step.is_some();
-        let methods = Method::ALL.iter().copied().filter(is_meant);
+        let is_compared = |method: &Method| *method != Method::TargetStep || options.target_step.is_some();
+        let methods = Method::ALL.iter().copied().filter(is_compared);
         Self {
             outcomes: methods.map(outcome).collect(),
         }
@@ -26,7 +26,7 @@ impl Comparison {
 
     /// A line for each method, followed by the reasons for missing numbers.
     pub(super) fn table(&self) -> String {
-        let mut refusals = String::new();
+        let mut errors = String::new();
         let mut rows = Vec::new();
         for (method, outcome) in &self.outcomes {
             match outcome {
@@ -41,7 +41,7 @@ impl Comparison {
                 ]),
                 Err(error) => {
                     rows.push([method.name(), "-", "-", "-", "-"].map(str::to_owned));
-                    refusals = format!("{refusals}\n{error}");
+                    errors = format!("{errors}\n{error}");
                 }
             }
         }
@@ -53,10 +53,10 @@ impl Comparison {
             "correlation with the first",
         ];
         let table = table(headings, rows, &[1, 2, 3, 4]);
-        if refusals.is_empty() {
+        if errors.is_empty() {
             table
         } else {
-            format!("{table}\n{refusals}")
+            format!("{table}\n{errors}")
         }
     }
 

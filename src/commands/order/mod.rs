@@ -100,9 +100,9 @@ impl Order {
         let (method, ordering) = self
             .ordering
             .labelled()
-            .order_from(&matrix, self.seed, &self.firsts())?;
+            .order_from(&matrix, self.seed, &self.start_candidates())?;
         if let Some(path) = &self.plot {
-            output::write_picture_and_tell(path, &path_map(&matrix, method, &ordering))?;
+            output::write_and_report_picture(path, &path_map(&matrix, method, &ordering))?;
         }
         if self.json {
             let mut found = json_of(&matrix, method, &ordering, self.seed);
@@ -114,11 +114,11 @@ impl Order {
         }
         output::line(path_table(&matrix, &ordering))?;
         let by = by.map_or_else(String::new, |by| format!(" by {}", by.name()));
-        let steadily = ordering.anchor_correlation.map_or_else(String::new, |rho| {
+        let correlation = ordering.anchor_correlation.map_or_else(String::new, |rho| {
             format!(", correlation with the distance from the first {rho:.2}")
         });
         output::line(format!(
-            "\n{}{by}: length {:.4}, largest step {:.4}, mean step {:.4}{steadily}",
+            "\n{}{by}: length {:.4}, largest step {:.4}, mean step {:.4}{correlation}",
             method.name(),
             ordering.length,
             ordering.largest_step(),
@@ -130,7 +130,7 @@ impl Order {
         ))
     }
 
-    /// All distances, and the measure unless they are read from a file.
+    /// All distances, and the measure; `None` instead of a measure if the distances come from a file.
     fn measure(&self) -> Result<(DistanceMatrix, Option<By>), Failure> {
         if let Some(path) = &self.from_matrix {
             return Ok((matrix_file::read("from_matrix", path)?, None));
@@ -156,7 +156,7 @@ impl Order {
     }
 
     /// The default candidates for the first variant: the variants of the first argument.
-    fn firsts(&self) -> Vec<usize> {
+    fn start_candidates(&self) -> Vec<usize> {
         let first = self.tasks.first().and_then(|first| tasks::variants(first).ok());
         (0..first.map_or(0, |variants| variants.len())).collect()
     }
@@ -183,11 +183,11 @@ fn json_of(matrix: &DistanceMatrix, method: Method, ordering: &Ordering, seed: u
 
 /// The items of an order, each with the step that leads to it.
 fn path_table(matrix: &DistanceMatrix, ordering: &Ordering) -> String {
-    let rows = ordering.indices.iter().enumerate().map(|(place, index)| {
-        let step = place
+    let rows = ordering.indices.iter().enumerate().map(|(position, index)| {
+        let step = position
             .checked_sub(1)
-            .map_or_else(String::new, |before| format!("{:.4}", ordering.steps[before]));
-        [(place + 1).to_string(), matrix.labels()[*index].clone(), step]
+            .map_or_else(String::new, |step| format!("{:.4}", ordering.steps[step]));
+        [(position + 1).to_string(), matrix.labels()[*index].clone(), step]
     });
     table(["", "variant", "distance from the one before"], rows, &[0, 2])
 }

@@ -2,7 +2,7 @@
 
 use crate::Failure;
 use crate::env::{Catalogue, EndedBy, Environment, EpisodeOrigin, Recorder, Recording, Renderer, Step};
-use crate::episode_frames::{deed, facts, map_of, number};
+use crate::episode_frames::{events_of, facts, map_of, number};
 use crate::report::picture::Picture;
 use crate::spec::World;
 
@@ -26,13 +26,13 @@ pub(super) struct Game {
     recordings: Vec<Recording>,
     held: Held,
     shown: Shown,
-    /// Seconds between two steps, and the time of the next.
+    /// Seconds between two steps, and the time of the next step.
     pace: f64,
-    due: f64,
-    way: Vec<[f32; 2]>,
+    next_step_at: f64,
+    path: Vec<[f32; 2]>,
     last: Option<Step>,
-    said: String,
-    /// Whether the world pauses while no key is held, because there is no action that does nothing.
+    last_event: String,
+    /// Whether the world pauses while no key is held, because its agent has no null action.
     waits: bool,
 }
 
@@ -60,10 +60,10 @@ impl Game {
             held: Held::default(),
             shown: Shown::Agent,
             pace,
-            due: 0.0,
-            way: Vec::new(),
+            next_step_at: 0.0,
+            path: Vec::new(),
             last: None,
-            said: String::new(),
+            last_event: String::new(),
             waits,
         };
         game.begin();
@@ -73,8 +73,8 @@ impl Game {
     fn begin(&mut self) {
         self.environment.reset(self.world.clone());
         self.recorder.begin(self.world.clone());
-        self.way = vec![self.environment.agent().position];
-        (self.last, self.said) = (None, String::new());
+        self.path = vec![self.environment.agent().position];
+        (self.last, self.last_event) = (None, String::new());
     }
 
     /// Handles a key press at the time `now`, in seconds; returns whether the picture changes.
@@ -88,7 +88,7 @@ impl Game {
                 };
             }
             Key::Restart => {
-                self.keep();
+                self.save_recording();
                 self.begin();
             }
             _ => {
@@ -99,25 +99,25 @@ impl Game {
         true
     }
 
-    /// Takes the step that is due, if any; returns whether it did.
-    pub(super) fn go_on(&mut self, now: f64) -> Result<bool, Failure> {
-        if now < self.due || self.environment.ended() {
+    /// Takes a step if one is due; returns whether it did.
+    pub(super) fn advance(&mut self, now: f64) -> Result<bool, Failure> {
+        if now < self.next_step_at || self.environment.ended() {
             return Ok(false);
         }
         let Some((along, turn, interact)) = self.held.take(now).or((!self.waits).then_some((0.0, 0.0, false))) else {
             return Ok(false);
         };
         // Missed steps after a pause are not made up for.
-        self.due = (self.due + self.pace).max(now);
+        self.next_step_at = (self.next_step_at + self.pace).max(now);
         let agent = &self.world.agent_params;
         let (speed, rate) = (agent.max_linear_speed, agent.max_angular_speed);
         let action = self.environment.action_near(along * speed, turn * rate, interact);
         let step = self.environment.step(action)?;
         self.recorder.step(action);
-        self.way.push(self.environment.agent().position);
-        let deed = deed(self.environment.world(), &step).words.join(", ");
-        if !deed.is_empty() {
-            self.said = deed;
+        self.path.push(self.environment.agent().position);
+        let events = events_of(self.environment.world(), &step).words.join(", ");
+        if !events.is_empty() {
+            self.last_event = events;
         }
         self.last = Some(step);
         Ok(true)
@@ -127,20 +127,20 @@ impl Game {
     pub(super) fn picture(&mut self, width: u32, height: u32) -> Result<Picture, Failure> {
         let size = width.min(height);
         match self.shown {
-            Shown::Agent => self.seen(width, height),
-            Shown::Above => Ok(map_of(&self.environment, [size; 2], &self.way)),
+            Shown::Agent => self.view(width, height),
+            Shown::Above => Ok(map_of(&self.environment, [size; 2], &self.path)),
             Shown::Both => {
                 let side = (width / 2).min(height).max(1);
-                let (seen, map) = (self.seen(side, side)?, map_of(&self.environment, [side; 2], &self.way));
+                let (view, map) = (self.view(side, side)?, map_of(&self.environment, [side; 2], &self.path));
                 let mut both = Picture::blank(2 * side, side);
-                both.paste(&seen, 0, 0);
+                both.paste(&view, 0, 0);
                 both.paste(&map, side, 0);
                 Ok(both)
             }
         }
     }
 
-    fn seen(&mut self, width: u32, height: u32) -> Result<Picture, Failure> {
+    fn view(&mut self, width: u32, height: u32) -> Result<Picture, Failure> {
         Picture::smooth([width, height], |[width, height]| {
             Ok(self.environment.observe_at(width, height)?.rgb)
         })
@@ -154,19 +154,19 @@ impl Game {
             parts.push(format!("reward {}", number(step.reward, "+")));
         }
         parts.extend(facts(&self.environment, end));
-        if !self.said.is_empty() {
-            parts.push(self.said.clone());
+        if !self.last_event.is_empty() {
+            parts.push(self.last_event.clone());
         }
         parts.join(" · ")
     }
 
     /// The played episodes, including the current one.
     pub(super) fn into_recordings(mut self) -> Vec<Recording> {
-        self.keep();
+        self.save_recording();
         self.recordings
     }
 
-    fn keep(&mut self) {
+    fn save_recording(&mut self) {
         let ended_by: Option<EndedBy> = self.last.as_ref().and_then(|step| step.ended_by);
         let mut recording = self.recorder.recording(&self.environment, ended_by);
         recording.origin = EpisodeOrigin {
@@ -201,17 +201,17 @@ mod tests {
     }
 
     #[test]
-    fn keys_move_the_agent_and_the_game_can_be_replayed() {
+    fn game_moves_the_agent_by_keys_and_can_be_replayed() {
         let mut game = game(ActionSpace::Normalized);
         let start = game.environment.agent().position;
         assert!(!game.press(Key::Ahead, 0.0), "a key alone changes no picture");
-        assert!(game.go_on(0.0).unwrap());
-        assert!(!game.go_on(0.04).unwrap(), "the next step is not due");
-        assert!(game.go_on(0.1).unwrap());
+        assert!(game.advance(0.0).unwrap());
+        assert!(!game.advance(0.04).unwrap(), "the next step is not due");
+        assert!(game.advance(0.1).unwrap());
         let walked = game.environment.agent().position;
         assert_ne!(start, walked);
-        // The key is no longer held, but the world continues.
-        assert!(game.go_on(1.0).unwrap());
+        // The key is no longer held, but the world moves on.
+        assert!(game.advance(1.0).unwrap());
         assert_eq!(game.environment.agent().position, walked);
         assert_eq!(game.environment.num_steps(), 3);
         assert!(
@@ -225,17 +225,17 @@ mod tests {
             (0, start)
         );
         game.press(Key::Left, 2.0);
-        game.go_on(2.0).unwrap();
+        game.advance(2.0).unwrap();
         for (width, height) in [(40, 22), (9, 30), (1, 1)] {
             let picture = game.picture(width, height).unwrap();
             assert!(picture.width <= width.max(2) && picture.height <= height);
         }
         let recordings = game.into_recordings();
         assert_eq!(recordings.len(), 2);
-        for (place, recording) in (0..).zip(&recordings) {
+        for (number, recording) in (0..).zip(&recordings) {
             assert_eq!(
                 (recording.origin.experience, recording.actions.len()),
-                (place, [3, 1][place as usize])
+                (number, [3, 1][number as usize])
             );
             let mut replay = Replay::new(recording, &Catalogue::default());
             while replay.step().unwrap().is_some() {}
@@ -246,9 +246,9 @@ mod tests {
     #[test]
     fn world_without_a_null_action_waits_for_keys() {
         let mut game = game(ActionSpace::Discrete(vec![[5.0, 0.0, 0.0], [0.0, 45.0, 0.0]]));
-        assert!(!game.go_on(0.0).unwrap());
+        assert!(!game.advance(0.0).unwrap());
         game.press(Key::Right, 0.5);
-        assert!(game.go_on(0.5).unwrap());
+        assert!(game.advance(0.5).unwrap());
         assert_eq!(
             game.recorder.recording(&game.environment, None).actions,
             [crate::env::Action::Discrete(1)]

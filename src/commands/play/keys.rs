@@ -1,4 +1,4 @@
-//! The keys of a terminal, and which of them are held down: a terminal reports key presses, but never releases.
+//! Parses keys from a terminal's bytes, and guesses which are held down: a terminal reports presses, but no releases.
 
 /// The meaning of a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,14 +57,14 @@ impl Key {
     }
 }
 
-/// Seconds for which a key counts as held after a press, until the terminal repeats it.
+/// Seconds for which a key counts as held after a press: enough to bridge the gap until the terminal repeats it.
 const WALK: f64 = 0.3;
 const TURN: f64 = 0.15;
 
 /// The keys held down.
 #[derive(Debug, Default)]
 pub(super) struct Held {
-    /// Expiry times of ahead or back, and left or right, on the clock of the presses.
+    /// The last key ahead or back, and the last key left or right, each with the time until which it counts as held.
     along: Option<(Key, f64)>,
     turn: Option<(Key, f64)>,
     interact: bool,

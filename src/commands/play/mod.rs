@@ -89,53 +89,53 @@ impl Play {
 
 /// Plays until the user quits.
 fn play(game: &mut Game, terminal: &RawTerminal, interrupt: &Interrupt) -> Result<(), Failure> {
-    let begun = Instant::now();
+    let start = Instant::now();
     let (mut before, mut status): (Option<Cells>, String) = (None, String::new());
     let mut size = None;
-    let mut is_new = true;
+    let mut needs_drawing = true;
     for frame in 1.. {
-        let now = begun.elapsed().as_secs_f64();
+        let now = start.elapsed().as_secs_f64();
         let Some(typed) = terminal.typed() else { return Ok(()) };
         for key in Key::all(&typed) {
             if key == Key::Quit {
                 return Ok(());
             }
-            is_new |= game.press(key, now);
+            needs_drawing |= game.press(key, now);
         }
-        if interrupt.is_asked() {
+        if interrupt.is_cancelled() {
             return Ok(());
         }
-        is_new |= game.go_on(now)?;
-        let found = terminal_size::terminal_size().map_or((80, 24), |(columns, rows)| (columns.0, rows.0));
-        if size.replace(found) != Some(found) {
+        needs_drawing |= game.advance(now)?;
+        let dimensions = terminal_size::terminal_size().map_or((80, 24), |(columns, rows)| (columns.0, rows.0));
+        if size.replace(dimensions) != Some(dimensions) {
             terminal.show("\x1b[0m\x1b[2J")?;
-            (before, status, is_new) = (None, String::new(), true);
+            (before, status, needs_drawing) = (None, String::new(), true);
         }
-        if is_new {
-            // Two lines below the picture hold text.
+        if needs_drawing {
+            // The last two lines are for text.
             let (columns, rows) = (
-                usize::from(found.0.clamp(2, 1000)),
-                usize::from(found.1.clamp(3, 500)) - 2,
+                usize::from(dimensions.0.clamp(2, 1000)),
+                usize::from(dimensions.1.clamp(3, 500)) - 2,
             );
             let cells = Cells::new(&game.picture(columns as u32, 2 * rows as u32)?, columns, rows);
-            let mut sent = cells.drawn_over(before.as_ref());
-            let said = game.status();
-            if said != status {
+            let mut sent = cells.draw_over(before.as_ref());
+            let new_status = game.status();
+            if new_status != status {
                 let line = |text: &str| printable(text).chars().take(columns).collect::<String>();
                 let (first, second) = (rows + 1, rows + 2);
                 // Writing into a string cannot fail.
                 let _ = write!(
                     sent,
                     "\x1b[{first};1H\x1b[K{}\x1b[{second};1H\x1b[K\x1b[2m{}\x1b[0m",
-                    line(&said),
+                    line(&new_status),
                     line(HELP)
                 );
-                status = said;
+                status = new_status;
             }
             terminal.show(&sent)?;
-            (before, is_new) = (Some(cells), false);
+            (before, needs_drawing) = (Some(cells), false);
         }
-        std::thread::sleep((FRAME * frame).saturating_sub(begun.elapsed()));
+        std::thread::sleep((FRAME * frame).saturating_sub(start.elapsed()));
     }
     Ok(())
 }

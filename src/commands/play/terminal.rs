@@ -51,10 +51,10 @@ impl RawTerminal {
         raw.special_codes[SpecialCodeIndex::VTIME] = 0;
         *BEFORE.lock().unwrap_or_else(PoisonError::into_inner) = Some(before);
         HOOK.call_once(|| {
-            let answer = std::panic::take_hook();
+            let default_hook = std::panic::take_hook();
             std::panic::set_hook(Box::new(move |info| {
                 restore();
-                answer(info);
+                default_hook(info);
             }));
         });
         let terminal = Self(());
@@ -72,7 +72,7 @@ impl RawTerminal {
     }
 
     /// The bytes typed since the last call; `None` if the terminal is gone.
-    #[expect(clippy::unused_self, reason = "only who holds the terminal may")]
+    #[expect(clippy::unused_self, reason = "requires a terminal in raw mode")]
     pub(super) fn typed(&self) -> Option<Vec<u8>> {
         let mut bytes = [0; 256];
         match io::Read::read(&mut io::stdin().lock(), &mut bytes) {
@@ -83,7 +83,7 @@ impl RawTerminal {
     }
 
     /// Prints text and codes.
-    #[expect(clippy::unused_self, reason = "only who holds the terminal may")]
+    #[expect(clippy::unused_self, reason = "requires a terminal in raw mode")]
     pub(super) fn show(&self, text: &str) -> Result<(), Failure> {
         let mut out = io::stdout().lock();
         let shown = out.write_all(text.as_bytes()).and_then(|()| out.flush());

@@ -1,4 +1,5 @@
-//! `driftworld studio`: the workbench, a page in which the simulator runs, served to this machine alone or written into a folder.
+//! `driftworld studio`: serves the workbench, a web page that runs the simulator, to this machine only, or writes it into a
+//! folder.
 
 mod page;
 mod server;
@@ -47,7 +48,7 @@ const TASK_FILE: &str = "task.json";
 impl Studio {
     pub(crate) fn run(self) -> Result<(), Failure> {
         let (fragment, text) = match &self.task {
-            Some(task) => begin_with(task)?,
+            Some(task) => address_fragment(task)?,
             None => Default::default(),
         };
         let mut page = Page::find()?;
@@ -74,21 +75,21 @@ impl Studio {
     }
 }
 
-/// The fragment of the page's address that opens a task, and the text of its spec unless it is built in.
-fn begin_with(called: &str) -> Result<(String, Option<String>), Failure> {
+/// The URL fragment that opens a task in the page, and the text of the task's spec unless it is built in.
+fn address_fragment(called: &str) -> Result<(String, Option<String>), Failure> {
     let (name, variant) = tasks::split(called);
     let task = tasks::task(name)?;
     if let Some(variant) = variant {
         task.variant(variant)?;
     }
-    let variant = variant.map_or_else(String::new, |variant| format!("variant={}", encoded(variant)));
+    let variant = variant.map_or_else(String::new, |variant| format!("variant={}", percent_encoded(variant)));
     if tasks::text_by_name(name).is_some() {
         let query = if variant.is_empty() {
             String::new()
         } else {
             format!("?{variant}")
         };
-        return Ok((format!("#/play/{}{query}", encoded(name)), None));
+        return Ok((format!("#/play/{}{query}", percent_encoded(name)), None));
     }
     let text =
         documents::text_of(name.as_ref(), &[Contents::Task]).map_err(|error| Failure::input(error.to_string()))?;
@@ -97,13 +98,13 @@ fn begin_with(called: &str) -> Result<(String, Option<String>), Failure> {
 }
 
 /// A word, percent-encoded for a URL.
-fn encoded(word: &str) -> String {
-    let plain = |byte: u8| byte.is_ascii_alphanumeric() || b"-_.".contains(&byte);
-    word.bytes().fold(String::new(), |encoded, byte| {
-        if plain(byte) {
-            encoded + &char::from(byte).to_string()
+fn percent_encoded(word: &str) -> String {
+    let is_plain = |byte: u8| byte.is_ascii_alphanumeric() || b"-_.".contains(&byte);
+    word.bytes().fold(String::new(), |text, byte| {
+        if is_plain(byte) {
+            text + &char::from(byte).to_string()
         } else {
-            encoded + &format!("%{byte:02X}")
+            text + &format!("%{byte:02X}")
         }
     })
 }

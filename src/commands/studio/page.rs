@@ -1,4 +1,4 @@
-//! [`Page`]: the files of the workbench, in memory: those in the program, or those that `cargo xtask studio` built beside it.
+//! [`Page`]: the files of the workbench in memory, embedded in the program or read from what `cargo xtask studio` built.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -21,7 +21,7 @@ const MAX_FILE_BYTES: u64 = 1 << 26;
 pub(super) struct Page(BTreeMap<String, Cow<'static, [u8]>>);
 
 impl Page {
-    /// The page in the folder that the environment variable names, else the embedded one, else the one built beside it.
+    /// The page in the folder named by the environment variable, else the embedded page, else the one built beside the program.
     pub(super) fn find() -> Result<Self, Failure> {
         if let Some(folder) = std::env::var_os(VARIABLE).map(PathBuf::from) {
             return Self::read(&folder);
@@ -66,7 +66,7 @@ impl Page {
     }
 }
 
-/// The page in the build folder that contains the program.
+/// The folder of a page that was built in the same target folder as the program.
 fn built_beside(program: &Path) -> Option<PathBuf> {
     let folders = program.ancestors().skip(1).take(4).map(|folder| folder.join("studio"));
     folders

@@ -13,7 +13,7 @@ use crate::Failure;
 
 /// Maximum size of a request's head in bytes, and the time limit for reading it and for each write.
 const MAX_HEAD: usize = 1 << 14;
-const PATIENCE: Duration = Duration::from_secs(10);
+const TIMEOUT: Duration = Duration::from_secs(10);
 
 /// Maximum number of requests that are answered at a time.
 const MAX_REQUESTS: usize = 64;
@@ -28,10 +28,10 @@ pub(super) struct Server {
     site: Arc<Site>,
 }
 
-/// What is served, and to whom.
+/// The page with the secrets and limits of access to it.
 struct Site {
     page: Page,
-    /// The first part of every path.
+    /// The secret with which every path begins.
     token: String,
     port: u16,
     requests: AtomicUsize,
@@ -64,10 +64,10 @@ impl Server {
         format!("http://127.0.0.1:{}/{}/", self.site.port, self.site.token)
     }
 
-    /// Answers until the process ends.
+    /// Answers requests until the process ends.
     pub(super) fn serve(self) -> Result<(), Failure> {
         for stream in self.listener.incoming() {
-            // A connection that was aborted before it was accepted is not an error.
+            // It is not an error if the client aborts the connection before it is accepted.
             let Ok(stream) = stream else { continue };
             let site = Arc::clone(&self.site);
             if site.requests.fetch_add(1, Ordering::SeqCst) >= MAX_REQUESTS {
@@ -75,8 +75,8 @@ impl Server {
                 continue;
             }
             let work = move || {
-                // An error means that the client has gone away: there is nobody to report it to.
-                let _ = site.converse(stream);
+                // On an error the client has gone away, so there is nobody to report it to.
+                let _ = site.handle(stream);
                 site.requests.fetch_sub(1, Ordering::SeqCst);
             };
             std::thread::Builder::new().spawn(work).map_err(|error| {
@@ -88,9 +88,9 @@ impl Server {
 }
 
 impl Site {
-    fn converse(&self, mut stream: TcpStream) -> std::io::Result<()> {
-        stream.set_read_timeout(Some(PATIENCE))?;
-        stream.set_write_timeout(Some(PATIENCE))?;
+    fn handle(&self, mut stream: TcpStream) -> std::io::Result<()> {
+        stream.set_read_timeout(Some(TIMEOUT))?;
+        stream.set_write_timeout(Some(TIMEOUT))?;
         let head = head(&mut stream)?;
         let answer = self.answer(&head);
         let (name, bytes) = answer.file.unwrap_or(("", b""));
@@ -99,7 +99,7 @@ impl Site {
              nosniff\r\nReferrer-Policy: no-referrer\r\nCross-Origin-Resource-Policy: same-origin\r\nCache-Control: \
              no-store\r\nConnection: close\r\n\r\n",
             answer.status,
-            kind(name),
+            media_type(name),
             bytes.len()
         );
         stream.write_all(headers.as_bytes())?;
@@ -124,7 +124,7 @@ impl Site {
         if !["GET", "HEAD"].contains(&method) {
             return nothing("405 Method Not Allowed");
         }
-        // Refuses other names that resolve to this machine (DNS rebinding).
+        // Refuse other names that resolve to this machine (DNS rebinding).
         let host = lines.find_map(|line| {
             let (name, value) = line.split_once(':')?;
             name.eq_ignore_ascii_case("host").then_some(value.trim())
@@ -155,7 +155,7 @@ fn head(stream: &mut TcpStream) -> std::io::Result<String> {
     let (start, mut head, mut piece) = (Instant::now(), Vec::new(), [0; 1024]);
     while !head.windows(4).any(|end| end == b"\r\n\r\n") {
         let length = stream.read(&mut piece)?;
-        if length == 0 || head.len() + length > MAX_HEAD || start.elapsed() > PATIENCE {
+        if length == 0 || head.len() + length > MAX_HEAD || start.elapsed() > TIMEOUT {
             return Err(std::io::ErrorKind::InvalidData.into());
         }
         head.extend_from_slice(&piece[..length]);
@@ -164,7 +164,7 @@ fn head(stream: &mut TcpStream) -> std::io::Result<String> {
 }
 
 /// The media type of a file.
-fn kind(name: &str) -> &'static str {
+fn media_type(name: &str) -> &'static str {
     match name.rsplit('.').next().unwrap_or_default() {
         "html" => "text/html; charset=utf-8",
         "js" => "text/javascript; charset=utf-8",
@@ -175,10 +175,10 @@ fn kind(name: &str) -> &'static str {
     }
 }
 
-/// 128 bits that differ each time: keyed hashes, whose keys the system draws.
+/// 128 random bits in hexadecimal: empty hashes under random keys from the system.
 fn token() -> String {
-    let drawn = |_| RandomState::new().build_hasher().finish();
-    [0, 1].map(drawn).map(|half: u64| format!("{half:016x}")).concat()
+    let random = |_| RandomState::new().build_hasher().finish();
+    [0, 1].map(random).map(|half: u64| format!("{half:016x}")).concat()
 }
 
 #[cfg(test)]

@@ -105,6 +105,6 @@ impl TransferReport {
         }
         let Some(path) = self.plot else { return Ok(()) };
         let picture = scatter(&words::panels(&report));
-        output::write_picture_and_tell(&path, &picture)
+        output::write_and_report_picture(&path, &picture)
     }
 }

@@ -1,4 +1,4 @@
-//! The report as text, and the texts in its picture.
+//! Writes the report as text, and the texts of its picture.
 
 use crate::curriculum::{DirectionReport, TransferReport};
 use crate::metrics::TransferMethod;
@@ -9,7 +9,7 @@ use crate::report::picture::{Panel, Point};
 use crate::table::table;
 
 /// Maximum number of pairs in the table; the others are counted.
-const MOST_PAIRS: usize = 40;
+const MAX_PAIRS: usize = 40;
 
 /// The whole report.
 pub(super) fn report(report: &TransferReport) -> String {
@@ -42,7 +42,7 @@ fn pairs(report: &TransferReport) -> String {
         .flat_map(|(name, direction)| direction.pairs.iter().map(move |pair| (*name, pair)));
     let rows: Vec<[String; 6]> = all
         .clone()
-        .take(MOST_PAIRS)
+        .take(MAX_PAIRS)
         .map(|(name, pair)| {
             [
                 name.to_owned(),
@@ -56,7 +56,7 @@ fn pairs(report: &TransferReport) -> String {
         .collect();
     let head = ["", "learned", "evaluated", "distance", "transfer", "lifetimes"];
     let mut text = table(head, rows, &[3, 4, 5]);
-    let more = all.count().saturating_sub(MOST_PAIRS);
+    let more = all.count().saturating_sub(MAX_PAIRS);
     if more > 0 {
         text.extend(["\nand ", &more.to_string(), " more pairs; --json has all"]);
     }
@@ -76,8 +76,8 @@ fn tests(report: &TransferReport) -> String {
                         name.to_owned(),
                         test.method.to_string(),
                         signed(test.correlation),
-                        share(test.p_less, &test),
-                        share(test.p_two_sided, &test),
+                        p_value_text(test.p_less, &test),
+                        p_value_text(test.p_two_sided, &test),
                         test.pairs.to_string(),
                         test.items.to_string(),
                     ]
@@ -102,15 +102,15 @@ fn tests(report: &TransferReport) -> String {
     table(head, rows, &[2, 3, 4, 5, 6]) + &untested.concat()
 }
 
-/// The answer, by the rank test of each direction.
+/// Whether similarity predicts transfer, by the rank test of each direction.
 fn conclusion(report: &TransferReport) -> String {
     let answer = |name: &str, direction: &DirectionReport| {
         let test = direction.spearman?;
-        let p = share(test.p_less, &test);
-        Some(if test.p_less <= SMALL {
+        let p = p_value_text(test.p_less, &test);
+        Some(if test.p_less <= MAX_P_VALUE {
             format!("{name} transfer: yes, nearer variants got more of it (p {p}).")
         } else {
-            format!("{name} transfer: not shown (p {p}, above {SMALL}); more variants or lifetimes may show it.")
+            format!("{name} transfer: not shown (p {p}, above {MAX_P_VALUE}); more variants or lifetimes may show it.")
         })
     };
     let answers = [("Forward", &report.forward), ("Backward", &report.backward)];
@@ -122,7 +122,7 @@ fn conclusion(report: &TransferReport) -> String {
 }
 
 /// Largest p-value at which an effect counts as shown.
-const SMALL: f64 = 0.05;
+const MAX_P_VALUE: f64 = 0.05;
 
 /// How to read the numbers, and their limits.
 fn notes(report: &TransferReport) -> Vec<String> {
@@ -183,8 +183,8 @@ fn signed(value: f64) -> String {
     format!("{value:+.3}")
 }
 
-/// Shows no more digits than the test's resolution.
-fn share(p: f64, test: &MantelTest) -> String {
+/// A p-value as text; for random relabellings, not below the test's resolution.
+fn p_value_text(p: f64, test: &MantelTest) -> String {
     if !test.exact && p <= 1.0 / (test.relabellings + 1) as f64 {
         return format!("≤ {p:.1e}");
     }
@@ -221,7 +221,7 @@ fn summary(direction: &DirectionReport) -> String {
         Some(test) => format!(
             "Spearman {}; random labels do as well with p = {} (the nearer, the more); {} pairs of {} variants",
             signed(test.correlation),
-            share(test.p_less, test),
+            p_value_text(test.p_less, test),
             test.pairs,
             test.items
         ),
@@ -236,7 +236,7 @@ fn points(direction: &DirectionReport) -> Vec<Point> {
         .pairs
         .iter()
         .all(|pair| task(&pair.from) == first && task(&pair.to) == first);
-    // If all variants are of one task, its name is omitted.
+    // The task's name is omitted if all variants belong to one task.
     let short = |name: &str| match name.rsplit_once('#') {
         Some((_, variant)) if one_task => variant.to_owned(),
         _ => name.to_owned(),
