@@ -38,25 +38,25 @@ impl ExpertPair {
         self.b_in_b.earned - self.a_in_b.earned
     }
 
-    /// Success rate of the worlds' own experts minus that of the others, −1 to 1.
+    /// Success rate of each world's own expert minus the success rate of the other's, −1 to 1.
     pub fn success_difference(&self) -> f64 {
-        let count = |run: ExpertRun| f64::from(u8::from(run.success));
-        (count(self.a_in_a) - count(self.b_in_a) + count(self.b_in_b) - count(self.a_in_b)) / 2.0
+        let successes = |run: ExpertRun| f64::from(u8::from(run.success));
+        (successes(self.a_in_a) - successes(self.b_in_a) + successes(self.b_in_b) - successes(self.a_in_b)) / 2.0
     }
 }
 
-/// The rewards of experts in each other's worlds.
+/// How well the experts of two variants do in each other's worlds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BehaviorOutcome {
-    /// `(regret_in_a + regret_in_b) / 2` as a share of 100 points, at least 0.
+    /// `(regret_in_a + regret_in_b) / 2` in units of 100 points, at least 0.
     pub distance: f64,
     /// How much less the expert of `b` earns in worlds of `a` than their own expert, in points, on average.
     pub regret_in_a: f64,
     /// How much less the expert of `a` earns in worlds of `b`.
     pub regret_in_b: f64,
-    /// Success rate of the worlds' own experts minus that of the others, on average: −1 to 1.
+    /// Mean of [`ExpertPair::success_difference`], −1 to 1.
     pub success_difference: f64,
-    /// `(worlds,)`: pair by pair.
+    /// The runs in each pair of worlds, `(worlds,)`.
     pub pairs: Vec<ExpertPair>,
 }
 
@@ -67,7 +67,7 @@ pub struct BehaviorOutcome {
 /// world; [`Expertise::abroad`] describes this in detail.
 ///
 /// The distance is symmetric, and 0 from a variant to itself. It may be 0 between different variants, and violate the triangle
-/// inequality. An expert visits what pays, nearest first: that is not optimal, and if the foreign expert's route happens to be
+/// inequality. Experts are greedy: they visit the nearest rewarding object first. If the foreign expert's route happens to be
 /// better, the regret is negative.
 ///
 /// # Errors
@@ -92,15 +92,15 @@ pub fn behavior(
         catalogue: catalogue.clone(),
         ..Expertise::default()
     };
-    let (of_a, of_b) = (Sampler::new(a, seed), Sampler::new(b, seed));
+    let (sampler_a, sampler_b) = (Sampler::new(a, seed), Sampler::new(b, seed));
     let pairs: Vec<ExpertPair> = (0..worlds)
         .into_par_iter()
-        .map(|index| exchange(&expertise, &of_a.world(index)?, &of_b.world(index)?))
+        .map(|index| exchange(&expertise, &sampler_a.world(index)?, &sampler_b.world(index)?))
         .collect::<Result<_, Failure>>()?;
     Ok(outcome(pairs))
 }
 
-/// Runs the experts of two worlds in each other's.
+/// Runs the expert of each world in both worlds.
 fn exchange(expertise: &Expertise, a: &World, b: &World) -> Result<ExpertPair, Failure> {
     Ok(ExpertPair {
         a_in_a: expertise.at_home(a)?,
@@ -165,16 +165,16 @@ mod tests {
 
     #[test]
     fn regret_is_the_own_experts_advantage() {
-        let lived = |earned, success| ExpertRun {
+        let expert_run = |earned, success| ExpertRun {
             earned,
             success,
             steps: 1,
         };
         let pair = ExpertPair {
-            a_in_a: lived(50.0, true),
-            b_in_a: lived(-10.0, false),
-            b_in_b: lived(20.0, true),
-            a_in_b: lived(40.0, true),
+            a_in_a: expert_run(50.0, true),
+            b_in_a: expert_run(-10.0, false),
+            b_in_b: expert_run(20.0, true),
+            a_in_b: expert_run(40.0, true),
         };
         let found = outcome(vec![pair]);
         assert_eq!((found.regret_in_a, found.regret_in_b), (60.0, -20.0));

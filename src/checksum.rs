@@ -1,4 +1,4 @@
-//! The SHA-256 of a file's bytes.
+//! SHA-256 checksums.
 
 use std::fmt::Write;
 

@@ -41,30 +41,30 @@ impl Clock {
     }
 
     fn stopped(found: &str) -> Result<Self, ClockError> {
-        let moment = found.parse::<jiff::Timestamp>().ok();
-        let stamp = moment.and_then(|moment| Timestamp::from_unix_micros(moment.as_microsecond()).ok());
+        let time = found.parse::<jiff::Timestamp>().ok();
+        let stamp = time.and_then(|time| Timestamp::from_unix_micros(time.as_microsecond()).ok());
         stamp.map(Self::Stopped).ok_or_else(|| ClockError {
             found: found.to_owned(),
         })
     }
 
     /// The current time. A system clock outside the valid years gives the nearest valid stamp.
-    #[expect(clippy::missing_panics_doc, reason = "the range is that of the type")]
+    #[expect(clippy::missing_panics_doc, reason = "the time is clamped to the type's range")]
     pub fn now(self) -> Timestamp {
         match self {
             Self::Stopped(stamp) => stamp,
             Self::System => Timestamp::from_unix_micros(micros(std::time::SystemTime::now()))
-                .expect("the moment was brought into the years from 1 to 9999"),
+                .expect("the time was clamped to the years 1 to 9999"),
         }
     }
 }
 
 /// Microseconds since 1970, within the range of stamps.
 fn micros(now: std::time::SystemTime) -> i64 {
-    let whole = |since: std::time::Duration| i64::try_from(since.as_micros()).unwrap_or(i64::MAX);
+    let as_micros = |since: std::time::Duration| i64::try_from(since.as_micros()).unwrap_or(i64::MAX);
     let micros = match now.duration_since(std::time::UNIX_EPOCH) {
-        Ok(since) => whole(since),
-        Err(before) => -whole(before.duration()),
+        Ok(since) => as_micros(since),
+        Err(before) => -as_micros(before.duration()),
     };
     micros.clamp(*STAMPS.start(), *STAMPS.end())
 }

@@ -1,5 +1,5 @@
-//! Contact sheets: the agent's view and the map of several variants, with the world and camera chosen that best show what the
-//! variants are about.
+//! Draws contact sheets: the agent's view and the map of several variants, from the world and camera that best show their
+//! subjects.
 
 use driftworld_env::{Agent, Environment, Renderer, Scene, StillAgent};
 use driftworld_generator::Sampler;
@@ -10,11 +10,11 @@ use driftworld_text::capitalized;
 use crate::Failure;
 use crate::map_drawing::Moves;
 use crate::modality;
-use crate::sheet_words::{Worlds, alike, below_all, commonest, differences, modality_words, placed};
+use crate::sheet_words::{Worlds, differences, footer, modality_words, most_frequent, same_looks, viewpoint};
 use crate::subject::{Sight, openness, sight, subjects};
 use crate::views::{TURNS, Views, agent_camera};
 
-/// Worlds tried per variant.
+/// Maximum number of worlds tried per variant.
 const WORLDS: u64 = 4;
 
 /// Seconds for which paths of moving objects are drawn.
@@ -22,7 +22,7 @@ const SECONDS: f64 = 5.0;
 
 /// A variant with its caption, and the range of worlds that may be drawn.
 #[derive(Clone)]
-pub(crate) struct Shown {
+pub(crate) struct Item {
     pub(crate) variant: Variant,
     pub(crate) words: String,
     pub(crate) seed: u64,
@@ -32,7 +32,7 @@ pub(crate) struct Shown {
     pub(crate) worlds: Worlds,
 }
 
-impl Shown {
+impl Item {
     /// A variant as declared by its task.
     pub(crate) fn declared(variant: Variant, seed: u64) -> Self {
         let words = variant.task().variant_description(variant.name());
@@ -49,7 +49,7 @@ impl Shown {
 
 /// Options of a sheet.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Look {
+pub(crate) struct Options {
     /// World index for all variants; chosen if absent.
     pub(crate) index: Option<u64>,
     /// Camera rotation in degrees; chosen if absent.
@@ -78,16 +78,16 @@ struct Candidate {
 pub(crate) struct Cell {
     pub(crate) row: SheetRow,
     /// Whether its subject is visible.
-    #[cfg_attr(not(test), expect(dead_code, reason = "what tests count"))]
+    #[cfg_attr(not(test), expect(dead_code, reason = "only read by tests"))]
     pub(crate) is_seen: bool,
 }
 
 /// Draws the sheet. `tick` is called after each variant.
-pub(crate) fn contact_sheet(shown: &[Shown], look: Look, tick: &dyn Fn()) -> Result<Drawing, Failure> {
-    let (cells, said) = cells(shown, look, tick)?;
+pub(crate) fn contact_sheet(shown: &[Item], look: Options, tick: &dyn Fn()) -> Result<Drawing, Failure> {
+    let (cells, notes) = cells(shown, look, tick)?;
     let rows: Vec<SheetRow> = cells.into_iter().map(|cell| cell.row).collect();
     let mut drawing = sheet(&rows, look.columns);
-    for line in said {
+    for line in notes {
         for line in text_lines(&line, 13.0, drawing.width as f32 - 24.0) {
             drawing.height += 18;
             let at = [12.0, drawing.height as f32 - 18.0];
@@ -99,7 +99,7 @@ pub(crate) fn contact_sheet(shown: &[Shown], look: Look, tick: &dyn Fn()) -> Res
 }
 
 /// The entries of the variants, and the notes below them.
-pub(crate) fn cells(shown: &[Shown], look: Look, tick: &dyn Fn()) -> Result<(Vec<Cell>, Vec<String>), Failure> {
+pub(crate) fn cells(shown: &[Item], look: Options, tick: &dyn Fn()) -> Result<(Vec<Cell>, Vec<String>), Failure> {
     let mut renderer = Renderer::default();
     let worlds = shown
         .iter()
@@ -110,10 +110,10 @@ pub(crate) fn cells(shown: &[Shown], look: Look, tick: &dyn Fn()) -> Result<(Vec
         .iter()
         .map(|candidates| candidates.own_choice(&mut renderer, joint, look))
         .collect::<Result<Vec<_>, Failure>>()?;
-    let places: Vec<String> = (shown.iter().zip(&choices))
-        .map(|(shown, (choice, _))| placed(shown, *choice, look))
+    let viewpoints: Vec<String> = (shown.iter().zip(&choices))
+        .map(|(shown, (choice, _))| viewpoint(shown, *choice, look))
         .collect();
-    let usual = commonest(&places);
+    let most_common = most_frequent(&viewpoints);
     let mut cells: Vec<Cell> = Vec::new();
     let mut drawn: Vec<(Choice, Drawing, Drawing)> = Vec::new();
     // Variants whose values other captions show in brackets.
@@ -124,7 +124,7 @@ pub(crate) fn cells(shown: &[Shown], look: Look, tick: &dyn Fn()) -> Result<(Vec
         let views = Views::new(&candidate.world, look.size, choice.turn);
         let modality = shown_modality(&candidate.world);
         let seen: Drawing = views.seen_in(modality)?.into();
-        let map = views.map_with_legend(&ways(&candidate.world)?);
+        let map = views.map_with_legend(&paths(&candidate.world)?);
         let base = (0..number).find(|base| shown[*base].variant.task().name() == shown_here.variant.task().name());
         let mut words = vec![shown_here.words.trim().to_owned()];
         if let Some(base) = base {
@@ -136,12 +136,12 @@ pub(crate) fn cells(shown: &[Shown], look: Look, tick: &dyn Fn()) -> Result<(Vec
             let (their_choice, their_view, their_map) = &drawn[base];
             let same = [*their_view == seen, *their_map == map];
             if *their_choice == choice {
-                words.push(alike(&shown[base].variant, &shown_here.variant, same));
+                words.push(same_looks(&shown[base].variant, &shown_here.variant, same));
             }
         }
         words.push(modality_words(modality).to_owned());
-        if Some(&places[number]) != usual {
-            words.push(capitalized(&places[number]) + ".");
+        if Some(&viewpoints[number]) != most_common {
+            words.push(capitalized(&viewpoints[number]) + ".");
         }
         words.retain(|part| !part.is_empty());
         cells.push(Cell {
@@ -156,8 +156,8 @@ pub(crate) fn cells(shown: &[Shown], look: Look, tick: &dyn Fn()) -> Result<(Vec
         tick();
     }
     let bases: Vec<String> = bases.into_iter().map(|base| shown[base].variant.id()).collect();
-    let said = below_all(&bases, &places, usual.filter(|_| shown.len() > 1));
-    Ok((cells, said.into_iter().collect()))
+    let notes = footer(&bases, &viewpoints, most_common.filter(|_| shown.len() > 1));
+    Ok((cells, notes.into_iter().collect()))
 }
 
 /// The modality in which a world is shown: the agent's first in the order colours, depth, segmentation.
@@ -169,11 +169,12 @@ fn shown_modality(world: &World) -> Modality {
 
 /// The candidate worlds of a variant, drawn on demand.
 struct Candidates {
-    all: Vec<Option<Candidate>>,
+    /// `None` for a world that cannot be drawn, but never for the first.
+    worlds: Vec<Option<Candidate>>,
 }
 
 impl Candidates {
-    fn of(shown: &Shown, index: Option<u64>) -> Result<Self, Failure> {
+    fn of(shown: &Item, index: Option<u64>) -> Result<Self, Failure> {
         let sampler = Sampler::new(&shown.variant, shown.seed);
         let draw = |index: u64| -> Result<Candidate, Failure> {
             let world = sampler.world(index)?;
@@ -185,21 +186,20 @@ impl Candidates {
         };
         if let Some(index) = index {
             return Ok(Self {
-                all: vec![Some(draw(index)?)],
+                worlds: vec![Some(draw(index)?)],
             });
         }
-        let mut all = vec![Some(draw(shown.index)?)];
+        let mut worlds = vec![Some(draw(shown.index)?)];
         let others = 1..WORLDS.min(shown.count.max(1));
-        // A world that cannot be drawn is not shown.
-        all.extend(others.map(|place| draw(shown.index + place).ok()));
-        Ok(Self { all })
+        worlds.extend(others.map(|offset| draw(shown.index + offset).ok()));
+        Ok(Self { worlds })
     }
 
-    /// The candidate at an index; wraps around if there are fewer.
-    fn at(&self, place: u64) -> &Candidate {
-        let found = self.all.get(place as usize % self.all.len());
-        let found = found.and_then(Option::as_ref).or_else(|| self.all[0].as_ref());
-        found.expect("the first can be drawn")
+    /// The candidate at an index, which wraps around; the first if that one cannot be drawn.
+    fn at(&self, index: u64) -> &Candidate {
+        let found = self.worlds.get(index as usize % self.worlds.len());
+        let found = found.and_then(Option::as_ref).or_else(|| self.worlds[0].as_ref());
+        found.expect("the first world can be drawn")
     }
 
     fn sight(&self, renderer: &mut Renderer, choice: Choice) -> Result<Sight, Failure> {
@@ -208,13 +208,13 @@ impl Candidates {
         sight(renderer, &candidate.scene, &camera, &candidate.subjects)
     }
 
-    /// The joint choice if it shows this variant's subject; else a different camera, else a different world; if no view shows it,
-    /// the most open view of the joint world.
-    fn own_choice(&self, renderer: &mut Renderer, joint: Choice, look: Look) -> Result<(Choice, bool), Failure> {
+    /// The joint choice if it shows this variant's subject; else another camera in the same world, else another world. If no view
+    /// shows the subject: the most open view of the joint world.
+    fn own_choice(&self, renderer: &mut Renderer, joint: Choice, look: Options) -> Result<(Choice, bool), Failure> {
         if self.sight(renderer, joint)?.is_enough() {
             return Ok((joint, true));
         }
-        let worlds = std::iter::once(joint.world).chain(0..self.all.len() as u64);
+        let worlds = std::iter::once(joint.world).chain(0..self.worlds.len() as u64);
         for world in worlds {
             let mut best = (Sight::default(), joint);
             for turn in turns(look) {
@@ -232,7 +232,7 @@ impl Candidates {
     }
 
     /// The camera with the most free space; ties go to the joint choice, then to the first.
-    fn most_open(&self, renderer: &mut Renderer, joint: Choice, look: Look) -> Result<Choice, Failure> {
+    fn most_open(&self, renderer: &mut Renderer, joint: Choice, look: Options) -> Result<Choice, Failure> {
         let scene = &self.at(joint.world).scene;
         let mut best = (0.0, joint);
         for turn in std::iter::once(joint.turn).chain(turns(look)) {
@@ -246,13 +246,13 @@ impl Candidates {
     }
 }
 
-fn turns(look: Look) -> Vec<f32> {
+fn turns(look: Options) -> Vec<f32> {
     look.turn.map_or_else(|| TURNS.to_vec(), |turn| vec![turn])
 }
 
 /// The world and camera that show the most variants' subjects, then the most objects, up to three each; ties go to the first.
-fn joint_choice(renderer: &mut Renderer, worlds: &[Candidates], look: Look) -> Result<Choice, Failure> {
-    let most = worlds.iter().map(|candidates| candidates.all.len()).max().unwrap_or(1) as u64;
+fn joint_choice(renderer: &mut Renderer, worlds: &[Candidates], look: Options) -> Result<Choice, Failure> {
+    let num_worlds = worlds.iter().map(|own| own.worlds.len()).max().unwrap_or(1) as u64;
     let mut best = (
         (0, 0),
         Choice {
@@ -260,20 +260,20 @@ fn joint_choice(renderer: &mut Renderer, worlds: &[Candidates], look: Look) -> R
             turn: look.turn.unwrap_or(0.0),
         },
     );
-    for world in 0..most {
+    for world in 0..num_worlds {
         for turn in turns(look) {
             let choice = Choice { world, turn };
-            let (mut cells, mut things) = (0, 0);
+            let (mut cells, mut objects) = (0, 0);
             for candidates in worlds {
                 let seen = candidates.sight(renderer, choice)?;
                 cells += u32::from(seen.is_enough());
-                things += seen.seen.min(3);
+                objects += seen.seen.min(3);
             }
-            if (cells, things) > best.0 {
-                best = ((cells, things), choice);
+            if (cells, objects) > best.0 {
+                best = ((cells, objects), choice);
             }
-            // Two things per entry are enough.
-            if cells as usize == worlds.len() && things >= 2 * cells {
+            // Two objects per entry are enough.
+            if cells as usize == worlds.len() && objects >= 2 * cells {
                 return Ok(best.1);
             }
         }
@@ -282,7 +282,7 @@ fn joint_choice(renderer: &mut Renderer, worlds: &[Candidates], look: Look) -> R
 }
 
 /// The paths of moving objects while the agent stands still.
-pub(crate) fn ways(world: &World) -> Result<Moves, Failure> {
+pub(crate) fn paths(world: &World) -> Result<Moves, Failure> {
     let mut moves = Moves::none(world);
     let moving: Vec<usize> = (world.objects.iter().enumerate())
         .filter(|(_, object)| object.motion_model != MotionModel::Stationary && object.speed > 0.0)
@@ -303,10 +303,10 @@ pub(crate) fn ways(world: &World) -> Result<Moves, Failure> {
         environment.step(action)?;
         for (trail, index) in trails.iter_mut().zip(&moving) {
             let object = &environment.objects()[*index];
-            let near =
+            let is_near =
                 |from: &[f32; 2]| (from[0] - object.position[0]).abs() + (from[1] - object.position[1]).abs() < 3.0;
-            // An object that was removed and respawned elsewhere has no path in between.
-            if object.present && trail.last().is_some_and(near) {
+            // An object that was removed and respawned elsewhere did not move along a path.
+            if object.present && trail.last().is_some_and(is_near) {
                 trail.push(object.position);
             }
         }
@@ -325,71 +325,71 @@ mod tests {
     use super::*;
     use crate::tasks;
 
-    const LOOK: Look = Look {
+    const LOOK: Options = Options {
         index: None,
         turn: None,
         size: 48,
         columns: 2,
     };
 
-    fn of_task(task: &Arc<TaskSpec>, most: usize) -> Vec<Shown> {
-        let variants = task.all_variants().into_iter().take(most);
-        variants.map(|variant| Shown::declared(variant, 0)).collect()
+    fn of_task(task: &Arc<TaskSpec>, max: usize) -> Vec<Item> {
+        let variants = task.all_variants().into_iter().take(max);
+        variants.map(|variant| Item::declared(variant, 0)).collect()
     }
 
-    fn seen(task: &Arc<TaskSpec>) -> (usize, usize) {
+    /// The number of cells that show their subject, and of all cells.
+    fn count_seen(task: &Arc<TaskSpec>) -> (usize, usize) {
         let (cells, _) = cells(&of_task(task, 8), LOOK, &|| ()).expect("they can be drawn");
         (cells.iter().filter(|cell| cell.is_seen).count(), cells.len())
     }
 
-    /// Each picture of the built-in tasks shows its subject.
     #[test]
     fn every_cell_of_the_built_in_tasks_shows_its_subject() {
         for name in tasks::built_in_names() {
-            let (shown, all) = seen(&tasks::task(name).expect("it is built in"));
-            assert_eq!(shown, all, "{name}");
+            let (seen, total) = count_seen(&tasks::task(name).expect("it is built in"));
+            assert_eq!(seen, total, "{name}");
         }
     }
 
-    /// In mazes and rooms, walls hide the subject from the start position in every candidate world: the map shows it.
+    /// Not every cell shows its subject: in mazes and rooms, walls may hide it in every candidate world. The map shows it.
     #[test]
     fn most_cells_of_the_example_worlds_show_their_subject() {
         let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/worlds");
-        let (mut shown, mut all) = (0, 0);
+        let (mut seen, mut total) = (0, 0);
         let files = std::fs::read_dir(folder).expect("the examples are there");
         let mut files: Vec<_> = files.map(|entry| entry.expect("it can be read").path()).collect();
         files.sort();
         for path in files.into_iter().step_by(crate::tier::quick_or_full(4, 1)) {
             if path.extension().is_some_and(|ending| ending == "json") {
                 let task = tasks::task(&path.display().to_string()).expect("it is a task");
-                let (own, of) = seen(&task);
-                (shown, all) = (shown + own, all + of);
+                let counts = count_seen(&task);
+                (seen, total) = (seen + counts.0, total + counts.1);
             }
         }
-        assert!(10 * shown >= 6 * all, "{shown} of {all}");
+        assert!(10 * seen >= 6 * total, "{seen} of {total}");
     }
 
     #[test]
     fn captions_say_what_differs_and_what_looks_the_same() {
         let task = tasks::task("moving_object").expect("it is built in");
         let named = ["wandering", "fast", "modest", "waypoints", "dusk"];
-        let shown: Vec<Shown> = named
-            .map(|name| Shown::declared(task.variant(name).expect("it is declared"), 0))
+        let shown: Vec<Item> = named
+            .map(|name| Item::declared(task.variant(name).expect("it is declared"), 0))
             .to_vec();
-        let (cells, said) = cells(&shown, LOOK, &|| ()).expect("they can be drawn");
+        let (cells, notes) = cells(&shown, LOOK, &|| ()).expect("they can be drawn");
         let mut captions: Vec<String> = cells
             .iter()
             .map(|cell| format!("{}: {}", cell.row.title, cell.row.words))
             .collect();
-        captions.extend(said);
+        captions.extend(notes);
         // Shows non-breaking spaces.
         insta::assert_snapshot!(captions.join("\n").replace('\u{a0}', "~"));
     }
 
-    /// If no view shows the subject, no other turn has more free space than the chosen one; and every note on an entry, below
-    /// the sheet or in its caption, is true.
+    /// If no view shows the subject, the chosen turn has the most free space. The viewpoint of every cell is named either in its
+    /// caption or below the sheet.
     #[test]
-    fn blind_cells_have_the_most_open_view_and_are_named() {
+    fn cells_without_a_visible_subject_have_the_most_open_view() {
         let task = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/worlds/maze.json");
         let shown = of_task(&tasks::task(task).expect("it is a task"), 8);
         let mut renderer = Renderer::default();
@@ -398,16 +398,16 @@ mod tests {
             .map(|shown| Candidates::of(shown, None).expect("they are drawn"))
             .collect();
         let joint = joint_choice(&mut renderer, &worlds, LOOK).expect("they are drawn");
-        let (cells, said) = cells(&shown, LOOK, &|| ()).expect("they can be drawn");
+        let (cells, notes) = cells(&shown, LOOK, &|| ()).expect("they can be drawn");
         let mut blind = 0;
         for ((candidates, cell), shown) in worlds.iter().zip(&cells).zip(&shown) {
             let (choice, is_seen) = candidates.own_choice(&mut renderer, joint, LOOK).expect("it is drawn");
-            let place = capitalized(&placed(shown, choice, LOOK)) + ".";
-            let below = format!("ther cells: {}.", placed(shown, choice, LOOK));
+            let sentence = capitalized(&viewpoint(shown, choice, LOOK)) + ".";
+            let below = format!("ther cells: {}.", viewpoint(shown, choice, LOOK));
             assert_eq!(
-                cell.row.words.ends_with(&place),
-                !said[0].contains(&below),
-                "{}: {said:?}",
+                cell.row.words.ends_with(&sentence),
+                !notes[0].contains(&below),
+                "{}: {notes:?}",
                 cell.row.words
             );
             if is_seen {
@@ -415,12 +415,12 @@ mod tests {
             }
             blind += 1;
             let candidate = candidates.at(choice.world);
-            let mut open = |turn| {
+            let mut space = |turn| {
                 let camera = agent_camera(&candidate.world, turn);
                 openness(&mut renderer, &candidate.scene, &camera).expect("it is drawn")
             };
-            let own = open(choice.turn);
-            assert!(TURNS.into_iter().all(|turn| open(turn) <= own), "{}", cell.row.title);
+            let own = space(choice.turn);
+            assert!(TURNS.into_iter().all(|turn| space(turn) <= own), "{}", cell.row.title);
         }
         assert!(blind >= 5, "{blind}");
     }
@@ -430,7 +430,7 @@ mod tests {
     fn colour_blind_agents_are_shown_no_colours() {
         let task = tasks::task("moving_object").expect("it is built in");
         let named = ["wandering", "depth_only", "rgb_only"];
-        let shown = named.map(|name| Shown::declared(task.variant(name).expect("it is declared"), 0));
+        let shown = named.map(|name| Item::declared(task.variant(name).expect("it is declared"), 0));
         let (cells, _) = cells(&shown, LOOK, &|| ()).expect("they can be drawn");
         for (cell, is_gray) in cells.iter().zip([false, true, false]) {
             let picture = cell.row.pictures[0].to_picture();
@@ -453,18 +453,18 @@ mod tests {
     /// The sheet explains brackets for each task that uses them, and for no other.
     #[test]
     fn brackets_are_explained_where_used() {
-        let said = |names: &[&str]| {
-            let shown: Vec<Shown> = (names.iter())
-                .map(|name| Shown::declared(tasks::variant(name).expect("it is declared"), 0))
+        let notes = |names: &[&str]| {
+            let shown: Vec<Item> = (names.iter())
+                .map(|name| Item::declared(tasks::variant(name).expect("it is declared"), 0))
                 .collect();
             cells(&shown, LOOK, &|| ()).expect("they can be drawn").1.concat()
         };
-        let one = said(&["find_objects#blue", "select_object#green", "select_object#red"]);
+        let one = notes(&["find_objects#blue", "select_object#green", "select_object#red"]);
         assert!(
             one.starts_with("In brackets: the values of select_object#green, the first of its task. "),
             "{one}"
         );
-        let two = said(&[
+        let two = notes(&[
             "find_objects#blue",
             "find_objects#red",
             "get_to_goal#plain",
@@ -472,7 +472,7 @@ mod tests {
         ]);
         let both = "In brackets: the values of find_objects#blue and get_to_goal#plain, each the first of its task. ";
         assert!(two.starts_with(both), "{two}");
-        let none = said(&["find_objects#blue", "get_to_goal#plain"]);
+        let none = notes(&["find_objects#blue", "get_to_goal#plain"]);
         assert!(!none.contains("brackets"), "{none}");
     }
 
@@ -482,7 +482,7 @@ mod tests {
             let variant = tasks::variant(name).expect("it is built in");
             Sampler::new(&variant, 0).world(0).expect("it can be drawn")
         };
-        let moves = ways(&world("moving_object#fast")).expect("it runs");
+        let moves = paths(&world("moving_object#fast")).expect("it runs");
         let length = |trail: &Vec<[f32; 2]>| -> f32 {
             trail
                 .windows(2)
@@ -498,6 +498,6 @@ mod tests {
                 .all(|trail| length(trail) <= 6.0 * moves.seconds as f32 * 1.01)
         );
         assert!(moves.trails.iter().map(length).fold(0.0, f32::max) > 10.0);
-        assert!(ways(&world("find_objects#blue")).expect("it runs").trails.is_empty());
+        assert!(paths(&world("find_objects#blue")).expect("it runs").trails.is_empty());
     }
 }

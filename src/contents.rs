@@ -35,9 +35,9 @@ pub enum Contents {
 }
 
 impl Contents {
-    /// The recognised kind of a JSON text; `None` if unrecognised, or not JSON.
+    /// The kind of a JSON text; `None` if it is not recognised, or not JSON.
     pub fn of_text(text: &str) -> Option<Self> {
-        // A text that is too long is refused by its reader.
+        // The reader of the document refuses a text that is too long.
         let keys = TopLevel::of(text)?;
         let has = |wanted: &[&str]| keys.has_any(wanted);
         if has(&["blocks"]) || keys.is_l2explorer_scenario() {
@@ -76,7 +76,7 @@ impl Contents {
             .then(|| if has_info(path) { Self::Log } else { Self::Folder })
     }
 
-    /// Its name in messages.
+    /// The kind's name in messages, with an article.
     pub fn name(self) -> &'static str {
         match self {
             Self::Task => "a task spec",
@@ -90,7 +90,7 @@ impl Contents {
         }
     }
 
-    /// Advice if one of `wanted` was expected: how to make that, or what accepts this.
+    /// Advice if one of the `wanted` kinds was expected: how to make one from this document, or else which command accepts it.
     fn advice(self, wanted: &[Self], path: &Path) -> String {
         let path = path.shown();
         match self {
@@ -136,7 +136,7 @@ pub struct OtherContents {
 }
 
 impl OtherContents {
-    /// The error if `found` is not one of the wanted kinds; `None` if it is, or if it is unrecognised.
+    /// The error if `found` is a kind that is not `wanted`; `None` for a wanted or unrecognised kind.
     pub(crate) fn check(path: &Path, found: Option<Contents>, wanted: &[Contents]) -> Option<Self> {
         let found = found.filter(|found| !wanted.contains(found))?;
         Some(Self {
@@ -166,7 +166,7 @@ mod tests {
         check(r#"{ "perf_measure": "reward" }"#, Some(Contents::Settings));
         check(r#"{ "metrics_columns": ["reward"] }"#, Some(Contents::Log));
         check("\u{feff}{ \"name\": \"t\", \"groups\": [] }", Some(Contents::Task));
-        // A name alone may be that of a scenario whose other keys are misspelt.
+        // A document with only a name may be a scenario with misspelt keys.
         check(r#"{ "name": "t" }"#, None);
         check(r#"{ "max_steps": 3, "objects": [] }"#, Some(Contents::World));
         check(r#"{ "max_steps": 3 }"#, None);

@@ -1,4 +1,4 @@
-//! Distances between two variants or worlds, and all distances among variants, of one task or of several.
+//! Measures distances between two variants or worlds, and all distances among variants of one task or of several.
 
 mod matrix;
 mod pairs;
@@ -18,16 +18,17 @@ use crate::picture_distance::PictureDistanceError;
 pub use matrix::{labelled_matrix, variant_matrix, variant_matrix_while};
 use pairs::{Means, Pairs};
 
-/// Worlds compared per variant by fast measures.
+/// Default number of worlds compared per variant by fast measures.
 pub const NUM_WORLDS: u64 = 16;
 
-/// Worlds compared per variant by pictures and by dynamics, which take longer.
+/// Default number of worlds compared per variant by pictures and by dynamics, which are slower.
 pub const NUM_SLOW_WORLDS: u64 = 4;
 
-/// Worlds compared per variant by placements: with few worlds, distributions of places seem farther apart than they are.
+/// Default number of worlds compared per variant by placements. Small samples overestimate the distance between distributions of
+/// positions.
 pub const NUM_PLACED_WORLDS: u64 = 64;
 
-/// Errors raised while comparing two things.
+/// Errors raised while comparing variants or worlds.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum DistancesError {
@@ -59,19 +60,18 @@ pub enum DistancesError {
         /// The applicable measures.
         expected: &'static str,
     },
-    /// The caller cancelled the calculation.
+    /// The caller cancelled the measurement.
     #[error("measuring was interrupted")]
     Interrupted,
 }
 
-const ANY_BUT_PARAMETERS: &str =
-    "worlds, pictures, occupancy, placements, objects, colors, rewards, dynamics or behavior";
+const OTHER_MEASURES: &str = "worlds, pictures, occupancy, placements, objects, colors, rewards, dynamics or behavior";
 
-const NAME_IT: &str = "what they are compared by: worlds, pictures, occupancy, placements, objects, colors, rewards, dynamics or \
+const MEASURE_REQUIRED: &str = "what they are compared by: worlds, pictures, occupancy, placements, objects, colors, rewards, dynamics or \
                        behavior; \
                        parameters compare variants of one task";
 
-/// The default measure of some variants: the one that their task declares if all are of one task, else worlds.
+/// The default measure for some variants: the measure declared by their common task, or worlds if they belong to several tasks.
 pub fn fitting<'a>(variants: impl IntoIterator<Item = &'a Variant>) -> By {
     let mut variants = variants.into_iter();
     let Some(first) = variants.next() else {
@@ -84,7 +84,7 @@ pub fn fitting<'a>(variants: impl IntoIterator<Item = &'a Variant>) -> By {
     }
 }
 
-/// One of two things to compare.
+/// One of the two sides of a comparison.
 #[derive(Clone, Debug)]
 pub enum Side {
     /// A world.
@@ -118,8 +118,8 @@ pub enum Scale {
     /// 1 is one parameter moved over its whole range.
     #[default]
     Units,
-    /// 1 is the diameter of the task: all parameters moved over their whole ranges. In `0..=1`, except for random parameters
-    /// that can go farther together than alone.
+    /// 1 is the diameter of the task: all parameters moved over their whole ranges. In `0..=1`, except for random parameters,
+    /// whose joint distance may be larger than the sum of their separate distances.
     Share,
 }
 
@@ -143,7 +143,7 @@ impl Sample {
         }
     }
 
-    /// Refuses shares of a measure without a diameter.
+    /// Refuses [`Scale::Share`] for a measure without a diameter.
     fn check_scale(&self, by: By) -> Result<(), DistancesError> {
         if self.scale == Scale::Units || by == By::Parameters {
             return Ok(());
@@ -156,15 +156,15 @@ impl Sample {
 
     /// Number of worlds compared by this measure.
     fn count(&self, by: By) -> u64 {
-        let usual = match by.subject() {
+        let default = match by.subject() {
             "pictures" | "dynamics" => NUM_SLOW_WORLDS,
             "placements" => NUM_PLACED_WORLDS,
             _ => NUM_WORLDS,
         };
-        self.worlds.unwrap_or(usual)
+        self.worlds.unwrap_or(default)
     }
 
-    /// Refuses more worlds than experts, tables or pictures can handle in a reasonable time.
+    /// Refuses more worlds than a slow measure can compare in a reasonable time.
     fn check_count(by: By, count: u64) -> Result<(), DistancesError> {
         let is_slow = matches!(by.subject(), "behavior" | "dynamics" | "pictures");
         if !is_slow || count <= MAX_BEHAVIOR_WORLDS {
@@ -196,7 +196,7 @@ impl Sample {
     }
 }
 
-/// The distance of two things, and how they were compared.
+/// The distance between two variants or worlds, and how they were compared.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Compared {
     /// The distance.
@@ -207,15 +207,15 @@ pub struct Compared {
     pub description: String,
 }
 
-/// The distance of two variants or worlds.
+/// Measures the distance between two variants or worlds.
 ///
 /// Two variants of one task are compared by the measure that their task declares, by default parameters, unless
 /// `sample` requests another; two worlds directly; anything else by worlds drawn under one seed and paired by index.
-/// `lay_over` overrides the weights that the task declares. `behavior` and `dynamics:bisimulation` compare the whole
+/// `reweigh` overrides the weights that the task declares. `behavior` and `dynamics:bisimulation` compare the whole
 /// decision process: they have no elements and no weights.
 ///
 /// # Errors
-/// [`DistancesError::Generator`] for worlds that cannot be drawn, [`DistancesError::Similarity`] from `lay_over`,
+/// [`DistancesError::Generator`] for worlds that cannot be drawn, [`DistancesError::Similarity`] from `reweigh`,
 /// [`DistancesError::TooFar`], [`DistancesError::By`] for parameters of different tasks, [`DistancesError::Env`] and
 /// [`DistancesError::Pictures`] for worlds that cannot be run or rendered.
 ///
@@ -236,14 +236,14 @@ pub fn between(
     a: &Side,
     b: &Side,
     sample: &Sample,
-    lay_over: impl FnOnce(Weights) -> Result<Weights, SimilarityError>,
+    reweigh: impl FnOnce(Weights) -> Result<Weights, SimilarityError>,
 ) -> Result<Compared, DistancesError> {
     let task = match (a, b) {
         (Side::Variant(a), Side::Variant(b)) if a.task().is_same_as(b.task()) => Some((a, b)),
         _ => None,
     };
-    let weights = lay_over(task.map_or_else(Weights::default, |(a, _)| Weights::of_task(a.task())))?;
-    let weighing = weighing(&weights);
+    let weights = reweigh(task.map_or_else(Weights::default, |(a, _)| Weights::of_task(a.task())))?;
+    let weights_text = weights_note(&weights);
     let by = sample.by.unwrap_or(match (task, sample.worlds) {
         (Some((a, _)), worlds) => match a.task().compare_by() {
             By::Parameters if worlds.is_some() => By::Worlds,
@@ -255,7 +255,7 @@ pub fn between(
         let Some((a, b)) = task else {
             return Err(DistancesError::By {
                 found: "parameters, for what are not two variants of one task".to_owned(),
-                expected: ANY_BUT_PARAMETERS,
+                expected: OTHER_MEASURES,
             });
         };
         let measure = VariantMeasure::new(a.task(), weights);
@@ -265,17 +265,17 @@ pub fn between(
             Scale::Share if measure.has_diameter() => Compared {
                 distance: distance.in_shares_of(diameter),
                 by,
-                description: format!("by parameters, as a share of the task's diameter of {diameter}{weighing}"),
+                description: format!("by parameters, as a share of the task's diameter of {diameter}{weights_text}"),
             },
             _ => Compared {
                 distance,
                 by,
-                description: format!("by parameters{weighing}"),
+                description: format!("by parameters{weights_text}"),
             },
         });
     }
     sample.check_scale(by)?;
-    // Two worlds are one pair, whatever the requested number.
+    // Two worlds form a single pair, whatever number was requested.
     let are_worlds = matches!((a, b), (Side::World(_), Side::World(_)));
     let are_variants = matches!((a, b), (Side::Variant(_), Side::Variant(_)));
     let count = if are_worlds { 1 } else { sample.count(by) };
@@ -313,7 +313,7 @@ pub fn between(
         means.distance(&weights)
     };
     if !distance.parts.is_empty() {
-        description += &weighing;
+        description += &weights_text;
     }
     Ok(Compared {
         distance,
@@ -323,7 +323,7 @@ pub fn between(
 }
 
 /// The weights of elements in the total, if not all are 1.
-fn weighing(weights: &Weights) -> String {
+fn weights_note(weights: &Weights) -> String {
     let other = Element::ALL.into_iter().filter(|element| weights.of(*element) != 1.0);
     let other: Vec<String> = other
         .map(|element| format!("{} {}", element.letter(), weights.of(element)))

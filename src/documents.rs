@@ -1,4 +1,4 @@
-//! Documents as files and texts: recognises their kind by keys, and checks them.
+//! Reads documents from files and standard input, recognises their kind by their keys, and checks them.
 
 use std::collections::BTreeMap;
 use std::io::Read;
@@ -30,24 +30,24 @@ pub enum DocumentError {
     /// The document is of the wrong kind.
     #[error(transparent)]
     OtherContents(#[from] OtherContents),
-    /// The document is wrong.
+    /// The document is invalid.
     #[error(transparent)]
     Spec(#[from] SpecError),
 }
 
-/// Standard input, if the command accepts it, with its text once read.
-#[expect(clippy::option_option, reason = "whether it may be read, and whether it was")]
+/// The text of standard input once read; the outer option is `None` unless the command accepts standard input.
+#[expect(clippy::option_option, reason = "outer: may be read; inner: was read")]
 static STANDARD_INPUT: Mutex<Option<Option<Result<String, String>>>> = Mutex::new(None);
 
-/// Makes `-` and `/dev/stdin` mean standard input, which is read once and cached.
+/// Makes `-` and `/dev/stdin` stand for standard input, which is read once and cached.
 pub(crate) fn accept_standard_input() {
     *STANDARD_INPUT.lock().unwrap_or_else(PoisonError::into_inner) = Some(None);
 }
 
 /// Whether a path means standard input; always false unless the command accepts standard input.
 pub(crate) fn is_standard_input(path: &Path) -> bool {
-    let is_meant = path == Path::new("-") || path == Path::new("/dev/stdin");
-    is_meant && STANDARD_INPUT.lock().unwrap_or_else(PoisonError::into_inner).is_some()
+    let is_its_name = path == Path::new("-") || path == Path::new("/dev/stdin");
+    is_its_name && STANDARD_INPUT.lock().unwrap_or_else(PoisonError::into_inner).is_some()
 }
 
 /// The name of a document in messages.
@@ -59,7 +59,7 @@ pub(crate) fn name_of(path: &Path) -> String {
     }
 }
 
-/// The folder of a file; for a bare name the working folder.
+/// The folder of a file; the working folder for a bare file name.
 pub(crate) fn folder_of(file: &Path) -> &Path {
     let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty());
     folder.unwrap_or(Path::new("."))
@@ -132,7 +132,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// Every kind, with its word for programs and its name in messages.
+    /// Every kind, with its identifier for programs and its name in messages.
     const WORDS: [(Self, &'static str, &'static str); 6] = [
         (Self::Task, "task", "task spec"),
         (Self::World, "world", "world"),
@@ -159,12 +159,12 @@ impl Kind {
         }
     }
 
-    /// Its name in messages.
+    /// The kind's name in messages.
     pub fn name(self) -> &'static str {
         Self::WORDS[self as usize].2
     }
 
-    /// Its word for programs.
+    /// The kind's identifier for programs.
     pub fn word(self) -> &'static str {
         Self::WORDS[self as usize].1
     }
@@ -255,7 +255,7 @@ pub fn check(
         }
         Kind::L2ExplorerWorld => {
             let read = World::from_l2explorer(name, text);
-            // L2Explorer accepts unknown classes, too, so they only cause warnings.
+            // L2Explorer accepts unknown classes, so here they only cause warnings.
             if let Ok((world, _)) = &read {
                 let unknown = world.unknown_classes(classes).into_iter();
                 let unknown =
@@ -275,11 +275,11 @@ pub fn check(
     }
 }
 
-/// Warns if the agent of a valid world starts inside a solid object, whose body only the catalogue defines.
+/// Warns if the agent of a valid world starts inside a solid object. This needs the catalogue, which defines the object's body.
 pub fn start_inside(name: &str, text: &str, catalogue: &Catalogue) -> Option<String> {
     let world = World::from_json(name, text).ok()?;
     let warnings = Environment::with_catalogue(world, catalogue.clone()).warnings();
-    let is_it = |warning: &&Warning| {
+    let is_in_object = |warning: &&Warning| {
         matches!(
             warning,
             Warning::StartsInside {
@@ -287,11 +287,11 @@ pub fn start_inside(name: &str, text: &str, catalogue: &Catalogue) -> Option<Str
             }
         )
     };
-    let found = warnings.iter().find(is_it)?;
+    let found = warnings.iter().find(is_in_object)?;
     Some(format!("{name}: {found}"))
 }
 
-/// Parameters that declare no effect.
+/// Warnings about parameters that declare no effect.
 fn without_elements(document: &str, task: &TaskSpec) -> Vec<String> {
     let none = |(_, parameter): &(&String, &Parameter)| parameter.role != Role::Fixed && parameter.affects.is_empty();
     let odd = task.parameters().iter().filter(none).map(|(name, _)| {
@@ -303,7 +303,7 @@ fn without_elements(document: &str, task: &TaskSpec) -> Vec<String> {
     odd.collect()
 }
 
-/// Variants of a task that cannot be in one scenario, because their names in logs are equal.
+/// Warnings about variants of a task that cannot be in one scenario, because their names in logs are equal.
 fn alike_in_logs(document: &str, task: &TaskSpec) -> Vec<String> {
     let mut known: BTreeMap<String, &str> = BTreeMap::new();
     let names = task.variant_names().into_iter();
@@ -318,7 +318,7 @@ fn alike_in_logs(document: &str, task: &TaskSpec) -> Vec<String> {
     alike.collect()
 }
 
-/// Returns the error of a document; passes its warnings on.
+/// Returns the error of a document that was read; appends its warnings to `warnings`.
 fn take_warnings<T, W: ToString>(
     read: Result<(T, Vec<W>), SpecError>,
     warnings: &mut Vec<String>,

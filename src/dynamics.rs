@@ -1,4 +1,4 @@
-//! Compares the dynamics of two worlds, by the Wasserstein MDP distance and by bisimulation.
+//! Compares the dynamics of two worlds by the Wasserstein MDP distance and by bisimulation.
 
 use driftworld_env::{Abstraction, Catalogue, EnvError, WorldAbstraction};
 use driftworld_similarity::{Bisimulation, Mdp, SimilarityError};
@@ -22,7 +22,7 @@ pub(crate) fn common_area(a: &World, b: &World) -> [f64; 2] {
     [0, 1].map(|axis| sides[0][axis].max(sides[1][axis]))
 }
 
-/// A world as tables over the cells of an area.
+/// Tabulates a world over the cells of an area.
 pub(crate) fn tables(world: &World, area: [f64; 2], catalogue: &Catalogue) -> Result<WorldAbstraction, EnvError> {
     let abstraction = Abstraction {
         area: Some(area),
@@ -33,33 +33,32 @@ pub(crate) fn tables(world: &World, area: [f64; 2], catalogue: &Catalogue) -> Re
 }
 
 /// The mean difference between the outcomes of one action in two worlds tabulated over the same cells: 1 is 100 points, 10 m,
-/// half a turn, or an end of the episode in only one world. Returns the share due to rewards and the share due to successors.
+/// half a turn, or an end of the episode in only one world. Returns the parts due to rewards and due to successors.
 ///
-/// The mean is over all actions and over the states that actions lead to from the start of either world. The agent's
-/// place after an action is compared by position and not by cell, so that small changes count a little. If a state has
-/// no room for the agent in one world, the agent stays there without reward. Shorter time steps with proportionally
-/// larger frame skips do not change straight paths; they change curves by centimetres, because an agent turns before it
-/// moves in each time step.
+/// The mean is taken over all actions, and over the states that can be reached from the start of either world. The agent's
+/// position after an action is compared in metres and not by cell, so that small changes count a little. In a state without
+/// room for the agent, its actions leave it there without reward. Shorter time steps with proportionally larger frame skips do
+/// not change straight paths. They change curves by centimetres, because an agent turns before it moves in each time step.
 ///
 /// Symmetric, and 0 for equal worlds. The averaged states depend on the pair, so the triangle inequality may fail. Ignores what
-/// tables do not contain: looks, time limits, and the consequences of taking or pushing things beyond one action.
+/// the tables do not contain: looks, time limits, and the consequences of taking or pushing objects beyond one action.
 pub(crate) fn w1(a: &WorldAbstraction, b: &WorldAbstraction) -> Result<(f64, f64), SimilarityError> {
     let reached = a.reached().into_iter().zip(b.reached());
     let counted: Vec<bool> = reached.map(|(in_a, in_b)| in_a || in_b).collect();
     driftworld_similarity::w1_mdp([&a.rewards, &b.rewards], POINTS, &counted, |row| {
-        landed_apart(a, b, row)
+        successor_distance(a, b, row)
     })
 }
 
 /// The bisimulation distance between the starts of two worlds tabulated over the same cells, as a share of 100 points: the
-/// largest difference in discounted rewards under equal actions. By cells, so it ignores changes within a cell.
+/// largest difference in discounted rewards under equal actions. It compares cells, and so ignores changes within a cell.
 pub(crate) fn bisimulation(a: &WorldAbstraction, b: &WorldAbstraction) -> Result<Bisimulation, SimilarityError> {
     let starts = (a.start, b.start);
     driftworld_similarity::bisimulation(&process(a)?, &process(b)?, starts, DISCOUNT, MAX_PAIRS)
 }
 
 /// The distance between the successors of one state and action.
-fn landed_apart(a: &WorldAbstraction, b: &WorldAbstraction, row: usize) -> f64 {
+fn successor_distance(a: &WorldAbstraction, b: &WorldAbstraction, row: usize) -> f64 {
     match [a, b].map(|of| of.successors[row] as usize == of.grid.end()) {
         [true, true] => 0.0,
         [false, false] => {
@@ -126,7 +125,7 @@ mod tests {
         let (base, other) = (world(|_| ()), world(change));
         let found = between(&base, &other);
         if crate::tier::quick_or_full(false, true) {
-            assert_eq!(found, between(&other, &base), "it makes no difference who comes first");
+            assert_eq!(found, between(&other, &base), "the distance is symmetric");
         }
         found
     }
@@ -148,16 +147,16 @@ mod tests {
 
     #[test]
     fn rewards_count_proportionally() {
-        let by = |points: f64| from_base(|world| world.objects[0].reward += points);
-        let (one, two) = (by(5.0), by(10.0));
+        let raised = |points: f64| from_base(|world| world.objects[0].reward += points);
+        let (one, two) = (raised(5.0), raised(10.0));
         assert!(one.w1() > 0.0 && (two.w1() - 2.0 * one.w1()).abs() < 1e-12);
         assert!(one.bisimulation.lower > 0.0);
         assert!((two.bisimulation.lower - 2.0 * one.bisimulation.lower).abs() < 1e-9);
-        let all = from_base(|world| world.rules.step_reward = -2.0);
+        let costly = from_base(|world| world.rules.step_reward = -2.0);
         // Every action takes five steps, so it loses 10 points in every state; bisimulation takes a discounted mean.
-        assert_eq!(all.motion, 0.0);
-        assert!((all.w1() - 0.1).abs() < 1e-12, "{all:?}");
-        assert!((all.bisimulation.lower - 0.1).abs() < 1e-9, "{all:?}");
+        assert_eq!(costly.motion, 0.0);
+        assert!((costly.w1() - 0.1).abs() < 1e-12, "{costly:?}");
+        assert!((costly.bisimulation.lower - 0.1).abs() < 1e-9, "{costly:?}");
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! An episode as a few frames: chooses the steps, their captions, and their pictures.
+//! Shows an episode in a few frames: chooses the steps, and makes their captions and pictures.
 
 use std::convert::Infallible;
 
@@ -14,27 +14,27 @@ use crate::Failure;
 use crate::film::{FilmModality, FilmOptions, FilmView};
 use crate::modality::{number_color, to_rgb};
 
-/// The events of one step as text, and their importance: 0 if there are none.
+/// The events of one step as text, with the weight of the most important one: 0 if there are none.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Deed {
+pub(crate) struct StepEvents {
     pub(crate) words: Vec<String>,
     weight: u8,
 }
 
 /// Records an agent's episode in a world, to its end or a step limit.
-pub(crate) fn recorded(
+pub(crate) fn record_episode(
     world: &World,
     catalogue: &Catalogue,
     agent: &mut dyn Agent,
     seed: u64,
-    most: u32,
+    max_steps: u32,
 ) -> Result<Recording, Failure> {
     let mut environment = Environment::with_catalogue(world.clone(), catalogue.clone());
     let mut recorder = Recorder::default();
     recorder.begin(world.clone());
     agent.begin(seed);
     let mut ended_by = None;
-    while !environment.ended() && recorder.num_steps() < most {
+    while !environment.ended() && recorder.num_steps() < max_steps {
         let action = agent.act(&environment);
         ended_by = environment.step(action)?.ended_by;
         recorder.step(action);
@@ -45,97 +45,98 @@ pub(crate) fn recorded(
 /// A recorded episode as rows of a sheet: the agent's view, the map with the path since the previous row, or both. At
 /// an event, the view shows what the agent saw when it acted, and the map shows the result.
 ///
-/// Contains the start, the end, and as many events as fit into `most` rows; if there are few, also steps between them.
+/// Contains the start, the end, and the most important events that fit into `max_rows` rows. If there are few events, steps
+/// between them fill the remaining rows.
 pub(crate) fn rows(
     recording: &Recording,
     catalogue: &Catalogue,
     options: &FilmOptions,
-    most: usize,
+    max_rows: usize,
 ) -> Result<Vec<SheetRow>, Failure> {
     let mut replay = Replay::new(recording, catalogue);
     replay.environment().set_renderer(Renderer::new(options.renderer)?);
-    let mut deeds = vec![Deed::default()];
+    let mut events = vec![StepEvents::default()];
     let mut last = None;
     while let Some(step) = replay.step()? {
-        deeds.push(deed(replay.environment().world(), &step));
+        events.push(events_of(replay.environment().world(), &step));
         last = Some(step);
     }
-    // Replays the episode, bit for bit, to draw the chosen steps.
+    // Replay the episode once more, bit for bit, to draw the chosen steps.
     replay.restart();
-    let (mut rows, mut way, mut taken) = (Vec::new(), vec![replay.environment().agent().position], 0);
-    for number in chosen(&deeds, most) {
+    let (mut rows, mut path, mut taken) = (Vec::new(), vec![replay.environment().agent().position], 0);
+    for number in frame_steps(&events, max_rows) {
         let mut seen = None;
         while taken < number {
-            if taken + 1 == number && deeds[number].weight > 0 && options.view != FilmView::Above {
-                seen = Some(seen_by(replay.environment(), options)?);
+            if taken + 1 == number && events[number].weight > 0 && options.view != FilmView::Above {
+                seen = Some(first_person(replay.environment(), options)?);
             }
             replay.step()?;
-            way.push(replay.environment().agent().position);
+            path.push(replay.environment().agent().position);
             taken += 1;
         }
         let environment = replay.environment();
-        let end = last.as_ref().filter(|_| number + 1 == deeds.len());
+        let end = last.as_ref().filter(|_| number + 1 == events.len());
         let (title, words) = if options.captions {
-            (title(number, &deeds[number]), words(environment, end))
+            (title(number, &events[number]), words(environment, end))
         } else {
-            (title(number, &Deed::default()), String::new())
+            (title(number, &StepEvents::default()), String::new())
         };
-        let pictures = options.pictures(environment, &way, &mut |environment| {
-            seen.take().map_or_else(|| seen_by(environment, options), Ok)
+        let pictures = options.pictures(environment, &path, &mut |environment| {
+            seen.take().map_or_else(|| first_person(environment, options), Ok)
         })?;
         rows.push(SheetRow::new(
             title,
             words,
             pictures.into_iter().map(Into::into).collect(),
         ));
-        way.drain(..way.len() - 1);
+        path.drain(..path.len() - 1);
     }
     Ok(rows)
 }
 
-/// The chosen steps: the first, the last, the most important ones, then the middles of the longest gaps.
-fn chosen(deeds: &[Deed], most: usize) -> Vec<usize> {
-    let last = deeds.len() - 1;
+/// Chooses the steps to show: the first, the last, those with the most important events, then the middles of the longest gaps.
+fn frame_steps(events: &[StepEvents], max_rows: usize) -> Vec<usize> {
+    let last = events.len() - 1;
     if last == 0 {
         return vec![0];
     }
     let mut shown = vec![0, last];
-    let mut done: Vec<usize> = (1..last).filter(|number| deeds[*number].weight > 0).collect();
-    done.sort_by_key(|number| std::cmp::Reverse(deeds[*number].weight));
-    shown.extend(done.into_iter().take(most.saturating_sub(2)));
+    let mut eventful: Vec<usize> = (1..last).filter(|number| events[*number].weight > 0).collect();
+    eventful.sort_by_key(|number| std::cmp::Reverse(events[*number].weight));
+    shown.extend(eventful.into_iter().take(max_rows.saturating_sub(2)));
     shown.sort_unstable();
     shown.dedup();
-    while shown.len() < most {
+    while shown.len() < max_rows {
         let gaps = shown.windows(2).enumerate();
-        let Some((place, gap)) = gaps.max_by_key(|(place, pair)| (pair[1] - pair[0], usize::MAX - place)) else {
+        let Some((index, gap)) = gaps.max_by_key(|(index, pair)| (pair[1] - pair[0], usize::MAX - index)) else {
             break;
         };
         if gap[1] - gap[0] < 2 {
             break;
         }
-        shown.insert(place + 1, usize::midpoint(gap[0], gap[1]));
+        shown.insert(index + 1, usize::midpoint(gap[0], gap[1]));
     }
     shown
 }
 
 /// The events of a step.
-pub(crate) fn deed(world: &World, step: &Step) -> Deed {
-    let mut deed = Deed::default();
+pub(crate) fn events_of(world: &World, step: &Step) -> StepEvents {
+    let mut events = StepEvents::default();
     for event in &step.events {
-        let own = match event.effect {
+        let weight = match event.effect {
             Some(Effect::Closed) => 2,
             Some(_) => 3,
             None if event.destroyed || event.reward != 0.0 => 1,
             None => continue,
         };
-        deed.weight = deed.weight.max(own);
-        deed.words.push(said(world, event));
+        events.weight = events.weight.max(weight);
+        events.words.push(describe(world, event));
     }
-    deed
+    events
 }
 
 /// An event as text, such as "opens the door".
-fn said(world: &World, event: &Event) -> String {
+fn describe(world: &World, event: &Event) -> String {
     let class = world.objects.get(event.object).map_or("object", |object| &object.class);
     let what = match event.effect {
         Some(Effect::Opened) => format!("opens the {class}"),
@@ -144,7 +145,7 @@ fn said(world: &World, event: &Event) -> String {
         Some(Effect::PickedUp) => format!("picks up the {class}"),
         Some(Effect::PutDown) => format!("puts down the {class}"),
         None => {
-            // A tag says what an object is for, which is better than the name of a plain shape.
+            // A tag says what an object is for, which tells the reader more than the name of a shape.
             let name = event.tag.as_deref().unwrap_or(class);
             let alike = |other: &&Object| match &event.tag {
                 Some(tag) => other.tag.as_deref() == Some(&**tag),
@@ -165,7 +166,7 @@ fn said(world: &World, event: &Event) -> String {
     }
 }
 
-/// Names one thing out of `count`: groups may be named in the plural, as "targets", or in the singular.
+/// Refers to one of `count` things, with an article. Tags may be plural, such as "targets", or singular.
 fn one_of(name: &str, count: usize) -> String {
     match (count, name.ends_with('s'), name.starts_with(['a', 'e', 'i', 'o', 'u'])) {
         (0 | 1, ..) => format!("the {name}"),
@@ -175,8 +176,8 @@ fn one_of(name: &str, count: usize) -> String {
     }
 }
 
-fn title(step: usize, deed: &Deed) -> String {
-    match (step, &deed.words[..]) {
+fn title(step: usize, events: &StepEvents) -> String {
+    match (step, &events.words[..]) {
         (0, _) => "Start".to_owned(),
         (_, []) => format!("Step {step}"),
         (_, [one]) => format!("Step {step}: {one}"),
@@ -184,7 +185,7 @@ fn title(step: usize, deed: &Deed) -> String {
     }
 }
 
-/// A number with its sign and one decimal, so that its width stays constant; small numbers with the decimals needed.
+/// A number with its sign and one decimal, so that its width stays constant; small numbers get more decimals.
 pub(crate) fn number(value: f64, plus: &str) -> String {
     let size = amount(value.abs());
     let text = match value.abs() {
@@ -198,7 +199,7 @@ pub(crate) fn number(value: f64, plus: &str) -> String {
 /// The [`facts`] as one text whose lines do not break inside a fact.
 pub(crate) fn words(environment: &Environment, end: Option<&Step>) -> String {
     let facts: Vec<String> = facts(environment, end).iter().map(|fact| whole(fact)).collect();
-    // Lines may break after the dot.
+    // A line may break only after the dot.
     facts.join("\u{a0}· ")
 }
 
@@ -239,7 +240,7 @@ pub(crate) fn facts(environment: &Environment, end: Option<&Step>) -> Vec<String
 }
 
 /// The agent's view: in colours with smooth edges, otherwise pixel by pixel.
-pub(crate) fn seen_by(environment: &mut Environment, options: &FilmOptions) -> Result<Picture, Failure> {
+pub(crate) fn first_person(environment: &mut Environment, options: &FilmOptions) -> Result<Picture, Failure> {
     let size = options.size;
     let kind = match options.modality {
         FilmModality::Rgb => {
@@ -255,11 +256,11 @@ pub(crate) fn seen_by(environment: &mut Environment, options: &FilmOptions) -> R
 }
 
 /// The map with the agent, and its path.
-pub(crate) fn map_of(environment: &Environment, size: [u32; 2], way: &[[f32; 2]]) -> Picture {
+pub(crate) fn map_of(environment: &Environment, size: [u32; 2], path: &[[f32; 2]]) -> Picture {
     let agent = environment.agent();
     let agent = Some((agent.position, agent.heading_deg));
     let Ok(picture) = Picture::smooth(size, |[width, height]| {
-        Ok::<_, Infallible>(top_down_with_way(environment.scene(), width, height, agent, way).rgb)
+        Ok::<_, Infallible>(top_down_with_way(environment.scene(), width, height, agent, path).rgb)
     });
     picture
 }
@@ -292,14 +293,14 @@ mod tests {
 
     #[test]
     fn one_of_several_things_has_no_definite_article() {
-        for (name, count, said) in [
+        for (name, count, expected) in [
             ("targets", 5, "one of the targets"),
             ("targets", 1, "the targets"),
             ("fruit", 10, "a fruit"),
             ("animal", 2, "an animal"),
             ("goal", 1, "the goal"),
         ] {
-            assert_eq!(one_of(name, count), said);
+            assert_eq!(one_of(name, count), expected);
         }
     }
 
@@ -317,38 +318,38 @@ mod tests {
         draft.environment_params.zones = vec![pond, Zone::disc([20.0, 0.0], 1.0)];
         let world = draft.check().expect("the world is sound");
         let mut environment = Environment::new(world.clone());
-        let said = |environment: &Environment| words(environment, None).replace('\u{a0}', " ");
-        assert_eq!(said(&environment), "0.0 s · return 0.0 · energy 30 · in pond");
+        let caption = |environment: &Environment| words(environment, None).replace('\u{a0}', " ");
+        assert_eq!(caption(&environment), "0.0 s · return 0.0 · energy 30 · in pond");
         assert!(words(&environment, None).starts_with(&format!("{}\u{a0}· ", whole("0.0 s"))));
         while environment.seconds() < 0.95 {
             environment.step(StillAgent.act(&environment)).expect("it steps");
         }
         assert!(
-            said(&environment).ends_with("· energy 20 · in pond"),
+            caption(&environment).ends_with("· energy 20 · in pond"),
             "{}",
-            said(&environment)
+            caption(&environment)
         );
         let elsewhere = world.edit(|draft| {
             draft.agent_params.coordinates = [9.0, 9.0];
             draft.agent_params.energy = None;
         });
         let environment = Environment::new(elsewhere.expect("the world is sound"));
-        assert_eq!(said(&environment), "0.0 s · return 0.0");
+        assert_eq!(caption(&environment), "0.0 s · return 0.0");
     }
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(crate::tier::quick_or_full(24, 256)))]
 
-        /// The frames are ascending, include the start and the end, are as many as requested if there are enough steps, and
-        /// omit nothing more important than what they show.
+        /// The steps ascend and include the start and the end. There are as many as requested if the episode is long enough, and
+        /// no omitted step is more important than a shown one.
         #[test]
-        fn frames_show_the_most_important_steps(weights in prop::collection::vec(0u8..4, 1..200), most in 2usize..30) {
-            let deeds: Vec<Deed> = weights.iter().map(|weight| Deed { words: Vec::new(), weight: *weight }).collect();
-            let shown = chosen(&deeds, most);
+        fn frames_show_the_most_important_steps(weights in prop::collection::vec(0u8..4, 1..200), max_rows in 2usize..30) {
+            let events: Vec<StepEvents> = weights.iter().map(|weight| StepEvents { words: Vec::new(), weight: *weight }).collect();
+            let shown = frame_steps(&events, max_rows);
             prop_assert!(shown.is_sorted_by(|a, b| a < b));
-            prop_assert_eq!((shown[0], *shown.last().expect("there is one")), (0, deeds.len() - 1));
-            prop_assert_eq!(shown.len(), most.min(deeds.len()));
-            let inner = || 1..deeds.len().saturating_sub(1);
+            prop_assert_eq!((shown[0], *shown.last().expect("there is one")), (0, events.len() - 1));
+            prop_assert_eq!(shown.len(), max_rows.min(events.len()));
+            let inner = || 1..events.len().saturating_sub(1);
             let least = inner().filter(|number| shown.contains(number)).map(|number| weights[number]).min();
             let left_out = inner().filter(|number| !shown.contains(number)).map(|number| weights[number]).max();
             if let (Some(least), Some(left_out)) = (least, left_out) {

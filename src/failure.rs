@@ -1,4 +1,4 @@
-//! [`Failure`]: why an operation of this library failed. Each interface names arguments in its own way.
+//! [`Failure`]: why an operation of this library failed, in a text that each interface renders with its own names of arguments.
 
 use std::error::Error;
 use std::fmt;
@@ -14,8 +14,7 @@ pub type Cause = Arc<dyn Error + Send + Sync>;
 /// Receives warnings during an operation, from any thread.
 pub type Warn<'a> = &'a (dyn Fn(String) + Sync);
 
-/// Encloses the name of an argument in a text. Elsewhere it is an ordinary character, unless it encloses what looks
-/// like such a name.
+/// Encloses the name of an argument in a text. A pair that encloses anything else is ordinary text.
 const MARK: char = '\u{1}';
 
 /// The name of an argument in the text of a failure, such as `window_length`: the command writes `--window-length`, Python
@@ -62,7 +61,7 @@ impl FailureText {
     /// With arguments as command options: `--window-length`.
     pub fn for_command(&self) -> String {
         self.with(|name| match name {
-            // One option gives the order, by purpose or by method.
+            // The option `--order` takes purposes and methods.
             "method" => "--order".to_owned(),
             name => format!("--{}", name.replace('_', "-")),
         })
@@ -137,7 +136,7 @@ impl Failure {
         Self::Input(FailureText(text.into()), Some(Arc::new(error)))
     }
 
-    /// Adds the folder unless the text names it.
+    /// Prefixes the folder unless the text already names it.
     pub(crate) fn at(self, folder: &Path) -> Self {
         let shown = folder.shown().to_string();
         match self {
@@ -148,7 +147,7 @@ impl Failure {
         }
     }
 
-    /// Combines several failures, with the cause of the first.
+    /// Combines several failures; keeps the cause of the first.
     pub(crate) fn of_several(failures: &[&Self]) -> Self {
         let texts: Vec<&str> = failures.iter().map(|failure| failure.text().0.as_str()).collect();
         let cause = failures.first().and_then(|failure| failure.cause());
@@ -162,7 +161,7 @@ impl Failure {
         }
     }
 
-    /// The error behind it, if any.
+    /// The error that caused the failure, if any.
     pub fn cause(&self) -> Option<Cause> {
         match self {
             Self::Input(_, cause) => cause.clone(),
@@ -177,7 +176,7 @@ impl fmt::Display for Failure {
     }
 }
 
-// Not an `Error` itself: every error converts into it, and it would then convert into itself.
+// `Failure` does not implement `Error`: this impl would then conflict with the conversion of a type into itself.
 impl<E: Error + Send + Sync + 'static> From<E> for Failure {
     fn from(error: E) -> Self {
         Self::because(error.to_string(), error)
@@ -204,12 +203,13 @@ mod tests {
             "window_length: found 0, expected 1 or more; leave noise out"
         );
     }
-    /// Every text of up to four of these characters: the mark, one that no name contains, and one that options begin with.
+
+    /// Every text of up to four of these characters: the mark, one that no name contains, and one with which options begin.
     fn texts() -> Vec<String> {
         let mut all = vec![String::new()];
         let mut longest = all.clone();
         for _ in 0..4 {
-            let longer = |text: &String| [MARK, 'A', '-'].map(|letter| format!("{text}{letter}"));
+            let longer = |text: &String| [MARK, 'A', '-'].map(|c| format!("{text}{c}"));
             longest = longest.iter().flat_map(longer).collect();
             all.extend(longest.iter().cloned());
         }
@@ -217,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn foreign_texts_beside_a_name_are_unchanged() {
+    fn text_around_an_argument_is_unchanged() {
         let shown = |text: String| FailureText::from(text).for_command();
         for before in texts() {
             assert_eq!(shown(before.clone()), before);

@@ -32,7 +32,7 @@ impl Files {
             1 => drawn.run_id.clone(),
             number => format!("{}_{number}", drawn.run_id),
         };
-        // With one more candidate than names in use, at least one is free.
+        // One of these candidates is free: there is one more than names in use.
         let mut names = (1..=self.names.len() + 1).map(numbered);
         let name = names.find(|name| !self.names.contains(name)).unwrap_or_default();
         for (ending, bytes) in &drawn.files {
@@ -44,7 +44,7 @@ impl Files {
         Ok(())
     }
 
-    /// Describes what was written.
+    /// Number and total size of the written figures, as text.
     pub(crate) fn what(&self) -> String {
         format!("{} figures, {} kB", self.count, self.bytes.div_ceil(1000))
     }
@@ -70,7 +70,7 @@ pub(crate) fn drawn(
         files.push((format!("{}.png", figure.name()), figures.png(figure)?));
         files.push((format!("{}.svg", figure.name()), figures.svg(figure)?.into_bytes()));
     }
-    // With several logs, a lifetime's name may be a path.
+    // If there are several logs, a lifetime's name may be a path.
     let run_id = lifetime.run_id().replace(['/', '\\'], "_");
     Ok(Drawn { run_id, files })
 }

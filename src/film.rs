@@ -1,4 +1,4 @@
-//! [`film`]: a recorded episode as a sequence of pictures, and as a file.
+//! [`film`]: plays a recorded episode as a sequence of pictures. [`write_film`] writes it to a file.
 
 use std::path::Path;
 
@@ -9,7 +9,7 @@ use driftworld_report::picture::{Picture, caption_lines, sheet};
 use driftworld_text::ShownPath;
 use serde::Serialize;
 
-use crate::episode_frames::{deed, facts, map_of, rows, seen_by};
+use crate::episode_frames::{events_of, facts, first_person, map_of, rows};
 use crate::map_drawing::map_size;
 use crate::{Failure, argument, output_file};
 
@@ -17,7 +17,7 @@ use crate::{Failure, argument, output_file};
 pub const MAX_FILM_SIZE: u32 = 2048;
 
 /// Narrower frames have no captions, which would be cut off and taller than the picture.
-const LEAST_CAPTIONED: u32 = 100;
+const MIN_CAPTIONED_WIDTH: u32 = 100;
 
 /// Rows of a sheet.
 const SHEET_ROWS: usize = 12;
@@ -123,7 +123,7 @@ impl FilmOptions {
         number.is_multiple_of(self.every as usize) || number == last
     }
 
-    /// Width in pixels.
+    /// Width of a frame in pixels.
     fn width(&self, environment: &Environment) -> u32 {
         let map = map_size(environment.scene(), self.size)[0];
         match self.view {
@@ -161,7 +161,7 @@ impl FilmOptions {
     pub(crate) fn pictures(
         &self,
         environment: &mut Environment,
-        way: &[[f32; 2]],
+        path: &[[f32; 2]],
         seen: &mut dyn FnMut(&mut Environment) -> Result<Picture, Failure>,
     ) -> Result<Vec<Picture>, Failure> {
         let mut pictures = Vec::new();
@@ -169,7 +169,7 @@ impl FilmOptions {
             pictures.push(seen(environment)?);
         }
         if self.view != FilmView::Agent {
-            pictures.push(map_of(environment, map_size(environment.scene(), self.size), way));
+            pictures.push(map_of(environment, map_size(environment.scene(), self.size), path));
         }
         Ok(pictures)
     }
@@ -188,30 +188,31 @@ pub fn film(
 ) -> Result<(), Failure> {
     options.check()?;
     let mut replay = Replay::new(recording, catalogue);
-    let captions = if options.captions && options.width(replay.environment()) >= LEAST_CAPTIONED {
+    let captions = if options.captions && options.width(replay.environment()) >= MIN_CAPTIONED_WIDTH {
         Captions::of(&mut replay, recording, options)?
     } else {
         Captions::default()
     };
     replay.restart();
     replay.environment().set_renderer(Renderer::new(options.renderer)?);
-    let mut way = vec![replay.environment().agent().position];
-    let mut captioned = |replay: &mut Replay<'_>, way: &[[f32; 2]], number: usize| {
-        let frame = frame(replay.environment(), options, way)?;
+    let mut path = vec![replay.environment().agent().position];
+    let mut captioned = |replay: &mut Replay<'_>, path: &[[f32; 2]], number: usize| {
+        let frame = frame(replay.environment(), options, path)?;
         take(captions.above(frame, number), number)
     };
-    captioned(&mut replay, &way, 0)?;
+    captioned(&mut replay, &path, 0)?;
     while replay.step()?.is_some() {
         let number = replay.num_steps();
-        way.push(replay.environment().agent().position);
+        path.push(replay.environment().agent().position);
         if options.shows(number, recording.actions.len()) {
-            captioned(&mut replay, &way, number)?;
+            captioned(&mut replay, &path, number)?;
         }
     }
     Ok(replay.check()?)
 }
 
-/// The captions above the frames of a film: computed before the first frame, because every frame has room for the longest.
+/// The captions above the frames of a film. They are computed before the first frame, because every frame leaves room for the
+/// longest.
 #[derive(Default)]
 struct Captions {
     /// By the number of steps before the frame, ascending.
@@ -223,23 +224,23 @@ impl Captions {
     /// Replays an episode from its start, without pictures, to collect its captions.
     fn of(replay: &mut Replay<'_>, recording: &Recording, options: &FilmOptions) -> Result<Self, Failure> {
         let last = recording.actions.len();
-        let steps_of_a_second = (1.0 / recording.seconds_per_step()).ceil() as usize;
+        let steps_per_second = (1.0 / recording.seconds_per_step()).ceil() as usize;
         let mut of_frames = vec![(0, facts(replay.environment(), None))];
-        // The last event, and its time.
-        let mut said: Option<(Vec<String>, usize)> = None;
+        // The last step with events, and its number.
+        let mut last_event: Option<(Vec<String>, usize)> = None;
         while let Some(step) = replay.step()? {
             let number = replay.num_steps();
             let environment = replay.environment();
-            let deed = deed(environment.world(), &step).words;
-            if !deed.is_empty() {
-                said = Some((deed, number));
+            let events = events_of(environment.world(), &step).words;
+            if !events.is_empty() {
+                last_event = Some((events, number));
             }
             if options.shows(number, last) {
                 let mut caption = facts(environment, (number == last).then_some(&step));
-                if let Some((deed, when)) = &said
-                    && number - when <= steps_of_a_second
+                if let Some((events, when)) = &last_event
+                    && number - when <= steps_per_second
                 {
-                    caption.extend(deed.iter().cloned());
+                    caption.extend(events.iter().cloned());
                 }
                 of_frames.push((number, caption));
             }
@@ -261,8 +262,8 @@ impl Captions {
     }
 }
 
-fn frame(environment: &mut Environment, options: &FilmOptions, way: &[[f32; 2]]) -> Result<Picture, Failure> {
-    let pictures = options.pictures(environment, way, &mut |environment| seen_by(environment, options))?;
+fn frame(environment: &mut Environment, options: &FilmOptions, path: &[[f32; 2]]) -> Result<Picture, Failure> {
+    let pictures = options.pictures(environment, path, &mut |environment| first_person(environment, options))?;
     let mut frame = Picture::blank(options.width(environment), options.size);
     let mut left = 0;
     for picture in &pictures {
@@ -273,7 +274,7 @@ fn frame(environment: &mut Environment, options: &FilmOptions, way: &[[f32; 2]])
 }
 
 /// The kind of film by the file's extension; `None` for a single picture of the important frames.
-fn ending(path: &Path) -> Result<Option<FilmKind>, Failure> {
+fn film_kind(path: &Path) -> Result<Option<FilmKind>, Failure> {
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
     let kind = FilmKind::of_ending(ending);
     if kind.is_some() || ending.eq_ignore_ascii_case("png") {
@@ -293,12 +294,12 @@ fn ending(path: &Path) -> Result<Option<FilmKind>, Failure> {
     )))
 }
 
-/// Refuses a name without the extension of a film or a sheet.
+/// Refuses a file name without the extension of a film or a sheet.
 ///
 /// # Errors
 /// The accepted extensions.
 pub fn expect_film(path: &Path) -> Result<(), Failure> {
-    ending(path).map(drop)
+    film_kind(path).map(drop)
 }
 
 /// Writes an episode as a film (`.gif`, `.apng`), or as one picture of the important frames (`.png`). Without `fps` it plays in
@@ -314,7 +315,7 @@ pub fn write_film(
     watch: &mut dyn FnMut(u64),
 ) -> Result<FilmSummary, Failure> {
     options.check()?;
-    let Some(kind) = ending(path)? else {
+    let Some(kind) = film_kind(path)? else {
         return write_sheet(path, recording, catalogue, options);
     };
     let num_frames = options.num_frames(recording.actions.len()) as u32;

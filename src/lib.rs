@@ -13,7 +13,7 @@
 
 #![cfg_attr(
     target_family = "wasm",
-    expect(dead_code, reason = "what only the command uses, which is left out there")
+    expect(dead_code, reason = "some code is used only by the command, which is left out there")
 )]
 
 pub use driftworld_curriculum as curriculum;

@@ -1,4 +1,4 @@
-//! Finds logs: the given folders, or all below them.
+//! Finds logs: the given folders themselves, or all logs below them.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -12,16 +12,16 @@ use crate::{Failure, argument};
 use driftworld_text::ShownPath;
 
 /// Maximum depth of the search below a folder that is not a log itself.
-const MOST_LEVELS: usize = 4;
+const MAX_LEVELS: usize = 4;
 
 /// Maximum number of logs in one search.
 const MOST_LOGS: usize = 10_000;
 
 /// Maximum number of folders searched for logs.
-const MOST_FOLDERS: usize = 200_000;
+const MAX_FOLDERS: usize = 200_000;
 
-/// The state of a search for logs. A link below the starting folder is followed only if it leads directly to a log:
-/// following a link to `/` would search the whole machine, and following one to a parent folder would never end.
+/// The state of a search for logs. A link below the starting folder is followed only if it leads directly to a log: a link to
+/// `/` would make it search the whole machine, and a link to a parent folder would make it loop.
 #[derive(Default)]
 struct Search {
     found: Vec<PathBuf>,
@@ -38,25 +38,25 @@ pub(crate) fn found(arguments: &[PathBuf], is_recursive: bool) -> Result<Vec<Pat
     }
 }
 
-/// All logs in or below the arguments, in order, those below a folder sorted by name; each once.
+/// All logs in or below the arguments, in order and without duplicates; those below a folder are sorted by name.
 pub(crate) fn below(arguments: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     let mut found = Vec::new();
     for argument in arguments {
         let mut logs = search(argument)?;
         if logs.is_empty() {
             return Err(Failure::input(format!(
-                "{}: found no log, expected a folder with logger_info.json, or such folders up to {MOST_LEVELS} \
+                "{}: found no log, expected a folder with logger_info.json, or such folders up to {MAX_LEVELS} \
                  levels below; `driftworld run … -o DIR` writes one",
                 argument.shown()
             )));
         }
         found.append(&mut logs);
-        too_many(argument, found.len())?;
+        check_count(argument, found.len())?;
     }
-    Ok(each_once(found))
+    Ok(without_duplicates(found))
 }
 
-/// The arguments, which must all be logs, in order, each once. A folder that only has logs below it is refused with advice.
+/// The arguments, which must all be logs, in order and without duplicates. A folder with logs below it is refused with advice.
 pub(crate) fn named(arguments: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     if let Some(folder) = arguments.iter().find(|folder| !is_log(folder)) {
         let below = search(folder)?;
@@ -74,7 +74,7 @@ pub(crate) fn named(arguments: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
             ),
         }));
     }
-    Ok(each_once(arguments.to_vec()))
+    Ok(without_duplicates(arguments.to_vec()))
 }
 
 /// A name for each of several logs: its folder's name, with as many parent folders as needed to distinguish it, such as `a/log`
@@ -83,22 +83,22 @@ pub(crate) fn names(logs: &[PathBuf]) -> Vec<String> {
     let paths: Vec<Vec<String>> = logs.iter().map(|log| folders_to(log)).collect();
     let end = |path: &[String], length: usize| path[path.len().saturating_sub(length)..].join("/");
     let mut names = vec![String::new(); logs.len()];
-    let mut alike: Vec<usize> = (0..logs.len()).collect();
+    let mut ambiguous: Vec<usize> = (0..logs.len()).collect();
     for length in 1.. {
-        let mut called: BTreeMap<String, Vec<usize>> = BTreeMap::new();
-        for log in alike {
-            called.entry(end(&paths[log], length)).or_default().push(log);
+        let mut by_name: BTreeMap<String, Vec<usize>> = BTreeMap::new();
+        for log in ambiguous {
+            by_name.entry(end(&paths[log], length)).or_default().push(log);
         }
-        alike = Vec::new();
-        for (name, logs) in called {
+        ambiguous = Vec::new();
+        for (name, logs) in by_name {
             for &log in &logs {
                 names[log].clone_from(&name);
                 if logs.len() > 1 && length < paths[log].len() {
-                    alike.push(log);
+                    ambiguous.push(log);
                 }
             }
         }
-        if alike.is_empty() {
+        if ambiguous.is_empty() {
             break;
         }
     }
@@ -121,13 +121,13 @@ fn folders_to(log: &Path) -> Vec<String> {
 
 /// The logs in and below a folder, sorted by name.
 fn search(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
-    is_folder(folder)?;
+    check_folder(folder)?;
     let mut search = Search::default();
-    search.collect(folder, MOST_LEVELS)?;
+    search.collect(folder, MAX_LEVELS)?;
     Ok(search.found)
 }
 
-fn is_folder(argument: &Path) -> Result<(), Failure> {
+fn check_folder(argument: &Path) -> Result<(), Failure> {
     let found = match fs::metadata(argument) {
         Ok(kind) if kind.is_dir() => return Ok(()),
         Ok(_) => {
@@ -149,7 +149,7 @@ fn is_folder(argument: &Path) -> Result<(), Failure> {
     )))
 }
 
-fn each_once(mut logs: Vec<PathBuf>) -> Vec<PathBuf> {
+fn without_duplicates(mut logs: Vec<PathBuf>) -> Vec<PathBuf> {
     let mut seen = std::collections::BTreeSet::new();
     logs.retain(|log| seen.insert(log.canonicalize().unwrap_or_else(|_| log.clone())));
     logs
@@ -159,7 +159,7 @@ impl Search {
     fn collect(&mut self, folder: &Path, levels: usize) -> Result<(), Failure> {
         if self.is_log(folder)? {
             self.found.push(folder.to_owned());
-            return too_many(folder, self.found.len());
+            return check_count(folder, self.found.len());
         }
         if levels == 0 {
             return Ok(());
@@ -171,7 +171,7 @@ impl Search {
                 (Entry::Link, _) => {}
             }
         }
-        too_many(folder, self.found.len())
+        check_count(folder, self.found.len())
     }
 
     /// Whether a folder is a log, even an incomplete one.
@@ -179,9 +179,9 @@ impl Search {
         if has_info(folder) {
             return Ok(true);
         }
-        for worker in listed(folder) {
+        for worker in subfolders(folder) {
             self.count(&worker)?;
-            let blocks = listed(&worker);
+            let blocks = subfolders(&worker);
             if blocks.iter().any(|block| block.join("data-log.tsv").is_file()) {
                 return Ok(true);
             }
@@ -197,18 +197,18 @@ impl Search {
     /// Counts a folder whose entries are read.
     fn count(&mut self, folder: &Path) -> Result<(), Failure> {
         self.read += 1;
-        if self.read <= MOST_FOLDERS {
+        if self.read <= MAX_FOLDERS {
             return Ok(());
         }
         Err(Failure::input(format!(
-            "{}: found more than {MOST_FOLDERS} folders in the search for logs, expected at most that; name a folder \
+            "{}: found more than {MAX_FOLDERS} folders in the search for logs, expected at most that; name a folder \
              closer to the logs",
             folder.shown()
         )))
     }
 }
 
-fn too_many(path: &Path, logs: usize) -> Result<(), Failure> {
+fn check_count(path: &Path, logs: usize) -> Result<(), Failure> {
     if logs <= MOST_LOGS {
         return Ok(());
     }
@@ -220,7 +220,7 @@ fn too_many(path: &Path, logs: usize) -> Result<(), Failure> {
 
 /// Whether a folder is a log, even an incomplete one.
 fn is_log(folder: &Path) -> bool {
-    // A folder with more subfolders than the limit is not a log.
+    // A folder with too many subfolders to search is not a log.
     has_info(folder) || Search::default().is_log(folder).unwrap_or(false)
 }
 
@@ -248,15 +248,15 @@ fn entries(folder: &Path) -> std::io::Result<Vec<(Entry, PathBuf)>> {
 }
 
 /// The folders in a folder, without links to folders.
-fn listed(folder: &Path) -> Vec<PathBuf> {
-    // A folder that cannot be listed is reported when it is searched.
+fn subfolders(folder: &Path) -> Vec<PathBuf> {
+    // The search reports a folder that cannot be listed.
     let entries = entries(folder).unwrap_or_default().into_iter();
     let folders = entries.filter(|(kind, _)| *kind == Entry::Folder);
     folders.map(|(_, path)| path).collect()
 }
 
-/// The message prefixed with the log's path, unless it begins with that: some messages name a file below the log, others only
-/// the fault.
+/// Prefixes a message with the log's path unless it already begins with it: some messages name a file below the log, others do
+/// not.
 pub(crate) fn placed(log: &Path, message: &str) -> String {
     let log = log.shown().to_string();
     if message.starts_with(&log) {
@@ -283,7 +283,7 @@ mod tests {
             &["col/x/log", "other", "col/y/./log", "z/y/log"],
             &["x/log", "other", "col/y/log", "z/y/log"],
         );
-        // One path is the end of another.
+        // Some paths are suffixes of others.
         check(
             &["/log", "/deep/log", "/deep/deep/log"],
             &["log", "deep/log", "deep/deep/log"],
@@ -350,9 +350,10 @@ mod tests {
                 .contains("found a file")
         );
     }
+
     #[cfg(unix)]
     #[test]
-    fn links_are_not_searched_but_a_link_to_a_log_is_taken() {
+    fn search_follows_only_links_to_logs() {
         use std::os::unix::fs::symlink;
         let base = tempfile::tempdir().unwrap();
         let root = base.path().join("logs");
@@ -365,11 +366,11 @@ mod tests {
         symlink(base.path().join("elsewhere"), root.join("beside")).unwrap();
         symlink(base.path().join("elsewhere/log"), root.join("best")).unwrap();
         let mut search = Search::default();
-        search.collect(&root, MOST_LEVELS).unwrap();
+        search.collect(&root, MAX_LEVELS).unwrap();
         assert_eq!(search.found, [root.join("a"), root.join("best")]);
-        // The folder itself; `a` is a log and not searched.
-        assert_eq!(search.read, 2, "one look at the root for workers, one for logs");
-        // A folder given as an argument is searched, even through a link.
+        // `a` is a log, and so is not searched.
+        assert_eq!(search.read, 2, "reads the root twice: for workers, then for logs");
+        // A link given as an argument is searched.
         assert_eq!(below(&[root.join("beside")]).unwrap(), [root.join("beside/log")]);
     }
 
@@ -378,10 +379,10 @@ mod tests {
         let base = tempfile::tempdir().unwrap();
         fs::create_dir(base.path().join("a")).unwrap();
         let mut search = Search {
-            read: MOST_FOLDERS,
+            read: MAX_FOLDERS,
             ..Search::default()
         };
-        let error = search.collect(base.path(), MOST_LEVELS).unwrap_err();
+        let error = search.collect(base.path(), MAX_LEVELS).unwrap_err();
         assert!(error.to_string().contains("more than 200000 folders"), "{error}");
     }
 }

@@ -6,19 +6,19 @@ use driftworld_curriculum::log_name;
 use driftworld_metrics::Log;
 use serde_json::Value;
 
-/// The names of the variants in a log's scenario, by their log names; empty without a scenario. Log names shared by two
-/// variants are left out.
+/// The names of the variants in a log's scenario, by their log names; empty without a scenario. Omits log names that two variants
+/// share.
 pub(crate) fn called_in(log: &Log) -> BTreeMap<String, String> {
-    log.scenario_info.extra.get("scenario").map(called).unwrap_or_default()
+    log.scenario_info.extra.get("scenario").map(names).unwrap_or_default()
 }
 
-fn called(scenario: &Value) -> BTreeMap<String, String> {
+fn names(scenario: &Value) -> BTreeMap<String, String> {
     let mut names: BTreeMap<String, Option<String>> = BTreeMap::new();
     let blocks = scenario.get("blocks").and_then(Value::as_array).into_iter().flatten();
     let regimes = blocks.filter_map(|block| block.get("regimes")?.as_array()).flatten();
     for regime in regimes {
         let word = |key: &str| regime.get(key).and_then(Value::as_str);
-        // The log name of a drift contains both of its ends, and is kept.
+        // The log name of a drift names both of its ends already, so it is not mapped.
         let variant = word("name").or_else(|| word("variant"));
         let (Some(task), Some(variant), None) = (word("task"), variant, regime.get("drift")) else {
             continue;
@@ -50,7 +50,7 @@ mod tests {
                 { "task": "t", "variant": "a_b", "count": 1 }, { "task": "t", "variant": "ab", "count": 1 }
             ] }
         ] });
-        let found = called(&scenario);
+        let found = names(&scenario);
         let expected = [
             ("berries_all106gold", "berries#all-106-gold"),
             ("berries_twowords", "berries#two words"),
@@ -60,6 +60,6 @@ mod tests {
             .map(|(log, name)| (log.to_owned(), name.to_owned()))
             .collect();
         assert_eq!(found, expected);
-        assert!(called(&Value::Null).is_empty());
+        assert!(names(&Value::Null).is_empty());
     }
 }

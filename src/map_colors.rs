@@ -1,24 +1,24 @@
-//! The colours of a group of things on a map: those most visible from above.
+//! Finds the colours of a group of objects on a map, as they appear from above.
 
 use driftworld_env::{Image, Scene, top_down, top_down_scale};
 use driftworld_report::picture::Rgb;
 
 use crate::map_drawing::map_size;
 
-/// Height in pixels of the pictures whose pixels are counted.
+/// Height in pixels of the pictures in which pixels are counted.
 const HEIGHT: u32 = 192;
 /// Colours closer than this, in levels of 0 to 255, count as one.
 const NEAR: i32 = 48;
 /// Squared distance by which light and shadow may change the colour of a paint.
 const SHADE: i32 = 96 * 96;
 /// Maximum number of colours in a swatch.
-const MOST: usize = 3;
-/// Rims of doors and keys.
+const MAX_COLORS: usize = 3;
+/// Colour of the rims of doors and keys.
 const RIM: Rgb = [20, 24, 30];
 
-/// A scene whose groups of things are rendered from above, each alone.
+/// Renders groups of a scene's objects from above, each group alone.
 pub(crate) struct MapColors {
-    /// The scene without its objects, except for a speck that keeps the scale.
+    /// The scene with its objects hidden, except for a speck that fixes the scale.
     scene: Scene,
     bare: Image,
 }
@@ -34,7 +34,7 @@ impl MapColors {
             }
             item.visible = false;
         }
-        // A map extends to objects outside the arena: a speck as far out as they are gives all pictures the same scale.
+        // A map also covers objects outside the arena: a speck as far out as they are gives all pictures the same scale.
         if let Some(mut speck) = scene.items.first().cloned() {
             speck.scale = 1e-3;
             (speck.visible, speck.position) = (true, far);
@@ -58,11 +58,10 @@ impl MapColors {
             }
         }
         groups.sort_by_key(|(_, pixels)| std::cmp::Reverse(*pixels));
-        groups.into_iter().take(MOST).map(|(color, _)| color).collect()
+        groups.into_iter().take(MAX_COLORS).map(|(color, _)| color).collect()
     }
 
-    /// The visible colour of each of these items: the median of the pixels that are nearer to it than to the others, with their
-    /// number.
+    /// The visible colour of each of these items, and its number of pixels: the median of the pixels nearest to the item.
     fn of_members(&self, members: &[usize]) -> Vec<(Rgb, usize)> {
         let mut scene = self.scene.clone();
         for index in members {
@@ -80,18 +79,18 @@ impl MapColors {
         let mut pixels: Vec<Vec<Rgb>> = vec![Vec::new(); members.len()];
         let nearest = Nearest::of(&middles, [width, height]);
         let pairs = image.rgb.chunks_exact(3).zip(self.bare.rgb.chunks_exact(3));
-        for (place, (shown, bare)) in pairs.enumerate() {
+        for (index, (shown, bare)) in pairs.enumerate() {
             if shown == bare || shown == RIM {
                 continue;
             }
-            let at = [place as u32 % width, place as u32 / width].map(|pixel| pixel as f32 + 0.5);
+            let at = [index as u32 % width, index as u32 / width].map(|pixel| pixel as f32 + 0.5);
             if let Some(own) = nearest.to(at) {
                 pixels[own].push([shown[0], shown[1], shown[2]]);
             }
         }
         let with_color = |(index, pixels): (&usize, &Vec<Rgb>)| {
             let shaded = median(pixels)?;
-            // Uses the object's own paint if that is the visible colour; a trunk below leaves is not visible.
+            // Use the object's own paint if that is the visible colour; the paint of a trunk below leaves is not.
             let paint = scene.items[*index]
                 .color
                 .map(|paint| paint.map(|share| (share * 255.0) as u8));
@@ -104,7 +103,7 @@ impl MapColors {
 
 /// Positions in a picture, indexed by square cells.
 struct Nearest<'a> {
-    places: &'a [[f32; 2]],
+    points: &'a [[f32; 2]],
     columns: usize,
     cells: Vec<Vec<usize>>,
 }
@@ -114,14 +113,14 @@ impl<'a> Nearest<'a> {
     const CELL: usize = 4;
 
     /// Positions outside the picture go to the nearest cell at its edge.
-    fn of(places: &'a [[f32; 2]], size: [u32; 2]) -> Self {
+    fn of(points: &'a [[f32; 2]], size: [u32; 2]) -> Self {
         let [columns, rows] = size.map(|pixels| (pixels as usize).div_ceil(Self::CELL).max(1));
         let mut cells = vec![Vec::new(); columns * rows];
-        for (index, [x, y]) in places.iter().enumerate() {
+        for (index, [x, y]) in points.iter().enumerate() {
             let cell = |at: f32, count: usize| (at.max(0.0) as usize / Self::CELL).min(count - 1);
             cells[cell(*y, rows) * columns + cell(*x, columns)].push(index);
         }
-        Self { places, columns, cells }
+        Self { points, columns, cells }
     }
 
     /// The position nearest to a point of the picture; the first of equally near ones.
@@ -130,9 +129,9 @@ impl<'a> Nearest<'a> {
         let [column, row] = at.map(|pixel| pixel as usize / Self::CELL);
         let mut best: Option<(f32, usize)> = None;
         for ring in 0..self.columns.max(rows) {
-            // Nothing in this ring is nearer than this.
-            let least = (ring.saturating_sub(1) * Self::CELL) as f32;
-            if best.is_some_and(|(far, _)| far < least * least) {
+            // No point in this ring is nearer.
+            let min_distance = (ring.saturating_sub(1) * Self::CELL) as f32;
+            if best.is_some_and(|(square, _)| square < min_distance * min_distance) {
                 break;
             }
             for y in row.saturating_sub(ring)..(row + ring + 1).min(rows) {
@@ -142,7 +141,7 @@ impl<'a> Nearest<'a> {
                         continue;
                     }
                     for &index in &self.cells[y * self.columns + x] {
-                        let [across, down] = [0, 1].map(|axis| self.places[index][axis] - at[axis]);
+                        let [across, down] = [0, 1].map(|axis| self.points[index][axis] - at[axis]);
                         let found = (across * across + down * down, index);
                         if best.is_none_or(|best| found < best) {
                             best = Some(found);
@@ -196,8 +195,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(24))]
 
-        /// A group of cubes has as many colours as paints, up to three, each the paint of some cube, and no more frequent paint
-        /// is omitted, whatever the size of the arena.
+        /// In an arena of any size, the colours of a group of cubes are its most frequent paints, up to three.
         #[test]
         fn group_has_its_most_frequent_colours(
             paints in prop::collection::vec(0_usize..5, 1..8),
@@ -206,14 +204,14 @@ mod tests {
             let mut draft = WorldDraft::default();
             draft.environment_params.map_size = [side, side];
             for (number, paint) in paints.iter().enumerate() {
-                let place = |k: usize| (k as f64 - 1.0) * side / 4.0;
-                let mut object = Object::new("geometric", [place(number % 3), place(number / 3)]);
+                let coordinate = |k: usize| (k as f64 - 1.0) * side / 4.0;
+                let mut object = Object::new("geometric", [coordinate(number % 3), coordinate(number / 3)]);
                 object.color = Some(Color(PAINTS[*paint]));
                 draft.objects.push(object);
             }
             let world = draft.check().expect("the world is sound");
-            let all: Vec<usize> = (0..paints.len()).collect();
-            let found = MapColors::of(&Scene::from_world(&world)).of_group(&all);
+            let members: Vec<usize> = (0..paints.len()).collect();
+            let found = MapColors::of(&Scene::from_world(&world)).of_group(&members);
             let count = |paint: usize| paints.iter().filter(|other| **other == paint).count();
             let painted = |color: &Rgb| -> Option<usize> {
                 let near = |paint: &usize| is_near(*color, PAINTS[*paint].map(|share| (share * 255.0) as u8));
@@ -221,7 +219,7 @@ mod tests {
             };
             let found: Vec<usize> = found.iter().filter_map(painted).collect();
             let different = (0..5).filter(|paint| count(*paint) > 0).count();
-            prop_assert_eq!(found.len(), different.min(MOST), "{:?} of {:?}", found, paints);
+            prop_assert_eq!(found.len(), different.min(MAX_COLORS), "{:?} of {:?}", found, paints);
             for (paint, other) in (0..5).flat_map(|paint| found.iter().map(move |other| (paint, *other))) {
                 prop_assert!(found.contains(&paint) || count(paint) <= count(other), "{:?} of {:?}", found, paints);
             }
@@ -233,17 +231,17 @@ mod tests {
 
         #[test]
         fn nearest_position_matches_brute_force(
-            places in prop::collection::vec(prop::array::uniform2(-9.0..60.0_f32), 0..40),
+            points in prop::collection::vec(prop::array::uniform2(-9.0..60.0_f32), 0..40),
             at in (0_u32..50, 0_u32..37),
         ) {
             let at = [at.0 as f32 + 0.5, at.1 as f32 + 0.5];
-            let far = |place: &[f32; 2]| (place[0] - at[0]).powi(2) + (place[1] - at[1]).powi(2);
-            let expected = (0..places.len()).min_by(|a, b| far(&places[*a]).total_cmp(&far(&places[*b])));
-            prop_assert_eq!(Nearest::of(&places, [50, 37]).to(at), expected);
+            let square = |point: &[f32; 2]| (point[0] - at[0]).powi(2) + (point[1] - at[1]).powi(2);
+            let expected = (0..points.len()).min_by(|a, b| square(&points[*a]).total_cmp(&square(&points[*b])));
+            prop_assert_eq!(Nearest::of(&points, [50, 37]).to(at), expected);
         }
     }
 
-    /// Trees are green, not brown like their wood; doors of three colours have all three.
+    /// Trees are green, not brown like their trunks. Doors in three colours have three colours.
     #[test]
     fn issue_24_groups_of_several_colors() {
         let of_class = |name: &str, class: &str| {

@@ -1,7 +1,7 @@
-//! Annotated maps: the ground from above with a scale, north, the agent's start, positive and negative rewards, trigger ranges
-//! and paths.
+//! Draws annotated maps: the ground from above with a scale, north, the agent's start, signs of rewards, trigger ranges and
+//! paths.
 
-#![expect(clippy::disallowed_methods, reason = "where lines and words stand on a map")]
+#![expect(clippy::disallowed_methods, reason = "only positions of lines and labels on a map")]
 
 use std::convert::Infallible;
 
@@ -9,7 +9,7 @@ use driftworld_env::{Scene, top_down};
 use driftworld_report::picture::{Drawing, Level, Picture, Rgb, Shape, Side, TextLine, ring};
 use driftworld_spec::{MotionModel, Object, Stimulus, World};
 
-use crate::map_scale::{Bar, CORNERS, Places, freest, north, north_size};
+use crate::map_scale::{Bar, CORNERS, MapProjection, freest, north, north_size};
 
 pub(crate) const INK: Rgb = [20, 24, 30];
 pub(crate) const WHITE: Rgb = [255, 255, 255];
@@ -19,14 +19,14 @@ pub(crate) const RING: Rgb = [255, 214, 0];
 pub(crate) const TRAIL: Rgb = [255, 120, 200];
 const PAYS: Rgb = [0, 110, 50];
 const COSTS: Rgb = [190, 0, 20];
-/// With more rewarding objects than this, none of them has a sign.
-const MOST_SIGNS: usize = 60;
-/// On a smaller map, signs would hide the things beside them.
-const LEAST_SIGNED: u32 = 100;
-/// A smaller map without a legend has no room for a scale.
-const LEAST_SCALED: u32 = 80;
+/// Maximum number of rewarding objects that have signs; with more, none has.
+const MAX_SIGNS: usize = 60;
+/// Smallest map, in pixels, that has signs: on a smaller one they would hide the objects beside them.
+const MIN_SIZE_FOR_SIGNS: u32 = 100;
+/// Smallest map without a legend, in pixels, that has a scale: a smaller one has no room for it.
+const MIN_SIZE_FOR_SCALE: u32 = 80;
 /// Largest aspect ratio of a map.
-const MOST_OBLONG: f32 = 2.0;
+const MAX_ASPECT: f32 = 2.0;
 
 /// Movements to show on a map.
 #[derive(Clone, Debug, Default)]
@@ -34,7 +34,7 @@ pub(crate) struct Moves {
     /// The agent's position, and its heading in degrees.
     pub(crate) agent: ([f32; 2], f32),
     /// The path that the agent took.
-    pub(crate) way: Vec<[f32; 2]>,
+    pub(crate) path: Vec<[f32; 2]>,
     /// The paths of objects that moved.
     pub(crate) trails: Vec<Vec<[f32; 2]>>,
     /// Duration of the movements in seconds.
@@ -52,36 +52,36 @@ impl Moves {
     }
 }
 
-/// A square map without a legend, with scale and north in the corners where they cover least.
+/// Draws a square map without a legend; scale and north are in the corners where they cover least.
 pub(crate) fn map(world: &World, scene: &Scene, moves: &Moves, size: u32) -> Drawing {
     let mut map = annotated(world, scene, moves, ground(scene, [size, size]));
-    if size < LEAST_SCALED {
+    if size < MIN_SIZE_FOR_SCALE {
         return map;
     }
-    let places = Places::of(scene, [size, size]);
+    let projection = MapProjection::of(scene, [size, size]);
     let visible = scene.items.iter().filter(|item| item.visible);
     // The agent's position has the highest priority.
-    let mut marks = vec![(places.pixel(moves.agent.0), 1_000.0)];
-    marks.extend(visible.map(|item| (places.pixel(item.position), 1.0)));
-    marks.extend(places.pixels(&moves.way).into_iter().map(|place| (place, 0.01)));
+    let mut marks = vec![(projection.pixel(moves.agent.0), 1_000.0)];
+    marks.extend(visible.map(|item| (projection.pixel(item.position), 1.0)));
+    marks.extend(projection.pixels(&moves.path).into_iter().map(|pixel| (pixel, 0.01)));
     let mut corners = CORNERS.to_vec();
-    let bar = Bar::of(&places, size as f32 * 0.3);
-    let at = freest(&mut corners, bar.size(), places.size, &marks);
+    let bar = Bar::of(&projection, size as f32 * 0.3);
+    let at = freest(&mut corners, bar.size(), projection.size, &marks);
     bar.draw(&mut map, at, true);
     corners.reverse();
     let side = north_size(size as f32);
-    north(&mut map, freest(&mut corners, [side; 2], places.size, &marks), side);
+    north(&mut map, freest(&mut corners, [side; 2], projection.size, &marks), side);
     map
 }
 
 /// Width and height in pixels of a map with this height: the arena's aspect ratio, within limits.
 pub(crate) fn map_size(scene: &Scene, height: u32) -> [u32; 2] {
     let [wide, deep] = scene.arena_size();
-    let aspect = (wide / deep.max(1e-3)).clamp(1.0 / MOST_OBLONG, MOST_OBLONG);
+    let aspect = (wide / deep.max(1e-3)).clamp(1.0 / MAX_ASPECT, MAX_ASPECT);
     [((height as f32 * aspect).round() as u32).max(1), height]
 }
 
-/// The ground from above with everything on it, in neutral light, with smooth edges unless the picture is very large.
+/// The scene from above, in neutral light, with smooth edges unless the picture is very large.
 pub(crate) fn ground(scene: &Scene, size: [u32; 2]) -> Picture {
     let scene = scene.clone().in_neutral_light();
     let Ok(picture) = Picture::smooth(size, |[width, height]| {
@@ -121,18 +121,18 @@ pub(crate) fn trigger_radius(world: &World, scene: &Scene, index: usize) -> Opti
     (square > 0.0).then(|| square.sqrt())
 }
 
-/// The ground with annotations: rings, paths, signs, and the agent.
+/// Annotates a picture of the ground with rings, paths, signs, and the agent.
 pub(crate) fn annotated(world: &World, scene: &Scene, moves: &Moves, ground: Picture) -> Drawing {
     let size = ground.width.min(ground.height);
-    let places = Places::of(scene, [ground.width, ground.height]);
+    let projection = MapProjection::of(scene, [ground.width, ground.height]);
     let thin = (size as f32 / 240.0).max(1.0);
     let mut map = Drawing::from(ground);
     let visible = || (0..world.objects.len()).filter(|index| scene.items.get(*index).is_some_and(|item| item.visible));
     for index in visible() {
-        let at = places.pixel(scene.items[index].position);
+        let at = projection.pixel(scene.items[index].position);
         if let Some(radius) = trigger_radius(world, scene, index) {
             for (width, color) in [(2.4 * thin, INK), (1.2 * thin, RING)] {
-                map.line(ring(at, radius * places.scale), width, color);
+                map.line(ring(at, radius * projection.scale), width, color);
             }
         }
         let object = &world.objects[index];
@@ -140,7 +140,7 @@ pub(crate) fn annotated(world: &World, scene: &Scene, moves: &Moves, ground: Pic
             let mut points: Vec<[f32; 2]> = vec![scene.items[index].position];
             points.extend(object.waypoints.iter().map(|point| point.map(|metres| metres as f32)));
             map.shapes.push(Shape::Line {
-                points: places.pixels(&points),
+                points: projection.pixels(&points),
                 width: 1.5 * thin,
                 color: TRAIL,
                 alpha: 1.0,
@@ -150,56 +150,56 @@ pub(crate) fn annotated(world: &World, scene: &Scene, moves: &Moves, ground: Pic
     }
     let radius = |index: usize| {
         let item = &scene.items[index];
-        (item.asset.radius * item.scale * places.scale).max(0.015 * size as f32)
+        (item.asset.radius * item.scale * projection.scale).max(0.015 * size as f32)
     };
-    let all: Vec<([f32; 2], f32)> = visible()
-        .map(|index| (places.pixel(scene.items[index].position), radius(index)))
+    let discs: Vec<([f32; 2], f32)> = visible()
+        .map(|index| (projection.pixel(scene.items[index].position), radius(index)))
         .collect();
     for trail in &moves.trails {
-        let points = places.pixels(trail);
-        let own = all
+        let points = projection.pixels(trail);
+        let own = discs
             .iter()
-            .find(|(at, _)| points.first().is_some_and(|start| apart(*at, *start) < 0.5));
-        // Leaves the pixel of an object uncovered even if the object is smaller than a pixel.
+            .find(|(at, _)| points.first().is_some_and(|start| distance(*at, *start) < 0.5));
+        // Leave the pixel of an object uncovered even if the object is smaller than a pixel.
         let rim = |radius: f32| radius.max(1.5) + 1.5 * thin;
-        let points = own.map_or_else(|| points.clone(), |(_, radius)| from_rim(&points, rim(*radius)));
+        let points = own.map_or_else(|| points.clone(), |(_, radius)| outside_disc(&points, rim(*radius)));
         map.line(points.clone(), 3.0 * thin, INK);
         map.line(points.clone(), 1.8 * thin, TRAIL);
         if let Some(end) = points.last() {
             map.disc(*end, 2.2 * thin, TRAIL);
         }
     }
-    if moves.way.len() > 1 {
-        let points = places.pixels(&moves.way);
+    if moves.path.len() > 1 {
+        let points = projection.pixels(&moves.path);
         map.line(points.clone(), 4.0 * thin, INK);
         map.line(points, 2.0 * thin, WHITE);
     }
     arrow(
         &mut map,
-        places.pixel(moves.agent.0),
+        projection.pixel(moves.agent.0),
         moves.agent.1,
         (size as f32 / 26.0).max(6.0),
     );
     let signs: Vec<usize> = visible().filter(|index| pay(&world.objects[*index]) != 0.0).collect();
-    if signs.len() <= MOST_SIGNS && size >= LEAST_SIGNED {
+    if signs.len() <= MAX_SIGNS && size >= MIN_SIZE_FOR_SIGNS {
         for index in signs {
-            let at = places.pixel(scene.items[index].position);
-            sign(&mut map, at, radius(index), pay(&world.objects[index]), size, &all);
+            let at = projection.pixel(scene.items[index].position);
+            sign(&mut map, at, radius(index), pay(&world.objects[index]), size, &discs);
         }
     }
     map
 }
 
-fn apart(one: [f32; 2], other: [f32; 2]) -> f32 {
+fn distance(one: [f32; 2], other: [f32; 2]) -> f32 {
     (one[0] - other[0]).hypot(one[1] - other[1])
 }
 
 /// The part of a path outside a disc around its start, so that the path does not hide what is there; may be empty.
-fn from_rim(points: &[[f32; 2]], radius: f32) -> Vec<[f32; 2]> {
+fn outside_disc(points: &[[f32; 2]], radius: f32) -> Vec<[f32; 2]> {
     let Some(start) = points.first().copied() else {
         return Vec::new();
     };
-    let Some(out) = points.iter().position(|point| apart(*point, start) > radius) else {
+    let Some(out) = points.iter().position(|point| distance(*point, start) > radius) else {
         return Vec::new();
     };
     let (from, to) = (points[out.max(1) - 1], points[out]);
@@ -208,7 +208,7 @@ fn from_rim(points: &[[f32; 2]], radius: f32) -> Vec<[f32; 2]> {
     let at = |share: f32| [0, 1].map(|axis| from[axis] + share * (to[axis] - from[axis]));
     for _ in 0..12 {
         let middle = f32::midpoint(low, high);
-        if apart(at(middle), start) > radius {
+        if distance(at(middle), start) > radius {
             high = middle;
         } else {
             low = middle;
@@ -219,25 +219,25 @@ fn from_rim(points: &[[f32; 2]], radius: f32) -> Vec<[f32; 2]> {
     rest
 }
 
-/// A plus or a minus beside an object with this centre and radius, at the corner where it covers the least of other objects.
-fn sign(map: &mut Drawing, [x, y]: [f32; 2], radius: f32, pay: f64, size: u32, things: &[([f32; 2], f32)]) {
+/// Draws a plus or a minus beside an object with this centre and radius, at the corner where it covers the least of the objects.
+fn sign(map: &mut Drawing, [x, y]: [f32; 2], radius: f32, pay: f64, size: u32, discs: &[([f32; 2], f32)]) {
     let (text, color) = if pay > 0.0 { ("+", PAYS) } else { ("−", COSTS) };
-    let letters = (size as f32 / 17.0).clamp(9.0, 30.0);
+    let font_size = (size as f32 / 17.0).clamp(9.0, 30.0);
     // Distance from a sign's centre to its rim.
-    let reach = 0.42 * letters;
+    let reach = 0.42 * font_size;
     let off = 0.71 * radius + reach;
     let covers = |at: [f32; 2]| -> f32 {
-        let near = |(thing, radius): &([f32; 2], f32)| (radius + reach - apart(*thing, at)).max(0.0);
-        things.iter().map(near).sum()
+        let overlap = |(center, radius): &([f32; 2], f32)| (radius + reach - distance(*center, at)).max(0.0);
+        discs.iter().map(overlap).sum()
     };
     let mut best = [x + off, y - off];
     for corner in [[x + off, y + off], [x - off, y - off], [x - off, y + off]] {
-        // Ties go to one side, so that signs are aligned.
+        // Prefer the first corner unless another is clearly better, so that signs are aligned.
         if covers(corner) + 0.5 < covers(best) {
             best = corner;
         }
     }
-    let words = TextLine::new(text, best, letters, color);
+    let words = TextLine::new(text, best, font_size, color);
     map.write(words.anchored(Side::Middle, Level::Middle).rimmed(WHITE));
 }
 
@@ -263,7 +263,7 @@ pub(crate) fn arrow(map: &mut Drawing, [x, y]: [f32; 2], heading_deg: f32, size:
     map.area(corners(0.0), WHITE);
 }
 
-/// A square arena with only the agent, at this share of its side from the centre.
+/// A square arena with only the agent, whose position is given as a share of the side from the centre.
 #[cfg(test)]
 pub(crate) fn world_of_agent(side: f64, place: [f64; 2], heading: f64) -> World {
     let mut draft = driftworld_spec::WorldDraft::default();
@@ -311,21 +311,20 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(12))]
 
-        /// Counts the bar's black pixels: they match its label in metres on the ground, with the scale measured from the
-        /// arena's edges.
+        /// The number of the bar's black pixels matches its label in metres.
         #[test]
         fn scale_bar_has_its_labelled_length(side in 6.0..250.0_f64, size in 200_u32..500) {
             let world = world(side, Vec::new());
             let scene = Scene::from_world(&world);
-            let whole = map(&world, &scene, &Moves::none(&world), size);
-            let says: f32 = whole.texts().into_iter().find_map(|text| text.strip_suffix(" m")?.parse().ok()).expect("it says");
-            let picture = whole.to_picture();
+            let drawing = map(&world, &scene, &Moves::none(&world), size);
+            let label: f32 = drawing.texts().into_iter().find_map(|text| text.strip_suffix(" m")?.parse().ok()).expect("a label");
+            let picture = drawing.to_picture();
             let black = |x: &usize, y: usize| pixel(&picture, *x, y) == [0, 0, 0];
             let longest = (0..size as usize).map(|y| (0..size as usize).filter(|x| black(x, y)).count()).max();
             let longest = longest.expect("there are rows") as f32;
             // A map shows 6 % more than the arena.
             let metre = size as f32 / (side as f32 * 1.06);
-            prop_assert!((longest - says * metre).abs() <= 1.5, "{longest} pixels for {says} m of {metre}");
+            prop_assert!((longest - label * metre).abs() <= 1.5, "{longest} pixels for {label} m of {metre}");
             prop_assert!(longest <= 0.31 * size as f32);
         }
 
@@ -336,10 +335,10 @@ mod tests {
             let scene = Scene::from_world(&world);
             let bare = annotated(&world, &scene, &Moves::none(&world), ground(&scene, [size, size])).to_picture();
             let alone = drawn(&world, size);
-            let near = f64::from(size) / 26.0;
+            let radius = f64::from(size) / 26.0;
             let middle = |share: f64| f64::from(size) * (0.5 + share / 1.06);
             for (column, row) in (0..size as usize).flat_map(|column| (0..size as usize).map(move |row| (column, row))) {
-                if (column as f64 - middle(x)).hypot(row as f64 - middle(-y)) < near {
+                if (column as f64 - middle(x)).hypot(row as f64 - middle(-y)) < radius {
                     prop_assert_eq!(pixel(&alone, column, row), pixel(&bare, column, row), "{} {}", column, row);
                 }
             }
@@ -354,7 +353,7 @@ mod tests {
             let scene = Scene::from_world(&world);
             let [width, same] = map_size(&scene, height);
             prop_assert_eq!(same, height);
-            let places = Places::of(&scene, [width, height]);
+            let places = MapProjection::of(&scene, [width, height]);
             let [left, top] = places.pixel([-wide as f32 / 2.0, deep as f32 / 2.0]);
             prop_assert!(left >= 0.0 && top >= 0.0);
             if (0.5..2.0).contains(&(wide / deep)) {
@@ -363,7 +362,7 @@ mod tests {
             }
         }
 
-        /// A rewarding object is as visible with its sign as without, for any map size and number of things around it.
+        /// A sign never hides a rewarding object, for any map size and number of objects around it.
         #[test]
         fn signs_hide_nothing(places in prop::collection::vec((-4_i32..=4, -4_i32..=4), 1..6), size in 48_u32..400) {
             let objects = |reward: f64| -> Vec<Object> {
@@ -374,7 +373,7 @@ mod tests {
                 let world = world(60.0, objects(reward));
                 let scene = Scene::from_world(&world);
                 let drawing = annotated(&world, &scene, &Moves::none(&world), ground(&scene, [size, size]));
-                (Places::of(&scene, [size, size]), drawing.to_picture())
+                (MapProjection::of(&scene, [size, size]), drawing.to_picture())
             };
             let ((scale, with), (_, without)) = (drawn(5.0), drawn(0.0));
             for (x, y) in &places {
@@ -397,7 +396,7 @@ mod tests {
             let drawn = |moves: &Moves| annotated(&world, &scene, moves, ground(&scene, [size, size])).to_picture();
             let (with, without) = (drawn(&moves), drawn(&Moves::none(&world)));
             let at = |place: [f32; 2]| {
-                let [x, y] = Places::of(&scene, [size, size]).pixel(place);
+                let [x, y] = MapProjection::of(&scene, [size, size]).pixel(place);
                 [&with, &without].map(|picture| pixel(picture, x as usize, y as usize))
             };
             let [shown, bare] = at([1.0, 2.0]);
@@ -430,7 +429,6 @@ mod tests {
         }
     }
 
-    /// There are as many signs as objects with rewards.
     #[test]
     fn positive_rewards_have_a_plus_and_negative_ones_a_minus() {
         let objects = vec![

@@ -1,5 +1,5 @@
-//! The legend beside a map: objects by class, colour and reward, effects of zones, trigger ranges and paths, with scale and
-//! north at its foot.
+//! Draws the legend beside a map: objects by class, colour and reward, effects of zones, trigger ranges and paths, and scale and
+//! north at the bottom.
 
 use driftworld_env::Scene;
 use driftworld_report::picture::{Drawing, Level, Picture, Rgb, Side, TextLine, ring, text_width};
@@ -8,22 +8,22 @@ use driftworld_text::{short, when};
 
 use crate::map_colors::MapColors;
 use crate::map_drawing::{INK, Moves, RING, TRAIL, WHITE, annotated, arrow, ground, map_size, pay, trigger_radius};
-use crate::map_scale::{Bar, Places, north, north_size};
+use crate::map_scale::{Bar, MapProjection, north, north_size};
 
 /// Largest font size of the legend, in pixels.
-const LEGEND: f32 = 12.0;
-/// The longest bar beside a map, in pixels.
-const LONGEST_BAR: f32 = 140.0;
+const MAX_FONT_SIZE: f32 = 12.0;
+/// Maximum length of the scale bar beside a map, in pixels.
+const MAX_BAR: f32 = 140.0;
 
-/// A map of this height, with the arena's aspect ratio, and to its right the legend with scale and north, where they cover
-/// nothing.
+/// Draws a map of this height with the arena's aspect ratio. The legend to its right contains scale and north, so that they
+/// cover nothing.
 pub(crate) fn map_with_legend(world: &World, scene: &Scene, moves: &Moves, size: u32) -> Drawing {
     let ground = ground(scene, map_size(scene, size));
-    let places = Places::of(scene, [ground.width, ground.height]);
+    let projection = MapProjection::of(scene, [ground.width, ground.height]);
     let entries = entries(world, scene, moves, &ground);
     let map = annotated(world, scene, moves, ground);
-    let letters = (size as f32 / 17.0).clamp(9.0, LEGEND);
-    let legend = legend(&entries, letters, size, &places);
+    let font_size = (size as f32 / 17.0).clamp(9.0, MAX_FONT_SIZE);
+    let legend = legend(&entries, font_size, size, &projection);
     let mut drawing = Drawing::blank(map.width + legend.width, size);
     let left = map.width;
     drawing.put(map, [0, 0]);
@@ -53,21 +53,21 @@ enum Mark {
     Arrow,
     Ring,
     Trail,
-    Way,
+    Path,
 }
 
 /// The entries of a map's legend: objects by class, colour and reward, then walls, zones, ranges and paths.
 fn entries(world: &World, scene: &Scene, moves: &Moves, ground: &Picture) -> Vec<Entry> {
-    let places = Places::of(scene, [ground.width, ground.height]);
+    let projection = MapProjection::of(scene, [ground.width, ground.height]);
     let mut entries = vec![Entry {
         mark: Mark::Arrow,
-        name: if moves.way.len() > 1 {
+        name: if moves.path.len() > 1 {
             "agent".to_owned()
         } else {
             "agent, its start".to_owned()
         },
     }];
-    entries.extend(object_entries(world, scene, ground, &places));
+    entries.extend(object_entries(world, scene, ground, &projection));
     for (number, zone) in world
         .environment_params
         .zones
@@ -108,14 +108,14 @@ fn entries(world: &World, scene: &Scene, moves: &Moves, ground: &Picture) -> Vec
     {
         entries.push(Entry::new(Mark::Trail, "waypoints (dashed)"));
     }
-    if moves.way.len() > 1 {
-        entries.push(Entry::new(Mark::Way, "the agent's way"));
+    if moves.path.len() > 1 {
+        entries.push(Entry::new(Mark::Path, "the agent's way"));
     }
     entries
 }
 
 /// The visible objects, grouped by name and reward, largest absolute reward first.
-fn object_entries(world: &World, scene: &Scene, ground: &Picture, places: &Places) -> Vec<Entry> {
+fn object_entries(world: &World, scene: &Scene, ground: &Picture, projection: &MapProjection) -> Vec<Entry> {
     let mut groups: Vec<(String, f64, Vec<usize>)> = Vec::new();
     let objects = world.objects.iter().zip(&scene.items).enumerate();
     for (index, (object, _)) in objects.filter(|(_, (_, item))| item.visible) {
@@ -134,7 +134,7 @@ fn object_entries(world: &World, scene: &Scene, ground: &Picture, places: &Place
     let entry = |(name, pay, members): (String, f64, Vec<usize>)| {
         let mut seen = colors.of_group(&members);
         if let (true, Some(first)) = (seen.is_empty(), members.first()) {
-            seen.push(at(ground, places.pixel(scene.items[*first].position)));
+            seen.push(pixel_at(ground, projection.pixel(scene.items[*first].position)));
         }
         let count = when(members.len() > 1, || format!(" ×{}", members.len()));
         let pay = when(pay != 0.0, || format!(", {}", signed(pay)));
@@ -166,7 +166,7 @@ fn effects(zone: &Zone) -> Vec<String> {
     words
 }
 
-/// The name of a group of objects: their tag, which says what they are for, else their shape or class.
+/// The name of a group of objects: their tag, which says what they are for, or else their shape or class.
 pub(crate) fn named(object: &Object) -> String {
     let class = object.class.to_lowercase();
     let shape = match (class.as_str(), object.model.0.trim().to_lowercase().as_str()) {
@@ -178,22 +178,23 @@ pub(crate) fn named(object: &Object) -> String {
     object.tag.clone().unwrap_or_else(|| shape.to_owned())
 }
 
+/// A reward with its sign.
 fn signed(pay: f64) -> String {
     let sign = if pay < 0.0 { "−" } else { "+" };
     format!("{sign}{}", short(pay.abs(), 2))
 }
 
-fn at(picture: &Picture, [x, y]: [f32; 2]) -> Rgb {
-    let clamped = |place: f32, most: u32| (place.max(0.0) as u32).min(most.saturating_sub(1)) as usize;
+fn pixel_at(picture: &Picture, [x, y]: [f32; 2]) -> Rgb {
+    let clamped = |pixel: f32, size: u32| (pixel.max(0.0) as u32).min(size.saturating_sub(1)) as usize;
     let start = (clamped(y, picture.height) * picture.width as usize + clamped(x, picture.width)) * 3;
     [picture.rgb[start], picture.rgb[start + 1], picture.rgb[start + 2]]
 }
 
-/// The legend in a column of this height, with scale and north at its foot. Entries that do not fit, the agent's first,
-/// are counted in the last line. If only one line fits and there are more entries, there is no text.
-fn legend(entries: &[Entry], letters: f32, height: u32, places: &Places) -> Drawing {
-    let line = (letters * 1.45).round();
-    let bar = Bar::of(places, (0.3 * places.size[0]).min(LONGEST_BAR));
+/// Draws the legend in a column of this height, with scale and north at the bottom. The last line counts the entries that do not
+/// fit, of which the agent's is the first. If only one line fits and there are more entries, there is no text.
+fn legend(entries: &[Entry], font_size: f32, height: u32, projection: &MapProjection) -> Drawing {
+    let line = (font_size * 1.45).round();
+    let bar = Bar::of(projection, (0.3 * projection.size[0]).min(MAX_BAR));
     let arrow_side = north_size((height as f32).min(280.0));
     let foot = bar.size()[1].max(arrow_side) + 2.0;
     // A small legend has no room for the note.
@@ -202,30 +203,30 @@ fn legend(entries: &[Entry], letters: f32, height: u32, places: &Places) -> Draw
     } else {
         ""
     };
-    let note_height = if note.is_empty() { 0.0 } else { letters + 6.0 };
-    let rooms = (((height as f32 - foot - note_height - 6.0) / line).floor().max(1.0)) as usize;
+    let note_height = if note.is_empty() { 0.0 } else { font_size + 6.0 };
+    let max_lines = (((height as f32 - foot - note_height - 6.0) / line).floor().max(1.0)) as usize;
     let mut shown: Vec<(Option<Mark>, String)> = entries
         .iter()
         .map(|entry| (Some(entry.mark.clone()), entry.name.clone()))
         .collect();
-    if shown.len() > rooms {
+    if shown.len() > max_lines {
         // The agent needs no explanation.
         shown.rotate_left(1);
-        let left_out = shown.len() - rooms + 1;
-        shown.truncate(rooms - 1);
-        // Without entries above, it would be meaningless.
+        let left_out = shown.len() - max_lines + 1;
+        shown.truncate(max_lines - 1);
+        // Without entries above it, the count would be meaningless.
         if !shown.is_empty() {
             shown.push((None, format!("and {left_out} more")));
         }
     }
-    let left = 6.0 + letters * 1.6;
+    let left = 6.0 + font_size * 1.6;
     let names = shown.iter().map(|(_, name)| name.as_str()).chain([note]);
-    let wide = names.map(|name| text_width(name, letters)).fold(0.0, f32::max);
+    let wide = names.map(|name| text_width(name, font_size)).fold(0.0, f32::max);
     let wide = (left + wide + 6.0).max(bar.size()[0] + arrow_side + 10.0);
     let mut legend = Drawing::blank(wide.ceil() as u32, height);
     for (number, (mark, name)) in shown.iter().enumerate() {
         let y = 6.0 + line * (number as f32 + 0.5);
-        let (x, r) = (6.0 + letters * 0.6, letters * 0.42);
+        let (x, r) = (6.0 + font_size * 0.6, font_size * 0.42);
         match mark {
             Some(Mark::Colors(colors)) => swatch(&mut legend, [x, y], r, colors),
             Some(Mark::Zone(color)) => {
@@ -241,17 +242,17 @@ fn legend(entries: &[Entry], letters: f32, height: u32, places: &Places) -> Draw
                 legend.line([[x - r, y], [x + r, y]], 4.0, INK);
                 legend.line([[x - r, y], [x + r, y]], 2.4, TRAIL);
             }
-            Some(Mark::Way) => {
+            Some(Mark::Path) => {
                 legend.line([[x - r, y], [x + r, y]], 4.0, INK);
                 legend.line([[x - r, y], [x + r, y]], 2.0, WHITE);
             }
             None => {}
         }
-        legend.write(TextLine::new(name, [left, y], letters, INK).anchored(Side::Left, Level::Middle));
+        legend.write(TextLine::new(name, [left, y], font_size, INK).anchored(Side::Left, Level::Middle));
     }
     let top = height as f32 - foot;
     if !note.is_empty() {
-        let words = TextLine::new(note, [6.0, top - 5.0], letters * 0.9, [110, 116, 124]);
+        let words = TextLine::new(note, [6.0, top - 5.0], font_size * 0.9, [110, 116, 124]);
         legend.write(words.anchored(Side::Left, Level::Bottom));
     }
     bar.draw(&mut legend, [2.0, height as f32 - bar.size()[1] - 2.0], false);

@@ -1,4 +1,4 @@
-//! Scale and north of a map: converts metres to pixels, and draws a labelled bar and an arrow in the corners where they cover
+//! The scale of a map: converts metres to pixels, and draws a labelled bar and a north arrow in the corners where they cover
 //! least.
 
 #![expect(clippy::disallowed_methods, reason = "only positions of lines and labels on a map")]
@@ -9,13 +9,13 @@ use driftworld_report::picture::{Drawing, Level, Rgb, Side, TextLine, text_width
 const INK: Rgb = [20, 24, 30];
 const WHITE: Rgb = [255, 255, 255];
 
-/// Converts metres to pixels of a map.
-pub(crate) struct Places {
+/// Converts positions in metres to pixels of a map.
+pub(crate) struct MapProjection {
     pub(crate) size: [f32; 2],
     pub(crate) scale: f32,
 }
 
-impl Places {
+impl MapProjection {
     pub(crate) fn of(scene: &Scene, [width, height]: [u32; 2]) -> Self {
         Self {
             size: [width as f32, height as f32],
@@ -29,15 +29,15 @@ impl Places {
     }
 
     pub(crate) fn pixels(&self, metres: &[[f32; 2]]) -> Vec<[f32; 2]> {
-        metres.iter().map(|place| self.pixel(*place)).collect()
+        metres.iter().map(|point| self.pixel(*point)).collect()
     }
 }
 
-/// Corners of a map as (right, bottom), the bar's default first, north's last.
+/// Corners of a map as (right, bottom): the scale bar prefers the first, north the last.
 pub(crate) const CORNERS: [[bool; 2]; 4] = [[false, true], [true, true], [false, false], [true, false]];
 
-/// Takes from the list the corner where a box of this size covers the least weight of marks; returns the box's top left
-/// pixel.
+/// Removes from the list the corner where a box of this size covers the least weight of marks, and returns the box's top left
+/// pixel there.
 pub(crate) fn freest(
     corners: &mut Vec<[bool; 2]>,
     size: [f32; 2],
@@ -46,7 +46,7 @@ pub(crate) fn freest(
 ) -> [f32; 2] {
     let edge = (map[1] / 40.0).round();
     let near = map[1] / 20.0;
-    let place = |corner: [bool; 2]| {
+    let top_left = |corner: [bool; 2]| {
         [0, 1].map(|axis| {
             if corner[axis] {
                 map[axis] - edge - size[axis]
@@ -56,7 +56,7 @@ pub(crate) fn freest(
         })
     };
     let cost = |corner: [bool; 2]| -> f32 {
-        let at = place(corner);
+        let at = top_left(corner);
         let covers = |mark: [f32; 2]| {
             [0, 1]
                 .into_iter()
@@ -74,44 +74,44 @@ pub(crate) fn freest(
             best = number;
         }
     }
-    place(corners.remove(best))
+    top_left(corners.remove(best))
 }
 
-/// The length of a bar in metres: a round number, at most `most`.
-fn bar_metres(most: f32) -> f32 {
-    let power = 10_f32.powf(most.log10().floor());
+/// The length of a bar in metres: a round number, at most `max`.
+fn bar_metres(max: f32) -> f32 {
+    let power = 10_f32.powf(max.log10().floor());
     let steps = [5.0, 2.0, 1.0].into_iter().map(|step| step * power);
-    steps.into_iter().find(|step| *step <= most).unwrap_or(power)
+    steps.into_iter().find(|step| *step <= max).unwrap_or(power)
 }
 
 /// A bar with its length.
 pub(crate) struct Bar {
     label: String,
-    long: f32,
-    letters: f32,
-    thick: f32,
+    length: f32,
+    font_size: f32,
+    height: f32,
 }
 
 impl Bar {
     /// The bar of a map, at most this long in pixels.
-    pub(crate) fn of(places: &Places, most: f32) -> Self {
-        let metres = bar_metres(most / places.scale);
-        let size = places.size[1];
+    pub(crate) fn of(projection: &MapProjection, max: f32) -> Self {
+        let metres = bar_metres(max / projection.scale);
+        let size = projection.size[1];
         Self {
             label: format!("{metres} m"),
-            long: metres * places.scale,
-            letters: (size / 22.0).clamp(9.0, 20.0),
-            thick: (size / 100.0).clamp(2.0, 8.0).round(),
+            length: metres * projection.scale,
+            font_size: (size / 22.0).clamp(9.0, 20.0),
+            height: (size / 100.0).clamp(2.0, 8.0).round(),
         }
     }
 
-    /// Its size in pixels, with label and rim.
+    /// The bar's size in pixels, with label and rim.
     pub(crate) fn size(&self) -> [f32; 2] {
-        let wide = self.long.max(text_width(&self.label, self.letters)) + 8.0;
-        [wide, (self.letters * 1.1 + self.thick + 7.0).ceil()]
+        let wide = self.length.max(text_width(&self.label, self.font_size)) + 8.0;
+        [wide, (self.font_size * 1.1 + self.height + 7.0).ceil()]
     }
 
-    /// Draws it with its top left corner at this position; on a map, with a light background.
+    /// Draws the bar with its top left corner at this position; on a map, with a light background.
     pub(crate) fn draw(&self, on: &mut Drawing, [left, top]: [f32; 2], on_a_map: bool) {
         let [wide, high] = self.size();
         if on_a_map {
@@ -122,8 +122,8 @@ impl Bar {
                 0.75,
             );
         }
-        on.write(TextLine::new(&self.label, [left + 4.0, top + 3.0], self.letters, INK));
-        let bar = [left + 4.0, top + high - self.thick - 3.0, self.long, self.thick];
+        on.write(TextLine::new(&self.label, [left + 4.0, top + 3.0], self.font_size, INK));
+        let bar = [left + 4.0, top + high - self.height - 3.0, self.length, self.height];
         on.rectangle(bar, [0, 0, 0]);
     }
 }

@@ -1,4 +1,4 @@
-//! Distance matrices as files: CSV or JSON, by file extension.
+//! Reads and writes distance matrices as CSV or JSON, by file extension.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use driftworld_text::{Cells, ShownPath, WordKind, removed};
 
 use crate::{Failure, argument, documents, output_file};
 
-/// Largest matrix file that is read, in bytes. The file and the matrix are in memory together.
+/// Maximum size of a matrix file in bytes. Its text and the matrix are in memory at the same time.
 pub const MAX_MATRIX_BYTES: u64 = 400 << 20;
 
 /// The format given by a file's name.
@@ -31,12 +31,12 @@ fn format(option: &str, path: &Path) -> Result<Format, Failure> {
     }
 }
 
-/// Refuses a name without a known format, before anything is measured.
+/// Refuses a file name without a known extension, so that this is noticed before anything is measured.
 pub(crate) fn expect_name(option: &str, path: &Path) -> Result<(), Failure> {
     format(option, path).map(|_| ())
 }
 
-/// Writes a matrix. CSV escapes labels that a spreadsheet would take for formulas, unless `cells` are raw.
+/// Writes a matrix. In CSV, labels that a spreadsheet would read as formulas are escaped unless `cells` is [`Cells::Raw`].
 pub(crate) fn write(option: &str, path: &Path, matrix: &DistanceMatrix, cells: Cells) -> Result<(), Failure> {
     match format(option, path)? {
         Format::Csv => output_file::write(path, matrix.to_csv_with(cells).as_bytes()),

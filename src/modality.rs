@@ -44,7 +44,7 @@ pub(crate) fn gray_rgb(metres: &[f32]) -> Vec<u8> {
     depth_to_gray(metres).into_iter().flat_map(|gray| [gray; 3]).collect()
 }
 
-/// A colour for a number, different from its neighbours'; black for 0.
+/// A colour for a number, different from those of its neighbours; black for 0.
 pub fn number_color(number: u32) -> [u8; 3] {
     [97_u32, 53, 151].map(|step| {
         let share = number.wrapping_mul(step) % 192;
@@ -59,7 +59,7 @@ pub(crate) fn to_png(kind: Modality, frame: &Frame, metres_per_level: f32) -> Re
     let (width, height) = (frame.width, frame.height);
     let picture = |rgb: Vec<u8>| Picture { width, height, rgb }.to_png();
     let gray = |levels: Vec<u16>| Gray { width, height, levels }.to_png();
-    let cut = |number: &u32| u16::try_from(*number).unwrap_or(u16::MAX);
+    let clamped = |number: &u32| u16::try_from(*number).unwrap_or(u16::MAX);
     match kind {
         Modality::Rgb | Modality::Segmentation => picture(to_rgb(kind, frame, number_color)),
         Modality::Depth => {
@@ -67,11 +67,12 @@ pub(crate) fn to_png(kind: Modality, frame: &Frame, metres_per_level: f32) -> Re
             gray(frame.depth.iter().map(level).collect())
         }
         Modality::Class => gray(frame.class.clone()),
-        Modality::Instance => gray(frame.instance.iter().map(cut).collect()),
+        Modality::Instance => gray(frame.instance.iter().map(clamped).collect()),
     }
 }
 
-/// The finest of millimetres, centimetres and decimetres that can represent twice a distance.
+/// The size of a depth level: the finest of a millimetre, a centimetre and a decimetre with which 16 bits can represent twice a
+/// distance.
 pub(crate) fn metres_per_level(distance: f32) -> f32 {
     let fine = [0.001, 0.01].into_iter().find(|level| 2.0 * distance < level * FULL);
     fine.unwrap_or(0.1)

@@ -44,7 +44,7 @@ pub(crate) fn within(text: &str, is_sound: impl FnOnce(f64) -> bool, expected: &
     number.ok_or_else(|| format!("expected {expected}"))
 }
 
-/// Parses words that are also used in documents, each listed with an optional help text after a colon.
+/// Parses words of an enum as in documents. Each may be listed with a help text after a colon.
 pub(crate) fn documented<T>(words: &'static [&'static str]) -> impl TypedValueParser<Value = T>
 where
     T: DeserializeOwned + Clone + Send + Sync + 'static,

@@ -1,4 +1,4 @@
-//! [`OrderRequest`]: how variants are ordered, with the ends given by name.
+//! [`OrderRequest`]: how to order variants, with the first and last given by name.
 
 use std::str::FromStr;
 
@@ -11,7 +11,7 @@ use serde::Deserialize;
 use crate::{Failure, argument, request, tasks};
 
 /// Maximum number of labels in a message.
-const MOST_LISTED: usize = 20;
+const MAX_LISTED: usize = 20;
 
 /// How an order is found.
 #[derive(Args, Clone, Debug, Default, Deserialize)]
@@ -69,7 +69,7 @@ impl DesignOrder {
         ("named", Self::Named),
     ];
 
-    /// The method for it; `None` for the shortest path, whose method depends on the number of items.
+    /// The method for this order; `None` for the shortest path, whose method depends on the number of items.
     pub(crate) fn method(self) -> Option<Method> {
         match self {
             Self::Gradual => Some(Method::Gradual),
@@ -116,7 +116,7 @@ impl FromStr for OrderWord {
 }
 
 impl OrderRequest {
-    /// The order by purpose, if one is named.
+    /// The requested order by purpose, if any.
     pub(crate) fn purpose(&self) -> Option<DesignOrder> {
         match self.order {
             Some(OrderWord::Design(order)) => Some(order),
@@ -124,7 +124,7 @@ impl OrderRequest {
         }
     }
 
-    /// The method, if one is named.
+    /// The requested method, if any.
     pub(crate) fn own_method(&self) -> Option<Method> {
         match self.order {
             Some(OrderWord::Method(method)) => Some(method),
@@ -132,14 +132,14 @@ impl OrderRequest {
         }
     }
 
-    /// The method named, that of the order by purpose, or the default one.
+    /// The requested method, or else the method for the requested purpose, or else the default.
     fn method(&self, items: usize) -> Method {
         let of_purpose = || self.purpose().and_then(DesignOrder::method);
         let method = self.own_method().or_else(of_purpose);
         method.unwrap_or_else(|| Method::default_for(items))
     }
 
-    /// The same, with ends as they are called in a matrix.
+    /// The same request, with the first and last variants named as in a matrix.
     pub(crate) fn labelled(&self) -> Self {
         Self {
             start: self.start.as_deref().map(tasks::label_of),
@@ -169,21 +169,21 @@ impl OrderRequest {
         Ok((method, ordering))
     }
 
-    /// Like [`Self::order`], but if no start is given, starts at whichever of `firsts` gives the shortest path.
+    /// Like [`Self::order`], but if no start is given, starts at whichever of `starts` gives the shortest path.
     pub(crate) fn order_from(
         &self,
         matrix: &DistanceMatrix,
         seed: u64,
-        firsts: &[usize],
+        starts: &[usize],
     ) -> Result<(Method, Ordering), Failure> {
         let method = self.method(matrix.len());
-        if self.start.is_some() || !method.seeks_from_a_first() || firsts.is_empty() || firsts.len() == matrix.len() {
+        if self.start.is_some() || !method.seeks_from_a_first() || starts.is_empty() || starts.len() == matrix.len() {
             return self.order(matrix, seed);
         }
         let last = self.options(matrix, seed)?.last;
         let mut best: Option<(Method, Ordering)> = None;
         // The requested last item cannot also be the first.
-        for first in firsts.iter().filter(|first| Some(**first) != last) {
+        for first in starts.iter().filter(|first| Some(**first) != last) {
             let from = Self {
                 start: Some(matrix.labels()[*first].clone()),
                 ..self.clone()
@@ -204,7 +204,7 @@ impl OrderRequest {
                 Failure::input(format!(
                     "{}: found {name:?}{found}, expected one of {}{near}",
                     argument(option),
-                    first_of(matrix.labels(), MOST_LISTED)
+                    first_of(matrix.labels(), MAX_LISTED)
                 ))
             })
         };
@@ -219,23 +219,25 @@ impl OrderRequest {
     }
 }
 
-/// The index of a label, by the full label or by the variant's name alone if that is unique; otherwise a remark for the error
-/// message.
+/// The index of a label, found by the full label, or by the variant's name alone if that is unique.
+///
+/// # Errors
+/// A remark to insert in the error message.
 pub(crate) fn position_of<S: AsRef<str>>(labels: &[S], name: &str) -> Result<usize, &'static str> {
-    if let Some(place) = labels.iter().position(|label| label.as_ref() == name) {
-        return Ok(place);
+    if let Some(index) = labels.iter().position(|label| label.as_ref() == name) {
+        return Ok(index);
     }
-    // A task given by its path may also be called by its name.
+    // A task given by its path may also be named without it.
     if name.contains('#') {
-        let is_it = |label: &S| bare(label.as_ref()) == bare(name) && tasks::label_of(label.as_ref()) == name;
-        return labels.iter().position(is_it).ok_or("");
+        let is_same = |label: &S| bare(label.as_ref()) == bare(name) && tasks::label_of(label.as_ref()) == name;
+        return labels.iter().position(is_same).ok_or("");
     }
     let mut found = labels
         .iter()
         .enumerate()
         .filter(|(_, label)| bare(label.as_ref()) == name);
     match (found.next(), found.next()) {
-        (Some((place, _)), None) => Ok(place),
+        (Some((index, _)), None) => Ok(index),
         (Some(_), Some(_)) => Err(", which several tasks have"),
         _ => Err(""),
     }

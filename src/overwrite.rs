@@ -1,4 +1,4 @@
-//! Refuses to overwrite files of a log, and the command's own inputs: a typo must not destroy data.
+//! Refuses to overwrite files of a log and the command's own inputs, so that a typo does not destroy data.
 
 use std::path::{Path, PathBuf};
 
@@ -21,7 +21,7 @@ pub(crate) fn exists(path: &Path, advice: &str) -> Failure {
     Failure::in_file(path, format!("found a file, expected none; {advice}"))
 }
 
-/// Refuses a file of a log, and one that would be read as such a file if it existed.
+/// Refuses a path inside a log that is, or would be read as, one of the log's files.
 pub(crate) fn refuse_log_files(target: &Path) -> Result<(), Failure> {
     let name = target.file_name().unwrap_or_default();
     if !LOG_FILES.iter().any(|log_file| name == *log_file) {
@@ -40,22 +40,22 @@ pub(crate) fn refuse_log_files(target: &Path) -> Result<(), Failure> {
     }
 }
 
-/// Refuses the same file for two outputs: `targets` are options with the files that they name.
+/// Refuses the same file for two outputs; `targets` are the options and the files that they name.
 pub(crate) fn refuse_same(targets: &[(&str, PathBuf)]) -> Result<(), Failure> {
-    // Resolves the folder, because the file may not exist yet.
-    let place = |path: &Path| {
-        let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-        whole
+    // Resolve the folder, because the file may not exist yet.
+    let resolved = |path: &Path| {
+        let absolute = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        absolute
             .canonicalize()
-            .unwrap_or_else(|_| match (whole.parent(), whole.file_name()) {
+            .unwrap_or_else(|_| match (absolute.parent(), absolute.file_name()) {
                 (Some(folder), Some(name)) => folder.canonicalize().unwrap_or_else(|_| folder.to_owned()).join(name),
-                _ => whole,
+                _ => absolute,
             })
     };
     let files = targets.iter().filter(|(_, path)| !path.starts_with("/dev"));
     let mut known: Vec<(&str, PathBuf)> = Vec::new();
     for (option, path) in files {
-        let own = place(path);
+        let own = resolved(path);
         if let Some((other, _)) = known.iter().find(|(_, other)| *other == own) {
             return Err(Failure::usage(format!(
                 "--{option}: found {}, the file of --{other}, expected another file; one would overwrite the other",
@@ -69,12 +69,12 @@ pub(crate) fn refuse_same(targets: &[(&str, PathBuf)]) -> Result<(), Failure> {
 
 /// Refuses a file that the command reads: `names` are paths, with or without a variant appended.
 pub(crate) fn refuse_inputs<'a>(target: &Path, names: impl IntoIterator<Item = &'a str>) -> Result<(), Failure> {
-    let Ok(target_itself) = target.canonicalize() else {
+    let Ok(canonical) = target.canonicalize() else {
         return Ok(());
     };
-    let is_target = |path: &str| Path::new(path).canonicalize().is_ok_and(|path| path == target_itself);
+    let is_target = |path: &str| Path::new(path).canonicalize().is_ok_and(|path| path == canonical);
     let is_read = |name: &str| is_target(name) || is_target(tasks::split(name).0);
-    if target_itself.is_file() && names.into_iter().any(is_read) {
+    if canonical.is_file() && names.into_iter().any(is_read) {
         let found = "found the input file, expected another file to write; the input would be overwritten";
         return Err(Failure::in_file(target, found));
     }

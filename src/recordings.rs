@@ -1,4 +1,4 @@
-//! Finds recorded episodes: in a log by the number of an experience, or in a file of recordings.
+//! Finds recorded episodes by their numbers, in a log or in a file of recordings.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -18,7 +18,7 @@ pub struct RecordedEpisodes {
     rows: Option<BTreeMap<u64, Vec<LoggedRow>>>,
     /// Whether the log was written by one of our runs.
     is_ours: bool,
-    /// The last file read, with its block.
+    /// The file read last, with its block.
     file: Option<(Block, Option<RecordingsFile>)>,
 }
 
@@ -39,7 +39,7 @@ impl RecordedEpisodes {
     /// # Errors
     /// If it is neither, or cannot be read.
     pub fn open(path: &Path) -> Result<Self, Failure> {
-        let mut this = Self {
+        let mut episodes = Self {
             path: path.to_owned(),
             rows: None,
             is_ours: false,
@@ -48,19 +48,19 @@ impl RecordedEpisodes {
         if !path.is_dir() {
             let file = RecordingsFile::open(path)?;
             let missing = || Failure::in_file(path, "found no such file, expected a log or recordings");
-            this.file = Some(((String::new(), 0, BlockType::Train), Some(file.ok_or_else(missing)?)));
-            return Ok(this);
+            episodes.file = Some(((String::new(), 0, BlockType::Train), Some(file.ok_or_else(missing)?)));
+            return Ok(episodes);
         }
         if let Some(other) = OtherContents::check(path, Contents::of_folder(path), &[Contents::Log]) {
             return Err(other.into());
         }
         let log = read_log_with_texts(path)?;
         // In other programs' logs, columns with these names may have a different meaning, such as a scaled reward.
-        this.is_ours = log.scenario_info.extra.contains_key("made_from");
-        let rows: &mut BTreeMap<u64, Vec<LoggedRow>> = this.rows.get_or_insert_default();
+        episodes.is_ours = log.scenario_info.extra.contains_key("made_from");
+        let rows: &mut BTreeMap<u64, Vec<LoggedRow>> = episodes.rows.get_or_insert_default();
         for row in log.rows.iter() {
             let of_number = rows.entry(row.exp_num()).or_default();
-            // The last row of a worker completes the episode.
+            // Only the worker's last row for this number counts: it completes the episode.
             of_number.retain(|other| other.block.0 != row.worker_id());
             of_number.push(LoggedRow {
                 block: (row.worker_id().to_owned(), row.block_num(), row.block_type()),
@@ -68,21 +68,20 @@ impl RecordedEpisodes {
                 steps: row.metric("episode_step_count"),
             });
         }
-        Ok(this)
+        Ok(episodes)
     }
 
-    /// The numbers of the episodes with rows, each with its worker, or of those in the file of recordings. Ordered by
-    /// block, so that each file is read once.
+    /// The numbers of all episodes, for a log each with its worker. They are ordered by block, so that each file is read once.
     pub fn all(&self) -> Vec<(u64, Option<String>)> {
         let Some(rows) = &self.rows else {
-            let numbers: BTreeSet<u64> = self.listed().map(|origin| origin.experience).collect();
+            let numbers: BTreeSet<u64> = self.episodes_in_file().map(|origin| origin.experience).collect();
             return numbers.into_iter().map(|number| (number, None)).collect();
         };
-        let mut all: Vec<(&Block, u64)> = (rows.iter())
+        let mut keys: Vec<(&Block, u64)> = (rows.iter())
             .flat_map(|(number, rows)| rows.iter().map(|row| (&row.block, *number)))
             .collect();
-        all.sort_by_key(|((worker, block, kind), number)| (*block, kind.name(), worker, *number));
-        all.into_iter()
+        keys.sort_by_key(|((worker, block, kind), number)| (*block, kind.name(), worker, *number));
+        keys.into_iter()
             .map(|((worker, ..), number)| (number, Some(worker.clone())))
             .collect()
     }
@@ -93,8 +92,8 @@ impl RecordedEpisodes {
         file.as_ref()?.damage()
     }
 
-    /// The recording of an episode; `None` if a log has its row but did not record it. If several workers have an episode of
-    /// this number, `worker` chooses one.
+    /// The recording of an episode; `None` if a log has its row but no recording. If several workers have an episode with this
+    /// number, `worker` selects one.
     ///
     /// # Errors
     /// If there is no such episode, or its recording is damaged.
@@ -115,10 +114,10 @@ impl RecordedEpisodes {
         }
     }
 
-    /// Replays an episode, and compares it with its recording and, if there is one, with its row in the log.
+    /// Replays an episode, and compares the result with its recording and, in a log, with its row.
     ///
     /// # Errors
-    /// The difference.
+    /// A [`Failure`] that states the difference.
     pub fn check(&self, recording: &Recording, worker: Option<&str>, catalogue: &Catalogue) -> Result<(), Failure> {
         let mut replay = Replay::new(recording, catalogue);
         while replay.step()?.is_some() {}
@@ -129,7 +128,7 @@ impl RecordedEpisodes {
     /// Compares a recording with its row in the log, if one of our runs wrote it.
     ///
     /// # Errors
-    /// The difference.
+    /// A [`Failure`] that states the difference.
     pub fn check_row(&self, recording: &Recording, worker: Option<&str>) -> Result<(), Failure> {
         if !self.is_ours {
             return Ok(());
@@ -177,19 +176,19 @@ impl RecordedEpisodes {
     }
 
     /// The episodes of a file.
-    fn listed(&self) -> impl Iterator<Item = &EpisodeOrigin> {
+    fn episodes_in_file(&self) -> impl Iterator<Item = &EpisodeOrigin> {
         let file = self.file.iter().filter_map(|(_, file)| file.as_ref());
         file.flat_map(RecordingsFile::episodes)
     }
 
     fn missing(&self, number: u64) -> Failure {
         let numbers: BTreeSet<u64> = self.all().into_iter().map(|(number, _)| number).collect();
-        let there = match (numbers.first(), numbers.last()) {
+        let available = match (numbers.first(), numbers.last()) {
             (Some(first), Some(last)) if first == last => format!("episode {first}"),
             (Some(first), Some(last)) => format!("one of episodes {first} to {last}"),
             _ => "an episode, and there is none".to_owned(),
         };
-        Failure::in_file(&self.path, format!("found no episode {number}, expected {there}"))
+        Failure::in_file(&self.path, format!("found no episode {number}, expected {available}"))
     }
 
     /// The error for an episode of a log that was not recorded, with advice.

@@ -1,4 +1,4 @@
-//! Remarks on the worlds that a task draws, each once, with its first occurrence.
+//! Collects remarks on the worlds that a task draws. Each remark is made once, with its first occurrence.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -8,10 +8,10 @@ use driftworld_spec::{Legend, TaskSpec, World, did_you_mean};
 use rayon::prelude::*;
 
 /// Maximum number of worlds checked per variant.
-pub(crate) const MOST_LOOKED_THROUGH: u64 = 100;
+pub(crate) const MAX_CHECKED_WORLDS: u64 = 100;
 
 /// A remark on some worlds of a task.
-struct Odd {
+struct Remark {
     /// The remark without its numbers, which may differ from world to world.
     kind: String,
     pointer: String,
@@ -25,9 +25,9 @@ struct Odd {
 
 /// Remarks on the first worlds of each variant, as sentences. Worlds that cannot be drawn are skipped.
 pub(crate) fn of_task(task: &Arc<TaskSpec>, seed: u64, worlds: u64) -> Vec<String> {
-    let worlds = worlds.clamp(1, MOST_LOOKED_THROUGH);
+    let worlds = worlds.clamp(1, MAX_CHECKED_WORLDS);
     let variants = task.all_variants();
-    let each: Vec<Vec<Odd>> = variants
+    let by_variant: Vec<Vec<Remark>> = variants
         .par_iter()
         .map(|variant| {
             let sampler = Sampler::new(variant, seed);
@@ -37,10 +37,10 @@ pub(crate) fn of_task(task: &Arc<TaskSpec>, seed: u64, worlds: u64) -> Vec<Strin
                 if let Ok(world) = sampler.world(index) {
                     let own = world.remarks_without_text().into_iter();
                     let own = own.map(|remark| (remark.pointer, remark.text));
-                    let all = own.chain(unknown_groups(&world, &groups));
+                    let remarks = own.chain(unknown_groups(&world, &groups));
                     gather(
                         &mut found,
-                        all.map(|(pointer, text)| odd(pointer, text, variant.name(), index)),
+                        remarks.map(|(pointer, text)| remark(pointer, text, variant.name(), index)),
                     );
                 }
             }
@@ -48,35 +48,32 @@ pub(crate) fn of_task(task: &Arc<TaskSpec>, seed: u64, worlds: u64) -> Vec<Strin
         })
         .collect();
     let mut found = Vec::new();
-    for own in each {
+    for own in by_variant {
         gather(&mut found, own.into_iter());
     }
-    let all = variants.len() as u64 * worlds;
-    found.iter().map(|odd| odd.in_words(all)).collect()
+    let total = variants.len() as u64 * worlds;
+    found.iter().map(|remark| remark.sentence(total)).collect()
 }
 
 /// Groups that the legend of a world's layout names but its task does not have.
 fn unknown_groups(world: &World, groups: &[&str]) -> Vec<(String, String)> {
     let legend = world.environment_params.layout.iter().flat_map(|layout| &layout.legend);
-    let unknown = legend.filter_map(|(letter, meaning)| match meaning {
-        Legend::Group(group) if !groups.contains(&group.as_str()) => Some((letter, group)),
+    let unknown = legend.filter_map(|(symbol, meaning)| match meaning {
+        Legend::Group(group) if !groups.contains(&group.as_str()) => Some((symbol, group)),
         _ => None,
     });
-    let remark = |(letter, group): (&String, &String)| {
+    let remark = |(symbol, group): (&String, &String)| {
         let near = did_you_mean(group, groups.iter().copied());
         let text =
-            format!("no group of the task is called {group:?}: nothing is placed at the letters {letter:?}{near}");
-        (format!("/environment_params/layout/legend/{letter}"), text)
+            format!("no group of the task is called {group:?}: nothing is placed at the letters {symbol:?}{near}");
+        (format!("/environment_params/layout/legend/{symbol}"), text)
     };
     unknown.map(remark).collect()
 }
 
-fn odd(pointer: String, text: String, variant: &str, index: u64) -> Odd {
-    Odd {
-        kind: text
-            .chars()
-            .filter(|letter| !matches!(letter, '0'..='9' | '-' | '.'))
-            .collect(),
+fn remark(pointer: String, text: String, variant: &str, index: u64) -> Remark {
+    Remark {
+        kind: text.chars().filter(|c| !matches!(c, '0'..='9' | '-' | '.')).collect(),
         pointer,
         text,
         variant: variant.to_owned(),
@@ -86,24 +83,24 @@ fn odd(pointer: String, text: String, variant: &str, index: u64) -> Odd {
     }
 }
 
-/// Adds new remarks to earlier ones: a world counts once per kind.
-fn gather(found: &mut Vec<Odd>, more: impl Iterator<Item = Odd>) {
+/// Merges new remarks into earlier ones of the same kind; a world counts once per kind.
+fn gather(found: &mut Vec<Remark>, more: impl Iterator<Item = Remark>) {
     let mut seen = BTreeSet::new();
-    for odd in more {
-        let is_first = seen.insert((odd.kind.clone(), odd.variant.clone()));
-        match found.iter_mut().find(|known| known.kind == odd.kind) {
+    for remark in more {
+        let is_first = seen.insert((remark.kind.clone(), remark.variant.clone()));
+        match found.iter_mut().find(|known| known.kind == remark.kind) {
             Some(known) if is_first => {
-                known.worlds += odd.worlds;
-                known.variants.extend(odd.variants);
+                known.worlds += remark.worlds;
+                known.variants.extend(remark.variants);
             }
             Some(_) => {}
-            None => found.push(odd),
+            None => found.push(remark),
         }
     }
 }
 
-impl Odd {
-    fn in_words(&self, all: u64) -> String {
+impl Remark {
+    fn sentence(&self, total: u64) -> String {
         let Self {
             pointer,
             text,
@@ -117,7 +114,7 @@ impl Odd {
             1 => String::new(),
             many => format!(", of {many} variants"),
         };
-        format!("world {index} of {variant} ({pointer}): {text} (in {worlds} of {all} worlds{of})")
+        format!("world {index} of {variant} ({pointer}): {text} (in {worlds} of {total} worlds{of})")
     }
 }
 
@@ -177,7 +174,7 @@ mod tests {
             .unwrap()
             .parse()
             .unwrap();
-        // Half of them lie beyond 10 m, and both variants have the same worlds.
+        // Half of the objects lie beyond 10 m, and both variants have the same worlds.
         assert!(outside > 60 && outside < 140 && outside.is_multiple_of(2), "{found:?}");
     }
 }

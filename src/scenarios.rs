@@ -14,13 +14,13 @@ use crate::documents::{self, DocumentError, Kind};
 use crate::tasks::{self, TaskError};
 use crate::worlds;
 
-/// Maximum number of files read to find a world whose name is similar to that of a missing one.
-const MOST_READ: usize = 8;
+/// Maximum number of files read in search of a world file with a name similar to the missing one's.
+const MAX_READ: usize = 8;
 
 /// Receives warnings.
 pub type Warn<'a> = &'a mut dyn FnMut(String);
 
-/// A scenario that was read, with the place to look for its world files.
+/// A scenario, with the path from which its tasks and world files are resolved.
 #[derive(Clone, Debug)]
 pub struct ScenarioFile {
     /// The scenario.
@@ -43,7 +43,7 @@ impl ScenarioFile {
         )?)
     }
 
-    /// Reads a scenario from its text; paths in it are resolved as if it were at `path`.
+    /// Parses a scenario's text; paths in it are resolved as if it were at `path`.
     ///
     /// # Errors
     /// [`SpecError`] with all faults.
@@ -57,7 +57,7 @@ impl ScenarioFile {
             }
             scenario
         } else {
-            // Checks against the tasks that can be found, so that all of their missing variants are reported at once.
+            // Check against the tasks that can be found, so that all of their missing variants are reported at once.
             Scenario::from_json_with(&name, text, |task| task_from(path, task).ok())?
         };
         Ok(Self {
@@ -67,7 +67,7 @@ impl ScenarioFile {
         })
     }
 
-    /// A different scenario, as if it were in the same file.
+    /// Replaces the scenario, as if it were in the same file.
     #[must_use]
     pub fn with_scenario(&self, scenario: &Scenario) -> Self {
         Self {
@@ -123,17 +123,17 @@ impl ScenarioFile {
         let folder = self.path.parent().unwrap_or(Path::new(""));
         let named = Path::new(named);
         let beside = named.file_name().map_or_else(PathBuf::new, |name| folder.join(name));
-        let meant = folder.join(named);
-        if meant.is_file() {
+        let expected = folder.join(named);
+        if expected.is_file() {
             return Ok(FoundWorld {
-                world: self.read_world(&meant)?,
+                world: self.read_world(&expected)?,
                 note: None,
             });
         }
         if beside.is_file() {
             warn(format!(
                 "{}: no such file; using {} beside the scenario",
-                meant.shown(),
+                expected.shown(),
                 beside.shown()
             ));
             return Ok(FoundWorld {
@@ -141,12 +141,12 @@ impl ScenarioFile {
                 note: None,
             });
         }
-        let looked = if meant == beside {
-            meant.shown().to_string()
+        let searched = if expected == beside {
+            expected.shown().to_string()
         } else {
-            format!("{} and {}", meant.shown(), beside.shown())
+            format!("{} and {}", expected.shown(), beside.shown())
         };
-        let stand_in = self.nearest(&[&meant, &beside]);
+        let stand_in = self.nearest(&[&expected, &beside]);
         match (stand_in, missing) {
             (Some(file), Missing::StandIn) => {
                 let used = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -167,7 +167,7 @@ impl ScenarioFile {
                     format!("; or use {} instead {option}", file.shown())
                 });
                 Err(format!(
-                    "found no file {:?}, looked for {looked}, expected a world file; put it there{advice}",
+                    "found no file {:?}, looked for {searched}, expected a world file; put it there{advice}",
                     named.display().to_string()
                 ))
             }
@@ -181,7 +181,7 @@ impl ScenarioFile {
             let folder = Some(documents::folder_of(wanted)).filter(|folder| folder.is_dir())?;
             let mut files = worlds::json_files(folder).unwrap_or_default();
             // Only files with similar names are read: a folder may contain anything.
-            for _ in 0..MOST_READ {
+            for _ in 0..MAX_READ {
                 let names = files
                     .iter()
                     .map(|file| file.file_name().unwrap_or_default().to_string_lossy());
@@ -212,7 +212,7 @@ impl ScenarioFile {
     }
 }
 
-/// The tasks and world files that a scenario names, so that it can be planned again even if the files change.
+/// The tasks and world files that a scenario names. With them it can be planned again even if the files change.
 #[derive(Clone, Debug, Default)]
 pub struct Named {
     /// Its tasks.

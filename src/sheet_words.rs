@@ -1,9 +1,10 @@
-//! Captions of a contact sheet: each entry's world and camera, its differences from another variant, and notes for all entries.
+//! Writes the captions of a contact sheet: each entry's world and camera, its differences from another variant, and notes for
+//! all entries.
 
 use driftworld_spec::{Element, Modality, Value, Variant};
 use driftworld_text::whole;
 
-use crate::contact_sheet::{Choice, Look, Shown};
+use crate::contact_sheet::{Choice, Item, Options};
 use crate::value_words::short;
 
 /// How the worlds of a variant are named.
@@ -11,16 +12,16 @@ use crate::value_words::short;
 pub(crate) enum Worlds {
     /// By index.
     Numbered,
-    /// By position in a scenario, whose indices mean nothing to a reader.
+    /// By position in a scenario: its indices mean nothing to a reader.
     OfScenario,
     /// The last world of a drift.
     EndOfDrift,
 }
 
-/// The most frequent place; ties go to the first.
-pub(crate) fn commonest(places: &[String]) -> Option<&String> {
-    let count = |place: &String| places.iter().filter(|other| *other == place).count();
-    places.iter().rev().max_by_key(|place| count(place))
+/// The most frequent viewpoint; ties go to the first.
+pub(crate) fn most_frequent(viewpoints: &[String]) -> Option<&String> {
+    let count = |viewpoint: &String| viewpoints.iter().filter(|other| *other == viewpoint).count();
+    viewpoints.iter().rev().max_by_key(|viewpoint| count(viewpoint))
 }
 
 /// "a", "a and b", "a, b and c".
@@ -33,27 +34,27 @@ fn listed<T: AsRef<str>>(words: &[T]) -> String {
 }
 
 /// Notes for all entries: the variants whose values are in brackets, and the most frequent viewpoint.
-pub(crate) fn below_all(bases: &[String], places: &[String], usual: Option<&String>) -> Option<String> {
-    let mut said = Vec::new();
+pub(crate) fn footer(bases: &[String], viewpoints: &[String], most_common: Option<&String>) -> Option<String> {
+    let mut notes = Vec::new();
     if !bases.is_empty() {
         let each = if bases.len() > 1 { "each " } else { "" };
-        said.push(format!(
+        notes.push(format!(
             "In brackets: the values of {}, {each}the first of its task.",
             listed(bases)
         ));
     }
-    if let Some(usual) = usual {
-        let which = if places.iter().all(|place| place == usual) {
+    if let Some(most_common) = most_common {
+        let which = if viewpoints.iter().all(|viewpoint| viewpoint == most_common) {
             "Each cell"
         } else {
             "Other cells"
         };
-        said.push(format!("{which}: {usual}."));
+        notes.push(format!("{which}: {most_common}."));
     }
-    (!said.is_empty()).then(|| said.join(" "))
+    (!notes.is_empty()).then(|| notes.join(" "))
 }
 
-/// Says what a picture shows instead of colours.
+/// A note on what a picture shows instead of colours.
 pub(crate) fn modality_words(modality: Modality) -> &'static str {
     match modality {
         Modality::Rgb => "",
@@ -65,14 +66,14 @@ pub(crate) fn modality_words(modality: Modality) -> &'static str {
 }
 
 /// Describes the world and the camera.
-pub(crate) fn placed(shown: &Shown, choice: Choice, look: Look) -> String {
-    let place = choice.world % shown.count.max(1);
+pub(crate) fn viewpoint(shown: &Item, choice: Choice, look: Options) -> String {
+    let offset = choice.world % shown.count.max(1);
     let world = match (look.index, shown.worlds) {
         (Some(index), _) => format!("world {index}"),
-        (None, Worlds::Numbered) => format!("world {}", shown.index + place),
+        (None, Worlds::Numbered) => format!("world {}", shown.index + offset),
         (None, Worlds::OfScenario) => {
             let order = ["first", "second", "third", "fourth"];
-            let word = order.get(place as usize).copied().unwrap_or("fifth or later");
+            let word = order.get(offset as usize).copied().unwrap_or("fifth or later");
             format!("its {word} world in the scenario")
         }
         (None, Worlds::EndOfDrift) => "its last world in the scenario".to_owned(),
@@ -86,7 +87,7 @@ pub(crate) fn placed(shown: &Shown, choice: Choice, look: Look) -> String {
     format!("{world}, {turn}")
 }
 
-/// The values of a variant that differ from another's, with the other's in brackets, in full.
+/// The values in which a variant differs from another, uncut, with the other's in brackets.
 pub(crate) fn differences(base: &Variant, variant: &Variant) -> String {
     let parameters = variant.task().parameters();
     let short = |name: &str, value: &Value| {
@@ -102,7 +103,7 @@ pub(crate) fn differences(base: &Variant, variant: &Variant) -> String {
         .map(|(name, value)| {
             let (own, other) = (short(name, value), of_base(name));
             let other = if own == other { "another".to_owned() } else { other };
-            // A map's value may begin with its name: "map 2, 60 × 60 m".
+            // A map's value may begin with the parameter's name: "map 2, 60 × 60 m".
             let own = own.strip_prefix(&format!("{name} ")).unwrap_or(&own);
             whole(&format!("{name} {own} ({other})"))
         })
@@ -110,8 +111,8 @@ pub(crate) fn differences(base: &Variant, variant: &Variant) -> String {
     parts.join(", ") + if parts.is_empty() { "" } else { "." }
 }
 
-/// Says that two variants look the same in the pictures, and which elements differ without being visible there.
-pub(crate) fn alike(base: &Variant, variant: &Variant, [view, map]: [bool; 2]) -> String {
+/// A note that two variants look the same in the pictures, with the elements that differ although the pictures do not show it.
+pub(crate) fn same_looks(base: &Variant, variant: &Variant, [view, map]: [bool; 2]) -> String {
     let what = match (view, map) {
         (true, true) => "Looks the same, and so does the map",
         (true, false) => "Looks the same from here",
@@ -148,16 +149,16 @@ mod tests {
         assert_eq!(listed(&["a", "b", "c", "d"]), "a, b, c and d");
     }
 
-    /// Differences between mazes are described as text, in full.
+    /// Layouts are described in words, not as cut JSON.
     #[test]
     fn layouts_in_captions_are_not_cut() {
         let task = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/worlds/maze.json");
         let task = tasks::task(task).expect("it is a task");
         let base = task.variant("medium").expect("it is declared");
-        let said: Vec<String> = (task.all_variants().iter())
+        let found: Vec<String> = (task.all_variants().iter())
             .map(|variant| differences(&base, variant))
             .collect();
-        assert!(said.contains(&whole("layout maze 4 × 4 (maze 8 × 8).")), "{said:?}");
-        assert!(said.iter().all(|words| !words.contains(['{', '…'])), "{said:?}");
+        assert!(found.contains(&whole("layout maze 4 × 4 (maze 8 × 8).")), "{found:?}");
+        assert!(found.iter().all(|words| !words.contains(['{', '…'])), "{found:?}");
     }
 }

@@ -1,11 +1,11 @@
-//! Colours of printed text: whether to use them, and what to highlight.
+//! Colours printed text: decides whether to use colours, and which parts to highlight.
 
 use std::io::IsTerminal;
 use std::sync::atomic::{AtomicU8, Ordering};
 
 use clap::ColorChoice;
 
-/// Marks the start of highlighted text: a Unicode noncharacter, which no text contains, followed by the style's own letter.
+/// Marks the start of highlighted text: a Unicode noncharacter, which no text contains. The letter of the style follows.
 const BEGIN: char = '\u{fdd0}';
 
 /// Marks the end of highlighted text.
@@ -26,16 +26,16 @@ pub(crate) fn follow(choice: ColorChoice) {
 
 /// Whether standard output gets colours.
 pub(crate) fn of_stdout() -> bool {
-    takes_colors(std::io::stdout().is_terminal())
+    shows_colors(std::io::stdout().is_terminal())
 }
 
 /// Whether standard error gets colours.
 pub(crate) fn of_stderr() -> bool {
-    takes_colors(std::io::stderr().is_terminal())
+    shows_colors(std::io::stderr().is_terminal())
 }
 
 /// `--color` overrides `NO_COLOR` and `TERM=dumb`, which override the kind of stream.
-fn takes_colors(is_terminal: bool) -> bool {
+fn shows_colors(is_terminal: bool) -> bool {
     match CHOICE.load(Ordering::Relaxed) {
         1 => true,
         2 => false,
@@ -97,7 +97,7 @@ impl Style {
         found.map(|(word, style)| (style, word.len()))
     }
 
-    /// Marks a text as highlighted on standard output, if that gets colours.
+    /// Marks a text as highlighted if standard output gets colours.
     pub(crate) fn on(self, text: &str) -> String {
         if of_stdout() && !text.is_empty() {
             format!("{BEGIN}{}{text}{END}", self.letter())
@@ -106,14 +106,14 @@ impl Style {
         }
     }
 
-    /// A text with terminal codes.
+    /// Encloses a text in terminal codes.
     pub(crate) fn painted(self, text: &str) -> String {
         format!("{}{text}\u{1b}[0m", self.sequence())
     }
 }
 
 /// Whether any part of a text is highlighted.
-pub(crate) fn is_set_off(text: &str) -> bool {
+pub(crate) fn is_highlighted(text: &str) -> bool {
     text.contains(BEGIN)
 }
 
@@ -123,12 +123,12 @@ pub(crate) fn paint(text: &str, shown: impl Fn(&str) -> String) -> String {
     let mut rest = text;
     while let Some((before, behind)) = rest.split_once(BEGIN) {
         painted.push_str(&shown(before));
-        let mut letters = behind.chars();
-        let style = letters
+        let mut characters = behind.chars();
+        let style = characters
             .next()
             .and_then(|letter| Style::ALL.into_iter().find(|style| style.letter() == letter));
-        let set_off = style.and_then(|style| Some((style, letters.as_str().split_once(END)?)));
-        rest = match set_off {
+        let highlighted = style.and_then(|style| Some((style, characters.as_str().split_once(END)?)));
+        rest = match highlighted {
             Some((style, (inside, behind))) => {
                 painted.push_str(&style.painted(&shown(inside)));
                 behind

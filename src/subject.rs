@@ -1,5 +1,5 @@
-//! The subject of a picture of a world, and whether a camera sees it: objects that pay, cost, move or are used, counted in
-//! pixels; and the free space before a camera.
+//! Finds the subjects of a picture of a world, such as rewarding or moving objects. Measures how much of them a camera sees, in
+//! pixels, and the free space before the camera.
 
 use driftworld_env::{Camera, Renderer, Scene, Target};
 use driftworld_spec::{MotionModel, World};
@@ -9,22 +9,23 @@ use crate::Failure;
 /// Width and height of the pictures whose pixels are counted.
 const SIDE: u32 = 64;
 
-/// Columns at each side that do not count: things there are cut off, or easily overlooked.
+/// Number of columns at each side that do not count: objects there are cut off, or easily overlooked.
 const MARGIN: u32 = SIDE / 8;
 
 /// An object with at least this many pixels counts as visible: a thousandth of the picture, a cube of 1 m from 30 m.
 pub(crate) const ENOUGH: u32 = SIDE * SIDE / 1000;
 
-/// The subjects of a picture: objects that pay, move, are used or ordered; else that cost or can be pushed; else all.
+/// The subjects of a picture: objects that pay, move, have a function or a place in an order; if there are none, objects that
+/// cost or can be pushed; else all objects.
 pub(crate) fn subjects(world: &World) -> Vec<usize> {
     let objects = || world.objects.iter().enumerate();
-    let chosen = |is_subject: &dyn Fn(&driftworld_spec::Object) -> bool| -> Vec<usize> {
+    let select = |is_subject: &dyn Fn(&driftworld_spec::Object) -> bool| -> Vec<usize> {
         objects()
             .filter(|(_, object)| is_subject(object))
             .map(|(index, _)| index)
             .collect()
     };
-    let main = chosen(&|object| {
+    let main = select(&|object| {
         object.is_target()
             || object.is_used()
             || object.motion_model != MotionModel::Stationary
@@ -33,8 +34,8 @@ pub(crate) fn subjects(world: &World) -> Vec<usize> {
     if !main.is_empty() {
         return main;
     }
-    let costly = chosen(&|object| object.reward != 0.0 || object.pushable.is_some());
-    if costly.is_empty() { chosen(&|_| true) } else { costly }
+    let costly = select(&|object| object.reward != 0.0 || object.pushable.is_some());
+    if costly.is_empty() { select(&|_| true) } else { costly }
 }
 
 /// How much of its subjects a camera sees.
@@ -70,7 +71,7 @@ pub(crate) fn sight(
     renderer.draw(scene, camera, &mut target)?;
     let mut counts = vec![0_u32; scene.items.len()];
     let counted = MARGIN as usize..(SIDE - MARGIN) as usize;
-    let is_counted = |(place, _): &(usize, u32)| counted.contains(&(place % SIDE as usize));
+    let is_counted = |(index, _): &(usize, u32)| counted.contains(&(index % SIDE as usize));
     for (_, instance) in instances.into_iter().enumerate().filter(is_counted) {
         if let Some(count) = (instance as usize)
             .checked_sub(1)
@@ -86,7 +87,7 @@ pub(crate) fn sight(
     })
 }
 
-/// More free space than this does not count.
+/// Distances are capped at this many metres in the measure of free space.
 const OPEN_METRES: f32 = 30.0;
 
 /// Free space before a camera: the mean distance in metres to what it sees, up to 30.
@@ -102,7 +103,7 @@ pub(crate) fn openness(renderer: &mut Renderer, scene: &Scene, camera: &Camera) 
     Ok(depth.iter().map(|metres| metres.min(OPEN_METRES)).sum::<f32>() / depth.len() as f32)
 }
 
-#[expect(clippy::disallowed_methods, reason = "where a cube stands before a camera")]
+#[expect(clippy::disallowed_methods, reason = "only the position of a cube before a camera")]
 #[cfg(test)]
 mod tests {
     use driftworld_spec::{Object, WorldDraft};
@@ -116,23 +117,23 @@ mod tests {
 
         /// A cube is visible if it lies entirely between the margins, and not if it lies entirely in a margin.
         #[test]
-        fn objects_in_a_margin_are_not_visible(place in -1.2..1.2_f64) {
+        fn objects_in_a_margin_are_not_visible(share in -1.2..1.2_f64) {
             let mut draft = WorldDraft::default();
             draft.environment_params.map_size = [60.0, 60.0];
             draft.agent_params.coordinates = [0.0, -5.0];
             draft.agent_params.heading = 0.0;
             let half = (draft.agent_params.field_of_view / 2.0).to_radians().tan() * 10.0;
-            let mut object = Object::new("geometric", [place * half, 5.0]);
+            let mut object = Object::new("geometric", [share * half, 5.0]);
             object.scale = 1.0;
             draft.objects.push(object);
             let world = draft.check().expect("the world is sound");
             let (scene, camera) = (Scene::from_world(&world), agent_camera(&world, 0.0));
             let seen = sight(&mut Renderer::default(), &scene, &camera, &[0]).expect("it is drawn");
             let (inner, rim) = (1.0 - 2.0 * f64::from(MARGIN) / f64::from(SIDE), 0.8 / half);
-            if place.abs() < inner - rim {
+            if share.abs() < inner - rim {
                 prop_assert!(seen.is_enough(), "{seen:?}");
             }
-            if place.abs() > inner + rim {
+            if share.abs() > inner + rim {
                 prop_assert_eq!(seen, Sight::default());
             }
         }

@@ -1,4 +1,4 @@
-//! Plain-text tables: columns that stay readable when pasted or piped, and that fit the terminal.
+//! Lays out plain-text tables that fit the terminal and stay readable when pasted or piped.
 
 use driftworld_text::{Cells, printable};
 
@@ -8,7 +8,7 @@ use crate::wrap::{columns_of, columns_of_stdout, longest_piece, wrap};
 /// Spaces between two columns.
 const GAP: usize = 2;
 
-/// Narrowest column of sentences, in terminal columns, before the table becomes a list.
+/// Minimum width of a column of sentences, in terminal columns; if there is less room, the table becomes a list.
 const NARROW: usize = 12;
 
 /// How texts in a table are escaped for spreadsheets, by the option `--raw-cells`.
@@ -24,13 +24,13 @@ pub(crate) fn table<H: Into<String>, R: Into<Vec<String>>>(
 ) -> String {
     let headings = headings.into_iter().map(Into::into).collect();
     let rows = rows.into_iter().map(Into::into).collect();
-    fitted(headings, rows, numbers, columns_of_stdout())
+    layout(headings, rows, numbers, columns_of_stdout())
 }
 
 /// Like [`table`], without empty columns.
 pub(crate) fn without_empty(headings: &[&str], rows: &[Vec<String>], numbers: &[usize]) -> String {
-    let says = |column: &usize| rows.is_empty() || rows.iter().any(|row| !row[*column].is_empty());
-    let kept: Vec<usize> = (0..headings.len()).filter(says).collect();
+    let has_text = |column: &usize| rows.is_empty() || rows.iter().any(|row| !row[*column].is_empty());
+    let kept: Vec<usize> = (0..headings.len()).filter(has_text).collect();
     let (headings, rows, numbers) = only(&kept, headings, rows, numbers);
     table(headings, rows, &numbers)
 }
@@ -44,14 +44,14 @@ fn only<H: Clone>(
 ) -> (Vec<H>, Vec<Vec<String>>, Vec<usize>) {
     let headings = kept.iter().map(|column| headings[*column].clone()).collect();
     let of = |row: &Vec<String>| kept.iter().map(|column| row[*column].clone()).collect();
-    let numbers = (0..kept.len()).filter(|place| numbers.contains(&kept[*place]));
+    let numbers = (0..kept.len()).filter(|column| numbers.contains(&kept[*column]));
     (headings, rows.iter().map(of).collect(), numbers.collect())
 }
 
 /// A table of at most `width` terminal columns. Cells wrap between words if necessary; if even that does not fit, each row
 /// becomes a list.
-fn fitted(headings: Vec<String>, rows: Vec<Vec<String>>, numbers: &[usize], width: Option<usize>) -> String {
-    // A cell is one line, whatever it contains.
+fn layout(headings: Vec<String>, rows: Vec<Vec<String>>, numbers: &[usize], width: Option<usize>) -> String {
+    // Escape line breaks: a cell is one line.
     let shown = |cells: Vec<String>| -> Vec<String> {
         let cells = cells.into_iter();
         cells.map(|cell| printable(&cell).into_owned()).collect()
@@ -59,7 +59,7 @@ fn fitted(headings: Vec<String>, rows: Vec<Vec<String>>, numbers: &[usize], widt
     let headings = shown(headings);
     let rows: Vec<Vec<String>> = rows.into_iter().map(shown).collect();
     let Some(widths) = widths(&headings, &rows, width) else {
-        return narrow(&headings, &rows, numbers, width.unwrap_or(usize::MAX));
+        return fit_narrow(&headings, &rows, numbers, width.unwrap_or(usize::MAX));
     };
     let mut lines: Vec<String> = lines(&headings, &widths, numbers)
         .iter()
@@ -71,26 +71,26 @@ fn fitted(headings: Vec<String>, rows: Vec<Vec<String>>, numbers: &[usize], widt
     lines.join("\n")
 }
 
-/// A table that is too wide: drops empty columns if there are any, else moves the last column below each row, else
+/// Lays out a table that is too wide: drops empty columns if there are any, else moves the last column below each row, else
 /// turns each row into a list.
-fn narrow(headings: &[String], rows: &[Vec<String>], numbers: &[usize], width: usize) -> String {
-    let says = |column: &usize| rows.iter().any(|row| !matches!(row[*column].as_str(), "" | "-"));
-    let kept: Vec<usize> = (0..headings.len()).filter(says).collect();
+fn fit_narrow(headings: &[String], rows: &[Vec<String>], numbers: &[usize], width: usize) -> String {
+    let has_text = |column: &usize| rows.iter().any(|row| !matches!(row[*column].as_str(), "" | "-"));
+    let kept: Vec<usize> = (0..headings.len()).filter(has_text).collect();
     if kept.len() < headings.len() {
         let (headings, rows, numbers) = only(&kept, headings, rows, numbers);
-        return fitted(headings, rows, &numbers, Some(width));
+        return layout(headings, rows, &numbers, Some(width));
     }
     let last = headings.len() - 1;
-    let firsts: Vec<Vec<String>> = rows.iter().map(|row| row[..last].to_vec()).collect();
+    let leading: Vec<Vec<String>> = rows.iter().map(|row| row[..last].to_vec()).collect();
     let is_text = !numbers.contains(&last);
-    let Some(widths) = widths(&headings[..last], &firsts, Some(width)).filter(|_| is_text && last > 1) else {
-        return listed(headings, rows, width);
+    let Some(widths) = widths(&headings[..last], &leading, Some(width)).filter(|_| is_text && last > 1) else {
+        return as_list(headings, rows, width);
     };
     let mut shown: Vec<String> = lines(&headings[..last], &widths, numbers)
         .iter()
         .map(|line| Style::Strong.on(line))
         .collect();
-    for (row, first) in rows.iter().zip(&firsts) {
+    for (row, first) in rows.iter().zip(&leading) {
         shown.extend(lines(first, &widths, numbers));
         let below = wrap(&row[last], width.saturating_sub(2 * GAP));
         shown.extend(
@@ -105,9 +105,9 @@ fn narrow(headings: &[String], rows: &[Vec<String>], numbers: &[usize], width: u
 
 /// The width of each column; `None` if they do not fit side by side.
 fn widths(headings: &[String], rows: &[Vec<String>], width: Option<usize>) -> Option<Vec<usize>> {
-    let all = || std::iter::once(headings).chain(rows.iter().map(Vec::as_slice));
+    let all_rows = || std::iter::once(headings).chain(rows.iter().map(Vec::as_slice));
     let widest = |column: usize, of: fn(&str) -> usize| {
-        let cells = all().filter_map(|row| row.get(column));
+        let cells = all_rows().filter_map(|row| row.get(column));
         cells.map(|cell| of(cell)).max().unwrap_or(0)
     };
     let natural: Vec<usize> = (0..headings.len()).map(|column| widest(column, columns_of)).collect();
@@ -120,14 +120,14 @@ fn widths(headings: &[String], rows: &[Vec<String>], width: Option<usize>) -> Op
     if least.iter().sum::<usize>() > room {
         return None;
     }
-    // The widest columns shrink first, all to the same width.
-    let under = |cap: usize| -> Vec<usize> {
+    // Shrink the widest columns first, all to the same width.
+    let capped = |cap: usize| -> Vec<usize> {
         let pairs = natural.iter().zip(&least);
         pairs.map(|(natural, least)| (*natural).min(cap.max(*least))).collect()
     };
-    let fits = |cap: &usize| under(*cap).iter().sum::<usize>() <= room;
+    let fits = |cap: &usize| capped(*cap).iter().sum::<usize>() <= room;
     let cap = (0..=natural.iter().copied().max().unwrap_or(0)).rev().find(fits)?;
-    Some(under(cap))
+    Some(capped(cap))
 }
 
 /// A row in as many lines as its tallest cell needs.
@@ -161,7 +161,7 @@ fn lines(row: &[String], widths: &[usize], numbers: &[usize]) -> Vec<String> {
 }
 
 /// Each row as a list: its first cell, and below it the other headings and cells.
-fn listed(headings: &[String], rows: &[Vec<String>], width: usize) -> String {
+fn as_list(headings: &[String], rows: &[Vec<String>], width: usize) -> String {
     let name = headings
         .iter()
         .skip(1)
@@ -192,7 +192,7 @@ mod tests {
 
     fn example(width: Option<usize>) -> String {
         let row = |cells: [&str; 3]| cells.map(str::to_owned).to_vec();
-        fitted(
+        layout(
             row(["variant", "reward", "what it is"]),
             vec![
                 row(["find_objects#red", "3.5", "red cubes pay, and nothing else does"]),
@@ -238,7 +238,7 @@ mod tests {
     #[test]
     fn rows_become_lists_if_columns_do_not_fit() {
         let row = |cells: [&str; 3]| cells.map(str::to_owned).to_vec();
-        let shown = fitted(
+        let shown = layout(
             row(["variant", "second of the columns", ""]),
             vec![row(["find_objects#red", "incomprehensibilities", "-"])],
             &[],
@@ -271,7 +271,7 @@ mod tests {
         ) {
             let headings = ["metric", "value", "what it says"].map(str::to_owned).to_vec();
             let row = |fact: &String| vec!["some_metric".to_owned(), whole(fact), words.clone()];
-            let shown = fitted(headings, facts.iter().map(row).collect(), &[1], Some(width));
+            let shown = layout(headings, facts.iter().map(row).collect(), &[1], Some(width));
             for fact in &facts {
                 prop_assert!(shown.lines().any(|line| line.contains(fact.as_str())), "{shown}");
             }
@@ -283,7 +283,7 @@ mod tests {
             width in 40_usize..130,
         ) {
             let headings = ["a", "some heading", "c", "d"].map(str::to_owned).to_vec();
-            let shown = fitted(headings, rows.clone(), &[1], Some(width));
+            let shown = layout(headings, rows.clone(), &[1], Some(width));
             for line in shown.lines() {
                 prop_assert!(columns_of(line) <= width, "{line:?}");
             }

@@ -85,7 +85,7 @@ pub enum TaskError {
     },
 }
 
-/// The message for a missing file if the name is a path; else for a missing task.
+/// The error message for an unknown name: for a missing file if the name is a path, else for a missing task.
 fn unknown(name: &str) -> String {
     let has_ending = Path::new(name)
         .extension()
@@ -98,19 +98,18 @@ fn unknown(name: &str) -> String {
     }
     format!(
         "found task {name:?}, expected the path of a task spec or {}",
-        one_of_ours(name)
+        known_tasks(name)
     )
 }
 
-/// The tasks that come with Driftworld, at the end of a message about a misspelt one.
-pub(crate) fn one_of_ours(misspelt: &str) -> String {
+/// Lists the tasks that come with Driftworld, for the end of a message about a misspelt name.
+pub(crate) fn known_tasks(misspelt: &str) -> String {
     let (paper, more) = (built_in_names().join(", "), names().count() - BUILT_IN.len());
     let near = did_you_mean(misspelt, names());
     format!("one of {paper} and {more} more, which `driftworld tasks` lists{near}")
 }
 
-/// The classes and models allowed for objects of worlds, given the libraries. Messages about unknown ones explain how to name a
-/// library.
+/// The classes and models that a catalogue provides for objects. Messages about unknown ones explain how to give a library.
 pub fn classes(catalogue: &Catalogue) -> Classes {
     catalogue
         .classes()
@@ -180,7 +179,7 @@ pub fn text_by_name(name: &str) -> Option<&'static str> {
     known.find(|(known, _)| *known == name).map(|(_, text)| *text)
 }
 
-/// All names that tasks are found by.
+/// The names of all tasks that come with Driftworld.
 fn names() -> impl Iterator<Item = &'static str> {
     groups().flat_map(|(_, tasks)| tasks).map(|(name, _)| *name)
 }
@@ -252,7 +251,7 @@ pub fn variants_called(task: &Arc<TaskSpec>, name: &str) -> Result<Vec<Variant>,
     let members: Vec<&str> = if let Some(members) = task.family(name) {
         members
     } else {
-        let fitting = || task.variant_names().into_iter().filter(|known| fits(name, known));
+        let fitting = || task.variant_names().into_iter().filter(|known| matches(name, known));
         if name.contains('*') && fitting().next().is_some() {
             fitting().collect()
         } else {
@@ -263,12 +262,12 @@ pub fn variants_called(task: &Arc<TaskSpec>, name: &str) -> Result<Vec<Variant>,
 }
 
 /// Whether a name matches a pattern, in which `*` stands for any characters.
-fn fits(pattern: &str, name: &str) -> bool {
+fn matches(pattern: &str, name: &str) -> bool {
     match pattern.split_once('*') {
         None => pattern == name,
         Some((start, rest)) => name.strip_prefix(start).is_some_and(|behind| {
             let mut ends = behind.char_indices().map(|(at, _)| at).chain([behind.len()]);
-            ends.any(|at| fits(rest, &behind[at..]))
+            ends.any(|at| matches(rest, &behind[at..]))
         }),
     }
 }
@@ -278,12 +277,12 @@ fn is_word(name: &str) -> bool {
     !name.contains(['/', '\\', '.']) && did_you_mean(name, names()).is_empty()
 }
 
-/// Whether a file exists; a folder, which may have the name of a variant, does not count.
+/// Whether a file exists. A folder does not count: it may have the name of a variant.
 fn is_document(path: &Path) -> bool {
     path.exists() && !path.is_dir()
 }
 
-/// Completes names without a task: after a name with a task, a variant, a family or a pattern may omit that task, as in
+/// Adds the task to names without one: after a name with a task, a variant, a family or a pattern may omit that task, as in
 /// `find_objects#red dusk`.
 pub(crate) fn with_tasks(names: &[String]) -> Vec<String> {
     let mut known: Vec<(String, Arc<TaskSpec>)> = Vec::new();
@@ -295,7 +294,7 @@ pub(crate) fn with_tasks(names: &[String]) -> Vec<String> {
         }
         match task(of) {
             Ok(spec) => known.push((of.to_owned(), spec)),
-            // After a task, an unknown word is a misspelt variant of it, unless it is a path or similar to a task's name.
+            // After a task, treat an unknown word as a misspelt variant of it, unless it is a path or similar to a task's name.
             Err(TaskError::Unknown { .. }) if own.is_none() && is_word(name) => {
                 if let Some((task, _)) = known.last() {
                     return format!("{task}#{name}");
@@ -308,8 +307,8 @@ pub(crate) fn with_tasks(names: &[String]) -> Vec<String> {
     called.collect()
 }
 
-/// The variants that a list of names stands for, in that order, each once, with the names of their tasks as given. After a name
-/// with a task, others of the same task may omit it.
+/// The variants that a list of names stands for, in order and without duplicates, with the names of their tasks as given. After a
+/// name with a task, others of the same task may omit it.
 ///
 /// # Errors
 /// As [`variants`].
@@ -329,13 +328,13 @@ pub fn variants_of(names: &[String]) -> Result<Vec<(String, Variant)>, TaskError
     Ok(found)
 }
 
-/// The names of variants in tables: `TASK#VARIANT` with the task's own name, even if it was given by a path; with the path if
-/// two names would be equal.
+/// The names of variants in tables: `TASK#VARIANT` with the task's own name, even if it was given by a path. If two names would be
+/// equal, the tasks are named as given.
 pub(crate) fn labels_of(variants: &[(String, Variant)]) -> Vec<String> {
     let ids: Vec<String> = variants.iter().map(|(_, variant)| variant.id()).collect();
-    let is_alone = |id: &String| ids.iter().filter(|other| *other == id).count() == 1;
+    let is_unique = |id: &String| ids.iter().filter(|other| *other == id).count() == 1;
     let label = |((task, variant), id): (&(String, Variant), &String)| {
-        if is_alone(id) {
+        if is_unique(id) {
             id.clone()
         } else {
             format!("{task}#{}", variant.name())
@@ -395,9 +394,9 @@ mod tests {
     #[test]
     fn missing_file_is_reported_for_a_path() {
         for name in ["nope.json", "no/where"] {
-            let said = variant(name).unwrap_err().to_string();
+            let error = variant(name).unwrap_err().to_string();
             assert_eq!(
-                said,
+                error,
                 format!("{name}: found no such file, expected a task spec or the name of a built-in task")
             );
         }
@@ -425,10 +424,10 @@ mod tests {
             names(&["find_objects#*held"]),
             ["find_objects#held", "find_objects#long_held"]
         );
-        // A folder with a variant's name is not a document: this crate has a folder called `docs`.
+        // A folder is not a document, even if its name could be a variant's.
         assert!(!is_document(Path::new("docs")) && is_document(Path::new("Cargo.toml")));
         let unknown = variants_of(&["find_objects#red".to_owned(), "dsk".to_owned()]).unwrap_err();
         assert!(unknown.to_string().ends_with("did you mean \"dusk\"?"), "{unknown}");
-        assert!(fits("a*c", "abcc") && !fits("a*c", "abcd") && fits("*", "") && !fits("a", "ab"));
+        assert!(matches("a*c", "abcc") && !matches("a*c", "abcd") && matches("*", "") && !matches("a", "ab"));
     }
 }

@@ -13,7 +13,7 @@ pub(crate) struct TopLevel {
 }
 
 impl TopLevel {
-    /// From a text; `None` if it is not a JSON object, or longer than any document may be.
+    /// The keys of a text; `None` if it is not a JSON object, or is longer than any document may be.
     pub(crate) fn of(text: &str) -> Option<Self> {
         let text = text.trim_start_matches('\u{feff}');
         if text.len() > MAX_BYTES {

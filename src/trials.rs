@@ -1,4 +1,4 @@
-//! Tables and summaries of trial draws.
+//! Writes tables and summaries of trial draws.
 
 use driftworld_curriculum::{Failed, Trial};
 use driftworld_text::when;
@@ -6,7 +6,7 @@ use driftworld_text::when;
 use crate::table::table;
 
 /// Maximum number of failures listed.
-const MOST_TOLD: usize = 10;
+const MAX_LISTED: usize = 10;
 
 /// A table of how often drawing failed, with a row for each variant or regime, then the reasons of the first failures.
 pub(crate) fn shown(trials: &[Trial]) -> String {
@@ -46,20 +46,20 @@ pub(crate) fn shown(trials: &[Trial]) -> String {
         "planner finishes",
     ];
     let mut lines = vec![table(headings, rows, &[0, 2, 3, 4, 5, 6, 7])];
-    // The first of each kind: worlds may fail in several ways.
+    // List the first failure of each kind: worlds may fail in several ways.
     let failed = trials.iter().flat_map(|trial| {
         let is_first =
-            |(place, one): &(usize, &Failed)| !trial.failed[..*place].iter().any(|other| other.code == one.code);
-        let firsts = trial.failed.iter().enumerate().filter(is_first);
-        firsts.map(move |(_, first)| (trial, first))
+            |(index, one): &(usize, &Failed)| !trial.failed[..*index].iter().any(|other| other.code == one.code);
+        let first_failures = trial.failed.iter().enumerate().filter(is_first);
+        first_failures.map(move |(_, first)| (trial, first))
     });
-    for (trial, first) in failed.take(MOST_TOLD) {
+    for (trial, first) in failed.take(MAX_LISTED) {
         let experience = first
             .experience
             .map_or_else(String::new, |experience| format!(", experience {experience}"));
-        let way = when(first.progress != 0.0, || format!(", at {} of its way", first.progress));
+        let progress = when(first.progress != 0.0, || format!(", at {} of its way", first.progress));
         lines.push(format!(
-            "{}{experience}, world {}{way}: {}",
+            "{}{experience}, world {}{progress}: {}",
             trial.variant, first.index, first.reason
         ));
     }
@@ -79,7 +79,7 @@ pub(crate) fn unfinished(trial: &Trial) -> Option<String> {
         .expert
         .as_ref()
         .filter(|expert| expert.succeeded < expert.worlds)?;
-    let listed: Vec<String> = expert.failed.iter().take(MOST_TOLD).map(u64::to_string).collect();
+    let listed: Vec<String> = expert.failed.iter().take(MAX_LISTED).map(u64::to_string).collect();
     let more = if expert.failed.len() > listed.len() {
         " and more"
     } else {

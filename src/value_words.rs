@@ -1,10 +1,10 @@
-//! Short forms of values for captions.
+//! Writes values in a short form for captions.
 
 use driftworld_spec::{Layout, RoomDoors, Value};
 use driftworld_text::counted;
 
 /// Maximum length, in characters, of values other than numbers and layouts; longer ones are cut.
-const LONGEST: usize = 40;
+const MAX_LENGTH: usize = 40;
 
 /// A short form of a value: numbers with four significant digits, layouts by their parts.
 pub(crate) fn short(value: &Value) -> String {
@@ -43,11 +43,11 @@ fn rounded(number: f64) -> String {
 }
 
 fn cut(text: &str) -> String {
-    let plain: String = text.chars().filter(|letter| *letter != '"').collect();
-    if plain.chars().count() <= LONGEST {
+    let plain: String = text.chars().filter(|c| *c != '"').collect();
+    if plain.chars().count() <= MAX_LENGTH {
         return plain;
     }
-    plain.chars().take(LONGEST - 1).chain(['…']).collect()
+    plain.chars().take(MAX_LENGTH - 1).chain(['…']).collect()
 }
 
 /// The parts of a layout; defaults are omitted.
@@ -55,26 +55,26 @@ fn layout_words(layout: &Layout) -> String {
     let mut words = Vec::new();
     let mut seed = None;
     if let Some(maze) = &layout.maze {
-        let usual = driftworld_spec::Maze::default();
+        let default = driftworld_spec::Maze::default();
         words.push(format!("maze {} × {}", maze.cells[0], maze.cells[1]));
-        if maze.cell != usual.cell {
+        if maze.cell != default.cell {
             words.push(format!("cells of {} m", rounded(maze.cell)));
         }
-        if maze.braid != usual.braid {
+        if maze.braid != default.braid {
             words.push(format!("{} % of dead ends open", rounded(100.0 * maze.braid)));
         }
         seed = maze.seed;
     } else if let Some(rooms) = &layout.rooms {
-        let usual = driftworld_spec::Rooms::default();
-        let [wide, deep] = rooms.room.map(rounded);
+        let default = driftworld_spec::Rooms::default();
+        let [width, depth] = rooms.room.map(rounded);
         words.push(format!(
-            "{} × {} rooms of {wide} × {deep} m",
+            "{} × {} rooms of {width} × {depth} m",
             rooms.grid[0], rooms.grid[1]
         ));
-        if rooms.doorway != usual.doorway {
+        if rooms.doorway != default.doorway {
             words.push(format!("doorways of {} m", rounded(rooms.doorway)));
         }
-        if rooms.loops != usual.loops {
+        if rooms.loops != default.loops {
             words.push(format!("{} % of loops", rounded(100.0 * rooms.loops)));
         }
         match rooms.doors {
@@ -85,15 +85,15 @@ fn layout_words(layout: &Layout) -> String {
         }
         seed = rooms.seed;
     } else if let Some(lines) = &layout.text {
-        let wide = lines.first().map_or(0, |line| line.chars().count());
-        words.push(format!("map of {wide} × {} letters", lines.len()));
+        let width = lines.first().map_or(0, |line| line.chars().count());
+        words.push(format!("map of {width} × {} letters", lines.len()));
         if let Some(cell) = layout.cell {
             words.push(format!("cells of {} m", rounded(cell)));
         }
     } else if let Some(map) = layout.predefined {
         words.push(format!("map {map}"));
-        if let Some([wide, deep]) = layout.size.map(|size| size.map(rounded)) {
-            words.push(format!("{wide} × {deep} m"));
+        if let Some([width, depth]) = layout.size.map(|size| size.map(rounded)) {
+            words.push(format!("{width} × {depth} m"));
         }
     } else {
         match layout.walls.as_ref().map_or(0, Vec::len) {
@@ -122,7 +122,7 @@ mod tests {
             [21.899_414, 0.642_968_750_000_000_1, -100.0, 12_346.0, 0.0].map(|number| short(&Value::Number(number)));
         assert_eq!(shown, ["21.9", "0.643", "-100", "12350", "0"]);
         assert_eq!(short(&Value::Text("red".to_owned())), "red");
-        assert_eq!(short(&Value::Text("x".repeat(60))).chars().count(), LONGEST);
+        assert_eq!(short(&Value::Text("x".repeat(60))).chars().count(), MAX_LENGTH);
     }
 
     #[test]

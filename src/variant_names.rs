@@ -1,4 +1,4 @@
-//! [`VariantNames`]: maps names in logs, which hold only letters and digits as l2logger requires, to the usual names of
+//! [`VariantNames`]: maps names in logs, which contain only letters and digits as l2logger requires, to the usual names of
 //! variants, `TASK#VARIANT`.
 
 use std::collections::BTreeMap;
@@ -7,7 +7,7 @@ use std::path::Path;
 use driftworld_curriculum::log_name_of_label;
 use serde_json::Value;
 
-/// Largest info file searched for names, in bytes.
+/// Maximum size, in bytes, of an info file that is searched for names.
 const MAX_INFO_BYTES: u64 = 64 << 20;
 
 /// The usual names of variants, by their names in logs.
@@ -15,7 +15,7 @@ const MAX_INFO_BYTES: u64 = 64 << 20;
 pub(crate) struct VariantNames(BTreeMap<String, String>);
 
 impl VariantNames {
-    /// From the logs in these folders; logs of other programs lack these names, which is not an error.
+    /// Reads the names from the logs in these folders. Logs of other programs lack them, which is not an error.
     pub(crate) fn of_logs<P: AsRef<Path>>(folders: &[P]) -> Self {
         let mut names = BTreeMap::new();
         for folder in folders {
@@ -32,7 +32,7 @@ impl VariantNames {
         Self(names)
     }
 
-    /// The usual name of a variant with this name in a log; the log's name if unknown.
+    /// The usual name of the variant with this name in a log; the log's name if it is unknown.
     pub(crate) fn shown<'a>(&'a self, in_log: &'a str) -> &'a str {
         self.0.get(in_log).map_or(in_log, String::as_str)
     }

@@ -1,6 +1,6 @@
-//! [`Views`]: the pictures of one world, as the agent sees it, from above and as close-ups.
+//! [`Views`]: draws pictures of one world: the agent's view, the map, the overview, and close-ups.
 
-#![expect(clippy::disallowed_methods, reason = "where a camera stands for a picture")]
+#![expect(clippy::disallowed_methods, reason = "only camera positions for pictures")]
 
 use std::cell::RefCell;
 use std::collections::BTreeSet;
@@ -29,20 +29,20 @@ pub(crate) struct Views<'a> {
 }
 
 /// The three modalities of one view.
-pub(crate) struct Seen {
+pub(crate) struct FirstPerson {
     pub(crate) rgb: Picture,
     pub(crate) depth: Picture,
     pub(crate) segmentation: Picture,
-    /// Metres to each visible point, row by row; larger than `farthest` in the sky.
+    /// The distance in metres at each pixel, row by row; larger than `farthest` in the sky.
     distances: Vec<f32>,
-    /// Metres to the farthest visible point that is not sky.
+    /// The distance in metres to the farthest visible point that is not sky.
     farthest: f32,
     /// The visible reward categories.
     categories: BTreeSet<u8>,
 }
 
-impl Seen {
-    /// The depth picture with a scale of its greys below it. White is at one of a few distances, so that indoor pictures have
+impl FirstPerson {
+    /// The depth picture with a scale of its greys below it. White is one of a few distances, so that indoor pictures have
     /// contrast.
     pub(crate) fn depth_with_legend(&self) -> Drawing {
         let (width, height) = (self.depth.width, self.depth.height);
@@ -51,12 +51,12 @@ impl Seen {
             .map(|metres| metres * DEPTH_METRES / white)
             .collect();
         let picture = Picture::new(width, height, gray_rgb(&stretched));
-        let letters = letters(width);
-        let bar = (letters * 0.9).round();
-        let mut drawing = Drawing::blank(width, height + (letters * 1.4 + bar + 12.0) as u32);
+        let font_size = font_size(width);
+        let bar = (font_size * 0.9).round();
+        let mut drawing = Drawing::blank(width, height + (font_size * 1.4 + bar + 12.0) as u32);
         drawing.put(picture, [0, 0]);
-        let (left, top) = (letters, height as f32 + 5.0);
-        let long = (width as f32 - 2.0 * letters).max(10.0);
+        let (left, top) = (font_size, height as f32 + 5.0);
+        let long = (width as f32 - 2.0 * font_size).max(10.0);
         let mut greys = Picture::blank(long as u32, bar as u32);
         for (index, pixel) in greys.rgb.chunks_exact_mut(3).enumerate() {
             let share = (index as u32 % greys.width) as f32 / (greys.width - 1).max(1) as f32;
@@ -73,8 +73,8 @@ impl Seen {
         ];
         drawing.line(rim, 1.0, INK);
         let is_beyond = self.distances.iter().any(|metres| *metres > white);
-        let mut taken: Vec<[f32; 2]> = Vec::new();
-        // The ends first: the labels between them use the remaining room.
+        let mut label_extents: Vec<[f32; 2]> = Vec::new();
+        // Place the labels of the ends first: the labels between them use the remaining room.
         for quarter in [4_u8, 0, 2, 1, 3] {
             let share = f32::from(quarter) / 4.0;
             let (side, words) = match quarter {
@@ -84,19 +84,19 @@ impl Seen {
                 _ => (Side::Middle, format!("{}", share * white)),
             };
             let x = left + share * (right - left);
-            let wide = text_width(&words, letters);
+            let wide = text_width(&words, font_size);
             let from = match side {
                 Side::Left => x,
                 Side::Middle => x - wide / 2.0,
                 Side::Right => x - wide,
             };
-            let gap = letters * 0.6;
-            if taken
+            let gap = font_size * 0.6;
+            if label_extents
                 .iter()
                 .all(|[start, end]| from > end + gap || from + wide + gap < *start)
             {
-                taken.push([from, from + wide]);
-                let line = TextLine::new(words, [x, top + bar + 4.0], letters, INK);
+                label_extents.push([from, from + wide]);
+                let line = TextLine::new(words, [x, top + bar + 4.0], font_size, INK);
                 drawing.write(line.anchored(side, Level::Top));
             }
         }
@@ -106,29 +106,29 @@ impl Seen {
     /// The picture of reward categories with the names of the visible ones below.
     pub(crate) fn segmentation_with_legend(&self) -> Drawing {
         let (width, height) = (self.segmentation.width, self.segmentation.height);
-        let letters = letters(width);
-        let line = (letters * 1.5).round();
-        let wide = |name: &str| text_width(name, letters) + letters * 2.6;
-        let (mut places, mut x, mut row) = (Vec::new(), 0.0, 0.0);
+        let font_size = font_size(width);
+        let line = (font_size * 1.5).round();
+        let wide = |name: &str| text_width(name, font_size) + font_size * 2.6;
+        let (mut entries, mut x, mut row) = (Vec::new(), 0.0, 0.0);
         for category in &self.categories {
             let name = category_name(*category);
             if x > 0.0 && x + wide(name) > width as f32 {
                 (x, row) = (0.0, row + 1.0);
             }
-            places.push((*category, name, [x, row]));
+            entries.push((*category, name, [x, row]));
             x += wide(name);
         }
         let mut drawing = Drawing::blank(width, height + (line * (row + 1.0) + 8.0) as u32);
         drawing.put(self.segmentation.clone(), [0, 0]);
-        for (category, name, [x, row]) in places {
+        for (category, name, [x, row]) in entries {
             let middle = height as f32 + 4.0 + line * (row + 0.5);
-            let half = letters * 0.45;
+            let half = font_size * 0.45;
             drawing.rectangle([x + 5.0, middle - half - 1.0, 2.0 * half + 2.0, 2.0 * half + 2.0], INK);
             drawing.rectangle(
                 [x + 6.0, middle - half, 2.0 * half, 2.0 * half],
                 category_color(category),
             );
-            let words = TextLine::new(name, [x + letters * 1.1 + 10.0, middle], letters, INK);
+            let words = TextLine::new(name, [x + font_size * 1.1 + 10.0, middle], font_size, INK);
             drawing.write(words.anchored(Side::Left, Level::Middle));
         }
         drawing
@@ -150,18 +150,18 @@ fn white_at(farthest: f32) -> f32 {
 }
 
 /// Font size of a legend below a picture of this width.
-fn letters(width: u32) -> f32 {
+fn font_size(width: u32) -> f32 {
     (width as f32 / 28.0).clamp(8.0, 15.0)
 }
 
-/// Share of half the overview's width and height that is left free along each edge.
-const RIM_OF_OVERVIEW: f32 = 0.04;
+/// Free margin along each edge of the overview, as a share of half its width or height.
+const OVERVIEW_MARGIN: f32 = 0.04;
 
 /// Tangent of half the field of view of a close-up from its default distance: the field of view is 42°.
 const CLOSE_UP_TANGENT: f32 = 0.384;
 
-/// An object is shown in a close-up only if it has clearly more pixels than this, out of 4,096.
-const LEAST_CLOSE_UP: u32 = 80;
+/// An object is shown in a close-up only if clearly more pixels than this show it, out of 4,096.
+const MIN_CLOSE_UP_PIXELS: u32 = 80;
 
 /// Camera rotations that are tried, in degrees clockwise.
 pub(crate) const TURNS: [f32; 12] = [
@@ -212,7 +212,7 @@ impl<'a> Views<'a> {
     }
 
     /// Uses a renderer other than the CPU's.
-    pub(crate) fn drawn_by(self, renderer: Renderer) -> Self {
+    pub(crate) fn with_renderer(self, renderer: Renderer) -> Self {
         Self {
             renderer: Rc::new(RefCell::new(renderer)),
             ..self
@@ -220,7 +220,7 @@ impl<'a> Views<'a> {
     }
 
     /// With a different size.
-    pub(crate) fn of_size(&self, size: u32) -> Self {
+    pub(crate) fn with_size(&self, size: u32) -> Self {
         Self {
             size,
             renderer: Rc::clone(&self.renderer),
@@ -231,12 +231,12 @@ impl<'a> Views<'a> {
     /// The world from outside, above a corner of the arena.
     pub(crate) fn overview(&self, width: u32) -> Result<Picture, Failure> {
         let scene = self.scene.clone().with_wall_tops().with_surroundings();
-        let camera = self.above(&scene);
-        self.smooth(&scene, &self.with_all_in_it(&scene, camera, width), width)
+        let camera = self.overview_direction(&scene);
+        self.smooth(&scene, &self.fit_all(&scene, camera, width), width)
     }
 
-    /// Moves the camera, without rotating it, so that a picture of this width contains the whole arena with everything in it.
-    fn with_all_in_it(&self, scene: &Scene, camera: Camera, width: u32) -> Camera {
+    /// Moves the camera without rotating it, so that a picture of this width contains the whole arena with all its objects.
+    fn fit_all(&self, scene: &Scene, camera: Camera, width: u32) -> Camera {
         let [wide, deep] = scene.arena_size().map(|side| side / 2.0);
         let wall = self.highest_wall();
         let mut points: Vec<[f32; 3]> = Vec::new();
@@ -255,26 +255,26 @@ impl<'a> Views<'a> {
             [-heading.sin() * pitch.sin(), -heading.cos() * pitch.sin(), pitch.cos()],
         );
         let along = |of: [f32; 3], axis: [f32; 3]| of[0] * axis[0] + of[1] * axis[1] + of[2] * axis[2];
-        // Across, up and away from the arena's centre.
+        // Each point's coordinates on the camera's axes: right, up and forward.
         let seen: Vec<[f32; 3]> = points
             .into_iter()
             .map(|point| [along(point, right), along(point, up), along(point, forward)])
             .collect();
-        let tangent = (camera.field_of_view_deg / 2.0).to_radians().tan() * (1.0 - RIM_OF_OVERVIEW);
+        let tangent = (camera.field_of_view_deg / 2.0).to_radians().tan() * (1.0 - OVERVIEW_MARGIN);
         let edges = [tangent * width as f32 / self.size as f32, tangent];
-        // The camera's position on these axes. The plane through the left edge must not cut off the leftmost point, and so on:
-        // the camera is where the planes of opposite edges meet, and behind all of them.
+        // The camera's position on these axes. The plane through the picture's left edge must not cut off the leftmost point, and
+        // likewise for the other edges: the camera is where the planes of opposite edges meet, and behind both meeting points.
         let bound = |axis: usize, sign: f32| {
             let reach = |point: &[f32; 3]| sign * point[axis] - edges[axis] * point[2];
             seen.iter().map(reach).fold(f32::MIN, f32::max)
         };
-        let (mut place, mut back) = ([0.0; 2], f32::MAX);
+        let (mut sideways, mut back) = ([0.0; 2], f32::MAX);
         for axis in [0, 1] {
             let (more, less) = (bound(axis, 1.0), bound(axis, -1.0));
-            place[axis] = (more - less) / 2.0;
+            sideways[axis] = (more - less) / 2.0;
             back = back.min(-(more + less) / (2.0 * edges[axis]));
         }
-        let position = [0, 1, 2].map(|axis| place[0] * right[axis] + place[1] * up[axis] + back * forward[axis]);
+        let position = [0, 1, 2].map(|axis| sideways[0] * right[axis] + sideways[1] * up[axis] + back * forward[axis]);
         Camera { position, ..camera }
     }
 
@@ -286,8 +286,8 @@ impl<'a> Views<'a> {
             .fold(self.world.environment_params.wall_height, f64::max) as f32
     }
 
-    /// The direction of the overview's camera: steep if walls within the arena would hide what is between them.
-    fn above(&self, scene: &Scene) -> Camera {
+    /// The overview's camera before [`Self::fit_all`]: steep if walls would hide what is between them.
+    fn overview_direction(&self, scene: &Scene) -> Camera {
         let is_divided = self.world.plan().is_some_and(|plan| !plan.walls.is_empty());
         let span = scene.arena_size().into_iter().fold(4.0, f32::max);
         let hides = is_divided || self.highest_wall() > span / 12.0;
@@ -298,11 +298,11 @@ impl<'a> Views<'a> {
     }
 
     /// The agent's view at the start.
-    pub(crate) fn first_person(&self) -> Result<Seen, Failure> {
+    pub(crate) fn first_person(&self) -> Result<FirstPerson, Failure> {
         let camera = agent_camera(self.world, self.turn);
         let frame = self.frame(&self.scene, &camera, self.size, self.size)?;
         let picture = |kind| Picture::new(self.size, self.size, to_rgb(kind, &frame, number_color));
-        Ok(Seen {
+        Ok(FirstPerson {
             rgb: self.smooth(&self.scene, &camera, self.size)?,
             depth: picture(Modality::Depth),
             segmentation: picture(Modality::Segmentation),
@@ -355,7 +355,7 @@ impl<'a> Views<'a> {
     /// Objects that are not visible from nearby are left out.
     pub(crate) fn close_ups(&self, most: usize) -> Result<Vec<(String, Picture)>, Failure> {
         let start = self.world.agent_params.coordinates;
-        let far = |index: &usize| {
+        let distance = |index: &usize| {
             let [x, y] = self.world.objects[*index].coordinates;
             (x - start[0]).hypot(y - start[1])
         };
@@ -363,7 +363,7 @@ impl<'a> Views<'a> {
         // Rewarding objects first, then by distance.
         indices.sort_by(|a, b| {
             let pays = |index: &usize| self.world.objects[*index].is_target();
-            pays(b).cmp(&pays(a)).then(far(a).total_cmp(&far(b)))
+            pays(b).cmp(&pays(a)).then(distance(a).total_cmp(&distance(b)))
         });
         let mut shown: Vec<(String, Picture)> = Vec::new();
         for index in indices {
@@ -378,17 +378,17 @@ impl<'a> Views<'a> {
         Ok(shown)
     }
 
-    /// A camera that sees an object, if possible from the agent's side: walls and other things may be in the way.
+    /// A camera that sees an object, if possible from the agent's side; `None` if walls or other objects hide it from all sides.
     fn near(&self, index: usize) -> Result<Option<Camera>, Failure> {
-        let mut best: (u32, Option<Camera>) = (LEAST_CLOSE_UP, None);
+        let mut best: (u32, Option<Camera>) = (MIN_CLOSE_UP_PIXELS, None);
         // From the agent's side first; then closer, at shares of the default distance.
-        let places = [1.0, 0.6]
+        let candidates = [1.0, 0.6]
             .into_iter()
             .flat_map(|closeness| TURNS.map(|turn| (turn, closeness)));
-        for (turn, closeness) in places {
+        for (turn, closeness) in candidates {
             let camera = self.close_to(index, turn, closeness);
             let pixels = sight(&mut self.renderer.borrow_mut(), &self.scene, &camera, &[index])?.pixels;
-            // A later candidate must show clearly more.
+            // Prefer earlier candidates unless a later one shows clearly more.
             if pixels > best.0 + best.0 / 4 {
                 best = (pixels, Some(camera));
             }
@@ -401,8 +401,8 @@ impl<'a> Views<'a> {
     fn close_to(&self, index: usize, turn: f32, closeness: f32) -> Camera {
         let item = &self.scene.items[index];
         let start = self.world.agent_params.coordinates.map(|metres| metres as f32);
-        let way = [item.position[0] - start[0], item.position[1] - start[1]];
-        let heading = if way == [0.0; 2] { 0.0_f32 } else { way[0].atan2(way[1]) } + turn.to_radians();
+        let dir = [item.position[0] - start[0], item.position[1] - start[1]];
+        let heading = if dir == [0.0; 2] { 0.0_f32 } else { dir[0].atan2(dir[1]) } + turn.to_radians();
         let size = item.asset.height.max(item.asset.radius * 1.6) * item.scale;
         let back = (1.9 * size + item.asset.radius * item.scale) * closeness;
         let height = size * 0.75 + 0.3;
@@ -454,11 +454,11 @@ mod tests {
     use super::*;
     use crate::tasks;
 
-    fn seen(size: u32, farthest: f32, sky: bool) -> Seen {
+    fn seen(size: u32, farthest: f32, sky: bool) -> FirstPerson {
         let pixels = (size * size) as usize;
         let mut distances = vec![farthest; pixels];
         distances[0] = if sky { 1000.0 } else { farthest };
-        Seen {
+        FirstPerson {
             rgb: Picture::blank(size, size),
             depth: Picture::blank(size, size),
             segmentation: Picture::blank(size, size),
@@ -504,7 +504,7 @@ mod tests {
             prop_assert_eq!(last.ends_with("and more"), sky || farthest > 100.0);
         }
 
-        /// Things in all four corners of an arena of any shape are visible in the overview.
+        /// Objects in all four corners of an arena of any shape are visible in the overview.
         #[test]
         fn overview_contains_every_corner(wide in 20.0..60.0_f64, deep in 20.0..60.0_f64, wall in 0.0..1.5_f64) {
             let side = wide.min(deep);
@@ -520,14 +520,14 @@ mod tests {
             let world = draft.check().expect("the world is sound");
             let views = Views::new(&world, 180, 0.0);
             let scene = views.scene.clone().with_wall_tops();
-            let camera = views.with_all_in_it(&scene, views.above(&scene), 320);
+            let camera = views.fit_all(&scene, views.overview_direction(&scene), 320);
             let mut instances = vec![0_u32; 180 * 320];
             let mut target = Target { width: 320, height: 180, instance: Some(&mut instances), ..Target::default() };
             Renderer::default().draw(&scene, &camera, &mut target).expect("it is drawn");
             for number in 1..=4_u32 {
-                let places: Vec<usize> = (0..instances.len()).filter(|at| instances[*at] == number).collect();
-                prop_assert!(places.len() >= 4, "{number}: {} pixels", places.len());
-                let on_the_edge = places.iter().any(|at| at % 320 == 0 || at % 320 == 319 || at / 320 == 0 || at / 320 == 179);
+                let pixels: Vec<usize> = (0..instances.len()).filter(|at| instances[*at] == number).collect();
+                prop_assert!(pixels.len() >= 4, "{number}: {} pixels", pixels.len());
+                let on_the_edge = pixels.iter().any(|at| at % 320 == 0 || at % 320 == 319 || at / 320 == 0 || at / 320 == 179);
                 prop_assert!(!on_the_edge, "{number} is cut off");
             }
         }
@@ -535,7 +535,7 @@ mod tests {
 
     /// A close-up shows its object even if walls stand between it and the agent.
     #[test]
-    fn close_ups_show_objects_and_no_walls() {
+    fn close_ups_show_their_objects() {
         let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/worlds");
         for name in ["maze", "t_maze", "key_corridor", "locked_rooms"] {
             let variants = tasks::variants_of(&[folder.join(format!("{name}.json")).display().to_string()]);
@@ -553,7 +553,7 @@ mod tests {
                     continue;
                 };
                 let seen = sight(&mut Renderer::default(), &views.scene, &camera, &[index]).expect("it is drawn");
-                assert!(seen.pixels > LEAST_CLOSE_UP, "{name}: {index}");
+                assert!(seen.pixels > MIN_CLOSE_UP_PIXELS, "{name}: {index}");
                 shown += 1;
             }
             assert!(

@@ -1,4 +1,4 @@
-//! Finds worlds by name: files in our format or L2Explorer's, or variants with a seed and an index.
+//! Resolves names of worlds: files in our format or L2Explorer's, or variants with a seed and an index.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -43,7 +43,7 @@ pub(crate) fn is_world_file(name: &str) -> bool {
     let Ok(text) = documents::text(path) else {
         return false;
     };
-    // Text that is not a JSON object is reported by the reader of tasks.
+    // The reader of tasks reports text that is not a JSON object.
     TopLevel::of(&text).is_some_and(|keys| !keys.has_any(&["name", "parameters", "groups"]))
 }
 
@@ -118,11 +118,11 @@ pub(crate) struct WorldRequest {
 }
 
 impl WorldRequest {
-    /// Identifies an episode in this world.
+    /// The origin of an episode in this world.
     pub(crate) fn origin(&self) -> EpisodeOrigin {
         let (task, variant) = tasks::split(&self.world);
         let is_drawn = !self.is_file();
-        // Without a name it is the variant with all defaults.
+        // A task without a variant's name stands for the variant with all defaults.
         let variant = variant.or(is_drawn.then_some(DEFAULT_VARIANT));
         EpisodeOrigin {
             task: Some(task.to_owned()),

@@ -1,4 +1,4 @@
-//! Line widths, and wrapping of text between words.
+//! Wraps text between words to the width of the terminal.
 
 use driftworld_text::{NO_BREAK, with_blanks};
 use unicode_width::UnicodeWidthStr;
@@ -6,25 +6,25 @@ use unicode_width::UnicodeWidthStr;
 use crate::style;
 
 /// Minimum width in columns; narrower terminals count as this wide.
-const NARROWEST: usize = 40;
+const MIN_COLUMNS: usize = 40;
 
-/// The columns of standard output: from `COLUMNS`, else the terminal's; `None` if lines may have any length.
+/// The width of standard output in columns: from `COLUMNS`, else the terminal's; `None` if lines may have any length.
 pub(crate) fn columns_of_stdout() -> Option<usize> {
-    asked_for().or_else(|| terminal_size::terminal_size_of(std::io::stdout()).map(columns))
+    requested_columns().or_else(|| terminal_size::terminal_size_of(std::io::stdout()).map(columns))
 }
 
-/// The columns of standard error.
+/// The width of standard error in columns.
 pub(crate) fn columns_of_stderr() -> Option<usize> {
-    asked_for().or_else(|| terminal_size::terminal_size_of(std::io::stderr()).map(columns))
+    requested_columns().or_else(|| terminal_size::terminal_size_of(std::io::stderr()).map(columns))
 }
 
 fn columns((width, _): (terminal_size::Width, terminal_size::Height)) -> usize {
-    usize::from(width.0).max(NARROWEST)
+    usize::from(width.0).max(MIN_COLUMNS)
 }
 
-fn asked_for() -> Option<usize> {
+fn requested_columns() -> Option<usize> {
     let columns: usize = std::env::var("COLUMNS").ok()?.parse().ok()?;
-    (columns > 0).then(|| columns.max(NARROWEST))
+    (columns > 0).then(|| columns.max(MIN_COLUMNS))
 }
 
 /// The width of a text in columns.
@@ -63,7 +63,7 @@ pub(crate) fn wrap_lines(text: &str, width: Option<usize>) -> String {
     };
     let wrapped = text.split('\n').map(|line| {
         // Highlighted text has already been laid out.
-        if columns_of(line) <= width || style::is_set_off(line) {
+        if columns_of(line) <= width || style::is_highlighted(line) {
             return line.to_owned();
         }
         let blank = line.len() - line.trim_start_matches(' ').len();
@@ -81,13 +81,13 @@ pub(crate) fn wrap_lines(text: &str, width: Option<usize>) -> String {
 fn pieces(text: &str) -> impl Iterator<Item = &str> {
     let mut rest = text;
     std::iter::from_fn(move || {
-        let mut letters = rest.char_indices().peekable();
+        let mut chars = rest.char_indices().peekable();
         let end = loop {
-            let (_, letter) = letters.next()?;
-            match (letter, letters.peek()) {
+            let (_, c) = chars.next()?;
+            match (c, chars.peek()) {
                 (_, None) => break rest.len(),
                 (' ', Some((next, after))) if *after != ' ' => break *next,
-                // Between the elements of a list, but not in a number such as 1,200.
+                // Break between the elements of a list, but not in a number such as 1,200.
                 (',', Some((next, after))) if ![' ', NO_BREAK].contains(after) && !after.is_ascii_digit() => {
                     break *next;
                 }

@@ -1,4 +1,4 @@
-//! Chooses the variants of a curriculum and their order: all that are named, those of a probe, or a sequence of steps.
+//! Chooses the variants of a curriculum and their order: the named variants, those of a probe, or a sequence of steps.
 
 use driftworld_curriculum::{Choice, Design, Picked, Steps, arrange, distances, probe, probe_named, steps};
 use driftworld_similarity::{DistanceMatrix, Method};
@@ -27,7 +27,7 @@ pub struct Chosen {
     pub by: By,
     /// Their indices in learning order.
     pub order: Vec<usize>,
-    /// The evidence that the variants are as requested; `None` if they were only named.
+    /// The evidence that the variants are as requested; `None` if they were chosen by name.
     pub evidence: Option<Evidence>,
 }
 
@@ -93,7 +93,7 @@ impl DesignRequest {
                 probe(&task, &pool, &anchor, element, self.variants)?
             };
             let matrix = distances(&picked, Some(element))?;
-            // A requested method or end decides, else the requested order, by default outward.
+            // A requested method or end has priority, then the requested order, by default outward.
             let order = if self.ordering.own_method().is_some() || self.ordering.end.is_some() {
                 self.ordering.order(&matrix, self.seed)?.1.indices
             } else {
@@ -127,7 +127,7 @@ impl DesignRequest {
             }
             None => {
                 self.ordering
-                    .order_from(&matrix, self.seed, &self.firsts(&named))?
+                    .order_from(&matrix, self.seed, &self.start_candidates(&named))?
                     .1
                     .indices
             }
@@ -145,7 +145,7 @@ impl DesignRequest {
         })
     }
 
-    /// The variants to learn: all that are named except held-out ones.
+    /// The variants to learn: all named variants except held-out ones.
     fn learned(&self) -> Result<Vec<(String, Variant)>, Failure> {
         let mut named = tasks::variants_of(&self.tasks)?;
         let held_out = self.held_out()?;
@@ -165,7 +165,7 @@ impl DesignRequest {
     }
 
     /// The design, with the held-out variants.
-    pub(super) fn laid_out(&self) -> Result<Design, Failure> {
+    pub(super) fn design_with_held_out(&self) -> Result<Design, Failure> {
         let held_out = self.held_out()?;
         let choice = |(task, variant): &(String, Variant)| Choice::new(task, variant.name());
         Ok(Design {
@@ -180,17 +180,17 @@ impl DesignRequest {
         named.iter().all(|name| tasks::split(name).1.is_some())
     }
 
-    /// The default candidates for the first variant: those of the first argument; none for a random order.
-    fn firsts(&self, named: &[(String, Variant)]) -> Vec<usize> {
+    /// The default candidates for the first variant: the variants of the first argument; none for a random order.
+    fn start_candidates(&self, named: &[(String, Variant)]) -> Vec<usize> {
         let (Some(first), true) = (self.tasks.first(), self.ordering.own_method() != Some(Method::Random)) else {
             return Vec::new();
         };
-        let many = tasks::variants(first).map_or(0, |variants| variants.len());
+        let num_variants = tasks::variants(first).map_or(0, |variants| variants.len());
         // Arguments are expanded in order, each variant once.
-        (0..many.min(named.len())).collect()
+        (0..num_variants.min(named.len())).collect()
     }
 
-    /// The common task of all variants, under the name used; the variants; and the one to start from.
+    /// The common task of all variants, as it was named; the variants; and the variant to start from.
     fn one_task(&self, named: &[(String, Variant)]) -> Result<(String, Vec<Variant>, Variant), Failure> {
         let (task, first) = &named[0];
         if let Some((other, _)) = named.iter().find(|(other, _)| other != task) {
@@ -219,7 +219,7 @@ impl DesignRequest {
                 pool[own].clone()
             }
             None if pool.len() == 1 => first.clone(),
-            // The variant with all defaults, under the task's name for it if there is one.
+            // Start from the variant with all defaults; prefer a declared variant with the same values.
             None => {
                 let default = first.task().variant(DEFAULT_VARIANT)?;
                 let declared = pool.iter().find(|variant| variant.values() == default.values());

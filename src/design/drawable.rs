@@ -1,4 +1,4 @@
-//! Checks that a scenario can be run before it is written: its names in logs, its classes, a few of its worlds.
+//! Checks before a scenario is written that it can be run: its names in logs, its classes, and a few of its worlds.
 
 use driftworld_curriculum::{Tried, Undrawable};
 use driftworld_env::Catalogue;
@@ -6,7 +6,7 @@ use driftworld_spec::{Classes, Scenario};
 
 use crate::{Failure, argument, scenarios, tasks, trials};
 
-/// Cache of checks: parts shared by several scenarios are checked once.
+/// Checks scenarios; parts that several of them share are checked once.
 pub(super) struct Drawable {
     worlds: u32,
     classes: Classes,

@@ -1,4 +1,4 @@
-//! [`design`]: builds curricula from the names of tasks: chooses variants, orders them, arranges them in blocks, and checks
+//! [`design`]: builds curricula from the names of tasks. It chooses variants, orders them, arranges them in blocks, and checks
 //! that their worlds can be drawn.
 
 mod choose;
@@ -26,7 +26,7 @@ use drawable::Drawable;
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct Designed {
-    /// The scenario; one each for experts and several lifetimes.
+    /// The scenario; one per expert or lifetime if several are requested.
     pub scenarios: Vec<Scenario>,
     /// The same variants, worlds and counts in other orders, if requested.
     pub controls: Vec<Scenario>,
@@ -86,7 +86,7 @@ pub fn design(request: &DesignRequest) -> Result<Designed, Failure> {
     let chosen = request.choose()?;
     let proof = request.prove(&chosen)?;
     let mut drawable = Drawable::new(request.worlds, &request.catalogue()?);
-    let (options, picked) = (&request.laid_out()?, chosen.in_order(&chosen.order));
+    let (options, picked) = (&request.design_with_held_out()?, chosen.in_order(&chosen.order));
     let (mut scenarios, mut experts) = (Vec::new(), Vec::new());
     let lifetimes = match request.lifetimes {
         None => vec![options.clone()],
@@ -116,8 +116,8 @@ pub fn design(request: &DesignRequest) -> Result<Designed, Failure> {
         let order = control(&chosen.matrix, &chosen.order, kind, options.seed)?;
         let name = format!("{}-{}", options.name, kind.name());
         // As positions in the design's own order.
-        let place = |index: &usize| chosen.order.iter().position(|own| own == index);
-        let order: Vec<usize> = order.iter().filter_map(place).collect();
+        let position = |index: &usize| chosen.order.iter().position(|own| own == index);
+        let order: Vec<usize> = order.iter().filter_map(position).collect();
         controls.push(design_control(
             &picked,
             &order,
@@ -132,7 +132,7 @@ pub fn design(request: &DesignRequest) -> Result<Designed, Failure> {
     }
     for scenario in scenarios.iter().chain(&controls).chain(&experts) {
         drawable.check(scenario)?;
-        // Catches what the schema refuses, such as a name that no folder can have.
+        // Catch whatever the schema refuses, such as a name that no folder can have.
         Scenario::from_json("scenario", &scenario.to_json_pretty())?;
     }
     Ok(Designed {

@@ -1,4 +1,4 @@
-//! Notes on what may be unexpected in a design: named variants that are not learned, unbalanced orders, experts of mixtures.
+//! Notes on surprising properties of a design: named variants that are not learned, unbalanced orders, experts of mixtures.
 
 use driftworld_spec::ScenarioForm;
 
@@ -41,7 +41,7 @@ impl DesignRequest {
         Ok(notes)
     }
 
-    /// The held-out variants; their names may omit the task if it is one of the learned tasks.
+    /// The held-out variants. Their names may omit the task if it is one of the learned tasks.
     pub(super) fn held_out(&self) -> Result<Vec<(String, driftworld_spec::Variant)>, Failure> {
         let all = tasks::with_tasks(&[self.tasks.as_slice(), &self.hold_out].concat());
         let found = tasks::variants_of(&all[self.tasks.len()..]);

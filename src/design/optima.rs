@@ -1,4 +1,4 @@
-//! [`PairOptimum`]: for a probe of the reward, whether the optimal behaviour changes between two variants.
+//! [`PairOptimum`]: in a design that probes the reward, whether the optimal behaviour changes between two variants.
 
 use driftworld_spec::Element;
 
@@ -6,10 +6,10 @@ use super::{Chosen, DesignRequest, Evidence};
 use crate::Failure;
 use crate::elements::Optimum;
 
-/// Above this number of variants, each is compared with its neighbours only.
-const MOST_WITH_ALL: usize = 8;
+/// Maximum number of variants of which all pairs are compared; with more variants, only neighbours are.
+const MAX_FOR_ALL_PAIRS: usize = 8;
 
-/// Pairs of worlds in which experts are exchanged.
+/// Number of pairs of worlds in which experts are exchanged.
 const WORLDS: u64 = 16;
 
 /// Whether two variants call for different behaviour.
@@ -19,13 +19,13 @@ pub struct PairOptimum {
     pub a: String,
     /// The other variant.
     pub b: String,
-    /// The loss of `a`'s expert in worlds of `b`, and the reverse.
+    /// The loss of `a`'s expert in worlds of `b`, and vice versa.
     pub optimum: Optimum,
 }
 
 impl DesignRequest {
-    /// Whether the optimal behaviour changes between variants of a probe of the reward: for each pair, or for neighbours in the
-    /// order if there are more than eight variants. Empty for other designs, and if no worlds are to be drawn.
+    /// In a design that probes the reward, whether the optimal behaviour changes between variants: for each pair, or only for
+    /// neighbours in the order if there are more than eight variants. Empty for other designs, and if no worlds are to be drawn.
     ///
     /// # Errors
     /// [`Failure`] if a world cannot be drawn.
@@ -38,14 +38,14 @@ impl DesignRequest {
         }
         let (catalogue, order) = (self.catalogue()?, &chosen.order);
         let mut found = Vec::new();
-        for place in 1..order.len() {
-            let first = if order.len() > MOST_WITH_ALL { place - 1 } else { 0 };
-            for other in first..place {
-                let [a, b] = [&picked[order[other]], &picked[order[place]]];
+        for index in 1..order.len() {
+            let first = if order.len() > MAX_FOR_ALL_PAIRS { index - 1 } else { 0 };
+            for other in first..index {
+                let [a, b] = [&picked[order[other]], &picked[order[index]]];
                 found.push(PairOptimum {
                     a: a.choice.id(),
                     b: b.choice.id(),
-                    optimum: Optimum::tried(&a.variant, &b.variant, self.seed, WORLDS, &catalogue)?,
+                    optimum: Optimum::measure(&a.variant, &b.variant, self.seed, WORLDS, &catalogue)?,
                 });
             }
         }

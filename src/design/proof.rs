@@ -1,5 +1,4 @@
-//! Proves that the variants of a probe differ in the probed element only: tests pairs of their worlds, and writes the result
-//! into the scenario.
+//! Tests in pairs of worlds that the variants of a probe differ in the probed element only. The scenario records the result.
 
 use driftworld_generator::Sampler;
 use driftworld_spec::{Element, Modality, ProvenVariant, ScenarioProof, Variant};
@@ -8,7 +7,7 @@ use super::{Chosen, DesignRequest, Evidence};
 use crate::elements::{ElementsOutcome, ElementsRequest, elements_among};
 use crate::{Failure, argument};
 
-/// Pairs of worlds tested per variant.
+/// Number of pairs of worlds tested per variant.
 const NUM_WORLDS: u64 = 8;
 
 impl DesignRequest {
@@ -27,12 +26,12 @@ impl DesignRequest {
         };
         let variants: Vec<Variant> = picked.iter().map(|one| one.variant.clone()).collect();
         let Some(base) = variants.first() else { return Ok(None) };
-        let asked =
+        let modalities_of =
             |variant: &Variant| Ok::<_, Failure>(Sampler::new(variant, 0).world(0)?.agent_params.modalities.clone());
-        let own = asked(base)?;
-        let mut others = variants.iter().map(asked);
+        let own = modalities_of(base)?;
+        let mut others = variants.iter().map(modalities_of);
         let are_alike = others.try_fold(true, |alike, other| Ok::<_, Failure>(alike && other? == own))?;
-        // If the variants' modalities differ, the comparison uses those of the worlds.
+        // If the variants have different modalities, compare each world in its own.
         let compared = self.modalities.clone().or_else(|| are_alike.then(|| own.clone()));
         let modalities = self.modalities.clone().unwrap_or(own);
         let request = ElementsRequest {

@@ -1,4 +1,4 @@
-//! Parses words for elements and schedules, from the command line and from Python.
+//! Parses the words of design options, such as elements and schedules, from the command line and from Python.
 
 use clap::ValueEnum;
 use driftworld_spec::{By, DriftSchedule, Element, did_you_mean};
@@ -9,7 +9,7 @@ use serde_json::Value;
 use crate::numbers;
 use crate::request::read;
 
-/// How values or variants switch in a drift.
+/// What switches at random in a drift.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Mix {
     /// Each parameter that cannot be interpolated by itself.
@@ -47,7 +47,7 @@ pub(super) fn name<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String,
 /// An element by its letter or name.
 ///
 /// # Errors
-/// The expected words.
+/// The expected words, as a message.
 pub fn element(text: &str) -> Result<Element, String> {
     let is_meant =
         |element: &Element| element.letter().eq_ignore_ascii_case(text) || element.name().eq_ignore_ascii_case(text);
@@ -60,7 +60,7 @@ pub fn element(text: &str) -> Result<Element, String> {
 /// A schedule, such as `cosine` or `step:4`.
 ///
 /// # Errors
-/// The expected words.
+/// The expected words, as a message.
 pub fn schedule(text: &str) -> Result<DriftSchedule, String> {
     let number = |word: &str| text.strip_prefix(word)?.parse().ok().filter(|number| *number > 0);
     match text {

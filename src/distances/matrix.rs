@@ -1,15 +1,15 @@
-//! All distances among variants, labelled with their names.
+//! Measures all distances among variants, as a labelled matrix.
 
 use driftworld_similarity::{DistanceMatrix, Placements, SimilarityError, VariantMeasure, Weights, Worlds};
 use driftworld_spec::{By, Variant, World};
 use rayon::prelude::*;
 
 use super::pairs::{Means, Pairs, world_measure};
-use super::{DistancesError, NAME_IT, Sample, Scale};
+use super::{DistancesError, MEASURE_REQUIRED, Sample, Scale};
 
 /// All distances among variants, labelled with their names; computed in parallel.
 ///
-/// By parameters, with the weights that the task declares, overridden by `lay_over`; the matrix is a metric if the task's
+/// By parameters, with the weights that the task declares, overridden by `reweigh`; the matrix is a metric if the task's
 /// measures are. By other measures, worlds of each variant are drawn as in `sample` and paired by index, so the
 /// distance of two variants depends only on them and on `sample`, not on the rest of the list. If `sample` gives no
 /// measure, the variants' task decides.
@@ -17,7 +17,7 @@ use super::{DistancesError, NAME_IT, Sample, Scale};
 /// # Errors
 /// [`DistancesError::By`] for parameters of variants of several tasks, and if several tasks have no measure given;
 /// [`DistancesError::Generator`] for worlds that cannot be drawn, [`DistancesError::Similarity`] for too many variants or from
-/// `lay_over`; otherwise as [`between`](super::between).
+/// `reweigh`; otherwise as [`between`](super::between).
 ///
 /// # Example
 /// ```
@@ -32,36 +32,36 @@ use super::{DistancesError, NAME_IT, Sample, Scale};
 pub fn variant_matrix(
     variants: &[(String, Variant)],
     sample: &Sample,
-    lay_over: impl FnOnce(Weights) -> Result<Weights, SimilarityError>,
+    reweigh: impl FnOnce(Weights) -> Result<Weights, SimilarityError>,
 ) -> Result<DistanceMatrix, DistancesError> {
-    variant_matrix_while(variants, sample, lay_over, || true)
+    variant_matrix_while(variants, sample, reweigh, || true)
 }
 
-/// Like [`variant_matrix`], for variants with the names of their tasks; labels look like `find_objects#red`.
+/// Like [`variant_matrix`], but takes variants with the names of their tasks; labels are such as `find_objects#red`.
 ///
 /// # Errors
 /// As [`variant_matrix`].
 pub fn labelled_matrix(
     variants: &[(String, Variant)],
     sample: &Sample,
-    lay_over: impl FnOnce(Weights) -> Result<Weights, SimilarityError>,
+    reweigh: impl FnOnce(Weights) -> Result<Weights, SimilarityError>,
 ) -> Result<DistanceMatrix, DistancesError> {
     let label = |(task, variant): &(String, Variant)| (format!("{task}#{}", variant.name()), variant.clone());
-    variant_matrix(&variants.iter().map(label).collect::<Vec<_>>(), sample, lay_over)
+    variant_matrix(&variants.iter().map(label).collect::<Vec<_>>(), sample, reweigh)
 }
 
-/// Like [`variant_matrix`], but cancelled as soon as `go_on`, which is called before each pair, returns false.
+/// Like [`variant_matrix`], but cancelled as soon as `keep_going`, which is called before each pair, returns false.
 ///
 /// # Errors
 /// As [`variant_matrix`]; [`DistancesError::Interrupted`] if it was cancelled.
 pub fn variant_matrix_while(
     variants: &[(String, Variant)],
     sample: &Sample,
-    lay_over: impl FnOnce(Weights) -> Result<Weights, SimilarityError>,
-    go_on: impl Fn() -> bool + Sync,
+    reweigh: impl FnOnce(Weights) -> Result<Weights, SimilarityError>,
+    keep_going: impl Fn() -> bool + Sync,
 ) -> Result<DistanceMatrix, DistancesError> {
-    let asked = || {
-        if go_on() {
+    let check_cancelled = || {
+        if keep_going() {
             Ok(())
         } else {
             Err(DistancesError::Interrupted)
@@ -75,26 +75,26 @@ pub fn variant_matrix_while(
         (Some(By::Parameters) | None, None) if first.is_some() => {
             return Err(DistancesError::By {
                 found: "variants of several tasks".to_owned(),
-                expected: NAME_IT,
+                expected: MEASURE_REQUIRED,
             });
         }
         (Some(by), _) => by,
         (None, task) => task.map_or(By::Parameters, |task| task.compare_by()),
     };
-    // Labels are checked before anything is drawn.
+    // Check the labels before drawing worlds.
     DistanceMatrix::check_labels(&labels)?;
-    let weights = lay_over(task.map_or_else(Weights::default, |task| Weights::of_task(task)))?;
+    let weights = reweigh(task.map_or_else(Weights::default, |task| Weights::of_task(task)))?;
     if let (By::Parameters, Some(task)) = (by, task) {
         let measure = VariantMeasure::new(task, weights);
         let unit = match sample.scale {
             Scale::Share if measure.has_diameter() => measure.diameter(),
             _ => 1.0,
         };
-        let apart = |a: usize, b: usize| {
-            asked()?;
+        let distance = |a: usize, b: usize| {
+            check_cancelled()?;
             Ok::<_, DistancesError>(measure.between(&variants[a].1, &variants[b].1)?.total / unit)
         };
-        let matrix = DistanceMatrix::measure(labels, apart)?.with_properties(measure.properties());
+        let matrix = DistanceMatrix::measure(labels, distance)?.with_properties(measure.properties());
         return Ok(matrix);
     }
     sample.check_scale(by)?;
@@ -103,47 +103,47 @@ pub fn variant_matrix_while(
     let drawn: Vec<Vec<World>> = variants
         .iter()
         .map(|(_, variant)| {
-            asked()?;
+            check_cancelled()?;
             sample.draw(variant, count as u64)
         })
         .collect::<Result<_, _>>()?;
     if by == By::Worlds {
         let worlds = Worlds::new(&drawn.concat(), weights);
         let pairs = |a: usize, b: usize| (0..count).map(move |k| (a * count + k, b * count + k));
-        let apart = |a: usize, b: usize| {
-            asked()?;
+        let distance = |a: usize, b: usize| {
+            check_cancelled()?;
             Ok::<_, DistancesError>(pairs(a, b).map(|(a, b)| worlds.distance(a, b)).sum::<f64>() / count as f64)
         };
-        return DistanceMatrix::measure(labels, apart);
+        return DistanceMatrix::measure(labels, distance);
     }
     if by == By::Placements {
         let placements: Vec<Placements> = drawn.iter().map(|worlds| Placements::of(worlds)).collect();
-        let apart = |a: usize, b: usize| {
-            asked()?;
+        let distance = |a: usize, b: usize| {
+            check_cancelled()?;
             Ok::<_, DistancesError>(placements[a].distance(&placements[b], &weights)?.total)
         };
-        return DistanceMatrix::measure(labels, apart);
+        return DistanceMatrix::measure(labels, distance);
     }
-    // One world of each variant at a time, because their prepared data are large.
+    // Prepare one world of each variant at a time, because the prepared data are large.
     let size = variants.len();
     let pairs: Vec<(usize, usize)> = (0..size).flat_map(|a| (a + 1..size).map(move |b| (a, b))).collect();
     let mut means: Vec<Means> = pairs.iter().map(|_| Means::new(by)).collect();
     for k in 0..count {
-        let worlds: Vec<World> = drawn.iter().map(|of_one| of_one[k].clone()).collect();
-        asked()?;
-        let ready = Pairs::new(by, &worlds, &sample.catalogue)?;
+        let worlds: Vec<World> = drawn.iter().map(|worlds| worlds[k].clone()).collect();
+        check_cancelled()?;
+        let prepared = Pairs::new(by, &worlds, &sample.catalogue)?;
         pairs.par_iter().zip(&mut means).try_for_each(|((a, b), mean)| {
-            asked()?;
-            mean.add(&ready.between(*a, *b)?);
+            check_cancelled()?;
+            mean.add(&prepared.between(*a, *b)?);
             Ok::<_, DistancesError>(())
         })?;
     }
-    let at = |a: usize, b: usize| {
+    let pair_index = |a: usize, b: usize| {
         let (a, b) = (a.min(b), a.max(b));
         a * size - a * (a + 1) / 2 + (b - a - 1)
     };
     let matrix = DistanceMatrix::measure(labels, |a, b| {
-        Ok::<_, DistancesError>(means[at(a, b)].distance(&weights).total)
+        Ok::<_, DistancesError>(means[pair_index(a, b)].distance(&weights).total)
     })?;
     Ok(match world_measure(by) {
         // A mean of pseudometrics is a pseudometric.

@@ -10,12 +10,12 @@ use rayon::prelude::*;
 use super::DistancesError;
 use crate::behavior::{ExpertPair, POINTS};
 use crate::dynamics;
-use crate::picture_distance::{ACROSS, PictureDistanceError, Pose, Views, poses};
+use crate::picture_distance::{GRID_SIDE, PictureDistanceError, Pose, Views, poses};
 
-/// The numbers of one comparison: one per entry of [`parts`], or as many as the remark needs.
+/// The numbers of one comparison: one per entry of [`parts`]; for whole decision processes, those used by [`Means`].
 pub(super) type Values = Vec<f64>;
 
-/// The `similarity` crate's measure of two worlds with this name, if it has one.
+/// The measure of two worlds with this name, if the `similarity` crate has one.
 pub(super) fn world_measure(by: By) -> Option<WorldMeasure> {
     let measure = by.name().split_once(':').map(|(_, measure)| measure);
     WorldMeasure::from_name(by.subject(), measure)
@@ -43,42 +43,42 @@ fn parts(by: By) -> Vec<(&'static str, Element, &'static str)> {
     parts.to_vec()
 }
 
-/// Worlds, with data computed once for each.
+/// Worlds with the data that a measure needs, computed once for each world.
 pub(super) struct Pairs<'a> {
     by: By,
     worlds: &'a [World],
-    ready: Ready,
+    prepared: Prepared,
 }
 
-enum Ready {
+enum Prepared {
     Rewards,
     World(WorldMeasure),
-    /// The poses that are free in each world by itself, and the views from there.
+    /// For each world, the poses that are free in it, and the views from there.
     Pictures(Catalogue, Vec<(Vec<Pose>, Views)>),
-    /// Tables over each world's own arena.
+    /// Each world tabulated over its own arena.
     Dynamics(Catalogue, Vec<WorldAbstraction>),
     /// The reward of each world's own expert.
     Behavior(Expertise, Vec<ExpertRun>),
 }
 
 impl<'a> Pairs<'a> {
-    /// Prepares worlds in parallel. Comparisons by parameters, worlds and placements are made elsewhere.
+    /// Prepares worlds in parallel, for any measure except parameters, worlds and placements.
     pub(super) fn new(by: By, worlds: &'a [World], catalogue: &Catalogue) -> Result<Self, DistancesError> {
         let catalogue = catalogue.clone();
-        let ready = match by.subject() {
+        let prepared = match by.subject() {
             "pictures" => {
-                let of = |world: &World| {
+                let views = |world: &World| {
                     let poses = poses(&[world], &catalogue)?;
                     let views = Views::new(world, &poses, &catalogue)?;
                     Ok::<_, PictureDistanceError>((poses, views))
                 };
-                let seen = worlds.par_iter().map(of).collect::<Result<_, _>>()?;
-                Ready::Pictures(catalogue, seen)
+                let views = worlds.par_iter().map(views).collect::<Result<_, _>>()?;
+                Prepared::Pictures(catalogue, views)
             }
             "dynamics" => {
-                let of = |world: &World| dynamics::tables(world, world.environment_params.arena_size(), &catalogue);
-                let tables = worlds.par_iter().map(of).collect::<Result<_, _>>()?;
-                Ready::Dynamics(catalogue, tables)
+                let tables = |world: &World| dynamics::tables(world, world.environment_params.arena_size(), &catalogue);
+                let tables = worlds.par_iter().map(tables).collect::<Result<_, _>>()?;
+                Prepared::Dynamics(catalogue, tables)
             }
             "behavior" => {
                 let expertise = Expertise {
@@ -87,41 +87,41 @@ impl<'a> Pairs<'a> {
                 };
                 let own = worlds.par_iter().map(|world| expertise.at_home(world));
                 let own = own.collect::<Result<_, _>>()?;
-                Ready::Behavior(expertise, own)
+                Prepared::Behavior(expertise, own)
             }
-            _ => world_measure(by).map_or(Ready::Rewards, Ready::World),
+            _ => world_measure(by).map_or(Prepared::Rewards, Prepared::World),
         };
-        Ok(Self { by, worlds, ready })
+        Ok(Self { by, worlds, prepared })
     }
 
     /// Compares two worlds by index.
     pub(super) fn between(&self, a: usize, b: usize) -> Result<Values, DistancesError> {
         let worlds = [&self.worlds[a], &self.worlds[b]];
-        Ok(match &self.ready {
-            Ready::Rewards => vec![world_rewards_distance(worlds[0], worlds[1])?],
-            Ready::World(measure) => vec![measure.between(worlds[0], worlds[1])?],
-            Ready::Pictures(catalogue, seen) => {
+        Ok(match &self.prepared {
+            Prepared::Rewards => vec![world_rewards_distance(worlds[0], worlds[1])?],
+            Prepared::World(measure) => vec![measure.between(worlds[0], worlds[1])?],
+            Prepared::Pictures(catalogue, views) => {
                 let sides = worlds.map(|world| world.environment_params.arena_size());
                 if sides[0] != sides[1] {
                     let poses = poses(&worlds, catalogue)?;
                     let [a, b] = worlds.map(|world| Views::new(world, &poses, catalogue));
                     return self.looks(&a?, &b?);
                 }
-                let [(of_a, a), (of_b, b)] = [&seen[a], &seen[b]];
-                // Pictures are copied only if a place is occupied in one of the worlds.
-                let fewer = |views: &Views, own: &[Pose], other: &[Pose]| {
+                let [(poses_a, a), (poses_b, b)] = [&views[a], &views[b]];
+                // Pictures are copied only if a position is occupied in one of the worlds.
+                let common_views = |views: &Views, own: &[Pose], other: &[Pose]| {
                     let common: Vec<usize> = (0..own.len()).filter(|k| other.contains(&own[*k])).collect();
                     (common.len() < own.len()).then(|| views.only(&common))
                 };
-                let (fewer_of_a, fewer_of_b) = (fewer(a, of_a, of_b), fewer(b, of_b, of_a));
-                let (a, b) = (fewer_of_a.as_ref().unwrap_or(a), fewer_of_b.as_ref().unwrap_or(b));
+                let (common_a, common_b) = (common_views(a, poses_a, poses_b), common_views(b, poses_b, poses_a));
+                let (a, b) = (common_a.as_ref().unwrap_or(a), common_b.as_ref().unwrap_or(b));
                 if a.is_empty() {
-                    let tried = ACROSS * ACROSS;
+                    let tried = GRID_SIDE * GRID_SIDE;
                     return Err(PictureDistanceError::NoPlace { tried }.into());
                 }
                 self.looks(a, b)?
             }
-            Ready::Dynamics(catalogue, tables) => {
+            Prepared::Dynamics(catalogue, tables) => {
                 let area = dynamics::common_area(worlds[0], worlds[1]);
                 if worlds.iter().all(|world| world.environment_params.arena_size() == area) {
                     return self.outcomes(&tables[a], &tables[b]);
@@ -129,7 +129,7 @@ impl<'a> Pairs<'a> {
                 let [a, b] = worlds.map(|world| dynamics::tables(world, area, catalogue));
                 return self.outcomes(&a?, &b?);
             }
-            Ready::Behavior(expertise, own) => {
+            Prepared::Behavior(expertise, own) => {
                 let pair = ExpertPair {
                     a_in_a: own[a],
                     b_in_a: expertise.abroad(worlds[1], worlds[0])?,
@@ -217,11 +217,11 @@ impl Means {
             by => {
                 let means = parts(by).into_iter().enumerate();
                 let count = self.count;
-                let of = means.map(|(k, (name, element, measure))| Part {
+                let parts = means.map(|(k, (name, element, measure))| Part {
                     method: (count > 1).then_some(Method::Samples { count }),
                     ..Part::of(name, element, measure, self.mean(k))
                 });
-                Distance::new(of.collect(), weights)
+                Distance::new(parts.collect(), weights)
             }
         }
     }
@@ -245,8 +245,8 @@ mod tests {
                 (measure.kind(), measure.name())
             })
             .collect();
-        let all: BTreeSet<(&str, &str)> = WorldMeasure::all().map(|own| (own.kind(), own.name())).collect();
-        assert_eq!(found.len(), all.len());
-        assert_eq!(found.into_iter().collect::<BTreeSet<_>>(), all);
+        let expected: BTreeSet<(&str, &str)> = WorldMeasure::all().map(|own| (own.kind(), own.name())).collect();
+        assert_eq!(found.len(), expected.len());
+        assert_eq!(found.into_iter().collect::<BTreeSet<_>>(), expected);
     }
 }

@@ -1,4 +1,4 @@
-//! Distances of pairs and lists of variants and worlds, by each measure.
+//! Tests distances of pairs and lists of variants and worlds, by each measure.
 
 use driftworld_similarity::DistanceMatrix;
 use driftworld_spec::TaskSpec;
@@ -87,7 +87,7 @@ fn distance_depends_on_the_pair_alone() {
         };
         assert_eq!(of(&pair), of(&more), "{by:?}");
     }
-    let refused = variant_matrix(&named(&more), &Sample::default(), Ok).expect_err("the tasks are several");
+    let refused = variant_matrix(&named(&more), &Sample::default(), Ok).expect_err("several tasks");
     assert!(
         refused.to_string().contains("rewards, dynamics or behavior"),
         "{refused}"
@@ -95,8 +95,8 @@ fn distance_depends_on_the_pair_alone() {
     assert!(matches!(refused, DistancesError::By { .. }));
 }
 
-/// Two worlds of each, so that slow measures take little time.
-fn few(by: By) -> Sample {
+/// A sample of two worlds per variant, so that slow measures take little time.
+fn small_sample(by: By) -> Sample {
     Sample {
         worlds: Some(2),
         ..Sample::by(by)
@@ -147,11 +147,11 @@ fn each_measure_is_a_symmetric_number_per_pair() {
         .filter(|by| *by != By::Parameters)
         .step_by(quick_or_full(2, 1))
     {
-        // Tables of whole meadows take seconds.
+        // Tabulating a whole meadow takes seconds.
         let variants = if by.subject() == "dynamics" { &small } else { &built_in };
         let side = |k: usize| Side::Variant(variants[k].1.clone());
-        let apart = |a: usize, b: usize| {
-            let found = between(&side(a), &side(b), &few(by), Ok).expect("both can be compared");
+        let distance = |a: usize, b: usize| {
+            let found = between(&side(a), &side(b), &small_sample(by), Ok).expect("both can be compared");
             assert_eq!(found.by, by);
             assert!(
                 found.description.starts_with(&format!("by {}, ", by.name())),
@@ -161,18 +161,18 @@ fn each_measure_is_a_symmetric_number_per_pair() {
             assert!(found.description.contains("2 worlds of each"), "{}", found.description);
             found.distance
         };
-        let matrix = variant_matrix(variants, &few(by), Ok).expect("all can be compared");
+        let matrix = variant_matrix(variants, &small_sample(by), Ok).expect("all can be compared");
         for (a, b) in [(0, 2), (0, 1)].into_iter().take(quick_or_full(1, 2)) {
-            let found = apart(a, b);
+            let found = distance(a, b);
             let (total, name) = (found.total, by.name());
             assert!(total.is_finite() && total >= 0.0, "{name} {total}");
             assert!(
-                (total - apart(b, a).total).abs() < 1e-12,
-                "{name}: {a} and {b}, there and back"
+                (total - distance(b, a).total).abs() < 1e-12,
+                "{name}: {a} and {b}, symmetric"
             );
             assert!(
                 (total - matrix.get(a, b)).abs() < 1e-12,
-                "{name}: {a} and {b}, alone and in a list"
+                "{name}: {a} and {b}, alone and in a matrix"
             );
             let parts: f64 = found.parts.iter().map(|part| part.normalised * part.weight).sum();
             assert!(
@@ -180,7 +180,7 @@ fn each_measure_is_a_symmetric_number_per_pair() {
                 "{name}: parts add up"
             );
         }
-        assert!(apart(0, 0).total.abs() < 1e-12, "{}: a variant and itself", by.name());
+        assert!(distance(0, 0).total.abs() < 1e-12, "{}: itself", by.name());
     }
 }
 
@@ -203,10 +203,10 @@ fn task_declares_the_measure_of_its_variants() {
         assert!((matrix.get(0, 1) - found.distance.total).abs() < 1e-12);
         found.by
     };
-    let usual = Sample::default();
-    assert_eq!(compared("", &usual), By::Parameters);
+    let default = Sample::default();
+    assert_eq!(compared("", &default), By::Parameters);
     assert_eq!(
-        compared(r#""compare_by": "pictures:whole","#, &usual),
+        compared(r#""compare_by": "pictures:whole","#, &default),
         By::PicturesWhole
     );
     assert_eq!(
@@ -232,10 +232,10 @@ fn too_many_worlds_are_refused_before_drawing() {
 }
 
 #[test]
-fn measures_describe_what_they_are_based_on() {
+fn parts_show_what_a_measure_responds_to() {
     let side = |name: &str| Side::Variant(tasks::variant(name).expect("it is built in"));
     let parts = |a: &str, b: &str, by: By| {
-        let found = between(&side(a), &side(b), &few(by), Ok)
+        let found = between(&side(a), &side(b), &small_sample(by), Ok)
             .expect("both can be compared")
             .distance;
         let parts = found.parts.iter().map(|part| (part.name.clone(), part.normalised));
@@ -244,13 +244,13 @@ fn measures_describe_what_they_are_based_on() {
     let (elements, looks) = parts("find_objects#red", "find_objects#blue", By::Pictures);
     assert!(
         looks[0].1 > looks[1].1,
-        "red for blue objects is seen where objects are: {looks:?}"
+        "a changed colour of objects shows where the objects are: {looks:?}"
     );
     assert!(elements[4].is_some() && elements[..4].iter().all(Option::is_none));
-    let (_, ways) = parts("find_objects#red", "find_objects#penalty", By::Dynamics);
+    let (_, outcomes) = parts("find_objects#red", "find_objects#penalty", By::Dynamics);
     assert!(
-        ways[0].1 > 0.0 && ways[1].1 == 0.0,
-        "what actions pay differs, where they lead does not: {ways:?}"
+        outcomes[0].1 > 0.0 && outcomes[1].1 == 0.0,
+        "only the rewards of actions differ, not where they lead: {outcomes:?}"
     );
     assert_eq!(
         parts("find_objects#red", "find_objects#penalty", By::Behavior),
@@ -262,15 +262,15 @@ fn measures_describe_what_they_are_based_on() {
 fn shaping_gives_distance_0_and_reversed_rewards_1() {
     let side = |name: &str| Side::Variant(tasks::variant(name).expect("it is built in"));
     let rewards = Sample::by(By::Rewards);
-    let apart = |a: &str, b: &str| {
+    let distance = |a: &str, b: &str| {
         between(&side(a), &side(b), &rewards, Ok)
             .expect("both are drawn")
             .distance
             .total
     };
-    assert_eq!(apart("get_to_goal#plain", "get_to_goal#soft"), 0.0);
-    assert!(apart("find_objects#red", "find_objects#penalty") > 0.99);
-    assert!(apart("get_to_goal#plain", "get_to_goal#deadly") > 0.1);
+    assert_eq!(distance("get_to_goal#plain", "get_to_goal#soft"), 0.0);
+    assert!(distance("find_objects#red", "find_objects#penalty") > 0.99);
+    assert!(distance("get_to_goal#plain", "get_to_goal#deadly") > 0.1);
 }
 
 #[test]

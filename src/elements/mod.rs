@@ -20,7 +20,7 @@ use crate::{Failure, libraries, tasks};
 /// Maximum number of worlds in which a parameter is tested for having no effect.
 const IDLE_WORLDS: u64 = 8;
 
-/// A parameter counts as having no effect only after this many times the usual steps.
+/// Factor on the number of steps for which a parameter must show no effect before it counts as idle.
 const IDLE_PATIENCE: u32 = 4;
 
 /// Measures which elements differ between variants of a task, and reports where its parameters claim something else.
@@ -50,13 +50,13 @@ pub fn elements(request: &ElementsRequest) -> Result<ElementsOutcome, Failure> {
 /// As [`elements`].
 pub fn elements_of(task: &Arc<TaskSpec>, request: &ElementsRequest) -> Result<ElementsOutcome, Failure> {
     request.check()?;
-    let compared = request.variants_of(task)?;
+    let variants = request.variants_of(task)?;
     let trial = Trial::new(request)?;
-    tasks::check_variants(&compared, &trial.experiment.catalogue)?;
+    tasks::check_variants(&variants, &trial.experiment.catalogue)?;
     let mut outcome = ElementsOutcome::new(request, task.name());
-    trial.compare_all(&compared, &mut outcome, Trial::of_variant)?;
-    // A single variant shows too little of a parameter's effects.
-    if compared.len() == task.variant_names().len() {
+    trial.compare_all(&variants, &mut outcome, Trial::test_variant)?;
+    // Only the full set of variants can show that a parameter never has a declared effect.
+    if variants.len() == task.variant_names().len() {
         outcome.note_in_vain(task);
     }
     Ok(outcome)
@@ -69,14 +69,14 @@ pub fn elements_of(task: &Arc<TaskSpec>, request: &ElementsRequest) -> Result<El
 pub(crate) fn elements_among(variants: &[Variant], request: &ElementsRequest) -> Result<ElementsOutcome, Failure> {
     let trial = Trial::new(request)?;
     let mut outcome = ElementsOutcome::new(request, variants.first().map_or("", |first| first.task().name()));
-    trial.compare_all(variants, &mut outcome, Trial::compared)?;
+    trial.compare_all(variants, &mut outcome, Trial::compare_variant)?;
     Ok(outcome)
 }
 
 /// Compares a variant with a base in worlds of the base.
 type Compare = fn(&Trial, &Variant, &[World], &Variant) -> Result<VariantElements, Failure>;
 
-/// Data shared by all variants in a trial.
+/// Measures variants under the same settings.
 struct Trial {
     experiment: Experiment,
     seed: u64,
@@ -98,7 +98,7 @@ impl Trial {
         })
     }
 
-    /// Compares each variant but the first with the first.
+    /// Compares every other variant with the first.
     fn compare_all(
         &self,
         variants: &[Variant],
@@ -127,17 +127,17 @@ impl Trial {
         Ok(self.experiment.compare(&pairs)?)
     }
 
-    fn compared(&self, base: &Variant, worlds: &[World], other: &Variant) -> Result<VariantElements, Failure> {
+    fn compare_variant(&self, base: &Variant, worlds: &[World], other: &Variant) -> Result<VariantElements, Failure> {
         let found = self.compare(worlds, other)?;
         Ok(VariantElements::new(base, other, &changed(base, other), found))
     }
 
-    fn of_variant(&self, base: &Variant, worlds: &[World], other: &Variant) -> Result<VariantElements, Failure> {
-        let mut outcome = self.compared(base, worlds, other)?;
+    fn test_variant(&self, base: &Variant, worlds: &[World], other: &Variant) -> Result<VariantElements, Failure> {
+        let mut outcome = self.compare_variant(base, worlds, other)?;
         outcome.idle = self.idle(base, other, &outcome)?;
-        let pays_otherwise = outcome.declared.contains(&Element::R) || outcome.elements().contains(&Element::R);
-        if pays_otherwise {
-            outcome.optimum = Some(Optimum::tried(
+        let changes_reward = outcome.declared.contains(&Element::R) || outcome.elements().contains(&Element::R);
+        if changes_reward {
+            outcome.optimum = Some(Optimum::measure(
                 base,
                 other,
                 self.seed,
@@ -149,7 +149,7 @@ impl Trial {
         Ok(outcome)
     }
 
-    /// The parameters that differ without effect: resetting them to the base's values changes nothing.
+    /// The idle parameters: resetting them to the base's values changes nothing.
     fn idle(&self, base: &Variant, other: &Variant, outcome: &VariantElements) -> Result<Vec<String>, Failure> {
         let names = &outcome.parameters;
         let is_alike = outcome.measured.is_empty();
@@ -169,13 +169,13 @@ impl Trial {
             ..*self
         };
         let mut idle: Vec<String> = Vec::new();
-        // Resets the parameters one by one, from the last: of two equivalent ones, only one counts as idle.
+        // Reset the parameters one by one, from the last: of two equivalent ones, only one counts as idle.
         for name in names.iter().rev() {
-            let back = idle.iter().chain([name]);
-            let values: Vec<_> = back
+            let reset = idle.iter().chain([name]);
+            let values: Vec<_> = reset
                 .filter_map(|name| Some((name.clone(), base.value(name)?.clone())))
                 .collect();
-            // Combinations that the task forbids or that cannot be drawn, such as a start within a wall, are not tested.
+            // Do not test combinations that the task forbids or that cannot be drawn, such as a start within a wall.
             let Ok(without) = other.with("without", values) else {
                 continue;
             };
@@ -194,7 +194,7 @@ impl Trial {
 
 /// The parameters in which two variants of a task differ, with the elements that they claim to affect.
 fn changed(a: &Variant, b: &Variant) -> Vec<(String, Vec<Element>)> {
-    // Unread parameters count with their defaults.
+    // Parameters that the task does not read in a variant count with their defaults.
     let (a, b) = (a.as_read(), b.as_read());
     let differs = |(name, value): &(&String, &Value)| a.value(name) != Some(*value);
     let declared = |name: &String| {

@@ -8,16 +8,16 @@ use crate::Failure;
 use crate::behavior::{BehaviorOutcome, ExpertPair, behavior};
 
 /// Maximum number of pairs of worlds in which experts are exchanged.
-const MOST_WORLDS: u64 = 16;
+const MAX_WORLDS: u64 = 16;
 
 /// Smallest regret, in points, that counts as a change of the optimum.
-const LEAST_REGRET: f64 = 1.0;
+const MIN_REGRET: f64 = 1.0;
 
-/// The loss of the base variant's expert in worlds of this one, and the reverse.
+/// The loss of the base variant's expert in worlds of this variant, and vice versa.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Optimum {
-    /// Whether the base's optimum is not optimal here: the regret here is more than two standard errors above 0, and at least a
-    /// point.
+    /// Whether the base's optimum is not optimal here: the regret is at least one point, and more than two standard errors above
+    /// 0.
     pub turned: bool,
     /// How much less the base's expert earns here than this variant's own, in points, on average.
     pub regret: f64,
@@ -32,7 +32,7 @@ impl Optimum {
     ///
     /// # Errors
     /// [`Failure`] if a world cannot be drawn.
-    pub(crate) fn tried(
+    pub(crate) fn measure(
         base: &Variant,
         other: &Variant,
         seed: u64,
@@ -42,20 +42,20 @@ impl Optimum {
         Ok(Self::of(&behavior(
             base,
             other,
-            worlds.min(MOST_WORLDS),
+            worlds.min(MAX_WORLDS),
             seed,
             catalogue,
         )?))
     }
 
-    /// The result of an exchange of experts, with its first variant as the base.
+    /// Summarises an exchange of experts, with its first variant as the base.
     pub fn of(found: &BehaviorOutcome) -> Self {
         let count = found.pairs.len().max(1) as f64;
         let deviation = |pair: &ExpertPair| (pair.regret_in_b() - found.regret_in_b).powi(2);
         let variance = found.pairs.iter().map(deviation).sum::<f64>() / (count - 1.0).max(1.0);
         let error = (variance / count).sqrt();
         Self {
-            turned: found.regret_in_b >= LEAST_REGRET && found.regret_in_b > 2.0 * error,
+            turned: found.regret_in_b >= MIN_REGRET && found.regret_in_b > 2.0 * error,
             regret: found.regret_in_b,
             regret_in_base: found.regret_in_a,
             worlds: found.pairs.len() as u64,
@@ -69,8 +69,8 @@ mod tests {
 
     use super::*;
 
-    /// An exchange in which the first's expert earns less by these amounts in worlds of the second.
-    fn exchanged(regrets: &[f64]) -> Optimum {
+    /// The optimum if the first variant's expert earns less by these amounts in worlds of the second.
+    fn optimum_of(regrets: &[f64]) -> Optimum {
         let pair = |regret: &f64| ExpertPair {
             b_in_b: ExpertRun {
                 earned: *regret,
@@ -91,11 +91,11 @@ mod tests {
 
     #[test]
     fn clear_regret_means_a_different_optimum() {
-        assert!(exchanged(&[100.0, 100.0, 100.0]).turned);
-        assert!(exchanged(&[40.0, 60.0, 50.0]).turned);
-        assert!(!exchanged(&[0.0, 0.0]).turned, "the same tour");
-        assert!(!exchanged(&[0.5, 0.5]).turned, "half a point");
-        assert!(!exchanged(&[-50.0, 60.0, -20.0, 30.0]).turned, "luck");
-        assert!(!exchanged(&[-80.0, -90.0]).turned, "a better tour");
+        assert!(optimum_of(&[100.0, 100.0, 100.0]).turned);
+        assert!(optimum_of(&[40.0, 60.0, 50.0]).turned);
+        assert!(!optimum_of(&[0.0, 0.0]).turned, "no regret");
+        assert!(!optimum_of(&[0.5, 0.5]).turned, "below the minimum regret");
+        assert!(!optimum_of(&[-50.0, 60.0, -20.0, 30.0]).turned, "noise");
+        assert!(!optimum_of(&[-80.0, -90.0]).turned, "the base's expert earns more");
     }
 }

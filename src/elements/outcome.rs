@@ -1,4 +1,4 @@
-//! [`ElementsOutcome`]: claimed and measured elements, and their contradictions.
+//! [`ElementsOutcome`]: the elements that variants claim to change, those measured to differ, and contradictions.
 
 use driftworld_env::{Findings, Policy, Proof, Witness};
 use driftworld_spec::{Element, Modality, TaskSpec, Variant};
@@ -48,7 +48,7 @@ pub struct VariantElements {
     pub variant: String,
     /// The parameters in which it differs from the base.
     pub parameters: Vec<String>,
-    /// The elements that these claim to affect, in the order of [`Element::WITH_FINE`].
+    /// The elements that these parameters claim to affect, in the order of [`Element::WITH_FINE`].
     pub declared: Vec<Element>,
     /// The elements that were measured to differ, in the same order.
     pub measured: Vec<Measured>,
@@ -60,9 +60,9 @@ pub struct VariantElements {
     /// variants of a probe are compared.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub optimum: Option<Optimum>,
-    /// How much was tested.
+    /// The extent of the test.
     pub proof: Proof,
-    /// The verdict in one word.
+    /// The verdict.
     pub verdict: Verdict,
 }
 
@@ -80,7 +80,7 @@ pub struct Measured {
 pub struct Contradiction {
     /// The element.
     pub element: Element,
-    /// The claim, where it fails, and what to do, as a sentence.
+    /// A sentence that states the claim, where it fails, and what to do.
     pub message: String,
 }
 
@@ -129,31 +129,31 @@ impl ElementsOutcome {
         each.map(|contradiction| contradiction.message.as_str())
     }
 
-    /// Every parameter that a variant sets without effect, and every element that a parameter declares in vain, as sentences.
+    /// Parameters that a variant sets without effect, and elements that a parameter declares in vain, as sentences.
     pub fn warnings(&self) -> impl Iterator<Item = String> {
         self.idle().chain(self.declared_in_vain())
     }
 
-    /// Records the effects that a task's parameters declare but none of its variants shows. Variants whose states
-    /// differ, or in which nothing differs, allow no such conclusion and are skipped.
+    /// Records the effects that a task's parameters declare but none of its variants shows. Skips variants whose states differ, or
+    /// in which nothing differs: they allow no such conclusion.
     pub(super) fn note_in_vain(&mut self, task: &TaskSpec) {
         for (name, parameter) in task.parameters() {
-            let shows = |variant: &&VariantElements| {
+            let is_relevant = |variant: &&VariantElements| {
                 let measured = variant.elements();
-                let is_felt = variant.parameters.contains(name) && !variant.idle.contains(name);
-                is_felt && !measured.is_empty() && !measured.contains(&Element::S)
+                let may_show = variant.parameters.contains(name) && !variant.idle.contains(name);
+                may_show && !measured.is_empty() && !measured.contains(&Element::S)
             };
-            let tried: Vec<&VariantElements> = self.variants.iter().filter(shows).collect();
+            let relevant: Vec<&VariantElements> = self.variants.iter().filter(is_relevant).collect();
             let differed = |element: &Element| {
-                let mut measured = tried.iter().flat_map(|variant| &variant.measured);
+                let mut measured = relevant.iter().flat_map(|variant| &variant.measured);
                 measured.any(|measured| element.covers(measured.element))
             };
             let elements: Vec<Element> = parameter.affects.iter().copied().filter(|one| !differed(one)).collect();
-            if !tried.is_empty() && !elements.is_empty() {
+            if !relevant.is_empty() && !elements.is_empty() {
                 self.in_vain.push(InVain {
                     parameter: name.clone(),
                     elements,
-                    variants: tried.iter().map(|variant| variant.variant.clone()).collect(),
+                    variants: relevant.iter().map(|variant| variant.variant.clone()).collect(),
                 });
             }
         }
@@ -259,7 +259,7 @@ fn message_of(
         other.id(),
         element.letter(),
         element.name().replace('_', " "),
-        place(witness),
+        location(witness),
         witness.what,
         witness.a,
         witness.b,
@@ -268,7 +268,7 @@ fn message_of(
 }
 
 /// Where a witness occurred: `in world 3, step 17 (expert), `.
-fn place(witness: &Witness) -> String {
+fn location(witness: &Witness) -> String {
     let policy = witness.policy.map_or("agent", Policy::name);
     match (witness.world, witness.step) {
         (Some(world), Some(step)) => format!("in world {world}, step {step} ({policy}), "),

@@ -1,4 +1,4 @@
-//! Compares the claims of tasks with measurements.
+//! Tests comparisons of tasks' claims with measurements.
 
 use super::*;
 
@@ -30,10 +30,10 @@ fn request() -> ElementsRequest {
 #[test]
 fn true_claims_are_sound_and_unread_parameters_idle() {
     for affects in [r#"["O"]"#, r#"["phi"]"#, r#"["O", "S"]"#] {
-        let found = elements_of(&task(affects), &request()).expect("all are tried");
+        let found = elements_of(&task(affects), &request()).expect("all can be measured");
         assert!(found.is_sound(), "{found:#?}");
         let [blue, rich] = &found.variants[..] else {
-            panic!("two beside the first")
+            panic!("expected two variants besides the base")
         };
         assert_eq!((blue.elements(), blue.verdict), (vec![Element::Phi], Verdict::Sound));
         assert_eq!(
@@ -57,31 +57,31 @@ fn true_claims_are_sound_and_unread_parameters_idle() {
 
 #[test]
 fn false_claim_is_reported_with_the_first_case() {
-    let found = elements_of(&task(r#"["p"]"#), &request()).expect("all are tried");
+    let found = elements_of(&task(r#"["p"]"#), &request()).expect("all can be measured");
     assert!(!found.is_sound());
     assert_eq!(found.variants[0].verdict, Verdict::Contradicted);
-    let told: Vec<&str> = found.contradictions().collect();
+    let messages: Vec<&str> = found.contradictions().collect();
     assert!(
-        told[0].starts_with("t#blue: found that phi (emission) differs from red: in world 0, step 0 ("),
-        "{told:?}"
+        messages[0].starts_with("t#blue: found that phi (emission) differs from red: in world 0, step 0 ("),
+        "{messages:?}"
     );
     assert!(
-        told[0].ends_with("expected no more than color (p) affects; add \"phi\" to its \"affects\""),
-        "{told:?}"
+        messages[0].ends_with("expected no more than color (p) affects; add \"phi\" to its \"affects\""),
+        "{messages:?}"
     );
 }
 
 #[test]
 fn one_variant_is_compared_with_another() {
     let between = |a: &str, b: &str| {
-        let asked = ElementsRequest {
+        let request = ElementsRequest {
             a: Some(a.to_owned()),
             b: Some(b.to_owned()),
             ..request()
         };
-        elements_of(&task(r#"["phi"]"#), &asked)
+        elements_of(&task(r#"["phi"]"#), &request)
     };
-    let found = between("blue", "t#rich").expect("both are tried");
+    let found = between("blue", "t#rich").expect("both can be measured");
     assert_eq!(
         (found.base.as_str(), found.variants[0].elements()),
         ("blue", vec![Element::R])
@@ -91,13 +91,13 @@ fn one_variant_is_compared_with_another() {
         task: "t#rich".to_owned(),
         ..request()
     };
-    let alone = elements_of(&task(r#"["phi"]"#), &alone).expect("it is tried");
+    let alone = elements_of(&task(r#"["phi"]"#), &alone).expect("it can be measured");
     assert_eq!((alone.base.as_str(), alone.variants.len()), ("red", 1));
 }
 
 #[test]
 fn outcome_round_trips_through_json() {
-    let found = elements_of(&task(r#"["S"]"#), &request()).expect("all are tried");
+    let found = elements_of(&task(r#"["S"]"#), &request()).expect("all can be measured");
     let text = serde_json::to_string(&found).expect("it can be written");
     assert!(text.contains(r#""element":"phi""#), "{text}");
     assert_eq!(
@@ -108,10 +108,10 @@ fn outcome_round_trips_through_json() {
 
 #[test]
 fn numbers_out_of_range_are_refused() {
-    for asked in [
+    for request in [
         ElementsRequest { worlds: 0, ..request() },
         ElementsRequest { steps: 0, ..request() },
     ] {
-        assert!(elements_of(&task(r#"["O"]"#), &asked).is_err());
+        assert!(elements_of(&task(r#"["O"]"#), &request).is_err());
     }
 }

@@ -1,4 +1,4 @@
-//! Links to the worlds in which a lifetime's last evaluation failed, in a workbench.
+//! Links into a workbench, to the worlds in which the agent failed in a lifetime's last evaluation.
 
 use std::collections::BTreeMap;
 
@@ -7,12 +7,12 @@ use driftworld_metrics::{BlockType, Log, Row};
 use crate::{Failure, argument, tasks};
 
 /// Maximum number of links for each task.
-const MOST_OF_A_TASK: usize = 3;
+const MAX_LINKS_PER_TASK: usize = 3;
 
 /// Maximum number of links for a lifetime.
-const MOST: usize = 24;
+const MAX_LINKS: usize = 24;
 
-/// Refuses anything but a web address: it becomes a link.
+/// Refuses anything but a web address, because it becomes a link.
 pub(super) fn check_address(workbench: &str) -> Result<(), Failure> {
     if ["http://", "https://"].iter().any(|start| workbench.starts_with(start)) {
         return Ok(());
@@ -23,7 +23,7 @@ pub(super) fn check_address(workbench: &str) -> Result<(), Failure> {
     )))
 }
 
-/// Each link with its text; only worlds of built-in tasks have one, and only in logs with a column `success`.
+/// The links, each with its text. Only worlds of built-in tasks get one, and only in logs with a column `success`.
 pub(super) fn links(log: &Log, workbench: &str) -> Vec<(String, String)> {
     let page = workbench.split('#').next().unwrap_or_default();
     let evaluated = || log.rows.iter().filter(|row| row.block_type() == BlockType::Test);
@@ -33,8 +33,8 @@ pub(super) fn links(log: &Log, workbench: &str) -> Vec<(String, String)> {
     let mut links = Vec::new();
     for row in evaluated().filter(has_failed) {
         let count = counts.entry(row.task_name()).or_default();
-        if *count < MOST_OF_A_TASK
-            && links.len() < MOST
+        if *count < MAX_LINKS_PER_TASK
+            && links.len() < MAX_LINKS
             && let Some((words, fragment)) = world(row)
         {
             *count += 1;
@@ -44,7 +44,7 @@ pub(super) fn links(log: &Log, workbench: &str) -> Vec<(String, String)> {
     links
 }
 
-/// The world of an experience, in words and as the fragment of a URL; `None` unless a variant of a built-in task drew it.
+/// The world of an experience as text and as a URL fragment; `None` unless it was drawn from a variant of a built-in task.
 fn world(row: Row<'_>) -> Option<(String, String)> {
     let params = row.task_params();
     let known = ["task", "variant", "seed", "max_steps"];
@@ -55,7 +55,7 @@ fn world(row: Row<'_>) -> Option<(String, String)> {
     let (task, variant, seed) = (text("task")?, text("variant")?, params.get("seed")?.as_u64()?);
     tasks::text_by_name(task)?;
     tasks::task(task).ok()?.variant(variant).ok()?;
-    // A log may leave the number out in some rows.
+    // Some rows of a log may have no index.
     let index = row.metric("world_index").filter(|index| *index >= 0.0)?;
     Some((
         format!("{task}#{variant}, world {index}"),

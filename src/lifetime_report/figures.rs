@@ -38,14 +38,14 @@ impl Default for FigureChoice {
 impl FigureChoice {
     /// The chosen figures, in the order of a report; all if none is.
     pub(crate) fn shown(&self) -> Result<Vec<Figure>, Failure> {
-        let asked = self.plot_types.iter().map(|word| Figure::asked_for(word));
-        let asked = asked
+        let requested = self.plot_types.iter().map(|word| Figure::asked_for(word));
+        let requested = requested
             .collect::<Result<Vec<_>, _>>()
             .map_err(|error| in_arguments(&error))?
             .concat();
         Ok(Figure::ALL
             .into_iter()
-            .filter(|figure| asked.is_empty() || asked.contains(figure))
+            .filter(|figure| requested.is_empty() || requested.contains(figure))
             .collect())
     }
 

@@ -1,4 +1,4 @@
-//! Distances between neighbouring learning blocks, from a matrix or the logged scenario, and pictures of its worlds.
+//! Distances between neighbouring learning blocks, from a matrix or from the logged scenario, and pictures of their worlds.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -14,36 +14,36 @@ use driftworld_spec::{BlockKind, Regime, Scenario, TaskSpec, Variant};
 use driftworld_text::{ShownPath, when};
 use serde_json::Value;
 
-use crate::contact_sheet::{Look, Shown, cells};
+use crate::contact_sheet::{Item, Options, cells};
 use crate::distances::{Sample, fitting, variant_matrix};
 use crate::sheet_words::Worlds;
 use crate::{Failure, argument, matrix_file, tasks};
 
 /// Maximum number of variants whose worlds are drawn.
-const MOST_PICTURED: usize = 12;
+const MAX_PICTURED: usize = 12;
 
-const LOOK: Look = Look {
+const LOOK: Options = Options {
     index: None,
     turn: None,
     size: 144,
     columns: 1,
 };
 
-/// With more variants, distances are not measured automatically.
-const MOST_MEASURED: usize = 32;
+/// Maximum number of variants whose distances are measured for a report.
+const MAX_MEASURED: usize = 32;
 
 /// The source of distances.
 pub(super) struct Neighbours {
     given: Option<Named>,
     tasks: Tasks,
     mode: VariantMode,
-    /// By the scenario's text: repeats share a scenario.
+    /// Measured distances by the scenario's text, which repeats share.
     measured: BTreeMap<String, Result<Named, String>>,
-    /// The scenarios whose worlds are on the page.
+    /// The scenarios whose worlds are already on the page.
     pictured: BTreeSet<String>,
 }
 
-/// A matrix, with the indices of its variants by log name.
+/// A matrix with the indices of its variants by their log names.
 struct Named {
     matrix: DistanceMatrix,
     index: BTreeMap<String, Ends>,
@@ -51,21 +51,21 @@ struct Named {
     origin: String,
 }
 
-/// The first and last variants of a named block: different only if it drifts.
+/// The indices of a block's first and last variants, which differ only if the block drifts.
 #[derive(Clone, Copy)]
 struct Ends {
     first: usize,
     last: usize,
 }
 
-/// A learning block: its name in the log, and its variants at its beginning and, if it drifts, at its end.
+/// A learning block: its name in the log, its regime, its variant and, if it drifts, its last variant.
 type Learned = (String, Regime, Variant, Option<Variant>);
 
 /// Distances of neighbours, with a sentence about them.
 type Distances = (Option<Vec<Option<f64>>>, String);
 
 impl Neighbours {
-    /// Uses the matrix in a file, or else measures. Tasks that are not built in come from these files.
+    /// Uses the matrix in a file; without one, measures distances. `tasks` are the files of tasks that are not built in.
     pub(super) fn new(file: Option<&Path>, tasks: &[PathBuf], mode: VariantMode) -> Result<Self, Failure> {
         let read = |path: &Path| {
             let matrix = matrix_file::read("distances", path)?;
@@ -136,16 +136,16 @@ impl Neighbours {
 /// Pictures of the first worlds of each variant that a scenario learns.
 fn pictures(scenario: &str, tasks: &Tasks, made_from: Option<&Value>) -> Result<Vec<SheetRow>, String> {
     let mut shown = Vec::new();
-    for (_, regime, variant, _) in learned(scenario, tasks)?.into_iter().take(MOST_PICTURED) {
-        let ran = made_from.and_then(|made_from| made_from.get(variant.id())?.get("variant")?.as_str());
-        if ran.is_some_and(|hash| hash != variant.hash()) {
+    for (_, regime, variant, _) in learned(scenario, tasks)?.into_iter().take(MAX_PICTURED) {
+        let logged_hash = made_from.and_then(|made_from| made_from.get(variant.id())?.get("variant")?.as_str());
+        if logged_hash.is_some_and(|hash| hash != variant.hash()) {
             return Err(format!("{} is not what it was when this was run", variant.id()));
         }
-        shown.push(Shown {
+        shown.push(Item {
             index: regime.first_index,
             count: u64::from(regime.count),
             worlds: Worlds::OfScenario,
-            ..Shown::declared(variant, regime.seed)
+            ..Item::declared(variant, regime.seed)
         });
     }
     let drawn = || {
@@ -179,11 +179,11 @@ fn logged(log: &Log, lifetime: &Lifetime) -> Option<Vec<Option<f64>>> {
 
 impl Named {
     fn distances(&self, lifetime: &Lifetime) -> Distances {
-        let apart = |[a, b]: [&str; 2]| {
+        let distance = |[a, b]: [&str; 2]| {
             let of = |name: &str| self.index.get(name).copied();
             Some(self.matrix.get(of(a)?.last, of(b)?.first))
         };
-        let distances: Vec<Option<f64>> = neighbours(lifetime).into_iter().map(apart).collect();
+        let distances: Vec<Option<f64>> = neighbours(lifetime).into_iter().map(distance).collect();
         if distances.is_empty() {
             return (None, "There is one learning block, and so no distance.".to_owned());
         }
@@ -194,7 +194,7 @@ impl Named {
             );
             return (None, why);
         }
-        let drifts = when(self.index.values().any(|ends| ends.first != ends.last), || {
+        let drifts = when(self.index.values().any(|end| end.first != end.last), || {
             " The beginning of a drifting block is compared with the block before, its end with the block after."
                 .to_owned()
         });
@@ -234,19 +234,19 @@ impl Tasks {
 
     /// The task with a name in a log: a file by its path, or else by its file name, because the log may come from another
     /// folder.
-    fn task(&self, called: &str) -> Option<Arc<TaskSpec>> {
-        if tasks::text_by_name(called).is_some() {
-            return tasks::task(called).ok();
+    fn task(&self, name: &str) -> Option<Arc<TaskSpec>> {
+        if tasks::text_by_name(name).is_some() {
+            return tasks::task(name).ok();
         }
-        let called = Path::new(called);
-        let alike = |path: &&(PathBuf, _)| path.0.file_name().is_some() && path.0.file_name() == called.file_name();
-        let same = self.named.iter().find(|(path, _)| path == called);
+        let name = Path::new(name);
+        let alike = |path: &&(PathBuf, _)| path.0.file_name().is_some() && path.0.file_name() == name.file_name();
+        let same = self.named.iter().find(|(path, _)| path == name);
         let found = same.or_else(|| self.named.iter().find(alike))?;
         Some(Arc::clone(&found.1))
     }
 }
 
-/// The blocks that a scenario learns, each name once, or why they are unknown.
+/// The learning blocks of a scenario, each name once, or why they are unknown.
 fn learned(scenario: &str, tasks: &Tasks) -> Result<Vec<Learned>, String> {
     let scenario = Scenario::from_json_with("scenario_info.json", scenario, |task| tasks.task(task))
         .map_err(|_| "this version cannot read the scenario in the log".to_owned())?;
@@ -265,22 +265,22 @@ fn learned(scenario: &str, tasks: &Tasks) -> Result<Vec<Learned>, String> {
             })
         };
         let (task, end_task) = (find(&regime.task)?, find(regime.end_task())?);
-        let lost = |task: &str, name: &str| format!("the task {task} no longer has the variant {name} that was run");
-        let begins = regime
+        let missing = |task: &str, name: &str| format!("the task {task} no longer has the variant {name} that was run");
+        let start = regime
             .resolve(&task)
-            .map_err(|_| lost(&regime.task, regime.variant_name()))?;
-        let ends = regime.resolve_end(&end_task);
-        let ends = ends.map_err(|_| lost(regime.end_task(), "at the end of the drift"))?;
-        // The name that `driftworld run` gives a block in its log.
-        let name = match &ends {
-            None => log_name(task.name(), begins.name()),
-            Some(ends) if ends.task().name() != task.name() => {
-                log_name(task.name(), &format!("{}to{}", begins.name(), ends.id()))
+            .map_err(|_| missing(&regime.task, regime.variant_name()))?;
+        let end = regime.resolve_end(&end_task);
+        let end = end.map_err(|_| missing(regime.end_task(), "at the end of the drift"))?;
+        // The block's name in logs of `driftworld run`.
+        let name = match &end {
+            None => log_name(task.name(), start.name()),
+            Some(end) if end.task().name() != task.name() => {
+                log_name(task.name(), &format!("{}to{}", start.name(), end.id()))
             }
-            Some(ends) => log_name(task.name(), &format!("{}to{}", begins.name(), ends.name())),
+            Some(end) => log_name(task.name(), &format!("{}to{}", start.name(), end.name())),
         };
         if found.iter().all(|(known, ..)| *known != name) {
-            found.push((name, regime.clone(), begins, ends));
+            found.push((name, regime.clone(), start, end));
         }
     }
     if found.is_empty() {
@@ -289,10 +289,10 @@ fn learned(scenario: &str, tasks: &Tasks) -> Result<Vec<Learned>, String> {
     Ok(found)
 }
 
-/// Measures the variants that a scenario learns, or returns why that is impossible.
+/// Measures distances between the variants that a scenario learns, or returns why that is impossible.
 fn measure(scenario: &str, tasks: &Tasks) -> Result<Named, String> {
     let mut variants: Vec<(String, Variant)> = Vec::new();
-    let mut place = |variant: Variant| {
+    let mut index_of = |variant: Variant| {
         let name = log_name(variant.task().name(), variant.name());
         let known = variants.iter().position(|(known, _)| *known == name);
         known.unwrap_or_else(|| {
@@ -301,13 +301,13 @@ fn measure(scenario: &str, tasks: &Tasks) -> Result<Named, String> {
         })
     };
     let mut index = BTreeMap::new();
-    for (name, _, begins, ends) in learned(scenario, tasks)? {
-        let first = place(begins);
-        let last = ends.map_or(first, &mut place);
+    for (name, _, start, end) in learned(scenario, tasks)? {
+        let first = index_of(start);
+        let last = end.map_or(first, &mut index_of);
         index.insert(name, Ends { first, last });
-        if first.max(last) >= MOST_MEASURED {
+        if first.max(last) >= MAX_MEASURED {
             return Err(format!(
-                "more than {MOST_MEASURED} variants were learned; measure them with driftworld order --matrix FILE and \
+                "more than {MAX_MEASURED} variants were learned; measure them with driftworld order --matrix FILE and \
                  give --distances FILE"
             ));
         }

@@ -9,10 +9,10 @@ use driftworld_spec::World;
 
 pub use poses::{Pose, poses};
 
-/// Places along each side of the arena.
-pub(crate) const ACROSS: u32 = 4;
+/// Number of positions along each side of the arena.
+pub(crate) const GRID_SIDE: u32 = 4;
 
-/// Directions at each place, from north clockwise.
+/// Number of directions at each position, clockwise from north.
 const HEADINGS: u32 = 4;
 
 /// Height and width of the pictures in pixels.
@@ -20,20 +20,20 @@ const SIDE: u32 = 48;
 
 const PIXELS: usize = (SIDE * SIDE) as usize;
 
-/// Samples per pixel along each side: small pictures with single samples flicker.
+/// Samples per pixel along each side: small pictures with one sample per pixel flicker.
 const SUPERSAMPLING: u32 = 2;
 
 /// Errors raised while comparing worlds by their looks.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PictureDistanceError {
-    /// No place is free in every world.
+    /// No position is free in every world.
     #[error(
         "pictures: found none of {tried} places free in all worlds, expected at least 1; where walls stand elsewhere, as in mazes \
          of other sizes, compare by worlds or by parameters"
     )]
     NoPlace {
-        /// Number of places tried.
+        /// Number of positions tried.
         tried: u32,
     },
     /// A world cannot be rendered.
@@ -132,7 +132,7 @@ impl Views {
     /// The pictures in the order of their poses.
     pub fn pictures(&self) -> Vec<Picture<'_>> {
         let each = self.rgb.chunks_exact(PIXELS * 3);
-        each.map(|rgb| Picture::new(rgb, SIDE as usize, SIDE as usize).expect("what was drawn is a picture"))
+        each.map(|rgb| Picture::new(rgb, SIDE as usize, SIDE as usize).expect("each chunk has the picture's size"))
             .collect()
     }
 
@@ -144,8 +144,8 @@ impl Views {
         Ok(views_distance(&self.pictures(), &other.pictures(), measure)?)
     }
 
-    /// The visual difference where objects are visible, and elsewhere, so that small objects are not drowned out by ground and
-    /// sky. Symmetric, each in `0..=1`; not a metric, because each pair compares different pixels.
+    /// The visual differences where objects are visible, and elsewhere, separated so that ground and sky do not drown out small
+    /// objects. Symmetric, each in `0..=1`; not a metric, because each pair of worlds compares different pixels.
     ///
     /// # Errors
     /// As [`Views::distance`].
@@ -207,11 +207,11 @@ mod tests {
         let blue = with_tree(1.0, "[0.0, 0.0, 1.0]");
         let paying = with_tree(-5.0, "[1.0, 0.0, 0.0]");
         assert_eq!(distance(&red, &red), 0.0);
-        assert_eq!(distance(&red, &paying), 0.0, "what a tree pays cannot be seen");
+        assert_eq!(distance(&red, &paying), 0.0, "rewards are invisible");
         let there = distance(&red, &blue);
         assert!(there > 0.0);
         assert_eq!(there, distance(&blue, &red));
-        assert_eq!(there, distance(&red, &blue), "the same bits again");
+        assert_eq!(there, distance(&red, &blue), "bit for bit");
         let dark = world("\"ground_color\": [0.05, 0.05, 0.05]", "");
         assert!(
             distance(&red, &dark) > there,
@@ -245,19 +245,19 @@ mod tests {
     }
 
     #[test]
-    fn occupied_places_are_excluded() {
+    fn occupied_positions_are_excluded() {
         let catalogue = Catalogue::default();
         let empty = world("", "");
         assert_eq!(poses(&[&empty], &catalogue).expect("all is free").len(), 64);
-        // Places are 25 m apart, the first 12.5 m from the centre.
+        // Positions are 25 m apart, the innermost 12.5 m from the centre on each axis.
         let tree = |x: f64, y: f64| format!(r#"{{ "class": "tree", "coordinates": [{x:?}, {y:?}], "solid": true }}"#);
         let one = world("", &tree(12.5, 12.5));
-        let places = [-37.5, -12.5, 12.5, 37.5];
-        let all: Vec<String> = places.iter().flat_map(|x| places.map(|y| tree(*x, y))).collect();
-        let blocked = world("", &all.join(", "));
+        let grid = [-37.5, -12.5, 12.5, 37.5];
+        let trees: Vec<String> = grid.iter().flat_map(|x| grid.map(|y| tree(*x, y))).collect();
+        let blocked = world("", &trees.join(", "));
         assert_eq!(poses(&[&empty, &one], &catalogue).expect("15 are free").len(), 60);
         for pair in [[&empty, &blocked], [&blocked, &empty]] {
-            let error = poses(&pair, &catalogue).expect_err("a tree stands in every place");
+            let error = poses(&pair, &catalogue).expect_err("a tree stands at every position");
             assert!(error.to_string().contains("none of 16 places free"), "{error}");
         }
     }
@@ -272,12 +272,12 @@ mod tests {
         ];
         let worlds: Vec<&World> = worlds.iter().collect();
         let views = views(&worlds);
-        let apart = |a: usize, b: usize| views[a].distance(&views[b], PictureMeasure::Oklab).unwrap();
-        assert_eq!(apart(1, 2), distance(worlds[1], worlds[2]), "their poses are the same");
+        let between = |a: usize, b: usize| views[a].distance(&views[b], PictureMeasure::Oklab).unwrap();
+        assert_eq!(between(1, 2), distance(worlds[1], worlds[2]), "same poses");
         for (a, b) in (0..4).flat_map(|a| (0..4).map(move |b| (a, b))) {
-            assert!(a == b || apart(a, b) > 0.0);
+            assert!(a == b || between(a, b) > 0.0);
             for c in 0..4 {
-                assert!(apart(a, b) <= apart(a, c) + apart(c, b) + 1e-12);
+                assert!(between(a, b) <= between(a, c) + between(c, b) + 1e-12);
             }
         }
     }

@@ -1,11 +1,11 @@
-//! The places and directions from which worlds are compared by pictures.
+//! The poses from which worlds are compared by pictures.
 
 use driftworld_env::{Catalogue, Environment};
 use driftworld_spec::World;
 
-use super::{ACROSS, HEADINGS, PictureDistanceError};
+use super::{GRID_SIDE, HEADINGS, PictureDistanceError};
 
-/// A place and a direction of view.
+/// A position and a direction of view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
     /// Metres east and north of the arena's centre.
@@ -14,28 +14,28 @@ pub struct Pose {
     pub heading_deg: f64,
 }
 
-/// The same places and directions for all of these worlds.
+/// Poses that are free in all of these worlds.
 ///
-/// The rectangle around the centre that all arenas share is divided into 4 × 4 cells; an agent stands at the centre of each
-/// cell and looks in 4 directions, the first north. Cells whose centre is blocked in any world (by a wall, a forbidden region,
-/// a solid object) are left out. Ordered row by row from the south-west.
+/// The rectangle around the centre that all arenas share is divided into 4 × 4 cells. The agent stands at the centre of each
+/// cell and looks in 4 directions, north first. Cells with a blocked centre in any world (by a wall, a forbidden region or a
+/// solid object) are left out. The order is row by row from the south-west.
 ///
 /// # Errors
-/// [`PictureDistanceError::NoPlace`]; [`PictureDistanceError::World`] for worlds that cannot be started.
+/// [`PictureDistanceError::NoPlace`] if no cell is left.
 pub fn poses(worlds: &[&World], catalogue: &Catalogue) -> Result<Vec<Pose>, PictureDistanceError> {
     let sizes = worlds.iter().map(|world| world.environment_params.arena_size());
-    let [width, depth] = sizes.fold([f64::INFINITY; 2], |least, size| {
-        [least[0].min(size[0]), least[1].min(size[1])]
+    let [width, depth] = sizes.fold([f64::INFINITY; 2], |smallest, size| {
+        [smallest[0].min(size[0]), smallest[1].min(size[1])]
     });
     let mut environments: Vec<Environment> = worlds
         .iter()
         .map(|world| Environment::with_catalogue((*world).clone(), catalogue.clone()))
         .collect();
-    let middle = |cell: u32, side: f64| side * ((f64::from(cell) + 0.5) / f64::from(ACROSS) - 0.5);
+    let middle = |cell: u32, side: f64| side * ((f64::from(cell) + 0.5) / f64::from(GRID_SIDE) - 0.5);
     let mut poses = Vec::new();
-    for (row, column) in (0..ACROSS).flat_map(|row| (0..ACROSS).map(move |column| (row, column))) {
+    for (row, column) in (0..GRID_SIDE).flat_map(|row| (0..GRID_SIDE).map(move |column| (row, column))) {
         let position = [middle(column, width), middle(row, depth)];
-        // Without worlds there is no arena.
+        // There is no arena without worlds.
         if environments.is_empty()
             || environments
                 .iter_mut()
@@ -49,7 +49,7 @@ pub fn poses(worlds: &[&World], catalogue: &Catalogue) -> Result<Vec<Pose>, Pict
         }));
     }
     if poses.is_empty() {
-        let tried = ACROSS * ACROSS;
+        let tried = GRID_SIDE * GRID_SIDE;
         return Err(PictureDistanceError::NoPlace { tried });
     }
     Ok(poses)

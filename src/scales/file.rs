@@ -1,4 +1,4 @@
-//! [`ScalesFile`]: a file with floors and ceilings of variants.
+//! [`ScalesFile`]: a file of floors and ceilings of variants.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -59,7 +59,7 @@ pub struct AgentLevel {
 }
 
 impl AgentLevel {
-    /// From at least two episodes, each with its reward and whether it succeeded. Rounded to six decimals, as in files.
+    /// Summarises at least two episodes, each given by its reward and whether it succeeded. Rounds to six decimals, as in files.
     pub(super) fn of(episodes: &[(f64, bool)]) -> Self {
         let num = episodes.len() as f64;
         let mean = episodes.iter().map(|episode| episode.0).sum::<f64>() / num;
@@ -74,10 +74,10 @@ impl AgentLevel {
 }
 
 impl ScalesFile {
-    /// Reads a file.
+    /// Reads a file of scales.
     ///
     /// # Errors
-    /// [`Failure`] if it cannot be read or has the wrong contents.
+    /// [`Failure`] if the file cannot be read or has the wrong contents.
     pub fn read(path: &Path) -> Result<Self, Failure> {
         let expected = "scales, such as {\"scales\": {\"find_red\": {\"floor\": 0, \"ceiling\": 10}}}";
         serde_json::from_str(&documents::text(path)?).map_err(|error| {

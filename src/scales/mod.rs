@@ -1,5 +1,5 @@
-//! Scales: measures the rewards of agents that know nothing, and of one that knows everything, in each variant; and reads them
-//! from files.
+//! Measures the scale of rewards in each variant: the floor, reached by agents that know nothing, and the ceiling, reached by one
+//! that knows the map. [`ScalesFile`] reads scales from files.
 
 mod file;
 mod unlabelled;
@@ -61,20 +61,20 @@ pub struct ScalesRequest {
     pub libraries: Vec<PathBuf>,
 }
 
-/// Names separated by commas; none in an empty text.
-#[expect(clippy::unnecessary_wraps, reason = "as the command line reads values")]
+/// Parses names separated by commas; an empty text contains none.
+#[expect(clippy::unnecessary_wraps, reason = "the signature of a clap value parser")]
 fn names(set: &str) -> Result<Vec<String>, Infallible> {
     let names = set.split(',').filter(|name| !name.is_empty());
     Ok(names.map(str::to_owned).collect())
 }
 
-/// Runs three agents in the same worlds of each variant: one that acts at random, one that stands still, one that knows the
-/// map. The better of the first two is the floor, the third the ceiling. `progress` is called after each variant.
+/// Runs three agents in the same worlds of each variant: one acts at random, one stands still, and one knows the map. The
+/// better of the first two gives the floor, the third the ceiling. `progress` is called after each variant.
 ///
-/// For each set of variants in `unlabelled`, further agents run in all of them: one that stands still, one that acts at random,
-/// the expert of each variant held fixed, and that expert until a reward reveals a different variant of the set. The
-/// ceilings are the highest means over the set: among agents that act alike in all variants, and among all. These are
-/// the best known agents; better ones may exist.
+/// For each set of variants in `unlabelled`, further agents run in all of them: one stands still, one acts at random, one acts
+/// as the expert of a fixed variant, and one does so until a reward reveals another variant of the set. There are two ceilings,
+/// each the highest mean over the set: that of the agents that act alike in all variants, and that of all agents. These are the
+/// best known agents; better ones may exist.
 ///
 /// # Errors
 /// [`Failure`] if a task or variant is missing or invalid, a world cannot be drawn, or the number of worlds is out of range.
@@ -137,7 +137,7 @@ fn of_variant(variant: &Variant, request: &ScalesRequest, catalogue: &Catalogue)
     })
 }
 
-/// The seed of an agent's random numbers: the same in every variant, but different in every world.
+/// The seed of an agent's random numbers: different for every world index, but the same in every variant.
 fn agent_seed(request: &ScalesRequest, index: u64) -> u64 {
     request.seed.rotate_left(32) ^ index
 }
@@ -150,7 +150,7 @@ fn agents_of_scales() -> [(&'static str, Box<dyn Agent>); 3] {
     ]
 }
 
-/// The reward of an agent's whole episode in a world, and whether it succeeds.
+/// Runs an agent's episode in a world; returns the reward, and whether it succeeded.
 fn episode(agent: &mut dyn Agent, world: &World, catalogue: &Catalogue) -> Result<(f64, bool), Failure> {
     let mut environment = Environment::with_catalogue(world.clone(), catalogue.clone());
     let mut success = false;

@@ -1,4 +1,4 @@
-//! Tests which agents give the floor and the ceiling, scales files, and standard errors.
+//! Tests floors, ceilings, files of scales, and standard errors.
 
 use super::*;
 
@@ -13,7 +13,7 @@ fn request(worlds: u64) -> ScalesRequest {
 }
 
 #[test]
-fn floor_is_the_better_of_random_and_still_and_the_ceiling_knows_the_map() {
+fn floor_and_ceiling_come_from_the_named_agents() {
     let found = scales(&request(3), &|| ()).unwrap();
     assert_eq!(
         found.scales.keys().collect::<Vec<_>>(),
@@ -27,7 +27,7 @@ fn floor_is_the_better_of_random_and_still_and_the_ceiling_knows_the_map() {
     let red = &found.scales["findobjects_red"];
     assert!(red.ceiling > red.floor + 100.0, "{red:?}");
     assert_eq!(red.agents["onrails"].success, 1.0);
-    // Standing still is optimal there.
+    // Standing still is optimal in that variant.
     let penalty = &found.scales["findobjects_penalty"];
     assert_eq!(penalty.floor, penalty.ceiling);
     // Measuring again gives the same result.
@@ -48,10 +48,10 @@ fn scales_file_round_trips() {
         found.scales["findobjects_red"].ceiling
     );
     std::fs::write(&path, r#"{"scales": {"a": {"floor": 0}}}"#).unwrap();
-    let said = ScalesFile::read(&path).unwrap_err().to_string();
+    let error = ScalesFile::read(&path).unwrap_err().to_string();
     assert!(
-        said.contains("missing field `ceiling`") && said.contains("expected scales"),
-        "{said}"
+        error.contains("missing field `ceiling`") && error.contains("expected scales"),
+        "{error}"
     );
 }
 
@@ -64,8 +64,8 @@ fn standard_error_is_of_the_mean_over_worlds() {
 
 #[test]
 fn one_world_is_refused() {
-    let said = scales(&request(1), &|| ()).unwrap_err().to_string();
-    assert_eq!(said, "worlds: found 1, expected 2 to 10000");
+    let error = scales(&request(1), &|| ()).unwrap_err().to_string();
+    assert_eq!(error, "worlds: found 1, expected 2 to 10000");
 }
 
 fn unlabelled(tasks: &[&str], sets: &[&[&str]], worlds: u64) -> Result<ScalesFile, Failure> {
@@ -84,7 +84,7 @@ fn unlabelled(tasks: &[&str], sets: &[&[&str]], worlds: u64) -> Result<ScalesFil
 fn agent_that_cannot_know_the_variant_earns_less_than_the_expert() {
     let tasks = ["select_object#green", "select_object#red", "select_object#dusk"];
     let found = unlabelled(&tasks, &[&[]], 4).unwrap();
-    // At dusk the world looks different.
+    // The world looks different at dusk, so that variant is not in the set.
     let [set] = found.unlabelled.as_slice() else {
         panic!("{found:?}")
     };
@@ -100,7 +100,7 @@ fn agent_that_cannot_know_the_variant_earns_less_than_the_expert() {
         set.finds_out.mean() > expert - 10.0 && set.finds_out.mean() <= expert,
         "{set:?}"
     );
-    // Metrics get the set under log names, and nothing if no set was requested.
+    // The anchors contain the set under log names, and none if no set was requested.
     let anchors = found.anchors();
     let of_red = &anchors["selectobject_red"].unlabelled;
     assert_eq!(
@@ -132,8 +132,8 @@ fn agent_that_can_explore_comes_near_the_expert() {
 fn distinguishable_sets_are_refused() {
     let check = |sets: &[&[&str]], expected: &str| {
         let tasks = ["select_object#green", "select_object#dusk", "select_object#slow"];
-        let said = unlabelled(&tasks, sets, 2).unwrap_err().to_string();
-        assert_eq!(said, expected);
+        let error = unlabelled(&tasks, sets, 2).unwrap_err().to_string();
+        assert_eq!(error, expected);
     };
     let advice = "expected variants that look alike at the start; the ceiling of those that can be told apart is the \
                   planner's";

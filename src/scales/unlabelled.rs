@@ -1,4 +1,4 @@
-//! Ceilings of agents that cannot know the variant: neither their first view nor a label reveals it.
+//! Measures ceilings of agents that cannot know the variant, because neither their first view nor a label reveals it.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use super::{AgentLevel, ScalesRequest, episode};
 use crate::{Failure, tasks};
 
-/// Worlds in which the first pictures are compared.
+/// Number of worlds in which the first pictures are compared.
 const PICTURES: u64 = 5;
 
 /// The best known rewards of agents that cannot know which of these variants they are in.
@@ -47,7 +47,7 @@ impl BestAgent {
 
 /// A candidate agent.
 #[derive(Clone, Copy)]
-enum Ignorant {
+enum Candidate {
     /// Stands still.
     Still,
     /// Acts at random.
@@ -58,7 +58,7 @@ enum Ignorant {
     FindsOut(usize),
 }
 
-impl Ignorant {
+impl Candidate {
     fn all(num_variants: usize) -> impl Iterator<Item = Self> {
         let experts = (0..num_variants).flat_map(|own| [Self::Fixed(own), Self::FindsOut(own)]);
         [Self::Still, Self::Random].into_iter().chain(experts)
@@ -77,9 +77,10 @@ impl Ignorant {
         }
     }
 
-    /// Runs it in the world at `place`; `worlds` has one of each variant. Returns its reward and whether it succeeds.
-    fn run(self, worlds: &[World], place: usize, seed: u64, expertise: &Expertise) -> Result<(f64, bool), Failure> {
-        let (abroad, catalogue) = (&worlds[place], &expertise.catalogue);
+    /// Runs the agent in the world at `index`; `worlds` contains one of each variant. Returns the reward, and whether it
+    /// succeeded.
+    fn run(self, worlds: &[World], index: usize, seed: u64, expertise: &Expertise) -> Result<(f64, bool), Failure> {
+        let (abroad, catalogue) = (&worlds[index], &expertise.catalogue);
         let found = match self {
             Self::Still => return episode(&mut StillAgent, abroad, catalogue),
             Self::Random => {
@@ -97,7 +98,7 @@ impl Ignorant {
     }
 }
 
-/// The requested sets: those named, or all measured variants that look alike.
+/// The requested sets: sets of named variants, or all sets of measured variants that look alike.
 ///
 /// # Errors
 /// [`Failure`] if a named variant is not measured, is alone in its set, or does not look like the others.
@@ -109,9 +110,9 @@ pub(super) fn sets_of<'a>(
     let mut sets: Vec<Vec<&Variant>> = Vec::new();
     for names in &request.unlabelled {
         let found = if names.is_empty() {
-            alike(variants, request, catalogue)?
+            alike_sets(variants, request, catalogue)?
         } else {
-            vec![named(names, variants, request, catalogue)?]
+            vec![named_set(names, variants, request, catalogue)?]
         };
         let ids = |set: &[&Variant]| set.iter().map(|variant| variant.id()).collect::<Vec<_>>();
         for set in found {
@@ -124,7 +125,7 @@ pub(super) fn sets_of<'a>(
 }
 
 /// All sets of at least two variants that look alike.
-fn alike<'a>(
+fn alike_sets<'a>(
     variants: &'a [(String, Variant)],
     request: &ScalesRequest,
     catalogue: &Catalogue,
@@ -132,15 +133,15 @@ fn alike<'a>(
     let mut sets: Vec<Vec<&Variant>> = Vec::new();
     for (_, variant) in variants {
         let mut own = None;
-        for (place, set) in sets.iter().enumerate() {
+        for (index, set) in sets.iter().enumerate() {
             let is_of_task = set[0].task().name() == variant.task().name();
-            if is_of_task && unlike(set[0], variant, request, catalogue)?.is_none() {
-                own = Some(place);
+            if is_of_task && visible_difference(set[0], variant, request, catalogue)?.is_none() {
+                own = Some(index);
                 break;
             }
         }
         match own {
-            Some(place) => sets[place].push(variant),
+            Some(index) => sets[index].push(variant),
             None => sets.push(vec![variant]),
         }
     }
@@ -149,7 +150,7 @@ fn alike<'a>(
 }
 
 /// The set of variants with these names, which must look alike.
-fn named<'a>(
+fn named_set<'a>(
     names: &[String],
     variants: &'a [(String, Variant)],
     request: &ScalesRequest,
@@ -158,8 +159,8 @@ fn named<'a>(
     let wrong = |text: String| Failure::in_argument("unlabelled", text);
     let mut set: Vec<&Variant> = Vec::new();
     // The names may omit their tasks.
-    let all = tasks::with_tasks(&[request.tasks.as_slice(), names].concat());
-    for (_, variant) in tasks::variants_of(&all[request.tasks.len()..])? {
+    let full_names = tasks::with_tasks(&[request.tasks.as_slice(), names].concat());
+    for (_, variant) in tasks::variants_of(&full_names[request.tasks.len()..])? {
         let known = variants.iter().find(|(_, known)| known.id() == variant.id());
         let (_, known) = known.ok_or_else(|| {
             wrong(format!(
@@ -168,7 +169,7 @@ fn named<'a>(
             ))
         })?;
         if let Some(first) = set.first()
-            && let Some(what) = unlike(first, known, request, catalogue)?
+            && let Some(what) = visible_difference(first, known, request, catalogue)?
         {
             return Err(wrong(format!(
                 "found {} and {}, which {what}, expected variants that look alike at the start; the ceiling of those \
@@ -189,15 +190,15 @@ fn named<'a>(
 }
 
 /// What distinguishes two variants before any reward; `None` if nothing does.
-fn unlike(
+fn visible_difference(
     a: &Variant,
     b: &Variant,
     request: &ScalesRequest,
     catalogue: &Catalogue,
 ) -> Result<Option<&'static str>, Failure> {
-    let (of_a, of_b) = (Sampler::new(a, request.seed), Sampler::new(b, request.seed));
+    let (sampler_a, sampler_b) = (Sampler::new(a, request.seed), Sampler::new(b, request.seed));
     for index in 0..request.worlds {
-        let (a, b) = (of_a.world(index)?, of_b.world(index)?);
+        let (a, b) = (sampler_a.world(index)?, sampler_b.world(index)?);
         if unpaid(&a)? != unpaid(&b)? {
             return Ok(Some("differ in more than what pays"));
         }
@@ -235,7 +236,7 @@ fn first_picture(world: &World, catalogue: &Catalogue) -> (Vec<u8>, Vec<u8>) {
     (frame.rgb.clone(), pay)
 }
 
-/// Runs every candidate in the same worlds of each variant of a set, and takes those with the highest mean over variants.
+/// Runs every candidate in the same worlds of each variant of a set, and picks the candidates with the highest mean over variants.
 ///
 /// # Errors
 /// [`Failure`] if a world cannot be drawn.
@@ -254,11 +255,11 @@ pub(super) fn ceiling(
             .iter()
             .map(|sampler| sampler.world(index))
             .collect::<Result<_, _>>()?;
-        let of_agent = |agent: Ignorant| {
-            let of_variant = |place| agent.run(&worlds, place, super::agent_seed(request, index), &expertise);
+        let of_agent = |agent: Candidate| {
+            let of_variant = |variant| agent.run(&worlds, variant, super::agent_seed(request, index), &expertise);
             (0..set.len()).map(of_variant).collect()
         };
-        Ignorant::all(set.len()).map(of_agent).collect()
+        Candidate::all(set.len()).map(of_agent).collect()
     };
     let of_worlds: Vec<_> = (0..request.worlds)
         .into_par_iter()
@@ -267,9 +268,9 @@ pub(super) fn ceiling(
     let among: Vec<String> = (set.iter())
         .map(|variant| log_name(variant.task().name(), variant.name()))
         .collect();
-    let of_agent = |(number, agent): (usize, Ignorant)| {
-        let level = |place: usize| {
-            let episodes: Vec<_> = of_worlds.iter().map(|world| world[number][place]).collect();
+    let of_agent = |(number, agent): (usize, Candidate)| {
+        let level = |variant: usize| {
+            let episodes: Vec<_> = of_worlds.iter().map(|world| world[number][variant]).collect();
             AgentLevel::of(&episodes)
         };
         BestAgent {
@@ -277,14 +278,14 @@ pub(super) fn ceiling(
             levels: among.iter().cloned().zip((0..set.len()).map(level)).collect(),
         }
     };
-    let best = |is_one: &dyn Fn(Ignorant) -> bool| {
-        let agents = Ignorant::all(set.len()).enumerate().filter(|(_, agent)| is_one(*agent));
-        // Ties go to the first, which knows least.
+    let best = |fits: &dyn Fn(Candidate) -> bool| {
+        let agents = Candidate::all(set.len()).enumerate().filter(|(_, agent)| fits(*agent));
+        // Ties go to the first candidate, which knows least.
         let better = |best: BestAgent, other: BestAgent| if other.mean() > best.mean() { other } else { best };
-        agents.map(of_agent).reduce(better).expect("one stands still")
+        agents.map(of_agent).reduce(better).expect("there are candidates")
     };
     Ok(UnlabelledCeiling {
-        fixed: best(&Ignorant::is_fixed),
+        fixed: best(&Candidate::is_fixed),
         finds_out: best(&|_| true),
         among,
     })

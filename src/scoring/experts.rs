@@ -1,4 +1,4 @@
-//! The single-task experts that lifetimes are compared with: given logs, and logs stored in a folder, which are read on demand.
+//! The single-task experts that lifetimes are compared with: given logs, and logs in a store, which are read on demand.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -40,16 +40,12 @@ impl Experts {
         })
     }
 
-    /// Notes on given experts whose task the lifetime does not have.
-    pub(crate) fn left_aside(&self, log: &Log, options: &Options) -> Vec<String> {
+    /// Warnings about given experts whose task the lifetime does not have.
+    pub(crate) fn unused_warnings(&self, log: &Log, options: &Options) -> Vec<String> {
         let tasks = tasks(log, options);
         let trained: Vec<&str> = self.trained().collect();
-        let taken = serving(&tasks, &trained);
-        let strangers = self
-            .named
-            .iter()
-            .enumerate()
-            .filter(|(index, _)| !taken.contains(index));
+        let used = serving(&tasks, &trained);
+        let unused = self.named.iter().enumerate().filter(|(index, _)| !used.contains(index));
         let warning = |(_, expert): (usize, &SteLog)| {
             let (name, task) = (&expert.log().run_id, expert.task_name());
             format!(
@@ -57,20 +53,20 @@ impl Experts {
                 tasks.join(", ")
             )
         };
-        strangers.map(warning).collect()
+        unused.map(warning).collect()
     }
 
     /// The experts of a lifetime's tasks.
     pub(crate) fn of(&self, log: &Log, options: &Options) -> Result<Vec<SteLog>, Failure> {
         let trained: Vec<&str> = self.trained().collect();
-        let taken = serving(&tasks(log, options), &trained);
+        let used = serving(&tasks(log, options), &trained);
         let mut experts = Vec::new();
-        for index in taken {
+        for index in used {
             let Some(number) = index.checked_sub(self.named.len()) else {
                 experts.push(self.named[index].clone());
                 continue;
             };
-            // Indices beyond the given experts are stored ones.
+            // Indices beyond the given experts refer to stored ones.
             let stored = &self.stored[number];
             let read = || {
                 let logs = stored
@@ -86,19 +82,19 @@ impl Experts {
                 Err(text) => return Err(Failure::input(text.clone())),
             }
         }
-        Ok(of_the_lifetime(log, experts))
+        Ok(prefer_own(log, experts))
     }
 
-    /// The tasks that experts trained: first the given ones, then the stored ones.
+    /// The tasks on which the experts were trained: first those of given experts, then those of stored ones.
     fn trained(&self) -> impl Iterator<Item = &str> {
         let stored = self.stored.iter().map(|stored| stored.task.task_name.as_str());
         self.named.iter().map(SteLog::task_name).chain(stored)
     }
 }
 
-/// For each task, keeps only the experts designed with the lifetime, recognised by the name of its scenario, if there
-/// are any: several lifetimes may be scored together, with the experts of all of them.
-fn of_the_lifetime(log: &Log, experts: Vec<SteLog>) -> Vec<SteLog> {
+/// For each task, keeps only the lifetime's own experts if there are any. The name of an own expert's scenario begins with the
+/// name of the lifetime's. Several lifetimes may be scored together, with the experts of all of them.
+fn prefer_own(log: &Log, experts: Vec<SteLog>) -> Vec<SteLog> {
     let Some(own) = scenario_name(log).map(|name| format!("{name}-")) else {
         return experts;
     };
@@ -167,7 +163,7 @@ mod tests {
             expert("c-2-blue", "f_blue"),
         ];
         let of = |lifetime| -> Vec<String> {
-            let own = of_the_lifetime(&log_of(lifetime, "f_red"), experts.clone());
+            let own = prefer_own(&log_of(lifetime, "f_red"), experts.clone());
             own.iter().map(|expert| expert.log().run_id.clone()).collect()
         };
         assert_eq!(of("c-1"), ["c-1-red", "c-2-blue"]);

@@ -17,7 +17,7 @@ pub(crate) struct ScoredLog {
     pub(crate) log: Log,
     pub(crate) lifetime: Lifetime,
     pub(crate) metrics: LifetimeMetrics,
-    /// Warnings about it, which `warn` has received already.
+    /// Warnings about the log, which were already passed to `warn`.
     pub(crate) warnings: Vec<String>,
 }
 
@@ -36,7 +36,7 @@ impl ScoredLog {
         }
         let mut warnings: Vec<String> = log.warnings.iter().map(ToString::to_string).collect();
         warnings.extend(missing_numbers(&log, &options.perf_measure));
-        warnings.extend(experts.left_aside(&log, options));
+        warnings.extend(experts.unused_warnings(&log, options));
         warnings.extend(unfit_scales(&log, options));
         let experts = experts.of(&log, options)?;
         warnings.extend(experts.iter().filter_map(|expert| missing_rows(expert.log())));
@@ -69,7 +69,7 @@ fn missing_rows(log: &Log) -> Option<String> {
     log.warnings.iter().find(missing).map(ToString::to_string)
 }
 
-/// A warning with the number of rows skipped because they have no number.
+/// A warning that counts the complete rows without a number in the column.
 fn missing_numbers(log: &Log, column: &str) -> Option<String> {
     let is_complete = |status: &ExpStatus| *status == ExpStatus::Complete;
     let complete = log

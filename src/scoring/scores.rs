@@ -1,5 +1,5 @@
-//! [`score`]: the scores of one lifetime or of several, aggregated and compared with another agent's; and the files they are
-//! saved in, under l2metrics' names.
+//! [`score`]: scores one lifetime or several, aggregates them, compares them with another agent's, and saves them in files named
+//! as by l2metrics.
 
 use std::path::{Path, PathBuf};
 
@@ -11,7 +11,7 @@ use super::varied::{Makeup, Varied};
 use super::{Comparison, ScoredLog, ScoringRequest, Setup, score_logs};
 use crate::{Failure, Warn, output_file};
 
-/// The common name of several lifetimes, as in l2metrics.
+/// Default name of the files for several lifetimes, as in l2metrics.
 const NAME_OF_SEVERAL: &str = "ll_metrics";
 
 /// The scores of lifetimes. Serialises to the output of `driftworld metrics --json`: one lifetime alone, or several with their
@@ -21,16 +21,16 @@ const NAME_OF_SEVERAL: &str = "ll_metrics";
 pub struct Scores {
     /// The lifetimes separately, in the order of their logs.
     pub lifetimes: Vec<LifetimeMetrics>,
-    /// Those of the other agent.
+    /// The other agent's lifetimes.
     pub lifetimes_against: Vec<LifetimeMetrics>,
-    /// Their aggregates; `None` for a single lifetime.
+    /// The aggregates of the lifetimes; `None` for a single lifetime.
     pub comparison: Option<Comparison>,
-    /// The differences between them; `None` for a single lifetime.
+    /// The differences between the lifetimes; `None` for a single lifetime.
     pub varied: Option<Varied>,
     /// The scoring options.
     pub options: Options,
     /// The requested folders.
-    asked: Vec<PathBuf>,
+    folders: Vec<PathBuf>,
     recursive: bool,
 }
 
@@ -76,7 +76,7 @@ pub(crate) fn score_looking(
         lifetimes,
         lifetimes_against,
         options,
-        asked: request.logs.clone(),
+        folders: request.logs.clone(),
         recursive: request.recursive,
     })
 }
@@ -91,7 +91,7 @@ impl Scores {
     /// # Errors
     /// [`Failure`] if a file cannot be written, or the name is not a valid file name.
     pub fn save(&self, folder: &Path, name: Option<&str>) -> Result<Vec<PathBuf>, Failure> {
-        let logs = self.asked.iter().map(|log| log.display().to_string());
+        let logs = self.folders.iter().map(|log| log.display().to_string());
         let settings = Settings {
             log_dir: logs.collect::<Vec<_>>().join(" "),
             options: self.options.clone(),
@@ -152,7 +152,7 @@ fn check_power(effect: Option<f64>, num: usize) -> Result<(), Failure> {
     ))
 }
 
-/// Each lifetime with the values that l2metrics' files have no field for.
+/// Each lifetime with the values for which l2metrics' files have no field.
 fn whole(lifetimes: &[LifetimeMetrics]) -> Vec<WholeLifetime<'_>> {
     lifetimes.iter().map(LifetimeMetrics::whole).collect()
 }

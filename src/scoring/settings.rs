@@ -67,23 +67,23 @@ pub(super) fn load(path: &Path) -> Result<Loaded, Failure> {
         ..Options::default()
     });
     let known = || known.as_object().into_iter().flat_map(|known| known.keys());
-    if let Some(strange) = settings.keys().find(|key| known().all(|known| known != *key)) {
-        let near = did_you_mean(strange, known());
+    if let Some(unknown) = settings.keys().find(|key| known().all(|known| known != *key)) {
+        let near = did_you_mean(unknown, known());
         let names = known()
             .map(String::as_str)
             .chain(NOT_SCORING)
             .collect::<Vec<_>>()
             .join(", ");
         return Err(Failure::input(format!(
-            "{}: found the setting {strange:?}, expected one of {names}{near}",
-            place(path, &text, strange)
+            "{}: found the setting {unknown:?}, expected one of {names}{near}",
+            location(path, &text, unknown)
         )));
     }
     for (key, value) in &settings {
         let alone = Map::from_iter([(key.clone(), value.clone())]);
         serde_json::from_value::<Options>(Value::Object(alone)).map_err(|error| {
             let error = one_line(in_plain_words(error)).to_string();
-            Failure::input(format!("{}, {key:?}: {error}", place(path, &text, key)))
+            Failure::input(format!("{}, {key:?}: {error}", location(path, &text, key)))
         })?;
     }
     let mut options: Options = serde_json::from_value(Value::Object(settings))
@@ -115,14 +115,14 @@ pub(super) fn data_ranges(path: &Path) -> Result<DataRanges, Failure> {
         let range: DataRange = serde_json::from_value(range).map_err(|error| {
             Failure::input(format!(
                 "{}, {task:?}: {}; expected {expected}",
-                place(path, &text, &task),
+                location(path, &text, &task),
                 one_line(in_plain_words(error))
             ))
         })?;
         if range.min >= range.max {
             return Err(Failure::input(format!(
                 "{}, {task:?}: found min {} and max {}, expected min below max",
-                place(path, &text, &task),
+                location(path, &text, &task),
                 range.min,
                 range.max
             )));
@@ -133,7 +133,7 @@ pub(super) fn data_ranges(path: &Path) -> Result<DataRanges, Failure> {
 }
 
 /// The file with the line and column of a key in its object.
-fn place(path: &Path, text: &str, key: &str) -> String {
+fn location(path: &Path, text: &str, key: &str) -> String {
     let pointer = format!("/{}", key.replace('~', "~0").replace('/', "~1"));
     let wanted = [Wanted {
         pointer: &pointer,

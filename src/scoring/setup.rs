@@ -1,4 +1,4 @@
-//! [`Setup`]: the scoring options and experts of a request, with a common scale if lifetimes are compared: each task's range
+//! [`Setup`]: the scoring options and experts of a request. If lifetimes are compared, they get a common scale: each task's range
 //! over all of them.
 
 use std::path::PathBuf;
@@ -19,7 +19,7 @@ pub(crate) struct Setup {
 }
 
 impl Setup {
-    /// From a request; with one scale for all lifetimes if two agents are compared, or on request.
+    /// Prepares a request. If two agents are compared, or on request, all lifetimes have the same scale.
     pub(crate) fn new(logs: Vec<PathBuf>, request: &ScoringRequest) -> Result<Self, Failure> {
         let (settings, mut options) = (&request.settings, request.settings.options()?);
         let experts = Experts::new(&settings.experts, settings.expert_store.as_deref())?;
@@ -36,7 +36,7 @@ impl Setup {
     }
 }
 
-/// The options with each task's range over all these logs, so that levels of different lifetimes are comparable.
+/// Sets each task's range to its range over all these logs, so that levels of different lifetimes are comparable.
 ///
 /// Unchanged if nothing is normalised, or ranges were given.
 fn with_common_ranges(logs: &[PathBuf], experts: &Experts, mut options: Options) -> Options {
@@ -48,7 +48,7 @@ fn with_common_ranges(logs: &[PathBuf], experts: &Experts, mut options: Options)
         let lifetime = Lifetime::prepare(&log, &experts.of(&log, &options).ok()?, &options).ok()?;
         lifetime.normalization_data_range().cloned()
     };
-    // Logs that cannot be read or scored are reported when all are scored.
+    // Logs that cannot be read or scored are reported during scoring.
     let own: Vec<_> = logs.par_iter().filter_map(own).collect();
     let mut common = DataRanges::new();
     for (task, range) in own.into_iter().flatten() {
@@ -59,7 +59,7 @@ fn with_common_ranges(logs: &[PathBuf], experts: &Experts, mut options: Options)
     options
 }
 
-/// A caution about comparing levels of lifetimes that each have their own scale.
+/// A warning that levels of lifetimes cannot be compared if each has its own scale.
 pub(crate) fn own_scale(options: &Options) -> Option<String> {
     let is_own = options.normalization_method != NormalizationMethod::Off
         && options.data_range.is_none()

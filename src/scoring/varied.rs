@@ -1,4 +1,4 @@
-//! [`Varied`]: the differences between aggregated lifetimes, so that an interval states what it covers.
+//! [`Varied`]: which properties differ between aggregated lifetimes, and hence what their intervals cover.
 
 use std::collections::BTreeSet;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -10,14 +10,14 @@ use serde::Serialize;
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Makeup {
     order: Vec<String>,
-    /// A hash of seeds or world files, with world indices, whatever their order; `None` if not logged.
+    /// A hash of the worlds, independent of their order; `None` if they are not logged.
     learned: Option<u64>,
     evaluated: Option<u64>,
     agent: String,
     run_seed: String,
 }
 
-/// Which properties differ between lifetimes. `None` if not logged.
+/// Whether each property differs between lifetimes; `None` if it is not logged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Varied {
     /// The order in which tasks are learned.
@@ -42,21 +42,21 @@ impl Makeup {
                 order.push(task.clone());
             }
         }
-        let said = |key: &str| log.scenario_info.extra.get(key);
+        let logged = |key: &str| log.scenario_info.extra.get(key);
         let text = |value: Option<&serde_json::Value>| value.map_or_else(String::new, ToString::to_string);
         Self {
             order,
             learned: worlds(log, BlockType::Train),
             evaluated: worlds(log, BlockType::Test),
-            agent: text(said("agent")),
+            agent: text(logged("agent")),
             run_seed: ["/run_seed", "/agent/seed"]
-                .map(|place| text(said("made_from").and_then(|fingerprints| fingerprints.pointer(place))))
+                .map(|place| text(logged("made_from").and_then(|fingerprints| fingerprints.pointer(place))))
                 .join(" "),
         }
     }
 }
 
-/// A hash of the worlds in one kind of block.
+/// A hash of the worlds in one kind of block: their seeds or files, with their indices.
 fn worlds(log: &Log, kind: BlockType) -> Option<u64> {
     let rows = &log.rows;
     let indices = rows.metric("world_index")?;
@@ -90,8 +90,8 @@ impl Varied {
         }
         let differs = |is_same: &dyn Fn(&Makeup) -> bool| !others.iter().all(is_same);
         let worlds = |of: &dyn Fn(&Makeup) -> Option<u64>| {
-            let is_said = lifetimes.iter().all(|lifetime| of(lifetime).is_some());
-            is_said.then(|| differs(&|other| of(other) == of(first)))
+            let is_logged = lifetimes.iter().all(|lifetime| of(lifetime).is_some());
+            is_logged.then(|| differs(&|other| of(other) == of(first)))
         };
         Some(Self {
             order: differs(&|other| other.order == first.order),
@@ -104,7 +104,7 @@ impl Varied {
 
     /// The differences in one or two sentences.
     pub fn sentence(self) -> String {
-        let all = [
+        let properties = [
             ("order", Some(self.order)),
             ("learning worlds", self.learning_worlds),
             ("evaluation worlds", self.evaluation_worlds),
@@ -112,7 +112,7 @@ impl Varied {
             ("run seed", Some(self.run_seed)),
         ];
         let of = |wanted: Option<bool>| {
-            let names = all
+            let names = properties
                 .iter()
                 .filter(|(_, differs)| *differs == wanted)
                 .map(|(name, _)| *name);
@@ -161,7 +161,7 @@ mod tests {
         );
         assert_eq!(Varied::between(&lifetimes[..1]), None);
         let silent = [makeup(&["a"], 1, None), makeup(&["a"], 1, Some(5))];
-        let said = Varied::between(&silent).expect("there are several").sentence();
-        assert!(said.ends_with("are not in the logs: evaluation worlds."), "{said}");
+        let text = Varied::between(&silent).expect("there are several").sentence();
+        assert!(text.ends_with("are not in the logs: evaluation worlds."), "{text}");
     }
 }

@@ -27,16 +27,16 @@ const MAZE: &str = r#"{ "version": 2, "name": "maze",
     "groups": [{ "name": "goal", "count": 1, "placement": { "points": { "values": [[10.5, 10.5]] } },
                  "object": { "class": "geometric", "scale": 0.4, "reward": 1, "reward_once_stimulus": ["AgentCollide"] } }] }"#;
 
-/// Environments that step together: few enough that their pictures stay in the processor's cache.
+/// Number of environments that step together: few enough that their pictures stay in the processor's cache.
 const NUM_ENVS: usize = 16;
 
-/// Environments shared by two cores: enough that scheduling does not matter.
-const NUM_ENVS_OF_TWO: usize = 256;
+/// Number of environments shared by two cores: enough that scheduling does not matter.
+const NUM_ENVS_TWO_CORES: usize = 256;
 
-/// A circle of 19 m radius that passes between the objects.
+/// An action that moves the agent along a circle of 19 m radius between the objects.
 const CURVE: Action = Action::Continuous([5.0, 15.0, 0.0]);
 
-/// Environments for measuring memory.
+/// Number of environments for measuring memory.
 const NUM_MEASURED: usize = 512;
 
 /// Measures steps per second, with physics, rewards and pictures, and resets per second.
@@ -78,10 +78,10 @@ pub(crate) fn measure(round: Duration, renderer: RendererKind) -> Result<Figures
             })?,
         ),
     ]);
-    // One core again, so that both are measured in the same state of the machine.
-    let [two, again] = [2, 1].map(|num_threads| steps_of(&square, NUM_ENVS_OF_TWO, num_threads));
-    let (two, again) = (two?, again?);
-    let speedup = (two / again * 100.0).round() / 100.0;
+    // Measure one core once more, so that both measurements see the machine in the same state.
+    let [two, one] = [2, 1].map(|num_threads| steps_of(&square, NUM_ENVS_TWO_CORES, num_threads));
+    let (two, one) = (two?, one?);
+    let speedup = (two / one * 100.0).round() / 100.0;
     figures.insert("two_core_speedup".to_owned(), json!(speedup));
     if let Some(kilobytes) = kilobytes_per_environment(&square)? {
         figures.insert("kilobytes_per_environment".to_owned(), json!(kilobytes));
@@ -109,18 +109,18 @@ fn mazes() -> Result<Sampler, Failure> {
     Ok(Sampler::new(&task.variant("default")?, 7))
 }
 
-/// A scene with surfaces, shadows, sky and, in mazes, a ceiling.
+/// The world in natural looks: with surfaces, shadows, sky and, in mazes, a ceiling.
 fn in_natural_looks(world: &World) -> Result<World, Failure> {
     let looks = Looks::of(Style::Natural);
     Ok(world.clone().edit(|world| world.environment_params.looks = looks)?)
 }
 
-/// A scene with colour alone.
+/// The world with colour as its only modality.
 fn in_color(world: World) -> Result<World, Failure> {
     Ok(world.edit(|world| world.agent_params.modalities = vec![Modality::Rgb])?)
 }
 
-/// A scene with colour, depth and class segmentation at this width and height.
+/// An arena with colour, depth and class images of this width and height.
 fn arena(text: &str, [width, height]: [u32; 2]) -> Result<World, Failure> {
     let world = World::from_json("arena.json", text)?;
     Ok(world.edit(|world| {
@@ -141,11 +141,11 @@ fn batch(world: &World, num_envs: usize, num_threads: usize, renderer: RendererK
     Ok(Batch::new(num_envs, Arc::new(move |_| Ok(world.clone())), options)?)
 }
 
-/// Steps of single environments per second, in a batch.
+/// Environment steps per second in a batch, summed over its environments.
 fn steps(mut batch: Batch, round: Duration) -> Result<f64, Failure> {
     let num_envs = batch.num_envs();
     let mut actions = vec![Action::Continuous([0.0; 3]); num_envs];
-    // Spreads them along the circle: groups start one after the other.
+    // Spread the agents along the circle: groups start one after the other.
     for group in 0..NUM_ENVS {
         actions[group * num_envs / NUM_ENVS..(group + 1) * num_envs / NUM_ENVS].fill(CURVE);
         for _ in 0..4 {
@@ -155,8 +155,8 @@ fn steps(mut batch: Batch, round: Duration) -> Result<f64, Failure> {
     Ok(rate(round, |_| batch.step(&actions))? * num_envs as f64)
 }
 
-/// Memory that each of many environments adds to the process, including images in all modalities of the bench; `None`
-/// if the system does not report it.
+/// Memory in kilobytes that each of many environments adds to the process, including its images; `None` if the system does not
+/// report it.
 fn kilobytes_per_environment(world: &World) -> Result<Option<u64>, Failure> {
     let Some(before) = resident() else { return Ok(None) };
     let batch = batch(world, NUM_MEASURED, 1, RendererKind::Cpu)?;

@@ -12,7 +12,7 @@ pub(crate) type Figures = Map<String, Value>;
 /// Number of rounds for the median.
 const ROUNDS: usize = 5;
 
-/// How often a job runs per second: the median of several rounds, after a warm-up round.
+/// Number of jobs run per second: the median of several rounds, after a warm-up round.
 fn rate<E>(round: Duration, mut job: impl FnMut(u64) -> Result<(), E>) -> Result<f64, E> {
     let mut rates = Vec::with_capacity(ROUNDS);
     let mut index = 0;
@@ -20,7 +20,7 @@ fn rate<E>(round: Duration, mut job: impl FnMut(u64) -> Result<(), E>) -> Result
         let start = Instant::now();
         let first = index;
         while start.elapsed() < round {
-            // Reads the clock once for several jobs, which may be short.
+            // Jobs may be short, so read the clock only once for several.
             for _ in 0..16 {
                 job(index)?;
                 index += 1;
